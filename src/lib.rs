@@ -1,0 +1,14 @@
+//! *Will this filter hold this soil?* Two sieve curves in; packing, constrictions, void network and
+//! walking base particles in between; a verdict with its uncertainty out.
+//!
+//! The modules stand in the order in which data flows, and each uses only those before it:
+//!
+//! ```text
+//! sieve curves -> Packing -> Constrictions -> Network -> Walk -> Outcome -> Report
+//! ```
+//!
+//! The model is that of Shire & O'Sullivan, *A network model to assess base-filter combinations*.
+
+pub mod gradation;
+pub mod packing;
+pub mod stream;
