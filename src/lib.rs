@@ -9,6 +9,7 @@
 //!
 //! The model is that of Shire & O'Sullivan, *A network model to assess base-filter combinations*.
 
+pub mod constrictions;
 pub mod gradation;
 pub mod packing;
 pub mod stream;

@@ -1,1 +1,35 @@
-//! Gradations.
+//! Gradations: how the mass of a soil is spread over particle sizes, and how many particles that is.
+//!
+//! - [`Gradation`] is a sieve curve, percent finer by mass, straight in percent against ln(size)
+//!   between its points. "Linear" in the paper is one such straight line:
+//!   `D_x = D_0 Cu^(x / 50)`, so `D_60 / D_10 = Cu` and `D_100 / D_0 = Cu^2`.
+//! - [`SizeSampler`] draws diameters from it by number.
+//! - [`base_particles`] is Eq. (2) of the paper: how many base particles a test inserts.
+//!
+//! # By mass and by number
+//! Between two points of a curve the mass is spread evenly over ln(D), so the number of particles
+//! per mm of diameter is proportional to `D^-4`, and the number finer than `D` is linear in `D^-3`.
+//!
+//! # The tail
+//! A finest row above 0 % leaves a tail of unknown size. With `d0_mm` the tail ends there, as one
+//! more straight segment. Without it the tail is taken as passive and counted by mass only: number
+//! statistics cover the sized part, and [`Gradation::tail_mass_fraction`] says what they leave out.
+//!
+//! # Units
+//! Sizes are diameters in mm. Only ratios of sizes enter a formula that rounds, so a factor of two
+//! on every length changes no bit of any ratio.
+
+mod error;
+mod numbers;
+mod root;
+mod sampler;
+mod sieve;
+mod supply;
+mod table;
+
+pub use error::{GradationError, NumberError, Position, TableError};
+pub use sampler::{Part, SizeSampler};
+pub use sieve::{Gradation, SIZE_MAX_MM, SIZE_MIN_MM};
+pub use supply::{BaseSupply, base_particles};
+pub use table::FILE_LIMIT_BYTES;
+pub(crate) use table::{Direction, Row, Table, check_size, rising};

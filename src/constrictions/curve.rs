@@ -1,0 +1,261 @@
+//! A constriction size distribution, by number.
+
+use crate::gradation::{Direction, NumberError, Row, Table, TableError, check_size, rising};
+use std::fmt;
+use std::path::Path;
+
+/// What the diameters of a [`Curve`] are measured in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CurveUnit {
+    /// Millimetres.
+    Mm,
+    /// The smallest grain of the filter, D0F: a scale-free curve.
+    D0f,
+}
+
+impl CurveUnit {
+    /// Name of the diameter column in this unit.
+    pub fn field(self) -> &'static str {
+        match self {
+            CurveUnit::Mm => "diameter_mm",
+            CurveUnit::D0f => "diameter_over_d0f",
+        }
+    }
+}
+
+impl fmt::Display for CurveUnit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            CurveUnit::Mm => "mm",
+            CurveUnit::D0f => "D0F",
+        })
+    }
+}
+
+/// A constriction curve that cannot be.
+#[derive(Debug, thiserror::Error)]
+pub enum CurveError {
+    /// The table of the curve.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// A number that is not in a table.
+    #[error(transparent)]
+    Number(#[from] NumberError),
+    /// No shipped filter has this name.
+    #[error("no shipped filter is called \"{name}\"; the nearest is \"{nearest}\" (shipped: {all})")]
+    UnknownFilter {
+        /// The name asked for.
+        name: String,
+        /// The shipped name that is most like it.
+        nearest: String,
+        /// All shipped names.
+        all: String,
+    },
+}
+
+const PERCENT: &str = "percent_smaller";
+
+/// A constriction size distribution (CSD): percent smaller by number against diameter, straight in
+/// percent against diameter between its points.
+///
+/// Checked when it is made: diameters and percent never fall, from 0 % to 100 %. One point is a single
+/// size; the same diameter twice is a vertical step; the same percent twice is a plateau, a gap in the
+/// sizes. A first point above 0 % is a step at its diameter.
+///
+/// ```
+/// use voidwalk::constrictions::{Curve, CurveUnit};
+/// let curve = Curve::from_points(&[(0.0, 0.15), (100.0, 0.35)], CurveUnit::D0f)?;
+/// assert_eq!(curve.dc(50.0), Some(0.25));
+/// assert!((curve.percent_smaller(0.25) - 50.0).abs() < 1e-9);
+/// assert_eq!(curve.quantile(0.5), 0.25);
+/// # Ok::<(), voidwalk::constrictions::CurveError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// Percent smaller by number at each point, 0 first and 100 last, never falling.
+    percent: Vec<f64>,
+    /// Diameter of each point, never falling.
+    diameter: Vec<f64>,
+    unit: CurveUnit,
+}
+
+impl Curve {
+    /// A curve through pairs of percent smaller and diameter, in `unit`, rising or falling.
+    ///
+    /// # Errors
+    /// What [`Curve::from_csv`] refuses, with the point's place in the list as the line.
+    pub fn from_points(points: &[(f64, f64)], unit: CurveUnit) -> Result<Curve, CurveError> {
+        let rows: Vec<Row> = points
+            .iter()
+            .enumerate()
+            .map(|(i, &(percent, size))| Row { line: i + 1, size, percent })
+            .collect();
+        Curve::from_rows("points", Row::checked("points", rows, [unit.field(), PERCENT])?, unit)
+    }
+
+    /// A curve from a CSV file with the columns `percent_smaller` and `diameter_mm` or
+    /// `diameter_over_d0f`, in either order, named in a header.
+    ///
+    /// # Errors
+    /// A file that cannot be read, is a folder, is too large or no UTF-8; no header, or one with other
+    /// names; no rows; a row without exactly two fields; a value that is no finite number in range;
+    /// diameters that go both ways; percent that falls as diameter rises; a largest diameter below 100 %.
+    pub fn from_csv(path: impl AsRef<Path>) -> Result<Curve, CurveError> {
+        Curve::from_table(&Table::open(path.as_ref())?)
+    }
+
+    /// [`Curve::from_csv`] on the content of a file, called `name` in messages.
+    ///
+    /// # Errors
+    /// As [`Curve::from_csv`].
+    pub fn from_csv_text(name: &str, content: &[u8]) -> Result<Curve, CurveError> {
+        Curve::from_table(&Table::parse(name, content)?)
+    }
+
+    fn from_table(table: &Table) -> Result<Curve, CurveError> {
+        let refused = |line, value: String, nearest: Option<&str>| TableError::Header {
+            file: table.file.clone(),
+            line,
+            value,
+            allowed: format!(
+                "percent_smaller and diameter_mm, or percent_smaller and diameter_over_d0f{}",
+                nearest.map_or(String::new(), |n| format!(" (nearest: {n})"))
+            ),
+        };
+        let Some((line, names)) = &table.header else {
+            return Err(refused(table.first_line(), "no header".into(), None).into());
+        };
+        let names = names.each_ref().map(|n| n.to_lowercase());
+        for (size_column, unit) in
+            [(0, CurveUnit::Mm), (1, CurveUnit::Mm), (0, CurveUnit::D0f), (1, CurveUnit::D0f)]
+        {
+            if names[size_column] == unit.field() && names[1 - size_column] == PERCENT {
+                let rows = table.rows(size_column, unit.field(), PERCENT)?;
+                return Curve::from_rows(&table.file, rows, unit);
+            }
+        }
+        let known = [PERCENT, CurveUnit::Mm.field(), CurveUnit::D0f.field()];
+        let wrong = names.iter().find(|n| !known.contains(&n.as_str()));
+        let nearest = wrong.and_then(|wrong| nearest(wrong, known));
+        let value = wrong.cloned().unwrap_or_else(|| names.join(","));
+        Err(refused(*line, value, nearest).into())
+    }
+
+    fn from_rows(file: &str, rows: Vec<Row>, unit: CurveUnit) -> Result<Curve, CurveError> {
+        let rows = rising(file, rows, [unit.field(), PERCENT], Direction::Steps)?;
+        let mut points: Vec<(f64, f64)> = Vec::with_capacity(rows.len() + 1);
+        if rows[0].percent > 0.0 {
+            points.push((0.0, rows[0].size));
+        }
+        for row in rows {
+            // Of the points on one vertical or one level, the two ends say it all.
+            if let [.., (p, d), (q, e)] = points[..]
+                && ((d == e && e == row.size) || (p == q && q == row.percent))
+            {
+                points.pop();
+            }
+            points.push((row.percent, row.size));
+        }
+        // Levels at 0 % and at 100 % hold no constriction.
+        let start = points.iter().rposition(|&(p, _)| p == 0.0).unwrap_or(0);
+        let end = points.iter().position(|&(p, _)| p == 100.0).unwrap_or(points.len() - 1);
+        let (percent, diameter) = points[start..=end].iter().copied().unzip();
+        Ok(Curve { percent, diameter, unit })
+    }
+
+    /// D_cx: the smallest diameter that `percent` of the constrictions are no larger than; `None`
+    /// outside 0 to 100.
+    pub fn dc(&self, percent: f64) -> Option<f64> {
+        if !(0.0..=100.0).contains(&percent) {
+            return None;
+        }
+        let i = self.percent.partition_point(|&p| p < percent);
+        if i == 0 {
+            return Some(self.diameter[0]);
+        }
+        let (p, q) = (self.percent[i - 1], self.percent[i]);
+        let (a, b) = (self.diameter[i - 1], self.diameter[i]);
+        if percent == q {
+            return Some(b);
+        }
+        Some((a + (percent - p) / (q - p) * (b - a)).clamp(a, b))
+    }
+
+    /// Percent of the constrictions, by number, no larger than `diameter` (in this curve's unit).
+    pub fn percent_smaller(&self, diameter: f64) -> f64 {
+        let above = self.diameter.partition_point(|&d| d <= diameter);
+        if above == 0 {
+            return 0.0;
+        }
+        if above == self.diameter.len() {
+            return 100.0;
+        }
+        let (a, b) = (self.diameter[above - 1], self.diameter[above]);
+        let (p, q) = (self.percent[above - 1], self.percent[above]);
+        (p + (diameter - a) / (b - a) * (q - p)).clamp(p, q)
+    }
+
+    /// The diameter of the draw `unit`: the inverse of the distribution, so that `unit` uniform in 0 to 1
+    /// draws a constriction. Never falls as `unit` rises; outside 0 to 1 it is the nearest end.
+    pub fn quantile(&self, unit: f64) -> f64 {
+        match self.dc(100.0 * unit) {
+            Some(diameter) => diameter,
+            None if unit > 0.5 => self.diameter[self.diameter.len() - 1],
+            None => self.diameter[0],
+        }
+    }
+
+    /// Coefficient of uniformity of the constrictions, `D_c60 / D_c10`.
+    pub fn cu(&self) -> f64 {
+        self.quantile(0.6) / self.quantile(0.1)
+    }
+
+    /// Smallest constriction, D_c0.
+    pub fn smallest(&self) -> f64 {
+        self.diameter[0]
+    }
+
+    /// Largest constriction, D_c100.
+    pub fn largest(&self) -> f64 {
+        self.diameter[self.diameter.len() - 1]
+    }
+
+    /// What diameters are measured in.
+    pub fn unit(&self) -> CurveUnit {
+        self.unit
+    }
+
+    /// The points of the curve: percent smaller, diameter; from 0 % to 100 %.
+    pub fn points(&self) -> Vec<(f64, f64)> {
+        self.percent.iter().copied().zip(self.diameter.iter().copied()).collect()
+    }
+
+    /// The same curve, in the same unit, with every diameter multiplied by `factor`.
+    ///
+    /// # Errors
+    /// A factor that is not positive and finite, or that takes a diameter out of range.
+    pub fn scaled(&self, factor: f64) -> Result<Curve, CurveError> {
+        NumberError::unless_positive("factor", factor)?;
+        let diameter: Vec<f64> = self.diameter.iter().map(|d| d * factor).collect();
+        for &d in &diameter {
+            check_size("scaled diameter", d)?;
+        }
+        Ok(Curve { percent: self.percent.clone(), diameter, unit: self.unit })
+    }
+
+    /// This curve in mm, for a filter whose smallest grain is `d0f_mm`.
+    ///
+    /// # Errors
+    /// As [`Curve::scaled`].
+    pub fn in_mm(&self, d0f_mm: f64) -> Result<Curve, CurveError> {
+        match self.unit {
+            CurveUnit::Mm => Ok(self.clone()),
+            CurveUnit::D0f => Ok(Curve { unit: CurveUnit::Mm, ..self.scaled(d0f_mm)? }),
+        }
+    }
+}
+
+/// Which of `known` is most like `name`; none where `known` is empty.
+pub(super) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    known.into_iter().max_by(|a, b| strsim::jaro_winkler(name, a).total_cmp(&strsim::jaro_winkler(name, b)))
+}

@@ -1,0 +1,154 @@
+//! What can be wrong with a gradation or with a table of two columns.
+
+use std::fmt;
+
+/// Where in an input something stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Position {
+    /// File as the user named it, or what the points were called.
+    pub file: String,
+    /// Line, counted from 1 (point, counted from 1, where there is no file).
+    pub line: usize,
+    /// Name of the column.
+    pub field: &'static str,
+}
+
+impl fmt::Display for Position {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}, line {}, {}", self.file, self.line, self.field)
+    }
+}
+
+/// A table of two columns that cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum TableError {
+    /// The file cannot be opened or read.
+    #[error("{file}: cannot be read: {source}")]
+    Read {
+        /// File as the user named it.
+        file: String,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A folder where a file is wanted.
+    #[error("{file} is a folder; allowed: a CSV file of two columns")]
+    Folder {
+        /// Folder as the user named it.
+        file: String,
+    },
+    /// More bytes than any such table has.
+    #[error("{file} is larger than {limit} bytes; allowed: a CSV file of two columns up to that size")]
+    TooLarge {
+        /// File as the user named it.
+        file: String,
+        /// Largest file that is read.
+        limit: u64,
+    },
+    /// Bytes that are no UTF-8 text.
+    #[error("{file}, line {line}: byte 0x{byte:02X} is not UTF-8 text; allowed: a CSV file saved as UTF-8")]
+    Encoding {
+        /// File as the user named it.
+        file: String,
+        /// Line, counted from 1.
+        line: usize,
+        /// The first byte that does not belong.
+        byte: u8,
+    },
+    /// No row of numbers.
+    #[error("{file} has no row of numbers{}; allowed: at least one row of two numbers",
+            if *.header { " below its header" } else { "" })]
+    NoRows {
+        /// File as the user named it.
+        file: String,
+        /// There is a header.
+        header: bool,
+    },
+    /// A row that has not two fields.
+    #[error("{file}, line {line}: {found} field(s) in \"{value}\"; allowed: {allowed}")]
+    Fields {
+        /// File as the user named it.
+        file: String,
+        /// Line, counted from 1.
+        line: usize,
+        /// Number of fields found.
+        found: usize,
+        /// The row, shortened.
+        value: String,
+        /// What is allowed there.
+        allowed: &'static str,
+    },
+    /// A header that names the wrong columns.
+    #[error("{file}, line {line}, header: \"{value}\" is not allowed; allowed: {allowed}")]
+    Header {
+        /// File as the user named it.
+        file: String,
+        /// Line, counted from 1.
+        line: usize,
+        /// The header, shortened.
+        value: String,
+        /// What is allowed there.
+        allowed: String,
+    },
+    /// A value that is not allowed where it stands.
+    #[error("{at}: \"{value}\" is not allowed; allowed: {allowed}")]
+    Value {
+        /// Where it stands.
+        at: Position,
+        /// The value, shortened.
+        value: String,
+        /// What is allowed there.
+        allowed: String,
+    },
+}
+
+/// A gradation, or a number of base particles, that cannot be.
+#[derive(Debug, thiserror::Error)]
+pub enum GradationError {
+    /// The table of a sieve curve.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// A number that is not in a table.
+    #[error(transparent)]
+    Number(#[from] NumberError),
+}
+
+/// A number that is not allowed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{name} = {value:?} is not allowed; allowed: {allowed}")]
+pub struct NumberError {
+    /// What the number is.
+    pub name: &'static str,
+    /// The number.
+    pub value: f64,
+    /// What is allowed.
+    pub allowed: String,
+}
+
+impl NumberError {
+    pub(crate) fn new(name: &'static str, value: f64, allowed: impl Into<String>) -> NumberError {
+        NumberError { name, value, allowed: allowed.into() }
+    }
+
+    /// Refuses a `value` that is not positive and finite.
+    pub(crate) fn unless_positive(name: &'static str, value: f64) -> Result<(), NumberError> {
+        match value > 0.0 && value.is_finite() {
+            true => Ok(()),
+            false => Err(NumberError::new(name, value, "a positive finite number")),
+        }
+    }
+}
+
+/// `text` short enough, and free of control characters, for a message on one line.
+pub(crate) fn shortened(text: &str) -> String {
+    const LONGEST: usize = 60;
+    let mut out: String = text.chars().take(LONGEST).flat_map(shown).collect();
+    if text.chars().nth(LONGEST).is_some() {
+        out.push_str("...");
+    }
+    out
+}
+
+/// A control character as its escape, anything else as it is.
+fn shown(c: char) -> Box<dyn Iterator<Item = char>> {
+    if c.is_control() { Box::new(c.escape_default()) } else { Box::new(std::iter::once(c)) }
+}
