@@ -148,6 +148,9 @@ impl Curve {
             points.push((0.0, rows[0].size));
         }
         for row in rows {
+            if points.last() == Some(&(row.percent, row.size)) {
+                continue;
+            }
             // Of the points on one vertical or one level, the two ends say it all.
             if let [.., (p, d), (q, e)] = points[..]
                 && ((d == e && e == row.size) || (p == q && q == row.percent))
@@ -258,4 +261,68 @@ impl Curve {
 /// Which of `known` is most like `name`; none where `known` is empty.
 pub(super) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     known.into_iter().max_by(|a, b| strsim::jaro_winkler(name, a).total_cmp(&strsim::jaro_winkler(name, b)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn curve(points: &[(f64, f64)]) -> Curve {
+        Curve::from_points(points, CurveUnit::D0f).unwrap()
+    }
+
+    #[test]
+    fn one_point_is_one_size() {
+        let one = curve(&[(100.0, 0.2)]);
+        assert_eq!(one.points(), [(0.0, 0.2), (100.0, 0.2)]);
+        for unit in [0.0, 0.3, 1.0] {
+            assert_eq!(one.quantile(unit), 0.2);
+        }
+        assert_eq!((one.percent_smaller(0.199), one.percent_smaller(0.2)), (0.0, 100.0));
+        assert_eq!(one.cu(), 1.0);
+        assert_eq!(one, curve(&[(100.0, 0.2), (0.0, 0.2)]));
+    }
+
+    #[test]
+    fn a_first_point_above_zero_is_a_step() {
+        let stepped = curve(&[(20.0, 0.2), (100.0, 0.4)]);
+        assert_eq!((stepped.dc(0.0), stepped.dc(20.0), stepped.dc(100.0)), (Some(0.2), Some(0.2), Some(0.4)));
+        assert_eq!(stepped.quantile(0.1), 0.2);
+        assert_eq!((stepped.percent_smaller(0.19), stepped.percent_smaller(0.2)), (0.0, 20.0));
+        assert!((stepped.quantile(0.6) - 0.3).abs() < 1e-15);
+    }
+
+    #[test]
+    fn steps_and_plateaus() {
+        let both = curve(&[(0.0, 0.1), (30.0, 0.2), (40.0, 0.2), (60.0, 0.2), (60.0, 0.4), (100.0, 0.5)]);
+        assert_eq!(
+            both.points(),
+            [(0.0, 0.1), (30.0, 0.2), (60.0, 0.2), (60.0, 0.4), (100.0, 0.5)],
+            "a point inside a step is merged"
+        );
+        assert_eq!((both.dc(45.0), both.dc(60.0)), (Some(0.2), Some(0.2)));
+        assert!(both.quantile(0.6001) > 0.4);
+        assert_eq!((both.percent_smaller(0.2), both.percent_smaller(0.3)), (60.0, 60.0));
+    }
+
+    #[test]
+    fn outside_the_curve() {
+        let c = curve(&[(0.0, 0.1), (100.0, 0.3)]);
+        assert_eq!((c.dc(-0.1), c.dc(100.1), c.dc(f64::NAN)), (None, None, None));
+        assert_eq!((c.quantile(-1.0), c.quantile(2.0)), (0.1, 0.3));
+        assert_eq!((c.percent_smaller(0.0), c.percent_smaller(1.0)), (0.0, 100.0));
+    }
+
+    #[test]
+    fn units_and_scale() {
+        let c = curve(&[(0.0, 0.1), (100.0, 0.3)]);
+        let mm = c.in_mm(2.0).unwrap();
+        assert_eq!((mm.unit(), mm.smallest(), mm.largest()), (CurveUnit::Mm, 0.2, 0.6));
+        assert_eq!(mm.in_mm(5.0).unwrap(), mm, "mm stay mm");
+        assert_eq!(
+            c.scaled(0.0).unwrap_err().to_string(),
+            "factor = 0.0 is not allowed; allowed: a positive finite number"
+        );
+        assert!(c.scaled(1e-20).is_err());
+    }
 }

@@ -240,11 +240,11 @@ pub(crate) fn rising(
         allowed,
     };
     let [size_field, percent_field] = fields;
-    // The first two rows that differ decide; a table of one size is decided by its percent.
-    let falls = |key: fn(&Row) -> f64| {
-        rows.windows(2).find(|w| key(&w[0]) != key(&w[1])).map(|w| key(&w[0]) > key(&w[1]))
+    let descending = match &rows[..] {
+        [first, .., last] if first.size != last.size => first.size > last.size,
+        [first, .., last] => first.percent > last.percent,
+        _ => false,
     };
-    let descending = falls(|r| r.size).or_else(|| falls(|r| r.percent)).unwrap_or(false);
     for w in rows.windows(2) {
         let (last, next) = (w[0], w[1]);
         if last.size == next.size && direction == Direction::Strict {
