@@ -11,5 +11,7 @@
 
 pub mod constrictions;
 pub mod gradation;
+pub mod outcome;
 pub mod packing;
+pub mod report;
 pub mod stream;

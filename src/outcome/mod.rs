@@ -1,0 +1,3 @@
+//! What the two runs say about a base-filter combination.
+
+pub mod record;

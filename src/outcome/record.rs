@@ -1,0 +1,421 @@
+//! What a run folder holds, as types: `outcome.json`, `manifest.json` and the rows of the CSV files.
+//!
+//! The writer and the reader of a run folder share these types, so a name is spelt in one place.
+//! Nothing here computes.
+//!
+//! # Conventions
+//! - Sizes are diameters, in mm. When [`Inputs::scale_free`] is set they are multiples of D0F, the smallest filter
+//!   grain; the names keep their `_mm`.
+//! - A fraction is of 1, a percentage is of 100 and says `percent`. Fractions of base material are of what the run
+//!   inserts in all (`N_base` particles), not of what has been inserted so far.
+//! - Replicates and runs count from 1, increments from 1, layers from 0 (the layer of the start nodes).
+//! - What a run *blocked* is a state: the constrictions blocked at that moment, so the second run's figure contains
+//!   the first's. What a run *retained* is its own: particles of the first run are gone when the second begins.
+
+use serde::{Deserialize, Serialize};
+
+/// The whole of `outcome.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Outcome {
+    /// The class that the replicates together support.
+    pub verdict: Verdict,
+    /// The user's seed.
+    pub seed: u64,
+    /// Base particles inserted in each run.
+    pub n_base: u64,
+    /// Base particles by Eq. (2), before any cap or user's number.
+    pub n_base_eq2: u64,
+    /// Whether a cap made `n_base` smaller than `n_base_eq2`.
+    pub capped: bool,
+    /// Filter grains per void, `N_p / N_voids` of Eq. (2).
+    pub grains_per_void: f64,
+    /// Name of the engine that walked.
+    pub engine: String,
+    /// One per replicate, in order.
+    pub replicates: Vec<Replicate>,
+    /// One per run, in order: statistics over the replicates.
+    pub summary: Vec<RunSummary>,
+    /// Eroded mass fraction that divides the classes: 0.075.
+    pub threshold: f64,
+    /// Where the inputs leave the range in which the model was checked, and what else a reader must know.
+    pub warnings: Vec<String>,
+    /// Parts of the program that this scene did not need.
+    pub left_out: Vec<String>,
+    /// What the model does not contain, for any scene.
+    pub model_leaves_out: Vec<String>,
+    /// What went in, resolved.
+    pub inputs: Inputs,
+    /// The ratios that filter rules use.
+    pub ratios: Ratios,
+    /// Empirical filter rules applied to the same two curves.
+    pub rules: Vec<Rule>,
+    /// How the verdict moves with the number of base particles; empty when it was not asked for.
+    pub sensitivity: Vec<Sensitivity>,
+    /// Wall time of everything, s.
+    pub seconds: f64,
+}
+
+/// The paper's three classes, after Foster and Fell, and the honest fourth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Verdict {
+    /// Less than the threshold eroded in the first run.
+    #[serde(rename = "no erosion")]
+    None,
+    /// The threshold reached in the first run, not in the second.
+    #[serde(rename = "some erosion")]
+    Some,
+    /// The threshold reached in both runs.
+    #[serde(rename = "continuing erosion")]
+    Continuing,
+    /// An interval straddles the threshold, or a run that would decide is missing.
+    #[serde(rename = "undecided")]
+    Undecided,
+}
+
+impl Verdict {
+    /// The words that `outcome.json` uses.
+    pub fn words(self) -> &'static str {
+        match self {
+            Verdict::None => "no erosion",
+            Verdict::Some => "some erosion",
+            Verdict::Continuing => "continuing erosion",
+            Verdict::Undecided => "undecided",
+        }
+    }
+}
+
+/// One new network, walked once or twice.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Replicate {
+    /// The seed that gives this replicate alone.
+    pub seed: u64,
+    /// The class of this replicate alone.
+    pub verdict: Verdict,
+    /// One or two.
+    pub runs: Vec<Run>,
+}
+
+/// The end of one run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    /// 1 or 2.
+    pub run: u64,
+    /// Mass eroded over mass inserted.
+    pub eroded_mass_fraction: f64,
+    /// Particles eroded over particles inserted.
+    pub eroded_number_fraction: f64,
+    /// Largest particle that left the filter; `None` when none did.
+    pub largest_eroded_mm: Option<f64>,
+    /// The same over D15F.
+    pub largest_eroded_over_d15f: Option<f64>,
+    /// Constrictions blocked when the run ends.
+    pub blocked: u64,
+    /// Their share of all constrictions.
+    pub blocked_fraction: f64,
+    /// Their share of the constrictions of layers 0, 1 and 2.
+    pub blocked_first_three_layers_fraction: f64,
+    /// Share of all constrictions that lie on an open path from start to end.
+    pub backbone_fraction: f64,
+    /// Particles inserted.
+    pub inserted: u64,
+    /// Particles that left through the last layer.
+    pub eroded: u64,
+    /// Particles stopped by a constriction.
+    pub retained_in_constrictions: u64,
+    /// Particles in voids without an open exit.
+    pub retained_in_voids: u64,
+    /// Particles that would circle for ever.
+    pub trapped: u64,
+    /// Particles retained in any way, over voids.
+    pub retained_per_void: f64,
+    /// Increments until nothing moved.
+    pub increments: u64,
+    /// Moves completed, the one that leaves included.
+    pub particle_moves: u64,
+    /// Wall time, s.
+    pub seconds: f64,
+}
+
+/// Statistics of one run over the replicates.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunSummary {
+    /// 1 or 2.
+    pub run: u64,
+    /// Of [`Run::eroded_mass_fraction`].
+    pub eroded_mass_fraction: Statistic,
+    /// Of [`Run::eroded_number_fraction`].
+    pub eroded_number_fraction: Statistic,
+    /// Of [`Run::largest_eroded_over_d15f`], over the replicates in which something eroded; `None` if in none.
+    pub largest_eroded_over_d15f: Option<Statistic>,
+    /// Of [`Run::blocked_fraction`].
+    pub blocked_fraction: Statistic,
+    /// Of [`Run::blocked_first_three_layers_fraction`].
+    pub blocked_first_three_layers_fraction: Statistic,
+    /// Of [`Run::backbone_fraction`].
+    pub backbone_fraction: Statistic,
+}
+
+/// A mean, and with two or more replicates its spread and interval.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Statistic {
+    /// Mean over the replicates.
+    pub mean: f64,
+    /// Sample standard deviation.
+    pub sd: Option<f64>,
+    /// Lower end of the 95 % interval of the mean.
+    pub low: Option<f64>,
+    /// Upper end of the 95 % interval of the mean.
+    pub high: Option<f64>,
+}
+
+/// What went in.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Inputs {
+    /// The filter and its constrictions.
+    pub filter: Filter,
+    /// The base soil.
+    pub base: Base,
+    /// The void network.
+    pub network: Network,
+    /// Mass of base over mass of filter, `F_base` of Eq. (2).
+    pub mass_ratio: f64,
+    /// Share of `n_base` inserted in each increment.
+    pub inject_share: f64,
+    /// Whether sizes are multiples of D0F instead of mm.
+    pub scale_free: bool,
+}
+
+/// The filter: its gradation by mass and its constrictions by number.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Filter {
+    /// As the user calls it.
+    pub name: String,
+    /// Whom to credit for the constriction curve; empty for the user's own.
+    pub attribution: String,
+    /// D60 / D10 by mass.
+    pub cu: f64,
+    /// Smallest grain.
+    pub d0_mm: f64,
+    /// 15 % finer by mass.
+    pub d15_mm: f64,
+    /// 50 % finer by mass.
+    pub d50_mm: f64,
+    /// 50 % finer by number: the distance from void to void.
+    pub d50_by_number_mm: f64,
+    /// 85 % finer by mass.
+    pub d85_mm: f64,
+    /// Volume of voids over volume of grains, where known.
+    pub void_ratio: Option<f64>,
+    /// Rows of (size, percent finer by mass), sizes ascending.
+    pub gradation: Vec<[f64; 2]>,
+    /// Rows of (diameter, percent smaller by number), diameters ascending.
+    pub constrictions: Vec<[f64; 2]>,
+    /// Dc60 / Dc10 by number.
+    pub cu_csd: f64,
+    /// Name of the constriction curve.
+    pub curve_name: String,
+}
+
+/// The base soil.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Base {
+    /// As the user calls it.
+    pub name: String,
+    /// D60 / D10 by mass.
+    pub cu: f64,
+    /// Smallest particle.
+    pub d0_mm: f64,
+    /// 15 % finer by mass.
+    pub d15_mm: f64,
+    /// 50 % finer by mass.
+    pub d50_mm: f64,
+    /// 85 % finer by mass.
+    pub d85_mm: f64,
+    /// 95 % finer by mass.
+    pub d95_mm: f64,
+    /// Largest particle.
+    pub d100_mm: f64,
+    /// Mass fraction below the finest sieve, of unknown size; counted as passive.
+    pub tail_mass_fraction: f64,
+    /// Rows of (size, percent finer by mass), sizes ascending.
+    pub gradation: Vec<[f64; 2]>,
+}
+
+/// The void network.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Network {
+    /// Where it comes from.
+    pub kind: NetworkKind,
+    /// As the user calls it.
+    pub name: String,
+    /// Voids along x; `None` for a network from a file.
+    pub nx: Option<u64>,
+    /// Voids along y.
+    pub ny: Option<u64>,
+    /// Voids along z, the direction of flow.
+    pub nz: Option<u64>,
+    /// Number of voids.
+    pub voids: u64,
+    /// Number of constrictions.
+    pub constrictions: u64,
+    /// Number of voids in which base particles start.
+    pub start_nodes: u64,
+    /// Number of layers.
+    pub layers: u64,
+    /// Thickness of filter that it stands for: layers times D50F by number; `None` where a layer has no thickness.
+    pub thickness_mm: Option<f64>,
+}
+
+/// How a network was made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NetworkKind {
+    /// Directed cubic lattice.
+    Cubic,
+    /// Read from a file.
+    File,
+}
+
+/// The ratios of characteristic sizes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ratios {
+    /// D15F / D85B.
+    pub d15f_over_d85b: f64,
+    /// D15F / D95B.
+    pub d15f_over_d95b: f64,
+}
+
+/// An empirical filter rule, applied.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Rule {
+    /// Whose rule it is.
+    pub name: String,
+    /// What it limits, as `D15F/D85B`.
+    pub quantity: String,
+    /// Its value for these inputs.
+    pub value: f64,
+    /// The most that the rule allows.
+    pub limit: f64,
+    /// Whether the value keeps the limit.
+    pub meets: bool,
+    /// Where the rule is published.
+    pub source: String,
+}
+
+/// The outcome with another number of base particles.
+///
+/// `N_base` holds grains per void and mass ratio only as a product (Eq. 2), so one factor answers for both.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sensitivity {
+    /// Multiple of the outcome's own `n_base`.
+    pub factor: f64,
+    /// Base particles inserted in each run.
+    pub n_base: u64,
+    /// Grains per void that this factor stands for at the scene's mass ratio.
+    pub grains_per_void: f64,
+    /// Mass ratio that this factor stands for at the scene's grains per void.
+    pub mass_ratio: f64,
+    /// How many replicates were walked.
+    pub replicates: u64,
+    /// Their class.
+    pub verdict: Verdict,
+    /// Eroded mass fraction, one per run.
+    pub runs: Vec<Statistic>,
+}
+
+/// The whole of `manifest.json`: what made the folder.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Version of voidwalk.
+    pub version: String,
+    /// Commit it was built from, where known.
+    pub commit: Option<String>,
+    /// The user's seed.
+    pub seed: u64,
+    /// Every file that was read.
+    pub inputs: Vec<InputFile>,
+    /// Worker threads.
+    pub threads: u64,
+    /// Name of the machine.
+    pub host: String,
+    /// Kind of machine: system, processor, memory.
+    pub machine: String,
+    /// When the work began, RFC 3339.
+    pub started: String,
+    /// When it ended, RFC 3339.
+    pub finished: String,
+    /// The command line.
+    pub command: String,
+}
+
+/// A file that was read.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct InputFile {
+    /// Its name as given.
+    pub name: String,
+    /// XXH3 of its bytes, hexadecimal. Finds accidents, not attackers.
+    pub xxh3: String,
+}
+
+/// One row of `series.csv`: the counts after an increment.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SeriesRow {
+    /// Counts from 1.
+    pub replicate: u64,
+    /// 1 or 2.
+    pub run: u64,
+    /// Counts from 1.
+    pub increment: u64,
+    /// Particles inserted so far in this run.
+    pub inserted: u64,
+    /// Particles still moving.
+    pub moving: u64,
+    /// Particles eroded so far in this run.
+    pub eroded: u64,
+    /// Particles stopped by a constriction so far in this run.
+    pub retained_in_constrictions: u64,
+    /// Particles retained in voids so far in this run.
+    pub retained_in_voids: u64,
+    /// Particles that would circle for ever.
+    pub trapped: u64,
+    /// Constrictions blocked.
+    pub blocked: u64,
+    /// Mass eroded so far over the mass that the whole run inserts.
+    pub eroded_mass_fraction: f64,
+}
+
+/// One row of `layers.csv`: a layer when a run has ended.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LayerRow {
+    /// Counts from 1.
+    pub replicate: u64,
+    /// 1 or 2.
+    pub run: u64,
+    /// Counts from 0 at the start nodes.
+    pub layer: u64,
+    /// Constrictions that leave the voids of this layer.
+    pub constrictions: u64,
+    /// Those of them that are blocked.
+    pub blocked: u64,
+    /// Particles of this run stopped by them.
+    pub retained_in_constrictions: u64,
+    /// Particles of this run retained in the voids of this layer.
+    pub retained_in_voids: u64,
+}
+
+/// One row of `retained.csv` or `eroded.csv`: a point of the size curve of what is retained, or eroded, so far.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SizeRow {
+    /// Counts from 1.
+    pub replicate: u64,
+    /// 1 or 2.
+    pub run: u64,
+    /// The increment after which the curve was taken.
+    pub increment: u64,
+    /// Size.
+    pub diameter_mm: f64,
+    /// Percent of the mass in particles no larger.
+    pub percent_finer_by_mass: f64,
+    /// Percent of the number in particles no larger.
+    pub percent_finer_by_number: f64,
+}

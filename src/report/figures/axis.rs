@@ -1,0 +1,209 @@
+//! Axes: a range, a scale, and where its ticks and grid lines stand.
+
+/// How values are spread along an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// Evenly.
+    Linear,
+    /// Evenly in the logarithm.
+    Log,
+}
+
+/// A grid line, and the lines of text beside it; without text it is a minor one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tick {
+    /// Where it stands.
+    pub at: f64,
+    /// What stands beside it, one entry per line of text.
+    pub text: Vec<String>,
+    /// How much it matters: of two labels that overlap, the one with the smaller rank is kept.
+    pub rank: u8,
+}
+
+impl Tick {
+    /// A labelled tick.
+    pub fn new(at: f64, text: &[&str]) -> Tick {
+        Tick { at, text: text.iter().map(|line| (*line).to_owned()).collect(), rank: 0 }
+    }
+}
+
+/// One axis of a figure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// What it measures, with the unit.
+    pub label: String,
+    /// How values are spread.
+    pub scale: Scale,
+    /// Smallest value drawn.
+    pub low: f64,
+    /// Largest value drawn.
+    pub high: f64,
+    /// Grid lines, minor ones included.
+    pub ticks: Vec<Tick>,
+    /// Whether values grow downward (depth).
+    pub downward: bool,
+}
+
+impl Axis {
+    /// An even axis from `low` to `high`, widened to full steps of 1, 2 or 5.
+    pub fn linear(label: &str, low: f64, high: f64) -> Axis {
+        let (low, high) = if high > low { (low, high) } else { (low, low + 1.0) };
+        let step = tidy_step((high - low) / 6.0);
+        let (first, last) = ((low / step + 1e-9).floor(), (high / step - 1e-9).ceil());
+        let decimals = libm::fmax(0.0, -libm::floor(libm::log10(step) + 1e-9)) as usize;
+        let mut ticks = Vec::new();
+        for half in (2.0 * first) as i64..=(2.0 * last) as i64 {
+            let at = half as f64 * 0.5 * step;
+            let text = if half % 2 == 0 { vec![format!("{at:.decimals$}")] } else { Vec::new() };
+            ticks.push(Tick { at, text, rank: u8::from(half % 4 != 0) });
+        }
+        let (low, high) = (first * step, last * step);
+        Axis { label: label.to_owned(), scale: Scale::Linear, low, high, ticks, downward: false }
+    }
+
+    /// Percent from 0 to 100, a line every 10.
+    pub fn percent(label: &str) -> Axis {
+        let ticks = (0..=10u8)
+            .map(|ten| Tick {
+                at: f64::from(ten) * 10.0,
+                text: vec![(u32::from(ten) * 10).to_string()],
+                rank: ten % 2,
+            })
+            .collect();
+        Axis { label: label.to_owned(), scale: Scale::Linear, low: 0.0, high: 100.0, ticks, downward: false }
+    }
+
+    /// A logarithmic axis around `low ... high` (both positive), with a line at 1, 2, ... 9 of each decade.
+    pub fn log(label: &str, low: f64, high: f64) -> Axis {
+        let (low, high) = (tidy_log(low * 0.97, false), tidy_log(high * 1.03, true));
+        let decades = libm::log10(high / low);
+        let mut ticks = Vec::new();
+        for exponent in
+            libm::floor(libm::log10(low) + 1e-9) as i32..=libm::ceil(libm::log10(high) - 1e-9) as i32
+        {
+            for digit in 1..=9u8 {
+                let at = power_of_ten(f64::from(digit), exponent);
+                if at < low * (1.0 - 1e-9) || at > high * (1.0 + 1e-9) {
+                    continue;
+                }
+                let rank = match digit {
+                    1 => 0,
+                    2 | 5 => 1,
+                    3 | 4 | 6 | 8 => 2,
+                    _ => 3,
+                };
+                let most = if decades > 3.0 {
+                    0
+                } else if decades > 0.9 {
+                    1
+                } else {
+                    2
+                };
+                let text = if rank <= most { vec![decade_label(digit, exponent)] } else { Vec::new() };
+                ticks.push(Tick { at, text, rank });
+            }
+        }
+        Axis { label: label.to_owned(), scale: Scale::Log, low, high, ticks, downward: false }
+    }
+
+    /// The same axis with these labelled ticks alone.
+    pub fn with_ticks(mut self, ticks: Vec<Tick>) -> Axis {
+        self.ticks = ticks;
+        self
+    }
+
+    /// The same axis with values that grow downward.
+    pub fn downward(mut self) -> Axis {
+        self.downward = true;
+        self
+    }
+
+    /// Where a value stands: 0 at `low`, 1 at `high`; `None` for a value that the scale cannot show.
+    pub fn position(&self, value: f64) -> Option<f64> {
+        let position = match self.scale {
+            Scale::Linear => (value - self.low) / (self.high - self.low),
+            Scale::Log if value > 0.0 => libm::log10(value / self.low) / libm::log10(self.high / self.low),
+            Scale::Log => return None,
+        };
+        position.is_finite().then_some(position)
+    }
+}
+
+/// The next 1, 2 or 5 times a power of ten that is no smaller than `rough`.
+fn tidy_step(rough: f64) -> f64 {
+    let exponent = libm::floor(libm::log10(rough)) as i32;
+    [1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .map(|digit| power_of_ten(digit, exponent))
+        .find(|step| *step >= rough * (1.0 - 1e-9))
+        .unwrap_or(rough)
+}
+
+/// The next digit times a power of ten, below or above `value`.
+fn tidy_log(value: f64, above: bool) -> f64 {
+    let exponent = libm::floor(libm::log10(value)) as i32;
+    let mut digits = (1..=10u8).map(|digit| power_of_ten(f64::from(digit), exponent));
+    let found = if above { digits.find(|at| *at >= value) } else { digits.rfind(|at| *at <= value) };
+    found.unwrap_or(value)
+}
+
+/// `digit * 10^exponent`, exact where a decimal text would be.
+fn power_of_ten(digit: f64, exponent: i32) -> f64 {
+    if exponent < 0 {
+        digit / libm::exp10(f64::from(-exponent))
+    } else {
+        digit * libm::exp10(f64::from(exponent))
+    }
+}
+
+fn decade_label(digit: u8, exponent: i32) -> String {
+    match exponent {
+        -4..0 => format!("{:.*}", exponent.unsigned_abs() as usize, power_of_ten(f64::from(digit), exponent)),
+        0..=4 => format!("{:.0}", power_of_ten(f64::from(digit), exponent)),
+        _ => format!("{digit}e{exponent}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(axis: &Axis) -> Vec<String> {
+        axis.ticks.iter().filter_map(|tick| tick.text.first().cloned()).collect()
+    }
+
+    #[test]
+    fn a_size_axis_has_decades_and_every_minor_line() {
+        let axis = Axis::log("Size (mm)", 0.063, 63.0);
+        assert_eq!((axis.low, axis.high), (0.06, 70.0));
+        assert_eq!(labels(&axis), ["0.1", "1", "10"]);
+        // 0.06 to 0.09 (4), 0.1 to 0.9, 1 to 9, 10 to 70 (7)
+        assert_eq!(axis.ticks.len(), 4 + 9 + 9 + 7);
+    }
+
+    #[test]
+    fn a_short_size_axis_labels_more_than_its_decades() {
+        assert_eq!(labels(&Axis::log("Size (mm)", 0.11, 2.1)), ["0.1", "0.2", "0.5", "1", "2"]);
+        assert_eq!(labels(&Axis::log("Size (mm)", 2.2, 5.1)), ["2", "3", "4", "5", "6"]);
+    }
+
+    #[test]
+    fn linear_steps_are_tidy() {
+        let axis = Axis::linear("x", 0.0, 354.0);
+        assert_eq!((axis.low, axis.high), (0.0, 400.0));
+        assert_eq!(labels(&axis), ["0", "100", "200", "300", "400"]);
+        assert_eq!(
+            labels(&Axis::linear("x", 0.0, 0.11)),
+            ["0.00", "0.02", "0.04", "0.06", "0.08", "0.10", "0.12"]
+        );
+    }
+
+    #[test]
+    fn positions_run_from_zero_to_one_and_refuse_what_has_no_logarithm() {
+        let axis = Axis::log("x", 0.1, 9.0);
+        assert_eq!(axis.position(axis.low), Some(0.0));
+        assert_eq!(axis.position(axis.high), Some(1.0));
+        assert_eq!(axis.position(0.0), None);
+        assert_eq!(Axis::percent("y").position(f64::NAN), None);
+    }
+}

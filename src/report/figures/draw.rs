@@ -1,0 +1,544 @@
+//! From a [`Figure`] to SVG: margins, grid, marks, names.
+
+use super::place::{Canvas, Rect};
+use super::svg::{Anchor, FONT, Svg, escape, short, width_of, wrap};
+use super::{Across, Axis, Colour, Dash, Figure, Line, Mark, Naming, Point, Shape, Size, Tick};
+
+const TICK_TEXT: f64 = 13.0;
+const LABEL_TEXT: f64 = 14.0;
+const LINE_HEIGHT: f64 = 17.0;
+const SYMBOL: f64 = 4.5;
+
+/// Where values fall in pixels.
+struct Frame<'a> {
+    x: &'a Axis,
+    y: &'a Axis,
+    area: Rect,
+}
+
+impl Frame<'_> {
+    fn x_at(&self, value: f64) -> Option<f64> {
+        let share = self.x.position(value)?;
+        let share = if self.x.downward { 1.0 - share } else { share };
+        Some(self.area.left + share * (self.area.right - self.area.left))
+    }
+
+    fn y_at(&self, value: f64) -> Option<f64> {
+        let share = self.y.position(value)?;
+        let share = if self.y.downward { share } else { 1.0 - share };
+        Some(self.area.top + share * (self.area.bottom - self.area.top))
+    }
+
+    fn at(&self, point: (f64, f64)) -> Option<(f64, f64)> {
+        Some((self.x_at(point.0)?, self.y_at(point.1)?))
+    }
+
+    fn path(&self, points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+        simplify(points.iter().filter_map(|point| self.at(*point)))
+    }
+
+    /// The same path kept inside the frame, for finding room: what the clip hides needs none.
+    fn seen(&self, path: &[(f64, f64)]) -> Vec<(f64, f64)> {
+        let area = &self.area;
+        path.iter().map(|(x, y)| (x.clamp(area.left, area.right), y.clamp(area.top, area.bottom))).collect()
+    }
+}
+
+pub(super) fn draw(figure: &Figure, size: Size, id: &str, namespace: &str) -> String {
+    let (width, height) = match size {
+        Size::Wide => (720.0, figure.height.0),
+        Size::Narrow => (358.0, figure.height.1),
+    };
+    let names = match figure.naming {
+        Naming::Above => named(figure),
+        Naming::Direct => Vec::new(),
+    };
+    let (body, homeless) = body(figure, width, height, id, &names);
+    let body =
+        if homeless.is_empty() { body } else { body_with_names_above(figure, width, height, id, homeless) };
+    let id = escape(id);
+    let mut svg = Svg::default();
+    svg.raw(&format!(
+        "<svg{namespace} id=\"{id}\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\" \
+         aria-labelledby=\"{id}-title {id}-desc\" font-family=\"{FONT}\" font-size=\"{TICK_TEXT}\" fill=\"#1a1a1a\">\n"
+    ));
+    svg.raw(&format!("<title id=\"{id}-title\">{}</title>\n", escape(&figure.title)));
+    svg.raw(&format!("<desc id=\"{id}-desc\">{}</desc>\n", escape(&figure.description)));
+    svg.rect(0.0, 0.0, width, height, r##"fill="#ffffff""##);
+    svg.raw(&body);
+    svg.raw("</svg>\n");
+    svg.finish()
+}
+
+/// Lines whose names found no room are named above the frame; that moves the frame, so all is drawn again.
+fn body_with_names_above(
+    figure: &Figure,
+    width: f64,
+    height: f64,
+    id: &str,
+    mut homeless: Vec<usize>,
+) -> String {
+    loop {
+        let (body, more) = body(figure, width, height, id, &homeless);
+        if more.is_empty() {
+            return body;
+        }
+        homeless.extend(more);
+        homeless.sort_unstable();
+    }
+}
+
+/// Indices of the marks that have a name.
+fn named(figure: &Figure) -> Vec<usize> {
+    (0..figure.marks.len()).filter(|&index| label_of(&figure.marks[index]).is_some()).collect()
+}
+
+fn label_of(mark: &Mark) -> Option<(&str, Colour)> {
+    let (label, colour) = match mark {
+        Mark::Line(line) => (&line.label, line.colour),
+        Mark::Point(point) => (&point.label, point.colour),
+        Mark::Rule(rule) => (&rule.label, rule.colour),
+        Mark::Area(_) => return None,
+    };
+    label.as_deref().map(|label| (label, colour))
+}
+
+/// Everything inside the element, and the marks whose names found no room. `above` are named above the frame.
+fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> (String, Vec<usize>) {
+    let mut svg = Svg::default();
+    let mut top = 12.0;
+    if !figure.heading.is_empty() {
+        for line in wrap(&figure.heading, LABEL_TEXT * 1.08, width - 24.0) {
+            svg.text((12.0, top + 12.0), Anchor::Start, &line, r#"font-weight="bold" font-size="14""#);
+            top += LINE_HEIGHT + 1.0;
+        }
+        top += 6.0;
+    }
+    top = key(&mut svg, figure, above, width, top);
+    let frame = frame(figure, width, height, top);
+    grid(&mut svg, &frame);
+    axis_labels(&mut svg, &frame, height);
+
+    let clip = format!("{}-clip", escape(id));
+    let Rect { left, top, right, bottom } = frame.area;
+    svg.raw(&format!("<clipPath id=\"{clip}\">\n"));
+    svg.rect(left - 1.0, top - 1.0, right - left + 2.0, bottom - top + 2.0, "");
+    svg.raw(&format!("</clipPath>\n<g clip-path=\"url(#{clip})\" stroke-linejoin=\"round\">\n"));
+    let mut canvas = Canvas { frame: inset(&frame.area), ink: Vec::new(), taken: Vec::new() };
+    for mark in &figure.marks {
+        draw_mark(&mut svg, &mut canvas, &frame, mark);
+    }
+    svg.raw("</g>\n");
+    let paint = r##"fill="none" stroke="#1a1a1a" stroke-width="1.2""##;
+    svg.rect(left, top, right - left, bottom - top, paint);
+
+    let mut symbols = Vec::new();
+    for mark in &figure.marks {
+        if let Mark::Point(point) = mark {
+            symbols.extend(draw_point(&mut svg, &mut canvas, &frame, point));
+        }
+    }
+    canvas.taken.extend(symbols);
+    // points first: they have one anchor only
+    let mut order = named(figure);
+    order.retain(|index| !above.contains(index));
+    order.sort_by_key(|&index| !matches!(figure.marks[index], Mark::Point(_)));
+    let mut homeless = Vec::new();
+    for index in order {
+        let mark = &figure.marks[index];
+        let Some((label, colour)) = label_of(mark) else { continue };
+        let anchors = anchors(&frame, mark);
+        if anchors.is_empty() {
+            continue;
+        }
+        let lines: Vec<&str> = label.lines().collect();
+        let wide = lines.iter().map(|line| width_of(line, TICK_TEXT)).fold(0.0, f64::max);
+        match canvas.place(&anchors, wide, LINE_HEIGHT * lines.len() as f64 - 2.0) {
+            None => homeless.push(index),
+            Some(found) => {
+                let (at, anchor) = side(&found, &anchors);
+                for (row, line) in lines.iter().enumerate() {
+                    let baseline = found.top + 12.0 + row as f64 * LINE_HEIGHT;
+                    let halo =
+                        r##"stroke="#ffffff" stroke-width="3" stroke-linejoin="round" paint-order="stroke""##;
+                    let paint = format!("fill=\"{}\" {halo}", colour.text);
+                    svg.text((at, baseline), anchor, line, &paint);
+                }
+            }
+        }
+    }
+    (svg.finish(), homeless)
+}
+
+/// Text that stands left of its curve ends there, so that a narrower font leaves no gap.
+fn side(found: &Rect, anchors: &[(f64, f64)]) -> (f64, Anchor) {
+    let nearest = anchors.iter().min_by(|a, b| distance(found, **a).total_cmp(&distance(found, **b)));
+    match nearest {
+        Some((x, _)) if *x >= found.right => (found.right, Anchor::End),
+        Some((x, _)) if *x > found.left => ((found.left + found.right) / 2.0, Anchor::Middle),
+        _ => (found.left, Anchor::Start),
+    }
+}
+
+fn distance(rect: &Rect, point: (f64, f64)) -> f64 {
+    let dx = (rect.left - point.0).max(point.0 - rect.right).max(0.0);
+    let dy = (rect.top - point.1).max(point.1 - rect.bottom).max(0.0);
+    libm::hypot(dx, dy)
+}
+
+fn inset(area: &Rect) -> Rect {
+    Rect { left: area.left + 3.0, top: area.top + 3.0, right: area.right - 3.0, bottom: area.bottom - 3.0 }
+}
+
+/// The names above the frame, in as many rows as they need. Returns where the frame may begin.
+fn key(svg: &mut Svg, figure: &Figure, above: &[usize], width: f64, top: f64) -> f64 {
+    const SAMPLE: f64 = 26.0;
+    let (mut left, mut row) = (14.0, top);
+    for &index in above {
+        let Some((label, colour)) = label_of(&figure.marks[index]) else { continue };
+        let label = label.replace('\n', " ");
+        let room = SAMPLE + 6.0 + width_of(&label, TICK_TEXT) + 18.0;
+        if left > 14.0 && left + room - 18.0 > width - 8.0 {
+            (left, row) = (14.0, row + LINE_HEIGHT + 2.0);
+        }
+        let middle = row + 8.0;
+        match &figure.marks[index] {
+            Mark::Point(point) => symbol(svg, (left + SAMPLE / 2.0, middle), point),
+            Mark::Line(line) => svg.line((left, middle), (left + SAMPLE, middle), &stroke(line)),
+            Mark::Rule(rule) => {
+                let line = Line::new(Vec::new(), rule.colour).width(1.5).dash(rule.dash);
+                svg.line((left, middle), (left + SAMPLE, middle), &stroke(&line));
+            }
+            Mark::Area(_) => {}
+        }
+        let paint = format!("fill=\"{}\"", colour.text);
+        svg.text((left + SAMPLE + 6.0, middle + 4.5), Anchor::Start, &label, &paint);
+        left += room;
+    }
+    if above.is_empty() { top } else { row + LINE_HEIGHT + 8.0 }
+}
+
+fn frame(figure: &Figure, width: f64, height: f64, top: f64) -> Frame<'_> {
+    let widest = |axis: &Axis| {
+        let texts = axis.ticks.iter().flat_map(|tick| &tick.text);
+        texts.map(|text| width_of(text, TICK_TEXT)).fold(0.0, f64::max)
+    };
+    let rows = figure.x.ticks.iter().map(|tick| tick.text.len()).max().unwrap_or(0) as f64;
+    let right = width - 20.0;
+    let y_lines = if figure.y.label.is_empty() {
+        0
+    } else {
+        wrap(&figure.y.label, LABEL_TEXT, height - top - 90.0).len()
+    };
+    let left = 12.0 + y_lines as f64 * LINE_HEIGHT + widest(&figure.y) + 12.0;
+    let x_lines = wrap(&figure.x.label, LABEL_TEXT, right - left).len() as f64;
+    let bottom = height - 10.0 - (x_lines + rows) * LINE_HEIGHT - 6.0;
+    Frame { x: &figure.x, y: &figure.y, area: Rect { left, top: top + 4.0, right, bottom } }
+}
+
+fn grid(svg: &mut Svg, frame: &Frame<'_>) {
+    let Rect { left, top, right, bottom } = frame.area;
+    let minor = r##"stroke="#e6e6e6" stroke-width="0.8""##;
+    let major = r##"stroke="#bdbdbd" stroke-width="1""##;
+    for strong in [false, true] {
+        let paint = if strong { major } else { minor };
+        let drawn = |tick: &&Tick| (!tick.text.is_empty() && tick.rank == 0) == strong;
+        for x in frame.x.ticks.iter().filter(drawn).filter_map(|tick| frame.x_at(tick.at)) {
+            svg.line((x, top), (x, bottom), paint);
+        }
+        for y in frame.y.ticks.iter().filter(drawn).filter_map(|tick| frame.y_at(tick.at)) {
+            svg.line((left, y), (right, y), paint);
+        }
+    }
+    for (tick, x) in labelled(frame.x, |tick| {
+        let wide = tick.text.iter().map(|text| width_of(text, TICK_TEXT)).fold(0.0, f64::max);
+        frame.x_at(tick.at).map(|x| (x, wide / 2.0 + 4.0))
+    }) {
+        for (row, text) in tick.text.iter().enumerate() {
+            svg.text((x, bottom + 17.0 + row as f64 * LINE_HEIGHT), Anchor::Middle, text, "");
+        }
+    }
+    for (tick, y) in
+        labelled(frame.y, |tick| frame.y_at(tick.at).map(|y| (y, LINE_HEIGHT * tick.text.len() as f64 / 2.0)))
+    {
+        let first = y + 4.5 - (tick.text.len() as f64 - 1.0) * LINE_HEIGHT / 2.0;
+        for (row, text) in tick.text.iter().enumerate() {
+            svg.text((left - 7.0, first + row as f64 * LINE_HEIGHT), Anchor::End, text, "");
+        }
+    }
+}
+
+/// The ticks whose labels fit beside one another, the important ones first, each with its place. `room` gives the
+/// place of a tick and half the room of its label.
+fn labelled<'a>(axis: &'a Axis, room: impl Fn(&Tick) -> Option<(f64, f64)>) -> Vec<(&'a Tick, f64)> {
+    let mut kept: Vec<(&Tick, f64, f64)> = Vec::new();
+    let highest = axis.ticks.iter().map(|tick| tick.rank).max().unwrap_or(0);
+    for rank in 0..=highest {
+        let group: Vec<_> = axis
+            .ticks
+            .iter()
+            .filter(|tick| tick.rank == rank && !tick.text.is_empty())
+            .filter_map(|tick| room(tick).map(|(at, half)| (tick, at, half)))
+            .collect();
+        // the first rank is thinned evenly until it fits; a lower one comes whole or not at all
+        let fits = |stride: usize| {
+            let mut all = kept.clone();
+            all.extend(group.iter().step_by(stride));
+            all.sort_by(|a, b| a.1.total_cmp(&b.1));
+            all.windows(2).all(|pair| pair[1].1 - pair[0].1 >= pair[0].2 + pair[1].2)
+        };
+        if group.is_empty() {
+            continue;
+        }
+        let most = if kept.is_empty() { group.len() } else { 1 };
+        match (1..=most).find(|stride| fits(*stride)) {
+            Some(stride) => kept.extend(group.into_iter().step_by(stride)),
+            None => break,
+        }
+    }
+    kept.into_iter().map(|(tick, at, _)| (tick, at)).collect()
+}
+
+fn axis_labels(svg: &mut Svg, frame: &Frame<'_>, height: f64) {
+    let Rect { left, top, right, bottom } = frame.area;
+    let size = format!("font-size=\"{LABEL_TEXT}\"");
+    let lines = wrap(&frame.x.label, LABEL_TEXT, right - left);
+    let first = height - 12.0 - (lines.len() as f64 - 1.0) * LINE_HEIGHT;
+    for (row, line) in lines.iter().enumerate() {
+        svg.text(((left + right) / 2.0, first + row as f64 * LINE_HEIGHT), Anchor::Middle, line, &size);
+    }
+    let middle = (top + bottom) / 2.0;
+    for (row, line) in wrap(&frame.y.label, LABEL_TEXT, height - top - 90.0).iter().enumerate() {
+        let x = 20.0 + row as f64 * LINE_HEIGHT;
+        let turned = format!("{size} transform=\"rotate(-90 {} {})\"", short(x), short(middle));
+        svg.text((x, middle), Anchor::Middle, line, &turned);
+    }
+}
+
+fn draw_mark(svg: &mut Svg, canvas: &mut Canvas, frame: &Frame<'_>, mark: &Mark) {
+    match mark {
+        Mark::Area(area) => {
+            let paint = format!("fill=\"{}\" fill-opacity=\"{}\"", area.colour.line, short(area.opacity));
+            svg.path(&frame.path(&area.outline), true, &paint);
+        }
+        Mark::Line(line) => {
+            let path = frame.path(&line.points);
+            match path.as_slice() {
+                [] => {}
+                [(x, y)] => symbol(svg, (*x, *y), &Point::new(0.0, 0.0, line.colour, Shape::Circle)),
+                _ => svg.path(&path, false, &format!("fill=\"none\" {}", stroke(line))),
+            }
+            canvas.draw(&frame.seen(&path));
+        }
+        Mark::Rule(rule) => {
+            let Rect { left, top, right, bottom } = frame.area;
+            let ends = match rule.across {
+                Across::X => frame.x_at(rule.at).map(|x| ((x, top), (x, bottom))),
+                Across::Y => frame.y_at(rule.at).map(|y| ((left, y), (right, y))),
+            };
+            if let Some((from, to)) = ends {
+                let line = Line::new(Vec::new(), rule.colour).width(1.5).dash(rule.dash);
+                svg.line(from, to, &stroke(&line));
+                canvas.draw(&[from, to]);
+            }
+        }
+        Mark::Point(point) => {
+            if let (true, Some((x, y))) = (point.drop, frame.at(point.at)) {
+                let line = Line::new(Vec::new(), point.colour).width(1.3).dash(Dash::Dotted);
+                svg.line((x, y), (x, frame.area.bottom), &stroke(&line));
+                canvas.draw(&[(x, y), (x, frame.area.bottom)]);
+            }
+        }
+    }
+}
+
+/// A symbol and its bars, drawn over everything else and not clipped: half a circle on the frame reads badly.
+fn draw_point(svg: &mut Svg, canvas: &mut Canvas, frame: &Frame<'_>, point: &Point) -> Option<Rect> {
+    let (x, y) = frame.at(point.at)?;
+    let area = &frame.area;
+    let inside =
+        x >= area.left - 0.5 && x <= area.right + 0.5 && y >= area.top - 0.5 && y <= area.bottom + 0.5;
+    if !inside {
+        return None;
+    }
+    let paint = format!("stroke=\"{}\" stroke-width=\"1.8\"", point.colour.line);
+    let mut bar = |from: (f64, f64), to: (f64, f64), cap: (f64, f64)| {
+        svg.line(from, to, &paint);
+        for end in [from, to] {
+            svg.line((end.0 - cap.0, end.1 - cap.1), (end.0 + cap.0, end.1 + cap.1), &paint);
+        }
+        canvas.draw(&[from, to]);
+    };
+    if let Some((low, high)) = point.x_interval
+        && let (Some(low), Some(high)) = (frame.x_at(low), frame.x_at(high))
+    {
+        bar((low.clamp(area.left, area.right), y), (high.clamp(area.left, area.right), y), (0.0, 5.0));
+    }
+    if let Some((low, high)) = point.y_interval
+        && let (Some(low), Some(high)) = (frame.y_at(low), frame.y_at(high))
+    {
+        bar((x, low.clamp(area.top, area.bottom)), (x, high.clamp(area.top, area.bottom)), (5.0, 0.0));
+    }
+    symbol(svg, (x, y), point);
+    let reach = SYMBOL + 1.0;
+    Some(Rect { left: x - reach, top: y - reach, right: x + reach, bottom: y + reach })
+}
+
+fn symbol(svg: &mut Svg, (x, y): (f64, f64), point: &Point) {
+    let fill = if point.filled { point.colour.line } else { "#ffffff" };
+    let paint = format!("fill=\"{fill}\" stroke=\"{}\" stroke-width=\"1.8\"", point.colour.line);
+    let r = SYMBOL;
+    match point.shape {
+        Shape::Circle => {
+            svg.raw(&format!("<circle cx=\"{}\" cy=\"{}\" r=\"{r}\" {paint}/>\n", short(x), short(y)));
+        }
+        Shape::Square => svg.rect(x - r + 0.5, y - r + 0.5, 2.0 * r - 1.0, 2.0 * r - 1.0, &paint),
+        Shape::Diamond => {
+            svg.path(&[(x, y - r - 1.0), (x + r + 1.0, y), (x, y + r + 1.0), (x - r - 1.0, y)], true, &paint)
+        }
+        Shape::Triangle => {
+            svg.path(&[(x, y - r - 0.5), (x + r + 0.5, y + r), (x - r - 0.5, y + r)], true, &paint)
+        }
+    }
+}
+
+fn stroke(line: &Line) -> String {
+    let dashes = match line.dash {
+        Dash::Solid => "",
+        Dash::Dashed => r#" stroke-dasharray="7 4""#,
+        Dash::Dotted => r#" stroke-dasharray="1.5 3.5""#,
+    };
+    let opacity = if line.opacity < 1.0 {
+        format!(" stroke-opacity=\"{}\"", short(line.opacity))
+    } else {
+        String::new()
+    };
+    format!("stroke=\"{}\" stroke-width=\"{}\"{dashes}{opacity}", line.colour.line, short(line.width))
+}
+
+/// Where the name of a mark may hang, in the order of preference.
+fn anchors(frame: &Frame<'_>, mark: &Mark) -> Vec<(f64, f64)> {
+    let Rect { left, top, right, bottom } = frame.area;
+    match mark {
+        Mark::Point(point) => frame.at(point.at).into_iter().collect(),
+        Mark::Rule(rule) => [0.97, 0.85, 0.7, 0.5, 0.3, 0.15, 0.03]
+            .into_iter()
+            .filter_map(|share| match rule.across {
+                Across::X => frame.x_at(rule.at).map(|x| (x, bottom - share * (bottom - top))),
+                Across::Y => frame.y_at(rule.at).map(|y| (left + share * (right - left), y)),
+            })
+            .collect(),
+        Mark::Line(line) => {
+            let path = frame.path(&line.points);
+            [0.62, 0.7, 0.54, 0.78, 0.46, 0.86, 0.38, 0.92, 0.3, 0.22, 0.97, 0.14, 0.06]
+                .into_iter()
+                .filter_map(|share| along(&path, share))
+                .filter(|(x, y)| *x >= left && *x <= right && *y >= top && *y <= bottom)
+                .collect()
+        }
+        Mark::Area(_) => Vec::new(),
+    }
+}
+
+/// The point at a share of a path's length.
+fn along(path: &[(f64, f64)], share: f64) -> Option<(f64, f64)> {
+    let length = |pair: &[(f64, f64)]| libm::hypot(pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
+    let mut left = share * path.windows(2).map(length).sum::<f64>();
+    for pair in path.windows(2) {
+        let here = length(pair);
+        if left <= here && here > 0.0 {
+            let part = left / here;
+            return Some((
+                pair[0].0 + part * (pair[1].0 - pair[0].0),
+                pair[0].1 + part * (pair[1].1 - pair[0].1),
+            ));
+        }
+        left -= here;
+    }
+    path.last().copied()
+}
+
+/// The path with as few points as keep it within a third of a pixel (Douglas and Peucker), after points that fall on
+/// their predecessor are left out.
+fn simplify(points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
+    const NEAR: f64 = 0.3;
+    let mut path: Vec<(f64, f64)> = Vec::new();
+    let mut last = None;
+    for point in points {
+        match path.last() {
+            Some(before) if libm::hypot(point.0 - before.0, point.1 - before.1) < NEAR => last = Some(point),
+            _ => {
+                path.push(point);
+                last = None;
+            }
+        }
+    }
+    path.extend(last);
+    if path.len() < 3 {
+        return path;
+    }
+    let mut keep = vec![false; path.len()];
+    keep[0] = true;
+    keep[path.len() - 1] = true;
+    let mut spans = vec![(0, path.len() - 1)];
+    while let Some((from, to)) = spans.pop() {
+        let away = |index: usize| off_chord(path[index], path[from], path[to]);
+        let farthest = (from + 1..to).max_by(|a, b| away(*a).total_cmp(&away(*b)));
+        if let Some(index) = farthest
+            && away(index) > NEAR
+        {
+            keep[index] = true;
+            spans.push((from, index));
+            spans.push((index, to));
+        }
+    }
+    path.into_iter().zip(keep).filter_map(|(point, kept)| kept.then_some(point)).collect()
+}
+
+/// Distance of a point from the stretch between two others.
+fn off_chord(point: (f64, f64), from: (f64, f64), to: (f64, f64)) -> f64 {
+    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+    let (px, py) = (point.0 - from.0, point.1 - from.1);
+    let square = dx * dx + dy * dy;
+    let share = if square > 0.0 { ((px * dx + py * dy) / square).clamp(0.0, 1.0) } else { 0.0 };
+    libm::hypot(px - share * dx, py - share * dy)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_simplified_path_stays_within_a_pixel_and_keeps_its_ends() {
+        let full: Vec<(f64, f64)> =
+            (0..5000).map(|i| (f64::from(i) * 0.1, 50.0 * libm::sin(f64::from(i) * 0.01))).collect();
+        let few = simplify(full.iter().copied());
+        assert!(few.len() < 300, "{}", few.len());
+        assert_eq!((few[0], few[few.len() - 1]), (full[0], full[4999]));
+        for point in full {
+            let near = few.windows(2).map(|pair| off_chord(point, pair[0], pair[1])).fold(f64::MAX, f64::min);
+            assert!(near < 1.0, "{point:?} is {near} off");
+        }
+    }
+
+    #[test]
+    fn crowded_tick_labels_are_thinned_and_the_important_kept() {
+        let axis = Axis::log("x", 0.1, 9.0);
+        let kept = |half: f64| {
+            let found = labelled(&axis, |tick| axis.position(tick.at).map(|share| (share * 300.0, half)));
+            let mut texts: Vec<_> = found.into_iter().map(|(tick, _)| tick.text[0].clone()).collect();
+            texts.sort();
+            texts
+        };
+        assert_eq!(kept(10.0), ["0.1", "0.2", "0.5", "1", "2", "5"]);
+        assert_eq!(kept(40.0), ["0.1", "1"]);
+    }
+
+    #[test]
+    fn a_share_of_a_path_is_a_share_of_its_length() {
+        let path = [(0.0, 0.0), (10.0, 0.0), (10.0, 30.0)];
+        assert_eq!(along(&path, 0.25), Some((10.0, 0.0)));
+        assert_eq!(along(&path, 0.5), Some((10.0, 10.0)));
+        assert_eq!(along(&[], 0.5), None);
+    }
+}

@@ -1,0 +1,126 @@
+//! Where a direct label stands: beside its own curve, and on nothing else.
+
+/// A rectangle: left, top, right, bottom, in pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Rect {
+    pub left: f64,
+    pub top: f64,
+    pub right: f64,
+    pub bottom: f64,
+}
+
+impl Rect {
+    fn meets(&self, other: &Rect) -> bool {
+        self.left < other.right
+            && other.left < self.right
+            && self.top < other.bottom
+            && other.top < self.bottom
+    }
+
+    fn holds(&self, point: (f64, f64)) -> bool {
+        point.0 > self.left && point.0 < self.right && point.1 > self.top && point.1 < self.bottom
+    }
+
+    fn within(&self, frame: &Rect) -> bool {
+        self.left >= frame.left
+            && self.right <= frame.right
+            && self.top >= frame.top
+            && self.bottom <= frame.bottom
+    }
+
+    fn grown(&self, by: f64) -> Rect {
+        Rect { left: self.left - by, top: self.top - by, right: self.right + by, bottom: self.bottom + by }
+    }
+}
+
+/// What is already drawn, and where a label may stand.
+pub(super) struct Canvas {
+    pub frame: Rect,
+    /// Points on what was drawn, a few pixels apart.
+    pub ink: Vec<(f64, f64)>,
+    /// Labels and symbols that were placed.
+    pub taken: Vec<Rect>,
+}
+
+impl Canvas {
+    /// Points every 3 pixels along a path, so that no label can slip between two of them.
+    pub(super) fn draw(&mut self, path: &[(f64, f64)]) {
+        for pair in path.windows(2) {
+            let (dx, dy) = (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
+            let steps = (libm::hypot(dx, dy) / 3.0).ceil().clamp(1.0, 2000.0) as usize;
+            for step in 0..steps {
+                let share = step as f64 / steps as f64;
+                self.ink.push((pair[0].0 + share * dx, pair[0].1 + share * dy));
+            }
+        }
+        self.ink.extend(path.last());
+    }
+
+    /// A free box of this size near one of the anchors (tried in order), or `None`. The box is taken.
+    pub(super) fn place(&mut self, anchors: &[(f64, f64)], width: f64, height: f64) -> Option<Rect> {
+        const GAP: f64 = 7.0;
+        let mut best: Option<(f64, Rect)> = None;
+        for (order, &(x, y)) in anchors.iter().enumerate() {
+            let beside = y - height / 2.0;
+            let corners = [
+                (x + GAP, beside),
+                (x - GAP - width, beside),
+                (x + GAP, y - GAP - height),
+                (x - GAP - width, y - GAP - height),
+                (x + GAP, y + GAP),
+                (x - GAP - width, y + GAP),
+                (x - width / 2.0, y - GAP - height),
+                (x - width / 2.0, y + GAP),
+            ];
+            for (rank, (left, top)) in corners.into_iter().enumerate() {
+                let candidate = Rect { left, top, right: left + width, bottom: top + height };
+                if !candidate.within(&self.frame) || self.covers(&candidate.grown(1.0)) {
+                    continue;
+                }
+                let crowd = self.ink.iter().filter(|point| candidate.grown(10.0).holds(**point)).count();
+                let cost = crowd as f64 + 1.5 * order as f64 + 0.5 * rank as f64;
+                if best.is_none_or(|(least, _)| cost < least) {
+                    best = Some((cost, candidate));
+                }
+            }
+        }
+        let (_, found) = best?;
+        self.taken.push(found);
+        Some(found)
+    }
+
+    fn covers(&self, candidate: &Rect) -> bool {
+        self.taken.iter().any(|taken| taken.meets(candidate))
+            || self.ink.iter().any(|point| candidate.holds(*point))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn canvas() -> Canvas {
+        let frame = Rect { left: 0.0, top: 0.0, right: 100.0, bottom: 100.0 };
+        Canvas { frame, ink: Vec::new(), taken: Vec::new() }
+    }
+
+    #[test]
+    fn a_label_covers_no_curve_and_no_other_label() {
+        let mut canvas = canvas();
+        canvas.draw(&[(0.0, 100.0), (100.0, 0.0)]);
+        let anchors: Vec<_> = (1..10).map(|i| (10.0 * f64::from(i), 100.0 - 10.0 * f64::from(i))).collect();
+        let first = canvas.place(&anchors, 30.0, 12.0).unwrap();
+        let second = canvas.place(&anchors, 30.0, 12.0).unwrap();
+        assert!(!first.meets(&second));
+        for found in [first, second] {
+            assert!(found.within(&canvas.frame));
+            assert!(!canvas.ink.iter().any(|point| found.holds(*point)), "{found:?} covers the curve");
+        }
+    }
+
+    #[test]
+    fn no_room_is_said() {
+        let mut canvas = canvas();
+        assert_eq!(canvas.place(&[(50.0, 50.0)], 120.0, 12.0), None);
+    }
+}

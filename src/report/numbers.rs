@@ -1,0 +1,136 @@
+//! Numbers as a reader wants them: sensible digits, grouped thousands, units.
+
+use crate::outcome::record::Statistic;
+
+/// A narrow space that no line breaks at: it groups thousands and stands before units.
+const THIN: char = '\u{202f}';
+
+/// Three significant digits, without an exponent between 0.0001 and a million.
+pub(super) fn significant(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let magnitude = libm::floor(libm::log10(value.abs()));
+    if !magnitude.is_finite() {
+        return if value.is_nan() { "unknown".to_owned() } else { "unlimited".to_owned() };
+    }
+    if !(-4.0..6.0).contains(&magnitude) {
+        return format!("{value:.2e}");
+    }
+    let decimals = (2.0 - magnitude).max(0.0) as usize;
+    format!("{value:.decimals$}")
+}
+
+/// A whole number with its thousands apart.
+pub(super) fn whole(value: u64) -> String {
+    let digits = value.to_string();
+    if digits.len() < 5 {
+        return digits;
+    }
+    let mut out = String::new();
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index) % 3 == 0 {
+            out.push(THIN);
+        }
+        out.push(digit);
+    }
+    out
+}
+
+/// The digits of a percentage: one decimal, two below one percent and near the 7.5 % that divides the classes; what is
+/// there but rounds to nothing says so.
+fn percent_digits(fraction: f64) -> String {
+    let percent = fraction * 100.0;
+    if percent > 0.0 && percent < 0.005 {
+        "<0.01".to_owned()
+    } else if (0.005..0.995).contains(&percent) || (7.0..8.0).contains(&percent) {
+        format!("{percent:.2}")
+    } else if (99.95..100.0).contains(&percent) {
+        ">99.9".to_owned()
+    } else {
+        format!("{percent:.1}")
+    }
+}
+
+/// A fraction as a percentage.
+pub(super) fn percent(fraction: f64) -> String {
+    format!("{}{THIN}%", percent_digits(fraction))
+}
+
+/// The threshold between the classes as a percentage, no digit more than it has.
+pub(super) fn threshold(fraction: f64) -> String {
+    let text = format!("{:.3}", fraction * 100.0);
+    format!("{}{THIN}%", text.trim_end_matches('0').trim_end_matches('.'))
+}
+
+/// The 95 % interval of a fraction, where there is one.
+pub(super) fn percent_interval(statistic: &Statistic) -> Option<String> {
+    let (low, high) = interval(statistic)?;
+    Some(format!("{} to {}{THIN}%", percent_digits(low), percent_digits(high)))
+}
+
+/// The interval of a fraction, kept within 0 and 1.
+pub(super) fn interval(statistic: &Statistic) -> Option<(f64, f64)> {
+    Some((statistic.low?.clamp(0.0, 1.0), statistic.high?.clamp(0.0, 1.0)))
+}
+
+/// A size with its unit: mm, or multiples of D0F when nothing has a scale.
+pub(super) fn size(value: f64, scale_free: bool) -> String {
+    format!("{}{THIN}{}", significant(value), size_unit(scale_free))
+}
+
+/// The unit of sizes.
+pub(super) fn size_unit(scale_free: bool) -> &'static str {
+    if scale_free { "D0F" } else { "mm" }
+}
+
+/// A wall time.
+pub(super) fn duration(seconds: f64) -> String {
+    if seconds < 100.0 {
+        format!("{}{THIN}s", significant(seconds))
+    } else if seconds < 6000.0 {
+        format!("{:.1}{THIN}min", seconds / 60.0)
+    } else {
+        format!("{:.1}{THIN}h", seconds / 3600.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_are_sensible() {
+        let texts: Vec<String> = [1.0, 0.16044, 12.345, 1234.5, 0.000_012, 2e9, 0.0].map(significant).into();
+        assert_eq!(texts, ["1.00", "0.160", "12.3", "1234", "1.20e-5", "2.00e9", "0"]);
+        assert_eq!(significant(f64::INFINITY), "unlimited");
+    }
+
+    #[test]
+    fn thousands_stand_apart() {
+        assert_eq!(whole(9313), "9313");
+        assert_eq!(whole(96_000), "96\u{202f}000");
+        assert_eq!(whole(200_000_000), "200\u{202f}000\u{202f}000");
+    }
+
+    #[test]
+    fn a_percentage_never_rounds_to_nothing_or_to_all() {
+        let texts: Vec<String> = [0.0, 0.000_01, 0.004_2, 0.0751, 0.4312, 0.999_9, 1.0].map(percent).into();
+        let bare: Vec<&str> = texts.iter().map(|text| text.trim_end_matches("\u{202f}%")).collect();
+        assert_eq!(bare, ["0.0", "<0.01", "0.42", "7.51", "43.1", ">99.9", "100.0"]);
+    }
+
+    #[test]
+    fn an_interval_stays_between_nothing_and_all() {
+        let statistic = Statistic { mean: 0.01, sd: Some(0.02), low: Some(-0.004), high: Some(0.024) };
+        assert_eq!(percent_interval(&statistic).unwrap(), "0.0 to 2.4\u{202f}%");
+        assert_eq!(percent_interval(&Statistic { low: None, ..statistic }), None);
+    }
+
+    #[test]
+    fn times_have_a_unit_that_fits() {
+        assert_eq!(duration(12.34), "12.3\u{202f}s");
+        assert_eq!(duration(600.0), "10.0\u{202f}min");
+        assert_eq!(duration(7200.0), "2.0\u{202f}h");
+    }
+}

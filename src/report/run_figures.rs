@@ -1,0 +1,388 @@
+//! The figures of one run folder.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::figures::{
+    Across, Area, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Point, Rule,
+    Shape, Tick, VERMILLION, ramp, shorten,
+};
+use super::folder::RunFolder;
+use super::numbers::{interval, percent, significant, size, threshold, whole};
+use crate::outcome::record::{LayerRow, SeriesRow, SizeRow, Verdict};
+
+/// Replicates drawn one by one; with more, the mean and the first ones are drawn.
+const DRAWN: usize = 40;
+
+/// A figure, the name of its file and what stands below it.
+pub(super) struct Drawn {
+    pub name: &'static str,
+    pub caption: String,
+    pub figure: Figure,
+}
+
+/// "first run", "second run".
+pub(super) fn run_name(run: u64) -> &'static str {
+    if run == 1 { "first run" } else { "second run" }
+}
+
+/// The colour and symbol of a run, the same in every figure.
+fn run_look(run: u64) -> (Colour, Shape) {
+    if run == 1 { (BLUE, Shape::Circle) } else { (PURPLE, Shape::Square) }
+}
+
+/// The colour of a class.
+pub(super) fn verdict_colour(verdict: Verdict) -> Colour {
+    match verdict {
+        Verdict::None => GREEN,
+        Verdict::Some => ORANGE,
+        Verdict::Continuing => VERMILLION,
+        Verdict::Undecided => GREY,
+    }
+}
+
+fn size_label(folder: &RunFolder) -> String {
+    if folder.outcome.inputs.scale_free { "Size / D0F (–)".to_owned() } else { "Size (mm)".to_owned() }
+}
+
+fn threshold_rule(folder: &RunFolder, across: Across) -> Rule {
+    let limit = folder.outcome.threshold;
+    Rule::new(across, limit * 100.0, BLACK).dash(Dash::Dashed).label(&threshold(limit))
+}
+
+/// An axis from 0 that holds these percentages and the threshold, and never less than 10 %.
+fn eroded_axis(label: &str, folder: &RunFolder, highest: f64) -> Axis {
+    let high = highest.max(folder.outcome.threshold * 100.0 * 1.3).min(100.0);
+    if high > 60.0 { Axis::percent(label) } else { Axis::linear(label, 0.0, high) }
+}
+
+/// Mean and interval of both runs against the threshold, for the eye, beside the verdict.
+pub(super) fn verdict(folder: &RunFolder) -> Drawn {
+    let summary = &folder.outcome.summary;
+    let most = |high: f64, run: &_| -> f64 {
+        let run: &crate::outcome::record::RunSummary = run;
+        let statistic = &run.eroded_mass_fraction;
+        high.max(interval(statistic).map_or(statistic.mean, |(_, top)| top))
+    };
+    let highest = 100.0 * summary.iter().fold(0.0, most);
+    let x = eroded_axis("Base eroded, by mass (%)", folder, highest);
+    let ticks = summary
+        .iter()
+        .map(|run| Tick::new(run.run as f64, &[if run.run == 1 { "First run" } else { "Second run" }]));
+    let mut y = Axis::linear("", 0.0, 1.0).with_ticks(ticks.collect()).downward();
+    (y.low, y.high) = (0.3, summary.len() as f64 + 0.7);
+    let what = "Mean and 95 % interval of the eroded mass in each run, against the threshold";
+    let mut figure = Figure::new("Base eroded in each run", what, "", x, y)
+        .height(78.0 + 48.0 * summary.len() as f64, 78.0 + 48.0 * summary.len() as f64);
+    figure.add(threshold_rule(folder, Across::X));
+    for run in summary {
+        let statistic = &run.eroded_mass_fraction;
+        let (colour, shape) = run_look(run.run);
+        let bar = interval(statistic).map(|(low, high)| (low * 100.0, high * 100.0));
+        let point = Point::new(statistic.mean * 100.0, run.run as f64, colour, shape).x_interval(bar);
+        figure.add(point.label(&percent(statistic.mean)));
+    }
+    let caption = String::new();
+    Drawn { name: "verdict", caption, figure }
+}
+
+/// Filter, base and constrictions on semi-logarithmic axes.
+pub(super) fn gradations(folder: &RunFolder) -> Drawn {
+    let inputs = &folder.outcome.inputs;
+    let (filter, base) = (&inputs.filter, &inputs.base);
+    let points = |rows: &[[f64; 2]]| -> Vec<(f64, f64)> { rows.iter().map(|row| (row[0], row[1])).collect() };
+    let sizes = || {
+        let rows = filter.gradation.iter().chain(&filter.constrictions).chain(&base.gradation);
+        rows.map(|row| row[0]).filter(|size| *size > 0.0)
+    };
+    let (low, high) = (sizes().fold(f64::MAX, f64::min), sizes().fold(0.0, f64::max));
+    let x = Axis::log(&size_label(folder), low.min(high), high.max(low.min(1.0)));
+    let y = Axis::percent("Percent finer (%)");
+    let what = format!(
+        "Percent finer against size for the filter (by mass), its constrictions (by number) and the base (by mass). \
+         D15F is {}, D85B is {}.",
+        size(filter.d15_mm, inputs.scale_free),
+        size(base.d85_mm, inputs.scale_free),
+    );
+    let mut figure = Figure::new("Gradations and constriction curve", &what, "", x, y).height(460.0, 400.0);
+    let name = |kind: &str, name: &str| {
+        if name.is_empty() { kind.to_owned() } else { format!("{kind}:\n{}", shorten(name, 24)) }
+    };
+    figure.add(Line::new(points(&base.gradation), VERMILLION).width(2.6).label(&name("base", &base.name)));
+    let constrictions = Line::new(points(&filter.constrictions), BLUE).dash(Dash::Dashed);
+    figure.add(constrictions.label("constrictions\n(by number)"));
+    figure.add(Line::new(points(&filter.gradation), BLACK).width(2.6).label(&name("filter", &filter.name)));
+    let mark = |at: f64, percent: f64, colour, shape, text: &str| {
+        let label = format!("{text} = {}", size(at, inputs.scale_free));
+        Point::new(at, percent, colour, shape).dropped().label(&label)
+    };
+    figure.add(mark(filter.d15_mm, 15.0, BLACK, Shape::Circle, "D15F"));
+    figure.add(mark(base.d85_mm, 85.0, VERMILLION, Shape::Square, "D85B"));
+    let caption = format!(
+        "Gradations of filter and base (percent finer by mass) and the filter's constrictions (percent smaller by \
+         number, curve “{}”). Base particles pass a constriction that is no smaller than they are. \
+         D15F/D85B = {}, D15F/D95B = {}.{}",
+        shorten(&filter.curve_name, 80),
+        significant(folder.outcome.ratios.d15f_over_d85b),
+        significant(folder.outcome.ratios.d15f_over_d95b),
+        if inputs.scale_free { " Sizes are multiples of D0F, the smallest filter grain." } else { "" },
+    );
+    Drawn { name: "gradations", caption, figure }
+}
+
+/// Eroded mass in percent after an increment, by straight lines between recorded increments, level after the last.
+fn eroded_at(rows: &[SeriesRow], increment: f64) -> f64 {
+    let value = |row: &SeriesRow| row.eroded_mass_fraction * 100.0;
+    let after = rows.partition_point(|row| (row.increment as f64) < increment);
+    let (x0, y0) =
+        if after == 0 { (0.0, 0.0) } else { (rows[after - 1].increment as f64, value(&rows[after - 1])) };
+    let Some(next) = rows.get(after) else { return y0 };
+    y0 + (value(next) - y0) * (increment - x0) / (next.increment as f64 - x0)
+}
+
+/// Eroded mass against increment for each run: every replicate thin, the mean bold.
+pub(super) fn eroded(folder: &RunFolder) -> Option<Drawn> {
+    let last = folder.series.values().flatten().map(|row| row.increment).max()?;
+    // where every curve has come within a thousandth of its end; the rest of a long tail is left out
+    let settled = folder.series.values().filter_map(|rows| {
+        let end = rows.last()?.eroded_mass_fraction;
+        rows.iter().find(|row| end - row.eroded_mass_fraction <= 0.001).map(|row| row.increment)
+    });
+    let settled = settled.max().unwrap_or(last).max((1.0 / folder.outcome.inputs.inject_share) as u64);
+    let shown = if last as f64 > 1.6 * settled as f64 { (settled as f64 * 1.25) as u64 } else { last };
+    let highest =
+        100.0 * folder.series.values().flatten().map(|row| row.eroded_mass_fraction).fold(0.0, f64::max);
+    let x = Axis::linear("Increment (–)", 0.0, shown as f64);
+    let y = eroded_axis("Base eroded, by mass (%)", folder, highest * 1.05);
+    let what = "Percent of the base mass eroded against increment, for each run";
+    let mut figure = Figure::new("Progress of erosion", what, "", x, y);
+    let end = libm::ceil(1.0 / folder.outcome.inputs.inject_share);
+    if end < shown as f64 {
+        figure.add(Rule::new(Across::X, end, GREY).dash(Dash::Dotted).label("all base inserted"));
+    }
+    figure.add(threshold_rule(folder, Across::Y));
+    let replicates = folder.outcome.replicates.len();
+    let mut bold = Vec::new();
+    for run in folder.runs() {
+        let (colour, _) = run_look(run);
+        let all: Vec<&[SeriesRow]> =
+            folder.series.range((run, 0)..=(run, u64::MAX)).map(|(_, rows)| rows.as_slice()).collect();
+        if all.is_empty() {
+            continue;
+        }
+        if all.len() > 1 {
+            for rows in all.iter().take(DRAWN) {
+                let points = |row: &SeriesRow| (row.increment as f64, row.eroded_mass_fraction * 100.0);
+                let start = std::iter::once((0.0, 0.0));
+                let stay = rows.last().map(|row| (last as f64, row.eroded_mass_fraction * 100.0));
+                let curve = start.chain(rows.iter().map(points)).chain(stay).collect();
+                figure.add(Line::new(curve, colour).width(0.8).opacity(0.45));
+            }
+        }
+        let increments: BTreeSet<u64> =
+            all.iter().flat_map(|rows| rows.iter().map(|row| row.increment)).collect();
+        let increments: Vec<u64> = increments.into_iter().chain([last]).collect();
+        // no more points than the eye can use: the mean costs increments times replicates
+        let stride = increments.len().div_ceil(2000).max(1);
+        let mut mean = vec![(0.0, 0.0)];
+        for at in increments.iter().step_by(stride).chain(increments.last()).map(|at| *at as f64) {
+            mean.push((at, all.iter().map(|rows| eroded_at(rows, at)).sum::<f64>() / all.len() as f64));
+        }
+        let dash = if run == 1 { Dash::Solid } else { Dash::Dashed };
+        bold.push(Line::new(mean, colour).width(3.0).dash(dash).label(run_name(run)));
+    }
+    for line in bold {
+        figure.add(line);
+    }
+    let mut caption = "Base eroded, in percent of the mass that a run inserts, against increment (an increment is not a \
+                       length of time). The second run brings fresh base onto the constrictions that the first left \
+                       blocked."
+        .to_owned();
+    if replicates > 1 {
+        let thin = replicates.min(DRAWN);
+        let which = if thin < replicates {
+            format!("the first {thin} of {replicates}")
+        } else {
+            format!("{replicates}")
+        };
+        caption.push_str(&format!(" Bold: mean; thin: {which} replicates."));
+    }
+    if shown < last {
+        caption
+            .push_str(&format!(" The curves stay level from there to the last increment, {}.", whole(last)));
+    }
+    Some(Drawn { name: "eroded", caption, figure })
+}
+
+/// Blocked constrictions by layer, depth downward, for each run.
+pub(super) fn layers(folder: &RunFolder) -> Option<Drawn> {
+    let deepest = folder.layers.values().flatten().map(|row| row.layer).max()?;
+    let share = |row: &LayerRow| {
+        if row.constrictions == 0 { 0.0 } else { 100.0 * row.blocked as f64 / row.constrictions as f64 }
+    };
+    let highest = folder.layers.values().flatten().map(share).fold(0.0, f64::max);
+    let x_label = "Constrictions blocked (% of the layer's)";
+    let x =
+        if highest > 60.0 { Axis::percent(x_label) } else { Axis::linear(x_label, 0.0, highest.max(1.0)) };
+    let mut y = Axis::linear("Layer (0 = where the base enters)", 0.0, (deepest as f64).max(1.0)).downward();
+    y.ticks.retain(|tick| tick.at == libm::floor(tick.at));
+    (y.low, y.high) = (-0.02 * deepest as f64, deepest as f64 * 1.02 + f64::from(u8::from(deepest == 0)));
+    y.ticks.retain(|tick| tick.at <= y.high);
+    let what =
+        "Share of the constrictions of each layer that are blocked at the end of each run, depth downward";
+    let mut figure = Figure::new("Blocked constrictions by layer", what, "", x, y).height(460.0, 420.0);
+    let mut bold = Vec::new();
+    for run in folder.runs() {
+        let (colour, _) = run_look(run);
+        let mut by_layer: BTreeMap<u64, Vec<f64>> = BTreeMap::new();
+        for rows in folder.layers.range((run, 0)..=(run, u64::MAX)).map(|(_, rows)| rows) {
+            for row in rows {
+                by_layer.entry(row.layer).or_default().push(share(row));
+            }
+        }
+        let at = |pick: fn(&[f64]) -> f64| {
+            by_layer.iter().map(move |(layer, shares)| (pick(shares), *layer as f64))
+        };
+        let least = at(|shares| shares.iter().copied().fold(f64::MAX, f64::min));
+        let most: Vec<_> = at(|shares| shares.iter().copied().fold(0.0, f64::max)).collect();
+        if folder.outcome.replicates.len() > 1 {
+            figure.add(Area::new(least.chain(most.into_iter().rev()).collect(), colour, 0.22));
+        }
+        let dash = if run == 1 { Dash::Solid } else { Dash::Dashed };
+        let mean = at(|shares| shares.iter().sum::<f64>() / shares.len() as f64).collect();
+        bold.push(
+            Line::new(mean, colour).width(2.4).dash(dash).label(&format!("after the {}", run_name(run))),
+        );
+    }
+    for line in bold {
+        figure.add(line);
+    }
+    let mut caption =
+        "Constrictions blocked at the end of each run, by layer; the second run starts with what the \
+                       first left blocked."
+            .to_owned();
+    if folder.outcome.replicates.len() > 1 {
+        caption.push_str(" Lines: mean of the replicates; shaded: from the least to the most of them.");
+    }
+    if let Some(thickness) = folder.outcome.inputs.network.thickness_mm {
+        let depth = size(thickness, folder.outcome.inputs.scale_free);
+        caption.push_str(&format!(" All layers together stand for {depth} of filter."));
+    }
+    Some(Drawn { name: "layers", caption, figure })
+}
+
+/// Size curves of what the first run of the first replicate retained, after chosen increments, beside base and eroded.
+pub(super) fn retained(folder: &RunFolder) -> Option<Drawn> {
+    const CURVES: usize = 6;
+    let (run, replicate) = (1, 1);
+    let of_run = (run, replicate, 0)..=(run, replicate, u64::MAX);
+    let all: Vec<(u64, &[SizeRow])> = folder
+        .retained
+        .range(of_run.clone())
+        .map(|((_, _, increment), rows)| (*increment, rows.as_slice()))
+        .collect();
+    let gone = folder.eroded.range(of_run).next_back().map(|(_, rows)| rows.as_slice());
+    if all.is_empty() && gone.is_none() {
+        return None;
+    }
+    // chosen so that neighbours differ: evenly in the order of the record, first and last included
+    let count = all.len().min(CURVES);
+    let chosen: Vec<_> =
+        (0..count).map(|i| all[if count > 1 { i * (all.len() - 1) / (count - 1) } else { 0 }]).collect();
+    let base = &folder.outcome.inputs.base.gradation;
+    let sizes = || {
+        let curves = chosen.iter().map(|(_, rows)| *rows).chain(gone);
+        let drawn = curves.flatten().map(|row| row.diameter_mm);
+        drawn.chain(base.iter().map(|row| row[0])).filter(|size| *size > 0.0)
+    };
+    let (low, high) = (sizes().fold(f64::MAX, f64::min), sizes().fold(0.0, f64::max));
+    let x = Axis::log(&size_label(folder), low.min(high), high.max(low.min(1.0)));
+    let y = Axis::percent("Percent finer by mass (%)");
+    let what = "Size curves of the base, of what is retained after some increments, and of what is eroded";
+    let mut figure = Figure::new("What is retained and what is eroded", what, "", x, y).names_above();
+    let points =
+        |rows: &[SizeRow]| rows.iter().map(|row| (row.diameter_mm, row.percent_finer_by_mass)).collect();
+    figure.add(
+        Line::new(base.iter().map(|row| (row[0], row[1])).collect(), VERMILLION).width(2.6).label("base"),
+    );
+    for (index, (increment, rows)) in chosen.iter().enumerate() {
+        let end = if index + 1 == chosen.len() { ", the end" } else { "" };
+        let label = format!("retained, increment {}{end}", whole(*increment));
+        figure.add(Line::new(points(rows), ramp(index, chosen.len())).width(1.8).label(&label));
+    }
+    if let Some(rows) = gone {
+        figure.add(Line::new(points(rows), BLACK).dash(Dash::Dashed).label("eroded, the end"));
+    }
+    let of = if folder.outcome.replicates.len() > 1 { " of the first replicate" } else { "" };
+    let mut caption = format!(
+        "What the filter has retained after chosen increments of the first run{of}, what has left it, and the base as \
+         inserted. Retained curves that move to the left show self-filtering: what coarse particles blocked holds \
+         finer ones."
+    );
+    if gone.is_none() {
+        caption.push_str(" Nothing left the filter.");
+    }
+    if all.is_empty() {
+        caption.push_str(" Nothing was retained.");
+    }
+    Some(Drawn { name: "retained", caption, figure })
+}
+
+/// Eroded mass against the number of base particles, and the class that each number gives.
+pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
+    let mut cases: Vec<_> = folder.outcome.sensitivity.iter().filter(|case| case.factor > 0.0).collect();
+    cases.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+    let (least, most) = (cases.first()?.factor, cases.last()?.factor);
+    let ticks = cases.iter().map(|case| {
+        let mut tick = Tick::new(
+            case.factor,
+            &[&format!("×{}", trimmed(case.factor)), &significant(case.grains_per_void)],
+        );
+        tick.rank = u8::from(case.factor != 1.0);
+        tick
+    });
+    let mut x =
+        Axis::log("Multiple of N_base, and below it the grains per void that it stands for", least, most);
+    x = x.with_ticks(ticks.collect());
+    (x.low, x.high) = (least / 1.25, most * 1.25);
+    let reach = |fraction: &crate::outcome::record::Statistic| {
+        interval(fraction).map_or(fraction.mean, |(_, high)| high)
+    };
+    let highest = 100.0 * cases.iter().flat_map(|case| &case.runs).map(reach).fold(0.0, f64::max);
+    let y = eroded_axis("Base eroded, by mass (%)", folder, (highest * 1.15).min(100.0));
+    let what = "Percent of the base mass eroded in each run against multiples of the number of base particles; the colour \
+                behind is the verdict";
+    let mut figure = Figure::new("How the verdict moves with the number of base particles", what, "", x, y);
+    let edge = |left: f64, right: f64| libm::sqrt(left * right);
+    for (index, case) in cases.iter().enumerate() {
+        let left = if index == 0 { least / 1.25 } else { edge(cases[index - 1].factor, case.factor) };
+        let right = cases.get(index + 1).map_or(most * 1.25, |next| edge(case.factor, next.factor));
+        let outline = vec![(left, 0.0), (left, 100.0), (right, 100.0), (right, 0.0)];
+        figure.add(Area::new(outline, verdict_colour(case.verdict), 0.2));
+    }
+    figure.add(threshold_rule(folder, Across::Y));
+    for run in folder.runs() {
+        let (colour, shape) = run_look(run);
+        let found = || cases.iter().filter_map(|case| Some((case.factor, case.runs.get(run as usize - 1)?)));
+        let dash = if run == 1 { Dash::Solid } else { Dash::Dashed };
+        let means = found().map(|(factor, statistic)| (factor, statistic.mean * 100.0)).collect();
+        figure.add(Line::new(means, colour).dash(dash).label(run_name(run)));
+        for (factor, statistic) in found() {
+            let bar = interval(statistic).map(|(low, high)| (low * 100.0, high * 100.0));
+            figure.add(Point::new(factor, statistic.mean * 100.0, colour, shape).y_interval(bar));
+        }
+    }
+    let caption = format!(
+        "How the verdict moves with the number of base particles, N_base. Grains per void and mass ratio enter N_base only \
+         as a product (Eq. 2), so this one axis answers for both: ×2 is twice the grains per void or twice the mass \
+         ratio. ×1 is this scene: {} grains per void, mass ratio {}. Bars: 95 % intervals.",
+        significant(folder.outcome.grains_per_void),
+        percent(folder.outcome.inputs.mass_ratio),
+    );
+    Some(Drawn { name: "sensitivity", caption, figure })
+}
+
+/// A factor with no digit more than it needs.
+pub(super) fn trimmed(factor: f64) -> String {
+    let text = format!("{factor:.3}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
