@@ -9,9 +9,22 @@
 //!
 //! The model is that of Shire & O'Sullivan, *A network model to assess base-filter combinations*.
 
-pub mod constrictions;
-pub mod gradation;
-pub mod outcome;
-pub mod packing;
-pub mod report;
 pub mod stream;
+
+pub mod store;
+
+pub mod gradation;
+
+pub mod packing;
+
+pub mod constrictions;
+
+pub mod network;
+
+pub mod walk;
+
+pub mod outcome;
+
+pub mod campaign;
+
+pub mod report;

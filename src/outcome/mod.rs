@@ -1,3 +1,27 @@
-//! What the two runs say about a base-filter combination.
+//! What came of a walk: series, size curves, blocked by layer, and the verdict with its uncertainty.
+//!
+//! - [`record`] holds the names and shapes of everything in a run folder.
+//! - [`Recorder`] watches a run and keeps what was asked for.
+//! - [`Figures`] are the figures of one run at its end.
+//! - [`verdict`] classifies, by mass eroded, one replicate or many.
+//! - [`rules`] applies the empirical filter rules to the same two curves.
 
+mod figures;
 pub mod record;
+mod recorder;
+pub mod rules;
+mod statistic;
+pub mod verdict;
+
+pub use figures::{Figures, Recorded, RunOf};
+pub use recorder::{Recorder, Wanted};
+
+/// What the model does not contain, for any scene; shown next to every verdict.
+pub const MODEL_LEAVES_OUT: [&str; 6] = [
+    "hydraulics: no flow, no gradient, no time; an increment is not an interval of time",
+    "bridging: a particle is stopped only by a constriction finer than itself",
+    "partial clogging: a constriction is open at its full size or blocked",
+    "a limit to what enters: all the base that Eq. (2) gives is offered to the filter",
+    "the excessive-erosion class of Foster and Fell: the verdict knows no, some and continuing erosion",
+    "cohesion, suffusion of the filter itself, segregation and layering of the filter",
+];

@@ -1,0 +1,3 @@
+//! Scenes and campaigns: the only place that knows all stages.
+
+pub mod settings;

@@ -1,0 +1,343 @@
+//! Networks in CSV files.
+//!
+//! Header `from,to,diameter_mm`. A row `FROM,TO,D` is a constriction from void FROM to void TO; `TO`
+//! = `end` leaves the filter. A row `start,ID,` makes void ID a start node. Void ids count from 0
+//! without gaps. Exits of a void keep the order of their rows. Lines that begin with `#` are
+//! comments; `# shape = nx, ny, nz` marks the cubic lattice, whose exits must be where +x, +y, +z
+//! of that lattice lead.
+
+use std::io::Write;
+use std::path::Path;
+
+use super::{END, Network};
+
+/// Why a network cannot be had.
+#[derive(Debug, thiserror::Error)]
+pub enum NetworkError {
+    /// A lattice of no voids, or of more constrictions than 32 bits can number.
+    #[error(
+        "network of {} x {} x {} voids: every length must be at least 1 and 3 nx ny nz below 4294967295",
+        shape[0], shape[1], shape[2]
+    )]
+    Shape {
+        /// Voids along x, y, z.
+        shape: [u32; 3],
+    },
+    /// The number of diameters does not fit the lattice.
+    #[error("a lattice of {shape:?} voids has {expected} constrictions, but {found} diameters were given")]
+    WrongLength {
+        /// Voids along x, y, z.
+        shape: [u32; 3],
+        /// Constrictions of that lattice.
+        expected: usize,
+        /// Diameters given.
+        found: usize,
+    },
+    /// A diameter that no constriction can have.
+    #[error("constriction {constriction} has diameter {value}: it must be finite and not negative")]
+    Diameter {
+        /// Constriction, counted from 0.
+        constriction: usize,
+        /// The value found.
+        value: f32,
+    },
+    /// The file cannot be read or written.
+    #[error("{file}: {source}")]
+    File {
+        /// The file.
+        file: String,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A row that is not understood.
+    #[error("{file}, line {line}, {field}: `{value}` is not allowed; {allowed}")]
+    Row {
+        /// The file.
+        file: String,
+        /// Line, counted from 1.
+        line: u64,
+        /// Name of the field.
+        field: &'static str,
+        /// What stands there.
+        value: String,
+        /// What may stand there.
+        allowed: String,
+    },
+    /// The rows are understood, but are no network together.
+    #[error("{file}: {problem}")]
+    Whole {
+        /// The file.
+        file: String,
+        /// What is wrong with the file as a whole.
+        problem: String,
+    },
+}
+
+/// A file larger than this is refused before it is read (bytes): 32-bit ids need less.
+const LARGEST_FILE: u64 = 1 << 36;
+
+impl Network {
+    /// Reads a network from a CSV file; diameters are divided by `unit_mm`.
+    ///
+    /// # Errors
+    /// Names file, line, field, value and what is allowed.
+    pub fn read_csv(path: &Path, unit_mm: f64) -> Result<Self, NetworkError> {
+        let file = path.display().to_string();
+        let io = |source| NetworkError::File { file: file.clone(), source };
+        let meta = std::fs::metadata(path).map_err(io)?;
+        if !meta.is_file() || meta.len() > LARGEST_FILE {
+            let problem = format!("must be a regular file of at most {LARGEST_FILE} bytes");
+            return Err(NetworkError::Whole { file, problem });
+        }
+        let bytes = std::fs::read(path).map_err(io)?;
+        Self::from_csv(&bytes, &file, unit_mm)
+    }
+
+    /// Reads a network from CSV text; `file` names it in errors.
+    ///
+    /// # Errors
+    /// As [`Network::read_csv`].
+    pub fn from_csv(bytes: &[u8], file: &str, unit_mm: f64) -> Result<Self, NetworkError> {
+        let rows = Rows::parse(bytes, file)?;
+        rows.into_network(file, unit_mm)
+    }
+
+    /// Writes the network as CSV, such that [`Network::from_csv`] gives it back bit for bit.
+    ///
+    /// # Errors
+    /// What the writer says.
+    pub fn write_csv(&self, mut out: impl Write) -> std::io::Result<()> {
+        if let Some([nx, ny, nz]) = self.shape {
+            writeln!(out, "# shape = {nx}, {ny}, {nz}")?;
+        }
+        writeln!(out, "from,to,diameter_mm")?;
+        for &void in &self.start {
+            writeln!(out, "start,{void},")?;
+        }
+        for void in 0..self.voids() as u32 {
+            for exit in self.exits(void) {
+                let diameter_mm = f64::from(self.diameter[exit]) * self.unit_mm;
+                match self.target[exit] {
+                    END => writeln!(out, "{void},end,{diameter_mm:e}")?,
+                    target => writeln!(out, "{void},{target},{diameter_mm:e}")?,
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The rows of a file, each checked on its own.
+#[derive(Default)]
+struct Rows {
+    shape: Option<[u32; 3]>,
+    start: Vec<u32>,
+    from: Vec<u32>,
+    to: Vec<u32>,
+    diameter_mm: Vec<f64>,
+}
+
+impl Rows {
+    fn parse(bytes: &[u8], file: &str) -> Result<Self, NetworkError> {
+        let whole = |problem: &str| NetworkError::Whole { file: file.into(), problem: problem.into() };
+        let text = std::str::from_utf8(bytes).map_err(|_| whole("is not UTF-8 text"))?;
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let mut rows = Self::default();
+        let mut header = false;
+        for (number, line) in text.lines().enumerate() {
+            let line_number = number as u64 + 1;
+            let row_error = |field, value: &str, allowed: &str| NetworkError::Row {
+                file: file.into(),
+                line: line_number,
+                field,
+                value: value.chars().take(60).collect(),
+                allowed: allowed.into(),
+            };
+            let line = line.trim();
+            if let Some(comment) = line.strip_prefix('#') {
+                if let Some(shape) = comment.trim().strip_prefix("shape") {
+                    let shape = shape.trim_start().trim_start_matches('=');
+                    rows.shape = Some(parse_shape(shape).ok_or_else(|| {
+                        row_error("shape", shape.trim(), "three whole numbers, as in `# shape = 40, 40, 60`")
+                    })?);
+                }
+                continue;
+            }
+            if line.is_empty() {
+                continue;
+            }
+            let fields: Vec<&str> = line.split(',').map(str::trim).collect();
+            let &[from, to, diameter] = fields.as_slice() else {
+                return Err(row_error("row", line, "three fields: from,to,diameter_mm"));
+            };
+            if !header {
+                if (from, to, diameter) != ("from", "to", "diameter_mm") {
+                    return Err(row_error("header", line, "the first row must be `from,to,diameter_mm`"));
+                }
+                header = true;
+                continue;
+            }
+            let id = |field, value: &str| {
+                let id = value.parse::<u32>().ok().filter(|&id| id != END);
+                id.ok_or_else(|| row_error(field, value, "a void id: a whole number from 0 to 4294967294"))
+            };
+            if from == "start" {
+                if !diameter.is_empty() {
+                    return Err(row_error("diameter_mm", diameter, "nothing, in a `start` row"));
+                }
+                rows.start.push(id("to", to)?);
+                continue;
+            }
+            rows.from.push(id("from", from)?);
+            rows.to.push(if to == "end" { END } else { id("to", to)? });
+            let value = diameter.parse::<f64>().ok().filter(|d| d.is_finite() && *d >= 0.0);
+            rows.diameter_mm.push(
+                value.ok_or_else(|| row_error("diameter_mm", diameter, "a finite number, 0 or larger"))?,
+            );
+        }
+        if !header {
+            return Err(whole("is empty: the first row must be `from,to,diameter_mm`"));
+        }
+        Ok(rows)
+    }
+
+    fn into_network(self, file: &str, unit_mm: f64) -> Result<Network, NetworkError> {
+        let whole = |problem: String| NetworkError::Whole { file: file.into(), problem };
+        if self.start.is_empty() {
+            return Err(whole("has no start node: add a row `start,ID,`".into()));
+        }
+        let inner = self.to.iter().filter(|&&to| to != END);
+        let last = self.start.iter().chain(&self.from).chain(inner).max();
+        let voids = last.map_or(0, |&id| id as usize + 1);
+        if voids > 2 * self.from.len() + self.start.len() || self.from.len() >= END as usize {
+            return Err(whole(format!("void ids run to {} but only {} rows name voids; number voids from 0 without gaps", voids - 1, self.from.len() + self.start.len())));
+        }
+        let mut named = vec![false; voids];
+        for &id in self.start.iter().chain(&self.from).chain(self.to.iter().filter(|&&to| to != END)) {
+            named[id as usize] = true;
+        }
+        if let Some(gap) = named.iter().position(|&n| !n) {
+            return Err(whole(format!("no row names void {gap}; number voids from 0 without gaps")));
+        }
+        let mut is_start = vec![false; voids];
+        for &id in &self.start {
+            if std::mem::replace(&mut is_start[id as usize], true) {
+                return Err(whole(format!("void {id} is made a start node twice")));
+            }
+        }
+        let mut exit_begin = vec![0u32; voids + 1];
+        for &from in &self.from {
+            exit_begin[from as usize + 1] += 1;
+        }
+        for void in 0..voids {
+            exit_begin[void + 1] += exit_begin[void];
+        }
+        let mut next = exit_begin.clone();
+        let mut target = vec![END; self.from.len()];
+        let mut diameter = vec![0f32; self.from.len()];
+        for ((&from, &to), &mm) in self.from.iter().zip(&self.to).zip(&self.diameter_mm) {
+            let slot = next[from as usize] as usize;
+            next[from as usize] += 1;
+            target[slot] = to;
+            diameter[slot] = (mm / unit_mm) as f32;
+            if !diameter[slot].is_finite() || (mm > 0.0 && diameter[slot] < f32::MIN_POSITIVE) {
+                return Err(whole(format!("diameter {mm} mm is too far from the reference length {unit_mm} mm")));
+            }
+        }
+        if let Some(shape) = self.shape {
+            let lattice = Network::cubic_from_diameters(shape, diameter, unit_mm)
+                .map_err(|e| whole(e.to_string()))?;
+            if lattice.target != target || lattice.start != self.start || lattice.exit_begin != exit_begin {
+                return Err(whole(format!("says `# shape = {shape:?}`, but its rows are not that lattice")));
+            }
+            return Ok(lattice);
+        }
+        let mut network =
+            Network { exit_begin, target, diameter, start: self.start, layer: vec![], unit_mm, shape: None };
+        network.layer = network.distances(|_| true);
+        Ok(network)
+    }
+}
+
+fn parse_shape(text: &str) -> Option<[u32; 3]> {
+    let lengths: Vec<u32> = text.split(',').map(|n| n.trim().parse().ok()).collect::<Option<_>>()?;
+    lengths.try_into().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn read(text: &str) -> Result<Network, NetworkError> {
+        Network::from_csv(text.as_bytes(), "net.csv", 2.0)
+    }
+
+    #[test]
+    fn a_general_network_is_read() {
+        let text = "\u{feff}# two voids\r\nfrom,to,diameter_mm\r\nstart,1,\r\n1,0,3\r\n0,end,1\r\n1,end,0\r\n";
+        let network = read(text).unwrap();
+        assert_eq!((network.voids(), network.constrictions()), (2, 3));
+        assert_eq!(network.targets(), [END, 0, END]);
+        assert_eq!(network.diameters(), [0.5, 1.5, 0.0]);
+        assert_eq!(network.layer_of(), [1, 0]);
+    }
+
+    #[test]
+    fn what_is_wrong_is_named() {
+        let head = "from,to,diameter_mm\nstart,0,\n";
+        for (text, message) in [
+            ("", "is empty"),
+            ("a,b,c\n", "line 1, header: `a,b,c` is not allowed"),
+            ("from,to,diameter_mm\n0,end,1\n", "no start node"),
+            (&format!("{head}0,end\n"), "line 3, row: `0,end` is not allowed; three fields"),
+            (&format!("{head}0,end,nan\n"), "line 3, diameter_mm: `nan` is not allowed; a finite number"),
+            (&format!("{head}0,end,-1\n"), "`-1` is not allowed"),
+            (&format!("{head}0,end,1e400\n"), "`1e400` is not allowed"),
+            (&format!("{head}x,end,1\n"), "line 3, from: `x` is not allowed; a void id"),
+            (&format!("{head}0,4294967295,1\n"), "line 3, to: `4294967295`"),
+            (&format!("{head}0,4294967294,1\n"), "number voids from 0 without gaps"),
+            (&format!("{head}0,2,1\n2,end,1\n"), "no row names void 1"),
+            (&format!("{head}start,0,\n0,end,1\n"), "start node twice"),
+            (&format!("{head}0,end,1e300\n"), "too far from the reference length"),
+            (&format!("# shape = 2, 1\n{head}"), "line 1, shape"),
+            (&format!("# shape = 1, 1, 1\n{head}0,end,1\n"), "1 diameters were given"),
+            (&format!("# shape = 1, 1, 1\n{head}0,0,1\n0,end,1\n0,0,1\n"), "not that lattice"),
+        ] {
+            let error = read(text).unwrap_err().to_string();
+            assert!(error.starts_with("net.csv") && error.contains(message), "{text:?} gave {error}");
+        }
+        assert!(Network::read_csv(Path::new("/"), 1.0).unwrap_err().to_string().contains("regular file"));
+        assert!(Network::read_csv(Path::new("/none"), 1.0).is_err());
+    }
+
+    proptest! {
+        #[test]
+        fn reading_never_panics(text in "(from,to,diameter_mm\n)?([0-9a-z,.#\\-\n ]{0,80})") {
+            let _ = read(&text);
+        }
+
+        #[test]
+        fn what_was_written_is_read_back(
+            shape in [1u32..4, 1u32..4, 1u32..4],
+            seed: u64,
+            unit_mm in 1e-3f64..1e3,
+        ) {
+            let count = 3 * shape.iter().product::<u32>() as usize;
+            let diameter = (0..count as u64)
+                .map(|i| (i.wrapping_mul(seed | 1) >> 40) as f32 * 1e-5)
+                .collect();
+            let network = Network::cubic_from_diameters(shape, diameter, unit_mm).unwrap();
+            let mut text = Vec::new();
+            network.write_csv(&mut text).unwrap();
+            prop_assert_eq!(Network::from_csv(&text, "net.csv", unit_mm).unwrap(), network.clone());
+            // As a general network it has the same voids, constrictions and layers.
+            let general = text.split(|&b| b == b'\n').skip(1).collect::<Vec<_>>().join(&b'\n');
+            let general = Network::from_csv(&general, "net.csv", unit_mm).unwrap();
+            prop_assert_eq!(general.shape(), None);
+            prop_assert_eq!(general.targets(), network.targets());
+            prop_assert_eq!(general.diameters(), network.diameters());
+            prop_assert_eq!(general.layer_of(), network.layer_of());
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! Void networks: voids joined by directed constrictions.
+//!
+//! A [`Network`] is any directed graph of voids. A constriction belongs to its upstream void, whose
+//! *exit* it is; exits of one void stand next to each other, in a fixed order. Start nodes receive
+//! base particles; an exit whose target is [`END`] leaves the filter.
+//!
+//! The paper's network is the directed cubic lattice ([`Network::cubic`], Fig. 2): `nx x ny x nz`
+//! voids, periodic in x and y, flow along +z.
+//!
+//! Diameters are held in units of a reference length ([`Network::unit_mm`]), so that a change of
+//! units by a power of two changes no bit of a walk.
+
+mod cubic;
+mod file;
+mod reach;
+
+pub use file::NetworkError;
+pub use reach::Reach;
+
+/// Target of an exit that leaves the filter.
+pub const END: u32 = u32::MAX;
+
+/// Layer of a void that no start node leads to.
+pub const NO_LAYER: u32 = u32::MAX;
+
+/// Voids, constrictions and start nodes, as columns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Network {
+    /// First exit of each void, and one more entry: exits of void `v` are constrictions
+    /// `exit_begin[v] .. exit_begin[v + 1]`.
+    exit_begin: Vec<u32>,
+    /// Downstream void of each constriction, or [`END`].
+    target: Vec<u32>,
+    /// Diameter of each constriction in units of `unit_mm`; 0 is closed from the start.
+    diameter: Vec<f32>,
+    /// Voids that receive base particles, in the order in which they are drawn.
+    start: Vec<u32>,
+    /// Layer of each void, counted from 0: z on a lattice, else the fewest moves from a start node.
+    layer: Vec<u32>,
+    /// Length of one unit of `diameter` (mm).
+    unit_mm: f64,
+    /// Voids along x, y, z where the network is the cubic lattice.
+    shape: Option<[u32; 3]>,
+}
+
+impl Network {
+    /// Number of voids.
+    pub fn voids(&self) -> usize {
+        self.exit_begin.len() - 1
+    }
+
+    /// Number of constrictions.
+    pub fn constrictions(&self) -> usize {
+        self.target.len()
+    }
+
+    /// Constrictions through which void `void` can be left.
+    #[inline]
+    pub fn exits(&self, void: u32) -> std::ops::Range<usize> {
+        self.exit_begin[void as usize] as usize..self.exit_begin[void as usize + 1] as usize
+    }
+
+    /// Downstream void of each constriction, or [`END`].
+    pub fn targets(&self) -> &[u32] {
+        &self.target
+    }
+
+    /// Diameter of each constriction, in units of [`Network::unit_mm`].
+    pub fn diameters(&self) -> &[f32] {
+        &self.diameter
+    }
+
+    /// Voids that receive base particles.
+    pub fn start(&self) -> &[u32] {
+        &self.start
+    }
+
+    /// Layer of each void; [`NO_LAYER`] where no start node leads to it.
+    pub fn layer_of(&self) -> &[u32] {
+        &self.layer
+    }
+
+    /// Number of layers.
+    pub fn layers(&self) -> usize {
+        match self.shape {
+            Some([_, _, nz]) => nz as usize,
+            None => self.layer.iter().filter(|&&l| l != NO_LAYER).max().map_or(0, |&l| l as usize + 1),
+        }
+    }
+
+    /// Length of one unit of diameter (mm).
+    pub fn unit_mm(&self) -> f64 {
+        self.unit_mm
+    }
+
+    /// Voids along x, y, z where the network is the cubic lattice.
+    pub fn shape(&self) -> Option<[u32; 3]> {
+        self.shape
+    }
+
+    /// Upstream void of each constriction.
+    pub fn upstream(&self) -> Vec<u32> {
+        let mut upstream = vec![0; self.constrictions()];
+        for void in 0..self.voids() as u32 {
+            upstream[self.exits(void)].fill(void);
+        }
+        upstream
+    }
+
+    /// The finest constriction that `closed` leaves open (`f32::INFINITY` where none is): a base
+    /// particle no coarser than it is *passive*, it can block nothing.
+    pub fn finest_open(&self, closed: impl Fn(usize) -> bool) -> f32 {
+        let open = self.diameter.iter().enumerate().filter(|&(c, &d)| d > 0.0 && !closed(c));
+        open.map(|(_, &d)| d).fold(f32::INFINITY, f32::min)
+    }
+}

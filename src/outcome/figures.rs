@@ -1,0 +1,199 @@
+//! The figures of one run at its end, and its rows of the CSV files.
+
+use super::record::{LayerRow, Run, SeriesRow, SizeRow};
+use super::recorder::Recorder;
+use super::verdict::{below_by_count, below_by_mass};
+use crate::network::{NO_LAYER, Network};
+use crate::walk::{SizeClasses, SizeCounts, State, Tally};
+
+/// Which run of which replicate rows belong to, and what turns its units into a reader's.
+#[derive(Clone, Copy, Debug)]
+pub struct RunOf {
+    /// Replicate, counted from 1.
+    pub replicate: u64,
+    /// Run, counted from 1.
+    pub run: u64,
+    /// D15F (mm).
+    pub d15f_mm: f64,
+    /// Share of the base's mass in a tail of unknown size.
+    pub tail_mass_fraction: f64,
+}
+
+/// The figures of one run.
+#[derive(Clone, Debug)]
+pub struct Figures {
+    /// What `outcome.json` keeps of it.
+    pub run: Run,
+    /// Whether less than 7.5 % of the mass eroded.
+    pub below_threshold: bool,
+}
+
+/// Rows of the CSV files of one run.
+#[derive(Clone, Debug, Default)]
+pub struct Recorded {
+    /// Rows of `series.csv`.
+    pub series: Vec<SeriesRow>,
+    /// Rows of `layers.csv`.
+    pub layers: Vec<LayerRow>,
+    /// Rows of `retained.csv`.
+    pub retained: Vec<SizeRow>,
+    /// Rows of `eroded.csv`.
+    pub eroded: Vec<SizeRow>,
+}
+
+/// Mass eroded over the mass that the run inserts in all.
+///
+/// A tail of unknown size is passive: as much of it erodes as of the passive particles, and all of it
+/// where the base has none.
+fn eroded_mass_fraction(tally: &Tally, end: &Tally, tail: f64) -> f64 {
+    let sized = match end.inserted_mass > 0.0 {
+        true => tally.eroded_mass / end.inserted_mass,
+        false => 0.0,
+    };
+    if tail == 0.0 {
+        return sized;
+    }
+    let of_tail = match end.passive_inserted {
+        0 => tally.inserted as f64 / end.inserted.max(1) as f64,
+        n => tally.passive_eroded as f64 / n as f64,
+    };
+    (1.0 - tail) * sized + tail * of_tail
+}
+
+impl Figures {
+    /// The figures of a finished run.
+    pub fn new(network: &Network, state: &State, of: RunOf, seconds: f64) -> Self {
+        let tally = &state.tally;
+        let eroded_mass_fraction = eroded_mass_fraction(tally, tally, of.tail_mass_fraction);
+        let one_size = state.classes.upper().len() == 1 && of.tail_mass_fraction == 0.0;
+        let below_threshold = match one_size {
+            true => below_by_count(tally.eroded, tally.inserted),
+            false if of.tail_mass_fraction == 0.0 => below_by_mass(tally.eroded_mass, tally.inserted_mass),
+            false => below_by_mass(eroded_mass_fraction, 1.0),
+        };
+        let largest_mm =
+            (tally.eroded > 0).then(|| f64::from(tally.largest_eroded) * network.unit_mm());
+        let retained = tally.retained_in_constrictions + tally.retained_in_voids + tally.trapped;
+        let run = Run {
+            run: of.run,
+            eroded_mass_fraction,
+            eroded_number_fraction: tally.eroded as f64 / tally.inserted.max(1) as f64,
+            largest_eroded_mm: largest_mm,
+            largest_eroded_over_d15f: largest_mm.map(|d| d / of.d15f_mm),
+            blocked: tally.blocked,
+            blocked_fraction: tally.blocked as f64 / network.constrictions().max(1) as f64,
+            blocked_first_three_layers_fraction: blocked_first_layers(network, state, 3),
+            backbone_fraction: network.backbone_fraction(|c| !state.is_closed(network, c)),
+            inserted: tally.inserted,
+            eroded: tally.eroded,
+            retained_in_constrictions: tally.retained_in_constrictions,
+            retained_in_voids: tally.retained_in_voids,
+            trapped: tally.trapped,
+            retained_per_void: retained as f64 / network.voids() as f64,
+            increments: state.increment,
+            particle_moves: tally.particle_moves,
+            seconds,
+        };
+        Self { run, below_threshold }
+    }
+}
+
+impl Recorded {
+    /// The rows of a finished run.
+    pub fn new(network: &Network, state: &State, recorder: &Recorder, of: RunOf) -> Self {
+        let series = recorder.series.iter().map(|(increment, tally)| SeriesRow {
+            replicate: of.replicate,
+            run: of.run,
+            increment: *increment,
+            inserted: tally.inserted,
+            moving: tally.moving,
+            eroded: tally.eroded,
+            retained_in_constrictions: tally.retained_in_constrictions,
+            retained_in_voids: tally.retained_in_voids,
+            trapped: tally.trapped,
+            blocked: tally.blocked,
+            eroded_mass_fraction: eroded_mass_fraction(tally, &state.tally, of.tail_mass_fraction),
+        });
+        let mut recorded = Self { series: series.collect(), layers: layers(network, state, of), ..Self::default() };
+        for (increment, retained, eroded) in &recorder.sizes {
+            let row = |counts| size_curve(counts, &state.classes, network.unit_mm(), of, *increment);
+            recorded.retained.extend(row(retained));
+            recorded.eroded.extend(row(eroded));
+        }
+        recorded
+    }
+
+    /// Adds the rows of a later run or replicate.
+    pub fn append(&mut self, mut later: Self) {
+        self.series.append(&mut later.series);
+        self.layers.append(&mut later.layers);
+        self.retained.append(&mut later.retained);
+        self.eroded.append(&mut later.eroded);
+    }
+}
+
+fn blocked_first_layers(network: &Network, state: &State, layers: u32) -> f64 {
+    let (mut blocked, mut all) = (0u64, 0u64);
+    for void in (0..network.voids() as u32).filter(|&v| network.layer_of()[v as usize] < layers) {
+        let exits = network.exits(void);
+        all += exits.len() as u64;
+        blocked += exits.filter(|&c| state.blocked[c]).count() as u64;
+    }
+    blocked as f64 / all.max(1) as f64
+}
+
+fn layers(network: &Network, state: &State, of: RunOf) -> Vec<LayerRow> {
+    let row = |layer| LayerRow {
+        replicate: of.replicate,
+        run: of.run,
+        layer,
+        constrictions: 0,
+        blocked: 0,
+        retained_in_constrictions: 0,
+        retained_in_voids: 0,
+    };
+    let mut rows: Vec<LayerRow> = (0..network.layers() as u64).map(row).collect();
+    for void in 0..network.voids() {
+        let layer = network.layer_of()[void];
+        if layer == NO_LAYER {
+            continue;
+        }
+        let row = &mut rows[layer as usize];
+        let exits = network.exits(void as u32);
+        row.constrictions += exits.len() as u64;
+        row.blocked += exits.filter(|&c| state.blocked[c]).count() as u64;
+        row.retained_in_constrictions += state.retained_in_constrictions[void];
+        row.retained_in_voids += state.retained_in_voids[void];
+    }
+    rows
+}
+
+/// The size curve of `counts`: one row a class bound, none where nothing is counted.
+fn size_curve(
+    counts: &SizeCounts,
+    classes: &SizeClasses,
+    unit_mm: f64,
+    of: RunOf,
+    increment: u64,
+) -> Vec<SizeRow> {
+    let number: u64 = counts.number.iter().sum();
+    let mass: f64 = counts.mass.iter().sum();
+    if number == 0 {
+        return Vec::new();
+    }
+    let (mut finer_number, mut finer_mass) = (0u64, 0.0);
+    let mut rows = Vec::with_capacity(counts.number.len());
+    for (class, &upper) in classes.upper().iter().enumerate() {
+        finer_number += counts.number[class];
+        finer_mass += counts.mass[class];
+        rows.push(SizeRow {
+            replicate: of.replicate,
+            run: of.run,
+            increment,
+            diameter_mm: f64::from(upper) * unit_mm,
+            percent_finer_by_mass: 100.0 * finer_mass / mass,
+            percent_finer_by_number: 100.0 * finer_number as f64 / number as f64,
+        });
+    }
+    rows
+}

@@ -1,0 +1,36 @@
+//! Watches a run and keeps what was asked for.
+
+use crate::walk::{SizeCounts, State, Tally};
+
+/// What to keep of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wanted {
+    /// Keep the sums of every such increment, and of the last one; 0 keeps the last only.
+    pub series_every: u64,
+    /// Increments whose size curves are kept, besides the last one's.
+    pub size_curves: Vec<u64>,
+    /// Number of size classes of those curves.
+    pub size_classes: usize,
+}
+
+/// Sums and size curves of one run, as it went.
+#[derive(Debug, Default)]
+pub struct Recorder {
+    /// Increment and sums.
+    pub series: Vec<(u64, Tally)>,
+    /// Increment, retained and eroded sizes.
+    pub sizes: Vec<(u64, SizeCounts, SizeCounts)>,
+}
+
+impl Recorder {
+    /// Takes what is wanted of a state after a whole increment.
+    pub fn observe(&mut self, wanted: &Wanted, state: &State) {
+        let t = state.increment;
+        if state.finished || (wanted.series_every > 0 && t.is_multiple_of(wanted.series_every)) {
+            self.series.push((t, state.tally));
+        }
+        if state.finished || wanted.size_curves.contains(&t) {
+            self.sizes.push((t, state.retained_sizes.clone(), state.eroded_sizes.clone()));
+        }
+    }
+}

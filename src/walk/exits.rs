@@ -1,0 +1,169 @@
+//! Which exit a draw picks: thresholds by void, refreshed only where an exit closes.
+
+use bitvec::slice::BitSlice;
+
+use super::State;
+use crate::network::Network;
+
+/// Thresholds of the exits of one void on the 64-bit scale, written into `thresholds`; the position
+/// of the last open exit, or `None` where every exit is closed.
+pub(super) fn thresholds(
+    network: &Network,
+    blocked: &BitSlice<u64>,
+    void: u32,
+    thresholds: &mut Vec<u64>,
+) -> Option<usize> {
+    let exits = network.exits(void);
+    let area = |c: usize| {
+        let diameter = f64::from(network.diameters()[c]);
+        if blocked[c] { 0.0 } else { diameter * diameter }
+    };
+    let total: f64 = exits.clone().map(area).sum();
+    let mut sum = 0.0;
+    thresholds.clear();
+    thresholds.extend(exits.clone().map(|c| {
+        sum += area(c);
+        // A float beyond the range of the integer becomes the largest integer.
+        (sum / total * TWO_TO_64) as u64
+    }));
+    exits.clone().rev().find(|&c| area(c) > 0.0).map(|c| c - exits.start)
+}
+
+const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
+
+/// Exit thresholds of every void, in the form that suits the network.
+pub struct ExitTable {
+    form: Form,
+    /// Upstream void of each constriction.
+    upstream: Vec<u32>,
+}
+
+pub(super) enum Form {
+    /// Three exits a void, targets by arithmetic.
+    Lattice(Lattice),
+    /// Any number of exits, targets by look-up.
+    General(General),
+}
+
+/// Thresholds of a cubic lattice, one word a void, and its shape.
+pub(super) struct Lattice {
+    /// Bits 17..32: top fifteen bits of the first threshold. Bits 2..17: of the second. Bit 1: +y wraps.
+    /// Bit 0: +x wraps. A void without open exits has the first above the second.
+    pub entry: Vec<u32>,
+    pub nx: u32,
+    pub plane: u32,
+}
+
+/// Thresholds of a general network.
+pub(super) struct General {
+    /// By constriction: its threshold.
+    pub threshold: Vec<u64>,
+    /// By void: its last open exit as a constriction, or `NONE`.
+    pub last_open: Vec<u32>,
+}
+
+/// Stands for "no open exit".
+pub(super) const NONE: u32 = u32::MAX;
+
+impl ExitTable {
+    /// The table for the constrictions that `state` leaves open.
+    pub fn new(network: &Network, state: &State) -> Self {
+        let form = match network.shape() {
+            Some([nx, ny, _]) => Form::Lattice(Lattice { entry: vec![0; network.voids()], nx, plane: nx * ny }),
+            None => Form::General(General {
+                threshold: vec![0; network.constrictions()],
+                last_open: vec![NONE; network.voids()],
+            }),
+        };
+        let mut table = Self { form, upstream: network.upstream() };
+        let mut scratch = Vec::new();
+        for void in 0..network.voids() as u32 {
+            table.set(network, &state.blocked, void, &mut scratch);
+        }
+        table
+    }
+
+    /// Renews the voids upstream of constrictions that have just closed.
+    pub(super) fn refresh(&mut self, network: &Network, state: &State, closed: &[u32]) {
+        let mut scratch = Vec::new();
+        for &constriction in closed {
+            let void = self.upstream[constriction as usize];
+            self.set(network, &state.blocked, void, &mut scratch);
+        }
+    }
+
+    fn set(&mut self, network: &Network, blocked: &BitSlice<u64>, void: u32, scratch: &mut Vec<u64>) {
+        let last_open = thresholds(network, blocked, void, scratch);
+        match &mut self.form {
+            Form::Lattice(lattice) => lattice.set(void, scratch, last_open),
+            Form::General(general) => {
+                let exits = network.exits(void);
+                general.threshold[exits.clone()].copy_from_slice(scratch);
+                general.last_open[void as usize] = last_open.map_or(NONE, |e| (exits.start + e) as u32);
+            }
+        }
+    }
+
+    pub(super) fn form(&self) -> &Form {
+        &self.form
+    }
+
+    /// Upstream void of each constriction.
+    pub(super) fn upstream(&self) -> &[u32] {
+        &self.upstream
+    }
+}
+
+impl Lattice {
+    fn set(&mut self, void: u32, thresholds: &[u64], last_open: Option<usize>) {
+        let (x, row) = (void % self.nx, void % self.plane);
+        let wraps = u32::from(x + 1 == self.nx) | u32::from(row + self.nx >= self.plane) << 1;
+        let [first, second] = match last_open {
+            Some(_) => [thresholds[0] >> 49, thresholds[1] >> 49],
+            None => [0x7fff, 0],
+        };
+        self.entry[void as usize] = (first as u32) << 17 | (second as u32) << 2 | wraps;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bitvec::prelude::*;
+
+    fn of(diameters: [f32; 3], blocked: [bool; 3]) -> (Vec<u64>, Option<usize>) {
+        let network = Network::cubic_from_diameters([1, 1, 1], diameters.to_vec(), 1.0).unwrap();
+        let blocked: BitVec<u64> = blocked.into_iter().collect();
+        let mut out = Vec::new();
+        let last = thresholds(&network, &blocked, 0, &mut out);
+        (out, last)
+    }
+
+    #[test]
+    fn widths_are_areas() {
+        let (t, last) = of([1.0, 1.0, f32::sqrt(2.0)], [false; 3]);
+        assert_eq!(last, Some(2));
+        assert!((t[0] as f64 / TWO_TO_64 - 0.25).abs() < 1e-7);
+        assert!((t[1] as f64 / TWO_TO_64 - 0.5).abs() < 1e-7);
+    }
+
+    #[test]
+    fn a_closed_exit_has_no_width() {
+        assert_eq!(of([0.0, 1.0, 1.0], [false; 3]).0[0], 0);
+        assert_eq!(of([1.0, 1.0, 1.0], [true, true, false]), (vec![0, 0, u64::MAX], Some(2)));
+        assert_eq!(of([1.0, 1.0, 1.0], [false, true, true]), (vec![u64::MAX; 3], Some(0)));
+        assert_eq!(of([0.0, 1.0, 1.0], [false, true, true]).1, None);
+    }
+
+    /// Once the exit with nearly all the area is blocked, the others keep their exact ratio.
+    #[test]
+    fn nothing_is_left_of_a_blocked_giant() {
+        let (giant, _) = of([1e6, 1.0, 1.0], [false; 3]);
+        assert!(((u64::MAX - giant[0]) as f64 / TWO_TO_64 / 2e-12 - 1.0).abs() < 1e-3);
+        assert_eq!(of([1e6, 1.0, 1.0], [true, false, false]).0[1], 1 << 63);
+        for scale in [1e-6, 1e6] {
+            let (t, last) = of([scale, 1.0, scale], [false; 3]);
+            assert!(t[0] <= t[1] && last == Some(2));
+        }
+    }
+}

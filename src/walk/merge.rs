@@ -1,0 +1,105 @@
+//! What the chunks hand back, and its deterministic merge.
+//!
+//! Counts are added and blocked constrictions joined by OR, which no order can change. Masses are added
+//! within a chunk in particle order and over chunks in chunk order.
+
+use super::sizes::cube;
+use super::{Blocking, SizeClasses, SizeCounts, State};
+
+/// What one chunk did in one increment.
+#[derive(Default)]
+pub(super) struct Events {
+    /// Particles that the chunk received.
+    pub inserted: u32,
+    /// Their mass.
+    pub inserted_mass: f64,
+    /// Completed moves.
+    pub moves: u64,
+    /// Diameters of the particles that left, in particle order.
+    pub eroded: Vec<f32>,
+    /// Constriction and diameter of the particles that were stopped, in particle order.
+    pub stopped: Vec<(u32, f32)>,
+    /// Void and diameter of the particles without open exit, in particle order.
+    pub stranded: Vec<(u32, f32)>,
+    /// Passive particles among those received.
+    pub passive_inserted: u32,
+    passive_eroded: u64,
+    sizes: Option<[SizeCounts; 2]>,
+    eroded_mass: f64,
+    largest: f32,
+}
+
+impl Events {
+    /// Forgets the last increment, but keeps the memory.
+    pub fn clear(&mut self) {
+        self.inserted = 0;
+        self.inserted_mass = 0.0;
+        self.passive_inserted = 0;
+        self.moves = 0;
+        self.eroded.clear();
+        self.stopped.clear();
+        self.stranded.clear();
+    }
+
+    /// Sums over the chunk; called where the chunk was worked on.
+    pub fn sum(&mut self, classes: &SizeClasses, passive_limit: f32) {
+        self.passive_eroded = self.eroded.iter().filter(|&&d| d <= passive_limit).count() as u64;
+        self.eroded_mass = self.eroded.iter().map(|&d| cube(d)).sum();
+        self.largest = self.eroded.iter().copied().fold(0.0, f32::max);
+        if self.is_quiet() {
+            return;
+        }
+        let new = || [SizeCounts::new(classes), SizeCounts::new(classes)];
+        let [eroded, retained] = self.sizes.get_or_insert_with(new);
+        eroded.clear();
+        retained.clear();
+        self.eroded.iter().for_each(|&d| eroded.add(classes, d));
+        self.stopped.iter().chain(&self.stranded).for_each(|&(_, d)| retained.add(classes, d));
+    }
+
+    fn is_quiet(&self) -> bool {
+        self.eroded.is_empty() && self.stopped.is_empty() && self.stranded.is_empty()
+    }
+}
+
+/// Adds the events of all chunks to the state; returns the constrictions that have just closed, ascending.
+pub(super) fn merge(events: &mut [Events], upstream: &[u32], state: &mut State) -> Vec<u32> {
+    let tally = &mut state.tally;
+    let mut closed = Vec::new();
+    for events in events.iter_mut() {
+        tally.inserted += u64::from(events.inserted);
+        tally.moving += u64::from(events.inserted);
+        tally.inserted_mass += events.inserted_mass;
+        tally.passive_inserted += u64::from(events.passive_inserted);
+        tally.particle_moves += events.moves;
+        if !events.is_quiet() {
+            let gone = [events.eroded.len(), events.stopped.len(), events.stranded.len()].map(|n| n as u64);
+            tally.eroded += gone[0];
+            tally.retained_in_constrictions += gone[1];
+            tally.retained_in_voids += gone[2];
+            tally.moving -= gone.iter().sum::<u64>();
+            tally.passive_eroded += events.passive_eroded;
+            tally.eroded_mass += events.eroded_mass;
+            tally.largest_eroded = tally.largest_eroded.max(events.largest);
+            if let Some([eroded, retained]) = &events.sizes {
+                state.eroded_sizes.merge(eroded);
+                state.retained_sizes.merge(retained);
+            }
+            for &(constriction, _) in &events.stopped {
+                state.retained_in_constrictions[upstream[constriction as usize] as usize] += 1;
+                if !state.blocked.replace(constriction as usize, true) {
+                    closed.push(constriction);
+                }
+            }
+            for &(void, _) in &events.stranded {
+                state.retained_in_voids[void as usize] += 1;
+            }
+        }
+        events.clear();
+    }
+    closed.sort_unstable();
+    tally.blocked += closed.len() as u64;
+    let increment = state.increment;
+    state.history.extend(closed.iter().map(|&constriction| Blocking { increment, constriction }));
+    closed
+}

@@ -1,0 +1,141 @@
+//! The walk: base particles move from void to void until each is eroded or retained.
+//!
+//! # An increment (the paper's Fig. 3)
+//! 1. *Insert* this increment's share of the base, each particle on a start node drawn uniformly.
+//! 2. *Step*: every moving particle picks one of its void's exits that was open when the increment
+//!    began, with probability proportional to diameter squared (Fig. 4). A particle no coarser than
+//!    the constriction moves through it; a coarser one is retained, and blocks that constriction
+//!    from the next increment on. A particle in a void without open exits is retained in the void.
+//! 3. *Merge*: the constrictions blocked in this increment close. Since all choices were made on the
+//!    open set at the start of the increment, the order of the particles plays no part.
+//! 4. *Tally*: counts are integers, and their sum is checked; masses are sums of diameter cubed in
+//!    chunk order.
+//!
+//! # Chunks and streams
+//! Base particle `i` of a run, counted in order of insertion, belongs to chunk `i / CHUNK` for good.
+//! A chunk keeps its moving particles together and in order of insertion: those that leave are
+//! closed over, newly inserted ones are appended. In increment `t` the `j`-th moving particle of
+//! chunk `c` takes sixteen-bit draw `j` of the stream (seed, step, run, `t`, `c`), completed to 64
+//! bits where sixteen do not decide; the `k`-th particle inserted into the chunk in that increment
+//! takes words `2 k` (start node) and `2 k + 1` (diameter) of (seed, insertion, run, `t`, `c`). Threads
+//! appear nowhere in this, so they change no bit, and a walk can go on from its columns alone.
+//!
+//! # Exit choice
+//! With `c_e` the sum of open areas up to exit `e` and `c` that of all, exit `e` is the first whose
+//! `floor(2^64 c_e / c)` exceeds the 64-bit draw, else the last open exit. A closed exit has exactly
+//! no width.
+//!
+//! # The end
+//! A run ends when nothing moves, or when every moving particle is *trapped*: x and y are periodic, so
+//! a particle can circle for ever. See [`trapped`].
+
+mod exits;
+mod insert;
+mod kernel;
+mod merge;
+pub mod reference;
+mod sizes;
+mod state;
+mod supply;
+mod tally;
+mod trapped;
+
+pub use exits::ExitTable;
+pub use sizes::{SizeClasses, SizeCounts};
+pub use state::{Blocking, CHUNK, Particles, State};
+pub use supply::Supply;
+pub use tally::Tally;
+
+use crate::network::Network;
+use merge::Events;
+
+/// A run that goes against the model's own book-keeping: a fault of the program.
+#[derive(Debug, thiserror::Error)]
+pub enum WalkError {
+    /// Inserted particles are not all accounted for.
+    #[error("increment {increment}: {inserted} base particles inserted, but {accounted} accounted for")]
+    NotConserved {
+        /// The increment.
+        increment: u64,
+        /// Inserted so far.
+        inserted: u64,
+        /// Moving, retained, trapped and eroded.
+        accounted: u64,
+    },
+    /// The caller asked the run to stop.
+    #[error("stopped on request in increment {increment}")]
+    Stopped {
+        /// The last whole increment.
+        increment: u64,
+    },
+}
+
+/// Whether a run goes on after an increment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// Go on.
+    Continue,
+    /// Stop here.
+    Stop,
+}
+
+/// What happens after each increment: recording, progress, a request to stop.
+pub type Observer<'a> = dyn FnMut(&State) -> Progress + Send + 'a;
+
+/// The machinery of one run that is rebuilt from network and state, and never stored.
+pub struct Walk<'a> {
+    network: &'a Network,
+    supply: &'a Supply,
+    table: ExitTable,
+    events: Vec<Events>,
+    trap: trapped::Search,
+}
+
+impl<'a> Walk<'a> {
+    /// Prepares to walk from `state` on.
+    pub fn new(network: &'a Network, supply: &'a Supply, state: &State) -> Self {
+        let table = ExitTable::new(network, state);
+        Self { network, supply, table, events: Vec::new(), trap: trapped::Search::new(network) }
+    }
+
+    /// One increment.
+    ///
+    /// # Errors
+    /// [`WalkError::NotConserved`] where particles are lost or made.
+    pub fn increment(&mut self, state: &mut State) -> Result<(), WalkError> {
+        state.increment += 1;
+        self.step(state);
+        let closed = merge::merge(&mut self.events, self.table.upstream(), state);
+        self.table.refresh(self.network, state, &closed);
+        self.tally(state)
+    }
+
+    /// Inserts and moves the particles, chunk by chunk.
+    fn step(&mut self, state: &mut State) {
+        insert::plan(self.supply, state, &mut self.events);
+        kernel::step(self.network, &self.table, self.supply, state, &mut self.events);
+    }
+
+    fn tally(&mut self, state: &mut State) -> Result<(), WalkError> {
+        let inserting = state.increment < self.supply.increments();
+        if !inserting && state.tally.moving > 0 && self.trap.all_trapped(self.network, state) {
+            state.tally.trap_all_moving();
+        }
+        state.finished = !inserting && state.tally.moving == 0;
+        state.tally.check(state.increment)
+    }
+
+    /// Increments until the run ends or `observe` stops it.
+    ///
+    /// # Errors
+    /// As [`Walk::increment`], and [`WalkError::Stopped`].
+    pub fn run(&mut self, state: &mut State, observe: &mut Observer) -> Result<(), WalkError> {
+        while !state.finished {
+            self.increment(state)?;
+            if observe(state) == Progress::Stop && !state.finished {
+                return Err(WalkError::Stopped { increment: state.increment });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,189 @@
+//! The slow, obvious walk that the fast one is held against.
+//!
+//! One particle after another, every weight computed afresh from the network, in the words of the
+//! model. It shares nothing with the kernel but the network, the base's sizes and the streams.
+
+use std::collections::BTreeSet;
+
+use super::{CHUNK, Supply};
+use crate::network::{END, Network};
+use crate::stream::{DRAWS_PER_BLOCK, Key, LANES, Purpose, draw16};
+
+/// One base particle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Particle {
+    /// Rank in order of insertion.
+    pub rank: u64,
+    /// Void that it is in.
+    pub void: u32,
+    /// Diameter, in units of the network's reference length.
+    pub diameter: f32,
+}
+
+/// A run, particle by particle.
+pub struct Reference<'a> {
+    network: &'a Network,
+    supply: &'a Supply,
+    seed: u64,
+    run: u64,
+    /// Last whole increment.
+    pub increment: u64,
+    /// Moving particles, in order of insertion.
+    pub moving: Vec<Particle>,
+    /// Particles that left, as they left.
+    pub eroded: Vec<Particle>,
+    /// Particles stopped by a constriction, with that constriction.
+    pub stopped: Vec<(Particle, usize)>,
+    /// Particles in voids without open exits.
+    pub stranded: Vec<Particle>,
+    /// Particles that circle for ever.
+    pub trapped: Vec<Particle>,
+    /// Whether each constriction is blocked.
+    pub blocked: Vec<bool>,
+    /// Increment and constriction of each blocking.
+    pub history: Vec<(u64, usize)>,
+    /// Completed moves.
+    pub particle_moves: u64,
+}
+
+impl<'a> Reference<'a> {
+    /// Before the first increment.
+    pub fn new(network: &'a Network, supply: &'a Supply, blocked: Vec<bool>, seed: u64, run: u64) -> Self {
+        Self {
+            network,
+            supply,
+            seed,
+            run,
+            increment: 0,
+            moving: vec![],
+            eroded: vec![],
+            stopped: vec![],
+            stranded: vec![],
+            trapped: vec![],
+            blocked,
+            history: vec![],
+            particle_moves: 0,
+        }
+    }
+
+    /// Whether the run has ended.
+    pub fn finished(&self) -> bool {
+        self.increment >= self.supply.increments() && self.moving.is_empty()
+    }
+
+    /// One increment.
+    pub fn increment(&mut self) {
+        self.increment += 1;
+        self.insert();
+        let mut newly_blocked = BTreeSet::new();
+        let mut still_moving = vec![];
+        let mut place_in_chunk = vec![0u64; 1 + self.supply.total() as usize / CHUNK];
+        for particle in std::mem::take(&mut self.moving) {
+            let place = &mut place_in_chunk[particle.rank as usize / CHUNK];
+            let draw = self.draw(particle.rank / CHUNK as u64, *place);
+            *place += 1;
+            let Some(exit) = self.pick(particle.void, draw) else {
+                self.stranded.push(particle);
+                continue;
+            };
+            if particle.diameter > self.network.diameters()[exit] {
+                newly_blocked.insert(exit);
+                self.stopped.push((particle, exit));
+                continue;
+            }
+            self.particle_moves += 1;
+            match self.network.targets()[exit] {
+                END => self.eroded.push(particle),
+                void => still_moving.push(Particle { void, ..particle }),
+            }
+        }
+        self.moving = still_moving;
+        for exit in newly_blocked {
+            self.blocked[exit] = true;
+            self.history.push((self.increment, exit));
+        }
+        if self.increment >= self.supply.increments() && self.moving.iter().all(|p| self.is_trapped(p)) {
+            self.trapped = std::mem::take(&mut self.moving);
+        }
+    }
+
+    fn key(&self, purpose: Purpose, chunk: u64) -> Key {
+        Key { seed: self.seed, purpose, run: self.run, increment: self.increment, chunk }
+    }
+
+    fn insert(&mut self) {
+        let ranks = self.supply.inserted(self.increment - 1)..self.supply.inserted(self.increment);
+        let mut place_in_chunk = vec![0u64; 1 + self.supply.total() as usize / CHUNK];
+        for rank in ranks {
+            let chunk = rank / CHUNK as u64;
+            let place = &mut place_in_chunk[chunk as usize];
+            let word = |w: u64| self.word(self.key(Purpose::Insertion, chunk), w);
+            let nodes = self.network.start();
+            let node = (u128::from(word(2 * *place)) * nodes.len() as u128) >> 64;
+            let diameter = self.supply.diameter(word(2 * *place + 1));
+            *place += 1;
+            self.moving.push(Particle { rank, void: nodes[node as usize], diameter });
+        }
+    }
+
+    /// Word `w` of a stream.
+    fn word(&self, key: Key, w: u64) -> u64 {
+        let mut lanes = key.lanes();
+        let mut block = lanes.next_block();
+        for _ in 0..w / LANES as u64 {
+            block = lanes.next_block();
+        }
+        block[w as usize % LANES]
+    }
+
+    /// The 64-bit draw of the particle at `place` in its chunk.
+    fn draw(&self, chunk: u64, place: u64) -> u64 {
+        let mut lanes = self.key(Purpose::Step, chunk).lanes();
+        let mut block = lanes.next_block();
+        for _ in 0..place / DRAWS_PER_BLOCK as u64 {
+            block = lanes.next_block();
+        }
+        lanes.extension().complete(draw16(&block, place as usize % DRAWS_PER_BLOCK), place)
+    }
+
+    fn open_area(&self, exit: usize) -> f64 {
+        let diameter = f64::from(self.network.diameters()[exit]);
+        if self.blocked[exit] { 0.0 } else { diameter * diameter }
+    }
+
+    /// The exit that a draw picks, with probability proportional to area, among the open ones.
+    fn pick(&self, void: u32, draw: u64) -> Option<usize> {
+        let open: Vec<usize> = self.network.exits(void).filter(|&e| self.open_area(e) > 0.0).collect();
+        let total: f64 = open.iter().map(|&e| self.open_area(e)).sum();
+        let mut sum = 0.0;
+        for &exit in &open {
+            sum += self.open_area(exit);
+            if draw < (sum / total * 2f64.powi(64)) as u64 {
+                return Some(exit);
+            }
+        }
+        open.last().copied()
+    }
+
+    /// Whether the particle can reach, through open constrictions that it fits, no end, no open
+    /// constriction finer than it, and no void without open exits.
+    fn is_trapped(&self, particle: &Particle) -> bool {
+        let mut seen = BTreeSet::from([particle.void]);
+        let mut todo = vec![particle.void];
+        while let Some(void) = todo.pop() {
+            let open: Vec<usize> = self.network.exits(void).filter(|&e| self.open_area(e) > 0.0).collect();
+            if open.is_empty() {
+                return false;
+            }
+            for exit in open {
+                if particle.diameter > self.network.diameters()[exit] || self.network.targets()[exit] == END {
+                    return false;
+                }
+                if seen.insert(self.network.targets()[exit]) {
+                    todo.push(self.network.targets()[exit]);
+                }
+            }
+        }
+        true
+    }
+}

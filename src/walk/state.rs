@@ -1,0 +1,116 @@
+//! The state of a run: columns, and nothing that belongs to an engine.
+
+use bitvec::vec::BitVec;
+
+use super::{SizeClasses, SizeCounts, Supply, Tally};
+use crate::network::Network;
+use crate::store::Column;
+
+/// Base particles of one chunk: 128 KiB of columns, so that a chunk stays in a core's second-level
+/// cache while it is worked on. Part of the definition of every stream: changing it changes results.
+pub const CHUNK: usize = 1 << 14;
+
+/// Constrictions blocked by a base particle, and when.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Blocking {
+    /// The increment in which a particle stopped; the constriction is closed from the next one on.
+    pub increment: u64,
+    /// The constriction.
+    pub constriction: u32,
+}
+
+/// Moving base particles as columns. Chunk `c` holds its `live[c]` particles, in order of insertion, in
+/// entries `c * CHUNK ..` of each column.
+#[derive(Debug)]
+pub struct Particles {
+    /// Void that the particle is in.
+    pub void: Column<u32>,
+    /// Diameter, in units of the network's reference length.
+    pub diameter: Column<f32>,
+    /// Moving particles by chunk.
+    pub live: Vec<u32>,
+}
+
+impl Particles {
+    /// Void and diameter of the moving particles of one chunk.
+    pub fn chunk(&self, chunk: usize) -> (&[u32], &[f32]) {
+        let range = chunk * CHUNK..chunk * CHUNK + self.live[chunk] as usize;
+        (&self.void[range.clone()], &self.diameter[range])
+    }
+}
+
+/// Everything that a run is after a whole increment. A walk goes on from this alone.
+#[derive(Debug)]
+pub struct State {
+    /// Seed of the replicate.
+    pub seed: u64,
+    /// Run, counted from 1.
+    pub run: u64,
+    /// Last whole increment, counted from 1; 0 before the first.
+    pub increment: u64,
+    /// Whether the run has ended.
+    pub finished: bool,
+    /// The finest constriction open when the run began: no particle up to this diameter, called
+    /// *passive*, can be stopped by a constriction in this run.
+    pub passive_limit: f32,
+    /// The moving base particles.
+    pub particles: Particles,
+    /// Bit `c`: a base particle has blocked constriction `c` (in this run or an earlier one).
+    pub blocked: BitVec<u64>,
+    /// Constrictions blocked in this run, by increment, then by constriction.
+    pub history: Vec<Blocking>,
+    /// Base particles retained in the exits of each void.
+    pub retained_in_constrictions: Vec<u64>,
+    /// Base particles retained in each void for want of an open exit.
+    pub retained_in_voids: Vec<u64>,
+    /// Sums over the run.
+    pub tally: Tally,
+    /// Bounds of the size classes.
+    pub classes: SizeClasses,
+    /// Eroded particles by size class.
+    pub eroded_sizes: SizeCounts,
+    /// Retained particles by size class.
+    pub retained_sizes: SizeCounts,
+}
+
+impl State {
+    /// The state before the first increment of run `run`, on the constrictions that `blocked` leaves open.
+    pub fn new(
+        network: &Network,
+        supply: &Supply,
+        classes: SizeClasses,
+        blocked: BitVec<u64>,
+        seed: u64,
+        run: u64,
+    ) -> Self {
+        assert_eq!(blocked.len(), network.constrictions(), "one bit a constriction");
+        let chunks = (supply.total() as usize).div_ceil(CHUNK);
+        let tally = Tally { blocked: blocked.count_ones() as u64, ..Tally::default() };
+        Self {
+            seed,
+            run,
+            increment: 0,
+            finished: false,
+            passive_limit: network.finest_open(|c| blocked[c]),
+            particles: Particles {
+                void: Column::zeroed(chunks * CHUNK),
+                diameter: Column::zeroed(chunks * CHUNK),
+                live: vec![0; chunks],
+            },
+            blocked,
+            history: Vec::new(),
+            retained_in_constrictions: vec![0; network.voids()],
+            retained_in_voids: vec![0; network.voids()],
+            tally,
+            eroded_sizes: SizeCounts::new(&classes),
+            retained_sizes: SizeCounts::new(&classes),
+            classes,
+        }
+    }
+
+    /// Whether base particles cannot use constriction `c`: blocked, or of size 0.
+    #[inline]
+    pub fn is_closed(&self, network: &Network, c: usize) -> bool {
+        self.blocked[c] || network.diameters()[c] == 0.0
+    }
+}

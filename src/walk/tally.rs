@@ -1,0 +1,68 @@
+//! Sums over a run: integers, and masses added in a fixed order.
+
+use super::WalkError;
+
+/// Sums over a run up to and including an increment. Masses are sums of diameter cubed, in units of the
+/// reference length cubed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tally {
+    /// Base particles inserted.
+    pub inserted: u64,
+    /// Base particles still moving.
+    pub moving: u64,
+    /// Base particles that left through the end.
+    pub eroded: u64,
+    /// Base particles stopped by a constriction.
+    pub retained_in_constrictions: u64,
+    /// Base particles in voids without open exits.
+    pub retained_in_voids: u64,
+    /// Base particles that circle for ever.
+    pub trapped: u64,
+    /// Blocked constrictions, those of earlier runs included.
+    pub blocked: u64,
+    /// Completed moves, the one that leaves included.
+    pub particle_moves: u64,
+    /// Mass inserted.
+    pub inserted_mass: f64,
+    /// Mass eroded.
+    pub eroded_mass: f64,
+    /// Passive base particles inserted.
+    pub passive_inserted: u64,
+    /// Passive base particles eroded.
+    pub passive_eroded: u64,
+    /// Diameter of the largest eroded particle; 0 where none is.
+    pub largest_eroded: f32,
+}
+
+impl Tally {
+    /// Books every moving particle as trapped.
+    pub(super) fn trap_all_moving(&mut self) {
+        self.trapped += std::mem::take(&mut self.moving);
+    }
+
+    /// Every particle inserted is somewhere.
+    pub(super) fn check(&self, increment: u64) -> Result<(), WalkError> {
+        let accounted = self.moving
+            + self.eroded
+            + self.retained_in_constrictions
+            + self.retained_in_voids
+            + self.trapped;
+        match accounted == self.inserted {
+            true => Ok(()),
+            false => Err(WalkError::NotConserved { increment, inserted: self.inserted, accounted }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lost_particle_is_noticed() {
+        let tally = Tally { inserted: 5, moving: 1, eroded: 1, trapped: 2, ..Tally::default() };
+        let error = tally.check(3).unwrap_err().to_string();
+        assert_eq!(error, "increment 3: 5 base particles inserted, but 4 accounted for");
+        assert!(Tally { retained_in_voids: 1, ..tally }.check(3).is_ok());
+    }
+}

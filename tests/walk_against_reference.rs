@@ -1,0 +1,150 @@
+//! The kernel against the slow reference, particle by particle, on many small networks.
+
+use bitvec::vec::BitVec;
+use proptest::prelude::*;
+use voidwalk::gradation::{Gradation, SizeSampler};
+use voidwalk::network::Network;
+use voidwalk::walk::reference::Reference;
+use voidwalk::walk::{CHUNK, SizeClasses, State, Supply, Walk};
+
+/// Diameters from a small set, so that ties, closed constrictions and blocking are frequent.
+fn diameters(count: usize, palette: &[f32], mut seed: u64) -> Vec<f32> {
+    let mut next = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) as usize
+    };
+    (0..count).map(|_| palette[next() % palette.len()]).collect()
+}
+
+/// The same voids and constrictions without the shape, so that the general kernel walks them.
+fn as_general(network: &Network) -> Network {
+    let mut text = Vec::new();
+    network.write_csv(&mut text).unwrap();
+    let text = text.split(|&b| b == b'\n').skip(1).collect::<Vec<_>>().join(&b'\n');
+    Network::from_csv(&text, "general.csv", network.unit_mm()).unwrap()
+}
+
+/// A particle beside an exit with 1e24 times the area of the only way out moves for longer than anybody
+/// waits: such walks are compared for this long.
+const LONG_ENOUGH: u64 = 300;
+
+/// Walks both and compares everything after every increment; returns the blocked set.
+fn compare(network: &Network, supply: &Supply, blocked: &[bool], seed: u64, run: u64) -> Vec<bool> {
+    let bits: BitVec<u64> = blocked.iter().copied().collect();
+    let classes = SizeClasses::logarithmic(0.5, 4.0, 8);
+    let mut state = State::new(network, supply, classes, bits, seed, run);
+    let mut walk = Walk::new(network, supply, &state);
+    let mut reference = Reference::new(network, supply, blocked.to_vec(), seed, run);
+    let blocked_before = blocked.iter().filter(|&&b| b).count() as u64;
+    while !reference.finished() && state.increment < LONG_ENOUGH {
+        assert!(!state.finished, "the kernel ended early");
+        walk.increment(&mut state).unwrap();
+        reference.increment();
+        let tally = &state.tally;
+        if !state.finished {
+            let mut moving = reference.moving.iter();
+            for chunk in 0..state.particles.live.len() {
+                let (voids, sizes) = state.particles.chunk(chunk);
+                for (&void, &diameter) in voids.iter().zip(sizes) {
+                    let expected = moving.next().expect("as many particles move");
+                    assert_eq!(expected.rank as usize / CHUNK, chunk);
+                    assert_eq!((void, diameter), (expected.void, expected.diameter));
+                }
+            }
+            assert!(moving.next().is_none(), "as many particles move");
+        }
+        assert_eq!(tally.moving, reference.moving.len() as u64);
+        assert_eq!(tally.eroded, reference.eroded.len() as u64);
+        assert_eq!(tally.retained_in_constrictions, reference.stopped.len() as u64);
+        assert_eq!(tally.retained_in_voids, reference.stranded.len() as u64);
+        assert_eq!(tally.trapped, reference.trapped.len() as u64);
+        assert_eq!(tally.particle_moves, reference.particle_moves);
+        assert_eq!(tally.blocked, blocked_before + reference.history.len() as u64);
+        let history: Vec<_> =
+            state.history.iter().map(|b| (b.increment, b.constriction as usize)).collect();
+        assert_eq!(history, reference.history);
+        assert!(state.blocked.iter().by_vals().eq(reference.blocked.iter().copied()));
+    }
+    assert_eq!(state.finished, reference.finished());
+    let cube = |d: f32| f64::from(d).powi(3);
+    let eroded: f64 = reference.eroded.iter().map(|p| cube(p.diameter)).sum();
+    assert!((state.tally.eroded_mass - eroded).abs() <= 1e-9 * eroded);
+    let largest = reference.eroded.iter().map(|p| p.diameter).fold(0.0, f32::max);
+    assert_eq!(state.tally.largest_eroded, largest);
+    let upstream = network.upstream();
+    let mut retained = vec![0; network.voids()];
+    for (_, exit) in &reference.stopped {
+        retained[upstream[*exit] as usize] += 1;
+    }
+    assert_eq!(state.retained_in_constrictions, retained);
+    let mut retained = vec![0; network.voids()];
+    for particle in &reference.stranded {
+        retained[particle.void as usize] += 1;
+    }
+    assert_eq!(state.retained_in_voids, retained);
+    assert_eq!(state.eroded_sizes.number.iter().sum::<u64>(), state.tally.eroded);
+    reference.blocked
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(250))]
+
+    /// Both runs, on the lattice and on the same network without its shape.
+    #[test]
+    fn kernel_and_reference_agree_particle_by_particle(
+        shape in [1u32..5, 1u32..5, 1u32..7],
+        palette in prop::sample::select(vec![
+            vec![1.0f32, 1.5, 2.0],
+            vec![0.0, 1.0, 2.0, 3.0],
+            vec![0.8, 1.0, 5.0, 5.0],
+            vec![1e-6, 1.0, 1e6],
+            vec![3.0],
+        ]),
+        cu in prop::sample::select(vec![1.0f64, 1.5, 3.0]),
+        n in 1u64..800,
+        increments in 1u64..40,
+        seed: u64,
+    ) {
+        let count = 3 * shape.iter().product::<u32>() as usize;
+        let network = Network::cubic_from_diameters(shape, diameters(count, &palette, seed), 1.0).unwrap();
+        let base = if cu == 1.0 { Gradation::single(1.0) } else { Gradation::linear_from_d0(0.7, cu) };
+        let sampler = SizeSampler::new(&base.unwrap(), 1.0).unwrap();
+        let supply = Supply::new(sampler, n, increments);
+        for network in [&network, &as_general(&network)] {
+            let blocked = compare(network, &supply, &vec![false; count], seed, 1);
+            compare(network, &supply, &blocked, seed, 2);
+        }
+    }
+
+    /// Any directed graph, with dead ends, self-loops and parallel constrictions.
+    #[test]
+    fn general_networks_agree_with_the_reference(
+        edges in prop::collection::vec((0u32..8, 0u32..9, 0usize..4), 1..30),
+        n in 1u64..400,
+        seed: u64,
+    ) {
+        let mut text = String::from("from,to,diameter_mm\nstart,0,\n");
+        for void in 1..8 {
+            // Every void is named, so that ids have no gaps.
+            text.push_str(&format!("{},{void},0\n", void - 1));
+        }
+        for (from, to, size) in edges {
+            let to = if to == 8 { "end".to_string() } else { to.to_string() };
+            text.push_str(&format!("{from},{to},{}\n", [0.5, 1.0, 1.5, 2.5][size]));
+        }
+        let network = Network::from_csv(text.as_bytes(), "graph.csv", 1.0).unwrap();
+        let base = Gradation::linear_from_d0(0.7, 1.6).unwrap();
+        let supply = Supply::new(SizeSampler::new(&base, 1.0).unwrap(), n, 10);
+        compare(&network, &supply, &vec![false; network.constrictions()], seed, 1);
+    }
+}
+
+/// Several chunks, some of them drained, inserted over chunk borders.
+#[test]
+fn chunks_are_filled_and_drained_as_the_reference_says() {
+    let count = 3 * 4 * 4 * 3;
+    let network = Network::cubic_from_diameters([4, 4, 3], diameters(count, &[1.0, 2.0], 5), 1.0).unwrap();
+    let base = Gradation::linear_from_d0(0.7, 1.3).unwrap();
+    let supply = Supply::new(SizeSampler::new(&base, 1.0).unwrap(), 2 * CHUNK as u64 + 77, 3);
+    compare(&network, &supply, &vec![false; count], 11, 1);
+}
