@@ -28,3 +28,5 @@ pub mod outcome;
 pub mod campaign;
 
 pub mod report;
+
+pub mod cli;

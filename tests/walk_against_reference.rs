@@ -60,8 +60,7 @@ fn compare(network: &Network, supply: &Supply, blocked: &[bool], seed: u64, run:
         assert_eq!(tally.trapped, reference.trapped.len() as u64);
         assert_eq!(tally.particle_moves, reference.particle_moves);
         assert_eq!(tally.blocked, blocked_before + reference.history.len() as u64);
-        let history: Vec<_> =
-            state.history.iter().map(|b| (b.increment, b.constriction as usize)).collect();
+        let history: Vec<_> = state.history.iter().map(|b| (b.increment, b.constriction as usize)).collect();
         assert_eq!(history, reference.history);
         assert!(state.blocked.iter().by_vals().eq(reference.blocked.iter().copied()));
     }

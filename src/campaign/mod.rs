@@ -1,3 +1,13 @@
 //! Scenes and campaigns: the only place that knows all stages.
+//!
+//! - [`scene`] is one base-filter combination as the user states it ([`settings`] reads and checks it).
+//! - [`case`] is a scene with its files read and every number worked out.
+//! - [`walks`] walks its replicates.
+//! - [`results`] writes what came of it into a run folder.
 
+pub mod case;
+pub mod machine;
+pub mod results;
+pub mod scene;
 pub mod settings;
+pub mod walks;

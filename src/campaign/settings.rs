@@ -166,8 +166,8 @@ impl Settings {
     /// As [`Settings::read`].
     pub fn parse(bytes: &[u8], file: &str, folder: PathBuf, names: &Names) -> Result<Self, SceneError> {
         let syntax = |at, problem| SceneError::Syntax { file: file.into(), at, problem };
-        let text = std::str::from_utf8(bytes)
-            .map_err(|_| syntax(String::new(), "is not UTF-8 text".into()))?;
+        let text =
+            std::str::from_utf8(bytes).map_err(|_| syntax(String::new(), "is not UTF-8 text".into()))?;
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let line_of = |at: usize| text[..at.min(text.len())].matches('\n').count() + 1;
         let table = DeTable::parse(text).map_err(|e| {
@@ -229,9 +229,11 @@ impl Settings {
 
     /// The error for a setting's value.
     pub fn refuse(&self, name: &str, allowed: impl Into<String>) -> SceneError {
-        let (value, origin) = self.values.get(name).cloned().unwrap_or_else(|| {
-            (Value::Other("nothing".into()), Origin::Line(self.file.clone(), 1))
-        });
+        let (value, origin) = self
+            .values
+            .get(name)
+            .cloned()
+            .unwrap_or_else(|| (Value::Other("nothing".into()), Origin::Line(self.file.clone(), 1)));
         SceneError::Value { origin, name: name.into(), value: value.to_string(), allowed: allowed.into() }
     }
 
@@ -244,7 +246,12 @@ impl Settings {
     ///
     /// # Errors
     /// Anything else.
-    pub fn number(&self, name: &str, valid: impl Fn(f64) -> bool, allowed: &str) -> Result<Option<f64>, SceneError> {
+    pub fn number(
+        &self,
+        name: &str,
+        valid: impl Fn(f64) -> bool,
+        allowed: &str,
+    ) -> Result<Option<f64>, SceneError> {
         let Some((value, _)) = self.values.get(name) else { return Ok(None) };
         let parsed = match value {
             Value::Number(digits) => digits.parse::<f64>().ok().filter(|n| n.is_finite() && valid(*n)),
@@ -300,7 +307,12 @@ impl Settings {
     ///
     /// # Errors
     /// Anything else.
-    pub fn numbers(&self, name: &str, valid: impl Fn(f64) -> bool, allowed: &str) -> Result<Option<Vec<f64>>, SceneError> {
+    pub fn numbers(
+        &self,
+        name: &str,
+        valid: impl Fn(f64) -> bool,
+        allowed: &str,
+    ) -> Result<Option<Vec<f64>>, SceneError> {
         let Some((value, _)) = self.values.get(name) else { return Ok(None) };
         let Value::List(items) = value else { return Err(self.refuse(name, allowed)) };
         let one = |item: &Value| match item {
@@ -353,10 +365,7 @@ mod tests {
     fn an_error_names_file_line_field_value_and_what_is_allowed() {
         let settings = parse("seed = 1\n[base]\n\ncu = -3\n").unwrap();
         let error = settings.number("base.cu", |n| n >= 1.0, "a number of at least 1").unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "s.toml, line 4, base.cu: `-3` is not allowed; a number of at least 1"
-        );
+        assert_eq!(error.to_string(), "s.toml, line 4, base.cu: `-3` is not allowed; a number of at least 1");
     }
 
     #[test]
@@ -393,7 +402,9 @@ mod tests {
     fn what_is_no_toml_is_refused_with_its_line() {
         assert!(parse("seed = 1\nbase = \n").unwrap_err().to_string().starts_with("s.toml, line 2: "));
         assert!(Settings::read(Path::new("/"), &NAMES).is_err());
-        assert!(Settings::read(Path::new("/no/such"), &NAMES).unwrap_err().to_string().starts_with("/no/such"));
+        assert!(
+            Settings::read(Path::new("/no/such"), &NAMES).unwrap_err().to_string().starts_with("/no/such")
+        );
     }
 
     proptest! {

@@ -11,6 +11,18 @@ use crate::stream::{Key, Purpose, unit};
 const BLOCK: usize = 1 << 14;
 
 impl Network {
+    /// Number of constrictions of a cubic lattice.
+    ///
+    /// # Errors
+    /// A length of 0, or more constrictions than 32 bits can number.
+    pub fn lattice_constrictions(shape: [u32; 3]) -> Result<usize, NetworkError> {
+        let count = shape.iter().try_fold(3u64, |product, &n| product.checked_mul(u64::from(n)));
+        match count {
+            Some(count) if count > 0 && count < u64::from(END) => Ok(count as usize),
+            _ => Err(NetworkError::Shape { shape }),
+        }
+    }
+
     /// The directed cubic lattice: void `x + nx (y + ny z)`, exits +x, +y, +z in that order,
     /// periodic in x and y, start nodes in layer 0, +z of the last layer leaves the filter.
     ///
@@ -20,11 +32,10 @@ impl Network {
     /// # Errors
     /// A length of 0, or more constrictions than 32 bits can number.
     pub fn cubic(shape: [u32; 3], curve: &Curve, unit_mm: f64, seed: u64) -> Result<Self, NetworkError> {
-        let count = constriction_count(shape)?;
+        let count = Self::lattice_constrictions(shape)?;
         let mut diameter = vec![0f32; count];
         diameter.par_chunks_mut(BLOCK).enumerate().for_each(|(block, diameters)| {
-            let key =
-                Key { seed, purpose: Purpose::Network, run: 0, increment: 0, chunk: block as u64 };
+            let key = Key { seed, purpose: Purpose::Network, run: 0, increment: 0, chunk: block as u64 };
             let mut draws = key.generator();
             for diameter in diameters {
                 *diameter = (curve.quantile(unit(draws.next_u64())) / unit_mm) as f32;
@@ -44,7 +55,7 @@ impl Network {
         diameter: Vec<f32>,
         unit_mm: f64,
     ) -> Result<Self, NetworkError> {
-        let count = constriction_count(shape)?;
+        let count = Self::lattice_constrictions(shape)?;
         if diameter.len() != count {
             return Err(NetworkError::WrongLength { shape, expected: count, found: diameter.len() });
         }
@@ -70,15 +81,6 @@ impl Network {
             unit_mm,
             shape: Some(shape),
         })
-    }
-}
-
-/// Number of constrictions of a cubic lattice, where 32 bits can number them.
-pub(super) fn constriction_count(shape: [u32; 3]) -> Result<usize, NetworkError> {
-    let count = shape.iter().try_fold(3u64, |product, &n| product.checked_mul(u64::from(n)));
-    match count {
-        Some(count) if count > 0 && count < u64::from(END) => Ok(count as usize),
-        _ => Err(NetworkError::Shape { shape }),
     }
 }
 

@@ -210,7 +210,11 @@ impl Rows {
         let last = self.start.iter().chain(&self.from).chain(inner).max();
         let voids = last.map_or(0, |&id| id as usize + 1);
         if voids > 2 * self.from.len() + self.start.len() || self.from.len() >= END as usize {
-            return Err(whole(format!("void ids run to {} but only {} rows name voids; number voids from 0 without gaps", voids - 1, self.from.len() + self.start.len())));
+            return Err(whole(format!(
+                "void ids run to {} but only {} rows name voids; number voids from 0 without gaps",
+                voids - 1,
+                self.from.len() + self.start.len()
+            )));
         }
         let mut named = vec![false; voids];
         for &id in self.start.iter().chain(&self.from).chain(self.to.iter().filter(|&&to| to != END)) {
@@ -241,12 +245,14 @@ impl Rows {
             target[slot] = to;
             diameter[slot] = (mm / unit_mm) as f32;
             if !diameter[slot].is_finite() || (mm > 0.0 && diameter[slot] < f32::MIN_POSITIVE) {
-                return Err(whole(format!("diameter {mm} mm is too far from the reference length {unit_mm} mm")));
+                return Err(whole(format!(
+                    "diameter {mm} mm is too far from the reference length {unit_mm} mm"
+                )));
             }
         }
         if let Some(shape) = self.shape {
-            let lattice = Network::cubic_from_diameters(shape, diameter, unit_mm)
-                .map_err(|e| whole(e.to_string()))?;
+            let lattice =
+                Network::cubic_from_diameters(shape, diameter, unit_mm).map_err(|e| whole(e.to_string()))?;
             if lattice.target != target || lattice.start != self.start || lattice.exit_begin != exit_begin {
                 return Err(whole(format!("says `# shape = {shape:?}`, but its rows are not that lattice")));
             }
@@ -275,7 +281,8 @@ mod tests {
 
     #[test]
     fn a_general_network_is_read() {
-        let text = "\u{feff}# two voids\r\nfrom,to,diameter_mm\r\nstart,1,\r\n1,0,3\r\n0,end,1\r\n1,end,0\r\n";
+        let text =
+            "\u{feff}# two voids\r\nfrom,to,diameter_mm\r\nstart,1,\r\n1,0,3\r\n0,end,1\r\n1,end,0\r\n";
         let network = read(text).unwrap();
         assert_eq!((network.voids(), network.constrictions()), (2, 3));
         assert_eq!(network.targets(), [END, 0, END]);

@@ -1,6 +1,6 @@
 //! What can be reached through open constrictions: the backbone, and the blocked set of one size.
 
-use super::{END, Network, NO_LAYER};
+use super::{END, NO_LAYER, Network};
 
 /// Where paths through passable constrictions lead, found breadth-first.
 pub struct Reach {

@@ -71,8 +71,7 @@ impl Figures {
             false if of.tail_mass_fraction == 0.0 => below_by_mass(tally.eroded_mass, tally.inserted_mass),
             false => below_by_mass(eroded_mass_fraction, 1.0),
         };
-        let largest_mm =
-            (tally.eroded > 0).then(|| f64::from(tally.largest_eroded) * network.unit_mm());
+        let largest_mm = (tally.eroded > 0).then(|| f64::from(tally.largest_eroded) * network.unit_mm());
         let retained = tally.retained_in_constrictions + tally.retained_in_voids + tally.trapped;
         let run = Run {
             run: of.run,
@@ -114,7 +113,8 @@ impl Recorded {
             blocked: tally.blocked,
             eroded_mass_fraction: eroded_mass_fraction(tally, &state.tally, of.tail_mass_fraction),
         });
-        let mut recorded = Self { series: series.collect(), layers: layers(network, state, of), ..Self::default() };
+        let mut recorded =
+            Self { series: series.collect(), layers: layers(network, state, of), ..Self::default() };
         for (increment, retained, eroded) in &recorder.sizes {
             let row = |counts| size_curve(counts, &state.classes, network.unit_mm(), of, *increment);
             recorded.retained.extend(row(retained));

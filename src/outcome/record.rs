@@ -192,8 +192,8 @@ pub struct Filter {
     pub name: String,
     /// Whom to credit for the constriction curve; empty for the user's own.
     pub attribution: String,
-    /// D60 / D10 by mass.
-    pub cu: f64,
+    /// D60 / D10 by mass; `None` where D10 lies in a tail of unknown size.
+    pub cu: Option<f64>,
     /// Smallest grain.
     pub d0_mm: f64,
     /// 15 % finer by mass.
@@ -221,14 +221,14 @@ pub struct Filter {
 pub struct Base {
     /// As the user calls it.
     pub name: String,
-    /// D60 / D10 by mass.
-    pub cu: f64,
+    /// D60 / D10 by mass; `None` where D10 lies in a tail of unknown size.
+    pub cu: Option<f64>,
     /// Smallest particle.
     pub d0_mm: f64,
     /// 15 % finer by mass.
-    pub d15_mm: f64,
+    pub d15_mm: Option<f64>,
     /// 50 % finer by mass.
-    pub d50_mm: f64,
+    pub d50_mm: Option<f64>,
     /// 85 % finer by mass.
     pub d85_mm: f64,
     /// 95 % finer by mass.

@@ -30,8 +30,10 @@ impl Statistic {
 /// The 97.5 % point of Student's t: tabulated up to 10 degrees of freedom, beyond by the expansion of
 /// Abramowitz and Stegun 26.7.5 (error below 1e-4).
 fn student_975(degrees: usize) -> f64 {
-    const TABLE: [f64; 10] =
-        [12.706_205, 4.302_653, 3.182_446, 2.776_445, 2.570_582, 2.446_912, 2.364_624, 2.306_004, 2.262_157, 2.228_139];
+    const TABLE: [f64; 10] = [
+        12.706_205, 4.302_653, 3.182_446, 2.776_445, 2.570_582, 2.446_912, 2.364_624, 2.306_004, 2.262_157,
+        2.228_139,
+    ];
     if let Some(&t) = TABLE.get(degrees - 1) {
         return t;
     }

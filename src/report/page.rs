@@ -402,7 +402,7 @@ fn inputs(outcome: &Outcome) -> Markup {
         h3 { "Filter" }
         table.facts { tbody {
             (fact("Name", &filter.name))
-            (fact("Cu = D60/D10", significant(filter.cu)))
+            (fact("Cu = D60/D10", filter.cu.map_or("unknown".into(), significant)))
             (fact("D0, D15, D50, D85 (by mass)",
                 [filter.d0_mm, filter.d15_mm, filter.d50_mm, filter.d85_mm].map(mm).join(", ")))
             (fact("D50 by number", mm(filter.d50_by_number_mm)))
@@ -414,8 +414,8 @@ fn inputs(outcome: &Outcome) -> Markup {
         h3 { "Base" }
         table.facts { tbody {
             (fact("Name", &base.name))
-            (fact("Cu = D60/D10", significant(base.cu)))
-            (fact("D0, D15, D50 (by mass)", [base.d0_mm, base.d15_mm, base.d50_mm].map(mm).join(", ")))
+            (fact("Cu = D60/D10", base.cu.map_or("unknown".into(), significant)))
+            (fact("D0, D15, D50 (by mass)", [Some(base.d0_mm), base.d15_mm, base.d50_mm].map(|d| d.map_or("unknown".into(), mm)).join(", ")))
             (fact("D85, D95, D100 (by mass)", [base.d85_mm, base.d95_mm, base.d100_mm].map(mm).join(", ")))
             @if base.tail_mass_fraction > 0.0 {
                 (fact("Finer than the finest sieve", format!("{} by mass; taken as passive, counted by mass only",

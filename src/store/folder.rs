@@ -133,7 +133,12 @@ impl Folder {
     /// # Errors
     /// What the system says, with the file's path.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), StoreError> {
-        write_whole(&self.path.join(name), bytes)
+        let path = self.path.join(name);
+        if let Some(folder) = path.parent().filter(|p| *p != self.path) {
+            let io = |source| StoreError::Io { path: folder.to_owned(), action: "make the folder", source };
+            fs::create_dir_all(folder).map_err(io)?;
+        }
+        write_whole(&path, bytes)
     }
 }
 
@@ -197,10 +202,7 @@ mod tests {
         ));
         let link = root.path().join("link");
         std::os::unix::fs::symlink("/tmp", &link).unwrap();
-        assert!(matches!(
-            Folder::open(&link),
-            Err(StoreError::NotAFolder { what: "a symbolic link", .. })
-        ));
+        assert!(matches!(Folder::open(&link), Err(StoreError::NotAFolder { what: "a symbolic link", .. })));
         assert_eq!(fs::read_dir(root.path()).unwrap().count(), 2);
     }
 }

@@ -69,7 +69,9 @@ impl ExitTable {
     /// The table for the constrictions that `state` leaves open.
     pub fn new(network: &Network, state: &State) -> Self {
         let form = match network.shape() {
-            Some([nx, ny, _]) => Form::Lattice(Lattice { entry: vec![0; network.voids()], nx, plane: nx * ny }),
+            Some([nx, ny, _]) => {
+                Form::Lattice(Lattice { entry: vec![0; network.voids()], nx, plane: nx * ny })
+            }
             None => Form::General(General {
                 threshold: vec![0; network.constrictions()],
                 last_open: vec![NONE; network.voids()],

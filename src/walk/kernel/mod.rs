@@ -24,10 +24,17 @@ pub(super) fn step(
     state: &mut State,
     events: &mut [Events],
 ) {
-    let key = Key { seed: state.seed, purpose: Purpose::Step, run: state.run, increment: state.increment, chunk: 0 };
+    let key = Key {
+        seed: state.seed,
+        purpose: Purpose::Step,
+        run: state.run,
+        increment: state.increment,
+        chunk: 0,
+    };
     let exits = OpenExits { network, table, blocked: &state.blocked, passive_limit: state.passive_limit };
     let classes = &state.classes;
-    let columns = state.particles.void.par_chunks_mut(CHUNK).zip(state.particles.diameter.par_chunks_mut(CHUNK));
+    let columns =
+        state.particles.void.par_chunks_mut(CHUNK).zip(state.particles.diameter.par_chunks_mut(CHUNK));
     let chunks = columns.zip(&mut state.particles.live).zip(events).enumerate();
     chunks.for_each(|(chunk, (((void, diameter), live), events))| {
         let key = Key { chunk: chunk as u64, ..key };

@@ -1,0 +1,213 @@
+//! Writes what came of a case into a run folder.
+
+use std::fmt::Write;
+
+use serde::Serialize;
+
+use super::case::Case;
+use super::scene::{Amount, BaseGradation, CurveSource, D85, EngineChoice, FilterGradation, NetworkSource};
+use super::walks::{Walked, summarise};
+use crate::outcome::record::{Manifest, Outcome, Sensitivity};
+use crate::outcome::{MODEL_LEAVES_OUT, Recorded, rules, verdict};
+use crate::store::{Folder, StoreError};
+
+/// Why results cannot be written.
+#[derive(Debug, thiserror::Error)]
+pub enum ResultError {
+    /// The folder.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// Results that cannot be put into words.
+    #[error("cannot write {file}: {source}")]
+    Format {
+        /// The file.
+        file: &'static str,
+        /// What is wrong.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
+}
+
+/// The outcome of a case that has been walked.
+pub fn outcome(case: &Case, walked: &[Walked], sensitivity: Vec<Sensitivity>, seconds: f64) -> Outcome {
+    let (verdict, summary) = summarise(walked);
+    let ratios = case.ratios();
+    Outcome {
+        verdict,
+        seed: case.scene.seed,
+        n_base: case.supply.n_base,
+        n_base_eq2: case.supply.n_base_eq2,
+        capped: case.supply.capped,
+        grains_per_void: case.grains_per_void,
+        engine: "particles".into(),
+        replicates: walked.iter().map(|w| w.replicate.clone()).collect(),
+        summary,
+        threshold: verdict::THRESHOLD,
+        warnings: case.warnings(),
+        left_out: case.left_out(),
+        model_leaves_out: MODEL_LEAVES_OUT.map(String::from).to_vec(),
+        inputs: case.record(),
+        ratios,
+        rules: rules::beside_the_verdict(&ratios),
+        sensitivity,
+        seconds,
+    }
+}
+
+/// Writes a run folder: the resolved scene and its input files, the outcome, the manifest, the CSV files.
+///
+/// # Errors
+/// What the folder says; no file is half written.
+pub fn write(
+    folder: &Folder,
+    case: &Case,
+    outcome: &Outcome,
+    walked: Vec<Walked>,
+    manifest: &Manifest,
+) -> Result<(), ResultError> {
+    for input in &case.inputs {
+        folder.write(&input.kept_as, &input.bytes)?;
+    }
+    folder.write("scene.toml", resolved(case).as_bytes())?;
+    let mut recorded = Recorded::default();
+    for walked in walked {
+        recorded.append(walked.recorded);
+    }
+    folder.write("series.csv", &csv("series.csv", SERIES, &recorded.series)?)?;
+    folder.write("layers.csv", &csv("layers.csv", LAYERS, &recorded.layers)?)?;
+    folder.write("retained.csv", &csv("retained.csv", SIZES, &recorded.retained)?)?;
+    folder.write("eroded.csv", &csv("eroded.csv", SIZES, &recorded.eroded)?)?;
+    folder.write("outcome.json", &json("outcome.json", outcome)?)?;
+    // Last, so that a folder with a manifest is whole.
+    folder.write("manifest.json", &json("manifest.json", manifest)?)?;
+    Ok(())
+}
+
+const SERIES: &str = "replicate,run,increment,inserted,moving,eroded,retained_in_constrictions,retained_in_voids,trapped,blocked,eroded_mass_fraction";
+const LAYERS: &str = "replicate,run,layer,constrictions,blocked,retained_in_constrictions,retained_in_voids";
+const SIZES: &str = "replicate,run,increment,diameter_mm,percent_finer_by_mass,percent_finer_by_number";
+
+fn json(file: &'static str, value: &impl Serialize) -> Result<Vec<u8>, ResultError> {
+    let mut bytes =
+        serde_json::to_vec_pretty(value).map_err(|e| ResultError::Format { file, source: e.into() })?;
+    bytes.push(b'\n');
+    Ok(bytes)
+}
+
+/// The rows under their header, which is there even without rows.
+fn csv(file: &'static str, header: &str, rows: &[impl Serialize]) -> Result<Vec<u8>, ResultError> {
+    let mut bytes = format!("{header}\n").into_bytes();
+    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(&mut bytes);
+    for row in rows {
+        writer.serialize(row).map_err(|e| ResultError::Format { file, source: e.into() })?;
+    }
+    writer.flush().map_err(|e| ResultError::Format { file, source: e.into() })?;
+    drop(writer);
+    Ok(bytes)
+}
+
+/// The scene with every setting given: run again from the run folder, it gives the same bits.
+pub fn resolved(case: &Case) -> String {
+    let scene = &case.scene;
+    let kept = |setting: &str| {
+        let input = case.inputs.iter().find(|i| i.setting == setting);
+        quoted(input.map_or("", |i| &i.kept_as))
+    };
+    let named = |source: &CurveSource, setting: &str| match source {
+        CurveSource::Shipped(name) => quoted(name),
+        CurveSource::File(_) => kept(setting),
+    };
+    let engine = match scene.engine {
+        EngineChoice::Auto => "auto",
+        EngineChoice::Particles => "particles",
+    };
+    let mut text = String::new();
+    let mut line = |name: &str, value: String| {
+        // Writing to a string cannot fail.
+        let _ = match value.is_empty() {
+            true => writeln!(text, "\n[{name}]"),
+            false => writeln!(text, "{name} = {value}"),
+        };
+    };
+    line("seed", scene.seed.to_string());
+    line("engine", quoted(engine));
+    line("runs", scene.runs.to_string());
+    line("replicates", scene.replicates.to_string());
+    line("inject_share", number(scene.inject_share));
+    line("filter", String::new());
+    if let Some(source) = &scene.curve {
+        line("curve", named(source, "filter.curve"));
+    }
+    match &scene.filter {
+        FilterGradation::Linear { d0_mm, cu } => {
+            line("d0_mm", number(*d0_mm));
+            if let Some(cu) = cu.or(case.shipped.map(|s| s.cu)) {
+                line("cu", number(cu));
+            }
+        }
+        FilterGradation::Sieve(_, d0_mm) => {
+            line("sieve", kept("filter.sieve"));
+            if let Some(d0_mm) = d0_mm {
+                line("d0_mm", number(*d0_mm));
+            }
+        }
+    }
+    line("grains_per_void", number(case.grains_per_void));
+    line("base", String::new());
+    match &scene.base {
+        BaseGradation::Sieve(_, d0_mm) => {
+            line("sieve", kept("base.sieve"));
+            if let Some(d0_mm) = d0_mm {
+                line("d0_mm", number(*d0_mm));
+            }
+        }
+        BaseGradation::Single(size) => line("single_mm", number(*size)),
+        BaseGradation::Linear { cu, d85 } => {
+            line("cu", number(*cu));
+            match d85 {
+                D85::Mm(mm) => line("d85_mm", number(*mm)),
+                D85::Ratio(ratio) => line("d15f_over_d85b", number(*ratio)),
+                D85::AtDc(percent, source) => {
+                    line("d85_at_dc", number(*percent));
+                    if let Some(source) = source {
+                        line("dc_curve", named(source, "base.dc_curve"));
+                    }
+                }
+            }
+        }
+    }
+    match scene.amount {
+        Amount::Number(n) => line("n_base", n.to_string()),
+        Amount::MassRatio(ratio, cap) => {
+            line("mass_ratio", number(ratio));
+            if let Some(cap) = cap {
+                line("cap", cap.to_string());
+            }
+        }
+    }
+    line("network", String::new());
+    match &scene.network {
+        NetworkSource::Cubic([nx, ny, nz]) => {
+            line("nx", nx.to_string());
+            line("ny", ny.to_string());
+            line("nz", nz.to_string());
+        }
+        NetworkSource::File(_) => line("file", kept("network.file")),
+    }
+    line("record", String::new());
+    line("series_every", scene.wanted.series_every.to_string());
+    line("size_curves", format!("{:?}", scene.wanted.size_curves));
+    line("size_classes", scene.wanted.size_classes.to_string());
+    line("sensitivity", format!("{:?}", scene.sensitivity.0));
+    line("sensitivity_replicates", scene.sensitivity.1.to_string());
+    text
+}
+
+/// A TOML string.
+fn quoted(text: &str) -> String {
+    toml::Value::String(text.into()).to_string()
+}
+
+/// A number that reads back to the same bits.
+fn number(value: f64) -> String {
+    format!("{value:?}")
+}

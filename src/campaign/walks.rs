@@ -1,0 +1,222 @@
+//! Walks the replicates of a case: a new network and a new walk each.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use bitvec::vec::BitVec;
+use rand::Rng;
+use rayon::prelude::*;
+
+use super::case::{Case, CaseError};
+use crate::network::Network;
+use crate::outcome::record::{Replicate, RunSummary, Sensitivity, Statistic, Verdict};
+use crate::outcome::verdict::{below_by_interval, classify};
+use crate::outcome::{Figures, Recorded, Recorder, RunOf};
+use crate::stream::{Key, Purpose};
+use crate::walk::{Progress, SizeClasses, State, Walk, WalkError};
+
+/// Replicates walk side by side only while all their particles together stay below this, so that memory
+/// does not grow with the number of threads.
+const SIDE_BY_SIDE: u64 = 50_000_000;
+
+/// Why walking ended early.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The case cannot be walked.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// The walk went wrong, or was stopped.
+    #[error(transparent)]
+    Walk(#[from] WalkError),
+}
+
+/// What happens while a case is walked.
+#[derive(Clone, Copy, Debug)]
+pub enum Event {
+    /// An increment of some run is done: share of the run's base that is inserted, and that has come to rest.
+    Increment {
+        /// Replicate, counted from 1.
+        replicate: u64,
+        /// Run, counted from 1.
+        run: u64,
+        /// The increment.
+        increment: u64,
+        /// Base particles still moving.
+        moving: u64,
+    },
+    /// A run is done.
+    Run,
+}
+
+/// Watches the work, from any thread, and can stop it.
+pub struct Watch<'a> {
+    /// Told of every event.
+    pub tell: &'a (dyn Fn(Event) + Sync),
+    /// Set to stop after the current increment.
+    pub stop: &'a AtomicBool,
+}
+
+/// One replicate: its figures, and its rows of the CSV files.
+pub struct Walked {
+    /// What `outcome.json` keeps.
+    pub replicate: Replicate,
+    /// Rows of the CSV files.
+    pub recorded: Recorded,
+    below: Vec<bool>,
+}
+
+/// Number of runs that [`replicates`] and [`sensitivity`] walk for a case.
+pub fn runs_to_walk(case: &Case) -> u64 {
+    let (factors, each) = &case.scene.sensitivity;
+    case.scene.runs * (case.scene.replicates + factors.len() as u64 * each)
+}
+
+/// Seed of replicate `replicate`, counted from 1: a function of the user's seed and the replicate alone.
+pub fn replicate_seed(seed: u64, replicate: u64) -> u64 {
+    Key { seed, purpose: Purpose::Replicate, run: 0, increment: 0, chunk: replicate }.generator().next_u64()
+}
+
+/// Walks every replicate of the case.
+///
+/// # Errors
+/// A walk that loses particles, or that was stopped.
+pub fn replicates(case: &Case, watch: &Watch) -> Result<Vec<Walked>, RunError> {
+    some_replicates(case, case.scene.replicates, case.supply.n_base, true, watch)
+}
+
+fn some_replicates(
+    case: &Case,
+    count: u64,
+    n_base: u64,
+    record: bool,
+    watch: &Watch,
+) -> Result<Vec<Walked>, RunError> {
+    let one = |replicate| walk_replicate(case, replicate, n_base, record, watch);
+    let threads = rayon::current_num_threads() as u64;
+    if threads > 1 && n_base.saturating_mul(threads) < SIDE_BY_SIDE {
+        (1..=count).into_par_iter().map(one).collect()
+    } else {
+        (1..=count).map(one).collect()
+    }
+}
+
+fn walk_replicate(
+    case: &Case,
+    replicate: u64,
+    n_base: u64,
+    record: bool,
+    watch: &Watch,
+) -> Result<Walked, RunError> {
+    let seed = replicate_seed(case.scene.seed, replicate);
+    let network = case.network(seed).map_err(CaseError::from)?;
+    let mut blocked = BitVec::repeat(false, network.constrictions());
+    let (mut runs, mut below, mut recorded) = (Vec::new(), Vec::new(), Recorded::default());
+    for run in 1..=case.scene.runs {
+        let of = RunOf {
+            replicate,
+            run,
+            d15f_mm: case.filter.d(15.0).unwrap_or(f64::NAN),
+            tail_mass_fraction: case.base.tail_mass_fraction(),
+        };
+        let begun = Instant::now();
+        let (state, recorder) = walk_run(case, &network, blocked, seed, of, n_base, record, watch)?;
+        let figures = Figures::new(&network, &state, of, begun.elapsed().as_secs_f64());
+        if record {
+            recorded.append(Recorded::new(&network, &state, &recorder, of));
+        }
+        below.push(figures.below_threshold);
+        runs.push(figures.run);
+        blocked = state.blocked;
+        (watch.tell)(Event::Run);
+    }
+    let verdict = classify(below.first().copied(), below.get(1).copied());
+    Ok(Walked { replicate: Replicate { seed, verdict, runs }, recorded, below })
+}
+
+#[expect(clippy::too_many_arguments, reason = "one run of one replicate is all of these")]
+fn walk_run(
+    case: &Case,
+    network: &Network,
+    blocked: BitVec<u64>,
+    seed: u64,
+    of: RunOf,
+    n_base: u64,
+    record: bool,
+    watch: &Watch,
+) -> Result<(State, Recorder), WalkError> {
+    let supply = case.base_supply(n_base);
+    let (smallest, largest) = (case.sampler.smallest(), case.sampler.largest());
+    let classes = SizeClasses::logarithmic(smallest, largest, case.scene.wanted.size_classes);
+    let mut state = State::new(network, &supply, classes, blocked, seed, of.run);
+    let mut recorder = Recorder::default();
+    Walk::new(network, &supply, &state).run(&mut state, &mut |state| {
+        if record {
+            recorder.observe(&case.scene.wanted, state);
+        }
+        let (increment, moving) = (state.increment, state.tally.moving);
+        (watch.tell)(Event::Increment { replicate: of.replicate, run: of.run, increment, moving });
+        match watch.stop.load(Ordering::Relaxed) {
+            true => Progress::Stop,
+            false => Progress::Continue,
+        }
+    })?;
+    Ok((state, recorder))
+}
+
+/// The verdict that the replicates support together, and their statistics by run.
+pub fn summarise(walked: &[Walked]) -> (Verdict, Vec<RunSummary>) {
+    let runs = walked.first().map_or(0, |w| w.replicate.runs.len());
+    let summaries: Vec<RunSummary> = (0..runs).map(|run| run_summary(walked, run)).collect();
+    let below = |run: usize| {
+        let summary = summaries.get(run)?;
+        below_by_interval(&summary.eroded_mass_fraction, walked[0].below[run])
+    };
+    (classify(below(0), below(1)), summaries)
+}
+
+fn run_summary(walked: &[Walked], run: usize) -> RunSummary {
+    let of = |figure: fn(&crate::outcome::record::Run) -> f64| {
+        let values: Vec<f64> = walked.iter().map(|w| figure(&w.replicate.runs[run])).collect();
+        Statistic::of_fraction(&values)
+    };
+    let largest: Vec<f64> =
+        walked.iter().filter_map(|w| w.replicate.runs[run].largest_eroded_over_d15f).collect();
+    RunSummary {
+        run: run as u64 + 1,
+        eroded_mass_fraction: of(|r| r.eroded_mass_fraction),
+        eroded_number_fraction: of(|r| r.eroded_number_fraction),
+        largest_eroded_over_d15f: (!largest.is_empty()).then(|| Statistic::of(&largest)),
+        blocked_fraction: of(|r| r.blocked_fraction),
+        blocked_first_three_layers_fraction: of(|r| r.blocked_first_three_layers_fraction),
+        backbone_fraction: of(|r| r.backbone_fraction),
+    }
+}
+
+/// How the verdict moves with the number of base particles, on the networks of the first replicates.
+///
+/// # Errors
+/// As [`replicates`].
+pub fn sensitivity(case: &Case, watch: &Watch) -> Result<Vec<Sensitivity>, RunError> {
+    let (factors, each) = &case.scene.sensitivity;
+    factors.iter().map(|&factor| one_sensitivity(case, factor, *each, watch)).collect()
+}
+
+fn one_sensitivity(
+    case: &Case,
+    factor: f64,
+    replicates: u64,
+    watch: &Watch,
+) -> Result<Sensitivity, RunError> {
+    let n_base = ((case.supply.n_base as f64 * factor).round() as u64).max(1);
+    let walked = some_replicates(case, replicates, n_base, false, watch)?;
+    let (verdict, summaries) = summarise(&walked);
+    Ok(Sensitivity {
+        factor,
+        n_base,
+        grains_per_void: case.grains_per_void * factor,
+        mass_ratio: case.mass_ratio * factor,
+        replicates,
+        verdict,
+        runs: summaries.iter().map(|s| s.eroded_mass_fraction).collect(),
+    })
+}

@@ -1,0 +1,70 @@
+//! Arguments and what they mean to a user.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+/// Will this filter hold this soil? A random-walk network model of base-filter combinations.
+#[derive(Debug, Parser)]
+#[command(name = "voidwalk", version, about, propagate_version = true)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What the program can do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Walk a scene's base through its filter, and judge
+    Run(RunArgs),
+    /// Say what a run would do: number of base particles, memory, parts that are needed
+    Check(SceneArgs),
+    /// Write the built-in scene, commented, as a start for your own
+    Init {
+        /// File to write; the scene goes to stdout without one
+        path: Option<PathBuf>,
+    },
+    /// Write report.html and the figures of a finished run folder again
+    Report {
+        /// The run folder
+        folder: PathBuf,
+    },
+}
+
+/// Which scene.
+#[derive(Debug, Args)]
+pub struct SceneArgs {
+    /// Scene (TOML); without one the built-in scene: the loose Cu 1.5 filter, a base with Cu 1.5 at Dc5
+    pub scene: Option<PathBuf>,
+    /// Replace a setting, as in --set base.cu=3; can be given again
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub settings: Vec<String>,
+    /// Seed; the same seed gives the same bits
+    #[arg(long, value_name = "S")]
+    pub seed: Option<u64>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// How to run it.
+#[derive(Debug, Args)]
+pub struct RunArgs {
+    /// Which scene.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Folder for the results: new, empty, or made by voidwalk [default: the first free of voidwalk-run,
+    /// voidwalk-run-2, ...]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace the results of an earlier run in --out
+    #[arg(long)]
+    pub overwrite: bool,
+    /// Worker threads [default: one per core]; they change no bit of the result
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// No progress and no summary
+    #[arg(long, short)]
+    pub quiet: bool,
+}

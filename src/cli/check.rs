@@ -1,0 +1,146 @@
+//! `voidwalk check` and `voidwalk init`, and how a scene is found.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use super::Ending;
+use super::args::SceneArgs;
+use super::print::{count, plain, to_stdout};
+use crate::campaign::case::{Case, in_words};
+use crate::campaign::machine::Machine;
+use crate::campaign::scene::{BUILT_IN, Scene};
+use crate::campaign::walks::runs_to_walk;
+use crate::constrictions::shipped;
+
+/// The scene that the arguments name, with their settings applied.
+pub fn scene(args: &SceneArgs) -> Result<Scene, Ending> {
+    let mut settings = args.settings.clone();
+    settings.extend(args.seed.map(|seed| format!("seed={seed}")));
+    let scene = match &args.scene {
+        Some(path) => Scene::read(path, &settings),
+        None => Scene::built_in(&settings),
+    };
+    scene.map_err(Ending::refused)
+}
+
+/// Says what a run would do.
+pub fn check(args: &SceneArgs) -> Result<(), Ending> {
+    let case = Case::new(scene(args)?).map_err(Ending::refused)?;
+    let machine = Machine::here();
+    to_stdout(&if args.json { json(&case, &machine)? } else { words(&case, &machine) });
+    case.check_memory(machine.available).map_err(Ending::refused)
+}
+
+/// Writes the built-in scene.
+pub fn init(path: Option<&Path>) -> Result<(), Ending> {
+    let Some(path) = path else {
+        to_stdout(BUILT_IN);
+        return Ok(());
+    };
+    if path.symlink_metadata().is_ok() {
+        let problem = format!("{}: is there already; name a file that is not", path.display());
+        return Err(Ending::refused(plain(&problem)));
+    }
+    crate::store::write_whole(path, BUILT_IN.as_bytes()).map_err(Ending::failed)?;
+    to_stdout(&format!("{}\n", plain(&path.display().to_string())));
+    Ok(())
+}
+
+fn json(case: &Case, machine: &Machine) -> Result<String, Ending> {
+    let value = serde_json::json!({
+        "n_base": case.supply.n_base,
+        "n_base_eq2": case.supply.n_base_eq2,
+        "capped": case.supply.capped,
+        "grains_per_void": case.grains_per_void,
+        "mass_ratio": case.mass_ratio,
+        "runs_to_walk": runs_to_walk(case),
+        "bytes": case.bytes(case.supply.n_base),
+        "bytes_available": machine.available,
+        "ratios": case.ratios(),
+        "inputs": case.record(),
+        "left_out": case.left_out(),
+        "warnings": case.warnings(),
+    });
+    Ok(format!("{}\n", serde_json::to_string_pretty(&value).map_err(Ending::failed)?))
+}
+
+fn words(case: &Case, machine: &Machine) -> String {
+    let inputs = case.record();
+    let ratios = case.ratios();
+    let unit = if inputs.scale_free { "D0F" } else { "mm" };
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "{name:<22}{}", plain(&value));
+    };
+    let filter = &inputs.filter;
+    line("filter", format!("{}, curve {}", filter.name, filter.curve_name));
+    line(
+        "  sizes",
+        format!("D0 {:.4}, D15 {:.4}, D85 {:.4} {unit}", filter.d0_mm, filter.d15_mm, filter.d85_mm),
+    );
+    line(
+        "  constrictions",
+        format!(
+            "Dc0 {:.4}, Cu_CSD {:.3}, to {:.4} {unit}",
+            case.curve.smallest(),
+            filter.cu_csd,
+            case.curve.largest()
+        ),
+    );
+    let base = &inputs.base;
+    line("base", base.name.clone());
+    line(
+        "  sizes",
+        format!(
+            "D0 {:.4}, D85 {:.4}, D95 {:.4}, D100 {:.4} {unit}",
+            base.d0_mm, base.d85_mm, base.d95_mm, base.d100_mm
+        ),
+    );
+    line("ratios", format!("D15F/D85B {:.3}, D15F/D95B {:.3}", ratios.d15f_over_d85b, ratios.d15f_over_d95b));
+    line("grains per void", format!("{} (N_p / N_voids of Eq. 2)", case.grains_per_void));
+    line("mass ratio", format!("{:.6} (base over filter)", case.mass_ratio));
+    line(
+        "base particles",
+        format!(
+            "{} a run{}",
+            count(case.supply.n_base),
+            match case.supply.capped {
+                true => format!(", capped from {} by Eq. (2)", count(case.supply.n_base_eq2)),
+                false => String::new(),
+            }
+        ),
+    );
+    let network = &inputs.network;
+    line(
+        "network",
+        format!(
+            "{}: {} voids, {} constrictions, {} start nodes",
+            network.name,
+            count(network.voids),
+            count(network.constrictions),
+            count(network.start_nodes)
+        ),
+    );
+    line(
+        "to walk",
+        format!("{} runs, at most {} increments of insertion each", runs_to_walk(case), case.increments()),
+    );
+    line(
+        "memory",
+        format!(
+            "{} a walk, {} available",
+            in_words(case.bytes(case.supply.n_base)),
+            in_words(machine.available)
+        ),
+    );
+    for part in case.left_out() {
+        line("left out", part);
+    }
+    for warning in case.warnings() {
+        line("warning", warning);
+    }
+    let names: Vec<&str> = shipped().iter().map(|s| s.name.as_str()).collect();
+    line("shipped curves", names.join(", "));
+    text
+}

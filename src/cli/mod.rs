@@ -1,0 +1,51 @@
+//! The command line: the only place that prints.
+//!
+//! Exit codes: 0 done, 1 failed, 2 refused (before any work, nothing written).
+
+mod args;
+mod check;
+mod print;
+mod progress;
+mod run;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Arguments, Command};
+
+/// Something that ends the program with a message and an exit code.
+pub(crate) struct Ending {
+    code: u8,
+    message: String,
+}
+
+impl Ending {
+    /// The input is refused: before any work, nothing written.
+    pub fn refused(error: impl std::fmt::Display) -> Self {
+        Self { code: 2, message: error.to_string() }
+    }
+
+    /// The work failed.
+    pub fn failed(error: impl std::fmt::Display) -> Self {
+        Self { code: 1, message: error.to_string() }
+    }
+}
+
+/// Runs the program with the arguments of this process.
+pub fn main() -> ExitCode {
+    let result = match Arguments::parse().command {
+        Command::Run(args) => run::run(&args),
+        Command::Check(args) => check::check(&args),
+        Command::Init { path } => check::init(path.as_deref()),
+        Command::Report { folder } => run::report(&folder),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(ending) => {
+            let kind = if ending.code == 2 { "refused" } else { "error" };
+            print::to_stderr(&format!("{kind}: {}\n", ending.message));
+            ExitCode::from(ending.code)
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! Progress on stderr: a bar on a terminal, plain lines otherwise.
+
+use std::io::IsTerminal;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::print::{count, to_stderr};
+use crate::campaign::walks::Event;
+
+/// Plain lines come at most this often.
+const BETWEEN_LINES: Duration = Duration::from_secs(5);
+
+/// Shows how far the work is.
+pub enum Progress {
+    /// Says nothing.
+    Quiet,
+    /// A bar.
+    Bar(ProgressBar),
+    /// Lines.
+    Lines {
+        /// Runs to walk.
+        runs: u64,
+        /// Runs done, and when the last line was printed.
+        done: Mutex<(u64, Instant)>,
+        /// When the work began.
+        begun: Instant,
+    },
+}
+
+impl Progress {
+    /// Progress over `runs` runs.
+    pub fn new(quiet: bool, runs: u64) -> Self {
+        if quiet {
+            return Self::Quiet;
+        }
+        if std::io::stderr().is_terminal() {
+            let bar = ProgressBar::new(runs);
+            let style = "{bar:30} {pos}/{len} runs, {elapsed} gone, about {eta} to go  {msg}";
+            bar.set_style(
+                ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()),
+            );
+            bar.enable_steady_tick(Duration::from_millis(200));
+            return Self::Bar(bar);
+        }
+        let now = Instant::now();
+        Self::Lines { runs, done: Mutex::new((0, now)), begun: now }
+    }
+
+    /// Takes an event of the walk.
+    pub fn tell(&self, event: Event) {
+        match (self, event) {
+            (Self::Quiet, _) => {}
+            (Self::Bar(bar), Event::Run) => bar.inc(1),
+            (Self::Bar(bar), Event::Increment { replicate, run, increment, moving }) => {
+                bar.set_message(format!(
+                    "replicate {replicate}, run {run}, increment {increment}: {} moving",
+                    count(moving)
+                ));
+            }
+            (Self::Lines { .. }, Event::Increment { .. }) => {}
+            (Self::Lines { runs, done, begun }, Event::Run) => {
+                let Ok(mut done) = done.lock() else { return };
+                done.0 += 1;
+                if done.0 == *runs || done.1.elapsed() >= BETWEEN_LINES {
+                    done.1 = Instant::now();
+                    let gone = begun.elapsed().as_secs_f64();
+                    let left = gone / done.0 as f64 * (runs - done.0) as f64;
+                    to_stderr(&format!(
+                        "{} of {runs} runs, {gone:.0} s gone, about {left:.0} s to go\n",
+                        done.0
+                    ));
+                }
+            }
+        }
+    }
+
+    /// Clears the bar.
+    pub fn finish(&self) {
+        if let Self::Bar(bar) = self {
+            bar.finish_and_clear();
+        }
+    }
+}

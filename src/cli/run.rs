@@ -1,0 +1,167 @@
+//! `voidwalk run` and `voidwalk report`.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::{Instant, SystemTime};
+
+use super::Ending;
+use super::args::RunArgs;
+use super::check::scene;
+use super::print::{count, percent, plain, to_stderr, to_stdout};
+use super::progress::Progress;
+use crate::campaign::case::Case;
+use crate::campaign::machine::Machine;
+use crate::campaign::results;
+use crate::campaign::walks::{self, RunError, Watch, replicates, runs_to_walk, sensitivity};
+use crate::outcome::record::{Manifest, Outcome, RunSummary};
+use crate::report;
+use crate::store::{Folder, StoreError};
+
+/// Walks a scene and writes its folder.
+pub fn run(args: &RunArgs) -> Result<(), Ending> {
+    let case = Case::new(scene(&args.scene)?).map_err(Ending::refused)?;
+    let machine = Machine::here();
+    case.check_memory(machine.available).map_err(Ending::refused)?;
+    let folder = open_folder(args)?;
+    for warning in case.warnings() {
+        to_stderr(&format!("warning: {}\n", plain(&warning)));
+    }
+    let threads = args.threads.map_or(0, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(Ending::failed)?;
+    let started = SystemTime::now();
+    let (walked, outcome) = walk(&case, &pool, args.quiet)?;
+    let manifest = Manifest {
+        version: env!("CARGO_PKG_VERSION").into(),
+        commit: option_env!("VOIDWALK_COMMIT").map(String::from),
+        seed: case.scene.seed,
+        inputs: case.input_files(),
+        threads: pool.current_num_threads() as u64,
+        host: machine.host,
+        machine: machine.description,
+        started: humantime::format_rfc3339_seconds(started).to_string(),
+        finished: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
+        command: std::env::args().collect::<Vec<_>>().join(" "),
+    };
+    results::write(&folder, &case, &outcome, walked, &manifest).map_err(Ending::failed)?;
+    report::write(folder.path()).map_err(Ending::failed)?;
+    if args.scene.json {
+        to_stdout(&format!("{}\n", serde_json::to_string_pretty(&outcome).map_err(Ending::failed)?));
+    } else if !args.quiet {
+        to_stdout(&summary(&outcome, folder.path()));
+    }
+    Ok(())
+}
+
+/// Writes the report of a finished run folder again.
+pub fn report(folder: &Path) -> Result<(), Ending> {
+    if !folder.join("outcome.json").is_file() {
+        let problem =
+            format!("{}: holds no outcome.json; name the folder of a finished run", folder.display());
+        return Err(Ending::refused(plain(&problem)));
+    }
+    let folder = Folder::open(folder).map_err(refused_or_failed)?;
+    report::write(folder.path()).map_err(Ending::failed)?;
+    to_stdout(&format!("{}\n", folder.path().join("report.html").display()));
+    Ok(())
+}
+
+fn walk(case: &Case, pool: &rayon::ThreadPool, quiet: bool) -> Result<(Vec<walks::Walked>, Outcome), Ending> {
+    let begun = Instant::now();
+    let stop = Arc::new(AtomicBool::new(false));
+    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+        // The second signal ends the program at once, the first after the current increment.
+        signal_hook::flag::register_conditional_shutdown(signal, 1, Arc::clone(&stop))
+            .and_then(|_| signal_hook::flag::register(signal, Arc::clone(&stop)))
+            .map_err(Ending::failed)?;
+    }
+    let progress = Progress::new(quiet, runs_to_walk(case));
+    let watch = Watch { tell: &|event| progress.tell(event), stop: &stop };
+    let walked = pool.install(|| Ok((replicates(case, &watch)?, sensitivity(case, &watch)?)));
+    progress.finish();
+    let (walked, sensitivity) = walked.map_err(|e: RunError| match e {
+        RunError::Walk(crate::walk::WalkError::Stopped { .. }) => Ending::failed(
+            "stopped on request; no results were written, and the same command gives the same bits",
+        ),
+        other => Ending::failed(other),
+    })?;
+    let outcome = results::outcome(case, &walked, sensitivity, begun.elapsed().as_secs_f64());
+    Ok((walked, outcome))
+}
+
+fn refused_or_failed(error: StoreError) -> Ending {
+    if error.is_refusal() { Ending::refused(error) } else { Ending::failed(error) }
+}
+
+/// The folder to write to: the one that is named, or the first free one.
+fn open_folder(args: &RunArgs) -> Result<Folder, Ending> {
+    let Some(path) = &args.out else {
+        let free = (1..).map(|n| match n {
+            1 => PathBuf::from("voidwalk-run"),
+            n => PathBuf::from(format!("voidwalk-run-{n}")),
+        });
+        let free = free.into_iter().find(|path| path.symlink_metadata().is_err());
+        return Folder::open(&free.unwrap_or_default()).map_err(refused_or_failed);
+    };
+    let folder = Folder::open(path).map_err(refused_or_failed)?;
+    if folder.has("manifest.json") && !args.overwrite {
+        let problem = format!(
+            "{}: holds the results of an earlier run; name another folder or add --overwrite",
+            path.display()
+        );
+        return Err(Ending::refused(plain(&problem)));
+    }
+    Ok(folder)
+}
+
+/// What a user wants to know first.
+fn summary(outcome: &Outcome, folder: &Path) -> String {
+    let mut text = String::new();
+    let inputs = &outcome.inputs;
+    // Writing to a string cannot fail.
+    let mut line = |s: String| {
+        let _ = writeln!(text, "{s}");
+    };
+    line(format!("Verdict: {}", outcome.verdict.words()));
+    for run in &outcome.summary {
+        line(format!("  {}", run_line(run)));
+    }
+    line(format!(
+        "  {} replicates of {} base particles, {} voids; D15F/D85B {:.2}, D15F/D95B {:.2}, {} grains per void",
+        outcome.replicates.len(),
+        count(outcome.n_base),
+        count(inputs.network.voids),
+        outcome.ratios.d15f_over_d85b,
+        outcome.ratios.d15f_over_d95b,
+        outcome.grains_per_void
+    ));
+    line(format!("The model leaves out: {}.", leaves_out(&outcome.model_leaves_out)));
+    line(format!(
+        "{:.1} s, seed {}; report: {}",
+        outcome.seconds,
+        outcome.seed,
+        plain(&folder.join("report.html").display().to_string())
+    ));
+    text
+}
+
+fn run_line(run: &RunSummary) -> String {
+    let eroded = &run.eroded_mass_fraction;
+    let interval = match (eroded.low, eroded.high) {
+        (Some(low), Some(high)) => format!(" (95 % interval {} to {})", percent(low), percent(high)),
+        _ => String::new(),
+    };
+    let largest = match &run.largest_eroded_over_d15f {
+        Some(largest) => format!("largest eroded {:.3} D15F", largest.mean),
+        None => "nothing eroded".into(),
+    };
+    let which = if run.run == 1 { "first" } else { "second" };
+    format!("{which} run: {} of the mass eroded{interval}, {largest}", percent(eroded.mean))
+}
+
+/// The first words of each thing that the model leaves out.
+fn leaves_out(items: &[String]) -> String {
+    let first = |item: &String| item.split(':').next().unwrap_or_default().to_string();
+    items.iter().map(first).collect::<Vec<_>>().join("; ")
+}
