@@ -153,10 +153,12 @@ impl SizeSampler {
         self.segments[self.segment(start, v)].diameter(v)
     }
 
-    /// [`SizeSampler::diameter`] of every word.
+    /// [`SizeSampler::diameter`] of every word; vector code where the gradation is one segment, as wide
+    /// as the caller is compiled for.
     ///
     /// # Panics
     /// If the slices differ in length.
+    #[inline]
     pub fn fill(&self, words: &[u64], out: &mut [f32]) {
         assert_eq!(words.len(), out.len(), "one diameter per word");
         if let [segment] = self.segments[..] {
