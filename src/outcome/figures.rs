@@ -47,7 +47,8 @@ pub struct Recorded {
 /// where the base has none.
 fn eroded_mass_fraction(tally: &Tally, end: &Tally, tail: f64) -> f64 {
     let sized = match end.inserted_mass > 0.0 {
-        true => tally.eroded_mass / end.inserted_mass,
+        // The same masses added in two orders may differ in their last bits.
+        true => (tally.eroded_mass / end.inserted_mass).min(1.0),
         false => 0.0,
     };
     if tail == 0.0 {

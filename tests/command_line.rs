@@ -1,0 +1,319 @@
+//! The program as a user meets it: exit codes, messages, and what a run folder holds.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+
+/// A run of seconds: a small network, few replicates.
+const SMALL: [&str; 5] =
+    ["network.nx=8", "network.ny=8", "network.nz=10", "replicates=3", "record.sensitivity=[2.0]"];
+
+fn voidwalk(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_voidwalk")).args(args).output().unwrap()
+}
+
+fn run_small(out: &Path, more: &[&str]) -> Output {
+    let out = out.to_str().unwrap();
+    let mut args = vec!["run", "--out", out];
+    for set in SMALL {
+        args.extend(["--set", set]);
+    }
+    args.extend(more);
+    voidwalk(&args)
+}
+
+fn outcome(folder: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(folder.join("outcome.json")).unwrap()).unwrap()
+}
+
+/// The outcome without what a clock says.
+fn without_seconds(mut value: Value) -> Value {
+    fn strip(value: &mut Value) {
+        match value {
+            Value::Object(map) => {
+                map.remove("seconds");
+                map.values_mut().for_each(strip);
+            }
+            Value::Array(items) => items.iter_mut().for_each(strip),
+            _ => {}
+        }
+    }
+    strip(&mut value);
+    value
+}
+
+fn refused(output: &Output, messages: &[&str]) {
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{stderr}");
+    for message in messages {
+        assert!(stderr.contains(message), "{stderr:?} lacks {message:?}");
+    }
+}
+
+#[test]
+fn a_run_folder_holds_what_is_promised() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = root.path().join("run");
+    let output = run_small(&folder, &[]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let stdout = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        stdout.starts_with("Verdict: ") && stdout.contains("The model leaves out: hydraulics"),
+        "{stdout}"
+    );
+    let outcome = outcome(&folder);
+    for key in [
+        "verdict",
+        "seed",
+        "n_base",
+        "n_base_eq2",
+        "capped",
+        "grains_per_void",
+        "engine",
+        "replicates",
+        "summary",
+    ] {
+        assert!(!outcome[key].is_null(), "{key}");
+    }
+    let replicates = outcome["replicates"].as_array().unwrap();
+    assert_eq!(replicates.len(), 3);
+    for replicate in replicates {
+        let runs = replicate["runs"].as_array().unwrap();
+        assert_eq!(runs.len(), 2);
+        for run in runs {
+            for key in [
+                "eroded_mass_fraction",
+                "eroded_number_fraction",
+                "largest_eroded_mm",
+                "largest_eroded_over_d15f",
+                "blocked",
+                "blocked_fraction",
+                "blocked_first_three_layers_fraction",
+                "backbone_fraction",
+                "inserted",
+                "eroded",
+                "retained_in_constrictions",
+                "retained_in_voids",
+                "trapped",
+                "increments",
+                "particle_moves",
+                "seconds",
+            ] {
+                assert!(run.get(key).is_some(), "{key}");
+            }
+            let n = |key: &str| run[key].as_u64().unwrap();
+            assert_eq!(n("inserted"), outcome["n_base"].as_u64().unwrap());
+            assert_eq!(
+                n("inserted"),
+                n("eroded") + n("retained_in_constrictions") + n("retained_in_voids") + n("trapped")
+            );
+        }
+        assert!(runs[1]["blocked"].as_u64() >= runs[0]["blocked"].as_u64());
+    }
+    for run in outcome["summary"].as_array().unwrap() {
+        let eroded = &run["eroded_mass_fraction"];
+        assert!(
+            eroded["low"].as_f64() <= eroded["mean"].as_f64()
+                && eroded["mean"].as_f64() <= eroded["high"].as_f64()
+        );
+    }
+    let header =
+        |file: &str| fs::read_to_string(folder.join(file)).unwrap().lines().next().unwrap().to_string();
+    assert_eq!(
+        header("series.csv"),
+        "replicate,run,increment,inserted,moving,eroded,retained_in_constrictions,retained_in_voids,trapped,blocked,eroded_mass_fraction"
+    );
+    assert_eq!(
+        header("layers.csv"),
+        "replicate,run,layer,constrictions,blocked,retained_in_constrictions,retained_in_voids"
+    );
+    for file in ["retained.csv", "eroded.csv"] {
+        assert_eq!(
+            header(file),
+            "replicate,run,increment,diameter_mm,percent_finer_by_mass,percent_finer_by_number"
+        );
+    }
+    let page = fs::read_to_string(folder.join("report.html")).unwrap();
+    assert!(page.contains("Content-Security-Policy") && page.contains("hydraulics"));
+    assert!(fs::read_dir(folder.join("figures")).unwrap().count() >= 5);
+    for key in ["version", "seed", "inputs", "threads", "host", "started", "finished"] {
+        let manifest: Value =
+            serde_json::from_str(&fs::read_to_string(folder.join("manifest.json")).unwrap()).unwrap();
+        assert!(!manifest[key].is_null(), "{key}");
+    }
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bits_for_any_threads_and_from_the_resolved_scene() {
+    let root = tempfile::tempdir().unwrap();
+    let first = root.path().join("a");
+    assert!(run_small(&first, &["--threads", "1", "--seed", "5"]).status.success());
+    let scene = first.join("scene.toml");
+    for (name, threads) in [("b", "2"), ("c", "3"), ("d", "8")] {
+        let folder = root.path().join(name);
+        let args = ["run", scene.to_str().unwrap(), "--threads", threads, "--out", folder.to_str().unwrap()];
+        let output = voidwalk(&args);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        for file in ["series.csv", "layers.csv", "retained.csv", "eroded.csv", "scene.toml"] {
+            assert!(fs::read(first.join(file)).unwrap() == fs::read(folder.join(file)).unwrap(), "{file}");
+        }
+        assert_eq!(without_seconds(outcome(&first)), without_seconds(outcome(&folder)));
+    }
+    // One replicate's results do not depend on how many there are.
+    let fewer = root.path().join("e");
+    assert!(run_small(&fewer, &["--seed", "5", "--set", "replicates=2"]).status.success());
+    let (three, two) = (without_seconds(outcome(&first)), without_seconds(outcome(&fewer)));
+    assert_eq!(three["replicates"][1], two["replicates"][1]);
+    let other_seed = root.path().join("f");
+    assert!(run_small(&other_seed, &["--seed", "6"]).status.success());
+    assert_ne!(
+        without_seconds(outcome(&first))["replicates"],
+        without_seconds(outcome(&other_seed))["replicates"]
+    );
+}
+
+#[test]
+fn bad_scenes_are_refused_and_leave_nothing() {
+    let root = tempfile::tempdir().unwrap();
+    let out = root.path().join("out");
+    let file = |name: &str, text: &str| {
+        let path = root.path().join(name);
+        fs::write(&path, text).unwrap();
+        path.to_str().unwrap().to_string()
+    };
+    let typo = file("typo.toml", "[filter]\ncurve = \"shire2016-cu1.5-loose\"\n[base]\nd85_at_cd = 5\n");
+    let unit = file("unit.toml", "[filter]\ncurve = \"shire2016-cu1.5-loose\"\n[base]\nd85_cm = 5\ncu = 3\n");
+    let sieve = file("s.csv", "opening_mm,percent_finer\n0.1,0\n0.2,nan\n");
+    let fine = file("fine.toml", "[filter]\ncurve = \"shire2016-cu1.5-loose\"\n[base]\nsieve = \"s.csv\"\n");
+    let _ = sieve;
+    for (scene, set, messages) in [
+        (typo.as_str(), "seed=1", &["typo.toml, line 4", "`base.d85_at_cd`", "`base.d85_at_dc`"][..]),
+        (unit.as_str(), "seed=1", &["unit.toml, line 4", "did you mean `base.d85_mm`"]),
+        (fine.as_str(), "seed=1", &["s.csv", "3", "nan"]),
+        (root.path().to_str().unwrap(), "seed=1", &["must be a regular file"]),
+        ("/no/such/scene.toml", "seed=1", &["/no/such/scene.toml"]),
+        ("", "base.n_base=0", &["--set, base.n_base: `0` is not allowed", "whole number from 1"]),
+        ("", "base.mass_ratio=1e-12", &["less than half a base particle"]),
+        ("", "filter.curve=shire2016-cu15-loose", &["nearest is \"shire2016-cu1.5-loose\""]),
+        ("", "network.nx=1e9", &["every length must be at least 1"]),
+        ("", "base.n_base=1e12", &["1000000000000 base particles", "available"]),
+        ("", "network.file=/no/such.csv", &["/no/such.csv"]),
+    ] {
+        let mut args = vec!["run"];
+        if !scene.is_empty() {
+            args.push(scene);
+        }
+        args.extend(["--out", out.to_str().unwrap(), "--set", set, "--set", "engine=particles"]);
+        refused(&voidwalk(&args), messages);
+        assert!(!out.exists(), "{set}: something was written");
+    }
+}
+
+#[test]
+fn folders_that_are_not_ours_or_finished_are_left_alone() {
+    let root = tempfile::tempdir().unwrap();
+    fs::write(root.path().join("thesis.txt"), "years").unwrap();
+    refused(&run_small(root.path(), &[]), &["was not made by voidwalk"]);
+    let folder = root.path().join("run");
+    assert!(run_small(&folder, &["--quiet"]).status.success());
+    let before = fs::read(folder.join("outcome.json")).unwrap();
+    refused(&run_small(&folder, &["--seed", "9"]), &["--overwrite"]);
+    assert_eq!(fs::read(folder.join("outcome.json")).unwrap(), before);
+    assert!(run_small(&folder, &["--seed", "9", "--overwrite"]).status.success());
+    assert_ne!(fs::read(folder.join("outcome.json")).unwrap(), before);
+    refused(&voidwalk(&["report", root.path().to_str().unwrap()]), &["holds no outcome.json"]);
+}
+
+#[test]
+fn init_writes_a_scene_that_check_understands() {
+    let root = tempfile::tempdir().unwrap();
+    let path = root.path().join("scene.toml");
+    assert!(voidwalk(&["init", path.to_str().unwrap()]).status.success());
+    refused(&voidwalk(&["init", path.to_str().unwrap()]), &["is there already"]);
+    let output = voidwalk(&["check", path.to_str().unwrap(), "--json"]);
+    let check: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let n_base = check["n_base"].as_u64().unwrap();
+    assert_eq!(check["grains_per_void"], 0.61);
+    // With 2.5 grains per void Eq. (2) asks for 2.5 / 0.61 as many, and a cap says that it bit.
+    let set = [
+        "check",
+        path.to_str().unwrap(),
+        "--json",
+        "--set",
+        "filter.grains_per_void=2.5",
+        "--set",
+        "base.cap=5e6",
+    ];
+    let capped: Value = serde_json::from_slice(&voidwalk(&set).stdout).unwrap();
+    assert!((capped["n_base_eq2"].as_f64().unwrap() / n_base as f64 / (2.5 / 0.61) - 1.0).abs() < 1e-6);
+    assert_eq!((&capped["n_base"], &capped["capped"]), (&5_000_000.into(), &true.into()));
+    assert!(capped["warnings"][0].as_str().unwrap().contains("cap"));
+    let words = String::from_utf8(voidwalk(&["check", path.to_str().unwrap()]).stdout).unwrap();
+    assert!(words.contains("base particles") && words.contains("memory") && words.contains("left out"));
+}
+
+#[test]
+fn a_network_from_a_file_is_walked_and_kept() {
+    let root = tempfile::tempdir().unwrap();
+    let network = root.path().join("net.csv");
+    fs::write(&network, "from,to,diameter_mm\nstart,0,\n0,1,0.5\n0,2,0.2\n1,end,0.5\n2,end,0.3\n").unwrap();
+    let folder = root.path().join("run");
+    let set = format!("network.file={}", network.display());
+    let args = [
+        "run",
+        "--out",
+        folder.to_str().unwrap(),
+        "--set",
+        &set,
+        "--set",
+        "base.single_mm=0.25",
+        "--set",
+        "base.n_base=1000",
+    ];
+    let output = voidwalk(&args);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(folder.join("inputs/network.csv").is_file());
+    let outcome = outcome(&folder);
+    assert_eq!(outcome["inputs"]["network"]["kind"], "file");
+    let run = &outcome["replicates"][0]["runs"][0];
+    // Void 0 has one exit finer than the particles; everything else leaves.
+    assert_eq!(run["blocked"], 1);
+    assert_eq!(run["eroded"].as_u64().unwrap() + run["retained_in_constrictions"].as_u64().unwrap(), 1000);
+    // The kept scene runs again from its own folder.
+    let again = root.path().join("again");
+    let scene = folder.join("scene.toml");
+    assert!(voidwalk(&["run", scene.to_str().unwrap(), "--out", again.to_str().unwrap()]).status.success());
+    assert_eq!(fs::read(folder.join("series.csv")).unwrap(), fs::read(again.join("series.csv")).unwrap());
+}
+
+#[test]
+fn hostile_names_are_inert() {
+    let root = tempfile::tempdir().unwrap();
+    let name = "<script>alert(1)<_script>\u{1b}[31m.csv";
+    fs::write(root.path().join(name), "opening_mm,percent_finer\n0.1,0\n0.25,100\n").unwrap();
+    let folder = root.path().join("run");
+    let set = format!("base.sieve={}", root.path().join(name).display());
+    let output = run_small(&folder, &["--set", &set]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let page = fs::read_to_string(folder.join("report.html")).unwrap();
+    assert!(!page.contains("<script>") && page.contains("&lt;script&gt;"));
+    assert!(!String::from_utf8_lossy(&output.stdout).contains('\u{1b}'));
+}
+
+#[test]
+fn a_closed_pipe_is_no_panic() {
+    for args in [&["init"][..], &["check"]] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_voidwalk"))
+            .args(args)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert!(output.status.success());
+        assert!(!String::from_utf8_lossy(&output.stderr).contains("panicked"));
+    }
+}
