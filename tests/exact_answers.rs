@@ -318,3 +318,24 @@ fn threads_change_no_bit() {
         }
     }
 }
+
+/// A hundred thousand layers of one void, and one layer of a million: the walk matches the linear solve.
+#[test]
+fn very_long_and_very_wide_networks_run() {
+    let equal = |shape: [u32; 3]| {
+        let count = 3 * shape.iter().map(|&n| n as usize).product::<usize>();
+        Network::cubic_from_diameters(shape, vec![1.0; count], 1.0).unwrap()
+    };
+    // Each layer takes a geometric number of moves with mean 3 and variance 6.
+    let long = equal([1, 1, 100_000]);
+    let (state, _) = walk(&long, &one_size(0.5, 20, 1), 1);
+    let moves = state.tally.particle_moves as f64 / 20.0;
+    assert!((moves - 300_000.0).abs() < 4.0 * (600_000.0f64 / 20.0).sqrt(), "{moves}");
+    let wide = equal([1000, 1000, 1]);
+    let (state, _) = walk(&wide, &one_size(0.5, 100_000, 10), 1);
+    let moves = state.tally.particle_moves as f64 / 100_000.0;
+    assert!((moves - 3.0).abs() < 4.0 * (6.0f64 / 100_000.0).sqrt(), "{moves}");
+    let small = equal([2, 2, 2]);
+    let (leaves, moves) = solve(&small, 0.5);
+    assert!((leaves[0] - 1.0).abs() < 1e-9 && (moves[0] - 6.0).abs() < 1e-9);
+}
