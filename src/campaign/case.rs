@@ -405,8 +405,8 @@ impl Case {
         }
         if self.supply.capped {
             warnings.push(format!(
-                "the cap of {} base particles bit: Eq. (2) asks for {}. Fewer particles are a bias, not noise: more \
-                 or less erodes than would",
+                "the cap of {} base particles bit: Eq. (2) asks for {}. Fewer particles block less: a bias towards more erosion, not \
+                 noise",
                 self.supply.n_base, self.supply.n_base_eq2
             ));
         }
