@@ -29,6 +29,8 @@
 //! A run ends when nothing moves, or when every moving particle is *trapped*: x and y are periodic, so
 //! a particle can circle for ever. See [`trapped`].
 
+mod counts;
+mod engine;
 mod exits;
 mod insert;
 mod kernel;
@@ -40,6 +42,8 @@ mod supply;
 mod tally;
 mod trapped;
 
+pub use counts::{Expected, Passive};
+pub use engine::{Engine, Plan};
 pub use exits::ExitTable;
 pub use sizes::{SizeClasses, SizeCounts};
 pub use state::{Blocking, CHUNK, Particles, State};
@@ -89,13 +93,18 @@ pub struct Walk<'a> {
     table: ExitTable,
     events: Vec<Events>,
     trap: trapped::Search,
+    /// Every particle walked one by one is trapped, or there is none.
+    all_caught: bool,
+    passive: Option<counts::PassiveWalk<'a>>,
 }
 
 impl<'a> Walk<'a> {
     /// Prepares to walk from `state` on.
     pub fn new(network: &'a Network, supply: &'a Supply, state: &State) -> Self {
         let table = ExitTable::new(network, state);
-        Self { network, supply, table, events: Vec::new(), trap: trapped::Search::new(network) }
+        let (trap, passive) =
+            (trapped::Search::new(network), counts::PassiveWalk::new(network, supply, state));
+        Self { network, supply, table, events: Vec::new(), trap, all_caught: false, passive }
     }
 
     /// One increment.
@@ -105,8 +114,15 @@ impl<'a> Walk<'a> {
     pub fn increment(&mut self, state: &mut State) -> Result<(), WalkError> {
         state.increment += 1;
         self.step(state);
+        if let Some(passive) = &mut self.passive {
+            passive.increment(self.network, self.supply, state);
+        }
         let closed = merge::merge(&mut self.events, self.table.upstream(), state);
         self.table.refresh(self.network, state, &closed);
+        if let Some(passive) = &mut self.passive {
+            let upstream = self.table.upstream();
+            passive.refresh(self.network, state, closed.iter().map(|&c| upstream[c as usize]));
+        }
         self.tally(state)
     }
 
@@ -118,11 +134,19 @@ impl<'a> Walk<'a> {
 
     fn tally(&mut self, state: &mut State) -> Result<(), WalkError> {
         let inserting = state.increment < self.supply.increments();
-        if !inserting && state.tally.moving > 0 && self.trap.all_trapped(self.network, state) {
+        if !inserting && state.tally.moving > 0 && self.all_trapped(state) {
             state.tally.trap_all_moving();
         }
         state.finished = !inserting && state.tally.moving == 0;
         state.tally.check(state.increment)
+    }
+
+    /// Whether every moving particle is trapped. Once those walked one by one are, nothing can block any more, so
+    /// they stay so.
+    fn all_trapped(&mut self, state: &mut State) -> bool {
+        self.all_caught = self.all_caught || self.trap.all_trapped(self.network, state);
+        self.all_caught
+            && self.passive.as_mut().is_none_or(|passive| passive.all_trapped(self.network, state))
     }
 
     /// Increments until the run ends or `observe` stops it.

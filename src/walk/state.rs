@@ -2,7 +2,7 @@
 
 use bitvec::vec::BitVec;
 
-use super::{SizeClasses, SizeCounts, Supply, Tally};
+use super::{Passive, SizeClasses, SizeCounts, Supply, Tally};
 use crate::network::Network;
 use crate::store::Column;
 
@@ -53,8 +53,10 @@ pub struct State {
     /// The finest constriction open when the run began: no particle up to this diameter, called
     /// *passive*, can be stopped by a constriction in this run.
     pub passive_limit: f32,
-    /// The moving base particles.
+    /// The moving base particles that are walked one by one.
     pub particles: Particles,
+    /// The moving base particles that are not.
+    pub passive: Passive,
     /// Bit `c`: a base particle has blocked constriction `c` (in this run or an earlier one).
     pub blocked: BitVec<u64>,
     /// Constrictions blocked in this run, by increment, then by constriction.
@@ -97,6 +99,7 @@ impl State {
                 diameter: Column::zeroed(chunks * CHUNK),
                 live: vec![0; chunks],
             },
+            passive: supply.no_passive_yet(network.voids()),
             blocked,
             history: Vec::new(),
             retained_in_constrictions: vec![0; network.voids()],

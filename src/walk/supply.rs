@@ -1,5 +1,6 @@
 //! What a run inserts: how many base particles in each increment, and of what sizes.
 
+use super::counts::{Passive, coarse_share};
 use crate::gradation::SizeSampler;
 
 /// The base particles of a run.
@@ -11,15 +12,41 @@ pub struct Supply {
     sampler: SizeSampler,
     /// Lowest random word handed to the sampler: 0 for the whole base, larger for its coarse part.
     first_word: u64,
-    /// Particles inserted up to and including each increment; entry `t - 1` is increment `t`.
+    /// Particles inserted one by one up to and including each increment; entry `t - 1` is increment `t`.
     inserted: Vec<u64>,
+    /// The particles that are kept as counts.
+    passive: PassiveSupply,
+}
+
+/// The passive particles of a run that are not walked one by one.
+#[derive(Clone, Debug, Default)]
+struct PassiveSupply {
+    /// Particles inserted up to and including each increment; empty where there are none.
+    inserted: Vec<u64>,
+    /// The sampler gives passive particles for words below this.
+    words: u128,
+    /// Whether their expectation is enough.
+    expected: bool,
 }
 
 impl Supply {
     /// `n` particles of the whole base, in `increments` equal parts.
     pub fn new(sampler: SizeSampler, n: u64, increments: u64) -> Self {
         let part = |t: u64| (u128::from(n) * u128::from(t) / u128::from(increments)) as u64;
-        Self { sampler, first_word: 0, inserted: (1..=increments).map(part).collect() }
+        let inserted = (1..=increments).map(part).collect();
+        Self { sampler, first_word: 0, inserted, passive: PassiveSupply::default() }
+    }
+
+    /// The same particles, of which those drawn by words below `passive_words` are kept as counts, or as an
+    /// expectation. How many of each increment's share these are is drawn for run `run` of `seed`.
+    pub fn with_passive_part(self, passive_words: u128, expected: bool, seed: u64, run: u64) -> Self {
+        let increments = 1..=self.increments();
+        let share = |t| self.inserted(t) - self.inserted(t - 1);
+        let coarse: Vec<u64> =
+            increments.map(|t| coarse_share(share(t), passive_words, seed, run, t)).collect();
+        let parts = Self::coarse_part(self.sampler.clone(), passive_words as u64, &coarse);
+        let inserted = self.inserted.iter().zip(&parts.inserted).map(|(all, coarse)| all - coarse).collect();
+        Self { passive: PassiveSupply { inserted, words: passive_words, expected }, ..parts }
     }
 
     /// Only sizes that the sampler gives for words from `first_word` on, `shares[t - 1]` of them in
@@ -29,7 +56,7 @@ impl Supply {
             *sum += share;
             Some(*sum)
         });
-        Self { sampler, first_word, inserted: running.collect() }
+        Self { sampler, first_word, inserted: running.collect(), passive: PassiveSupply::default() }
     }
 
     /// Number of increments after which everything is inserted.
@@ -37,15 +64,35 @@ impl Supply {
         self.inserted.len() as u64
     }
 
-    /// Base particles inserted up to and including increment `increment`.
+    /// Base particles inserted one by one up to and including increment `increment`.
     pub fn inserted(&self, increment: u64) -> u64 {
-        match increment {
-            0 => 0,
-            t => self.inserted[(t as usize).min(self.inserted.len()) - 1],
+        running(&self.inserted, increment)
+    }
+
+    /// Passive base particles inserted as counts up to and including increment `increment`.
+    pub fn passive_inserted(&self, increment: u64) -> u64 {
+        running(&self.passive.inserted, increment)
+    }
+
+    /// The sampler gives particles that are kept as counts for words below this.
+    pub fn passive_words(&self) -> u128 {
+        self.passive.words
+    }
+
+    /// The passive particles before the first increment on a network of `voids` voids.
+    pub(super) fn no_passive_yet(&self, voids: usize) -> Passive {
+        match &self.passive {
+            part if part.inserted.is_empty() => Passive::OneByOne,
+            part => Passive::none_yet(voids, part.expected),
         }
     }
 
-    /// All base particles of the run.
+    /// Sizes of the base.
+    pub fn sampler(&self) -> &SizeSampler {
+        &self.sampler
+    }
+
+    /// All base particles of the run that are walked one by one.
     pub fn total(&self) -> u64 {
         self.inserted(self.increments())
     }
@@ -60,5 +107,12 @@ impl Supply {
                 self.sampler.diameter(first + ((u128::from(word) * width) >> 64) as u64)
             }
         }
+    }
+}
+
+fn running(sums: &[u64], increment: u64) -> u64 {
+    match (increment, sums.len()) {
+        (0, _) | (_, 0) => 0,
+        (t, increments) => sums[(t as usize).min(increments) - 1],
     }
 }

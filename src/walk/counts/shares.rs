@@ -1,0 +1,94 @@
+//! How the passive particles of a void part over its exits.
+
+use bitvec::slice::BitSlice;
+
+use super::binomial::CERTAIN;
+use crate::network::Network;
+use crate::walk::exits;
+
+/// By constriction: the chance that a particle which has not taken an earlier exit of its void takes this one, as
+/// a 64-bit fraction. The last open exit is certain; closed ones have none.
+pub(super) struct Shares {
+    chance: Vec<u64>,
+    /// By void: whether it has an open exit.
+    leads_on: Vec<bool>,
+}
+
+impl Shares {
+    /// The shares of the constrictions that `blocked` leaves open.
+    pub fn new(network: &Network, blocked: &BitSlice<u64>) -> Self {
+        let mut shares =
+            Self { chance: vec![0; network.constrictions()], leads_on: vec![false; network.voids()] };
+        let mut thresholds = Vec::new();
+        for void in 0..network.voids() as u32 {
+            shares.set(network, blocked, void, &mut thresholds);
+        }
+        shares
+    }
+
+    /// Renews the shares of one void.
+    ///
+    /// They follow from the thresholds of the walk one by one, so that both engines give an exit the same
+    /// probability to 2^-64.
+    pub fn set(&mut self, network: &Network, blocked: &BitSlice<u64>, void: u32, thresholds: &mut Vec<u64>) {
+        let exits = network.exits(void);
+        let last = exits::thresholds(network, blocked, void, thresholds);
+        self.leads_on[void as usize] = last.is_some();
+        let mut before = 0u64;
+        for (e, chance) in self.chance[exits].iter_mut().enumerate() {
+            *chance = match last {
+                Some(last) if e == last => CERTAIN,
+                Some(last) if e < last => {
+                    let (width, rest) = (thresholds[e] - before, (1u128 << 64) - u128::from(before));
+                    (((u128::from(width) << 64) / rest) as u64).min(CERTAIN - 1)
+                }
+                _ => 0,
+            };
+            before = thresholds[e];
+        }
+    }
+
+    /// Chance of each constriction.
+    pub fn chance(&self) -> &[u64] {
+        &self.chance
+    }
+
+    /// Whether a void has an open exit.
+    #[inline]
+    pub fn leads_on(&self, void: usize) -> bool {
+        self.leads_on[void]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bitvec::vec::BitVec;
+
+    fn of(diameters: [f32; 3], closed: [bool; 3]) -> (Vec<u64>, bool) {
+        let network = Network::cubic_from_diameters([1, 1, 1], diameters.to_vec(), 1.0).unwrap();
+        let blocked: BitVec<u64> = closed.into_iter().collect();
+        let shares = Shares::new(&network, &blocked);
+        (shares.chance.clone(), shares.leads_on(0))
+    }
+
+    #[test]
+    fn chances_are_conditional_and_the_last_open_exit_is_certain() {
+        let (chance, on) = of([1.0, 1.0, f32::sqrt(2.0)], [false; 3]);
+        assert!(on && chance[2] == CERTAIN);
+        assert!((chance[0] as f64 / 2f64.powi(62) - 1.0).abs() < 1e-6);
+        assert!((chance[1] as f64 / 2f64.powi(64) - 1.0 / 3.0).abs() < 1e-6);
+        assert_eq!(of([1.0; 3], [false, true, true]).0, [CERTAIN, 0, 0]);
+        assert_eq!(of([1.0; 3], [true, false, true]).0, [0, CERTAIN, 0]);
+        assert_eq!(of([1.0; 3], [false, true, false]).0[..2], [1 << 63, 0]);
+        assert!(!of([1.0; 3], [true; 3]).1);
+        assert!(!of([0.0; 3], [false; 3]).1);
+    }
+
+    /// An exit with 1e24 times the area leaves the others possible.
+    #[test]
+    fn a_giant_is_not_certain() {
+        assert_eq!(of([1e12, 1.0, 1.0], [false; 3]).0[0], CERTAIN - 1);
+        assert_eq!(of([1e12, 1.0, 1.0], [true, false, false]).0[1], 1 << 63);
+    }
+}

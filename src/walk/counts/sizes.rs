@@ -1,0 +1,193 @@
+//! Sizes of passive particles, which are never drawn one by one.
+//!
+//! The fate of a passive particle does not depend on its size, so the sizes of those eroded or retained are
+//! independent draws from the passive part of the base: the numbers by class are multinomial and drawn
+//! exactly, and the largest is one draw of the largest of the coarsest class that is not empty. Masses
+//! are counts times a mean: of the passive part for the sums of a run, of the class for size curves.
+
+use super::binomial::{CERTAIN, Draws, one};
+use crate::gradation::SizeSampler;
+use crate::walk::{SizeClasses, SizeCounts};
+
+/// The passive part of a base, class by class.
+pub(super) struct PassiveSizes<'a> {
+    sampler: &'a SizeSampler,
+    /// Words up to the upper bound of each class; the last is the number of passive words.
+    words: Vec<u128>,
+    /// Chance that a passive particle, no finer than the class, is in it.
+    chance: Vec<u64>,
+    /// Mean diameter cubed of each class.
+    mean_cube: Vec<f64>,
+    /// Mean diameter cubed of all.
+    mean_cube_of_all: f64,
+}
+
+impl<'a> PassiveSizes<'a> {
+    /// The part of the base whose words are below `passive_words`.
+    pub fn new(sampler: &'a SizeSampler, passive_words: u128, classes: &SizeClasses) -> Self {
+        let bounds = classes.upper();
+        let mut words: Vec<u128> =
+            bounds.iter().map(|&bound| sampler.word_limit(bound).min(passive_words)).collect();
+        // Sizes above the last bound count in the last class.
+        words[bounds.len() - 1] = passive_words;
+        let (mut chance, mut mean_cube, mut before) = (Vec::new(), Vec::new(), 0);
+        for &upto in &words {
+            let (width, rest) = (upto - before, passive_words - before);
+            chance.push(fraction(width, rest));
+            mean_cube.push(sampler.part(before..upto).mean_cube().unwrap_or(0.0));
+            before = upto;
+        }
+        let mean_cube_of_all = sampler.part(0..passive_words).mean_cube().unwrap_or(0.0);
+        Self { sampler, words, chance, mean_cube, mean_cube_of_all }
+    }
+
+    /// Mass of `count` passive particles, expected.
+    pub fn mass(&self, count: u64) -> f64 {
+        count as f64 * self.mean_cube_of_all
+    }
+
+    /// Adds `count` particles with drawn sizes; the largest of them, where there are any.
+    pub fn draw(&self, count: u64, draws: &mut Draws, into: &mut SizeCounts) -> Option<f32> {
+        let (mut left, mut coarsest) = (count, None);
+        for class in 0..self.words.len() {
+            if left == 0 {
+                break;
+            }
+            let n = one(draws, left, self.chance[class]);
+            left -= n;
+            if n > 0 {
+                into.number[class] += n;
+                into.mass[class] += n as f64 * self.mean_cube[class];
+                coarsest = Some((class, n));
+            }
+        }
+        let (class, n) = coarsest?;
+        let from = if class == 0 { 0 } else { self.words[class - 1] };
+        self.sampler.part(from..self.words[class]).largest_of(n, draws.word())
+    }
+
+    /// Raises the expected number of particles from `before` to `after`, rounded class by class such that
+    /// the sum stays exact.
+    pub fn expect(&self, before: u64, after: u64, into: &mut SizeCounts) {
+        let all = *self.words.last().expect("at least one class");
+        let upto = |count: u64, words: u128| scaled(count, words, all);
+        let (mut last_before, mut last_after) = (0, 0);
+        for (class, &words) in self.words.iter().enumerate() {
+            let (now_before, now_after) = (upto(before, words), upto(after, words));
+            let (old, new) = (now_before - last_before, now_after - last_after);
+            into.number[class] = into.number[class] + new - old;
+            into.mass[class] += (new as f64 - old as f64) * self.mean_cube[class];
+            (last_before, last_after) = (now_before, now_after);
+        }
+    }
+
+    /// The median of the largest of `count` passive particles.
+    pub fn median_largest(&self, count: u64) -> Option<f32> {
+        let all = *self.words.last().expect("at least one class");
+        self.sampler.part(0..all).largest_of(count, 1 << 63)
+    }
+}
+
+/// `width / rest` as a 64-bit fraction.
+pub(super) fn fraction(width: u128, rest: u128) -> u64 {
+    match width {
+        0 => 0,
+        width if width == rest => CERTAIN,
+        width => {
+            // Two steps, since `width << 64` may not fit.
+            let (high, left) = ((width << 63) / rest, (width << 63) % rest);
+            ((high << 1) as u64 | u64::from(left * 2 >= rest)).min(CERTAIN - 1)
+        }
+    }
+}
+
+/// `count * words / all`, rounded.
+fn scaled(count: u64, words: u128, all: u128) -> u64 {
+    if words == all {
+        return count;
+    }
+    // Here words < 2^64.
+    let product = u128::from(count) * words;
+    let (whole, rest) = (product / all, product % all);
+    (whole + u128::from(rest >= all - rest)) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gradation::Gradation;
+    use crate::stream::{Key, Purpose};
+
+    fn draws(increment: u64) -> Draws {
+        Draws::new(Key { seed: 5, purpose: Purpose::PassiveSize, run: 1, increment, chunk: 0 })
+    }
+
+    #[test]
+    fn fractions_are_exact_at_their_ends() {
+        let all = 1u128 << 64;
+        assert_eq!([fraction(0, all), fraction(all, all), fraction(all / 2, all)], [0, CERTAIN, 1 << 63]);
+        assert_eq!(fraction(1, all), 1);
+        assert_eq!(fraction(all - 1, all), CERTAIN - 1);
+        assert_eq!(fraction(1, 3), u64::MAX / 3);
+        assert_eq!(fraction(3 << 40, 3 << 60), 1 << 44);
+    }
+
+    /// Numbers by class against particles drawn one by one: chi-square over 20 classes. With 2e5 of each a
+    /// share that is off by about 1 % of itself would show.
+    #[test]
+    fn classes_fill_as_if_every_particle_was_drawn() {
+        let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.1, 2.0).unwrap(), 1.0).unwrap();
+        let classes = SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), 24);
+        let passive = sampler.word_limit(0.23);
+        let sizes = PassiveSizes::new(&sampler, passive, &classes);
+        let (mut drawn, mut one_by_one) = (SizeCounts::new(&classes), SizeCounts::new(&classes));
+        let n = 200_000;
+        let mut words = draws(1);
+        let mut largest = 0f32;
+        for part in [1, 99, n - 100] {
+            largest = largest.max(sizes.draw(part, &mut words, &mut drawn).unwrap());
+        }
+        for _ in 0..n {
+            let word = (u128::from(words.word()) * passive) >> 64;
+            one_by_one.add(&classes, sampler.diameter(word as u64));
+        }
+        assert_eq!(drawn.number.iter().sum::<u64>(), n);
+        assert!(largest <= 0.23 && largest > 0.2);
+        let (mut square, mut freedom) = (0.0, -1.0);
+        for (&a, &b) in drawn.number.iter().zip(&one_by_one.number).filter(|(a, b)| **a + **b > 20) {
+            square += (a as f64 - b as f64).powi(2) / (a + b) as f64;
+            freedom += 1.0;
+        }
+        assert!(freedom > 10.0 && square < freedom + 4.0 * f64::sqrt(2.0 * freedom), "{square} {freedom}");
+        let mass = |counts: &SizeCounts| counts.mass.iter().sum::<f64>();
+        assert!((mass(&drawn) / mass(&one_by_one) - 1.0).abs() < 0.01);
+        assert!((sizes.mass(n) / mass(&one_by_one) - 1.0).abs() < 0.01);
+    }
+
+    #[test]
+    fn expected_numbers_add_up_however_they_grow() {
+        let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.1, 3.0).unwrap(), 1.0).unwrap();
+        let classes = SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), 32);
+        let sizes = PassiveSizes::new(&sampler, sampler.word_limit(0.3), &classes);
+        let (mut grown, mut at_once) = (SizeCounts::new(&classes), SizeCounts::new(&classes));
+        let steps = [0, 1, 2, 3, 17, 1000, 1001, 1_000_000_007, u64::MAX];
+        for pair in steps.windows(2) {
+            sizes.expect(pair[0], pair[1], &mut grown);
+            let sum = grown.number.iter().map(|&n| u128::from(n)).sum::<u128>();
+            assert_eq!(sum, u128::from(pair[1]));
+        }
+        sizes.expect(0, u64::MAX, &mut at_once);
+        assert_eq!(grown.number, at_once.number);
+    }
+
+    #[test]
+    fn one_size_has_one_class() {
+        let sampler = SizeSampler::new(&Gradation::single(0.5).unwrap(), 1.0).unwrap();
+        let classes = SizeClasses::logarithmic(0.5, 0.5, 8);
+        let sizes = PassiveSizes::new(&sampler, 1 << 64, &classes);
+        let mut counts = SizeCounts::new(&classes);
+        assert_eq!(sizes.draw(7, &mut draws(2), &mut counts), Some(0.5));
+        assert_eq!((counts.number[0], counts.mass[0]), (7, 0.875));
+        assert_eq!(sizes.draw(0, &mut draws(3), &mut counts), None);
+    }
+}

@@ -1,0 +1,129 @@
+//! Which engine walks a run, and what that run does not need: decided here and nowhere else.
+
+use bitvec::slice::BitSlice;
+
+use super::Supply;
+use crate::gradation::SizeSampler;
+use crate::network::Network;
+
+/// How passive base particles are moved; the law of a run is the same for the first three.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Engine {
+    /// `Counts` where a particle can be passive, else `Particles`.
+    Auto,
+    /// Every base particle one by one.
+    Particles,
+    /// Passive particles as counts per void.
+    Counts,
+    /// The expectation of the passive particles, given what the others block.
+    Expected,
+}
+
+impl Engine {
+    /// Every engine, in the order in which a user is told of them.
+    pub const ALL: [Engine; 4] = [Engine::Auto, Engine::Particles, Engine::Counts, Engine::Expected];
+
+    /// The word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Engine::Auto => "auto",
+            Engine::Particles => "particles",
+            Engine::Counts => "counts",
+            Engine::Expected => "expected",
+        }
+    }
+}
+
+/// What one run needs: an engine, and how much of the base is passive.
+///
+/// ```
+/// use bitvec::vec::BitVec;
+/// use voidwalk::gradation::{Gradation, SizeSampler};
+/// use voidwalk::network::Network;
+/// use voidwalk::walk::{Engine, Plan, SizeClasses, State, Walk, Progress};
+///
+/// let network = Network::cubic_from_diameters([4, 4, 6], vec![1.0; 288], 1.0)?;
+/// let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.2, 1.5)?, 1.0)?;
+/// let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
+/// let plan = Plan::new(Engine::Auto, &network, &sampler, &open);
+/// assert_eq!(plan.engine(), Engine::Counts);
+/// let supply = plan.supply(sampler, 1_000_000_000_000, 100, 7, 1);
+/// let classes = SizeClasses::logarithmic(0.2, 0.45, 32);
+/// let mut state = State::new(&network, &supply, classes, open, 7, 1);
+/// Walk::new(&network, &supply, &state).run(&mut state, &mut |_| Progress::Continue)?;
+/// assert_eq!(state.tally.eroded, 1_000_000_000_000);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    engine: Engine,
+    passive_words: u128,
+    left_out: Vec<String>,
+}
+
+impl Plan {
+    /// What a run of this base needs on the constrictions that `blocked` leaves open.
+    pub fn new(wanted: Engine, network: &Network, sampler: &SizeSampler, blocked: &BitSlice<u64>) -> Self {
+        let limit = network.finest_open(|c| blocked[c]);
+        let passive_words = sampler.word_limit(limit);
+        let engine = match wanted {
+            Engine::Particles => Engine::Particles,
+            _ if passive_words == 0 => Engine::Particles,
+            Engine::Auto => Engine::Counts,
+            chosen => chosen,
+        };
+        let left_out = left_out(engine, limit, passive_words, network.unit_mm());
+        Self { engine, passive_words, left_out }
+    }
+
+    /// The engine that walks; never `Auto`.
+    pub fn engine(&self) -> Engine {
+        self.engine
+    }
+
+    /// What is left out, in plain sentences.
+    pub fn left_out(&self) -> &[String] {
+        &self.left_out
+    }
+
+    /// `n` base particles in `increments` equal parts, for run `run` of `seed`.
+    pub fn supply(&self, sampler: SizeSampler, n: u64, increments: u64, seed: u64, run: u64) -> Supply {
+        let all = Supply::new(sampler, n, increments);
+        match self.engine {
+            Engine::Particles => all,
+            engine => all.with_passive_part(self.passive_words, engine == Engine::Expected, seed, run),
+        }
+    }
+}
+
+fn left_out(engine: Engine, limit: f32, passive_words: u128, unit_mm: f64) -> Vec<String> {
+    let coarse_percent = 100.0 * (((1u128 << 64) - passive_words) as f64 / 18_446_744_073_709_551_616.0);
+    let size_mm = f64::from(limit) * unit_mm;
+    let mut sentences = Vec::new();
+    if limit == f32::INFINITY {
+        sentences.push("No constriction is open: every base particle stays in the void it starts in.".into());
+    } else if passive_words == 0 {
+        sentences.push(format!(
+            "No base particle is as fine as the finest open constriction ({size_mm:.4} mm), so none is kept as a count."
+        ));
+    }
+    if engine == Engine::Particles {
+        return sentences;
+    }
+    let how = match engine {
+        Engine::Expected => "only their expected number in each void is followed",
+        _ => "only their number in each void is followed, which is exact",
+    };
+    if passive_words == 1 << 64 {
+        if limit != f32::INFINITY {
+            sentences.push(format!(
+                "Every base particle passes every open constriction (finest {size_mm:.4} mm): nothing can be blocked, and none is walked on its own; {how}."
+            ));
+        }
+    } else {
+        sentences.push(format!(
+            "All but {coarse_percent:.3e} % of the base particles by number are no coarser than the finest open constriction ({size_mm:.4} mm) and can block nothing: {how}, and their sizes are drawn where they come to rest."
+        ));
+    }
+    sentences
+}
