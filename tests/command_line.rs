@@ -198,7 +198,7 @@ fn bad_scenes_are_refused_and_leave_nothing() {
         ("", "base.mass_ratio=1e-12", &["less than half a base particle"]),
         ("", "filter.curve=shire2016-cu15-loose", &["nearest is \"shire2016-cu1.5-loose\""]),
         ("", "network.nx=1e9", &["every length must be at least 1"]),
-        ("", "base.n_base=1e12", &["1000000000000 base particles", "available"]),
+        ("", "base.n_base=1e12", &["1000000000000 base particles walked one by one", "available"]),
         ("", "network.file=/no/such.csv", &["/no/such.csv"]),
     ] {
         let mut args = vec!["run"];

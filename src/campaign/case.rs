@@ -8,7 +8,7 @@ use crate::constrictions::{Curve, CurveError, CurveUnit, ShippedFilter, find};
 use crate::gradation::{BaseSupply, Gradation, GradationError, NumberError, SizeSampler, base_particles};
 use crate::network::{Network, NetworkError};
 use crate::outcome::record::{self, InputFile, Ratios};
-use crate::walk::{CHUNK, Supply};
+use crate::walk::{CHUNK, Engine};
 
 /// Why a scene cannot be walked.
 #[derive(Debug, thiserror::Error)]
@@ -30,7 +30,7 @@ pub enum CaseError {
     Network(#[from] NetworkError),
     /// More memory than there is.
     #[error(
-        "{n_base} base particles one by one on {voids} voids need {needed} of memory, but {available} are \
+        "{n_base} base particles walked one by one on {voids} voids need {needed} of memory, but {available} are \
          available; set base.cap or base.n_base lower, or a smaller network"
     )]
     Memory {
@@ -223,9 +223,18 @@ impl Case {
         }
     }
 
-    /// The base particles of a run of `n_base`.
-    pub fn base_supply(&self, n_base: u64) -> Supply {
-        Supply::new(self.sampler.clone(), n_base, self.increments())
+    /// Base particles of a run of `n_base` that are walked one by one: all, or those that may be coarser than the
+    /// finest constriction.
+    pub fn one_by_one(&self, n_base: u64) -> u64 {
+        if self.scene.engine == Engine::Particles {
+            return n_base;
+        }
+        let finest = match &self.network_file {
+            Some(network) => network.finest_open(|_| false),
+            None => (self.curve.smallest() / self.unit_mm) as f32,
+        };
+        let passive = self.sampler.word_limit(finest) as f64 / 18_446_744_073_709_551_616.0;
+        (n_base as f64 * (1.0 - passive)).ceil() as u64
     }
 
     /// Increments over which the base is inserted: a whole number, so that every part is equal.
@@ -233,12 +242,12 @@ impl Case {
         (1.0 / self.scene.inject_share).round().max(1.0) as u64
     }
 
-    /// Bytes that walking `n_base` particles one by one takes, network and tallies included.
+    /// Bytes that walking `n_base` particles takes, network and tallies included.
     pub fn bytes(&self, n_base: u64) -> u64 {
-        let chunks = n_base.div_ceil(CHUNK as u64);
+        let chunks = self.one_by_one(n_base).div_ceil(CHUNK as u64);
         let particles = chunks.saturating_mul(8 * CHUNK as u64 + 256);
         let [voids, constrictions, ..] = self.counts;
-        particles.saturating_add(voids * 40 + constrictions * 13)
+        particles.saturating_add(voids * 140 + constrictions * 25)
     }
 
     /// Refuses what does not fit the memory that is available.
@@ -251,7 +260,7 @@ impl Case {
             return Ok(());
         }
         Err(CaseError::Memory {
-            n_base: self.supply.n_base,
+            n_base: self.one_by_one(self.supply.n_base),
             voids: self.counts[0],
             needed: in_words(needed),
             available: in_words(available),

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use super::case::Case;
-use super::scene::{Amount, BaseGradation, CurveSource, D85, EngineChoice, FilterGradation, NetworkSource};
+use super::scene::{Amount, BaseGradation, CurveSource, D85, FilterGradation, NetworkSource};
 use super::walks::{Walked, summarise};
 use crate::outcome::record::{Manifest, Outcome, Sensitivity};
 use crate::outcome::{MODEL_LEAVES_OUT, Recorded, rules, verdict};
@@ -38,12 +38,12 @@ pub fn outcome(case: &Case, walked: &[Walked], sensitivity: Vec<Sensitivity>, se
         n_base_eq2: case.supply.n_base_eq2,
         capped: case.supply.capped,
         grains_per_void: case.grains_per_void,
-        engine: "particles".into(),
+        engine: walked.first().map_or(case.scene.engine, |w| w.engine).name().into(),
         replicates: walked.iter().map(|w| w.replicate.clone()).collect(),
         summary,
         threshold: verdict::THRESHOLD,
         warnings: case.warnings(),
-        left_out: case.left_out(),
+        left_out: left_out(case, walked),
         model_leaves_out: MODEL_LEAVES_OUT.map(String::from).to_vec(),
         inputs: case.record(),
         ratios,
@@ -51,6 +51,12 @@ pub fn outcome(case: &Case, walked: &[Walked], sensitivity: Vec<Sensitivity>, se
         sensitivity,
         seconds,
     }
+}
+
+/// What the scene did not need, and what the first replicate's first run did not.
+fn left_out(case: &Case, walked: &[Walked]) -> Vec<String> {
+    let of_run = walked.first().map(|w| w.left_out.clone()).unwrap_or_default();
+    [case.left_out(), of_run].concat()
 }
 
 /// Writes a run folder: the resolved scene and its input files, the outcome, the manifest, the CSV files.
@@ -116,10 +122,6 @@ pub fn resolved(case: &Case) -> String {
         CurveSource::Shipped(name) => quoted(name),
         CurveSource::File(_) => kept(setting),
     };
-    let engine = match scene.engine {
-        EngineChoice::Auto => "auto",
-        EngineChoice::Particles => "particles",
-    };
     let mut text = String::new();
     let mut line = |name: &str, value: String| {
         // Writing to a string cannot fail.
@@ -129,7 +131,7 @@ pub fn resolved(case: &Case) -> String {
         };
     };
     line("seed", scene.seed.to_string());
-    line("engine", quoted(engine));
+    line("engine", quoted(scene.engine.name()));
     line("runs", scene.runs.to_string());
     line("replicates", scene.replicates.to_string());
     line("inject_share", number(scene.inject_share));

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::settings::{Names, SceneError, Settings};
 use crate::outcome::Wanted;
+use crate::walk::Engine;
 
 /// The built-in scene, commented.
 pub const BUILT_IN: &str = include_str!("../data/scene.toml");
@@ -95,15 +96,6 @@ const NAMES: Names = Names {
     ],
 };
 
-/// Which engine walks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EngineChoice {
-    /// The one that leaves out most for this scene.
-    Auto,
-    /// Every base particle by itself.
-    Particles,
-}
-
 /// The filter's gradation by mass.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FilterGradation {
@@ -180,7 +172,7 @@ pub struct Scene {
     /// The user's seed.
     pub seed: u64,
     /// Which engine walks.
-    pub engine: EngineChoice,
+    pub engine: Engine,
     /// 1 or 2.
     pub runs: u64,
     /// New network and new walk each.
@@ -236,10 +228,12 @@ impl Scene {
         for assignment in assignments {
             s.set(assignment, &NAMES)?;
         }
-        let engine = match s.text("engine", ENGINES)?.as_deref() {
-            None | Some("auto") => EngineChoice::Auto,
-            Some("particles") => EngineChoice::Particles,
-            Some(_) => return Err(s.refuse("engine", ENGINES)),
+        let engine = match s.text("engine", ENGINES)? {
+            None => Engine::Auto,
+            Some(word) => match Engine::ALL.into_iter().find(|e| e.name() == word) {
+                Some(engine) => engine,
+                None => return Err(s.refuse("engine", ENGINES)),
+            },
         };
         let inject_share = s.number("inject_share", |n| n > 0.0 && n <= 1.0, "a number above 0, up to 1")?;
         let every = s.whole("record.series_every", 0..=u64::MAX)?;
@@ -283,7 +277,7 @@ impl Scene {
     }
 }
 
-const ENGINES: &str = "\"auto\" or \"particles\"";
+const ENGINES: &str = "\"auto\", \"particles\", \"counts\" or \"expected\"";
 
 fn positive(s: &Settings, name: &str) -> Result<Option<f64>, SceneError> {
     s.number(name, |n| n > 0.0, "a finite number above 0")
@@ -438,7 +432,7 @@ mod tests {
     fn values_out_of_range_and_clashes_are_refused() {
         for (set, message) in [
             ("seed=-1", "a whole number from 0"),
-            ("engine=warp", "\"auto\" or \"particles\""),
+            ("engine=warp", "\"auto\", \"particles\", \"counts\" or \"expected\""),
             ("runs=3", "a whole number from 1 to 2"),
             ("replicates=0", "from 1 to"),
             ("inject_share=0", "above 0, up to 1"),

@@ -13,7 +13,7 @@ use crate::outcome::record::{Replicate, RunSummary, Sensitivity, Statistic, Verd
 use crate::outcome::verdict::{below_by_interval, classify};
 use crate::outcome::{Figures, Recorded, Recorder, RunOf};
 use crate::stream::{Key, Purpose};
-use crate::walk::{Progress, SizeClasses, State, Walk, WalkError};
+use crate::walk::{Engine, Plan, Progress, SizeClasses, State, Walk, WalkError};
 
 /// Replicates walk side by side only while all their particles together stay below this, so that memory
 /// does not grow with the number of threads.
@@ -62,6 +62,10 @@ pub struct Walked {
     pub replicate: Replicate,
     /// Rows of the CSV files.
     pub recorded: Recorded,
+    /// The engine that walked the first run.
+    pub engine: Engine,
+    /// What the first run did not need.
+    pub left_out: Vec<String>,
     below: Vec<bool>,
 }
 
@@ -93,7 +97,7 @@ fn some_replicates(
 ) -> Result<Vec<Walked>, RunError> {
     let one = |replicate| walk_replicate(case, replicate, n_base, record, watch);
     let threads = rayon::current_num_threads() as u64;
-    if threads > 1 && n_base.saturating_mul(threads) < SIDE_BY_SIDE {
+    if threads > 1 && case.one_by_one(n_base).saturating_mul(threads) < SIDE_BY_SIDE {
         (1..=count).into_par_iter().map(one).collect()
     } else {
         (1..=count).map(one).collect()
@@ -111,6 +115,7 @@ fn walk_replicate(
     let network = case.network(seed).map_err(CaseError::from)?;
     let mut blocked = BitVec::repeat(false, network.constrictions());
     let (mut runs, mut below, mut recorded) = (Vec::new(), Vec::new(), Recorded::default());
+    let first = Plan::new(case.scene.engine, &network, &case.sampler, &blocked);
     for run in 1..=case.scene.runs {
         let of = RunOf {
             replicate,
@@ -130,7 +135,13 @@ fn walk_replicate(
         (watch.tell)(Event::Run);
     }
     let verdict = classify(below.first().copied(), below.get(1).copied());
-    Ok(Walked { replicate: Replicate { seed, verdict, runs }, recorded, below })
+    Ok(Walked {
+        replicate: Replicate { seed, verdict, runs },
+        recorded,
+        engine: first.engine(),
+        left_out: first.left_out().to_vec(),
+        below,
+    })
 }
 
 #[expect(clippy::too_many_arguments, reason = "one run of one replicate is all of these")]
@@ -144,7 +155,8 @@ fn walk_run(
     record: bool,
     watch: &Watch,
 ) -> Result<(State, Recorder), WalkError> {
-    let supply = case.base_supply(n_base);
+    let plan = Plan::new(case.scene.engine, network, &case.sampler, &blocked);
+    let supply = plan.supply(case.sampler.clone(), n_base, case.increments(), seed, of.run);
     let (smallest, largest) = (case.sampler.smallest(), case.sampler.largest());
     let classes = SizeClasses::logarithmic(smallest, largest, case.scene.wanted.size_classes);
     let mut state = State::new(network, &supply, classes, blocked, seed, of.run);

@@ -53,6 +53,7 @@ fn json(case: &Case, machine: &Machine) -> Result<String, Ending> {
         "capped": case.supply.capped,
         "grains_per_void": case.grains_per_void,
         "mass_ratio": case.mass_ratio,
+        "one_by_one": case.one_by_one(case.supply.n_base),
         "runs_to_walk": runs_to_walk(case),
         "bytes": case.bytes(case.supply.n_base),
         "bytes_available": machine.available,
@@ -109,6 +110,13 @@ fn words(case: &Case, machine: &Machine) -> String {
                 true => format!(", capped from {} by Eq. (2)", count(case.supply.n_base_eq2)),
                 false => String::new(),
             }
+        ),
+    );
+    line(
+        "  one by one",
+        format!(
+            "at most about {}; the others are passive and kept as counts",
+            count(case.one_by_one(case.supply.n_base))
         ),
     );
     let network = &inputs.network;
