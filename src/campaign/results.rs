@@ -34,9 +34,9 @@ pub fn outcome(case: &Case, walked: &[Walked], sensitivity: Vec<Sensitivity>, se
     Outcome {
         verdict,
         seed: case.scene.seed,
-        n_base: case.supply.n_base,
-        n_base_eq2: case.supply.n_base_eq2,
-        capped: case.supply.capped,
+        n_base: case.n_base,
+        n_base_eq2: case.n_base_eq2,
+        capped: case.capped,
         grains_per_void: case.grains_per_void,
         engine: walked.first().map_or(case.scene.engine, |w| w.engine).name().into(),
         replicates: walked.iter().map(|w| w.replicate.clone()).collect(),
@@ -153,7 +153,9 @@ pub fn resolved(case: &Case) -> String {
             }
         }
     }
-    line("grains_per_void", number(case.grains_per_void));
+    if let Some(grains) = case.grains_per_void {
+        line("grains_per_void", number(grains));
+    }
     line("base", String::new());
     match &scene.base {
         BaseGradation::Sieve(_, d0_mm) => {

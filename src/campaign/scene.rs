@@ -235,7 +235,11 @@ impl Scene {
                 None => return Err(s.refuse("engine", ENGINES)),
             },
         };
-        let inject_share = s.number("inject_share", |n| n > 0.0 && n <= 1.0, "a number above 0, up to 1")?;
+        let inject_share = s.number(
+            "inject_share",
+            is_whole_part,
+            "one part of a whole number of equal parts, from 0.000001 to 1, as 0.01 or 0.02",
+        )?;
         let every = s.whole("record.series_every", 0..=u64::MAX)?;
         let curves = s.numbers(
             "record.size_curves",
@@ -278,6 +282,12 @@ impl Scene {
 }
 
 const ENGINES: &str = "\"auto\", \"particles\", \"counts\" or \"expected\"";
+
+/// Whether a share goes into 1 a whole number of times, within a thousandth.
+fn is_whole_part(share: f64) -> bool {
+    let parts = 1.0 / share;
+    (1e-6..=1.0).contains(&share) && (parts - parts.round()).abs() < 1e-3 * parts
+}
 
 fn positive(s: &Settings, name: &str) -> Result<Option<f64>, SceneError> {
     s.number(name, |n| n > 0.0, "a finite number above 0")
@@ -435,7 +445,9 @@ mod tests {
             ("engine=warp", "\"auto\", \"particles\", \"counts\" or \"expected\""),
             ("runs=3", "a whole number from 1 to 2"),
             ("replicates=0", "from 1 to"),
-            ("inject_share=0", "above 0, up to 1"),
+            ("inject_share=0", "a whole number of equal parts"),
+            ("inject_share=0.7", "a whole number of equal parts"),
+            ("inject_share=1e-12", "from 0.000001"),
             ("filter.curve=3", "in quotes"),
             ("filter.grains_per_void=0", "above 0"),
             ("base.cu=0.5", "from 1 to 1000"),

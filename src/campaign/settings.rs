@@ -184,6 +184,11 @@ impl Settings {
         for (key, value) in table.get_ref() {
             match value.get_ref() {
                 DeValue::Table(inner) => {
+                    let table = format!("{}.", key.get_ref());
+                    if !names.known.iter().any(|name| name.starts_with(&table)) {
+                        let origin = Origin::Line(file.into(), line_of(key.span().start));
+                        return Err(names.unknown(key.get_ref(), &origin));
+                    }
                     for (inner_key, value) in inner {
                         let name = format!("{}.{}", key.get_ref(), inner_key.get_ref());
                         add(name, inner_key.span().start, value.get_ref())?;
@@ -335,9 +340,10 @@ fn whole(digits: &str) -> Option<u64> {
 
 impl Names {
     fn check(&self, name: &str, origin: &Origin) -> Result<(), SceneError> {
-        if self.known.contains(&name) {
-            return Ok(());
-        }
+        if self.known.contains(&name) { Ok(()) } else { Err(self.unknown(name, origin)) }
+    }
+
+    fn unknown(&self, name: &str, origin: &Origin) -> SceneError {
         let distance = |known: &&&str| {
             let last = |n: &str| n.rsplit('.').next().unwrap_or_default().to_string();
             let whole = strsim::damerau_levenshtein(known, name);
@@ -345,7 +351,7 @@ impl Names {
         };
         let nearest = self.known.iter().min_by_key(distance).copied().unwrap_or_default();
         let name = Value::Text(name.into()).to_string();
-        Err(SceneError::Unknown { origin: origin.clone(), name, nearest: nearest.into() })
+        SceneError::Unknown { origin: origin.clone(), name, nearest: nearest.into() }
     }
 }
 
@@ -372,8 +378,9 @@ mod tests {
     fn unknown_names_suggest_the_nearest() {
         let error = parse("sede = 1\n").unwrap_err().to_string();
         assert_eq!(error, "s.toml, line 1: there is no setting `sede`; did you mean `seed`?");
-        let error = parse("[bsae]\nseive = 1\n").unwrap_err().to_string();
+        let error = parse("[base]\nseive = 1\n").unwrap_err().to_string();
         assert!(error.contains("line 2") && error.contains("did you mean `base.sieve`"), "{error}");
+        assert!(parse("[base2]\n").unwrap_err().to_string().contains("line 1: there is no setting `base2`"));
     }
 
     #[test]

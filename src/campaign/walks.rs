@@ -15,10 +15,6 @@ use crate::outcome::{Figures, Recorded, Recorder, RunOf};
 use crate::stream::{Key, Purpose};
 use crate::walk::{Engine, Plan, Progress, SizeClasses, State, Walk, WalkError};
 
-/// Replicates walk side by side only while all their particles together stay below this, so that memory
-/// does not grow with the number of threads.
-const SIDE_BY_SIDE: u64 = 50_000_000;
-
 /// Why walking ended early.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
@@ -71,8 +67,8 @@ pub struct Walked {
 
 /// Number of runs that [`replicates`] and [`sensitivity`] walk for a case.
 pub fn runs_to_walk(case: &Case) -> u64 {
-    let (factors, each) = &case.scene.sensitivity;
-    case.scene.runs * (case.scene.replicates + factors.len() as u64 * each)
+    let factors = case.sensitivity_factors().len() as u64;
+    case.scene.runs * (case.scene.replicates + factors * case.scene.sensitivity.1)
 }
 
 /// Seed of replicate `replicate`, counted from 1: a function of the user's seed and the replicate alone.
@@ -85,7 +81,7 @@ pub fn replicate_seed(seed: u64, replicate: u64) -> u64 {
 /// # Errors
 /// A walk that loses particles, or that was stopped.
 pub fn replicates(case: &Case, watch: &Watch) -> Result<Vec<Walked>, RunError> {
-    some_replicates(case, case.scene.replicates, case.supply.n_base, true, watch)
+    some_replicates(case, case.scene.replicates, case.n_base, true, watch)
 }
 
 fn some_replicates(
@@ -97,7 +93,7 @@ fn some_replicates(
 ) -> Result<Vec<Walked>, RunError> {
     let one = |replicate| walk_replicate(case, replicate, n_base, record, watch);
     let threads = rayon::current_num_threads() as u64;
-    if threads > 1 && case.one_by_one(n_base).saturating_mul(threads) < SIDE_BY_SIDE {
+    if case.side_by_side(n_base, threads) > 1 {
         (1..=count).into_par_iter().map(one).collect()
     } else {
         (1..=count).map(one).collect()
@@ -181,7 +177,8 @@ pub fn summarise(walked: &[Walked]) -> (Verdict, Vec<RunSummary>) {
     let summaries: Vec<RunSummary> = (0..runs).map(|run| run_summary(walked, run)).collect();
     let below = |run: usize| {
         let summary = summaries.get(run)?;
-        below_by_interval(&summary.eroded_mass_fraction, walked[0].below[run])
+        let each: Vec<bool> = walked.iter().map(|w| w.below[run]).collect();
+        below_by_interval(&summary.eroded_mass_fraction, &each)
     };
     (classify(below(0), below(1)), summaries)
 }
@@ -209,8 +206,8 @@ fn run_summary(walked: &[Walked], run: usize) -> RunSummary {
 /// # Errors
 /// As [`replicates`].
 pub fn sensitivity(case: &Case, watch: &Watch) -> Result<Vec<Sensitivity>, RunError> {
-    let (factors, each) = &case.scene.sensitivity;
-    factors.iter().map(|&factor| one_sensitivity(case, factor, *each, watch)).collect()
+    let each = case.scene.sensitivity.1;
+    case.sensitivity_factors().into_iter().map(|factor| one_sensitivity(case, factor, each, watch)).collect()
 }
 
 fn one_sensitivity(
@@ -219,14 +216,14 @@ fn one_sensitivity(
     replicates: u64,
     watch: &Watch,
 ) -> Result<Sensitivity, RunError> {
-    let n_base = ((case.supply.n_base as f64 * factor).round() as u64).max(1);
+    let n_base = ((case.n_base as f64 * factor).round() as u64).max(1);
     let walked = some_replicates(case, replicates, n_base, false, watch)?;
     let (verdict, summaries) = summarise(&walked);
     Ok(Sensitivity {
         factor,
         n_base,
-        grains_per_void: case.grains_per_void * factor,
-        mass_ratio: case.mass_ratio * factor,
+        grains_per_void: case.grains_per_void.map(|g| g * factor),
+        mass_ratio: case.mass_ratio.map(|m| m * factor),
         replicates,
         verdict,
         runs: summaries.iter().map(|s| s.eroded_mass_fraction).collect(),

@@ -28,7 +28,12 @@ pub fn check(args: &SceneArgs) -> Result<(), Ending> {
     let case = Case::new(scene(args)?).map_err(Ending::refused)?;
     let machine = Machine::here();
     to_stdout(&if args.json { json(&case, &machine)? } else { words(&case, &machine) });
-    case.check_memory(machine.available).map_err(Ending::refused)
+    case.check_memory(machine.available, cores()).map_err(Ending::refused)
+}
+
+/// Worker threads of a run that does not say how many.
+fn cores() -> u64 {
+    std::thread::available_parallelism().map_or(1, |n| n.get() as u64)
 }
 
 /// Writes the built-in scene.
@@ -41,21 +46,21 @@ pub fn init(path: Option<&Path>) -> Result<(), Ending> {
         let problem = format!("{}: is there already; name a file that is not", path.display());
         return Err(Ending::refused(plain(&problem)));
     }
-    crate::store::write_whole(path, BUILT_IN.as_bytes()).map_err(Ending::failed)?;
+    crate::store::write_whole(path, BUILT_IN.as_bytes()).map_err(super::run::refused_or_failed)?;
     to_stdout(&format!("{}\n", plain(&path.display().to_string())));
     Ok(())
 }
 
 fn json(case: &Case, machine: &Machine) -> Result<String, Ending> {
     let value = serde_json::json!({
-        "n_base": case.supply.n_base,
-        "n_base_eq2": case.supply.n_base_eq2,
-        "capped": case.supply.capped,
+        "n_base": case.n_base,
+        "n_base_eq2": case.n_base_eq2,
+        "capped": case.capped,
         "grains_per_void": case.grains_per_void,
         "mass_ratio": case.mass_ratio,
-        "one_by_one": case.one_by_one(case.supply.n_base),
+        "one_by_one": case.one_by_one(case.n_base),
         "runs_to_walk": runs_to_walk(case),
-        "bytes": case.bytes(case.supply.n_base),
+        "bytes": case.bytes(case.n_base),
         "bytes_available": machine.available,
         "ratios": case.ratios(),
         "inputs": case.record(),
@@ -105,9 +110,9 @@ fn words(case: &Case, machine: &Machine) -> String {
         "base particles",
         format!(
             "{} a run{}",
-            count(case.supply.n_base),
-            match case.supply.capped {
-                true => format!(", capped from {} by Eq. (2)", count(case.supply.n_base_eq2)),
+            count(case.n_base),
+            match case.capped {
+                true => format!(", capped from {} by Eq. (2)", count(case.n_base_eq2)),
                 false => String::new(),
             }
         ),
@@ -116,7 +121,7 @@ fn words(case: &Case, machine: &Machine) -> String {
         "  one by one",
         format!(
             "at most about {}; the others are passive and kept as counts",
-            count(case.one_by_one(case.supply.n_base))
+            count(case.one_by_one(case.n_base))
         ),
     );
     let network = &inputs.network;
@@ -136,11 +141,7 @@ fn words(case: &Case, machine: &Machine) -> String {
     );
     line(
         "memory",
-        format!(
-            "{} a walk, {} available",
-            in_words(case.bytes(case.supply.n_base)),
-            in_words(machine.available)
-        ),
+        format!("{} a walk, {} available", in_words(case.bytes(case.n_base)), in_words(machine.available)),
     );
     for part in case.left_out() {
         line("left out", part);

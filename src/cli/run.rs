@@ -23,13 +23,13 @@ use crate::store::{Folder, StoreError};
 pub fn run(args: &RunArgs) -> Result<(), Ending> {
     let case = Case::new(scene(&args.scene)?).map_err(Ending::refused)?;
     let machine = Machine::here();
-    case.check_memory(machine.available).map_err(Ending::refused)?;
+    let threads = args.threads.map_or(0, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(Ending::failed)?;
+    case.check_memory(machine.available, pool.current_num_threads() as u64).map_err(Ending::refused)?;
     let folder = open_folder(args)?;
     for warning in case.warnings() {
         to_stderr(&format!("warning: {}\n", plain(&warning)));
     }
-    let threads = args.threads.map_or(0, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(Ending::failed)?;
     let started = SystemTime::now();
     let (walked, outcome) = walk(&case, &pool, args.quiet)?;
     let manifest = Manifest {
@@ -42,7 +42,7 @@ pub fn run(args: &RunArgs) -> Result<(), Ending> {
         machine: machine.description,
         started: humantime::format_rfc3339_seconds(started).to_string(),
         finished: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
-        command: std::env::args().collect::<Vec<_>>().join(" "),
+        command: command_line(),
     };
     results::write(&folder, &case, &outcome, walked, &manifest).map_err(Ending::failed)?;
     report::write(folder.path()).map_err(Ending::failed)?;
@@ -90,7 +90,13 @@ fn walk(case: &Case, pool: &rayon::ThreadPool, quiet: bool) -> Result<(Vec<walks
     Ok((walked, outcome))
 }
 
-fn refused_or_failed(error: StoreError) -> Ending {
+/// The command line in words, whatever bytes it is made of.
+fn command_line() -> String {
+    let words: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
+    words.join(" ")
+}
+
+pub(super) fn refused_or_failed(error: StoreError) -> Ending {
     if error.is_refusal() { Ending::refused(error) } else { Ending::failed(error) }
 }
 
@@ -127,14 +133,28 @@ fn summary(outcome: &Outcome, folder: &Path) -> String {
     for run in &outcome.summary {
         line(format!("  {}", run_line(run)));
     }
+    let trapped: u64 = outcome.replicates.iter().flat_map(|r| &r.runs).map(|r| r.trapped).sum();
+    if trapped > 0 {
+        line(format!("  {} particles circle for ever (trapped) and count as retained", count(trapped)));
+    }
+    if let (true, Some(eq2)) = (outcome.capped, outcome.n_base_eq2) {
+        line(format!("  the cap bit: Eq. (2) asks for {} base particles", count(eq2)));
+    }
+    let unit = if inputs.scale_free { "D0F" } else { "mm" };
+    if let Some(thickness) = inputs.network.thickness_mm {
+        line(format!("  the network stands for {thickness:.1} {unit} of filter along the flow"));
+    }
     line(format!(
-        "  {} replicates of {} base particles, {} voids; D15F/D85B {:.2}, D15F/D95B {:.2}, {} grains per void",
+        "  {} replicates of {} base particles, {} voids; D15F/D85B {:.2}, D15F/D95B {:.2}, {}",
         outcome.replicates.len(),
         count(outcome.n_base),
         count(inputs.network.voids),
         outcome.ratios.d15f_over_d85b,
         outcome.ratios.d15f_over_d95b,
-        outcome.grains_per_void
+        match outcome.grains_per_void {
+            Some(grains) => format!("{grains} grains per void"),
+            None => "grains per void not given".into(),
+        }
     ));
     line(format!("The model leaves out: {}.", leaves_out(&outcome.model_leaves_out)));
     line(format!(

@@ -23,12 +23,12 @@ pub struct Outcome {
     pub seed: u64,
     /// Base particles inserted in each run.
     pub n_base: u64,
-    /// Base particles by Eq. (2), before any cap or user's number.
-    pub n_base_eq2: u64,
+    /// Base particles by Eq. (2), before any cap or user's number; `None` where the grains per void are not given.
+    pub n_base_eq2: Option<u64>,
     /// Whether a cap made `n_base` smaller than `n_base_eq2`.
     pub capped: bool,
-    /// Filter grains per void, `N_p / N_voids` of Eq. (2).
-    pub grains_per_void: f64,
+    /// Filter grains per void, `N_p / N_voids` of Eq. (2), where given.
+    pub grains_per_void: Option<f64>,
     /// Name of the engine that walked.
     pub engine: String,
     /// One per replicate, in order.
@@ -178,7 +178,7 @@ pub struct Inputs {
     /// The void network.
     pub network: Network,
     /// Mass of base over mass of filter, `F_base` of Eq. (2).
-    pub mass_ratio: f64,
+    pub mass_ratio: Option<f64>,
     /// Share of `n_base` inserted in each increment.
     pub inject_share: f64,
     /// Whether sizes are multiples of D0F instead of mm.
@@ -312,9 +312,9 @@ pub struct Sensitivity {
     /// Base particles inserted in each run.
     pub n_base: u64,
     /// Grains per void that this factor stands for at the scene's mass ratio.
-    pub grains_per_void: f64,
+    pub grains_per_void: Option<f64>,
     /// Mass ratio that this factor stands for at the scene's grains per void.
-    pub mass_ratio: f64,
+    pub mass_ratio: Option<f64>,
     /// How many replicates were walked.
     pub replicates: u64,
     /// Their class.

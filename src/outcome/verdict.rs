@@ -38,13 +38,17 @@ pub fn below_by_count(eroded: u64, inserted: u64) -> bool {
     u128::from(eroded) * 40 < u128::from(inserted) * 3
 }
 
-/// Where the mean over replicates lies; `single` decides where there is only one.
-pub fn below_by_interval(statistic: &Statistic, single: bool) -> BelowThreshold {
+/// Where the mean over replicates lies. `each` says where every replicate lies, exactly; it decides where there is only
+/// one, or where they do not differ, so that the rounding of a mean decides nothing.
+pub fn below_by_interval(statistic: &Statistic, each: &[bool]) -> BelowThreshold {
+    let no_spread = statistic.sd.is_none_or(|sd| sd < 1e-12);
+    if no_spread && each.iter().all(|&below| below == each[0]) {
+        return each.first().copied();
+    }
     match (statistic.low, statistic.high) {
-        (Some(_), Some(high)) if high < THRESHOLD => Some(true),
-        (Some(low), Some(_)) if low >= THRESHOLD => Some(false),
-        (Some(_), Some(_)) => None,
-        _ => Some(single),
+        (_, Some(high)) if high < THRESHOLD => Some(true),
+        (Some(low), _) if low >= THRESHOLD => Some(false),
+        _ => None,
     }
 }
 
@@ -72,10 +76,14 @@ mod tests {
 
     #[test]
     fn an_interval_that_straddles_decides_nothing() {
-        let s = |low, high| Statistic { mean: 0.07, sd: Some(0.0), low: Some(low), high: Some(high) };
-        assert_eq!(below_by_interval(&s(0.01, 0.0749), false), Some(true));
-        assert_eq!(below_by_interval(&s(0.01, 0.075), true), None);
-        assert_eq!(below_by_interval(&s(0.075, 0.2), true), Some(false));
-        assert_eq!(below_by_interval(&Statistic::of(&[0.07]), true), Some(true));
+        let s = |low, high| Statistic { mean: 0.07, sd: Some(0.01), low: Some(low), high: Some(high) };
+        assert_eq!(below_by_interval(&s(0.01, 0.0749), &[true, false]), Some(true));
+        assert_eq!(below_by_interval(&s(0.01, 0.075), &[true, true]), None);
+        assert_eq!(below_by_interval(&s(0.075, 0.2), &[true, false]), Some(false));
+        assert_eq!(below_by_interval(&Statistic::of(&[0.07]), &[true]), Some(true));
+        // Ten times 0.075 has a mean below 0.075.
+        let ten = Statistic::of(&[0.075; 10]);
+        assert!(ten.mean < THRESHOLD);
+        assert_eq!(below_by_interval(&ten, &[false; 10]), Some(false));
     }
 }

@@ -1,6 +1,6 @@
 //! The run folder: one writer, and no file that is half written.
 //!
-//! - A folder is ours when it was empty or absent, or holds our lock file [`LOCK_FILE`]. Anything else is
+//! - A folder is ours when it was empty or absent, or holds our lock file [`LOCK_FILE`] or a finished run. Anything else is
 //!   not written to; neither is a folder reached through a symbolic link.
 //! - The lock belongs to the process: the system releases it however the process dies. The lock file
 //!   says who holds it.
@@ -54,9 +54,9 @@ pub enum StoreError {
 impl StoreError {
     /// Whether the user can mend it by naming another folder, before any work is done.
     pub fn is_refusal(&self) -> bool {
-        !matches!(self, Self::Io { source, .. } if source.kind() != io::ErrorKind::PermissionDenied
-            && source.kind() != io::ErrorKind::ReadOnlyFilesystem
-            && source.kind() != io::ErrorKind::NotADirectory)
+        use io::ErrorKind::{NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem};
+        let by_name = [NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem];
+        !matches!(self, Self::Io { source, .. } if !by_name.contains(&source.kind()))
     }
 }
 
@@ -73,6 +73,8 @@ impl Folder {
     /// # Errors
     /// The folder is a link, holds other things, is held by another process, or cannot be written.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
+        // Without a trailing slash, which would follow a link.
+        let path: &Path = &path.components().collect::<PathBuf>();
         let io = |action| move |source| StoreError::Io { path: path.to_owned(), action, source };
         match fs::symlink_metadata(path) {
             Ok(meta) if meta.is_symlink() => {
@@ -82,7 +84,8 @@ impl Folder {
                 return Err(StoreError::NotAFolder { path: path.to_owned(), what: "a file" });
             }
             Ok(_) => {
-                let marked = path.join(LOCK_FILE).symlink_metadata().is_ok_and(|m| m.is_file());
+                let is_file = |name| path.join(name).symlink_metadata().is_ok_and(|m| m.is_file());
+                let marked = is_file(LOCK_FILE) || (is_file("manifest.json") && is_file("outcome.json"));
                 let empty = fs::read_dir(path).map_err(io("read the folder"))?.next().is_none();
                 if !marked && !empty {
                     return Err(StoreError::NotOurs { path: path.to_owned() });
@@ -203,6 +206,8 @@ mod tests {
         let link = root.path().join("link");
         std::os::unix::fs::symlink("/tmp", &link).unwrap();
         assert!(matches!(Folder::open(&link), Err(StoreError::NotAFolder { what: "a symbolic link", .. })));
+        let with_slash = root.path().join("link/");
+        assert!(matches!(Folder::open(&with_slash), Err(StoreError::NotAFolder { .. })));
         assert_eq!(fs::read_dir(root.path()).unwrap().count(), 2);
     }
 }

@@ -1,13 +1,18 @@
 //! A case: a scene with its files read and every number worked out, before any work is done.
 
-use std::path::{Path, PathBuf};
+mod files;
+mod record;
+mod warnings;
 
-use super::scene::{Amount, BaseGradation, CurveSource, D85, FilterGradation, NetworkSource, Scene};
+use files::Files;
+pub use files::Input;
+
+use super::scene::{Amount, BaseGradation, D85, FilterGradation, NetworkSource, Scene};
 use super::settings::SceneError;
-use crate::constrictions::{Curve, CurveError, CurveUnit, ShippedFilter, find};
+use crate::constrictions::{Curve, CurveError, CurveUnit, ShippedFilter};
 use crate::gradation::{BaseSupply, Gradation, GradationError, NumberError, SizeSampler, base_particles};
 use crate::network::{Network, NetworkError};
-use crate::outcome::record::{self, InputFile, Ratios};
+use crate::outcome::record::Ratios;
 use crate::walk::{CHUNK, Engine};
 
 /// Why a scene cannot be walked.
@@ -45,18 +50,9 @@ pub enum CaseError {
     },
 }
 
-/// A file that was read, and the name under which a run folder keeps it.
-#[derive(Clone, Debug)]
-pub struct Input {
-    /// The setting that names it.
-    pub setting: &'static str,
-    /// Its path as given.
-    pub path: PathBuf,
-    /// Name inside the run folder.
-    pub kept_as: String,
-    /// Its bytes.
-    pub bytes: Vec<u8>,
-}
+/// Replicates walk side by side only while all of them together stay below this, so that memory does not grow with
+/// the number of threads.
+const SIDE_BY_SIDE_BYTES: u64 = 1 << 30;
 
 /// A scene, worked out.
 pub struct Case {
@@ -72,12 +68,16 @@ pub struct Case {
     pub base: Gradation,
     /// Draws the base's sizes, in units of `unit_mm`.
     pub sampler: SizeSampler,
-    /// N_base, by Eq. (2) or as given.
-    pub supply: BaseSupply,
-    /// Filter grains per void.
-    pub grains_per_void: f64,
-    /// Mass of base over mass of filter.
-    pub mass_ratio: f64,
+    /// Base particles of a run, by Eq. (2) or as given.
+    pub n_base: u64,
+    /// Base particles by Eq. (2); `None` where the grains per void are not given.
+    pub n_base_eq2: Option<u64>,
+    /// Whether a cap made `n_base` smaller than Eq. (2).
+    pub capped: bool,
+    /// Filter grains per void, where given.
+    pub grains_per_void: Option<f64>,
+    /// Mass of base over mass of filter that `n_base` stands for; `None` where the grains per void are not given.
+    pub mass_ratio: Option<f64>,
     /// The reference length: the smallest filter grain (mm).
     pub unit_mm: f64,
     /// The network, where it comes from a file.
@@ -86,52 +86,6 @@ pub struct Case {
     pub counts: [u64; 4],
     /// Files that were read.
     pub inputs: Vec<Input>,
-}
-
-/// Reads the files of a scene, and remembers them.
-#[derive(Default)]
-struct Files(Vec<Input>);
-
-impl Files {
-    /// Notes a file that a reader has read; reads it again for the copy in the run folder.
-    fn keep(&mut self, setting: &'static str, path: &Path, kept_as: &str) -> Result<(), CaseError> {
-        let file = path.display().to_string();
-        let bytes = std::fs::read(path).map_err(|source| SceneError::File { file, source })?;
-        let input = Input { setting, path: path.to_owned(), kept_as: format!("inputs/{kept_as}"), bytes };
-        self.0.push(input);
-        Ok(())
-    }
-
-    fn curve(
-        &mut self,
-        source: &CurveSource,
-        setting: &'static str,
-        kept_as: &str,
-    ) -> Result<(Curve, Option<&'static ShippedFilter>), CaseError> {
-        match source {
-            CurveSource::Shipped(name) => {
-                let shipped = find(name)?;
-                Ok((shipped.curve()?, Some(shipped)))
-            }
-            CurveSource::File(path) => {
-                let curve = Curve::from_csv(path)?;
-                self.keep(setting, path, kept_as)?;
-                Ok((curve, None))
-            }
-        }
-    }
-
-    fn sieve(
-        &mut self,
-        path: &Path,
-        d0_mm: Option<f64>,
-        setting: &'static str,
-        kept_as: &str,
-    ) -> Result<Gradation, CaseError> {
-        let gradation = Gradation::from_sieve_csv(path, d0_mm)?;
-        self.keep(setting, path, kept_as)?;
-        Ok(gradation)
-    }
 }
 
 impl Case {
@@ -159,16 +113,18 @@ impl Case {
         };
         let unit_mm = filter.smallest_mm();
         let network_file = match &scene.network {
-            NetworkSource::File(path) => {
-                let network = Network::read_csv(path, unit_mm)?;
-                files.keep("network.file", path, "network.csv")?;
-                Some(network)
-            }
+            NetworkSource::File(path) => Some(files.network(path, unit_mm)?),
             NetworkSource::Cubic(_) => None,
         };
         let curve = match (&network_file, curve) {
             (Some(network), _) => curve_of(network)?,
-            (None, Some((curve, _))) => curve.in_mm(unit_mm)?,
+            (None, Some((curve, _))) => {
+                if curve.unit() == CurveUnit::D0f && filter.tail_mass_fraction() > 0.0 {
+                    let problem = "this constriction curve is in units of D0F, but the filter's finest sieve leaves a tail of unknown size: give filter.d0_mm";
+                    return Err(scene.clash(problem).into());
+                }
+                curve.in_mm(unit_mm)?
+            }
             (None, None) => return Err(scene.clash("filter.curve is missing").into()),
         };
         let base = base_gradation(&scene, &filter, &curve, unit_mm, &mut files)?;
@@ -184,8 +140,16 @@ impl Case {
             (None, NetworkSource::File(_)) => unreachable!("a network file was read above"),
         };
         let grains_per_void = scene.grains_per_void.or(shipped.map(|s| s.grains_per_void));
-        let (supply, grains_per_void, mass_ratio) =
-            supply(&scene, grains_per_void, counts[0], &base, &filter)?;
+        let (supply, mass_ratio) = supply(&scene, grains_per_void, counts[0], &base, &filter)?;
+        if base.tail_mass_fraction() > 0.0 && base.smallest_mm() > curve.smallest() {
+            let problem = format!(
+                "the base's finest sieve, {} mm, is coarser than the finest constriction, {:.4} mm: its tail of unknown size \
+                 may not be passive; give base.d0_mm or a finer sieve",
+                base.smallest_mm(),
+                curve.smallest()
+            );
+            return Err(scene.clash(problem).into());
+        }
         let sampler = SizeSampler::new(&base, unit_mm)?;
         for (name, gradation, percent) in [("filter", &filter, 15.0), ("base", &base, 85.0)] {
             if gradation.d(percent).is_none() {
@@ -201,7 +165,9 @@ impl Case {
             shipped,
             base,
             sampler,
-            supply,
+            n_base: supply.0,
+            n_base_eq2: supply.1,
+            capped: supply.2,
             grains_per_void,
             mass_ratio,
             unit_mm,
@@ -250,17 +216,39 @@ impl Case {
         particles.saturating_add(voids * 140 + constrictions * 25)
     }
 
+    /// Multiples of N_base that the sensitivity study walks: those asked for, none above a cap that the user set.
+    pub fn sensitivity_factors(&self) -> Vec<f64> {
+        let cap = match self.scene.amount {
+            Amount::MassRatio(_, Some(cap)) => cap as f64,
+            _ => f64::INFINITY,
+        };
+        self.scene.sensitivity.0.iter().copied().filter(|f| f * self.n_base as f64 <= cap).collect()
+    }
+
+    /// The most bytes that the whole case takes at once on this many threads.
+    pub fn peak_bytes(&self, threads: u64) -> u64 {
+        let largest = self.sensitivity_factors().into_iter().fold(1.0, f64::max);
+        let n_base = (self.n_base as f64 * largest) as u64;
+        self.bytes(n_base).saturating_mul(self.side_by_side(n_base, threads))
+    }
+
+    /// Replicates of `n_base` particles that walk at the same time on this many threads: one, unless they are small.
+    pub fn side_by_side(&self, n_base: u64, threads: u64) -> u64 {
+        let all = self.bytes(n_base).saturating_mul(threads);
+        if all <= SIDE_BY_SIDE_BYTES { threads.max(1) } else { 1 }
+    }
+
     /// Refuses what does not fit the memory that is available.
     ///
     /// # Errors
     /// [`CaseError::Memory`].
-    pub fn check_memory(&self, available: u64) -> Result<(), CaseError> {
-        let needed = self.bytes(self.supply.n_base);
+    pub fn check_memory(&self, available: u64, threads: u64) -> Result<(), CaseError> {
+        let needed = self.peak_bytes(threads);
         if needed <= available {
             return Ok(());
         }
         Err(CaseError::Memory {
-            n_base: self.one_by_one(self.supply.n_base),
+            n_base: self.one_by_one(self.n_base),
             voids: self.counts[0],
             needed: in_words(needed),
             available: in_words(available),
@@ -287,139 +275,6 @@ impl Case {
             left_out.push("sensitivity to the number of base particles: it was not asked for".into());
         }
         left_out
-    }
-
-    /// Files that were read, with their checksums.
-    pub fn input_files(&self) -> Vec<InputFile> {
-        let one = |i: &Input| InputFile {
-            name: i.path.display().to_string(),
-            xxh3: format!("{:016x}", xxhash_rust::xxh3::xxh3_64(&i.bytes)),
-        };
-        self.inputs.iter().map(one).collect()
-    }
-
-    /// What went in, as a run folder records it.
-    pub fn record(&self) -> record::Inputs {
-        let d = |gradation: &Gradation, percent| gradation.d(percent).unwrap_or(f64::NAN);
-        let pairs = |points: Vec<(f64, f64)>| points.into_iter().map(|(a, b)| [a, b]).collect();
-        let [voids, constrictions, start_nodes, layers] = self.counts;
-        let d50_by_number = self.filter.d_by_number(50.0).unwrap_or(f64::NAN);
-        let (kind, name, shape) = match &self.scene.network {
-            NetworkSource::Cubic(n) => (
-                record::NetworkKind::Cubic,
-                format!("cubic {} x {} x {}", n[0], n[1], n[2]),
-                n.map(|n| Some(u64::from(n))),
-            ),
-            NetworkSource::File(path) => (record::NetworkKind::File, path.display().to_string(), [None; 3]),
-        };
-        let curve_name = match (&self.network_file, &self.scene.curve) {
-            (Some(_), _) | (None, None) => "the network's own constrictions".to_string(),
-            (None, Some(CurveSource::Shipped(name))) => name.clone(),
-            (None, Some(CurveSource::File(path))) => path.display().to_string(),
-        };
-        record::Inputs {
-            filter: record::Filter {
-                name: match &self.scene.filter {
-                    FilterGradation::Sieve(path, _) => path.display().to_string(),
-                    FilterGradation::Linear { .. } => {
-                        format!("linear, Cu {:.3}", self.filter.cu().unwrap_or(f64::NAN))
-                    }
-                },
-                attribution: match (&self.network_file, self.shipped) {
-                    (None, Some(shipped)) => format!("{} ({})", shipped.attribution, shipped.licence),
-                    _ => String::new(),
-                },
-                cu: self.filter.cu(),
-                d0_mm: self.unit_mm,
-                d15_mm: d(&self.filter, 15.0),
-                d50_mm: d(&self.filter, 50.0),
-                d50_by_number_mm: d50_by_number,
-                d85_mm: d(&self.filter, 85.0),
-                void_ratio: self.shipped.filter(|_| self.network_file.is_none()).map(|s| s.void_ratio),
-                gradation: pairs(self.filter.points()),
-                constrictions: self.curve.points().into_iter().map(|(percent, d)| [d, percent]).collect(),
-                cu_csd: self.curve.cu(),
-                curve_name,
-            },
-            base: record::Base {
-                name: match &self.scene.base {
-                    BaseGradation::Sieve(path, _) => path.display().to_string(),
-                    BaseGradation::Single(_) => "one size".into(),
-                    BaseGradation::Linear { cu, .. } => format!("linear, Cu {cu}"),
-                },
-                cu: self.base.cu(),
-                d0_mm: self.base.smallest_mm(),
-                d15_mm: self.base.d(15.0),
-                d50_mm: self.base.d(50.0),
-                d85_mm: d(&self.base, 85.0),
-                d95_mm: d(&self.base, 95.0),
-                d100_mm: self.base.largest_mm(),
-                tail_mass_fraction: self.base.tail_mass_fraction(),
-                gradation: pairs(self.base.points()),
-            },
-            network: record::Network {
-                kind,
-                name,
-                nx: shape[0],
-                ny: shape[1],
-                nz: shape[2],
-                voids,
-                constrictions,
-                start_nodes,
-                layers,
-                thickness_mm: self.network_file.is_none().then(|| layers as f64 * d50_by_number),
-            },
-            mass_ratio: self.mass_ratio,
-            inject_share: self.scene.inject_share,
-            scale_free: self.is_scale_free(),
-        }
-    }
-
-    /// Whether lengths are in units of the smallest filter grain: a scale-free curve with d0_mm = 1.
-    pub fn is_scale_free(&self) -> bool {
-        matches!(self.scene.filter, FilterGradation::Linear { d0_mm, .. } if d0_mm == 1.0)
-            && self.shipped.is_some()
-            && matches!(
-                self.scene.base,
-                BaseGradation::Linear { d85: D85::AtDc(..) | D85::Ratio(_), .. } | BaseGradation::Single(_)
-            )
-    }
-
-    /// Where the inputs leave the range in which the model was checked, and what else a reader must know.
-    pub fn warnings(&self) -> Vec<String> {
-        let mut warnings = Vec::new();
-        let mut cu = |whose: &str, cu: Option<f64>, low: f64, high: f64| match cu {
-            Some(cu) if cu < low - 1e-9 || cu > high + 1e-9 => warnings
-                .push(format!("Cu of the {whose} is {cu:.2}: the model was checked for {low} to {high}")),
-            _ => {}
-        };
-        cu("filter", self.filter.cu(), 1.2, 6.0);
-        cu("base", self.base.cu(), 1.2, 4.5);
-        if !self.is_scale_free() {
-            let fines = self.base.percent_finer_by_mass(0.075).max(100.0 * self.base.tail_mass_fraction());
-            if self.base.smallest_mm() < 0.075 && fines > 15.0 {
-                warnings.push(format!(
-                    "{fines:.0} % of the base is finer than 0.075 mm: cohesion may govern, which the model does not know"
-                ));
-            }
-        }
-        if self.base.d(50.0).zip(self.filter.d(50.0)).is_some_and(|(b, f)| b > f) {
-            warnings.push("the base is coarser than the filter (D50): are the two files exchanged?".into());
-        }
-        if self.base.tail_mass_fraction() > 0.0 {
-            warnings.push(format!(
-                "{:.1} % of the base is finer than its finest sieve: taken as passive and counted by mass only",
-                100.0 * self.base.tail_mass_fraction()
-            ));
-        }
-        if self.supply.capped {
-            warnings.push(format!(
-                "the cap of {} base particles bit: Eq. (2) asks for {}. Fewer particles block less: a bias towards more erosion, not \
-                 noise",
-                self.supply.n_base, self.supply.n_base_eq2
-            ));
-        }
-        warnings
     }
 }
 
@@ -467,35 +322,38 @@ fn base_gradation(
     Ok(Gradation::linear_from_dx(85.0, d85_mm, cu)?)
 }
 
-/// N_base; the grains per void and the mass ratio that it stands for.
+/// The mass ratio that Eq. (2) speaks of where the scene gives a number: the paper's 5 %.
+const PAPER_MASS_RATIO: f64 = 0.05;
+
+/// N_base as walked, N_base by Eq. (2), whether a cap bit; and the mass ratio that N_base stands for.
+#[expect(clippy::type_complexity, reason = "one caller, who takes it apart")]
 fn supply(
     scene: &Scene,
     grains_per_void: Option<f64>,
     voids: u64,
     base: &Gradation,
     filter: &Gradation,
-) -> Result<(BaseSupply, f64, f64), CaseError> {
-    let missing =
-        || scene.clash("filter.grains_per_void is missing (Eq. 2): only the shipped curves know theirs");
-    match scene.amount {
-        Amount::MassRatio(ratio, cap) => {
-            let grains = grains_per_void.ok_or_else(missing)?;
-            let supply = base_particles(ratio, grains, voids, base, filter, cap)?;
-            if supply.n_base == 0 {
-                let problem = "Eq. (2) gives less than half a base particle: a larger network, mass ratio or grains per void is needed";
-                return Err(scene.clash(problem).into());
-            }
-            Ok((supply, grains, ratio))
-        }
+) -> Result<((u64, Option<u64>, bool), Option<f64>), CaseError> {
+    let (ratio, cap) = match scene.amount {
+        Amount::MassRatio(ratio, cap) => (ratio, cap),
         Amount::Number(n) => {
-            let grains = grains_per_void.unwrap_or(1.0);
-            // Eq. (2) is linear in the mass ratio: what one unit of it gives says what `n` stands for.
-            let per_ratio = base_particles(1.0, grains, voids, base, filter, None).map(|s| s.n_base_eq2);
-            let ratio = per_ratio.map_or(f64::NAN, |per_ratio| n as f64 / per_ratio as f64);
-            let eq2 = base_particles(0.05, grains, voids, base, filter, None).map_or(n, |s| s.n_base_eq2);
-            Ok((BaseSupply { n_base: n, n_base_eq2: eq2, capped: false }, grains, ratio))
+            let Some(grains) = grains_per_void else { return Ok(((n, None, false), None)) };
+            let per_grain = base.particles_per_unit_volume() / filter.particles_per_unit_volume();
+            let eq2 = base_particles(PAPER_MASS_RATIO, grains, voids, base, filter, None)?.n_base_eq2;
+            return Ok(((n, Some(eq2), false), Some(n as f64 / (grains * voids as f64 * per_grain))));
         }
+    };
+    let Some(grains) = grains_per_void else {
+        return Err(scene
+            .clash("filter.grains_per_void is missing (Eq. 2): only the shipped curves know theirs")
+            .into());
+    };
+    let BaseSupply { n_base, n_base_eq2, capped } = base_particles(ratio, grains, voids, base, filter, cap)?;
+    if n_base == 0 {
+        let problem = "Eq. (2) gives less than half a base particle: a larger network, mass ratio or grains per void is needed";
+        return Err(scene.clash(problem).into());
     }
+    Ok(((n_base, Some(n_base_eq2), capped), Some(ratio)))
 }
 
 /// Bytes in words: `1.6 GB`.

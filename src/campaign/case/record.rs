@@ -1,0 +1,105 @@
+//! What went in, as a run folder records it.
+
+use super::{Case, Input};
+use crate::campaign::scene::{BaseGradation, CurveSource, D85, FilterGradation, NetworkSource};
+use crate::gradation::Gradation;
+use crate::outcome::record::{self, InputFile};
+
+impl Case {
+    /// Files that were read, with their checksums.
+    pub fn input_files(&self) -> Vec<InputFile> {
+        let one = |i: &Input| InputFile {
+            name: i.path.display().to_string(),
+            xxh3: format!("{:016x}", xxhash_rust::xxh3::xxh3_64(&i.bytes)),
+        };
+        self.inputs.iter().map(one).collect()
+    }
+
+    /// What went in, as a run folder records it.
+    pub fn record(&self) -> record::Inputs {
+        let d = |gradation: &Gradation, percent| gradation.d(percent).unwrap_or(f64::NAN);
+        let pairs = |points: Vec<(f64, f64)>| points.into_iter().map(|(a, b)| [a, b]).collect();
+        let [voids, constrictions, start_nodes, layers] = self.counts;
+        let d50_by_number = self.filter.d_by_number(50.0).unwrap_or(f64::NAN);
+        let (kind, name, shape) = match &self.scene.network {
+            NetworkSource::Cubic(n) => (
+                record::NetworkKind::Cubic,
+                format!("cubic {} x {} x {}", n[0], n[1], n[2]),
+                n.map(|n| Some(u64::from(n))),
+            ),
+            NetworkSource::File(path) => (record::NetworkKind::File, path.display().to_string(), [None; 3]),
+        };
+        let curve_name = match (&self.network_file, &self.scene.curve) {
+            (Some(_), _) | (None, None) => "the network's own constrictions".to_string(),
+            (None, Some(CurveSource::Shipped(name))) => name.clone(),
+            (None, Some(CurveSource::File(path))) => path.display().to_string(),
+        };
+        record::Inputs {
+            filter: record::Filter {
+                name: match &self.scene.filter {
+                    FilterGradation::Sieve(path, _) => path.display().to_string(),
+                    FilterGradation::Linear { .. } => {
+                        format!("linear, Cu {:.3}", self.filter.cu().unwrap_or(f64::NAN))
+                    }
+                },
+                attribution: match (&self.network_file, self.shipped) {
+                    (None, Some(shipped)) => format!("{} ({})", shipped.attribution, shipped.licence),
+                    _ => String::new(),
+                },
+                cu: self.filter.cu(),
+                d0_mm: self.unit_mm,
+                d15_mm: d(&self.filter, 15.0),
+                d50_mm: d(&self.filter, 50.0),
+                d50_by_number_mm: d50_by_number,
+                d85_mm: d(&self.filter, 85.0),
+                void_ratio: self.shipped.filter(|_| self.network_file.is_none()).map(|s| s.void_ratio),
+                gradation: pairs(self.filter.points()),
+                constrictions: self.curve.points().into_iter().map(|(percent, d)| [d, percent]).collect(),
+                cu_csd: self.curve.cu(),
+                curve_name,
+            },
+            base: record::Base {
+                name: match &self.scene.base {
+                    BaseGradation::Sieve(path, _) => path.display().to_string(),
+                    BaseGradation::Single(_) => "one size".into(),
+                    BaseGradation::Linear { cu, .. } => format!("linear, Cu {cu}"),
+                },
+                cu: self.base.cu(),
+                d0_mm: self.base.smallest_mm(),
+                d15_mm: self.base.d(15.0),
+                d50_mm: self.base.d(50.0),
+                d85_mm: d(&self.base, 85.0),
+                d95_mm: d(&self.base, 95.0),
+                d100_mm: self.base.largest_mm(),
+                tail_mass_fraction: self.base.tail_mass_fraction(),
+                gradation: pairs(self.base.points()),
+            },
+            network: record::Network {
+                kind,
+                name,
+                nx: shape[0],
+                ny: shape[1],
+                nz: shape[2],
+                voids,
+                constrictions,
+                start_nodes,
+                layers,
+                thickness_mm: self.network_file.is_none().then(|| layers as f64 * d50_by_number),
+            },
+            mass_ratio: self.mass_ratio,
+            inject_share: self.scene.inject_share,
+            scale_free: self.is_scale_free(),
+        }
+    }
+
+    /// Whether lengths are in units of the smallest filter grain: a scale-free curve with d0_mm = 1.
+    pub fn is_scale_free(&self) -> bool {
+        matches!(self.scene.filter, FilterGradation::Linear { d0_mm, .. } if d0_mm == 1.0)
+            && self.shipped.is_some()
+            && self.network_file.is_none()
+            && matches!(
+                self.scene.base,
+                BaseGradation::Linear { d85: D85::AtDc(..) | D85::Ratio(_), .. } | BaseGradation::Single(_)
+            )
+    }
+}
