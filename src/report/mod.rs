@@ -1,6 +1,6 @@
 //! The report: one page and its figures, from a finished run folder alone.
 //!
-//! [`write`] reads what a run left behind (`outcome.json`, `manifest.json`, `scene.toml`, `series.csv`, `layers.csv`,
+//! [`write()`] reads what a run left behind (`outcome.json`, `manifest.json`, `scene.toml`, `series.csv`, `layers.csv`,
 //! `retained.csv`, `eroded.csv`; see [`crate::outcome::record`]) and runs nothing. It writes `figures/*.svg`, each a
 //! file of its own, and `report.html`.
 //!
@@ -27,7 +27,7 @@ pub use folder::ReportError;
 use folder::RunFolder;
 use run_figures::Drawn;
 
-/// What [`write`] wrote.
+/// What [`write()`] wrote.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
     /// `report.html`.

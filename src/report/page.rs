@@ -175,7 +175,8 @@ fn tally(outcome: &Outcome) -> String {
     let classes = [Verdict::None, Verdict::Some, Verdict::Continuing, Verdict::Undecided];
     let votes = classes.into_iter().filter_map(|class| {
         let votes = outcome.replicates.iter().filter(|replicate| replicate.verdict == class).count();
-        (votes > 0).then(|| format!("{votes} {}", class.words()))
+        let of = if votes == count { "all".to_owned() } else { votes.to_string() };
+        (votes > 0).then(|| format!("{} in {of}", class.words()))
     });
     format!(
         "{count} replicates, each a new network and a new walk: {}.",
@@ -232,35 +233,35 @@ fn rules(outcome: &Outcome) -> Markup {
                 "Empirical rules on the same two curves. They draw their lines by experience with tests; the verdict above "
                 "is “" (outcome.verdict.words()) "”. Where they differ, neither is proof."
             }
-            div.scroll { table {
-                thead { tr { th { "Rule" } th.n { "Ratio" } th.n { "here" } th.n { "limit" } th { "" } th { "Source" } } }
+            table {
+                thead { tr { th { "Rule and source" } th.n { "Ratio here" } th.n { "Limit" } th { "" } } }
                 tbody { @for rule in &outcome.rules {
                     tr {
-                        th { (clean(&rule.name)) }
-                        td.n { (clean(&rule.quantity)) }
-                        td.n { (significant(rule.value)) }
+                        th { (clean(&rule.name)) br; span.small { (clean(&rule.source)) } }
+                        td.n { (clean(&rule.quantity)) br; "= " (significant(rule.value)) }
                         td.n { "≤ " (trimmed(rule.limit)) }
                         td { @if rule.meets { span.keeps { "✓ met" } } @else { span.breaks { "✗ not met" } } }
-                        td.small { (clean(&rule.source)) }
                     }
                 } }
-            } }
+            }
         }
     }
 }
 
-fn with_interval(statistic: &Statistic, show: impl Fn(f64) -> String) -> Markup {
+/// A mean with its interval below it.
+fn with_interval(mean: String, interval: Option<String>) -> Markup {
     html! {
-        (show(statistic.mean))
-        @if let (Some(low), Some(high)) = (statistic.low, statistic.high) {
-            br; span.small { (show(low.max(0.0))) " to " (show(high)) }
-        }
+        (mean)
+        @if let Some(interval) = interval { br; span.small { (interval) } }
     }
+}
+
+fn fraction(statistic: &Statistic) -> Markup {
+    with_interval(percent(statistic.mean), percent_interval(statistic))
 }
 
 fn results(outcome: &Outcome) -> Markup {
     let (filter, scale_free) = (&outcome.inputs.filter, outcome.inputs.scale_free);
-    let fraction = |statistic: &Statistic| with_interval(statistic, |value| percent(value.min(1.0)));
     let sd = |statistic: &Statistic| statistic.sd.map_or_else(|| "none".to_owned(), percent);
     let row = |name: &str, cell: &dyn Fn(&RunSummary) -> Markup| {
         html! { tr { th { (name) } @for run in &outcome.summary { td.n { (cell(run)) } } } }
@@ -277,7 +278,11 @@ fn results(outcome: &Outcome) -> Markup {
                 (row("its standard deviation between replicates", &|run| html! { (sd(&run.eroded_mass_fraction)) }))
                 (row("Base eroded, by number", &|run| fraction(&run.eroded_number_fraction)))
                 (row("Largest particle eroded, over D15F", &|run| match &run.largest_eroded_over_d15f {
-                    Some(statistic) => with_interval(statistic, significant),
+                    Some(statistic) => {
+                        let ends = statistic.low.zip(statistic.high);
+                        let ends = ends.map(|(low, high)| format!("{} to {}", significant(low), significant(high)));
+                        with_interval(significant(statistic.mean), ends)
+                    }
                     None => html! { "nothing eroded" },
                 }))
                 (row("Largest particle eroded", &|run| match &run.largest_eroded_over_d15f {
@@ -349,7 +354,7 @@ fn replicates(outcome: &Outcome) -> Markup {
 fn sensitivity(outcome: &Outcome) -> Markup {
     html! {
         @if !outcome.sensitivity.is_empty() { details {
-            summary { "Sensitivity to the number of base particles, in figures" }
+            summary { "Sensitivity to the number of base particles, in numbers" }
             div.scroll { table {
                 thead { tr {
                     th.n { "× N_base" } th.n { "N_base" } th.n { "Grains per void" } th.n { "or mass ratio" }
@@ -364,7 +369,7 @@ fn sensitivity(outcome: &Outcome) -> Markup {
                         td.n { (case.replicates) }
                         @for (index, _) in outcome.summary.iter().enumerate() {
                             td.n { @if let Some(run) = case.runs.get(index) {
-                                (with_interval(run, |value| percent(value.min(1.0))))
+                                (fraction(run))
                             } @else { "–" } }
                         }
                         td { (case.verdict.words()) }

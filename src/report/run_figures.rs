@@ -64,15 +64,16 @@ pub(super) fn verdict(folder: &RunFolder) -> Drawn {
         high.max(interval(statistic).map_or(statistic.mean, |(_, top)| top))
     };
     let highest = 100.0 * summary.iter().fold(0.0, most);
-    let x = eroded_axis("Base eroded, by mass (%)", folder, highest);
+    let x = eroded_axis("Base eroded, by mass (%)", folder, highest * 1.08);
     let ticks = summary
         .iter()
         .map(|run| Tick::new(run.run as f64, &[if run.run == 1 { "First run" } else { "Second run" }]));
     let mut y = Axis::linear("", 0.0, 1.0).with_ticks(ticks.collect()).downward();
     (y.low, y.high) = (0.3, summary.len() as f64 + 0.7);
+    let height = 84.0 + 48.0 * summary.len() as f64;
     let what = "Mean and 95 % interval of the eroded mass in each run, against the threshold";
-    let mut figure = Figure::new("Base eroded in each run", what, "", x, y)
-        .height(78.0 + 48.0 * summary.len() as f64, 78.0 + 48.0 * summary.len() as f64);
+    let mut figure =
+        Figure::new("Base eroded in each run", what, "", x, y).sizes((540.0, height), (330.0, height));
     figure.add(threshold_rule(folder, Across::X));
     for run in summary {
         let statistic = &run.eroded_mass_fraction;
@@ -103,7 +104,8 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
         size(filter.d15_mm, inputs.scale_free),
         size(base.d85_mm, inputs.scale_free),
     );
-    let mut figure = Figure::new("Gradations and constriction curve", &what, "", x, y).height(460.0, 400.0);
+    let mut figure = Figure::new("Gradations and constriction curve", &what, "", x, y)
+        .sizes((720.0, 460.0), (358.0, 400.0));
     let name = |kind: &str, name: &str| {
         if name.is_empty() { kind.to_owned() } else { format!("{kind}:\n{}", shorten(name, 24)) }
     };
@@ -118,7 +120,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     figure.add(mark(filter.d15_mm, 15.0, BLACK, Shape::Circle, "D15F"));
     figure.add(mark(base.d85_mm, 85.0, VERMILLION, Shape::Square, "D85B"));
     let caption = format!(
-        "Gradations of filter and base (percent finer by mass) and the filter's constrictions (percent smaller by \
+        "Gradations of filter and base (percent finer by mass) and the filter’s constrictions (percent smaller by \
          number, curve “{}”). Base particles pass a constriction that is no smaller than they are. \
          D15F/D85B = {}, D15F/D95B = {}.{}",
         shorten(&filter.curve_name, 80),
@@ -220,7 +222,7 @@ pub(super) fn layers(folder: &RunFolder) -> Option<Drawn> {
         if row.constrictions == 0 { 0.0 } else { 100.0 * row.blocked as f64 / row.constrictions as f64 }
     };
     let highest = folder.layers.values().flatten().map(share).fold(0.0, f64::max);
-    let x_label = "Constrictions blocked (% of the layer's)";
+    let x_label = "Constrictions blocked (% of the layer’s)";
     let x =
         if highest > 60.0 { Axis::percent(x_label) } else { Axis::linear(x_label, 0.0, highest.max(1.0)) };
     let mut y = Axis::linear("Layer (0 = where the base enters)", 0.0, (deepest as f64).max(1.0)).downward();
@@ -229,7 +231,8 @@ pub(super) fn layers(folder: &RunFolder) -> Option<Drawn> {
     y.ticks.retain(|tick| tick.at <= y.high);
     let what =
         "Share of the constrictions of each layer that are blocked at the end of each run, depth downward";
-    let mut figure = Figure::new("Blocked constrictions by layer", what, "", x, y).height(460.0, 420.0);
+    let mut figure =
+        Figure::new("Blocked constrictions by layer", what, "", x, y).sizes((720.0, 460.0), (358.0, 420.0));
     let mut bold = Vec::new();
     for run in folder.runs() {
         let (colour, _) = run_look(run);
@@ -298,7 +301,9 @@ pub(super) fn retained(folder: &RunFolder) -> Option<Drawn> {
     let x = Axis::log(&size_label(folder), low.min(high), high.max(low.min(1.0)));
     let y = Axis::percent("Percent finer by mass (%)");
     let what = "Size curves of the base, of what is retained after some increments, and of what is eroded";
-    let mut figure = Figure::new("What is retained and what is eroded", what, "", x, y).names_above();
+    let mut figure = Figure::new("What is retained and what is eroded", what, "", x, y)
+        .names_above()
+        .sizes((720.0, 460.0), (358.0, 480.0));
     let points =
         |rows: &[SizeRow]| rows.iter().map(|row| (row.diameter_mm, row.percent_finer_by_mass)).collect();
     figure.add(
@@ -348,16 +353,20 @@ pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
         interval(fraction).map_or(fraction.mean, |(_, high)| high)
     };
     let highest = 100.0 * cases.iter().flat_map(|case| &case.runs).map(reach).fold(0.0, f64::max);
-    let y = eroded_axis("Base eroded, by mass (%)", folder, (highest * 1.15).min(100.0));
+    let y = eroded_axis("Base eroded, by mass (%)", folder, (highest * 1.3).min(100.0));
     let what = "Percent of the base mass eroded in each run against multiples of the number of base particles; the colour \
                 behind is the verdict";
     let mut figure = Figure::new("How the verdict moves with the number of base particles", what, "", x, y);
     let edge = |left: f64, right: f64| libm::sqrt(left * right);
-    for (index, case) in cases.iter().enumerate() {
-        let left = if index == 0 { least / 1.25 } else { edge(cases[index - 1].factor, case.factor) };
-        let right = cases.get(index + 1).map_or(most * 1.25, |next| edge(case.factor, next.factor));
+    let mut left = least / 1.25;
+    for same in cases.chunk_by(|a, b| a.verdict == b.verdict) {
+        let (Some(first), Some(last)) = (same.first(), same.last()) else { continue };
+        let next = cases.iter().find(|case| case.factor > last.factor);
+        let right = next.map_or(most * 1.25, |next| edge(last.factor, next.factor));
         let outline = vec![(left, 0.0), (left, 100.0), (right, 100.0), (right, 0.0)];
-        figure.add(Area::new(outline, verdict_colour(case.verdict), 0.2));
+        let area = Area::new(outline, verdict_colour(first.verdict), 0.2);
+        figure.add(area.label(&first.verdict.words().replace(' ', "\n")));
+        left = right;
     }
     figure.add(threshold_rule(folder, Across::Y));
     for run in folder.runs() {

@@ -32,8 +32,20 @@ pub fn outcome(replicates: u64) -> Outcome {
     let filter_at = |percent: f64| d0f * libm::pow(cu_f, percent / 50.0);
     let base_at = |percent: f64| d0b * libm::pow(cu_b, percent / 50.0);
     let dc = [
-        (0.1604, 0.0), (0.186, 2.0), (0.205, 5.0), (0.222, 10.0), (0.247, 20.0), (0.268, 30.0), (0.29, 40.0),
-        (0.313, 50.0), (0.338, 60.0), (0.367, 70.0), (0.405, 80.0), (0.465, 90.0), (0.53, 95.0), (0.64, 99.0),
+        (0.1604, 0.0),
+        (0.186, 2.0),
+        (0.205, 5.0),
+        (0.222, 10.0),
+        (0.247, 20.0),
+        (0.268, 30.0),
+        (0.29, 40.0),
+        (0.313, 50.0),
+        (0.338, 60.0),
+        (0.367, 70.0),
+        (0.405, 80.0),
+        (0.465, 90.0),
+        (0.53, 95.0),
+        (0.64, 99.0),
         (0.79, 100.0),
     ];
     let run = |replicate: u64, run: u64| {
@@ -78,19 +90,20 @@ pub fn outcome(replicates: u64) -> Outcome {
         backbone_fraction: statistic(0.81 - 0.05 * run as f64, 0.006, replicates),
     });
     let verdicts = [Verdict::Continuing, Verdict::Continuing, Verdict::Some, Verdict::Some, Verdict::None];
-    let sensitivity = [0.25, 0.5, 1.0, 2.0, 4.0].into_iter().zip(verdicts).enumerate().map(|(i, (factor, verdict))| {
-        let first = [0.412, 0.297, mean(1), 0.118, 0.061][i];
-        let second = [0.187, 0.094, mean(2), 0.021, 0.008][i];
-        Sensitivity {
-            factor,
-            n_base: (21_443_871.0 * factor) as u64,
-            grains_per_void: 0.61 * factor,
-            mass_ratio: 0.05 * factor,
-            replicates: 4,
-            verdict,
-            runs: vec![statistic(first, 0.012, 4), statistic(second, 0.006, 4)],
-        }
-    });
+    let sensitivity =
+        [0.25, 0.5, 1.0, 2.0, 4.0].into_iter().zip(verdicts).enumerate().map(|(i, (factor, verdict))| {
+            let first = [0.412, 0.297, mean(1), 0.118, 0.061][i];
+            let second = [0.187, 0.094, mean(2), 0.021, 0.008][i];
+            Sensitivity {
+                factor,
+                n_base: (21_443_871.0 * factor) as u64,
+                grains_per_void: 0.61 * factor,
+                mass_ratio: 0.05 * factor,
+                replicates: 4,
+                verdict,
+                runs: vec![statistic(first, 0.012, 4), statistic(second, 0.006, 4)],
+            }
+        });
     Outcome {
         verdict: Verdict::Some,
         seed: 2016,
@@ -105,7 +118,8 @@ pub fn outcome(replicates: u64) -> Outcome {
         warnings: vec!["18 % of the base is finer than 0.075 mm: the model was checked up to 15 %.".into()],
         left_out: vec!["packing: the constriction curve was given".into(), "triangulation".into()],
         model_leaves_out: vec![
-            "Hydraulics: no gradient, no flow rate, no time. A step is chosen by constriction area alone.".into(),
+            "Hydraulics: no gradient, no flow rate, no time. A step is chosen by constriction area alone."
+                .into(),
             "Bridging of several particles over one constriction.".into(),
             "Partial clogging: a constriction is open or blocked.".into(),
             "Cohesion, particle shape, and segregation of the filter.".into(),
@@ -114,9 +128,10 @@ pub fn outcome(replicates: u64) -> Outcome {
         inputs: Inputs {
             filter: Filter {
                 name: "Loose filter gravel".into(),
-                attribution: "Shire & O'Sullivan (2016), Geotechnique 66(10), 826-839, doi:10.1680/jgeot.15.P.215, \
+                attribution:
+                    "Shire & O'Sullivan (2016), Geotechnique 66(10), 826-839, doi:10.1680/jgeot.15.P.215, \
                               CC BY 4.0"
-                    .into(),
+                        .into(),
                 cu: cu_f,
                 d0_mm: d0f,
                 d15_mm: filter_at(15.0),
@@ -163,7 +178,12 @@ pub fn outcome(replicates: u64) -> Outcome {
         },
         rules: [
             ("Terzaghi", "D15F/D85B", 4.0, "Terzaghi, as in Fannin (2008)"),
-            ("Foster and Fell, no erosion", "D15F/D85B", 7.0, "Foster and Fell (2001), base with less than 15 % fines"),
+            (
+                "Foster and Fell, no erosion",
+                "D15F/D85B",
+                7.0,
+                "Foster and Fell (2001), base with less than 15 % fines",
+            ),
             ("Foster and Fell, continuing erosion", "D15F/D95B", 9.0, "Foster and Fell (2001)"),
         ]
         .map(|(name, quantity, limit, source)| {
@@ -210,7 +230,8 @@ impl Plan {
 
     fn runs(&self) -> impl Iterator<Item = (u64, u64)> {
         let runs = self.outcome.summary.len() as u64;
-        (1..=self.outcome.replicates.len() as u64).flat_map(move |replicate| (1..=runs).map(move |run| (replicate, run)))
+        (1..=self.outcome.replicates.len() as u64)
+            .flat_map(move |replicate| (1..=runs).map(move |run| (replicate, run)))
     }
 
     fn series(&self) -> String {
@@ -218,7 +239,8 @@ impl Plan {
                         blocked,eroded_mass_fraction\n"
             .to_owned();
         for (replicate, run) in self.runs() {
-            let end = self.outcome.replicates[replicate as usize - 1].runs[run as usize - 1].eroded_mass_fraction;
+            let end =
+                self.outcome.replicates[replicate as usize - 1].runs[run as usize - 1].eroded_mass_fraction;
             for increment in 1..=self.increments {
                 let t = increment as f64 / self.increments as f64 * 410.0;
                 let rise = 1.0 / (1.0 + libm::exp(-(t - 165.0 - 6.0 * scatter(replicate, run, 2)) / 17.0));
@@ -241,12 +263,19 @@ impl Plan {
 
     fn layers(&self) -> String {
         let mut text =
-            "replicate,run,layer,constrictions,blocked,retained_in_constrictions,retained_in_voids\n".to_owned();
+            "replicate,run,layer,constrictions,blocked,retained_in_constrictions,retained_in_voids\n"
+                .to_owned();
         for (replicate, run) in self.runs() {
             for layer in 0..self.outcome.inputs.network.layers {
                 let share = (0.31 + 0.03 * run as f64) * libm::exp(-(layer as f64) / 6.5) + 0.004;
                 let blocked = (4800.0 * share * (0.93 + 0.14 * scatter(replicate, run, 100 + layer))) as u64;
-                writeln!(text, "{replicate},{run},{layer},4800,{blocked},{},{}", blocked * 120, blocked * 900).unwrap();
+                writeln!(
+                    text,
+                    "{replicate},{run},{layer},4800,{blocked},{},{}",
+                    blocked * 120,
+                    blocked * 900
+                )
+                .unwrap();
             }
         }
         text
@@ -263,11 +292,19 @@ impl Plan {
                     let share = f64::from(i) / 40.0;
                     let size = base.d0_mm * libm::pow(base.d100_mm / base.d0_mm, share);
                     let skew = [6.0, 4.0, 2.8, 2.1, 1.7, 1.35, 1.2][step];
-                    let (mass, number) = (100.0 * libm::pow(share, skew), 100.0 * libm::pow(share, skew / 2.0));
+                    let (mass, number) =
+                        (100.0 * libm::pow(share, skew), 100.0 * libm::pow(share, skew / 2.0));
                     writeln!(retained, "{replicate},{run},{increment},{size},{mass},{number}").unwrap();
                     let share = (size / 0.886).min(1.0);
-                    let at = libm::log(share.max(base.d0_mm / 0.886) * 0.886 / base.d0_mm) / libm::log(0.886 / base.d0_mm);
-                    writeln!(eroded, "{replicate},{run},{increment},{size},{},{}", 100.0 * at, 100.0 * at.sqrt()).unwrap();
+                    let at = libm::log(share.max(base.d0_mm / 0.886) * 0.886 / base.d0_mm)
+                        / libm::log(0.886 / base.d0_mm);
+                    writeln!(
+                        eroded,
+                        "{replicate},{run},{increment},{size},{},{}",
+                        100.0 * at,
+                        100.0 * at.sqrt()
+                    )
+                    .unwrap();
                 }
             }
         }
@@ -280,7 +317,10 @@ fn manifest() -> Manifest {
         version: "0.1.0".into(),
         commit: Some("4f2c43f".into()),
         seed: 2016,
-        inputs: vec![InputFile { name: "core-fill.csv".into(), xxh3: "9f86d081884c7d659a2feaa0c55ad015".into() }],
+        inputs: vec![InputFile {
+            name: "core-fill.csv".into(),
+            xxh3: "9f86d081884c7d659a2feaa0c55ad015".into(),
+        }],
         threads: 2,
         host: "workstation".into(),
         machine: "Linux x86_64, 2 processors, 8 GB".into(),

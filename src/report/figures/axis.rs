@@ -45,19 +45,19 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// An even axis from `low` to `high`, widened to full steps of 1, 2 or 5.
+    /// An even axis from `low` to `high`, widened to half steps of 1, 2 or 5.
     pub fn linear(label: &str, low: f64, high: f64) -> Axis {
         let (low, high) = if high > low { (low, high) } else { (low, low + 1.0) };
         let step = tidy_step((high - low) / 6.0);
-        let (first, last) = ((low / step + 1e-9).floor(), (high / step - 1e-9).ceil());
+        let (first, last) = ((2.0 * low / step + 1e-9).floor(), (2.0 * high / step - 1e-9).ceil());
         let decimals = libm::fmax(0.0, -libm::floor(libm::log10(step) + 1e-9)) as usize;
         let mut ticks = Vec::new();
-        for half in (2.0 * first) as i64..=(2.0 * last) as i64 {
+        for half in first as i64..=last as i64 {
             let at = half as f64 * 0.5 * step;
             let text = if half % 2 == 0 { vec![format!("{at:.decimals$}")] } else { Vec::new() };
-            ticks.push(Tick { at, text, rank: u8::from(half % 4 != 0) });
+            ticks.push(Tick { at, text, rank: u8::from(half % 2 != 0) });
         }
-        let (low, high) = (first * step, last * step);
+        let (low, high) = (first * 0.5 * step, last * 0.5 * step);
         Axis { label: label.to_owned(), scale: Scale::Linear, low, high, ticks, downward: false }
     }
 
@@ -191,11 +191,9 @@ mod tests {
     fn linear_steps_are_tidy() {
         let axis = Axis::linear("x", 0.0, 354.0);
         assert_eq!((axis.low, axis.high), (0.0, 400.0));
+        assert_eq!(Axis::linear("x", 0.0, 410.0).high, 450.0);
         assert_eq!(labels(&axis), ["0", "100", "200", "300", "400"]);
-        assert_eq!(
-            labels(&Axis::linear("x", 0.0, 0.11)),
-            ["0.00", "0.02", "0.04", "0.06", "0.08", "0.10", "0.12"]
-        );
+        assert_eq!(labels(&Axis::linear("x", 0.0, 0.11)), ["0.00", "0.02", "0.04", "0.06", "0.08", "0.10"]);
     }
 
     #[test]

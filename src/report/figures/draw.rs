@@ -1,6 +1,7 @@
 //! From a [`Figure`] to SVG: margins, grid, marks, names.
 
-use super::place::{Canvas, Rect};
+use super::path::{along, simplify};
+use super::place::{Canvas, GAP, Rect};
 use super::svg::{Anchor, FONT, Svg, escape, short, width_of, wrap};
 use super::{Across, Axis, Colour, Dash, Figure, Line, Mark, Naming, Point, Shape, Size, Tick};
 
@@ -46,8 +47,8 @@ impl Frame<'_> {
 
 pub(super) fn draw(figure: &Figure, size: Size, id: &str, namespace: &str) -> String {
     let (width, height) = match size {
-        Size::Wide => (720.0, figure.height.0),
-        Size::Narrow => (358.0, figure.height.1),
+        Size::Wide => figure.wide,
+        Size::Narrow => figure.narrow,
     };
     let names = match figure.naming {
         Naming::Above => named(figure),
@@ -98,7 +99,7 @@ fn label_of(mark: &Mark) -> Option<(&str, Colour)> {
         Mark::Line(line) => (&line.label, line.colour),
         Mark::Point(point) => (&point.label, point.colour),
         Mark::Rule(rule) => (&rule.label, rule.colour),
-        Mark::Area(_) => return None,
+        Mark::Area(area) => (&area.label, area.colour),
     };
     label.as_deref().map(|label| (label, colour))
 }
@@ -147,12 +148,21 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
     for index in order {
         let mark = &figure.marks[index];
         let Some((label, colour)) = label_of(mark) else { continue };
-        let anchors = anchors(&frame, mark);
+        let mut anchors = anchors(&frame, mark);
         if anchors.is_empty() {
             continue;
         }
         let lines: Vec<&str> = label.lines().collect();
         let wide = lines.iter().map(|line| width_of(line, TICK_TEXT)).fold(0.0, f64::max);
+        if let Mark::Area(area) = mark {
+            let (left, right) = reach(&frame, &area.outline);
+            if right - left < wide + 6.0 {
+                homeless.push(index);
+                continue;
+            }
+            // the first choice is right of the anchor: that is then in the middle of the area
+            anchors.iter_mut().for_each(|anchor| anchor.0 -= GAP + wide / 2.0);
+        }
         match canvas.place(&anchors, wide, LINE_HEIGHT * lines.len() as f64 - 2.0) {
             None => homeless.push(index),
             Some(found) => {
@@ -209,7 +219,10 @@ fn key(svg: &mut Svg, figure: &Figure, above: &[usize], width: f64, top: f64) ->
                 let line = Line::new(Vec::new(), rule.colour).width(1.5).dash(rule.dash);
                 svg.line((left, middle), (left + SAMPLE, middle), &stroke(&line));
             }
-            Mark::Area(_) => {}
+            Mark::Area(area) => {
+                let paint = format!("fill=\"{}\" fill-opacity=\"{}\"", area.colour.line, short(area.opacity));
+                svg.rect(left, middle - 6.0, SAMPLE, 12.0, &paint);
+            }
         }
         let paint = format!("fill=\"{}\"", colour.text);
         svg.text((left + SAMPLE + 6.0, middle + 4.5), Anchor::Start, &label, &paint);
@@ -270,7 +283,7 @@ fn grid(svg: &mut Svg, frame: &Frame<'_>) {
 
 /// The ticks whose labels fit beside one another, the important ones first, each with its place. `room` gives the
 /// place of a tick and half the room of its label.
-fn labelled<'a>(axis: &'a Axis, room: impl Fn(&Tick) -> Option<(f64, f64)>) -> Vec<(&'a Tick, f64)> {
+fn labelled(axis: &Axis, room: impl Fn(&Tick) -> Option<(f64, f64)>) -> Vec<(&Tick, f64)> {
     let mut kept: Vec<(&Tick, f64, f64)> = Vec::new();
     let highest = axis.ticks.iter().map(|tick| tick.rank).max().unwrap_or(0);
     for rank in 0..=highest {
@@ -436,72 +449,19 @@ fn anchors(frame: &Frame<'_>, mark: &Mark) -> Vec<(f64, f64)> {
                 .filter(|(x, y)| *x >= left && *x <= right && *y >= top && *y <= bottom)
                 .collect()
         }
-        Mark::Area(_) => Vec::new(),
+        Mark::Area(area) => {
+            let path = frame.seen(&frame.path(&area.outline));
+            let (left, right) = reach(frame, &area.outline);
+            let highest = path.iter().map(|(_, y)| *y).fold(f64::MAX, f64::min);
+            if path.is_empty() { Vec::new() } else { vec![((left + right) / 2.0, highest)] }
+        }
     }
 }
 
-/// The point at a share of a path's length.
-fn along(path: &[(f64, f64)], share: f64) -> Option<(f64, f64)> {
-    let length = |pair: &[(f64, f64)]| libm::hypot(pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
-    let mut left = share * path.windows(2).map(length).sum::<f64>();
-    for pair in path.windows(2) {
-        let here = length(pair);
-        if left <= here && here > 0.0 {
-            let part = left / here;
-            return Some((
-                pair[0].0 + part * (pair[1].0 - pair[0].0),
-                pair[0].1 + part * (pair[1].1 - pair[0].1),
-            ));
-        }
-        left -= here;
-    }
-    path.last().copied()
-}
-
-/// The path with as few points as keep it within a third of a pixel (Douglas and Peucker), after points that fall on
-/// their predecessor are left out.
-fn simplify(points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
-    const NEAR: f64 = 0.3;
-    let mut path: Vec<(f64, f64)> = Vec::new();
-    let mut last = None;
-    for point in points {
-        match path.last() {
-            Some(before) if libm::hypot(point.0 - before.0, point.1 - before.1) < NEAR => last = Some(point),
-            _ => {
-                path.push(point);
-                last = None;
-            }
-        }
-    }
-    path.extend(last);
-    if path.len() < 3 {
-        return path;
-    }
-    let mut keep = vec![false; path.len()];
-    keep[0] = true;
-    keep[path.len() - 1] = true;
-    let mut spans = vec![(0, path.len() - 1)];
-    while let Some((from, to)) = spans.pop() {
-        let away = |index: usize| off_chord(path[index], path[from], path[to]);
-        let farthest = (from + 1..to).max_by(|a, b| away(*a).total_cmp(&away(*b)));
-        if let Some(index) = farthest
-            && away(index) > NEAR
-        {
-            keep[index] = true;
-            spans.push((from, index));
-            spans.push((index, to));
-        }
-    }
-    path.into_iter().zip(keep).filter_map(|(point, kept)| kept.then_some(point)).collect()
-}
-
-/// Distance of a point from the stretch between two others.
-fn off_chord(point: (f64, f64), from: (f64, f64), to: (f64, f64)) -> f64 {
-    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-    let (px, py) = (point.0 - from.0, point.1 - from.1);
-    let square = dx * dx + dy * dy;
-    let share = if square > 0.0 { ((px * dx + py * dy) / square).clamp(0.0, 1.0) } else { 0.0 };
-    libm::hypot(px - share * dx, py - share * dy)
+/// Leftmost and rightmost pixel of an outline inside the frame.
+fn reach(frame: &Frame<'_>, outline: &[(f64, f64)]) -> (f64, f64) {
+    let seen = frame.seen(&frame.path(outline));
+    seen.iter().fold((f64::MAX, f64::MIN), |(least, most), (x, _)| (least.min(*x), most.max(*x)))
 }
 
 #[cfg(test)]
@@ -509,21 +469,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_simplified_path_stays_within_a_pixel_and_keeps_its_ends() {
-        let full: Vec<(f64, f64)> =
-            (0..5000).map(|i| (f64::from(i) * 0.1, 50.0 * libm::sin(f64::from(i) * 0.01))).collect();
-        let few = simplify(full.iter().copied());
-        assert!(few.len() < 300, "{}", few.len());
-        assert_eq!((few[0], few[few.len() - 1]), (full[0], full[4999]));
-        for point in full {
-            let near = few.windows(2).map(|pair| off_chord(point, pair[0], pair[1])).fold(f64::MAX, f64::min);
-            assert!(near < 1.0, "{point:?} is {near} off");
-        }
-    }
-
-    #[test]
     fn crowded_tick_labels_are_thinned_and_the_important_kept() {
-        let axis = Axis::log("x", 0.1, 9.0);
+        let axis = Axis::log("x", 0.11, 8.5);
         let kept = |half: f64| {
             let found = labelled(&axis, |tick| axis.position(tick.at).map(|share| (share * 300.0, half)));
             let mut texts: Vec<_> = found.into_iter().map(|(tick, _)| tick.text[0].clone()).collect();
@@ -532,13 +479,5 @@ mod tests {
         };
         assert_eq!(kept(10.0), ["0.1", "0.2", "0.5", "1", "2", "5"]);
         assert_eq!(kept(40.0), ["0.1", "1"]);
-    }
-
-    #[test]
-    fn a_share_of_a_path_is_a_share_of_its_length() {
-        let path = [(0.0, 0.0), (10.0, 0.0), (10.0, 30.0)];
-        assert_eq!(along(&path, 0.25), Some((10.0, 0.0)));
-        assert_eq!(along(&path, 0.5), Some((10.0, 10.0)));
-        assert_eq!(along(&[], 0.5), None);
     }
 }

@@ -17,6 +17,7 @@
 
 mod axis;
 mod draw;
+mod path;
 mod place;
 mod svg;
 
@@ -66,9 +67,9 @@ pub fn ramp(index: usize, count: usize) -> Colour {
 /// Room for a figure. Text has the same size in both.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Size {
-    /// For a page or a file: 720 pixels wide.
+    /// For a page or a file: 720 pixels wide unless the figure says otherwise.
     Wide,
-    /// For a telephone: 358 pixels wide.
+    /// For a telephone: 358 pixels wide unless the figure says otherwise.
     Narrow,
 }
 
@@ -131,12 +132,19 @@ pub struct Area {
     outline: Vec<(f64, f64)>,
     colour: Colour,
     opacity: f64,
+    label: Option<String>,
 }
 
 impl Area {
     /// The area inside an outline.
     pub fn new(outline: Vec<(f64, f64)>, colour: Colour, opacity: f64) -> Area {
-        Area { outline, colour, opacity }
+        Area { outline, colour, opacity, label: None }
+    }
+
+    /// With a name, at its upper edge.
+    pub fn label(mut self, label: &str) -> Area {
+        self.label = Some(label.to_owned());
+        self
     }
 }
 
@@ -298,7 +306,8 @@ pub struct Figure {
     y: Axis,
     marks: Vec<Mark>,
     naming: Naming,
-    height: (f64, f64),
+    wide: (f64, f64),
+    narrow: (f64, f64),
 }
 
 impl Figure {
@@ -313,13 +322,14 @@ impl Figure {
             y,
             marks: Vec::new(),
             naming: Naming::Direct,
-            height: (440.0, 380.0),
+            wide: (720.0, 440.0),
+            narrow: (358.0, 380.0),
         }
     }
 
-    /// Other heights in pixels, wide and narrow.
-    pub fn height(mut self, wide: f64, narrow: f64) -> Figure {
-        self.height = (wide, narrow);
+    /// Other widths and heights in pixels.
+    pub fn sizes(mut self, wide: (f64, f64), narrow: (f64, f64)) -> Figure {
+        (self.wide, self.narrow) = (wide, narrow);
         self
     }
 

@@ -1,5 +1,8 @@
 //! Where a direct label stands: beside its own curve, and on nothing else.
 
+/// Pixels between an anchor and its label.
+pub(super) const GAP: f64 = 9.0;
+
 /// A rectangle: left, top, right, bottom, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rect {
@@ -58,7 +61,6 @@ impl Canvas {
 
     /// A free box of this size near one of the anchors (tried in order), or `None`. The box is taken.
     pub(super) fn place(&mut self, anchors: &[(f64, f64)], width: f64, height: f64) -> Option<Rect> {
-        const GAP: f64 = 7.0;
         let mut best: Option<(f64, Rect)> = None;
         for (order, &(x, y)) in anchors.iter().enumerate() {
             let beside = y - height / 2.0;
