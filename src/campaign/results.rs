@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::case::Case;
 use super::scene::{Amount, BaseGradation, CurveSource, D85, FilterGradation, NetworkSource};
-use super::walks::{Walked, summarise};
+use super::walks::{Walked, as_it_is, summarise};
 use crate::outcome::record::{Manifest, Outcome, Sensitivity};
 use crate::outcome::{MODEL_LEAVES_OUT, Recorded, rules, verdict};
 use crate::store::{Folder, StoreError};
@@ -28,8 +28,12 @@ pub enum ResultError {
 }
 
 /// The outcome of a case that has been walked.
-pub fn outcome(case: &Case, walked: &[Walked], sensitivity: Vec<Sensitivity>, seconds: f64) -> Outcome {
+pub fn outcome(case: &Case, walked: &[Walked], mut sensitivity: Vec<Sensitivity>, seconds: f64) -> Outcome {
     let (verdict, summary) = summarise(walked);
+    if !sensitivity.is_empty() {
+        sensitivity.push(as_it_is(case, walked));
+        sensitivity.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+    }
     let ratios = case.ratios();
     Outcome {
         verdict,
@@ -67,7 +71,7 @@ pub fn write(
     folder: &Folder,
     case: &Case,
     outcome: &Outcome,
-    walked: Vec<Walked>,
+    walked: &[Walked],
     manifest: &Manifest,
 ) -> Result<(), ResultError> {
     for input in &case.inputs {
@@ -76,7 +80,7 @@ pub fn write(
     folder.write("scene.toml", resolved(case).as_bytes())?;
     let mut recorded = Recorded::default();
     for walked in walked {
-        recorded.append(walked.recorded);
+        recorded.append(walked.recorded.clone());
     }
     folder.write("series.csv", &csv("series.csv", SERIES, &recorded.series)?)?;
     folder.write("layers.csv", &csv("layers.csv", LAYERS, &recorded.layers)?)?;

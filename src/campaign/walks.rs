@@ -218,14 +218,23 @@ fn one_sensitivity(
 ) -> Result<Sensitivity, RunError> {
     let n_base = ((case.n_base as f64 * factor).round() as u64).max(1);
     let walked = some_replicates(case, replicates, n_base, false, watch)?;
-    let (verdict, summaries) = summarise(&walked);
-    Ok(Sensitivity {
+    Ok(of_walked(case, factor, n_base, &walked))
+}
+
+/// The scene itself as one row of its sensitivity.
+pub fn as_it_is(case: &Case, walked: &[Walked]) -> Sensitivity {
+    of_walked(case, 1.0, case.n_base, walked)
+}
+
+fn of_walked(case: &Case, factor: f64, n_base: u64, walked: &[Walked]) -> Sensitivity {
+    let (verdict, summaries) = summarise(walked);
+    Sensitivity {
         factor,
         n_base,
         grains_per_void: case.grains_per_void.map(|g| g * factor),
         mass_ratio: case.mass_ratio.map(|m| m * factor),
-        replicates,
+        replicates: walked.len() as u64,
         verdict,
         runs: summaries.iter().map(|s| s.eroded_mass_fraction).collect(),
-    })
+    }
 }

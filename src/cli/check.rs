@@ -104,15 +104,16 @@ fn words(case: &Case, machine: &Machine) -> String {
         ),
     );
     line("ratios", format!("D15F/D85B {:.3}, D15F/D95B {:.3}", ratios.d15f_over_d85b, ratios.d15f_over_d95b));
-    line("grains per void", format!("{} (N_p / N_voids of Eq. 2)", case.grains_per_void));
-    line("mass ratio", format!("{:.6} (base over filter)", case.mass_ratio));
+    let given = |value: Option<f64>| value.map_or("not given".to_string(), |v| format!("{v}"));
+    line("grains per void", format!("{} (N_p / N_voids of Eq. 2)", given(case.grains_per_void)));
+    line("mass ratio", format!("{} (base over filter)", given(case.mass_ratio)));
     line(
         "base particles",
         format!(
             "{} a run{}",
             count(case.n_base),
             match case.capped {
-                true => format!(", capped from {} by Eq. (2)", count(case.n_base_eq2)),
+                true => format!(", capped from {} by Eq. (2)", count(case.n_base_eq2.unwrap_or(0))),
                 false => String::new(),
             }
         ),

@@ -31,21 +31,23 @@ pub fn run(args: &RunArgs) -> Result<(), Ending> {
         to_stderr(&format!("warning: {}\n", plain(&warning)));
     }
     let started = SystemTime::now();
-    let (walked, outcome) = walk(&case, &pool, args.quiet)?;
-    let manifest = Manifest {
+    let manifest = || Manifest {
         version: env!("CARGO_PKG_VERSION").into(),
         commit: option_env!("VOIDWALK_COMMIT").map(String::from),
         seed: case.scene.seed,
         inputs: case.input_files(),
         threads: pool.current_num_threads() as u64,
-        host: machine.host,
-        machine: machine.description,
+        host: machine.host.clone(),
+        machine: machine.description.clone(),
         started: humantime::format_rfc3339_seconds(started).to_string(),
         finished: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
         command: command_line(),
     };
-    results::write(&folder, &case, &outcome, walked, &manifest).map_err(Ending::failed)?;
-    report::write(folder.path()).map_err(Ending::failed)?;
+    let outcome = walk(&case, &pool, args.quiet, |outcome, walked| {
+        results::write(&folder, &case, outcome, walked, &manifest()).map_err(Ending::failed)?;
+        report::write(folder.path()).map_err(Ending::failed)?;
+        Ok(())
+    })?;
     if args.scene.json {
         to_stdout(&format!("{}\n", serde_json::to_string_pretty(&outcome).map_err(Ending::failed)?));
     } else if !args.quiet {
@@ -67,27 +69,52 @@ pub fn report(folder: &Path) -> Result<(), Ending> {
     Ok(())
 }
 
-fn walk(case: &Case, pool: &rayon::ThreadPool, quiet: bool) -> Result<(Vec<walks::Walked>, Outcome), Ending> {
+/// Walks the replicates, keeps what came of them, then adds the sensitivity study and keeps the whole.
+fn walk(
+    case: &Case,
+    pool: &rayon::ThreadPool,
+    quiet: bool,
+    keep: impl Fn(&Outcome, &[walks::Walked]) -> Result<(), Ending>,
+) -> Result<Outcome, Ending> {
     let begun = Instant::now();
+    let stop = stop_on_signals()?;
+    let progress = Progress::new(quiet, runs_to_walk(case));
+    let watch = Watch { tell: &|event| progress.tell(event), stop: &stop };
+    let stopped = |what: &str, error: RunError| {
+        progress.finish();
+        match error {
+            RunError::Walk(crate::walk::WalkError::Stopped { .. }) => {
+                Ending::failed(format!("stopped on request; {what}"))
+            }
+            other => Ending::failed(other),
+        }
+    };
+    let walked = pool
+        .install(|| replicates(case, &watch))
+        .map_err(|e| stopped("no results were written, and the same command gives the same bits", e))?;
+    let outcome = results::outcome(case, &walked, Vec::new(), begun.elapsed().as_secs_f64());
+    keep(&outcome, &walked)?;
+    let sensitivity = pool
+        .install(|| sensitivity(case, &watch))
+        .map_err(|e| stopped("the results are written, without the sensitivity study", e))?;
+    progress.finish();
+    if sensitivity.is_empty() {
+        return Ok(outcome);
+    }
+    let outcome = results::outcome(case, &walked, sensitivity, begun.elapsed().as_secs_f64());
+    keep(&outcome, &walked)?;
+    Ok(outcome)
+}
+
+/// A flag that the first SIGINT or SIGTERM sets; the second ends the program at once.
+fn stop_on_signals() -> Result<Arc<AtomicBool>, Ending> {
     let stop = Arc::new(AtomicBool::new(false));
     for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-        // The second signal ends the program at once, the first after the current increment.
         signal_hook::flag::register_conditional_shutdown(signal, 1, Arc::clone(&stop))
             .and_then(|_| signal_hook::flag::register(signal, Arc::clone(&stop)))
             .map_err(Ending::failed)?;
     }
-    let progress = Progress::new(quiet, runs_to_walk(case));
-    let watch = Watch { tell: &|event| progress.tell(event), stop: &stop };
-    let walked = pool.install(|| Ok((replicates(case, &watch)?, sensitivity(case, &watch)?)));
-    progress.finish();
-    let (walked, sensitivity) = walked.map_err(|e: RunError| match e {
-        RunError::Walk(crate::walk::WalkError::Stopped { .. }) => Ending::failed(
-            "stopped on request; no results were written, and the same command gives the same bits",
-        ),
-        other => Ending::failed(other),
-    })?;
-    let outcome = results::outcome(case, &walked, sensitivity, begun.elapsed().as_secs_f64());
-    Ok((walked, outcome))
+    Ok(stop)
 }
 
 /// The command line in words, whatever bytes it is made of.

@@ -5,13 +5,17 @@ use crate::walk::{SizeCounts, State, Tally};
 /// What to keep of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wanted {
-    /// Keep the sums of every such increment, and of the last one; 0 keeps the last only.
+    /// Keep the sums of every such increment, and of the last one; 0 keeps the last only. A run of more than
+    /// [`LONGEST_SERIES`] such increments is thinned: every second of those kept goes, and so on.
     pub series_every: u64,
     /// Increments whose size curves are kept, besides the last one's.
     pub size_curves: Vec<u64>,
     /// Number of size classes of those curves.
     pub size_classes: usize,
 }
+
+/// Rows that a series may have before it is thinned.
+pub const LONGEST_SERIES: usize = 20_000;
 
 /// Sums and size curves of one run, as it went.
 #[derive(Debug, Default)]
@@ -20,13 +24,21 @@ pub struct Recorder {
     pub series: Vec<(u64, Tally)>,
     /// Increment, retained and eroded sizes.
     pub sizes: Vec<(u64, SizeCounts, SizeCounts)>,
+    /// How often the series was thinned by half.
+    thinned: u32,
 }
 
 impl Recorder {
     /// Takes what is wanted of a state after a whole increment.
     pub fn observe(&mut self, wanted: &Wanted, state: &State) {
         let t = state.increment;
-        if state.finished || (wanted.series_every > 0 && t.is_multiple_of(wanted.series_every)) {
+        if self.series.len() >= LONGEST_SERIES {
+            self.thinned += 1;
+            let every = wanted.series_every << self.thinned;
+            self.series.retain(|(t, _)| t.is_multiple_of(every));
+        }
+        let every = wanted.series_every << self.thinned;
+        if state.finished || (every > 0 && t.is_multiple_of(every)) {
             self.series.push((t, state.tally));
         }
         if state.finished || wanted.size_curves.contains(&t) {

@@ -8,6 +8,7 @@ use serde::de::DeserializeOwned;
 use thiserror::Error;
 
 use crate::outcome::record::{LayerRow, Manifest, Outcome, SeriesRow, SizeRow};
+use crate::store::StoreError;
 
 /// Why a report could not be written.
 #[derive(Debug, Error)]
@@ -43,13 +44,8 @@ pub enum ReportError {
         allowed: String,
     },
     /// The page or a figure cannot be written.
-    #[error("{path}: cannot be written: {source}", path = path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
+    #[error(transparent)]
+    Write(#[from] StoreError),
 }
 
 /// Everything that a finished run folder says.

@@ -20,12 +20,13 @@ mod page;
 mod run_figures;
 
 use std::fs;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 pub use folder::ReportError;
 use folder::RunFolder;
 use run_figures::Drawn;
+
+use crate::store::{StoreError, write_whole};
 
 /// What [`write()`] wrote.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -58,32 +59,18 @@ pub fn write(folder: &Path) -> Result<Written, ReportError> {
     .collect();
 
     let drawings = folder.join("figures");
-    fs::create_dir_all(&drawings).map_err(|source| ReportError::Write { path: drawings.clone(), source })?;
+    fs::create_dir_all(&drawings).map_err(|source| StoreError::Io {
+        path: drawings.clone(),
+        action: "make the folder",
+        source,
+    })?;
     let mut written = Vec::new();
     for drawn in std::iter::once(&verdict).chain(&figures) {
         let path = drawings.join(format!("{}.svg", drawn.name));
-        put(&path, &drawn.figure.file())?;
+        write_whole(&path, drawn.figure.file().as_bytes())?;
         written.push(path);
     }
     let page = folder.join("report.html");
-    put(&page, &page::page(&run, &verdict, &figures))?;
+    write_whole(&page, page::page(&run, &verdict, &figures).as_bytes())?;
     Ok(Written { page, figures: written })
-}
-
-/// Writes beside the target, syncs, renames: a reader sees the old file or the new one.
-fn put(path: &Path, content: &str) -> Result<(), ReportError> {
-    let wrap = |source| ReportError::Write { path: path.to_owned(), source };
-    let folder = path.parent().unwrap_or(Path::new("."));
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        // a report is made to be shared: the user's umask decides, not the private mode of temporary files
-        use std::os::unix::fs::PermissionsExt as _;
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    let mut file = builder.prefix(".report-").tempfile_in(folder).map_err(wrap)?;
-    file.write_all(content.as_bytes()).map_err(wrap)?;
-    file.as_file().sync_all().map_err(wrap)?;
-    file.persist(path).map_err(|error| wrap(error.error))?;
-    Ok(())
 }

@@ -5,6 +5,11 @@ use crate::outcome::record::Statistic;
 /// A narrow space that no line breaks at: it groups thousands and stands before units.
 const THIN: char = '\u{202f}';
 
+/// A value that may not be known, in words.
+pub(super) fn known<T>(value: Option<T>, words: impl FnOnce(T) -> String) -> String {
+    value.map_or_else(|| "not given".to_owned(), words)
+}
+
 /// Three significant digits, without an exponent between 0.0001 and a million.
 pub(super) fn significant(value: f64) -> String {
     if value == 0.0 {

@@ -7,7 +7,9 @@ use sha2::{Digest, Sha256};
 
 use super::figures::{Size, shorten, visible};
 use super::folder::RunFolder;
-use super::numbers::{duration, interval, percent, percent_interval, significant, size, threshold, whole};
+use super::numbers::{
+    duration, interval, known, percent, percent_interval, significant, size, threshold, whole,
+};
 use super::run_figures::{Drawn, run_name, trimmed};
 use crate::outcome::record::{NetworkKind, Outcome, Run, RunSummary, Statistic, Verdict};
 
@@ -192,8 +194,8 @@ fn warnings(outcome: &Outcome) -> Markup {
                 ul {
                     @if outcome.capped {
                         li {
-                            "A cap cut the number of base particles from " (whole(outcome.n_base_eq2)) " (Eq. 2) to "
-                            (whole(outcome.n_base)) ". Fewer particles block less: that is a bias, not noise."
+                            "A cap cut the number of base particles from " (known(outcome.n_base_eq2, whole)) " (Eq. 2) to "
+                            (whole(outcome.n_base)) "."
                         }
                     }
                     @for warning in &outcome.warnings { li { (clean(warning)) } }
@@ -364,8 +366,8 @@ fn sensitivity(outcome: &Outcome) -> Markup {
                     tr {
                         td.n { (trimmed(case.factor)) }
                         td.n { (whole(case.n_base)) }
-                        td.n { (significant(case.grains_per_void)) }
-                        td.n { (percent(case.mass_ratio)) }
+                        td.n { (known(case.grains_per_void, significant)) }
+                        td.n { (known(case.mass_ratio, percent)) }
                         td.n { (case.replicates) }
                         @for (index, _) in outcome.summary.iter().enumerate() {
                             td.n { @if let Some(run) = case.runs.get(index) {
@@ -407,20 +409,20 @@ fn inputs(outcome: &Outcome) -> Markup {
         h3 { "Filter" }
         table.facts { tbody {
             (fact("Name", &filter.name))
-            (fact("Cu = D60/D10", filter.cu.map_or("unknown".into(), significant)))
+            (fact("Cu = D60/D10", known(filter.cu, significant)))
             (fact("D0, D15, D50, D85 (by mass)",
                 [filter.d0_mm, filter.d15_mm, filter.d50_mm, filter.d85_mm].map(mm).join(", ")))
             (fact("D50 by number", mm(filter.d50_by_number_mm)))
             (fact("Void ratio", filter.void_ratio.map_or_else(|| "not given".to_owned(), significant)))
-            (fact("Grains per void, N_p/N_voids", significant(outcome.grains_per_void)))
+            (fact("Grains per void, N_p/N_voids", known(outcome.grains_per_void, significant)))
             (fact("Constriction curve", format!("{}, Cu of the curve {}", filter.curve_name, significant(filter.cu_csd))))
             (fact("Credit for the curve", if filter.attribution.is_empty() { "the user’s own" } else { &filter.attribution }))
         } }
         h3 { "Base" }
         table.facts { tbody {
             (fact("Name", &base.name))
-            (fact("Cu = D60/D10", base.cu.map_or("unknown".into(), significant)))
-            (fact("D0, D15, D50 (by mass)", [Some(base.d0_mm), base.d15_mm, base.d50_mm].map(|d| d.map_or("unknown".into(), mm)).join(", ")))
+            (fact("Cu = D60/D10", known(base.cu, significant)))
+            (fact("D0, D15, D50 (by mass)", [Some(base.d0_mm), base.d15_mm, base.d50_mm].map(|d| known(d, mm)).join(", ")))
             (fact("D85, D95, D100 (by mass)", [base.d85_mm, base.d95_mm, base.d100_mm].map(mm).join(", ")))
             @if base.tail_mass_fraction > 0.0 {
                 (fact("Finer than the finest sieve", format!("{} by mass; taken as passive, counted by mass only",
@@ -428,10 +430,10 @@ fn inputs(outcome: &Outcome) -> Markup {
             }
             (fact("D15F/D85B, D15F/D95B", format!("{}, {}", significant(outcome.ratios.d15f_over_d85b),
                 significant(outcome.ratios.d15f_over_d95b))))
-            (fact("Mass of base over mass of filter", percent(inputs.mass_ratio)))
+            (fact("Mass of base over mass of filter", known(inputs.mass_ratio, percent)))
             (fact("Base particles in each run, N_base", format!("{}{}", whole(outcome.n_base),
-                if outcome.n_base == outcome.n_base_eq2 { " (Eq. 2)".to_owned() }
-                else { format!(" (Eq. 2 gives {})", whole(outcome.n_base_eq2)) })))
+                if Some(outcome.n_base) == outcome.n_base_eq2 { " (Eq. 2)".to_owned() }
+                else { format!(" (Eq. 2 gives {})", known(outcome.n_base_eq2, whole)) })))
             (fact("Inserted in each increment", format!("{} of N_base", percent(inputs.inject_share))))
         } }
         h3 { "Network" }

@@ -7,7 +7,7 @@ use super::figures::{
     Shape, Tick, VERMILLION, ramp, shorten,
 };
 use super::folder::RunFolder;
-use super::numbers::{interval, percent, significant, size, threshold, whole};
+use super::numbers::{interval, known, percent, significant, size, threshold, whole};
 use crate::outcome::record::{LayerRow, SeriesRow, SizeRow, Verdict};
 
 /// Replicates drawn one by one; with more, the mean and the first ones are drawn.
@@ -340,7 +340,7 @@ pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
     let ticks = cases.iter().map(|case| {
         let mut tick = Tick::new(
             case.factor,
-            &[&format!("×{}", trimmed(case.factor)), &significant(case.grains_per_void)],
+            &[&format!("×{}", trimmed(case.factor)), &known(case.grains_per_void, significant)],
         );
         tick.rank = u8::from(case.factor != 1.0);
         tick
@@ -384,8 +384,8 @@ pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
         "How the verdict moves with the number of base particles, N_base. Grains per void and mass ratio enter N_base only \
          as a product (Eq. 2), so this one axis answers for both: ×2 is twice the grains per void or twice the mass \
          ratio. ×1 is this scene: {} grains per void, mass ratio {}. Bars: 95 % intervals.",
-        significant(folder.outcome.grains_per_void),
-        percent(folder.outcome.inputs.mass_ratio),
+        known(folder.outcome.grains_per_void, significant),
+        known(folder.outcome.inputs.mass_ratio, percent),
     );
     Some(Drawn { name: "sensitivity", caption, figure })
 }

@@ -189,7 +189,7 @@ fn a_cap_is_never_silent() {
     let mut plan = Plan::usual();
     plan.outcome.warnings.clear();
     plan.outcome.capped = true;
-    plan.outcome.n_base_eq2 = 970_000_000;
+    plan.outcome.n_base_eq2 = Some(970_000_000);
     assert!(words(&made(&plan).0).contains("from 970 000 000 (Eq. 2) to 21 443 871"));
 }
 
