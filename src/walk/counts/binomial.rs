@@ -348,11 +348,11 @@ impl Hat {
         (2.0 * self.a / us + self.b) * u + self.mean
     }
 
-    /// The largest `v` at which the proposal from `u` would be accepted, times the probability of the proposal
-    /// over that of the mode: `v` is accepted up to `ratio / scale`.
+    /// What `v` is multiplied by before it is compared with the probability of the proposal over that of the mode.
     fn scale(&self, u: f64) -> f64 {
         let us = 0.5 - u.abs();
-        (2.83 + 5.1 / self.b) * self.sigma / (self.a / (us * us) + self.b)
+        let square = us * us;
+        (2.83 * self.b + 5.1) * self.sigma * square / (self.b * (self.a + self.b * square))
     }
 
     /// The draw that `u` proposes, if `v` accepts it.
@@ -397,32 +397,33 @@ impl Hat {
     /// the terms of [`super::saddle`], cut off.
     #[inline]
     fn near(&self, k: f64) -> Option<f64> {
-        let rest = self.n - k;
         let (mean, other) = (self.mean, self.n * self.q);
         let x = k - mean;
-        let (v1, v2) = (x / (k + mean), -x / (rest + other));
+        // One division for two reciprocals, here and below.
+        let both = 1.0 / (mean * other);
+        let (m1, m2) = (other * both, mean * both);
+        let (d1, d2) = (x * m1, -x * m2);
+        let over = 1.0 / ((2.0 + d1) * (2.0 + d2));
+        let (v1, v2) = (d1 * (2.0 + d2) * over, d2 * (2.0 + d1) * over);
         // Since p <= 1/2, v1 is the larger of the two in size.
         let square = v1 * v1;
-        let fifth = square * square * square * square * square;
-        if square > 1.0 / 9.0 || k * fifth > 2e-3 {
+        let fourth = square * square;
+        if square > 1.0 / 9.0 || k * square * fourth * fourth > 2e-3 {
             return None;
         }
-        let deviance = |k: f64, v: f64| {
+        let odd = |v: f64| {
             let vv = v * v;
-            x.abs() * v.abs()
-                + 2.0 * k * v * vv * (1.0 / 3.0 + vv * (1.0 / 5.0 + vv * (1.0 / 7.0 + vv * (1.0 / 9.0))))
+            v * vv * (1.0 / 3.0 + vv * (1.0 / 5.0 + vv * (1.0 / 7.0 + vv * (1.0 / 9.0))))
         };
-        let exponent = deviance(k, v1) + deviance(rest, v2);
-        let (m1, m2) = (1.0 / mean, 1.0 / other);
-        let (d1, d2) = (x * m1, -x * m2);
+        let exponent = x * (v1 - v2) + 2.0 * (k * odd(v1) + (self.n - k) * odd(v2));
+        let shrink = 1.0 / ((1.0 + d1) * (1.0 + d2));
         // Stirling's errors of k and n - k less those of the mode cancel but for this.
-        let stirling = m1 * d1 / (1.0 + d1) + m2 * d2 / (1.0 + d2);
+        let stirling = (m1 * d1 * (1.0 + d2) + m2 * d2 * (1.0 + d1)) * shrink;
         let y = self.mode() - mean;
         let (e1, e2) = (y * m1, -y * m2);
         let of_mode = -0.5 * y * (e1 - e2) + y * (e1 * e1 - e2 * e2) / 6.0 - 0.5 * (e1 + e2)
             + 0.25 * (e1 * e1 + e2 * e2);
-        let root = 1.0 / ((1.0 + d1) * (1.0 + d2)).sqrt();
-        Some(root * libm::exp(stirling / 12.0 - exponent - of_mode))
+        Some(shrink.sqrt() * libm::exp(stirling / 12.0 - exponent - of_mode))
     }
 }
 

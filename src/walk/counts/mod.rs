@@ -250,3 +250,6 @@ fn leads_out(network: &Network, open: impl Fn(usize) -> bool) -> Vec<bool> {
     }
     leads
 }
+
+#[cfg(test)]
+mod tests;
