@@ -9,19 +9,19 @@ use voidwalk::walk::{Engine, Plan, Progress, SizeClasses, State, Walk};
 const REPLICATES: u64 = 28;
 const N_BASE: u64 = 120_000;
 
-/// Names of the figures that are compared, in order, and the most that four standard errors of the mean difference may be, as a
-/// share of the mean: what the test can see.
-const FIGURES: [(&str, f64); 10] = [
-    ("eroded mass", 0.06),
-    ("eroded number", 0.05),
-    ("largest eroded", 0.02),
-    ("retained in voids", 0.02),
-    ("retained in constrictions", 0.03),
-    ("blocked", 0.03),
-    ("blocked in the first three layers", 0.03),
-    ("moves", 0.02),
-    ("increments", 0.05),
-    ("retained number finer than the median class", 0.01),
+/// Names of the figures that are compared, in order, and for each run the most that four standard errors of the mean difference
+/// may be, as a share of the mean: what the test can see.
+const FIGURES: [(&str, [f64; 2]); 10] = [
+    ("eroded mass", [0.04, 0.06]),
+    ("eroded number", [0.035, 0.06]),
+    ("largest eroded", [0.02, 0.01]),
+    ("retained in voids", [0.03, 0.02]),
+    ("retained in constrictions", [0.02, 0.07]),
+    ("blocked", [0.015, 0.01]),
+    ("blocked in the first three layers", [0.02, 0.015]),
+    ("moves", [0.03, 0.02]),
+    ("increments", [0.04, 0.04]),
+    ("retained number finer than the median class", [0.004, 0.005]),
 ];
 
 fn figures(network: &Network, state: &State, n: u64) -> [f64; FIGURES.len()] {
@@ -89,7 +89,7 @@ fn replicates_of_both_engines_have_the_same_means() {
                 4.0 * error / mean[run][f]
             );
             assert!(average.abs() <= 4.0 * error, "run {}: {name}", run + 1);
-            assert!(4.0 * error <= visible * mean[run][f], "run {}: {name}: weak", run + 1);
+            assert!(4.0 * error <= visible[run] * mean[run][f], "run {}: {name}: weak", run + 1);
         }
     }
 }

@@ -10,15 +10,21 @@ use crate::walk::{Blocking, Progress, SizeClasses, Walk};
 struct Flowed {
     /// Eroded in each increment.
     eroded: Vec<f64>,
+    /// Moving in each void after increment [`LOOKED_AT`].
+    moving: Vec<f64>,
     /// Retained in each void at the end.
     retained: Vec<f64>,
 }
+
+/// An increment after the last insertion, with much still moving.
+const LOOKED_AT: usize = 70;
 
 /// In the words of the model: areas of the exits that were open when the increment began, afresh for every void.
 fn expectation(network: &Network, history: &[Blocking], inserted: &[u64], increments: usize) -> Flowed {
     let mut closed = vec![false; network.constrictions()];
     let mut moving = vec![0.0; network.voids()];
-    let mut flowed = Flowed { eroded: vec![0.0; increments], retained: vec![0.0; network.voids()] };
+    let mut flowed =
+        Flowed { eroded: vec![0.0; increments], moving: Vec::new(), retained: vec![0.0; network.voids()] };
     for t in 1..=increments {
         for b in history.iter().filter(|b| b.increment + 1 == t as u64) {
             closed[b.constriction as usize] = true;
@@ -28,16 +34,16 @@ fn expectation(network: &Network, history: &[Blocking], inserted: &[u64], increm
             moving[void as usize] += share as f64 / network.start().len() as f64;
         }
         let mut next = vec![0.0; network.voids()];
-        for void in 0..network.voids() {
+        for (void, &here) in moving.iter().enumerate() {
             let area = |c: usize| if closed[c] { 0.0 } else { f64::from(network.diameters()[c]).powi(2) };
             let exits = network.exits(void as u32);
             let total: f64 = exits.clone().map(area).sum();
             if total == 0.0 {
-                flowed.retained[void] += moving[void];
+                flowed.retained[void] += here;
                 continue;
             }
             for c in exits {
-                let n = moving[void] * area(c) / total;
+                let n = here * area(c) / total;
                 match network.targets()[c] {
                     END => flowed.eroded[t - 1] += n,
                     target => next[target as usize] += n,
@@ -45,6 +51,9 @@ fn expectation(network: &Network, history: &[Blocking], inserted: &[u64], increm
             }
         }
         moving = next;
+        if t == LOOKED_AT {
+            flowed.moving = moving.clone();
+        }
     }
     flowed
 }
@@ -71,9 +80,9 @@ fn differences(sums: &[u64]) -> Vec<u64> {
 }
 
 /// Passive particles of a walk one by one, and counts that are moved through the blocking history of that very walk, both
-/// against its expectation: eroded by increment, retained by void. Bound 4 on six z scores. With 1.5e6 particles a total that
-/// is off by 1 % shows; an exit probability that is off by 1 % everywhere shows in the increments; a void or two that is
-/// wrong by 20 % would not.
+/// against its expectation: eroded by increment, moving by void, and for counts retained by void. Bound 4 on seven z scores. With
+/// 1.5e6 particles a total that is off by 1 % shows, and a scatter of 10 % or so over the voids; one void that is wrong by
+/// 20 % would not.
 #[test]
 fn both_engines_follow_one_history() {
     let count = 3 * 12 * 12 * 20;
@@ -88,29 +97,35 @@ fn both_engines_follow_one_history() {
     let supply = Supply::new(sampler.clone(), 1_500_000, 60);
     let mut walked = State::new(&network, &supply, classes.clone(), open.clone(), 21, 1);
     let (mut inserted, mut eroded) = (Vec::new(), Vec::new());
+    let mut moving = vec![0; network.voids()];
     let mut observe = |state: &State| {
         inserted.push(state.tally.passive_inserted);
         eroded.push(state.tally.passive_eroded);
+        if state.increment == LOOKED_AT as u64 {
+            for (voids, sizes) in (0..state.particles.live.len()).map(|chunk| state.particles.chunk(chunk)) {
+                let passive = voids.iter().zip(sizes).filter(|&(_, &d)| d <= state.passive_limit);
+                passive.for_each(|(&void, _)| moving[void as usize] += 1);
+            }
+        }
         Progress::Continue
     };
     Walk::new(&network, &supply, &walked).run(&mut walked, &mut observe).unwrap();
     let increments = eroded.len();
     let flowed = expectation(&network, &walked.history, &differences(&inserted), increments);
-    let judge = |eroded: &[u64], retained: &[u64], flowed: &Flowed| {
+    let judge = |eroded: &[u64], moving: &[u64], flowed: &Flowed| {
         let total: f64 = flowed.eroded.iter().sum();
         let all = total + flowed.retained.iter().sum::<f64>();
         let sum: u64 = eroded.iter().sum();
         let z = [
             z_score(eroded, &flowed.eroded),
-            z_score(retained, &flowed.retained),
+            z_score(moving, &flowed.moving),
             (sum as f64 - total) / (total * (1.0 - total / all)).sqrt(),
         ];
         assert!(z.iter().all(|z| z.abs() < 4.0), "{z:?}");
         // The tests have something to look at.
-        assert!(total > 1e5 && all - total > 1e5 && walked.history.len() > 500, "{total} {all}");
+        assert!(total > 5e4 && all - total > 5e4 && walked.history.len() > 500, "{total} {all}");
     };
-    // Coarse particles in voids without open exits are 1e-3 of what is there: too few to matter.
-    judge(&differences(&eroded), &walked.retained_in_voids, &flowed);
+    judge(&differences(&eroded), &moving, &flowed);
 
     let limit = sampler.word_limit(walked.passive_limit);
     let supply = Supply::new(sampler, 1_500_000, 60).with_passive_part(limit, false, 22, 1);
@@ -123,12 +138,18 @@ fn both_engines_follow_one_history() {
         passive.increment(&network, &supply, &mut state);
         inserted.push(state.tally.passive_inserted);
         eroded.push(state.tally.passive_eroded);
+        if let (LOOKED_AT, Passive::Counts(counts)) = (t as usize, &state.passive) {
+            moving.clone_from(counts);
+        }
         let closing = walked.history.iter().filter(|b| b.increment == t).map(|b| b.constriction);
         closing.clone().for_each(|c| state.blocked.set(c as usize, true));
         passive.refresh(&network, &state, closing.map(|c| upstream[c as usize]));
     }
     let flowed = expectation(&network, &walked.history, &differences(&inserted), increments);
-    judge(&differences(&eroded), &state.retained_in_voids, &flowed);
+    judge(&differences(&eroded), &moving, &flowed);
+    // No coarse particle walked here, so whatever is retained is passive.
+    let z = z_score(&state.retained_in_voids, &flowed.retained);
+    assert!(z.abs() < 4.0, "{z}");
 
     // The expectation of the engine itself is the slow one, to rounding.
     let mut expected = Expected::new(network.voids());
