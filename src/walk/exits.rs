@@ -2,7 +2,7 @@
 
 use bitvec::slice::BitSlice;
 
-use super::State;
+use super::{Isa, State};
 use crate::network::Network;
 
 /// Thresholds of the exits of one void on the 64-bit scale, written into `thresholds`; the position
@@ -34,6 +34,8 @@ const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
 /// Exit thresholds of every void, in the form that suits the network.
 pub struct ExitTable {
     form: Form,
+    /// Instructions that read it.
+    isa: Isa,
     /// Upstream void of each constriction.
     upstream: Vec<u32>,
 }
@@ -50,8 +52,11 @@ pub(super) struct Lattice {
     /// Bits 17..32: top fifteen bits of the first threshold. Bits 2..17: of the second. Bit 1: +y wraps.
     /// Bit 0: +x wraps. A void without open exits has the first above the second.
     pub entry: Vec<u32>,
-    pub nx: u32,
-    pub plane: u32,
+    /// What a move adds to the void, modulo 2^32. Bits 0 and 1 of the index: as in `entry`. Bit 2: not the first exit. Bit
+    /// 3: the third exit.
+    pub moves: [u32; 16],
+    nx: u32,
+    plane: u32,
 }
 
 /// Thresholds of a general network.
@@ -69,15 +74,13 @@ impl ExitTable {
     /// The table for the constrictions that `state` leaves open.
     pub fn new(network: &Network, state: &State) -> Self {
         let form = match network.shape() {
-            Some([nx, ny, _]) => {
-                Form::Lattice(Lattice { entry: vec![0; network.voids()], nx, plane: nx * ny })
-            }
+            Some([nx, ny, _]) => Form::Lattice(Lattice::new(network.voids(), nx, nx * ny)),
             None => Form::General(General {
                 threshold: vec![0; network.constrictions()],
                 last_open: vec![NONE; network.voids()],
             }),
         };
-        let mut table = Self { form, upstream: network.upstream() };
+        let mut table = Self { form, isa: Isa::chosen(), upstream: network.upstream() };
         let mut scratch = Vec::new();
         for void in 0..network.voids() as u32 {
             table.set(network, &state.blocked, void, &mut scratch);
@@ -106,6 +109,14 @@ impl ExitTable {
         }
     }
 
+    pub(super) fn isa(&self) -> Isa {
+        self.isa
+    }
+
+    pub(super) fn set_isa(&mut self, isa: Isa) {
+        self.isa = isa;
+    }
+
     pub(super) fn form(&self) -> &Form {
         &self.form
     }
@@ -117,6 +128,17 @@ impl ExitTable {
 }
 
 impl Lattice {
+    fn new(voids: usize, nx: u32, plane: u32) -> Self {
+        let moves = std::array::from_fn(|index| match index {
+            0 | 2 => 1,
+            1 | 3 => 1u32.wrapping_sub(nx),
+            4 | 5 => nx,
+            6 | 7 => nx.wrapping_sub(plane),
+            _ => plane,
+        });
+        Self { entry: vec![0; voids], moves, nx, plane }
+    }
+
     fn set(&mut self, void: u32, thresholds: &[u64], last_open: Option<usize>) {
         let (x, row) = (void % self.nx, void % self.plane);
         let wraps = u32::from(x + 1 == self.nx) | u32::from(row + self.nx >= self.plane) << 1;

@@ -45,6 +45,7 @@ mod trapped;
 pub use counts::{Expected, Passive};
 pub use engine::{Engine, Plan};
 pub use exits::ExitTable;
+pub use kernel::{Isa, threads};
 pub use sizes::{SizeClasses, SizeCounts};
 pub use state::{Blocking, CHUNK, Particles, State};
 pub use supply::Supply;
@@ -105,6 +106,16 @@ impl<'a> Walk<'a> {
         let (trap, passive) =
             (trapped::Search::new(network), counts::PassiveWalk::new(network, supply, state));
         Self { network, supply, table, events: Vec::new(), trap, all_caught: false, passive }
+    }
+
+    /// The same walk with the instructions of `isa`, to the same bits: for tests and measurements.
+    ///
+    /// # Panics
+    /// If this machine does not have them.
+    pub fn with_isa(mut self, isa: Isa) -> Self {
+        assert!(isa.is_available(), "{isa:?} is not available on this machine");
+        self.table.set_isa(isa);
+        self
     }
 
     /// One increment.

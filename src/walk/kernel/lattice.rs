@@ -1,68 +1,115 @@
-//! The step on the cubic lattice: one table word a void, targets by arithmetic.
+//! The step on the cubic lattice: one table word a void, targets by arithmetic. The portable kernel, and
+//! what the vector kernels share with it.
+//!
+//! The fifteen top bits of a sixteen-bit draw stand beside the thresholds in a word as `draw << 16`, with ones below: that is
+//! no less than the word exactly where they are no less than the first threshold, and no less than the
+//! word shifted by fifteen where they are no less than the second. Where fifteen bits equal a
+//! threshold, or the void has no open exit, the particle goes the long way ([`Chunk::attempt`]).
 
 use super::OpenExits;
-use crate::stream::{DRAWS_PER_BLOCK, Key, draw16};
+use crate::stream::{DRAWS_PER_BLOCK, LANES, Lanes, draw16};
 use crate::walk::exits::{self, Lattice};
 use crate::walk::merge::Events;
 
+/// Ones below the bits of the first threshold in a word of [`Lattice::entry`].
+pub(super) const BELOW_FIRST: u32 = (1 << 17) - 1;
+
+/// Shift that brings the second threshold where the first one is.
+pub(super) const SECOND: u32 = 15;
+
+/// Bit of an index of [`Lattice::moves`]: the draw is no less than the first threshold.
+pub(super) const PAST_FIRST: u32 = 4;
+
+/// Bit of an index of [`Lattice::moves`]: the draw is no less than the second threshold.
+pub(super) const PAST_SECOND: u32 = 8;
+
+/// The moving particles of one chunk, and what their step reads and writes.
+pub(super) struct Chunk<'a> {
+    pub exits: &'a OpenExits<'a>,
+    pub table: &'a Lattice,
+    /// The stream of this chunk and increment.
+    pub lanes: Lanes,
+    pub void: &'a mut [u32],
+    pub diameter: &'a mut [f32],
+    pub events: &'a mut Events,
+}
+
 /// Moves the particles of one chunk; returns how many still move.
-pub(super) fn step(
-    exits: &OpenExits,
-    table: &Lattice,
-    key: Key,
-    void: &mut [u32],
-    diameter: &mut [f32],
-    events: &mut Events,
-) -> usize {
-    let mut lanes = key.lanes();
-    let extension = lanes.extension();
-    let diameters = exits.network.diameters();
-    let voids = table.entry.len() as u32;
+pub(super) fn step(mut chunk: Chunk) -> usize {
+    let mut lanes = chunk.lanes.clone();
+    let count = chunk.void.len();
     let mut kept = 0;
-    for begin in (0..void.len()).step_by(DRAWS_PER_BLOCK) {
+    for begin in (0..count).step_by(DRAWS_PER_BLOCK) {
         let block = lanes.next_block();
-        for j in begin..void.len().min(begin + DRAWS_PER_BLOCK) {
-            let (from, d) = (void[j], diameter[j]);
-            let entry = table.entry[from as usize];
-            let draw = draw16(&block, j - begin);
-            let (first, second, top) = (entry >> 17, entry >> 2 & 0x7fff, u32::from(draw >> 1));
-            let exit = if top == first || top == second || first > second {
-                match undecided(exits, from, extension.complete(draw, j as u64)) {
-                    Some(exit) => exit,
-                    None => {
-                        events.stranded.push((from, d));
-                        continue;
-                    }
-                }
-            } else {
-                u32::from(top >= first) + u32::from(top >= second)
-            };
-            if d > exits.passive_limit && d > diameters[(3 * from + exit) as usize] {
-                events.stopped.push((3 * from + exit, d));
-                continue;
-            }
-            let to = table.target(from, exit, entry);
-            if to >= voids {
-                events.eroded.push(d);
-                continue;
-            }
-            void[kept] = to;
-            diameter[kept] = d;
-            kept += 1;
-        }
+        kept = chunk.step_block(begin, count.min(begin + DRAWS_PER_BLOCK), &block, kept);
     }
     kept
+}
+
+impl Chunk<'_> {
+    /// Moves particles `begin .. end`, which take the first draws of `block`; `kept` before them still
+    /// move.
+    pub fn step_block(&mut self, begin: usize, end: usize, block: &[u64; LANES], mut kept: usize) -> usize {
+        let voids = self.table.entry.len() as u32;
+        let limit = self.exits.passive_limit;
+        for j in begin..end {
+            let (from, d) = (self.void[j], self.diameter[j]);
+            let entry = self.table.entry[from as usize];
+            let draw = draw16(block, j - begin);
+            let top = u32::from(draw) << 16 | BELOW_FIRST;
+            let second = entry << SECOND;
+            let (past_first, past_second) = (top >= entry, top >= second);
+            let tie = (top ^ entry).min(top ^ second) <= BELOW_FIRST;
+            let index = entry & 3 | u32::from(past_first) * PAST_FIRST | u32::from(past_second) * PAST_SECOND;
+            let to = from.wrapping_add(self.table.moves[index as usize & 15]);
+            if tie | (past_second & !past_first) | (d > limit) | (to >= voids) {
+                kept = self.attempt(j, draw, kept);
+            } else {
+                self.void[kept] = to;
+                self.diameter[kept] = d;
+                kept += 1;
+            }
+        }
+        kept
+    }
+
+    /// The attempt of particle `j` in full; `kept` before it still move.
+    pub fn attempt(&mut self, j: usize, draw: u16, kept: usize) -> usize {
+        let (from, d) = (self.void[j], self.diameter[j]);
+        let entry = self.table.entry[from as usize];
+        let (first, second, top) = (entry >> 17, entry >> 2 & 0x7fff, u32::from(draw >> 1));
+        let exit = if top == first || top == second || first > second {
+            match undecided(self.exits, from, self.lanes.extension().complete(draw, j as u64)) {
+                Some(exit) => exit,
+                None => {
+                    self.events.stranded.push((from, d));
+                    return kept;
+                }
+            }
+        } else {
+            u32::from(top >= first) + u32::from(top >= second)
+        };
+        if d > self.exits.passive_limit && d > self.exits.network.diameters()[(3 * from + exit) as usize] {
+            self.events.stopped.push((3 * from + exit, d));
+            return kept;
+        }
+        let to = self.table.target(from, exit, entry);
+        if to >= self.table.entry.len() as u32 {
+            self.events.eroded.push(d);
+            return kept;
+        }
+        self.void[kept] = to;
+        self.diameter[kept] = d;
+        kept + 1
+    }
 }
 
 impl Lattice {
     /// Void that exit `exit` of void `from` leads to; past the last void where it leaves.
     #[inline(always)]
-    pub fn target(&self, from: u32, exit: u32, entry: u32) -> u32 {
-        match exit {
-            0 => from + 1 - (entry & 1) * self.nx,
-            1 => from + self.nx - (entry >> 1 & 1) * self.plane,
-            _ => from + self.plane,
-        }
+    fn target(&self, from: u32, exit: u32, entry: u32) -> u32 {
+        let index = entry & 3 | [0, PAST_FIRST, PAST_FIRST | PAST_SECOND][exit as usize];
+        from.wrapping_add(self.moves[index as usize])
     }
 }
 

@@ -3,8 +3,17 @@
 //! A kernel is a pure function of the network, the exits open at the start of the increment, the chunk and
 //! its stream; it writes to its own chunk and events only.
 
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
 mod general;
+mod isa;
 mod lattice;
+mod threads;
+
+pub use isa::Isa;
+pub use threads::threads;
 
 use bitvec::slice::BitSlice;
 use rayon::prelude::*;
@@ -72,7 +81,16 @@ fn step_chunk(
     events: &mut Events,
 ) -> usize {
     match exits.table.form() {
-        Form::Lattice(table) => lattice::step(exits, table, key, void, diameter, events),
+        Form::Lattice(table) => {
+            let chunk = lattice::Chunk { exits, table, lanes: key.lanes(), void, diameter, events };
+            match exits.table.isa() {
+                #[cfg(target_arch = "x86_64")]
+                Isa::Avx512 if avx512::suits(table) => avx512::step(chunk),
+                #[cfg(target_arch = "x86_64")]
+                Isa::Avx2 if avx2::suits(table) => avx2::step(chunk),
+                _ => lattice::step(chunk),
+            }
+        }
         Form::General(table) => general::step(exits.network, table, key, void, diameter, events),
     }
 }
