@@ -2,7 +2,7 @@
 
 use super::merge::Events;
 use super::sizes::cube;
-use super::{CHUNK, State, Supply};
+use super::{CHUNK, Isa, State, Supply, kernel};
 use crate::network::Network;
 use crate::stream::{Key, LANES, Purpose, below};
 
@@ -20,24 +20,37 @@ pub(super) fn plan(supply: &Supply, state: &mut State, events: &mut Vec<Events>)
     }
 }
 
-/// Appends the particles of one chunk to its columns and returns their mass.
+/// Particles drawn at a time.
+const BATCH: usize = 8 * LANES;
+
+/// Appends the particles of one chunk to its columns, and notes their mass and how many are passive.
+#[expect(clippy::too_many_arguments, reason = "what it reads, and the columns that it writes")]
 pub(super) fn insert(
     network: &Network,
     supply: &Supply,
     key: Key,
+    isa: Isa,
+    passive_limit: f32,
     void: &mut [u32],
     diameter: &mut [f32],
-) -> f64 {
+    events: &mut Events,
+) {
     let mut lanes = Key { purpose: Purpose::Insertion, ..key }.lanes();
     let nodes = network.start();
     let mut mass = 0.0;
-    for (void, diameter) in void.chunks_mut(LANES / 2).zip(diameter.chunks_mut(LANES / 2)) {
-        let words = lanes.next_block();
-        for ((void, diameter), pair) in void.iter_mut().zip(diameter).zip(words.chunks_exact(2)) {
-            *void = nodes[below(pair[0], nodes.len() as u64) as usize];
-            *diameter = supply.diameter(pair[1]);
-            mass += cube(*diameter);
+    for (void, diameter) in void.chunks_mut(BATCH).zip(diameter.chunks_mut(BATCH)) {
+        let mut size_words = [0; BATCH];
+        let size_words = &mut size_words[..void.len()];
+        for (void, size_words) in void.chunks_mut(LANES / 2).zip(size_words.chunks_mut(LANES / 2)) {
+            let words = lanes.next_block();
+            for ((void, size_word), pair) in void.iter_mut().zip(size_words).zip(words.chunks_exact(2)) {
+                *void = nodes[below(pair[0], nodes.len() as u64) as usize];
+                *size_word = pair[1];
+            }
         }
+        kernel::fill_diameters(isa, supply, size_words, diameter);
+        mass = diameter.iter().fold(mass, |mass, &d| mass + cube(d));
+        events.passive_inserted += diameter.iter().map(|&d| u32::from(d <= passive_limit)).sum::<u32>();
     }
-    mass
+    events.inserted_mass = mass;
 }

@@ -100,11 +100,29 @@ impl Supply {
     /// Diameter of the base particle that `word` draws.
     #[inline]
     pub fn diameter(&self, word: u64) -> f32 {
+        self.sampler.diameter(self.word(word))
+    }
+
+    /// [`Supply::diameter`] of every word; the words are used up.
+    ///
+    /// # Panics
+    /// If the slices differ in length.
+    #[inline]
+    pub fn fill(&self, words: &mut [u64], out: &mut [f32]) {
+        if self.first_word != 0 {
+            words.iter_mut().for_each(|word| *word = self.word(*word));
+        }
+        self.sampler.fill(words, out);
+    }
+
+    /// The sampler's word for a random word.
+    #[inline]
+    fn word(&self, word: u64) -> u64 {
         match self.first_word {
-            0 => self.sampler.diameter(word),
+            0 => word,
             first => {
                 let width = u128::from(u64::MAX - first) + 1;
-                self.sampler.diameter(first + ((u128::from(word) * width) >> 64) as u64)
+                first + ((u128::from(word) * width) >> 64) as u64
             }
         }
     }

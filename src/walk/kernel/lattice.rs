@@ -35,18 +35,108 @@ pub(super) struct Chunk<'a> {
 }
 
 /// Moves the particles of one chunk; returns how many still move.
+///
+/// Whole blocks in three passes: table words one by one, then arithmetic alone, which compiles to vector code, then
+/// what few particles leave.
+#[inline(never)]
 pub(super) fn step(mut chunk: Chunk) -> usize {
     let mut lanes = chunk.lanes.clone();
     let count = chunk.void.len();
     let mut kept = 0;
     for begin in (0..count).step_by(DRAWS_PER_BLOCK) {
         let block = lanes.next_block();
-        kept = chunk.step_block(begin, count.min(begin + DRAWS_PER_BLOCK), &block, kept);
+        let end = begin + DRAWS_PER_BLOCK;
+        let whole = (chunk.void.get(begin..end), chunk.diameter.get(begin..end));
+        kept = match whole {
+            (Some(from), Some(diameter)) => {
+                let (from, diameter) = (from.try_into().unwrap(), diameter.try_into().unwrap());
+                let (to, rare) = sketch(chunk.exits, chunk.table, from, diameter, &block);
+                chunk.settle(begin, &block, &to, rare, kept)
+            }
+            _ => chunk.step_block(begin, count, &block, kept),
+        };
     }
     kept
 }
 
+/// Where a block of particles goes if nothing rare happens, and a bit for each particle for which it may:
+/// a tie, no open exit, not passive, leaves.
+#[inline]
+fn sketch(
+    exits: &OpenExits,
+    table: &Lattice,
+    from: &[u32; DRAWS_PER_BLOCK],
+    diameter: &[f32; DRAWS_PER_BLOCK],
+    block: &[u64; LANES],
+) -> ([u32; DRAWS_PER_BLOCK], u32) {
+    let entry: [u32; DRAWS_PER_BLOCK] = std::array::from_fn(|j| table.entry[from[j] as usize]);
+    let draws: [u16; DRAWS_PER_BLOCK] = bytemuck::cast(block.map(u64::to_le));
+    let (nx, plane) = (table.moves[4], table.moves[15]);
+    let last_layer = (table.entry.len() as u32 - plane) as i32;
+    let mut to = [0; DRAWS_PER_BLOCK];
+    let mut rare = [0; DRAWS_PER_BLOCK];
+    for j in 0..DRAWS_PER_BLOCK {
+        let top = i32::from(u16::from_le(draws[j]) >> 1);
+        let (first, second) = ((entry[j] >> 17) as i32, (entry[j] >> 2 & 0x7fff) as i32);
+        let (wraps_x, wraps_y) = (0u32.wrapping_sub(entry[j] & 1), 0u32.wrapping_sub(entry[j] >> 1 & 1));
+        let (before_first, before_second) = (ones(top < first), ones(top < second));
+        let sideways = 1u32.wrapping_sub(wraps_x & nx);
+        let across = nx.wrapping_sub(wraps_y & plane);
+        let by = before_first & sideways | !before_first & across;
+        let by = before_second & by | !before_second & plane;
+        to[j] = from[j].wrapping_add(by);
+        rare[j] = ones(top == first)
+            | ones(top == second)
+            | before_first & !before_second
+            | ones(diameter[j] > exits.passive_limit)
+            | !before_second & ones(from[j] as i32 >= last_layer);
+    }
+    if rare.iter().fold(0, |any, &one| any | one) == 0 {
+        return (to, 0);
+    }
+    (to, rare.iter().enumerate().fold(0, |bits, (j, &one)| bits | one & 1 << j))
+}
+
+/// All bits where `yes`, else none: conditions as arithmetic.
+#[inline(always)]
+fn ones(yes: bool) -> u32 {
+    0u32.wrapping_sub(u32::from(yes))
+}
+
 impl Chunk<'_> {
+    /// Writes what [`sketch`] says, and takes the rare particles the long way.
+    #[inline]
+    fn settle(
+        &mut self,
+        begin: usize,
+        block: &[u64; LANES],
+        to: &[u32; DRAWS_PER_BLOCK],
+        mut rare: u32,
+        mut kept: usize,
+    ) -> usize {
+        if rare == 0 {
+            let end = begin + DRAWS_PER_BLOCK;
+            self.void[kept..kept + DRAWS_PER_BLOCK].copy_from_slice(to);
+            self.diameter.copy_within(begin..end, kept);
+            return kept + DRAWS_PER_BLOCK;
+        }
+        let mut done = 0;
+        loop {
+            let until = (rare.trailing_zeros() as usize).min(DRAWS_PER_BLOCK);
+            for j in done..until {
+                self.void[kept + j - done] = to[j];
+                self.diameter[kept + j - done] = self.diameter[begin + j];
+            }
+            kept += until - done;
+            if until == DRAWS_PER_BLOCK {
+                return kept;
+            }
+            kept = self.attempt(begin + until, draw16(block, until), kept);
+            rare &= rare - 1;
+            done = until + 1;
+        }
+    }
+
     /// Moves particles `begin .. end`, which take the first draws of `block`; `kept` before them still
     /// move.
     pub fn step_block(&mut self, begin: usize, end: usize, block: &[u64; LANES], mut kept: usize) -> usize {

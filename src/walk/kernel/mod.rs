@@ -7,11 +7,13 @@
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
+mod fill;
 mod general;
 mod isa;
 mod lattice;
 mod threads;
 
+pub(super) use fill::fill_diameters;
 pub use isa::Isa;
 pub use threads::threads;
 
@@ -21,11 +23,11 @@ use rayon::prelude::*;
 use super::exits::Form;
 use super::insert::insert;
 use super::merge::Events;
-use super::{CHUNK, ExitTable, State, Supply};
+use super::{CHUNK, ExitTable, Particles, State, Supply};
 use crate::network::Network;
 use crate::stream::{Key, Purpose};
 
-/// Inserts and moves the particles of all chunks, in parallel; what happened is in `events`.
+/// Inserts and moves the particles of all chunks, in parallel where that pays; what happened is in `events`.
 pub(super) fn step(
     network: &Network,
     table: &ExitTable,
@@ -42,26 +44,44 @@ pub(super) fn step(
     };
     let exits = OpenExits { network, table, blocked: &state.blocked, passive_limit: state.passive_limit };
     let classes = &state.classes;
-    let columns =
-        state.particles.void.par_chunks_mut(CHUNK).zip(state.particles.diameter.par_chunks_mut(CHUNK));
-    let chunks = columns.zip(&mut state.particles.live).zip(events).enumerate();
-    chunks.for_each(|(chunk, (((void, diameter), live), events))| {
+    let attempts =
+        state.tally.moving + supply.inserted(state.increment) - supply.inserted(state.increment - 1);
+    let work = |chunk: usize, void: &mut [u32], diameter: &mut [f32], live: &mut u32, events: &mut Events| {
         let key = Key { chunk: chunk as u64, ..key };
         let (old, new) = (*live as usize, *live as usize + events.inserted as usize);
         if new == 0 {
             return;
         }
         if new > old {
-            let diameter = &mut diameter[old..new];
-            events.inserted_mass = insert(network, supply, key, &mut void[old..new], diameter);
-            events.passive_inserted = diameter.iter().filter(|&&d| d <= exits.passive_limit).count() as u32;
+            let (void, diameter) = (&mut void[old..new], &mut diameter[old..new]);
+            insert(network, supply, key, table.isa(), exits.passive_limit, void, diameter, events);
         }
         let kept = step_chunk(&exits, key, &mut void[..new], &mut diameter[..new], events);
         events.moves = (new - events.stopped.len() - events.stranded.len()) as u64;
         events.sum(classes, exits.passive_limit);
         *live = kept as u32;
-    });
+    };
+    let Particles { void, diameter, live } = &mut state.particles;
+    if rayon::current_num_threads() > 1 && attempts + EMPTY_CHUNK * live.len() as u64 > WORTH_THREADS {
+        let columns = void.par_chunks_mut(CHUNK).zip(diameter.par_chunks_mut(CHUNK));
+        let chunks = columns.zip(live).zip(events).enumerate();
+        chunks.for_each(|(chunk, (((void, diameter), live), events))| {
+            work(chunk, void, diameter, live, events)
+        });
+    } else {
+        let columns = void.chunks_mut(CHUNK).zip(diameter.chunks_mut(CHUNK));
+        let chunks = columns.zip(live).zip(events).enumerate();
+        chunks.for_each(|(chunk, (((void, diameter), live), events))| {
+            work(chunk, void, diameter, live, events)
+        });
+    }
 }
+
+/// Attempted moves in an increment above which several threads are faster than one.
+const WORTH_THREADS: u64 = 4 * CHUNK as u64;
+
+/// Attempted moves that take as long as a chunk with hardly any.
+const EMPTY_CHUNK: u64 = 16;
 
 /// What a kernel reads: the network and its exits open at the start of the increment.
 struct OpenExits<'a> {
