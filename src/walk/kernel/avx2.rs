@@ -3,9 +3,8 @@
 use std::arch::x86_64::*;
 
 use super::Isa;
-use super::lattice::{BELOW_FIRST, Chunk, SECOND};
+use super::lattice::{BELOW_FIRST, Chunk, SECOND, fits_gathers};
 use crate::stream::{DRAWS_PER_BLOCK, LANES, draw16};
-use crate::walk::exits::Lattice;
 
 const WIDTH: usize = 8;
 
@@ -29,14 +28,9 @@ const fn staying() -> [[u32; WIDTH]; 1 << WIDTH] {
     table
 }
 
-/// Whether every constriction has a number that a gather can use as an offset.
-pub(super) fn suits(table: &Lattice) -> bool {
-    3 * table.entry.len() <= i32::MAX as usize
-}
-
 /// Moves the particles of one chunk; returns how many still move.
 pub(super) fn step(chunk: Chunk) -> usize {
-    assert!(Isa::Avx2.is_available() && suits(chunk.table));
+    assert!(Isa::Avx2.is_available() && fits_gathers(chunk.table));
     // SAFETY: the machine has the instructions.
     unsafe { step_vectors(chunk) }
 }

@@ -9,20 +9,14 @@
 use std::arch::x86_64::*;
 
 use super::Isa;
-use super::lattice::{BELOW_FIRST, Chunk, PAST_FIRST, PAST_SECOND, SECOND};
+use super::lattice::{BELOW_FIRST, Chunk, PAST_FIRST, PAST_SECOND, SECOND, fits_gathers};
 use crate::stream::{DRAWS_PER_BLOCK, LANES, Lanes, draw16};
-use crate::walk::exits::Lattice;
 
 const WIDTH: usize = 16;
 
-/// Whether every constriction has a number that a gather can use as an offset.
-pub(super) fn suits(table: &Lattice) -> bool {
-    3 * table.entry.len() <= i32::MAX as usize
-}
-
 /// Moves the particles of one chunk; returns how many still move.
 pub(super) fn step(chunk: Chunk) -> usize {
-    assert!(Isa::Avx512.is_available() && suits(chunk.table));
+    assert!(Isa::Avx512.is_available() && fits_gathers(chunk.table));
     // SAFETY: the machine has the instructions.
     unsafe { step_vectors(chunk) }
 }

@@ -23,6 +23,11 @@ pub(super) const PAST_FIRST: u32 = 4;
 /// Bit of an index of [`Lattice::moves`]: the draw is no less than the second threshold.
 pub(super) const PAST_SECOND: u32 = 8;
 
+/// Whether every constriction has a number that a gather can use as an offset.
+pub(super) fn fits_gathers(table: &Lattice) -> bool {
+    3 * table.entry.len() <= i32::MAX as usize
+}
+
 /// The moving particles of one chunk, and what their step reads and writes.
 pub(super) struct Chunk<'a> {
     pub exits: &'a OpenExits<'a>,
@@ -123,8 +128,8 @@ impl Chunk<'_> {
         let mut done = 0;
         loop {
             let until = (rare.trailing_zeros() as usize).min(DRAWS_PER_BLOCK);
-            for j in done..until {
-                self.void[kept + j - done] = to[j];
+            for (j, &to) in to.iter().enumerate().take(until).skip(done) {
+                self.void[kept + j - done] = to;
                 self.diameter[kept + j - done] = self.diameter[begin + j];
             }
             kept += until - done;
@@ -150,7 +155,8 @@ impl Chunk<'_> {
             let second = entry << SECOND;
             let (past_first, past_second) = (top >= entry, top >= second);
             let tie = (top ^ entry).min(top ^ second) <= BELOW_FIRST;
-            let index = entry & 3 | u32::from(past_first) * PAST_FIRST | u32::from(past_second) * PAST_SECOND;
+            let past = u32::from(past_first) * PAST_FIRST + u32::from(past_second) * PAST_SECOND;
+            let index = (entry & 3) + past;
             let to = from.wrapping_add(self.table.moves[index as usize & 15]);
             if tie | (past_second & !past_first) | (d > limit) | (to >= voids) {
                 kept = self.attempt(j, draw, kept);

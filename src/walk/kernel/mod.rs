@@ -11,6 +11,8 @@ mod fill;
 mod general;
 mod isa;
 mod lattice;
+#[cfg(test)]
+mod tests;
 mod threads;
 
 pub(super) use fill::fill_diameters;
@@ -105,9 +107,9 @@ fn step_chunk(
             let chunk = lattice::Chunk { exits, table, lanes: key.lanes(), void, diameter, events };
             match exits.table.isa() {
                 #[cfg(target_arch = "x86_64")]
-                Isa::Avx512 if avx512::suits(table) => avx512::step(chunk),
+                Isa::Avx512 if lattice::fits_gathers(table) => avx512::step(chunk),
                 #[cfg(target_arch = "x86_64")]
-                Isa::Avx2 if avx2::suits(table) => avx2::step(chunk),
+                Isa::Avx2 if lattice::fits_gathers(table) => avx2::step(chunk),
                 _ => lattice::step(chunk),
             }
         }

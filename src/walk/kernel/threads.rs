@@ -57,7 +57,7 @@ mod tests {
         if all.len() > 1 && seen.len() == all.len() {
             assert_eq!(seen.concat(), all);
         }
-        assert_eq!(threads(1, true).unwrap().broadcast(|_| allowed()), [all.clone()]);
+        assert_eq!(threads(1, true).unwrap().broadcast(|_| allowed()), [all.as_slice()]);
         assert!(threads(3, false).unwrap().broadcast(|_| allowed()).iter().all(|a| *a == all));
     }
 }

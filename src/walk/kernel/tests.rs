@@ -1,0 +1,178 @@
+//! Every kernel against the portable one, on plain columns.
+
+use bitvec::vec::BitVec;
+use proptest::prelude::*;
+
+use super::*;
+use crate::gradation::{Gradation, SizeSampler};
+use crate::stream::{DRAWS_PER_BLOCK, draw16};
+use crate::walk::SizeClasses;
+
+/// A lattice, and what is blocked in it.
+#[derive(Clone, Debug)]
+struct Scene {
+    shape: [u32; 3],
+    diameters: Vec<f32>,
+    blocked: Vec<bool>,
+}
+
+/// Everything that a step leaves behind.
+#[derive(Debug, PartialEq)]
+struct After {
+    void: Vec<u32>,
+    diameter: Vec<f32>,
+    eroded: Vec<f32>,
+    stopped: Vec<(u32, f32)>,
+    stranded: Vec<(u32, f32)>,
+}
+
+/// One step of the particles in `void` and `diameter` by `isa`.
+fn after(scene: &Scene, key: Key, isa: Isa, void: &[u32], diameter: &[f32]) -> After {
+    let network = Network::cubic_from_diameters(scene.shape, scene.diameters.clone(), 1.0).unwrap();
+    let blocked: BitVec<u64> = scene.blocked.iter().copied().collect();
+    let supply = Supply::new(SizeSampler::new(&Gradation::single(1.0).unwrap(), 1.0).unwrap(), 1, 1);
+    let classes = SizeClasses::logarithmic(1.0, 1.0, 1);
+    let state = State::new(&network, &supply, classes, blocked, 1, 1);
+    let mut table = ExitTable::new(&network, &state);
+    table.set_isa(isa);
+    let exits = OpenExits {
+        network: &network,
+        table: &table,
+        blocked: &state.blocked,
+        passive_limit: state.passive_limit,
+    };
+    let (mut void, mut diameter) = (void.to_vec(), diameter.to_vec());
+    let mut events = Events::default();
+    let kept = step_chunk(&exits, key, &mut void, &mut diameter, &mut events);
+    void.truncate(kept);
+    diameter.truncate(kept);
+    let Events { eroded, stopped, stranded, .. } = events;
+    After { void, diameter, eroded, stopped, stranded }
+}
+
+fn key(seed: u64) -> Key {
+    Key { seed, purpose: Purpose::Step, run: 1, increment: 1, chunk: 0 }
+}
+
+fn available() -> impl Iterator<Item = Isa> {
+    Isa::ALL.into_iter().filter(|isa| isa.is_available())
+}
+
+/// `count` values picked from `palette` by a plain congruence.
+fn picked<T: Copy>(count: usize, palette: &[T], mut seed: u64) -> Vec<T> {
+    let next = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        palette[(seed >> 33) as usize % palette.len()]
+    };
+    std::iter::repeat_with(next).take(count).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    /// Any number of particles, passive, coarse, as wide as a constriction to the bit; closed constrictions,
+    /// voids without open exits, everything closed.
+    #[test]
+    fn every_kernel_leaves_the_same_behind(
+        shape in [1u32..7, 1u32..7, 1u32..5],
+        constrictions in prop::sample::select(vec![
+            vec![1.0f32, 1.5, 2.0], vec![0.0, 1.0, 2.0], vec![1e-6, 1.0, 1e6], vec![1.0], vec![0.0],
+        ]),
+        sizes in prop::sample::select(vec![
+            vec![0.5f32], vec![0.5, 1.0, 1.5, 2.0, 3.0], vec![0.5, 0.5, 0.5, 0.5, 1.25], vec![9.0], vec![1e-7, 1e7],
+        ]),
+        blocked in prop::sample::select(vec![
+            vec![false], vec![false, false, false, true], vec![false, true, true], vec![true],
+        ]),
+        count in 0usize..1200,
+        seed: u64,
+    ) {
+        let voids: Vec<u32> = (0..shape.iter().product()).collect();
+        let scene = Scene {
+            shape,
+            diameters: picked(3 * voids.len(), &constrictions, seed),
+            blocked: picked(3 * voids.len(), &blocked, !seed),
+        };
+        let (void, diameter) = (picked(count, &voids, seed ^ 1), picked(count, &sizes, seed ^ 2));
+        let expected = after(&scene, key(seed), Isa::Portable, &void, &diameter);
+        let gone = expected.eroded.len() + expected.stopped.len() + expected.stranded.len();
+        prop_assert_eq!(expected.void.len() + gone, count);
+        for isa in available() {
+            prop_assert_eq!(&after(&scene, key(seed), isa, &void, &diameter), &expected, "{:?}", isa);
+        }
+    }
+}
+
+/// Thresholds whose sixteen top bits equal the draw of a particle, just above and just below it.
+#[test]
+fn a_draw_that_equals_a_threshold_is_decided_by_all_of_its_bits() {
+    let mut lanes = key(3).lanes();
+    let extension = lanes.extension();
+    let block = lanes.next_block();
+    let mut seen = [0; 2];
+    for place in 0..DRAWS_PER_BLOCK {
+        let draw = draw16(&block, place);
+        let share = (f64::from(draw) + 0.5) / 65536.0;
+        // The first of two open exits has this share of the area.
+        let ratio = (share / (1.0 - share)).sqrt() as f32;
+        for steps in -400i32..400 {
+            let first = f32::from_bits((ratio.to_bits() as i32 + 16 * steps) as u32);
+            let scene = Scene { shape: [1, 1, 1], diameters: vec![first, 0.0, 1.0], blocked: vec![false; 3] };
+            let a = f64::from(first) * f64::from(first);
+            let threshold = (a / (a + 1.0) * 2f64.powi(64)) as u64;
+            if (threshold >> 48) as u16 != draw {
+                continue;
+            }
+            let stays = extension.complete(draw, place as u64) < threshold;
+            seen[usize::from(stays)] += 1;
+            let (void, diameter) = (vec![0; DRAWS_PER_BLOCK], vec![1e-6; DRAWS_PER_BLOCK]);
+            let expected = after(&scene, key(3), Isa::Portable, &void, &diameter);
+            for isa in available() {
+                assert_eq!(after(&scene, key(3), isa, &void, &diameter), expected, "{isa:?}");
+            }
+            // The particle alone at its place: those before it are too coarse for anything.
+            let mut diameter = vec![9e9; DRAWS_PER_BLOCK];
+            diameter[place] = 1e-6;
+            for isa in available() {
+                let after = after(&scene, key(3), isa, &void, &diameter);
+                assert_eq!(after.void.len() == 1, stays, "{isa:?}, draw {draw}");
+            }
+        }
+    }
+    assert!(seen[0].min(seen[1]) > 100, "{seen:?} ties");
+}
+
+/// A column that a damaged file might hold: an error, never a read beyond the table.
+#[test]
+fn a_void_that_does_not_exist_is_refused() {
+    let scene = Scene { shape: [2, 2, 1], diameters: vec![1.0; 12], blocked: vec![false; 12] };
+    for isa in available() {
+        for bad in [4, 1 << 31, u32::MAX] {
+            for place in [0, 17, 63, 64] {
+                let mut void = vec![0; 65];
+                void[place] = bad;
+                let step = || after(&scene, key(1), isa, &void, &[0.5; 65]);
+                assert!(std::panic::catch_unwind(step).is_err(), "{isa:?}: {bad} at {place}");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_instruction_set_draws_the_same_diameters() {
+    let words = picked(1000, &[0, 1, 1 << 40, 1 << 63, u64::MAX - 5, 0x1234_5678_9abc_def0], 4);
+    let mixed: Vec<u64> =
+        words.iter().zip(picked(1000, &[1, 3, 77, 1 << 51], 9)).map(|(a, b)| a ^ b).collect();
+    let whole = SizeSampler::new(&Gradation::linear_from_d0(0.1, 4.5).unwrap(), 1.0).unwrap();
+    let supplies = [Supply::new(whole.clone(), 10, 2), Supply::coarse_part(whole, 1 << 63, &[4, 6])];
+    for supply in supplies {
+        let expected: Vec<f32> = mixed.iter().map(|&word| supply.diameter(word)).collect();
+        for isa in available() {
+            for count in [0, 1, 7, 64, 999, 1000] {
+                let mut out = vec![0.0; count];
+                fill_diameters(isa, &supply, &mut mixed[..count].to_vec(), &mut out);
+                assert_eq!(out, expected[..count], "{isa:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! Whole runs by every kernel and number of threads: the same bits.
+
+use bitvec::vec::BitVec;
+use voidwalk::constrictions;
+use voidwalk::gradation::{Gradation, SizeSampler};
+use voidwalk::network::Network;
+use voidwalk::walk::{CHUNK, Isa, Progress, SizeClasses, State, Supply, Walk, threads};
+
+/// Two runs of `n` particles of a base with D85 = Dc`percent`: every column after increments 7 and 60, and at
+/// the end.
+fn columns(isa: Isa, n: u64, cu: f64, percent: f64) -> Vec<String> {
+    let curve = constrictions::find("shire2016-cu1.5-loose").unwrap().curve().unwrap();
+    let network = Network::cubic([12, 10, 15], &curve, 1.0, 5).unwrap();
+    let base = Gradation::linear_from_dx(85.0, curve.dc(percent).unwrap(), cu).unwrap();
+    let sampler = SizeSampler::new(&base, 1.0).unwrap();
+    let mut blocked = BitVec::repeat(false, network.constrictions());
+    let mut seen = Vec::new();
+    for run in 1..=2 {
+        let classes = SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), 32);
+        let supply = Supply::new(sampler.clone(), n, 30);
+        let mut state = State::new(&network, &supply, classes, blocked, 3, run);
+        let mut note = |state: &State| {
+            let chunks = 0..state.particles.live.len();
+            let columns: Vec<_> = chunks.map(|chunk| state.particles.chunk(chunk)).collect();
+            let digest = xxhash_rust::xxh3::xxh3_64(format!("{columns:?}").as_bytes());
+            let rest = (&state.tally, &state.history, &state.eroded_sizes, &state.retained_sizes);
+            let retained = (&state.retained_in_constrictions, &state.retained_in_voids);
+            seen.push(format!("{digest:x} {rest:?} {retained:?} {}", state.increment));
+        };
+        let mut walk = Walk::new(&network, &supply, &state).with_isa(isa);
+        walk.run(&mut state, &mut |state| {
+            if [7, 60].contains(&state.increment) {
+                note(state);
+            }
+            Progress::Continue
+        })
+        .unwrap();
+        note(&state);
+        assert_eq!(state.tally.inserted, n);
+        blocked = state.blocked;
+    }
+    seen
+}
+
+#[test]
+fn kernels_and_threads_change_no_bit() {
+    let several_chunks = 6 * CHUNK as u64 + 4321;
+    for (n, cu, percent) in
+        [(several_chunks, 4.5, 5.0), (several_chunks, 1.5, 50.0), (20_001, 3.0, 25.0), (33, 1.5, 10.0)]
+    {
+        let expected = threads(1, false).unwrap().install(|| columns(Isa::Portable, n, cu, percent));
+        for isa in Isa::ALL.into_iter().filter(|isa| isa.is_available()) {
+            for count in [1, 2, 3] {
+                let seen = threads(count, false).unwrap().install(|| columns(isa, n, cu, percent));
+                assert!(seen == expected, "{isa:?}, {count} threads, N = {n}");
+            }
+        }
+    }
+}
