@@ -347,7 +347,7 @@ impl Names {
         let distance = |known: &&&str| {
             let last = |n: &str| n.rsplit('.').next().unwrap_or_default().to_string();
             let whole = strsim::damerau_levenshtein(known, name);
-            whole.min(strsim::damerau_levenshtein(&last(known), &last(name)) + 1)
+            (whole.min(strsim::damerau_levenshtein(&last(known), &last(name)) + 1), whole)
         };
         let nearest = self.known.iter().min_by_key(distance).copied().unwrap_or_default();
         let name = Value::Text(name.into()).to_string();
