@@ -317,3 +317,80 @@ fn a_closed_pipe_is_no_panic() {
         assert!(!String::from_utf8_lossy(&output.stderr).contains("panicked"));
     }
 }
+
+/// A cubic lattice of touching grains: one void a grain, three constrictions of 0.414214 D.
+#[test]
+fn constrictions_of_a_packing_become_a_curve_for_a_scene() {
+    let root = tempfile::tempdir().unwrap();
+    let packing = root.path().join("sc.csv");
+    let mut text = String::from("# cell_mm = 5, 5, 5\nx_mm,y_mm,z_mm,diameter_mm\n");
+    for grain in 0..125 {
+        text.push_str(&format!("{},{},{},1\n", grain % 5, grain / 5 % 5, grain / 25));
+    }
+    fs::write(&packing, text).unwrap();
+    let out = root.path().join("out");
+    let args = ["constrictions", packing.to_str().unwrap(), "--json", "--out", out.to_str().unwrap()];
+    let output = voidwalk(&args);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(
+        (&json["grains"], &json["voids"], &json["constrictions"]),
+        (&125.into(), &125.into(), &375.into())
+    );
+    assert!((json["dc_mm"]["50"].as_f64().unwrap() - 0.414214).abs() < 1e-6);
+    for file in ["constrictions.csv", "constrictions.json", "constrictions.vtp", "grains.vtp"] {
+        assert!(out.join(file).is_file(), "{file}");
+    }
+    refused(&voidwalk(&args), &["--overwrite"]);
+    let curve = format!("filter.curve={}", out.join("constrictions.csv").display());
+    let check =
+        ["check", "--json", "--set", &curve, "--set", "filter.cu=1", "--set", "filter.grains_per_void=1"];
+    assert!(voidwalk(&check).status.success());
+    fs::write(&packing, "x_mm,y_mm,z_mm,diameter_mm\n0,0,0,nan\n").unwrap();
+    refused(&voidwalk(&["constrictions", packing.to_str().unwrap()]), &["sc.csv"]);
+}
+
+/// Inputs that a first reader of this program found to slip through.
+#[test]
+fn what_once_slipped_through_is_refused() {
+    let root = tempfile::tempdir().unwrap();
+    let out = root.path().join("out");
+    let sieve = root.path().join("base.csv");
+    fs::write(&sieve, "opening_mm,percent_finer\n0.8,10\n1.0,60\n1.2,100\n").unwrap();
+    let set = format!("base.sieve={}", sieve.display());
+    for (more, message) in [
+        // A tail of unknown size that may not be passive.
+        (vec!["--set", &set, "--set", "filter.d0_mm=1.01"], "its tail of unknown size may not be passive"),
+        (vec!["--set", "base.sieve=/dev/null"], "must be a regular file"),
+        (vec!["--set", "inject_share=1e-12"], "whole number of equal parts"),
+        (
+            vec![
+                "--set",
+                "network.nx=1e9",
+                "--set",
+                "network.ny=1",
+                "--set",
+                "network.nz=1",
+                "--set",
+                "base.n_base=10",
+            ],
+            "available",
+        ),
+    ] {
+        let mut args = vec!["run", "--out", out.to_str().unwrap()];
+        args.extend(more);
+        refused(&voidwalk(&args), &[message]);
+        assert!(!out.exists());
+    }
+    // A network in mm does not become scale-free, and grains per void that nobody gave are not invented.
+    let network = root.path().join("net.csv");
+    fs::write(&network, "from,to,diameter_mm\nstart,0,\n0,end,2\n").unwrap();
+    let set = format!("network.file={}", network.display());
+    let check = ["check", "--json", "--set", &set, "--set", "base.single_mm=1", "--set", "base.n_base=10"];
+    let json: Value = serde_json::from_slice(&voidwalk(&check).stdout).unwrap();
+    assert_eq!((&json["inputs"]["scale_free"], &json["grains_per_void"]), (&false.into(), &Value::Null));
+    // Another filter's curve is said to be one.
+    let json: Value =
+        serde_json::from_slice(&voidwalk(&["check", "--json", "--set", "filter.cu=3"]).stdout).unwrap();
+    assert!(json["warnings"][0].as_str().unwrap().contains("constrictions of another filter"));
+}

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use crate::constrictions::DEFAULT_MERGE_OVERLAP;
+
 /// Will this filter hold this soil? A random-walk network model of base-filter combinations.
 #[derive(Debug, Parser)]
 #[command(name = "voidwalk", version, about, propagate_version = true)]
@@ -25,6 +27,8 @@ pub enum Command {
         /// File to write; the scene goes to stdout without one
         path: Option<PathBuf>,
     },
+    /// Measure the constrictions of a packing of grains
+    Constrictions(ConstrictionsArgs),
     /// Write report.html and the figures of a finished run folder again
     Report {
         /// The run folder
@@ -67,4 +71,23 @@ pub struct RunArgs {
     /// No progress and no summary
     #[arg(long, short)]
     pub quiet: bool,
+}
+
+/// Which packing, and how its voids are told apart.
+#[derive(Debug, Args)]
+pub struct ConstrictionsArgs {
+    /// Grains: CSV (x_mm,y_mm,z_mm,diameter_mm after `# cell_mm = Lx, Ly, Lz` or `# cell = none`), or a LAMMPS text dump
+    pub packing: PathBuf,
+    /// Overlap of two inscribed spheres from which their tetrahedra are one void
+    #[arg(long, value_name = "F", default_value_t = DEFAULT_MERGE_OVERLAP)]
+    pub merge_overlap: f64,
+    /// Folder for the results [default: voidwalk-constrictions]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace the results of an earlier call in --out
+    #[arg(long)]
+    pub overwrite: bool,
+    /// Print constrictions.json
+    #[arg(long)]
+    pub json: bool,
 }

@@ -4,6 +4,7 @@
 
 mod args;
 mod check;
+mod constrictions;
 mod print;
 mod progress;
 mod run;
@@ -38,6 +39,7 @@ pub fn main() -> ExitCode {
         Command::Run(args) => run::run(&args),
         Command::Check(args) => check::check(&args),
         Command::Init { path } => check::init(path.as_deref()),
+        Command::Constrictions(args) => constrictions::constrictions(&args),
         Command::Report { folder } => run::report(&folder),
     };
     match result {

@@ -1,7 +1,23 @@
 //! Constrictions: the narrowest openings between the voids of a filter, and their sizes by number.
+//!
+//! ```text
+//! Packing -> Triangulation -> voids, discs -> Constrictions -> Curve
+//! ```
 
 mod curve;
+mod discs;
+mod measure;
 mod shipped;
+mod summary;
+mod tangent;
+mod triangulation;
+mod voids;
 
 pub use curve::{Curve, CurveError, CurveUnit};
+pub use measure::{Constrictions, ConstrictionsError, DEFAULT_MERGE_OVERLAP, Facets};
 pub use shipped::{ShippedFilter, find, shipped};
+pub use summary::{SUMMARY_PERCENT, Summary};
+pub use triangulation::{Insane, Triangulation, TriangulationError};
+
+#[cfg(test)]
+mod lattice_tests;

@@ -27,6 +27,7 @@ mod sieve;
 mod supply;
 mod table;
 
+pub(crate) use error::shortened;
 pub use error::{GradationError, NumberError, Position, TableError};
 pub use sampler::{Part, SizeSampler};
 pub use sieve::{Gradation, SIZE_MAX_MM, SIZE_MIN_MM};

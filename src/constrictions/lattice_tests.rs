@@ -1,0 +1,252 @@
+//! Lattices, exact and disturbed: every row of known sizes and counts.
+
+use super::{Constrictions, Facets, Triangulation};
+use crate::packing::{Cell, Packing};
+use crate::stream::{Key, Purpose, unit};
+use rand::Rng;
+
+/// Grains of a lattice: a basis in a box of given lengths, repeated, all of one diameter.
+struct Lattice {
+    name: &'static str,
+    basis: Vec<[f64; 3]>,
+    lengths: [f64; 3],
+    repeat: [usize; 3],
+    /// Constriction over grain diameter, and constrictions a grain.
+    size: f64,
+    per_grain: usize,
+}
+
+/// All with grains of diameter 1 that touch.
+fn lattices() -> Vec<Lattice> {
+    let (root2, root3, root6) = (2f64.sqrt(), 3f64.sqrt(), 6f64.sqrt());
+    let scaled = |points: &[[f64; 3]], by: [f64; 3]| -> Vec<[f64; 3]> {
+        points.iter().map(|p| std::array::from_fn(|axis| p[axis] * by[axis])).collect()
+    };
+    let fcc = [[0.0, 0.0, 0.0], [0.5, 0.5, 0.0], [0.5, 0.0, 0.5], [0.0, 0.5, 0.5]];
+    let bcc = [[0.0; 3], [0.5; 3]];
+    // Orthorhombic cell of hexagonal close packing: 1 x sqrt 3 x 2 sqrt(2/3).
+    let hcp_lengths = [1.0, root3, 2.0 * root6 / 3.0];
+    let hcp = [[0.0, 0.0, 0.0], [0.5, 0.5, 0.0], [0.5, 1.0 / 6.0, 0.5], [0.0, 2.0 / 3.0, 0.5]];
+    vec![
+        Lattice {
+            name: "simple cubic",
+            basis: vec![[0.0; 3]],
+            lengths: [1.0; 3],
+            repeat: [4, 5, 6],
+            size: root2 - 1.0,
+            per_grain: 3,
+        },
+        Lattice {
+            name: "FCC",
+            basis: scaled(&fcc, [root2; 3]),
+            lengths: [root2; 3],
+            repeat: [3, 4, 2],
+            size: 2.0 / root3 - 1.0,
+            per_grain: 8,
+        },
+        Lattice {
+            name: "HCP",
+            basis: scaled(&hcp, hcp_lengths),
+            lengths: hcp_lengths,
+            repeat: [4, 3, 2],
+            size: 2.0 / root3 - 1.0,
+            per_grain: 8,
+        },
+        Lattice {
+            name: "BCC",
+            basis: scaled(&bcc, [2.0 / root3; 3]),
+            lengths: [2.0 / root3; 3],
+            repeat: [3, 4, 3],
+            size: 0.224_745,
+            per_grain: 12,
+        },
+    ]
+}
+
+impl Lattice {
+    /// In a periodic box, scaled, axes turned round `turn` times, each centre moved by up to `jitter`.
+    fn periodic(&self, scale: f64, jitter: f64, turn: usize) -> Packing {
+        let [nx, ny, nz] = self.repeat;
+        let lengths = [nx as f64 * self.lengths[0], ny as f64 * self.lengths[1], nz as f64 * self.lengths[2]];
+        let mut columns = self.centres(jitter);
+        let mut cell = lengths;
+        columns.rotate_left(turn);
+        cell.rotate_left(turn);
+        let [x, y, z] = columns.map(|c| c.into_iter().map(|v| v * scale).collect::<Vec<_>>());
+        let diameter = vec![scale; x.len()];
+        Packing { cell: Cell::Periodic(cell.map(|l| l * scale)), x, y, z, diameter }
+    }
+
+    fn centres(&self, jitter: f64) -> [Vec<f64>; 3] {
+        let mut rng =
+            Key { seed: 5, purpose: Purpose::Packing, run: 1, increment: 0, chunk: self.per_grain as u64 }
+                .generator();
+        let mut columns = [Vec::new(), Vec::new(), Vec::new()];
+        for i in 0..self.repeat[0] {
+            for j in 0..self.repeat[1] {
+                for k in 0..self.repeat[2] {
+                    for p in &self.basis {
+                        for (axis, n) in [i, j, k].into_iter().enumerate() {
+                            let moved = jitter * (2.0 * unit(rng.next_u64()) - 1.0);
+                            columns[axis].push(p[axis] + n as f64 * self.lengths[axis] + moved);
+                        }
+                    }
+                }
+            }
+        }
+        columns
+    }
+
+    fn check(&self, packing: &Packing, scale: f64, tolerance: f64, case: &str) {
+        let found = Constrictions::measure(packing, 0.1).unwrap();
+        let grains = packing.diameter.len();
+        assert_eq!(found.constrictions(), self.per_grain * grains, "{} {case}", self.name);
+        for &d in &found.diameter_mm {
+            let error = d / scale / self.size - 1.0;
+            assert!(error.abs() < tolerance, "{} {case}: {d}, {error:e}", self.name);
+        }
+        assert_eq!(found.closed, 0);
+    }
+}
+
+#[test]
+fn lattices_have_their_sizes_and_counts() {
+    for lattice in lattices() {
+        for scale in [1.0, 1e-6, 1e-3, 0.1, 7.3, 1e6] {
+            for turn in 0..3 {
+                let case = format!("scale {scale:e}, turned {turn} times");
+                lattice.check(&lattice.periodic(scale, 0.0, turn), scale, 2e-6, &case);
+            }
+        }
+    }
+}
+
+#[test]
+fn jittered_lattices_keep_them() {
+    for lattice in lattices() {
+        for (jitter, tolerance) in [(1e-16, 2e-6), (1e-12, 2e-6), (1e-6, 5e-5)] {
+            for turn in 0..3 {
+                let case = format!("jitter {jitter:e}, turned {turn} times");
+                lattice.check(&lattice.periodic(1.0, jitter, turn), 1.0, tolerance, &case);
+            }
+        }
+    }
+}
+
+/// Turned by an angle that no axis has, a lattice fits no periodic box: a free pack, in whose inner part
+/// every size is the lattice's.
+#[test]
+fn rotated_lattices_keep_their_sizes() {
+    let (c, s) = (0.8, 0.6);
+    for mut lattice in lattices() {
+        lattice.repeat = lattice.lengths.map(|l| libm::ceil(7.0 / l) as usize);
+        for jitter in [0.0, 1e-12, 1e-6] {
+            let [x, y, z] = lattice.centres(jitter);
+            let turned = |p: &[f64], q: &[f64], a: f64, b: f64| -> Vec<f64> {
+                p.iter().zip(q).map(|(p, q)| a * p + b * q).collect()
+            };
+            let (x, y) = (turned(&x, &y, c, -s), turned(&x, &y, s, c));
+            let (y, z) = (turned(&y, &z, c, -s), turned(&y, &z, s, c));
+            let diameter = vec![1.0; x.len()];
+            let packing = Packing { cell: Cell::Free, x, y, z, diameter };
+            let found = Constrictions::measure(&packing, 0.1).unwrap();
+            // On the hull tetrahedra stretch along its faces; the middle knows nothing of them.
+            let middle = |axis: usize, column: &[f64]| {
+                let (low, high) = column.iter().fold((f64::MAX, f64::MIN), |(a, b), &v| (a.min(v), b.max(v)));
+                (axis, 0.5 * (low + high))
+            };
+            let middle = [middle(0, &packing.x), middle(1, &packing.y), middle(2, &packing.z)];
+            let inner: Vec<f64> = found
+                .centre_mm
+                .iter()
+                .zip(&found.diameter_mm)
+                .filter(|(p, _)| middle.iter().all(|&(axis, m)| (p[axis] - m).abs() < 1.2))
+                .map(|(_, &d)| d)
+                .collect();
+            assert!(inner.len() > 20, "{}", lattice.name);
+            for d in inner {
+                assert!((d / lattice.size - 1.0).abs() < 5e-5, "{} {jitter:e}: {d}", lattice.name);
+            }
+        }
+    }
+}
+
+/// A factor of two on all lengths changes no bit.
+#[test]
+fn a_factor_of_two_changes_no_bit() {
+    for lattice in lattices() {
+        let base = Constrictions::measure(&lattice.periodic(1.0, 1e-3, 0), 0.1).unwrap();
+        for factor in [0.25, 1024.0] {
+            let scaled = Constrictions::measure(&lattice.periodic(factor, 1e-3, 0), 0.1).unwrap();
+            let back = |d: &[f64]| -> Vec<f64> { d.iter().map(|d| d / factor).collect() };
+            assert_eq!(back(&scaled.diameter_mm), base.diameter_mm);
+            assert_eq!(back(&scaled.void_diameter_mm), base.void_diameter_mm);
+            assert_eq!((&scaled.upstream, &scaled.downstream), (&base.upstream, &base.downstream));
+            assert_eq!(scaled.void_ratio.to_bits(), base.void_ratio.to_bits());
+        }
+    }
+}
+
+/// Cubes meet six others, octahedra (one a grain) eight tetrahedra (two a grain), which meet four.
+#[test]
+fn voids_and_their_connectivity() {
+    let all = lattices();
+    let cubic = Constrictions::measure(&all[0].periodic(1.0, 0.0, 0), 0.1).unwrap();
+    assert_eq!(cubic.connectivity(), [0, 0, 0, 0, 0, 0, 120]);
+    assert_eq!((cubic.grains_per_void(), cubic.mean_connectivity()), (1.0, 6.0));
+    assert!((cubic.void_ratio - (6.0 / std::f64::consts::PI - 1.0)).abs() < 1e-12);
+    assert!(cubic.void_diameter_mm.iter().all(|d| (d - 0.732_051).abs() < 1e-6));
+    let fcc = Constrictions::measure(&all[1].periodic(1.0, 0.0, 0), 0.1).unwrap();
+    assert_eq!(fcc.connectivity(), [0, 0, 0, 0, 192, 0, 0, 0, 96]);
+    // Each constriction leads up: a cubic cell's windows along x and y lead nowhere along z.
+    for c in 0..cubic.constrictions() {
+        let z = |v: u32| cubic.void_centre_mm[v as usize][2];
+        let rise = z(cubic.downstream[c]) - z(cubic.upstream[c]);
+        assert!(rise.abs() < 1e-9 || (rise - 1.0).abs() < 1e-9 || (rise + 5.0).abs() < 1e-9, "{rise}");
+    }
+}
+
+/// A free simple cubic block: what the outer 5 % leaves has the lattice's void ratio.
+#[test]
+fn a_free_block_has_the_void_ratio_of_its_middle() {
+    let mut block = lattices().swap_remove(0).periodic(1.0, 0.0, 0);
+    block.cell = Cell::Free;
+    let found = Constrictions::measure(&block, 0.1).unwrap();
+    assert!((found.void_ratio - (6.0 / std::f64::consts::PI - 1.0)).abs() < 1e-9, "{}", found.void_ratio);
+    assert_eq!(found.grains(), 2 * 3 * 4);
+    assert_eq!(found.voids(), 3 * 4 * 5);
+}
+
+#[test]
+fn what_is_written_can_be_read() {
+    let found = Constrictions::measure(&lattices()[0].periodic(1.0, 1e-6, 0), 0.1).unwrap();
+    let summary = serde_json::to_value(found.summary().unwrap()).unwrap();
+    assert_eq!((&summary["grains"], &summary["voids"]), (&120.into(), &120.into()));
+    assert_eq!(summary["connectivity"].as_array().unwrap().len(), 7);
+    assert!((summary["dc_mm"]["1.5"].as_f64().unwrap() - 0.414).abs() < 0.01);
+    let curve = super::Curve::from_csv_text("f", found.curve_csv().unwrap().as_bytes()).unwrap();
+    assert_eq!(curve, found.curve().unwrap());
+    assert!(found.to_vtp().contains("Name=\"downstream\""));
+}
+
+#[test]
+fn a_merge_overlap_that_is_none_is_refused() {
+    let packing = lattices()[0].periodic(1.0, 0.0, 0);
+    for value in [-0.1, f64::NAN, f64::INFINITY] {
+        let error = Constrictions::measure(&packing, value).unwrap_err().to_string();
+        assert!(error.contains("merge_overlap"), "{error}");
+    }
+}
+
+/// The voids of a lattice are convex, so all their facets lie on both hulls; square windows too.
+#[test]
+fn on_lattices_every_facet_is_on_both_hulls() {
+    for lattice in lattices() {
+        for jitter in [0.0, 1e-12, 1e-6] {
+            let t = Triangulation::new(&lattice.periodic(1.0, jitter, 0)).unwrap();
+            let all = Constrictions::from_triangulation(&t, 0.1, Facets::All).unwrap();
+            let hulls = Constrictions::from_triangulation(&t, 0.1, Facets::OnBothHulls).unwrap();
+            assert_eq!(all.diameter_mm, hulls.diameter_mm, "{} {jitter:e}", lattice.name);
+        }
+    }
+}

@@ -1,0 +1,358 @@
+//! The algorithm: one grain after another carves its cavity and fills it (Bowyer, Watson).
+//!
+//! The same steps run in space, where the triangulation is closed by tetrahedra with a corner at
+//! infinity, and on the torus, where a grain stands for all its images at once. The latter is right
+//! as long as the cavity of a grain neither overlaps nor touches, facet to facet, the cavities of its
+//! own images; that is noticed when it happens ([`Wrapped`]).
+
+use super::mesh::{Corner, INFINITE, Mesh, NONE, Positions, Shift, corner, grain, image};
+use super::points::Point;
+use super::predicates::{facets, in_conflict, orientation};
+use std::cmp::Ordering;
+
+/// The cavity of a grain met the cavity of one of its images.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Wrapped;
+
+/// What a tetrahedron was found to be in the insertion that numbered it.
+#[derive(Clone, Copy)]
+struct Mark {
+    insertion: u32,
+    /// Bits 0..24: the translate in which it was met; bit 31: it is in the cavity.
+    state: u32,
+}
+
+const IN_CAVITY: u32 = 1 << 31;
+
+/// A facet of the cavity: the tetrahedron that will stand on it.
+#[derive(Clone, Copy)]
+struct Stand {
+    grains: [u32; 4],
+    /// Shift of each corner as seen from the new grain.
+    images: [Shift; 4],
+    /// Which corner is the new grain.
+    apex: usize,
+    /// The tetrahedron outside, and its corner opposite the facet.
+    outside: u32,
+    /// Its translate.
+    translate: Shift,
+}
+
+/// An edge on the surface of the cavity and the facet that met it first.
+#[derive(Clone, Copy)]
+struct Edge {
+    insertion: u32,
+    ends: [(u32, Shift); 2],
+    tetrahedron: u32,
+    facet: u32,
+}
+
+/// A triangulation that grows.
+pub(super) struct Builder<'a> {
+    pub(super) mesh: Mesh,
+    positions: Positions<'a>,
+    /// Breaks ties between coincident centres: the grain that a point is an image of.
+    identity: &'a [u32],
+    marks: Vec<Mark>,
+    insertion: u32,
+    /// Where the next walk starts, and in which translate.
+    last: (u32, Shift),
+    dead: Vec<u32>,
+    stack: Vec<(u32, Shift)>,
+    stands: Vec<Stand>,
+    new: Vec<(u32, Shift)>,
+    edges: Vec<Edge>,
+}
+
+impl<'a> Builder<'a> {
+    /// Continues from a mesh, which must not be empty.
+    pub(super) fn new(mesh: Mesh, positions: Positions<'a>, identity: &'a [u32]) -> Self {
+        let marks = vec![Mark { insertion: 0, state: 0 }; mesh.corners.len()];
+        let last = (mesh.corners.iter().position(|c| c[0] != NONE).unwrap_or(0) as u32, Shift::ZERO);
+        let unused = Edge { insertion: 0, ends: [(0, Shift::ZERO); 2], tetrahedron: 0, facet: 0 };
+        Self {
+            mesh,
+            positions,
+            identity,
+            marks,
+            insertion: 0,
+            last,
+            dead: Vec::new(),
+            stack: Vec::new(),
+            stands: Vec::new(),
+            new: Vec::new(),
+            edges: vec![unused; 256],
+        }
+    }
+
+    /// A free triangulation of the first four points of `order` that span space: these points come
+    /// first in `order` afterwards. None if all lie in one plane.
+    pub(super) fn first(positions: Positions<'a>, identity: &'a [u32], order: &mut [u32]) -> Option<Self> {
+        let spanning = spanning(positions.at, order)?;
+        for (place, at) in spanning.into_iter().enumerate() {
+            // Later places hold later positions, so nothing already placed moves.
+            order[place..=at].rotate_right(1);
+        }
+        let mut corners = [order[0], order[1], order[2], order[3]];
+        if orientation(&corners.map(|p| positions.at[p as usize])) < 0 {
+            corners.swap(2, 3);
+        }
+        let mut mesh = Mesh::default();
+        let inner = mesh.push(corners);
+        let outer: [u32; 4] = std::array::from_fn(|i| {
+            let mut outside = corners;
+            outside[i] = INFINITE;
+            // Seen from infinity the facet turns the other way.
+            outside.swap((i + 1) % 4, (i + 2) % 4);
+            mesh.push(outside)
+        });
+        for i in 0..4 {
+            mesh.link((inner, i), (outer[i], i), Shift::ZERO);
+            for j in 0..i {
+                // The facet without corners i and j, in both.
+                let facet = |t: u32, missing: Corner| {
+                    mesh.corners[t as usize].iter().position(|&c| c == missing).unwrap_or(0)
+                };
+                let (a, b) = (facet(outer[i], corners[j]), facet(outer[j], corners[i]));
+                mesh.link((outer[i], a), (outer[j], b), Shift::ZERO);
+            }
+        }
+        Some(Self::new(mesh, positions, identity))
+    }
+
+    /// Whether point `p` at `at` takes tetrahedron `t`, in the translate `shift`, away.
+    #[inline(always)]
+    fn conflict<const PERIODIC: bool>(&self, t: u32, shift: Shift, p: u32, at: &Point) -> bool {
+        let corners = &self.mesh.corners[t as usize];
+        let tie = |i: usize, j: usize| -> Ordering {
+            let id = |i: usize| self.identity[if i == 4 { p } else { grain(corners[i]) } as usize];
+            id(i).cmp(&id(j))
+        };
+        if !PERIODIC && let Some(i) = self.mesh.infinite_corner(t) {
+            return self.infinite_conflict(t, i, p, at);
+        }
+        in_conflict(&self.positions.corners::<PERIODIC>(corners, shift), at, tie)
+    }
+
+    /// Beyond a facet of the hull; in its plane, what the tetrahedron behind it says.
+    #[inline(never)]
+    fn infinite_conflict(&self, t: u32, infinite: usize, p: u32, at: &Point) -> bool {
+        let mut corners = self.mesh.corners[t as usize];
+        corners[infinite] = p;
+        match orientation(&corners.map(|c| self.positions.at[c as usize])) {
+            0 => self.conflict::<false>(self.mesh.neighbours[t as usize][infinite] / 4, Shift::ZERO, p, at),
+            side => side > 0,
+        }
+    }
+
+    /// Walks to a tetrahedron that holds the point, or to one beyond the hull that sees it.
+    #[inline]
+    fn locate<const PERIODIC: bool>(&self, at: &Point) -> (u32, Shift) {
+        let (mut t, mut shift) = self.last;
+        if !PERIODIC && let Some(i) = self.mesh.infinite_corner(t) {
+            t = self.mesh.neighbours[t as usize][i] / 4;
+        }
+        loop {
+            if !PERIODIC && self.mesh.infinite_corner(t).is_some() {
+                return (t, shift);
+            }
+            let corners = self.positions.corners::<PERIODIC>(&self.mesh.corners[t as usize], shift);
+            let Some(i) = facets(&corners, at) else { return (t, shift) };
+            if PERIODIC {
+                shift = shift.plus(self.mesh.shifts[t as usize][i]);
+            }
+            t = self.mesh.neighbours[t as usize][i] / 4;
+        }
+    }
+
+    /// Inserts point `p`; false if it is hidden by the others.
+    pub(super) fn insert<const PERIODIC: bool>(&mut self, p: u32) -> Result<bool, Wrapped> {
+        let at = self.positions.at[p as usize];
+        let start = self.locate::<PERIODIC>(&at);
+        if !self.conflict::<PERIODIC>(start.0, start.1, p, &at) {
+            self.last = start;
+            return Ok(false);
+        }
+        self.carve::<PERIODIC>(start, p, &at)?;
+        self.fill::<PERIODIC>()?;
+        Ok(true)
+    }
+
+    /// Collects the cavity in `dead` and its surface in `stands`.
+    fn carve<const PERIODIC: bool>(
+        &mut self,
+        start: (u32, Shift),
+        p: u32,
+        at: &Point,
+    ) -> Result<(), Wrapped> {
+        self.insertion += 1;
+        let insertion = self.insertion;
+        self.stands.clear();
+        self.stack.clear();
+        self.marks[start.0 as usize] = Mark { insertion, state: IN_CAVITY | (start.1.0 & !IN_CAVITY) };
+        self.stack.push(start);
+        let mut next = 0;
+        while next < self.stack.len() {
+            let (t, shift) = self.stack[next];
+            next += 1;
+            for i in 0..4 {
+                let across = self.mesh.neighbours[t as usize][i];
+                let o = across / 4;
+                let translate =
+                    if PERIODIC { shift.plus(self.mesh.shifts[t as usize][i]) } else { Shift::ZERO };
+                let mark = self.marks[o as usize];
+                let known = mark.insertion == insertion;
+                let same = mark.state & !IN_CAVITY == translate.0 & !IN_CAVITY;
+                if known && mark.state & IN_CAVITY != 0 {
+                    if same {
+                        continue;
+                    }
+                    return Err(Wrapped);
+                }
+                if !(known && same) {
+                    let taken = self.conflict::<PERIODIC>(o, translate, p, at);
+                    let state = (translate.0 & !IN_CAVITY) | if taken { IN_CAVITY } else { 0 };
+                    self.marks[o as usize] = Mark { insertion, state };
+                    if taken {
+                        self.stack.push((o, translate));
+                        continue;
+                    }
+                }
+                let [a, b, c, d] = self.mesh.corners[t as usize];
+                let mut stand = Stand {
+                    grains: [grain(a), grain(b), grain(c), grain(d)],
+                    images: [Shift::ZERO; 4],
+                    apex: i,
+                    outside: across,
+                    translate,
+                };
+                if PERIODIC {
+                    let from_p = |c: Corner| image(c).plus(shift);
+                    stand.images = [from_p(a), from_p(b), from_p(c), from_p(d)];
+                    stand.images[i] = Shift::ZERO;
+                }
+                stand.grains[i] = p;
+                self.stands.push(stand);
+            }
+        }
+        Ok(())
+    }
+
+    /// Replaces the cavity by tetrahedra from its surface to the new grain.
+    fn fill<const PERIODIC: bool>(&mut self) -> Result<(), Wrapped> {
+        let insertion = self.insertion;
+        for stand in &self.stands {
+            let mark = self.marks[(stand.outside / 4) as usize];
+            if PERIODIC && mark.state & IN_CAVITY != 0 {
+                return Err(Wrapped);
+            }
+        }
+        for &(t, _) in &self.stack {
+            self.mesh.corners[t as usize][0] = NONE;
+            self.dead.push(t);
+        }
+        self.new.clear();
+        for stand in &self.stands {
+            let (mut corners, mut shift) = (stand.grains, Shift::ZERO);
+            if PERIODIC {
+                (corners, shift) = stored(&stand.grains, &stand.images)?;
+            }
+            let t = match self.dead.pop() {
+                Some(t) => {
+                    self.mesh.corners[t as usize] = corners;
+                    t
+                }
+                None => {
+                    self.marks.push(Mark { insertion: 0, state: 0 });
+                    self.mesh.push(corners)
+                }
+            };
+            self.new.push((t, shift));
+            let (outside, j) = (stand.outside / 4, (stand.outside % 4) as usize);
+            self.mesh.link((t, stand.apex), (outside, j), stand.translate.minus(shift));
+        }
+        let wanted = (self.stands.len() * 4).next_power_of_two();
+        if self.edges.len() < wanted {
+            let unused = Edge { insertion: 0, ends: [(0, Shift::ZERO); 2], tetrahedron: 0, facet: 0 };
+            self.edges = vec![unused; wanted];
+        }
+        for k in 0..self.stands.len() {
+            let stand = self.stands[k];
+            for i in 1..4 {
+                let facet = (stand.apex + i) % 4;
+                // The two corners of that facet beside the new grain.
+                let others = [(stand.apex + 1 + i % 3) % 4, (stand.apex + 1 + (i + 1) % 3) % 4];
+                let ends = others.map(|c| (stand.grains[c], stand.images[c]));
+                self.pair(insertion, ends, k as u32, facet as u32);
+            }
+        }
+        self.last = self.new[0];
+        Ok(())
+    }
+
+    /// Links the two new tetrahedra that share an edge of the cavity's surface, once both are known.
+    #[inline(always)]
+    fn pair(&mut self, insertion: u32, mut ends: [(u32, Shift); 2], k: u32, facet: u32) {
+        if ends[1] < ends[0] {
+            ends.swap(0, 1);
+        }
+        let mask = self.edges.len() - 1;
+        let mixed = (u64::from(ends[0].0) << 32 | u64::from(ends[1].0)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let mut slot = (mixed >> 40) as usize & mask;
+        loop {
+            let edge = self.edges[slot];
+            if edge.insertion != insertion {
+                self.edges[slot] = Edge { insertion, ends, tetrahedron: k, facet };
+                return;
+            }
+            if edge.ends == ends {
+                let (a, b) = (self.new[edge.tetrahedron as usize], self.new[k as usize]);
+                self.mesh.link((a.0, edge.facet as usize), (b.0, facet as usize), b.1.minus(a.1));
+                return;
+            }
+            slot = (slot + 1) & mask;
+        }
+    }
+}
+
+/// Corners brought to their stored translate, and the shift from there to where they are.
+#[inline(always)]
+fn stored(grains: &[u32; 4], images: &[Shift; 4]) -> Result<([Corner; 4], Shift), Wrapped> {
+    if images.iter().all(|&i| i == Shift::ZERO) {
+        return Ok((*grains, Shift::ZERO));
+    }
+    normalised(grains, images).ok_or(Wrapped)
+}
+
+/// See [`stored`]; none if the images reach over more than four cells.
+pub(super) fn normalised(grains: &[u32; 4], images: &[Shift; 4]) -> Option<([Corner; 4], Shift)> {
+    let cells = images.map(Shift::cells);
+    let least = Shift::new(std::array::from_fn(|axis| cells.iter().fold(i32::MAX, |m, c| m.min(c[axis]))));
+    let mut corners = [0; 4];
+    for (slot, (&grain, &image)) in corners.iter_mut().zip(grains.iter().zip(images)) {
+        *slot = corner(grain, image.minus(least))?;
+    }
+    Some((corners, least))
+}
+
+/// Positions in `order`, ascending, of four points that span space.
+fn spanning(at: &[Point], order: &[u32]) -> Option<[usize; 4]> {
+    let point = |i: usize| at[order[i] as usize];
+    let a = point(0);
+    let mut chosen = [0; 4];
+    chosen[1] = (1..order.len()).find(|&i| point(i)[..3] != a[..3])?;
+    let b = point(chosen[1]);
+    // Collinear with a and b: coplanar with any two points beside them, three tried.
+    let aside = |i: usize| {
+        let c = point(i);
+        (0..3).any(|axis| {
+            let mut d = a;
+            d[axis] += 1.0;
+            orientation(&[a, b, c, d]) != 0
+        })
+    };
+    chosen[2] = (chosen[1] + 1..order.len()).find(|&i| aside(i))?;
+    let c = point(chosen[2]);
+    chosen[3] = (chosen[2] + 1..order.len()).find(|&i| orientation(&[a, b, c, point(i)]) != 0)?;
+    Some(chosen)
+}

@@ -1,0 +1,119 @@
+//! Grain centres on an integer grid, so that a periodic image is exact.
+//!
+//! `x + L` rounds, and a rounded image no longer lies on exactly the sphere its grain lies on: facets
+//! then fail to pair across the boundary of a lattice. So centres, radii and cell lengths are first
+//! rounded to multiples of one power of two, 2^-50 of the largest length (a grain of a thousandth of
+//! the cell moves by 1e-12 of its size at most; centres that are already such multiples do not move).
+//! From there on every coordinate, every image up to seven cells away and every difference of two is
+//! an integer held exactly by an f64, every predicate has one exact answer, and that answer is the
+//! same for all images. A factor of two on all lengths changes the grid with them, hence no bit.
+
+use super::error::TriangulationError;
+use crate::packing::{Cell, Packing};
+
+/// Centre x, y, z and radius in grid units: integers, exact in f64.
+pub(in crate::constrictions) type Point = [f64; 4];
+
+/// Bits of the largest length in grid units.
+const BITS: i32 = 50;
+
+/// Grains a corner can name ([`super::mesh`]).
+pub(super) const MOST_GRAINS: usize = (1 << 26) - 1;
+
+/// The grains of a packing on the grid.
+#[derive(Clone, Debug)]
+pub(super) struct Points {
+    /// Centre, wrapped into the cell, and radius by grain.
+    pub(super) at: Vec<Point>,
+    /// Cell lengths in grid units; none for free boundaries.
+    pub(super) cell: Option<[f64; 3]>,
+    /// Length of a grid unit (mm), a power of two.
+    pub(super) unit_mm: f64,
+    /// What was subtracted from the coordinates before they were rounded (mm).
+    pub(super) origin_mm: [f64; 3],
+}
+
+impl Points {
+    /// Checks a packing and puts it on the grid.
+    pub(super) fn new(packing: &Packing) -> Result<Self, TriangulationError> {
+        let columns = [&packing.x, &packing.y, &packing.z];
+        let (grains, largest_mm) = check(packing)?;
+        let (origin_mm, extent_mm) = match packing.cell {
+            Cell::Periodic(lengths) => ([0.0; 3], lengths.iter().fold(0.0, |a: f64, &b| a.max(b))),
+            Cell::Free => {
+                let low = columns.map(|c| c.iter().fold(f64::INFINITY, |a, &b| a.min(b)));
+                let high = columns.map(|c| c.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b)));
+                (low, (0..3).fold(largest_mm, |a, axis| a.max(high[axis] - low[axis])))
+            }
+        };
+        let exponent = libm::frexp(extent_mm).1 - BITS;
+        if !extent_mm.is_finite() || !(-900..900).contains(&exponent) {
+            return Err(TriangulationError::Extent { extent_mm });
+        }
+        let (unit_mm, scale) = (libm::ldexp(1.0, exponent), libm::ldexp(1.0, -exponent));
+        let cell = match packing.cell {
+            Cell::Periodic(lengths) => Some(lengths.map(|length| libm::rint(length * scale))),
+            Cell::Free => None,
+        };
+        let mut at = vec![[0.0; 4]; grains];
+        for (axis, column) in columns.into_iter().enumerate() {
+            for (point, &value) in at.iter_mut().zip(column) {
+                point[axis] = match packing.cell {
+                    Cell::Periodic(lengths) => {
+                        wrapped(value, lengths[axis], scale, cell.map_or(0.0, |cell| cell[axis]))
+                    }
+                    Cell::Free => libm::rint((value - origin_mm[axis]) * scale),
+                };
+            }
+        }
+        for (point, &diameter) in at.iter_mut().zip(&packing.diameter) {
+            point[3] = libm::rint(0.5 * diameter * scale);
+        }
+        Ok(Self { at, cell, unit_mm, origin_mm })
+    }
+}
+
+/// `value` in grid units, brought into `0 .. cell`.
+fn wrapped(value: f64, length: f64, scale: f64, cell: f64) -> f64 {
+    let inside = libm::rint((value - libm::floor(value / length) * length) * scale);
+    if inside >= cell {
+        inside - cell
+    } else if inside < 0.0 {
+        inside + cell
+    } else {
+        inside
+    }
+}
+
+/// Number of grains and largest diameter of a packing that can be triangulated.
+fn check(packing: &Packing) -> Result<(usize, f64), TriangulationError> {
+    let grains = packing.diameter.len();
+    let columns = [("x", &packing.x), ("y", &packing.y), ("z", &packing.z)];
+    for (name, column) in columns {
+        if column.len() != grains {
+            return Err(TriangulationError::Columns { column: name, rows: column.len(), grains });
+        }
+        if let Some(grain) = column.iter().position(|value| !value.is_finite()) {
+            return Err(TriangulationError::Centre { grain, column: name, value: column[grain] });
+        }
+    }
+    if let Some(grain) = packing.diameter.iter().position(|d| !(d.is_finite() && *d > 0.0)) {
+        return Err(TriangulationError::Diameter { grain, value: packing.diameter[grain] });
+    }
+    if grains < 4 {
+        return Err(TriangulationError::TooFew { grains });
+    }
+    if grains > MOST_GRAINS {
+        return Err(TriangulationError::TooMany { grains });
+    }
+    let largest_mm = packing.diameter.iter().fold(0.0, |a: f64, &b| a.max(b));
+    if let Cell::Periodic(lengths) = packing.cell {
+        for (axis, length_mm) in ["x", "y", "z"].into_iter().zip(lengths) {
+            // Written so that NaN is refused as well.
+            if !(length_mm.is_finite() && length_mm >= 2.0 * largest_mm) {
+                return Err(TriangulationError::Narrow { axis, length_mm, largest_mm });
+            }
+        }
+    }
+    Ok((grains, largest_mm))
+}
