@@ -139,7 +139,9 @@ impl Case {
             }
             (None, NetworkSource::File(_)) => unreachable!("a network file was read above"),
         };
-        let grains_per_void = scene.grains_per_void.or(shipped.map(|s| s.grains_per_void));
+        // The grains per void of a shipped packing say nothing of a network from elsewhere.
+        let of_packing = shipped.filter(|_| network_file.is_none()).map(|s| s.grains_per_void);
+        let grains_per_void = scene.grains_per_void.or(of_packing);
         let (supply, mass_ratio) = supply(&scene, grains_per_void, counts[0], &base, &filter)?;
         if base.tail_mass_fraction() > 0.0 && base.smallest_mm() > curve.smallest() {
             let problem = format!(
