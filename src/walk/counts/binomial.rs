@@ -76,33 +76,38 @@ pub(super) fn one(draws: &mut Draws, n: u64, p: u64) -> u64 {
     if !rejection_holds(n, p) {
         return by_other(draws, n, p);
     }
-    let drawn = Hat::of(n, p).draw(draws);
-    if p > 1 << 63 { n - drawn } else { drawn }
+    turned(n, p, Hat::of(n, p).draw(draws))
 }
 
 /// Room for [`fill`].
 #[derive(Default)]
 pub(super) struct Scratch {
+    /// Pairs that are drawn by rejection, and those whose last proposal was turned down.
     large: Vec<u32>,
+    /// Pairs that are drawn otherwise.
     other: Vec<u32>,
+    /// Pairs whose proposal the squeeze left open, with its `u` and `v`.
     undecided: Vec<(u32, f64, f64)>,
 }
 
 impl Scratch {
     fn room_for(&mut self, pairs: usize) {
+        // Whole eights, so that the last of them can be read like the others.
+        let pairs = pairs.next_multiple_of(LANES);
         self.large.resize(self.large.len().max(pairs), 0);
         self.other.resize(self.other.len().max(pairs), 0);
-        self.undecided.resize(self.undecided.len().max(pairs), (0, 0.0, 0.0));
+        self.undecided.resize(self.undecided.len().max(pairs), (0, 0.0, 0.5));
     }
 }
 
 /// How many of `n[i]` trials with probability `p[i]` succeed, for every `i`, into `k`.
+#[inline(always)]
 pub(super) fn fill(draws: &mut Draws, n: &[u64], p: &[u64], k: &mut [u64], scratch: &mut Scratch) {
     let (n, p) = (&n[..k.len()], &p[..k.len()]);
     scratch.room_for(k.len());
     let Scratch { large, other, undecided } = scratch;
     // Written always, kept where it is wanted: which pairs are large cannot be predicted.
-    let (mut larges, mut others, mut left) = (0, 0, 0);
+    let (mut larges, mut others) = (0, 0);
     for i in 0..k.len() {
         let is_large = rejection_holds(n[i], p[i]);
         (large[larges], other[others]) = (i as u32, i as u32);
@@ -113,7 +118,31 @@ pub(super) fn fill(draws: &mut Draws, n: &[u64], p: &[u64], k: &mut [u64], scrat
         let i = i as usize;
         k[i] = by_other(draws, n[i], p[i]);
     }
-    for eight in large[..larges].chunks(LANES) {
+    while larges > FEW_LEFT {
+        let left = propose_all(draws, n, p, k, &large[..larges], undecided);
+        larges = judge_all(n, p, k, &undecided[..left], large);
+    }
+    for &i in &large[..larges] {
+        let i = i as usize;
+        k[i] = turned(n[i], p[i], Hat::of(n[i], p[i]).draw(draws));
+    }
+}
+
+/// With so few pairs left, eight at once do not pay.
+const FEW_LEFT: usize = 2;
+
+/// Proposes for every pair in `large`, eight at a time; those that the squeeze leaves open go to `undecided`, and are counted.
+#[inline(always)]
+fn propose_all(
+    draws: &mut Draws,
+    n: &[u64],
+    p: &[u64],
+    k: &mut [u64],
+    large: &[u32],
+    undecided: &mut [(u32, f64, f64)],
+) -> usize {
+    let mut left = 0;
+    for eight in large.chunks(LANES) {
         let (mut trials, mut chance) = ([1u64; LANES], [1u64 << 63; LANES]);
         for (lane, &i) in eight.iter().enumerate() {
             (trials[lane], chance[lane]) = (n[i as usize], p[i as usize]);
@@ -126,12 +155,51 @@ pub(super) fn fill(draws: &mut Draws, n: &[u64], p: &[u64], k: &mut [u64], scrat
             left += usize::from(!accepted[lane]);
         }
     }
-    for &(i, u, v) in &undecided[..left] {
-        let i = i as usize;
-        let hat = Hat::of(n[i], p[i]);
-        let drawn = hat.judge(u, v).unwrap_or_else(|| hat.draw(draws));
-        k[i] = if p[i] > 1 << 63 { n[i] - drawn } else { drawn };
+    left
+}
+
+/// Decides on proposals that the squeeze left open; the pairs that have to propose again go to `again`, and are counted.
+#[inline(always)]
+fn judge_all(n: &[u64], p: &[u64], k: &mut [u64], undecided: &[(u32, f64, f64)], again: &mut [u32]) -> usize {
+    let mut left = 0;
+    for eight in undecided.chunks(LANES) {
+        let mut hats = [Hat::new(1e3, 0.5, 0.5); LANES];
+        let mut found = [0.0; LANES];
+        let mut verdict = [Verdict::Open; LANES];
+        for (lane, &(i, ..)) in eight.iter().enumerate() {
+            hats[lane].n = n[i as usize] as i64 as f64;
+            hats[lane].p = as_unit(rarer(p[i as usize]));
+            hats[lane].q = as_unit(rarer(p[i as usize]).wrapping_neg());
+        }
+        let (mut u, mut v) = ([0.0; LANES], [0.5; LANES]);
+        for (lane, &(_, its_u, its_v)) in eight.iter().enumerate() {
+            (u[lane], v[lane]) = (its_u, its_v);
+        }
+        for l in 0..LANES {
+            hats[l] = Hat::new(hats[l].n, hats[l].p, hats[l].q);
+            (found[l], verdict[l]) = hats[l].verdict(u[l], v[l]);
+        }
+        for (lane, &(i, u, v)) in eight.iter().enumerate() {
+            let accepted = match verdict[lane] {
+                Verdict::Accepted => true,
+                Verdict::TurnedDown => false,
+                Verdict::Open => hats[lane].accepts_exactly(found[lane], v * hats[lane].scale(u)),
+            };
+            let i = i as usize;
+            if accepted {
+                k[i] = turned(n[i], p[i], found[lane] as i64 as u64);
+            }
+            again[left] = i as u32;
+            left += usize::from(!accepted);
+        }
     }
+    left
+}
+
+/// `drawn` is of the rarer outcome.
+#[inline(always)]
+fn turned(n: u64, p: u64, drawn: u64) -> u64 {
+    if p > 1 << 63 { n - drawn } else { drawn }
 }
 
 /// Whether a draw is by rejection.
@@ -177,8 +245,7 @@ fn by_inversion_in_parts(draws: &mut Draws, n: u64, p: u64) -> u64 {
         }
         return sum;
     }
-    let rare = by_inversion(draws, n, as_unit(rarer(p)));
-    if p > 1 << 63 { n - rare } else { rare }
+    turned(n, p, by_inversion(draws, n, as_unit(rarer(p))))
 }
 
 /// Sixteen-bit draws in a block.
@@ -308,6 +375,7 @@ fn tail(b: f64, p: f64) -> f64 {
 }
 
 /// BTRS for one pair: `p <= 1/2`, `n p >= 10`.
+#[derive(Clone, Copy)]
 struct Hat {
     n: f64,
     p: f64,
@@ -316,6 +384,15 @@ struct Hat {
     sigma: f64,
     a: f64,
     b: f64,
+}
+
+/// What the series says of a proposal.
+#[derive(Clone, Copy, PartialEq)]
+enum Verdict {
+    Accepted,
+    TurnedDown,
+    /// Within the margin, or where the series does not hold.
+    Open,
 }
 
 /// How far the series of [`Hat::near`] may be off, relatively.
@@ -327,6 +404,7 @@ impl Hat {
         Self::new(n as i64 as f64, as_unit(rarer(p)), as_unit(rarer(p).wrapping_neg()))
     }
 
+    #[inline(always)]
     fn new(n: f64, p: f64, q: f64) -> Self {
         let mean = n * p;
         let sigma = (mean * (1.0 - p)).sqrt();
@@ -337,47 +415,47 @@ impl Hat {
     fn draw(&self, draws: &mut Draws) -> u64 {
         loop {
             let (u, v) = (unit(draws.word()) - 0.5, unit(draws.word()));
-            if let Some(k) = self.judge(u, v) {
-                return k;
+            let (k, verdict) = self.verdict(u, v);
+            let open = || self.accepts_exactly(k, v * self.scale(u));
+            if verdict == Verdict::Accepted || (verdict == Verdict::Open && open()) {
+                return k as i64 as u64;
             }
         }
     }
 
+    #[inline(always)]
     fn propose(&self, u: f64) -> f64 {
         let us = 0.5 - u.abs();
         (2.0 * self.a / us + self.b) * u + self.mean
     }
 
     /// What `v` is multiplied by before it is compared with the probability of the proposal over that of the mode.
+    #[inline(always)]
     fn scale(&self, u: f64) -> f64 {
         let us = 0.5 - u.abs();
         let square = us * us;
         (2.83 * self.b + 5.1) * self.sigma * square / (self.b * (self.a + self.b * square))
     }
 
-    /// The draw that `u` proposes, if `v` accepts it.
-    #[inline]
-    fn judge(&self, u: f64, v: f64) -> Option<u64> {
+    /// What `u` proposes, and whether `v` accepts it.
+    #[inline(always)]
+    fn verdict(&self, u: f64, v: f64) -> (f64, Verdict) {
         let at = self.propose(u);
-        if !(at >= -0.5 && at < self.n + 0.5) {
-            return None;
-        }
-        let k = ((at + 0.5) as i64 as f64).min(self.n);
-        let quick = 0.5 - u.abs() >= QUICK_U && v * self.b <= 0.92 * self.b - 4.2;
-        (quick || self.accepts(k, v * self.scale(u))).then_some(k as i64 as u64)
-    }
-
-    /// Whether `level` is at most the probability of `k` over that of the mode.
-    fn accepts(&self, k: f64, level: f64) -> bool {
-        if let Some(ratio) = self.near(k) {
-            if level <= ratio * (1.0 - MARGIN) {
-                return true;
-            }
-            if level >= ratio * (1.0 + MARGIN) {
-                return false;
-            }
-        }
-        self.accepts_exactly(k, level)
+        let in_range = (at >= -0.5) & (at < self.n + 0.5);
+        // `floor(at + 1/2)` but for ties; out of range it does not matter.
+        let at = if in_range { at } else { self.mean };
+        let k = whole(at.max(0.0));
+        let level = v * self.scale(u);
+        let (ratio, holds) = self.near(k);
+        let quick = (0.5 - u.abs() >= QUICK_U) & (v * self.b <= 0.92 * self.b - 4.2);
+        let accepted = quick | (holds & (level <= ratio * (1.0 - MARGIN)));
+        let turned_down = !in_range | (!quick & holds & (level >= ratio * (1.0 + MARGIN)));
+        let verdict = match (turned_down, accepted) {
+            (true, _) => Verdict::TurnedDown,
+            (false, true) => Verdict::Accepted,
+            (false, false) => Verdict::Open,
+        };
+        (k, verdict)
     }
 
     #[cold]
@@ -385,18 +463,20 @@ impl Hat {
         libm::log(level) <= self.ln_ratio(k)
     }
 
+    /// The likeliest outcome, or another as likely.
+    #[inline(always)]
     fn mode(&self) -> f64 {
-        ((self.n + 1.0) * self.p) as i64 as f64
+        whole((self.n + 1.0) * self.p - 0.5)
     }
 
     fn ln_ratio(&self, k: f64) -> f64 {
         ln_probability(self.n, self.p, self.q, k) - ln_probability(self.n, self.p, self.q, self.mode())
     }
 
-    /// The probability of `k` over that of the mode, to within less than `MARGIN / 2`, where short series give it:
-    /// the terms of [`super::saddle`], cut off.
-    #[inline]
-    fn near(&self, k: f64) -> Option<f64> {
+    /// The probability of `k` over that of the mode, to within less than `MARGIN / 2` where short series give it, and
+    /// whether they do: the terms of [`super::saddle`], cut off.
+    #[inline(always)]
+    fn near(&self, k: f64) -> (f64, bool) {
         let (mean, other) = (self.mean, self.n * self.q);
         let x = k - mean;
         // One division for two reciprocals, here and below.
@@ -408,9 +488,7 @@ impl Hat {
         // Since p <= 1/2, v1 is the larger of the two in size.
         let square = v1 * v1;
         let fourth = square * square;
-        if square > 1.0 / 9.0 || k * square * fourth * fourth > 2e-3 {
-            return None;
-        }
+        let holds = (square <= 1.0 / 9.0) & (k * square * fourth * fourth <= 2e-3);
         let odd = |v: f64| {
             let vv = v * v;
             v * vv * (1.0 / 3.0 + vv * (1.0 / 5.0 + vv * (1.0 / 7.0 + vv * (1.0 / 9.0))))
@@ -423,8 +501,25 @@ impl Hat {
         let (e1, e2) = (y * m1, -y * m2);
         let of_mode = -0.5 * y * (e1 - e2) + y * (e1 * e1 - e2 * e2) / 6.0 - 0.5 * (e1 + e2)
             + 0.25 * (e1 * e1 + e2 * e2);
-        Some(shrink.sqrt() * libm::exp(stirling / 12.0 - exponent - of_mode))
+        (shrink.sqrt() * near_exp(stirling / 12.0 - exponent - of_mode), holds)
     }
+}
+
+/// The nearest whole number, for 0 or more and below 2^51.
+#[inline(always)]
+fn whole(x: f64) -> f64 {
+    (x + ROUNDER) - ROUNDER
+}
+
+/// `e^x` to about 3e-6 for `x` below 700: enough for a margin, in few operations that vectors have.
+#[inline(always)]
+fn near_exp(x: f64) -> f64 {
+    // 1.5 * 2^52 rounds negative numbers too.
+    const ROUND: f64 = 1.5 * ROUNDER;
+    let shifted = x.max(-600.0) * std::f64::consts::LOG2_E + ROUND;
+    let f = x.max(-600.0) - (shifted - ROUND) * std::f64::consts::LN_2;
+    let series = 1.0 + f * (1.0 + f * (0.5 + f * (1.0 / 6.0 + f * (1.0 / 24.0 + f * (1.0 / 120.0)))));
+    series * f64::from_bits((shifted.to_bits() << 52).wrapping_add(1023 << 52))
 }
 
 #[cfg(test)]

@@ -214,7 +214,8 @@ fn the_series_keeps_its_margin() {
                 continue;
             }
             tried += 1;
-            if let Some(ratio) = hat.near(k) {
+            let (ratio, holds) = hat.near(k);
+            if holds {
                 used += 1;
                 let exact = libm::exp(hat.ln_ratio(k));
                 assert!(
@@ -238,5 +239,5 @@ fn draws_are_pinned() {
     let (n, p): (Vec<u64>, Vec<u64>) = pairs().into_iter().map(|(n, p)| (n, fraction(p))).unzip();
     fill(&mut words, &n, &p, &mut filled, &mut Scratch::default());
     let hash = |values: &[u64]| xxhash_rust::xxh3::xxh3_64(bytemuck::cast_slice(values));
-    assert_eq!([hash(&drawn), hash(&filled)], [11_516_635_507_115_805_382, 13_892_283_025_634_024_226]);
+    assert_eq!([hash(&drawn), hash(&filled)], [11_516_635_507_115_805_382, 2_827_298_458_848_796_957]);
 }
