@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::de::DeserializeOwned;
 use thiserror::Error;
 
-use crate::outcome::record::{LayerRow, Manifest, Outcome, SeriesRow, SizeRow};
+use crate::outcome::record::{LayerRow, Manifest, Outcome, Sensitivity, SeriesRow, SizeRow};
 use crate::store::StoreError;
 
 /// Why a report could not be written.
@@ -66,8 +66,9 @@ pub(super) struct RunFolder {
 
 impl RunFolder {
     pub(super) fn read(folder: &Path) -> Result<RunFolder, ReportError> {
-        let outcome: Outcome = json(&folder.join("outcome.json"))?;
+        let mut outcome: Outcome = json(&folder.join("outcome.json"))?;
         check_outcome(&folder.join("outcome.json"), &outcome)?;
+        stand_among_its_variations(&mut outcome);
         let runs = outcome.summary.len() as u64;
         let known = |path: &Path, line: u64, replicate: u64, run: u64| {
             let replicates = outcome.replicates.len() as u64;
@@ -130,6 +131,24 @@ impl RunFolder {
     pub(super) fn runs(&self) -> impl Iterator<Item = u64> + use<> {
         1..=self.outcome.summary.len() as u64
     }
+}
+
+/// The outcome itself is the case of factor 1; it is shown among the others when it was not walked a second time.
+fn stand_among_its_variations(outcome: &mut Outcome) {
+    if outcome.sensitivity.is_empty() || outcome.sensitivity.iter().any(|case| case.factor == 1.0) {
+        return;
+    }
+    let itself = Sensitivity {
+        factor: 1.0,
+        n_base: outcome.n_base,
+        grains_per_void: outcome.grains_per_void,
+        mass_ratio: outcome.inputs.mass_ratio,
+        replicates: outcome.replicates.len() as u64,
+        verdict: outcome.verdict,
+        runs: outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect(),
+    };
+    outcome.sensitivity.push(itself);
+    outcome.sensitivity.sort_by(|a, b| a.factor.total_cmp(&b.factor));
 }
 
 fn text(path: &Path) -> Result<String, ReportError> {

@@ -235,7 +235,7 @@ fn rules(outcome: &Outcome) -> Markup {
                 "Empirical rules on the same two curves. They draw their lines by experience with tests; the verdict above "
                 "is “" (outcome.verdict.words()) "”. Where they differ, neither is proof."
             }
-            table {
+            table.rules {
                 thead { tr { th { "Rule and source" } th.n { "Ratio here" } th.n { "Limit" } th { "" } } }
                 tbody { @for rule in &outcome.rules {
                     tr {

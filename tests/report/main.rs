@@ -171,6 +171,17 @@ fn without_a_scale_every_size_says_so() {
 }
 
 #[test]
+fn the_outcome_itself_stands_among_its_variations() {
+    let mut plan = Plan::usual();
+    plan.outcome.sensitivity.retain(|case| case.factor != 1.0);
+    let (_, figures, _folder) = made(&plan);
+    let (_, figure) = figures.iter().find(|(name, _)| name == "sensitivity.svg").unwrap();
+    assert!(figure.contains(">×1</text>") && figure.contains(">×0.5</text>"));
+    plan.outcome.sensitivity.clear();
+    assert!(!made(&plan).1.iter().any(|(name, _)| name == "sensitivity.svg"));
+}
+
+#[test]
 fn one_replicate_has_no_interval_and_says_so() {
     let mut plan = Plan::usual();
     plan.outcome = folder::outcome(1);

@@ -126,17 +126,17 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
     svg.rect(left - 1.0, top - 1.0, right - left + 2.0, bottom - top + 2.0, "");
     svg.raw(&format!("</clipPath>\n<g clip-path=\"url(#{clip})\" stroke-linejoin=\"round\">\n"));
     let mut canvas = Canvas { frame: inset(&frame.area), ink: Vec::new(), taken: Vec::new() };
-    for mark in &figure.marks {
-        draw_mark(&mut svg, &mut canvas, &frame, mark);
+    for (index, mark) in figure.marks.iter().enumerate() {
+        draw_mark(&mut svg, &mut canvas, &frame, mark, index);
     }
     svg.raw("</g>\n");
     let paint = r##"fill="none" stroke="#1a1a1a" stroke-width="1.2""##;
     svg.rect(left, top, right - left, bottom - top, paint);
 
     let mut symbols = Vec::new();
-    for mark in &figure.marks {
+    for (index, mark) in figure.marks.iter().enumerate() {
         if let Mark::Point(point) = mark {
-            symbols.extend(draw_point(&mut svg, &mut canvas, &frame, point));
+            symbols.extend(draw_point(&mut svg, &mut canvas, &frame, point, index));
         }
     }
     canvas.taken.extend(symbols);
@@ -163,7 +163,7 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
             // the first choice is right of the anchor: that is then in the middle of the area
             anchors.iter_mut().for_each(|anchor| anchor.0 -= GAP + wide / 2.0);
         }
-        match canvas.place(&anchors, wide, LINE_HEIGHT * lines.len() as f64 - 2.0) {
+        match canvas.place(&anchors, wide, LINE_HEIGHT * lines.len() as f64 - 2.0, index) {
             None => homeless.push(index),
             Some(found) => {
                 let (at, anchor) = side(&found, &anchors);
@@ -328,7 +328,7 @@ fn axis_labels(svg: &mut Svg, frame: &Frame<'_>, height: f64) {
     }
 }
 
-fn draw_mark(svg: &mut Svg, canvas: &mut Canvas, frame: &Frame<'_>, mark: &Mark) {
+fn draw_mark(svg: &mut Svg, canvas: &mut Canvas, frame: &Frame<'_>, mark: &Mark, index: usize) {
     match mark {
         Mark::Area(area) => {
             let paint = format!("fill=\"{}\" fill-opacity=\"{}\"", area.colour.line, short(area.opacity));
@@ -341,7 +341,7 @@ fn draw_mark(svg: &mut Svg, canvas: &mut Canvas, frame: &Frame<'_>, mark: &Mark)
                 [(x, y)] => symbol(svg, (*x, *y), &Point::new(0.0, 0.0, line.colour, Shape::Circle)),
                 _ => svg.path(&path, false, &format!("fill=\"none\" {}", stroke(line))),
             }
-            canvas.draw(&frame.seen(&path));
+            canvas.draw(&frame.seen(&path), index);
         }
         Mark::Rule(rule) => {
             let Rect { left, top, right, bottom } = frame.area;
@@ -352,21 +352,27 @@ fn draw_mark(svg: &mut Svg, canvas: &mut Canvas, frame: &Frame<'_>, mark: &Mark)
             if let Some((from, to)) = ends {
                 let line = Line::new(Vec::new(), rule.colour).width(1.5).dash(rule.dash);
                 svg.line(from, to, &stroke(&line));
-                canvas.draw(&[from, to]);
+                canvas.draw(&[from, to], index);
             }
         }
         Mark::Point(point) => {
             if let (true, Some((x, y))) = (point.drop, frame.at(point.at)) {
                 let line = Line::new(Vec::new(), point.colour).width(1.3).dash(Dash::Dotted);
                 svg.line((x, y), (x, frame.area.bottom), &stroke(&line));
-                canvas.draw(&[(x, y), (x, frame.area.bottom)]);
+                canvas.draw(&[(x, y), (x, frame.area.bottom)], index);
             }
         }
     }
 }
 
 /// A symbol and its bars, drawn over everything else and not clipped: half a circle on the frame reads badly.
-fn draw_point(svg: &mut Svg, canvas: &mut Canvas, frame: &Frame<'_>, point: &Point) -> Option<Rect> {
+fn draw_point(
+    svg: &mut Svg,
+    canvas: &mut Canvas,
+    frame: &Frame<'_>,
+    point: &Point,
+    index: usize,
+) -> Option<Rect> {
     let (x, y) = frame.at(point.at)?;
     let area = &frame.area;
     let inside =
@@ -380,7 +386,7 @@ fn draw_point(svg: &mut Svg, canvas: &mut Canvas, frame: &Frame<'_>, point: &Poi
         for end in [from, to] {
             svg.line((end.0 - cap.0, end.1 - cap.1), (end.0 + cap.0, end.1 + cap.1), &paint);
         }
-        canvas.draw(&[from, to]);
+        canvas.draw(&[from, to], index);
     };
     if let Some((low, high)) = point.x_interval
         && let (Some(low), Some(high)) = (frame.x_at(low), frame.x_at(high))

@@ -39,28 +39,35 @@ impl Rect {
 /// What is already drawn, and where a label may stand.
 pub(super) struct Canvas {
     pub frame: Rect,
-    /// Points on what was drawn, a few pixels apart.
-    pub ink: Vec<(f64, f64)>,
+    /// Points on what was drawn, a few pixels apart, each with the mark that it belongs to.
+    pub ink: Vec<((f64, f64), usize)>,
     /// Labels and symbols that were placed.
     pub taken: Vec<Rect>,
 }
 
 impl Canvas {
     /// Points every 3 pixels along a path, so that no label can slip between two of them.
-    pub(super) fn draw(&mut self, path: &[(f64, f64)]) {
+    pub(super) fn draw(&mut self, path: &[(f64, f64)], mark: usize) {
         for pair in path.windows(2) {
             let (dx, dy) = (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
             let steps = (libm::hypot(dx, dy) / 3.0).ceil().clamp(1.0, 2000.0) as usize;
             for step in 0..steps {
                 let share = step as f64 / steps as f64;
-                self.ink.push((pair[0].0 + share * dx, pair[0].1 + share * dy));
+                self.ink.push(((pair[0].0 + share * dx, pair[0].1 + share * dy), mark));
             }
         }
-        self.ink.extend(path.last());
+        self.ink.extend(path.last().map(|end| (*end, mark)));
     }
 
-    /// A free box of this size near one of the anchors (tried in order), or `None`. The box is taken.
-    pub(super) fn place(&mut self, anchors: &[(f64, f64)], width: f64, height: f64) -> Option<Rect> {
+    /// A free box of this size near one of the anchors (tried in order), or `None`. The box is taken. What belongs to
+    /// other marks is kept at a greater distance, so that a name stands on its own curve's side of a neighbour.
+    pub(super) fn place(
+        &mut self,
+        anchors: &[(f64, f64)],
+        width: f64,
+        height: f64,
+        mark: usize,
+    ) -> Option<Rect> {
         let mut best: Option<(f64, Rect)> = None;
         for (order, &(x, y)) in anchors.iter().enumerate() {
             let beside = y - height / 2.0;
@@ -79,8 +86,10 @@ impl Canvas {
                 if !candidate.within(&self.frame) || self.covers(&candidate.grown(1.0)) {
                     continue;
                 }
-                let crowd = self.ink.iter().filter(|point| candidate.grown(10.0).holds(**point)).count();
-                let cost = crowd as f64 + 1.5 * order as f64 + 0.5 * rank as f64;
+                let near = candidate.grown(12.0);
+                let crowd = self.ink.iter().filter(|(point, _)| near.holds(*point));
+                let crowd: f64 = crowd.map(|(_, of)| if *of == mark { 0.5 } else { 2.0 }).sum();
+                let cost = crowd + 1.5 * order as f64 + 0.5 * rank as f64;
                 if best.is_none_or(|(least, _)| cost < least) {
                     best = Some((cost, candidate));
                 }
@@ -93,7 +102,7 @@ impl Canvas {
 
     fn covers(&self, candidate: &Rect) -> bool {
         self.taken.iter().any(|taken| taken.meets(candidate))
-            || self.ink.iter().any(|point| candidate.holds(*point))
+            || self.ink.iter().any(|(point, _)| candidate.holds(*point))
     }
 }
 
@@ -109,20 +118,29 @@ mod tests {
     #[test]
     fn a_label_covers_no_curve_and_no_other_label() {
         let mut canvas = canvas();
-        canvas.draw(&[(0.0, 100.0), (100.0, 0.0)]);
+        canvas.draw(&[(0.0, 100.0), (100.0, 0.0)], 0);
         let anchors: Vec<_> = (1..10).map(|i| (10.0 * f64::from(i), 100.0 - 10.0 * f64::from(i))).collect();
-        let first = canvas.place(&anchors, 30.0, 12.0).unwrap();
-        let second = canvas.place(&anchors, 30.0, 12.0).unwrap();
+        let first = canvas.place(&anchors, 30.0, 12.0, 0).unwrap();
+        let second = canvas.place(&anchors, 30.0, 12.0, 0).unwrap();
         assert!(!first.meets(&second));
         for found in [first, second] {
             assert!(found.within(&canvas.frame));
-            assert!(!canvas.ink.iter().any(|point| found.holds(*point)), "{found:?} covers the curve");
+            assert!(!canvas.ink.iter().any(|(point, _)| found.holds(*point)), "{found:?} covers the curve");
         }
+    }
+
+    #[test]
+    fn a_label_stands_on_its_own_side_of_a_neighbour() {
+        let mut canvas = canvas();
+        canvas.draw(&[(46.0, 0.0), (46.0, 100.0)], 0);
+        canvas.draw(&[(54.0, 0.0), (54.0, 100.0)], 1);
+        assert!(canvas.place(&[(46.0, 50.0)], 30.0, 12.0, 0).unwrap().right < 46.0);
+        assert!(canvas.place(&[(54.0, 50.0)], 30.0, 12.0, 1).unwrap().left > 54.0);
     }
 
     #[test]
     fn no_room_is_said() {
         let mut canvas = canvas();
-        assert_eq!(canvas.place(&[(50.0, 50.0)], 120.0, 12.0), None);
+        assert_eq!(canvas.place(&[(50.0, 50.0)], 120.0, 12.0, 0), None);
     }
 }
