@@ -1,11 +1,48 @@
 //! Packings of filter grains: the grains themselves, and how they are compressed.
+//!
+//! # Protocol
+//! One for every gradation and friction ([`compress`]):
+//!
+//! 1. sizes stratified by number ([`draw`]), random places without overlap ([`random_start`]);
+//! 2. squeeze: the cell shrinks at a constant rate to a part of the expected packing fraction;
+//! 3. compress: the strain rate is proportional to the lack of pressure, up to a limit, with the friction that sets the density;
+//!    once the pressure has come within 2 % the drag on the grains is raised to `brake`;
+//! 4. settle: the same with the final friction, where that is another one.
+//!
+//! # When a stage ends
+//! Looked at every 100 steps: the pressure within 0.5 %, the root mean square unbalanced force below 5 % of the mean contact
+//! force, and the coordination number within 0.05 and the void ratio within 2e-4 of what they were `hold_steps` ago; and kinetic below 1 % of elastic energy at
+//! the end. The coordination number alone (the paper's criterion) also holds while a frictionless packing still creeps, so the void ratio has to hold
+//! too. Grains that touch nothing make the unbalanced force and the kinetic energy fall slowly and void ratio not at all, so those two limits
+//! are wide; both values are reported ([`PackReport`]).
+//!
+//! A packing without friction is only at rest when it is isostatic, coordination 6 among the held grains; it creeps there by avalanches, and the more grains the longer.
 
+#[cfg(test)]
+mod checks;
+mod compression;
+mod contact;
+mod draw;
 mod export;
 mod grains;
 mod import;
 #[cfg(test)]
 mod import_tests;
+mod limits;
+mod measure;
+mod motion;
+mod neighbours;
+mod place;
+mod protocol;
+mod settings;
+mod state;
 
+pub use compression::{Compression, Stage};
+pub use draw::{draw, random_start};
 pub use export::vtp_points;
 pub use grains::{Cell, Packing};
 pub use import::{ImportError, PACKING_FILE_LIMIT_BYTES};
+pub use measure::Measure;
+pub use neighbours::Reach;
+pub use protocol::{PackReport, Progress, compress};
+pub use settings::{Contact, PackingError, Settings};

@@ -1,0 +1,517 @@
+//! The state of a compression, as columns, and one step of it.
+//!
+//! # Reduced units
+//! Length: the smallest diameter. Stress: the target pressure. Density: that of the grains. So the unit of time is
+//! `smallest diameter * sqrt(density / pressure)` and a strain rate of 1e-3 is an inertial number of 1e-3 for the
+//! smallest grains.
+//!
+//! # Step
+//! Positions are in units of the cell and relative to its deformation, at full steps; velocities (without the motion of
+//! the cell) and spins at half steps. A step: forces from positions and the last half step's velocities, kick, drift, and
+//! the cell grows by the servo's strain rate.
+//!
+//! # Masses
+//! A grain of diameter `D` weighs `pi/6 D^(3 - mass_exponent)`. With the true masses (0) the smallest grains set the
+//! time step and the largest take `Dmax/Dmin` times as many steps to move as the smallest. Where the packing rests no mass matters.
+
+use super::contact::{Grains, Law, Now, Work, pass};
+use super::grains::{Cell, Packing};
+use super::limits::{critical_step, law, mass, stability};
+use super::motion::{LONGEST_MOVE, Part, Rule, Sums, split};
+use super::neighbours::{Chunk, Reach, Remembered, chunk_bounds, list, morton};
+use super::settings::{PackingError, Settings};
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+/// Steps between two looks at the time step.
+const STEP_CHECK: u64 = 16;
+
+/// Steps that a pick of close pairs is meant to last.
+const PICKS: (u64, u64) = (10, 25);
+
+/// Steps that lists are meant to last.
+const LISTS: (u64, u64) = (100, 300);
+
+/// Lengthens a reach that lasted too short, shortens one that lasted too long.
+fn follow(reach: &mut Reach, strained: bool, lasted: u64, meant: (u64, u64), least: Reach) {
+    if lasted < meant.0 {
+        if strained {
+            reach.relative = (reach.relative * 1.5).min(0.05);
+        } else {
+            reach.absolute = (reach.absolute * 1.3).min(1.0);
+        }
+    } else if lasted > meant.1 {
+        reach.relative *= 0.8;
+        reach.absolute *= 0.8;
+    }
+    reach.relative = reach.relative.max(least.relative);
+    reach.absolute = reach.absolute.max(least.absolute);
+}
+
+/// What a compression is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// The cell shrinks at a constant rate.
+    Squeeze,
+    /// The servo holds the pressure, with the friction of the compression.
+    Compress,
+    /// The servo holds the pressure, with the final friction.
+    Settle,
+    /// Settled.
+    Done,
+}
+
+/// Grains under compression: columns by grain in memory order, which changes, and `rank` (0 = the largest), which stays.
+#[derive(Clone, Debug)]
+pub struct Compression {
+    /// The settings.
+    pub(super) settings: Settings,
+    /// The smallest diameter (mm): the unit of length.
+    pub(super) unit_mm: f64,
+    /// Rank of each grain by size, from the largest.
+    pub(super) rank: Vec<u32>,
+    /// Place in the user's columns, by rank.
+    pub(super) origin: Vec<u32>,
+    /// Position along x, y, z in units of the cell; radius.
+    pub(super) position: Vec<[f64; 4]>,
+    /// Velocity along x, y, z relative to the deforming cell, at the last half step; mass.
+    pub(super) velocity: Vec<[f64; 4]>,
+    /// Angular velocity about x, y, z at the last half step; zero.
+    pub(super) spin: Vec<[f64; 4]>,
+    /// Position when the lists were made.
+    pub(super) listed: Vec<[f64; 4]>,
+    /// Edge of the cell when the lists were made.
+    pub(super) listed_cell: f64,
+    /// How far the lists reach.
+    pub(super) reach: Reach,
+    /// Step in which the lists were made.
+    pub(super) listed_at: u64,
+    /// Position when the close pairs were picked.
+    pub(super) picked: Vec<[f64; 4]>,
+    /// Edge of the cell when the close pairs were picked.
+    pub(super) picked_cell: f64,
+    /// How far the close pairs reach.
+    pub(super) close: Reach,
+    /// Step in which the close pairs were picked.
+    pub(super) picked_at: u64,
+    /// Edge of the cell.
+    pub(super) cell: f64,
+    /// Relative growth of the cell per unit of time.
+    pub(super) strain_rate: f64,
+    /// Time step.
+    pub(super) step: f64,
+    /// Time.
+    pub(super) time: f64,
+    /// Steps done.
+    pub(super) steps: u64,
+    /// What is going on.
+    pub(super) stage: Stage,
+    /// Mean contact pressure in the last step, by target.
+    pub(super) pressure: f64,
+    /// Largest sum of contact stiffness by mass over the grains, in the last step.
+    pub(super) stiffest: f64,
+    /// Sum of mass times squared velocity, in the last step.
+    pub(super) twice_kinetic: f64,
+    /// Sum of the squared unbalanced forces, in the last step.
+    pub(super) unbalanced: f64,
+    /// Mean normal force of the contacts in the last step.
+    pub(super) mean_normal: f64,
+    /// Contacts in the last step.
+    pub(super) contacts: u64,
+    /// What the protocol remembers of its checks.
+    pub(super) watch: super::protocol::Watch,
+    /// The contact law.
+    pub(super) law: Law,
+    /// The lists, with the tangential memory.
+    pub(super) chunks: Vec<Chunk>,
+    /// Farthest any grain moved since the close pairs were picked, in units of the cell; infinite before the first pick.
+    pub(super) moved: f64,
+    /// The critical step before there are contacts.
+    loose_step: f64,
+    /// Chunk of each grain.
+    chunk_of: Vec<u16>,
+    work: Vec<Work>,
+    force: Vec<[f64; 4]>,
+    torque: Vec<[f64; 4]>,
+}
+
+impl Compression {
+    /// Grains of any position, at rest.
+    ///
+    /// # Errors
+    /// Settings out of range; grains that are none; a cell narrower than two of the largest grain; coincident centres; a fixed
+    /// step that is not below the critical one.
+    pub fn new(packing: &Packing, settings: &Settings) -> Result<Self, PackingError> {
+        settings.check()?;
+        let columns = [packing.x.len(), packing.y.len(), packing.z.len(), packing.diameter.len()];
+        let n = columns[0];
+        if columns.iter().any(|&c| c != n) || n == 0 {
+            return Err(PackingError::Columns(columns));
+        }
+        let cell_mm = match packing.cell {
+            Cell::Periodic([x, y, z]) if x == y && y == z && x > 0.0 && x < f64::INFINITY => x,
+            other => return Err(PackingError::Cell(format!("{other:?}"))),
+        };
+        for (column, values) in [("x", &packing.x), ("y", &packing.y), ("z", &packing.z)] {
+            if let Some(grain) = values.iter().position(|v| !v.is_finite()) {
+                let value = values[grain];
+                return Err(PackingError::Grain { grain, column, value, allowed: "a finite number" });
+            }
+        }
+        let good = |d: &f64| *d > 0.0 && *d < f64::INFINITY;
+        if let Some(grain) = packing.diameter.iter().position(|d| !good(d)) {
+            let value = packing.diameter[grain];
+            return Err(PackingError::Grain {
+                grain,
+                column: "diameter",
+                value,
+                allowed: "a positive number",
+            });
+        }
+        let mut origin: Vec<u32> = (0..n as u32).collect();
+        origin.sort_by(|&a, &b| {
+            packing.diameter[b as usize].total_cmp(&packing.diameter[a as usize]).then(a.cmp(&b))
+        });
+        let unit_mm = packing.diameter[origin[n - 1] as usize];
+        let largest_mm = packing.diameter[origin[0] as usize];
+        if cell_mm < 2.0 * largest_mm {
+            return Err(PackingError::NarrowCell { cell_mm, largest_mm });
+        }
+        let wrap = |v: f64| {
+            let s = v / cell_mm;
+            let s = s - libm::floor(s);
+            if s < 1.0 { s } else { 0.0 }
+        };
+        let position: Vec<[f64; 4]> = origin
+            .iter()
+            .map(|&i| {
+                let i = i as usize;
+                let radius = 0.5 * (packing.diameter[i] / unit_mm);
+                [wrap(packing.x[i]), wrap(packing.y[i]), wrap(packing.z[i]), radius]
+            })
+            .collect();
+        let mut by_place: Vec<usize> = (0..n).collect();
+        by_place.sort_by(|&a, &b| position[a][..3].partial_cmp(&position[b][..3]).expect("finite"));
+        if let Some(w) = by_place.windows(2).find(|w| position[w[0]][..3] == position[w[1]][..3]) {
+            let (a, b) = (origin[w[0]] as usize, origin[w[1]] as usize);
+            return Err(PackingError::Coincident { first: a.min(b), second: a.max(b) });
+        }
+        let velocity: Vec<[f64; 4]> =
+            position.iter().map(|p| [0.0, 0.0, 0.0, mass(p[3], settings.mass_exponent)]).collect();
+        let cell = cell_mm / unit_mm;
+        let mut this = Self::blank(settings, position, velocity, unit_mm, origin, cell);
+        if let Some(step) = settings.step
+            && step >= this.loose_step
+        {
+            let (critical, cause) = critical_step(&this.position, &this.velocity, settings);
+            return Err(PackingError::Step { step, critical, cause });
+        }
+        this.relist();
+        this.picked.clone_from(&this.position);
+        Ok(this)
+    }
+
+    /// Grains in order of rank, at rest, without lists.
+    pub(super) fn blank(
+        settings: &Settings,
+        position: Vec<[f64; 4]>,
+        velocity: Vec<[f64; 4]>,
+        unit_mm: f64,
+        origin: Vec<u32>,
+        cell: f64,
+    ) -> Self {
+        let n = position.len();
+        let (critical, _) = critical_step(&position, &velocity, settings);
+        let mut chunk_of = vec![0; n];
+        let bounds = chunk_bounds(n);
+        for (c, &(first, last)) in bounds.iter().enumerate() {
+            chunk_of[first..last].fill(c as u16);
+        }
+        let (relative, absolute) = (0.1 * settings.reach.relative, 0.1 * settings.reach.absolute);
+        Self {
+            settings: settings.clone(),
+            unit_mm,
+            rank: (0..n as u32).collect(),
+            origin,
+            listed: Vec::new(),
+            position,
+            velocity,
+            spin: vec![[0.0; 4]; n],
+            listed_cell: cell,
+            reach: settings.reach,
+            listed_at: 0,
+            picked: Vec::new(),
+            picked_cell: cell,
+            close: Reach { relative, absolute },
+            picked_at: 0,
+            cell,
+            strain_rate: 0.0,
+            step: settings.step.unwrap_or(settings.step_fraction * critical),
+            time: 0.0,
+            steps: 0,
+            stage: Stage::Squeeze,
+            pressure: 0.0,
+            stiffest: 0.0,
+            twice_kinetic: 0.0,
+            unbalanced: 0.0,
+            mean_normal: 0.0,
+            contacts: 0,
+            watch: super::protocol::Watch::default(),
+            law: law(settings, settings.friction),
+            chunks: Vec::new(),
+            moved: f64::INFINITY,
+            loose_step: critical,
+            chunk_of,
+            work: vec![Work::new(bounds.len()); bounds.len()],
+            force: vec![[0.0; 4]; n],
+            torque: vec![[0.0; 4]; n],
+        }
+    }
+
+    /// Makes sure that every pair that can touch is among the close ones; says whether they are to be picked anew.
+    ///
+    /// Both reaches follow from how long they last: a longer one costs more pairs a step, a shorter one is renewed more often.
+    fn renew(&mut self) -> Option<Reach> {
+        if self.close.holds(Reach::CONTACT, self.cell, self.picked_cell, self.moved) {
+            return None;
+        }
+        let strained = self.picked_cell > self.cell * (1.0 + self.close.relative);
+        follow(
+            &mut self.close,
+            strained,
+            self.steps - self.picked_at,
+            PICKS,
+            Reach { relative: 2e-5, absolute: 2e-4 },
+        );
+        let listed_moved = self.position.iter().zip(&self.listed).fold(0.0, |far: f64, (p, l)| {
+            let d = [p[0] - l[0], p[1] - l[1], p[2] - l[2]];
+            far.max(d[0] * d[0] + d[1] * d[1] + d[2] * d[2])
+        });
+        if !self.reach.holds(self.close, self.cell, self.listed_cell, listed_moved.sqrt()) {
+            let strained =
+                self.listed_cell * (1.0 + self.close.relative) > self.cell * (1.0 + self.reach.relative);
+            let least = Reach { relative: 3.0 * self.close.relative, absolute: 3.0 * self.close.absolute };
+            follow(&mut self.reach, strained, self.steps - self.listed_at, LISTS, least);
+            self.relist();
+        }
+        self.picked.clone_from(&self.position);
+        self.picked_cell = self.cell;
+        self.picked_at = self.steps;
+        self.moved = 0.0;
+        Some(self.close)
+    }
+
+    /// New lists, with the grains in the order of a space-filling curve.
+    fn relist(&mut self) {
+        let remembered = Remembered::collect(&self.chunks, &self.rank);
+        for p in &mut self.position {
+            for s in &mut p[..3] {
+                *s -= libm::floor(*s);
+                if *s >= 1.0 {
+                    *s = 0.0;
+                }
+            }
+        }
+        let mut order: Vec<u64> = (0..self.rank.len() as u64)
+            .map(|i| {
+                let [x, y, z, _] = self.position[i as usize];
+                (u64::from(morton([x, y, z])) << 32) | u64::from(self.rank[i as usize])
+            })
+            .collect();
+        order.sort_unstable();
+        let mut place = vec![0u32; self.rank.len()];
+        for (i, &r) in self.rank.iter().enumerate() {
+            place[r as usize] = i as u32;
+        }
+        let from: Vec<usize> =
+            order.iter().map(|&key| place[(key & 0xffff_ffff) as usize] as usize).collect();
+        self.rank = from.iter().map(|&i| self.rank[i]).collect();
+        for column in [&mut self.position, &mut self.velocity, &mut self.spin] {
+            *column = from.iter().map(|&i| column[i]).collect();
+        }
+        self.listed.clone_from(&self.position);
+        self.listed_cell = self.cell;
+        self.listed_at = self.steps;
+        self.chunks = list(&self.position, &self.rank, self.cell, self.reach);
+        remembered.restore(&mut self.chunks, &self.rank);
+    }
+
+    /// Steps done.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// What is going on.
+    pub fn stage(&self) -> Stage {
+        self.stage
+    }
+
+    /// Angular velocity about x, y, z of each grain, in reduced units, in memory order.
+    pub fn spins(&self) -> Vec<[f64; 3]> {
+        self.spin.iter().map(|w| [w[0], w[1], w[2]]).collect()
+    }
+
+    /// Mean contact pressure of the last step, by target.
+    pub fn pressure(&self) -> f64 {
+        self.pressure
+    }
+
+    /// Volume of the cell by volume of the grains, less one.
+    pub fn void_ratio(&self) -> f64 {
+        self.cell * self.cell * self.cell / self.grain_volume() - 1.0
+    }
+
+    pub(super) fn grain_volume(&self) -> f64 {
+        let mut cubes = vec![0.0; self.rank.len()];
+        for (p, &r) in self.position.iter().zip(&self.rank) {
+            cubes[r as usize] = p[3] * p[3] * p[3];
+        }
+        cubes.iter().sum::<f64>() * (4.0 / 3.0 * PI)
+    }
+
+    /// The largest stable time step for the contacts of the last step.
+    pub fn critical_step(&self) -> f64 {
+        if self.stiffest > 0.0 { 2.0 / (stability(&self.law) * self.stiffest).sqrt() } else { f64::INFINITY }
+    }
+
+    /// One step, without servo: the strain rate is what it is.
+    pub(super) fn advance_once(&mut self, servo: Option<(f64, f64)>) -> Result<(), PackingError> {
+        let pick = self.renew();
+        self.steps += 1;
+        let now = Now { cell: self.cell, strain_rate: self.strain_rate, step: self.step, pick };
+        let parallel = rayon::current_num_threads() > 1 && self.chunks.len() > 1;
+        {
+            let grains = Grains {
+                position: &self.position,
+                velocity: &self.velocity,
+                spin: &self.spin,
+                chunk: &self.chunk_of,
+            };
+            let law = &self.law;
+            let (force, torque) = (split(&mut self.force), split(&mut self.torque));
+            let tasks = self.chunks.iter_mut().zip(&mut self.work).zip(force.into_iter().zip(torque));
+            if parallel {
+                let tasks: Vec<_> = tasks.collect();
+                tasks.into_par_iter().for_each(|((chunk, work), (force, torque))| {
+                    pass(chunk, work, grains, law, &now, force, torque);
+                });
+            } else {
+                for ((chunk, work), (force, torque)) in tasks {
+                    pass(chunk, work, grains, law, &now, force, torque);
+                }
+            }
+        }
+        let (mut virial, mut normal) = (0.0, 0.0);
+        self.contacts = 0;
+        for work in &self.work {
+            virial += work.virial;
+            normal += work.normal;
+            self.contacts += work.contacts;
+        }
+        self.pressure = virial / (3.0 * self.cell * self.cell * self.cell);
+        self.mean_normal = if self.contacts > 0 { normal / self.contacts as f64 } else { 0.0 };
+        if let Some((rate, gain)) = servo {
+            self.strain_rate = (gain * (self.pressure - 1.0)).clamp(-rate, rate);
+        }
+        self.kick_and_drift(parallel);
+        self.cell *= 1.0 + self.strain_rate * self.step;
+        self.time += self.step;
+        if self.steps.is_multiple_of(STEP_CHECK) {
+            self.check_step()?;
+        }
+        Ok(())
+    }
+
+    fn kick_and_drift(&mut self, parallel: bool) {
+        let n = self.position.len();
+        let step = self.step;
+        let drag = step * if self.watch.braking { self.settings.brake } else { self.settings.drag };
+        let rule = Rule {
+            step,
+            per_cell: step / (self.cell * (1.0 + 0.5 * self.strain_rate * step)),
+            keep: (1.0 - 0.5 * drag) / (1.0 + 0.5 * drag),
+            kick: 1.0 / (1.0 + 0.5 * drag),
+            local: self.settings.local_damping,
+            fastest: LONGEST_MOVE / step,
+            rotate: self.law.friction > 0.0,
+        };
+        let work = &self.work;
+        let picked = &self.picked;
+        let bounds = chunk_bounds(n);
+        let mut parts: Vec<Part<'_>> = split(&mut self.position)
+            .into_iter()
+            .zip(split(&mut self.velocity))
+            .zip(split(&mut self.spin))
+            .zip(split(&mut self.force).into_iter().zip(split(&mut self.torque)))
+            .zip(bounds)
+            .enumerate()
+            .map(|(c, ((((position, velocity), spin), (force, torque)), (first, last)))| Part {
+                chunk: c,
+                first,
+                position,
+                velocity,
+                spin,
+                force,
+                torque,
+                picked: &picked[first..last],
+                sums: Sums::default(),
+            })
+            .collect();
+        if parallel {
+            parts.par_iter_mut().for_each(|part| part.advance(work, &rule));
+        } else {
+            for part in &mut parts {
+                part.advance(work, &rule);
+            }
+        }
+        let mut total = Sums::default();
+        for part in &parts {
+            total.moved = total.moved.max(part.sums.moved);
+            total.stiffest = total.stiffest.max(part.sums.stiffest);
+            total.twice_kinetic += part.sums.twice_kinetic;
+            total.unbalanced += part.sums.unbalanced;
+        }
+        self.moved = total.moved.sqrt();
+        self.stiffest = total.stiffest;
+        self.twice_kinetic = total.twice_kinetic;
+        self.unbalanced = total.unbalanced;
+    }
+
+    /// Keeps the step below the critical one: follows it, or refuses a fixed step that it has fallen to.
+    fn check_step(&mut self) -> Result<(), PackingError> {
+        let critical = self.critical_step();
+        match self.settings.step {
+            Some(step) if step >= critical => {
+                Err(PackingError::Step { step, critical, cause: "the stiffness of a grain's contacts" })
+            }
+            Some(_) => Ok(()),
+            None => {
+                let goal = self.settings.step_fraction * critical.min(2.0 * self.loose_step);
+                self.step = if goal < self.step { goal } else { goal.min(1.02 * self.step) };
+                Ok(())
+            }
+        }
+    }
+
+    /// The grains as they are, in the order that they were given in.
+    pub fn packing(&self) -> Packing {
+        let n = self.rank.len();
+        let edge = self.cell * self.unit_mm;
+        let mut packing = Packing {
+            cell: Cell::Periodic([edge; 3]),
+            x: vec![0.0; n],
+            y: vec![0.0; n],
+            z: vec![0.0; n],
+            diameter: vec![0.0; n],
+        };
+        for (p, &r) in self.position.iter().zip(&self.rank) {
+            let i = self.origin[r as usize] as usize;
+            let wrapped = |s: f64| (s - libm::floor(s)) * edge;
+            packing.x[i] = wrapped(p[0]);
+            packing.y[i] = wrapped(p[1]);
+            packing.z[i] = wrapped(p[2]);
+            packing.diameter[i] = 2.0 * p[3] * self.unit_mm;
+        }
+        packing
+    }
+}

@@ -1,0 +1,369 @@
+//! The contact law, and the pass that turns the lists into forces.
+//!
+//! # Law
+//! With overlap `d`, reduced radius `R`, reduced mass `m`, contact stiffness `E* = G / (1 - nu)`:
+//!
+//! - normal, Hertz: `4/3 E* sqrt(R) d^1.5`; tangent stiffness `kn = 2 E* sqrt(R d)`;
+//! - tangential, Mindlin without micro-slip: spring force `T` grows by `kt` times the tangential
+//!   motion, `kt = 8 G* sqrt(R d) = kn 2 (1 - nu) / (2 - nu)`. Where `kt` falls, `T` falls with it (Thornton,
+//!   Cummins & Cleary 2013, doi:10.1016/j.powtec.2012.08.012), so that no cycle of loading and unloading makes energy;
+//! - damping: normal `2 sqrt(5/6) b sqrt(m kn)` times the approach, `b = -ln e / sqrt(pi^2 + ln^2 e)`, gives the
+//!   restitution `e` at every speed (Tsuji, Tanaka & Ishida 1992, doi:10.1016/0032-5910(92)88030-L); tangential the same with `kt`;
+//! - no tension: the normal force with its damping is never below zero;
+//! - Coulomb: spring and damping together at most friction times the normal force; where they slip both are cut alike.
+//!
+//! Torques act with the lever arms `r ri / (ri + rj)`, which add up to the distance `r` of the centres.
+//! A linear spring (constant `kn`) is there for tests.
+//!
+//! # Time levels
+//! Positions are at full steps, velocities at half steps. The tangential motion over a step is the
+//! velocity of the half step in the plane perpendicular to the half step's normal, and `T` is then turned into
+//! the plane of the full step. The usual scheme takes the half step's velocity in the full step's plane; a part of the normal motion is then booked
+//! as tangential, and small grains between large ones stick or gain energy beyond a size ratio of
+//! about 3 (Vyas, Ottino, Lueptow & Umbanhowar 2025, doi:10.1016/j.cpc.2025.109524).
+//!
+//! # Order
+//! Each chunk goes through its close pairs in list order, in blocks: gather, compute lane by lane, scatter those that touch. Which
+//! pairs count as close changes no bit: a pair that does not touch leaves no trace. Forces on
+//! grains of other chunks go to outboxes, one per chunk, which their chunk adds in the order of the senders. All
+//! sums therefore have one order, whatever the number of threads or the width of the vector unit.
+
+use super::neighbours::{Chunk, Reach, nearest};
+use multiversion::multiversion;
+
+/// Contacts computed together.
+const BLOCK: usize = 64;
+
+/// Contact parameters in reduced units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Law {
+    /// Hertz contacts; else linear springs.
+    pub hertz: bool,
+    /// `2 E*` for Hertz, the spring constant for linear springs.
+    pub stiffness: f64,
+    /// Tangential by normal stiffness.
+    pub tangential: f64,
+    /// Damping coefficient over `sqrt(m kn)`.
+    pub damping: f64,
+    /// Coulomb friction.
+    pub friction: f64,
+    /// Cut the normal force at zero.
+    pub clip: bool,
+}
+
+/// What one step needs besides the grains.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Now {
+    /// Edge of the cell.
+    pub cell: f64,
+    /// Relative growth of the cell per unit of time.
+    pub strain_rate: f64,
+    /// Time step.
+    pub step: f64,
+    /// Pick the close pairs anew, this far.
+    pub pick: Option<Reach>,
+}
+
+/// The grains as the contact pass reads them.
+#[derive(Clone, Copy)]
+pub(super) struct Grains<'a> {
+    /// Position in units of the cell; radius.
+    pub position: &'a [[f64; 4]],
+    /// Velocity relative to the deforming cell; mass.
+    pub velocity: &'a [[f64; 4]],
+    /// Angular velocity; unused.
+    pub spin: &'a [[f64; 4]],
+    /// Chunk of each grain.
+    pub chunk: &'a [u16],
+}
+
+/// Forces for the grains of another chunk.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Outbox {
+    /// The grain.
+    pub grain: Vec<u32>,
+    /// Force; normal stiffness.
+    pub force: Vec<[f64; 4]>,
+    /// Torque; zero.
+    pub torque: Vec<[f64; 4]>,
+}
+
+impl Outbox {
+    fn clear(&mut self) {
+        self.grain.clear();
+        self.force.clear();
+        self.torque.clear();
+    }
+}
+
+/// What the contact pass of a chunk leaves behind.
+#[derive(Clone, Debug)]
+pub(super) struct Work {
+    block: Box<Block>,
+    /// Forces for the other chunks, by chunk.
+    pub outbox: Vec<Outbox>,
+    /// Sum of normal force times distance of the centres.
+    pub virial: f64,
+    /// Sum of the normal forces.
+    pub normal: f64,
+    /// Contacts.
+    pub contacts: u64,
+}
+
+impl Work {
+    pub fn new(chunks: usize) -> Self {
+        Self {
+            block: Box::default(),
+            outbox: vec![Outbox::default(); chunks],
+            virial: 0.0,
+            normal: 0.0,
+            contacts: 0,
+        }
+    }
+}
+
+/// One value per pair of a block.
+type Lanes = [f64; BLOCK];
+
+/// A block of close pairs as columns, so that the law is computed for many side by side.
+#[derive(Clone, Debug)]
+struct Block {
+    /// Separation from the larger to the smaller grain along x, y, z, in units of the cell.
+    gap: [Lanes; 3],
+    /// Velocity of the smaller less that of the larger, along x, y, z.
+    motion: [Lanes; 3],
+    /// Radius times angular velocity, summed over both, about x, y, z.
+    spin: [Lanes; 3],
+    /// Radius of the larger, of the smaller.
+    radius: [Lanes; 2],
+    /// Mass of the larger, of the smaller.
+    mass: [Lanes; 2],
+    /// Tangential spring force on the larger grain along x, y, z, and its stiffness.
+    spring: [Lanes; 4],
+    /// Force on the larger grain along x, y, z.
+    force: [Lanes; 3],
+    /// Torque per radius about x, y, z.
+    torque: [Lanes; 3],
+    /// Normal stiffness; zero where the grains do not touch.
+    stiffness: Lanes,
+    /// Normal force.
+    normal: Lanes,
+    /// Normal force times distance.
+    virial: Lanes,
+}
+
+impl Default for Block {
+    fn default() -> Self {
+        let lanes = [1.0; BLOCK];
+        Self {
+            gap: [lanes; 3],
+            motion: [lanes; 3],
+            spin: [lanes; 3],
+            radius: [lanes; 2],
+            mass: [lanes; 2],
+            spring: [lanes; 4],
+            force: [lanes; 3],
+            torque: [lanes; 3],
+            stiffness: lanes,
+            normal: lanes,
+            virial: lanes,
+        }
+    }
+}
+
+/// Forces and torques on the grains of `chunk` from the pairs that it lists, into `force` and `torque` (of its grains), and
+/// for other chunks into the outboxes. The fourth entry of a force sums normal stiffness, that of a torque is zero.
+#[multiversion(targets("x86_64+avx+avx2+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx+avx2"))]
+pub(super) fn pass(
+    chunk: &mut Chunk,
+    work: &mut Work,
+    grains: Grains<'_>,
+    law: &Law,
+    now: &Now,
+    force: &mut [[f64; 4]],
+    torque: &mut [[f64; 4]],
+) {
+    match (law.friction > 0.0, law.hertz) {
+        (true, true) => sweep::<true, true>(chunk, work, grains, law, now, force, torque),
+        (true, false) => sweep::<true, false>(chunk, work, grains, law, now, force, torque),
+        (false, true) => sweep::<false, true>(chunk, work, grains, law, now, force, torque),
+        (false, false) => sweep::<false, false>(chunk, work, grains, law, now, force, torque),
+    }
+}
+
+#[inline(always)]
+fn sweep<const FRICTION: bool, const HERTZ: bool>(
+    chunk: &mut Chunk,
+    work: &mut Work,
+    grains: Grains<'_>,
+    law: &Law,
+    now: &Now,
+    force: &mut [[f64; 4]],
+    torque: &mut [[f64; 4]],
+) {
+    for outbox in &mut work.outbox {
+        outbox.clear();
+    }
+    (work.virial, work.normal, work.contacts) = (0.0, 0.0, 0);
+    force.fill([0.0; 4]);
+    if FRICTION {
+        torque.fill([0.0; 4]);
+    }
+    if let Some(reach) = now.pick {
+        chunk.pick(grains.position, now.cell, reach);
+    }
+    let mut from = 0;
+    while from < chunk.close.len() {
+        let to = chunk.close.len().min(from + BLOCK);
+        block::<FRICTION, HERTZ>(chunk, work, from..to, grains, law, now, force, torque);
+        from = to;
+    }
+}
+
+#[inline(always)]
+#[allow(clippy::too_many_arguments)]
+fn block<const FRICTION: bool, const HERTZ: bool>(
+    chunk: &mut Chunk,
+    work: &mut Work,
+    range: std::ops::Range<usize>,
+    grains: Grains<'_>,
+    law: &Law,
+    now: &Now,
+    force: &mut [[f64; 4]],
+    torque: &mut [[f64; 4]],
+) {
+    let b = &mut *work.block;
+    let close = &chunk.close[range.clone()];
+    let memory = &mut chunk.memory[range];
+    for (k, (&[i, j], spring)) in close.iter().zip(&*memory).enumerate().take(BLOCK) {
+        let (i, j) = (i as usize, j as usize);
+        let (p, q) = (grains.position[i], grains.position[j]);
+        let (u, v) = (grains.velocity[i], grains.velocity[j]);
+        for a in 0..3 {
+            b.gap[a][k] = q[a] - p[a];
+            b.motion[a][k] = v[a] - u[a];
+        }
+        (b.radius[0][k], b.radius[1][k]) = (p[3], q[3]);
+        (b.mass[0][k], b.mass[1][k]) = (u[3], v[3]);
+        if FRICTION {
+            let (w, o) = (grains.spin[i], grains.spin[j]);
+            let (ri, rj) = (p[3], q[3]);
+            for a in 0..3 {
+                b.spin[a][k] = ri * w[a] + rj * o[a];
+                b.spring[a][k] = spring[a];
+            }
+            b.spring[3][k] = spring[3];
+        }
+    }
+    let lanes = close.len().min(BLOCK);
+    compute::<FRICTION, HERTZ>(b, lanes.next_multiple_of(8), law, now);
+    let (first, own) = (chunk.first, chunk.last - chunk.first);
+    for (k, (&[i, j], spring)) in close.iter().zip(memory).enumerate().take(BLOCK) {
+        let kn = b.stiffness[k];
+        if kn <= 0.0 {
+            *spring = [0.0; 4];
+            continue;
+        }
+        let f = [b.force[0][k], b.force[1][k], b.force[2][k]];
+        let t = [b.torque[0][k], b.torque[1][k], b.torque[2][k]];
+        work.virial += b.virial[k];
+        work.normal += b.normal[k];
+        work.contacts += 1;
+        let (i, j) = (i as usize - first, (j as usize).wrapping_sub(first));
+        let to = &mut force[i];
+        *to = [to[0] + f[0], to[1] + f[1], to[2] + f[2], to[3] + kn];
+        let (ri, rj) = (b.radius[0][k], b.radius[1][k]);
+        if FRICTION {
+            *spring = [b.spring[0][k], b.spring[1][k], b.spring[2][k], b.spring[3][k]];
+            let to = &mut torque[i];
+            *to = [to[0] + ri * t[0], to[1] + ri * t[1], to[2] + ri * t[2], 0.0];
+        }
+        if j < own {
+            let to = &mut force[j];
+            *to = [to[0] - f[0], to[1] - f[1], to[2] - f[2], to[3] + kn];
+            if FRICTION {
+                let to = &mut torque[j];
+                *to = [to[0] + rj * t[0], to[1] + rj * t[1], to[2] + rj * t[2], 0.0];
+            }
+        } else {
+            let j = j.wrapping_add(first);
+            let outbox = &mut work.outbox[usize::from(grains.chunk[j])];
+            outbox.grain.push(j as u32);
+            outbox.force.push([-f[0], -f[1], -f[2], kn]);
+            if FRICTION {
+                outbox.torque.push([rj * t[0], rj * t[1], rj * t[2], 0.0]);
+            }
+        }
+    }
+}
+
+/// The law, for `lanes` pairs side by side.
+#[inline(always)]
+fn compute<const FRICTION: bool, const HERTZ: bool>(b: &mut Block, lanes: usize, law: &Law, now: &Now) {
+    let floor = if law.clip { 0.0 } else { f64::NEG_INFINITY };
+    let tangential_damping = law.damping * law.tangential.sqrt();
+    for k in 0..lanes.min(BLOCK) {
+        let [x, y, z] = [b.gap[0][k], b.gap[1][k], b.gap[2][k]];
+        let [x, y, z] = [nearest(x) * now.cell, nearest(y) * now.cell, nearest(z) * now.cell];
+        let [ux, uy, uz] = [b.motion[0][k], b.motion[1][k], b.motion[2][k]];
+        let (ri, rj) = (b.radius[0][k], b.radius[1][k]);
+        let (mi, mj) = (b.mass[0][k], b.mass[1][k]);
+        let sum = ri + rj;
+        let r = (x * x + y * y + z * z).sqrt();
+        let inverse = 1.0 / r;
+        let (nx, ny, nz) = (x * inverse, y * inverse, z * inverse);
+        let touching = sum > r;
+        let overlap = if touching { sum - r } else { 0.0 };
+        let per_sum = 1.0 / sum;
+        let mass = mi * mj / (mi + mj);
+        let (kn, elastic) = if HERTZ {
+            let kn = law.stiffness * (ri * rj * per_sum * overlap).sqrt();
+            (kn, kn * overlap * (2.0 / 3.0))
+        } else {
+            (law.stiffness, law.stiffness * overlap)
+        };
+        let root = (mass * kn).sqrt();
+        let opening = ux * nx + uy * ny + uz * nz + now.strain_rate * r;
+        let push = elastic - law.damping * root * opening;
+        let push = if push > floor { push } else { floor };
+        b.stiffness[k] = if touching { kn } else { 0.0 };
+        b.normal[k] = push;
+        b.virial[k] = push * r;
+        if FRICTION {
+            let half = 0.5 * now.step;
+            let (hx, hy, hz) = (x - half * ux, y - half * uy, z - half * uz);
+            let along = (ux * hx + uy * hy + uz * hz) / (hx * hx + hy * hy + hz * hz);
+            let (sx, sy, sz) = (b.spin[0][k] * per_sum, b.spin[1][k] * per_sum, b.spin[2][k] * per_sum);
+            let tx = ux - along * hx - (sy * hz - sz * hy);
+            let ty = uy - along * hy - (sz * hx - sx * hz);
+            let tz = uz - along * hz - (sx * hy - sy * hx);
+            let kt = law.tangential * kn;
+            let (bx, by, bz, before) = (b.spring[0][k], b.spring[1][k], b.spring[2][k], b.spring[3][k]);
+            let keep = if kt < before { kt / before } else { 1.0 };
+            let advance = kt * now.step;
+            let px = bx * keep + advance * tx;
+            let py = by * keep + advance * ty;
+            let pz = bz * keep + advance * tz;
+            let out = px * nx + py * ny + pz * nz;
+            let (px, py, pz) = (px - out * nx, py - out * ny, pz - out * nz);
+            let damping = tangential_damping * root;
+            let (qx, qy, qz) = (px + damping * tx, py + damping * ty, pz + damping * tz);
+            let square = qx * qx + qy * qy + qz * qz;
+            let limit = law.friction * if push > 0.0 { push } else { 0.0 };
+            let cut = if square > limit * limit { limit / square.sqrt() } else { 1.0 };
+            (b.spring[0][k], b.spring[1][k], b.spring[2][k]) = (px * cut, py * cut, pz * cut);
+            b.spring[3][k] = kt;
+            let (qx, qy, qz) = (qx * cut, qy * cut, qz * cut);
+            b.force[0][k] = qx - push * nx;
+            b.force[1][k] = qy - push * ny;
+            b.force[2][k] = qz - push * nz;
+            b.torque[0][k] = (y * qz - z * qy) * per_sum;
+            b.torque[1][k] = (z * qx - x * qz) * per_sum;
+            b.torque[2][k] = (x * qy - y * qx) * per_sum;
+        } else {
+            b.force[0][k] = -push * nx;
+            b.force[1][k] = -push * ny;
+            b.force[2][k] = -push * nz;
+        }
+    }
+}

@@ -1,0 +1,386 @@
+//! Which pairs of grains are close: Verlet lists from a multi-level grid.
+//!
+//! Grains are sorted into levels by size, each a factor of two wide, and every level has its own grid
+//! of cells about as wide as its largest grain. A grain looks only into its own level and the finer
+//! ones (large looks into small), so a grain of 36 times the size costs as many cell visits as the
+//! shell it touches holds, and the many small grains never look into coarse cells.
+//!
+//! A pair is listed, by its larger grain, when the grains are nearer than `R (1 + relative) + absolute`, R the sum of the radii.
+//! The list is complete as long as no grain has moved by more than `absolute / 2` relative to the
+//! deforming cell and the cell has shrunk by less than `relative`: see [`Reach::holds`].
+//!
+//! From the lists, the pairs that are close within a much shorter reach are picked every few steps; the force pass goes through those
+//! alone. Most of them touch.
+//!
+//! The grains are cut into chunks by their number alone; each chunk owns the pairs that its grains
+//! list. A chunk is the unit of parallel work, so that no sum depends on the number of threads.
+
+use rayon::prelude::*;
+
+/// Grains per chunk aimed at.
+const CHUNK: usize = 1024;
+
+/// `1.5 * 2^52`: adding and subtracting it rounds to the nearest integer.
+const ROUND: f64 = 6_755_399_441_055_744.0;
+
+/// A difference of two positions in units of the cell, to its nearest image.
+#[inline(always)]
+pub(super) fn nearest(d: f64) -> f64 {
+    d - ((d + ROUND) - ROUND)
+}
+
+/// How far beyond contact the lists reach.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    /// Part of the sum of the radii.
+    pub relative: f64,
+    /// Length.
+    pub absolute: f64,
+}
+
+impl Reach {
+    /// No farther than contact.
+    pub(super) const CONTACT: Self = Self { relative: 0.0, absolute: 0.0 };
+
+    /// Whether lists made when the cell was `listed_cell` wide still hold every pair within the shorter `reach`, when the
+    /// farthest any grain has moved since is `moved` (in units of the cell).
+    ///
+    /// A pair that was not listed is, in units of the cell, at least `(R (1 + self.relative) + self.absolute) / listed_cell - 2 moved`
+    /// apart, for every `R`; that has to reach `(R (1 + reach.relative) + reach.absolute) / cell`.
+    pub(super) fn holds(&self, reach: Reach, cell: f64, listed_cell: f64, moved: f64) -> bool {
+        let shrunk = listed_cell / cell;
+        shrunk * (1.0 + reach.relative) <= 1.0 + self.relative
+            && 2.0 * moved * listed_cell + reach.absolute * shrunk <= self.absolute
+    }
+}
+
+/// The tangential memory of a pair: spring force on the larger grain along x, y, z, and the tangential stiffness that
+/// it was made with; zero for pairs that do not touch.
+pub(super) type Memory = [f64; 4];
+
+/// The pairs that the grains `first .. last` list.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Chunk {
+    /// First grain.
+    pub first: usize,
+    /// One past the last grain.
+    pub last: usize,
+    /// Where the pairs of grain `first + g` start; one entry more than there are grains.
+    pub start: Vec<u32>,
+    /// The smaller grain of each pair.
+    pub neighbour: Vec<u32>,
+    /// The close pairs, in list order: larger grain, smaller grain.
+    pub close: Vec<[u32; 2]>,
+    /// Which of the listed pairs each close pair is.
+    pub close_pair: Vec<u32>,
+    /// Tangential memory of each close pair.
+    pub memory: Vec<Memory>,
+}
+
+impl Chunk {
+    /// The pairs listed by grain `i` of this chunk.
+    #[inline(always)]
+    pub fn pairs(&self, i: usize) -> std::ops::Range<usize> {
+        self.start[i - self.first] as usize..self.start[i - self.first + 1] as usize
+    }
+
+    /// Picks the close pairs anew; those that stay close keep their memory, and those that touch stay close.
+    pub fn pick(&mut self, position: &[[f64; 4]], cell: f64, reach: Reach) {
+        let per_cell = 1.0 / cell;
+        let old_pair = std::mem::take(&mut self.close_pair);
+        let old_memory = std::mem::take(&mut self.memory);
+        let mut old = old_pair.iter().zip(&old_memory).peekable();
+        self.close.clear();
+        self.close_pair.reserve(old_pair.len() + old_pair.len() / 8);
+        self.memory.reserve(old_pair.len() + old_pair.len() / 8);
+        for i in self.first..self.last {
+            let p = position[i];
+            for pair in self.start[i - self.first]..self.start[i - self.first + 1] {
+                let j = self.neighbour[pair as usize];
+                let q = position[j as usize];
+                let gap = [nearest(q[0] - p[0]), nearest(q[1] - p[1]), nearest(q[2] - p[2])];
+                let far = ((p[3] + q[3]) * (1.0 + reach.relative) + reach.absolute) * per_cell;
+                if gap[0] * gap[0] + gap[1] * gap[1] + gap[2] * gap[2] < far * far {
+                    while old.next_if(|o| *o.0 < pair).is_some() {}
+                    let memory = old.next_if(|o| *o.0 == pair).map_or([0.0; 4], |o| *o.1);
+                    self.close.push([i as u32, j]);
+                    self.close_pair.push(pair);
+                    self.memory.push(memory);
+                }
+            }
+        }
+    }
+}
+
+/// Bounds of the chunks of `grains` grains: a function of that number alone.
+pub(super) fn chunk_bounds(grains: usize) -> Vec<(usize, usize)> {
+    let count = match grains / CHUNK {
+        0 | 1 => 1,
+        n => n & !1,
+    };
+    (0..count).map(|c| (c * grains / count, (c + 1) * grains / count)).collect()
+}
+
+struct Level {
+    /// Largest radius.
+    radius: f64,
+    /// Cells along each axis.
+    cells: usize,
+    /// Where the grains of cell `(x * cells + y) * cells + z` start.
+    start: Vec<u32>,
+    /// Grain, by cell.
+    grain: Vec<u32>,
+    /// Position in units of the cell, and radius, by cell.
+    position: Vec<[f64; 4]>,
+}
+
+#[inline(always)]
+fn cell_of(s: f64, cells: usize) -> usize {
+    ((s * cells as f64) as usize).min(cells - 1)
+}
+
+/// Level of each radius: how many factors of two above the smallest.
+fn levels_of(position: &[[f64; 4]]) -> (Vec<u8>, usize) {
+    let smallest = position.iter().fold(f64::INFINITY, |m, p| m.min(p[3]));
+    let level: Vec<u8> = position
+        .iter()
+        .map(|p| {
+            let (mut level, mut bound) = (0, 2.0 * smallest);
+            while p[3] >= bound && level < 60 {
+                bound *= 2.0;
+                level += 1;
+            }
+            level
+        })
+        .collect();
+    let count = level.iter().map(|&l| usize::from(l) + 1).max().unwrap_or(1);
+    (level, count)
+}
+
+fn grids(position: &[[f64; 4]], level: &[u8], count: usize, cell: f64, reach: Reach) -> Vec<Level> {
+    (0..count)
+        .map(|l| {
+            let members: Vec<u32> =
+                (0..position.len() as u32).filter(|&i| usize::from(level[i as usize]) == l).collect();
+            let radius = members.iter().fold(0.0, |m: f64, &i| m.max(position[i as usize][3]));
+            let mut cells = 1;
+            while radius > 0.0
+                && (cells + 1) as f64 * (2.0 * radius * (1.0 + reach.relative) + reach.absolute) <= cell
+                && (cells + 1) * (cells + 1) * (cells + 1) <= 8 * members.len() + 64
+            {
+                cells += 1;
+            }
+            let home: Vec<u32> = members
+                .iter()
+                .map(|&i| {
+                    let [x, y, z, _] = position[i as usize];
+                    ((cell_of(x, cells) * cells + cell_of(y, cells)) * cells + cell_of(z, cells)) as u32
+                })
+                .collect();
+            let mut start = vec![0u32; cells * cells * cells + 1];
+            for &c in &home {
+                start[c as usize + 1] += 1;
+            }
+            for c in 0..start.len() - 1 {
+                start[c + 1] += start[c];
+            }
+            let mut next = start.clone();
+            let mut grain = vec![0; members.len()];
+            for (&i, &c) in members.iter().zip(&home) {
+                grain[next[c as usize] as usize] = i;
+                next[c as usize] += 1;
+            }
+            let position = grain.iter().map(|&i| position[i as usize]).collect();
+            Level { radius, cells, start, grain, position }
+        })
+        .collect()
+}
+
+/// The at most two runs of cells that hold `s - half ..= s + half` on a periodic axis.
+fn runs(s: f64, half: f64, cells: usize) -> [(usize, usize); 2] {
+    let n = cells as f64;
+    let low = libm::floor((s - half) * n) as i64;
+    let high = libm::floor((s + half) * n) as i64;
+    let n = cells as i64;
+    if high - low + 1 >= n {
+        return [(0, cells), (0, 0)];
+    }
+    let (low, high) = (low.rem_euclid(n) as usize, high.rem_euclid(n) as usize);
+    if low <= high { [(low, high + 1), (0, 0)] } else { [(0, high + 1), (low, cells)] }
+}
+
+/// Lists every pair within `reach`. Positions are in units of the cell, `0 <= s < 1`, the fourth entry the radius; `rank`
+/// orders the grains from large to small.
+pub(super) fn list(position: &[[f64; 4]], rank: &[u32], cell: f64, reach: Reach) -> Vec<Chunk> {
+    let (level, count) = levels_of(position);
+    let grids = grids(position, &level, count, cell, reach);
+    let build = |&(first, last): &(usize, usize)| {
+        let mut chunk = Chunk { first, last, start: vec![0], ..Chunk::default() };
+        for i in first..last {
+            let [x, y, z, radius] = position[i];
+            for (l, grid) in grids.iter().enumerate().take(usize::from(level[i]) + 1) {
+                let half = ((radius + grid.radius) * (1.0 + reach.relative) + reach.absolute) / cell;
+                for (x0, x1) in runs(x, half, grid.cells) {
+                    for cx in x0..x1 {
+                        for (y0, y1) in runs(y, half, grid.cells) {
+                            for cy in y0..y1 {
+                                let row = (cx * grid.cells + cy) * grid.cells;
+                                for (z0, z1) in runs(z, half, grid.cells) {
+                                    if z1 <= z0 {
+                                        continue;
+                                    }
+                                    let range = grid.start[row + z0] as usize..grid.start[row + z1] as usize;
+                                    for (&j, p) in grid.grain[range.clone()].iter().zip(&grid.position[range])
+                                    {
+                                        let dx = nearest(p[0] - x);
+                                        let dy = nearest(p[1] - y);
+                                        let dz = nearest(p[2] - z);
+                                        let far = ((radius + p[3]) * (1.0 + reach.relative) + reach.absolute)
+                                            / cell;
+                                        if dx * dx + dy * dy + dz * dz < far * far
+                                            && (l < usize::from(level[i]) || rank[i] < rank[j as usize])
+                                        {
+                                            chunk.neighbour.push(j);
+                                        }
+                                    }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+            chunk.start.push(chunk.neighbour.len() as u32);
+        }
+        chunk
+    };
+    let bounds = chunk_bounds(position.len());
+    if rayon::current_num_threads() == 1 {
+        bounds.iter().map(build).collect()
+    } else {
+        bounds.par_iter().map(build).collect()
+    }
+}
+
+/// What is remembered of the contacts, by the rank of the smaller grain: it has few contacts with larger ones.
+pub(super) struct Remembered {
+    start: Vec<u32>,
+    /// Rank of the larger grain, and the memory.
+    entry: Vec<(u32, Memory)>,
+}
+
+impl Remembered {
+    /// Collects the memories of the close pairs.
+    pub fn collect(chunks: &[Chunk], rank: &[u32]) -> Self {
+        let mut start = vec![0u32; rank.len() + 1];
+        let visit = |each: &mut dyn FnMut(u32, u32, Memory)| {
+            for chunk in chunks {
+                for (&[i, j], &memory) in chunk.close.iter().zip(&chunk.memory) {
+                    if memory[3] > 0.0 {
+                        each(rank[i as usize], rank[j as usize], memory);
+                    }
+                }
+            }
+        };
+        visit(&mut |_, small, _| start[small as usize + 1] += 1);
+        for r in 0..rank.len() {
+            start[r + 1] += start[r];
+        }
+        let mut next = start.clone();
+        let mut entry = vec![(0, Memory::default()); start[rank.len()] as usize];
+        visit(&mut |large, small, memory| {
+            entry[next[small as usize] as usize] = (large, memory);
+            next[small as usize] += 1;
+        });
+        Self { start, entry }
+    }
+
+    /// Gives the pairs of new lists their memory back, as close pairs.
+    pub fn restore(&self, chunks: &mut [Chunk], rank: &[u32]) {
+        for chunk in chunks {
+            for i in chunk.first..chunk.last {
+                for pair in chunk.pairs(i) {
+                    let j = chunk.neighbour[pair];
+                    let small = rank[j as usize] as usize;
+                    let range = self.start[small] as usize..self.start[small + 1] as usize;
+                    if let Some(&(_, memory)) = self.entry[range].iter().find(|e| e.0 == rank[i]) {
+                        chunk.close.push([i as u32, j]);
+                        chunk.close_pair.push(pair as u32);
+                        chunk.memory.push(memory);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Position along a Morton curve of 2^10 cells a side, for points in the unit cube.
+pub(super) fn morton(s: [f64; 3]) -> u32 {
+    let spread = |s: f64| {
+        let mut v = ((s * 1024.0) as u32).min(1023);
+        v = (v | (v << 16)) & 0x0300_00ff;
+        v = (v | (v << 8)) & 0x0300_f00f;
+        v = (v | (v << 4)) & 0x030c_30c3;
+        (v | (v << 2)) & 0x0924_9249
+    };
+    (spread(s[0]) << 2) | (spread(s[1]) << 1) | spread(s[2])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stream::{Key, Purpose, unit};
+    use rand::Rng;
+    use std::collections::BTreeSet;
+
+    fn random(grains: usize, ratio: f64, seed: u64) -> Vec<[f64; 4]> {
+        let mut generator =
+            Key { seed, purpose: Purpose::Packing, run: 0, increment: 0, chunk: 0 }.generator();
+        let mut u = || unit(generator.next_u64());
+        (0..grains).map(|_| [u(), u(), u(), libm::pow(ratio, u())]).collect()
+    }
+
+    /// The lists against all pairs, for size ratios up to 100 and cells from two of the largest grain up.
+    #[test]
+    fn lists_equal_all_pairs() {
+        for (seed, (ratio, cell)) in
+            [(1.0, 9.0), (1.5, 12.0), (10.0, 45.0), (36.0, 150.0), (100.0, 450.0), (3.0, 30.0)]
+                .iter()
+                .enumerate()
+        {
+            let mut position = random(400, *ratio, seed as u64);
+            position.sort_by(|a, b| b[3].total_cmp(&a[3]));
+            let rank: Vec<u32> = (0..400).collect();
+            let reach = Reach { relative: 0.01, absolute: 0.3 };
+            let mut listed = BTreeSet::new();
+            for chunk in list(&position, &rank, *cell, reach) {
+                for i in chunk.first..chunk.last {
+                    for k in chunk.pairs(i) {
+                        let fresh = listed.insert((i, chunk.neighbour[k] as usize));
+                        assert!(fresh, "listed twice");
+                    }
+                }
+            }
+            let mut expected = BTreeSet::new();
+            for i in 0..400 {
+                for j in i + 1..400 {
+                    let (p, q) = (position[i], position[j]);
+                    let d2: f64 = (0..3).map(|a| nearest(q[a] - p[a]) * nearest(q[a] - p[a])).sum();
+                    if d2.sqrt() * cell < (p[3] + q[3]) * 1.01 + 0.3 {
+                        expected.insert((i, j));
+                    }
+                }
+            }
+            assert!(expected.len() > 10);
+            assert_eq!(listed, expected);
+        }
+    }
+
+    #[test]
+    fn chunks_cover_every_grain_once() {
+        for n in [1, 2, 1023, 2048, 9313, 59_183] {
+            let bounds = chunk_bounds(n);
+            assert_eq!((bounds[0].0, bounds[bounds.len() - 1].1), (0, n));
+            assert!(bounds.windows(2).all(|w| w[0].1 == w[1].0));
+        }
+    }
+}

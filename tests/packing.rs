@@ -1,0 +1,135 @@
+//! Compressions as a whole: the same bits for any number of threads and after a resume, and what a settled packing is like.
+
+use voidwalk::gradation::Gradation;
+use voidwalk::packing::{Compression, PackingError, Settings, Stage, compress, draw, random_start};
+
+fn started(cu: f64, settings: &Settings) -> Compression {
+    let filter = Gradation::linear_from_d0(1.0, cu).unwrap();
+    let start = random_start(&draw(&filter, settings.grains, settings.seed), settings).unwrap();
+    Compression::new(&start, settings).unwrap()
+}
+
+fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(work)
+}
+
+/// Several chunks, friction, lists renewed on the way; interrupted at a step that no list knows of.
+#[test]
+fn a_resumed_compression_gives_the_same_bits_with_any_threads() {
+    let settings = Settings { grains: 4200, friction: 0.3, squeeze_rate: 0.03, ..Settings::default() };
+    let whole = with_threads(1, || {
+        let mut c = started(2.0, &settings);
+        c.advance(4000).unwrap();
+        assert_eq!(c.stage(), Stage::Compress);
+        assert!(c.coordination() > 0.5);
+        c.to_bytes()
+    });
+    for threads in [1, 2, 3] {
+        let bytes = with_threads(threads, || {
+            let mut c = started(2.0, &settings);
+            c.advance(1).unwrap();
+            let mut bytes = c.to_bytes();
+            for steps in [1236, 1641, 1122] {
+                let mut c = Compression::from_bytes(&settings, &bytes).unwrap();
+                assert_eq!(c.to_bytes(), bytes);
+                c.advance(steps).unwrap();
+                bytes = c.to_bytes();
+            }
+            bytes
+        });
+        assert!(bytes == whole, "{threads} threads");
+    }
+}
+
+#[test]
+fn damaged_or_foreign_bytes_are_refused() {
+    let settings = Settings { grains: 60, stiffness_ratio: 0.01, ..Settings::default() };
+    let mut c = started(1.2, &settings);
+    c.advance(500).unwrap();
+    let bytes = c.to_bytes();
+    for cut in (0..bytes.len()).step_by(61) {
+        assert!(matches!(Compression::from_bytes(&settings, &bytes[..cut]), Err(PackingError::State(_))));
+    }
+    for at in (0..bytes.len()).step_by(37) {
+        let mut bad = bytes.clone();
+        bad[at] ^= 1 << (at % 8);
+        assert!(matches!(Compression::from_bytes(&settings, &bad), Err(PackingError::State(_))), "byte {at}");
+    }
+    let other = Settings { friction: 0.31, ..settings };
+    assert_eq!(
+        Compression::from_bytes(&other, &bytes).unwrap_err(),
+        PackingError::State("it was made with other settings")
+    );
+}
+
+/// One packing of each density: far above what the scatter of 800 grains (0.005 in void ratio) could hide.
+#[test]
+fn friction_sets_the_density_and_none_makes_no_torque() {
+    let filter = Gradation::linear_from_d0(1.0, 1.5).unwrap();
+    let settings = Settings { grains: 800, stiffness_ratio: 0.02, ..Settings::default() };
+    let (_, dense) = compress(&filter, &Settings { friction: 0.0, ..settings.clone() }, |_| true).unwrap();
+    let (_, loose) = compress(&filter, &Settings { friction: 0.3, ..settings.clone() }, |_| true).unwrap();
+    assert!((0.50..0.55).contains(&dense.before.void_ratio), "{dense:?}");
+    assert!((0.62..0.69).contains(&loose.after.void_ratio), "{loose:?}");
+    for report in [&dense, &loose] {
+        for m in [&report.before, &report.after] {
+            assert!((m.pressure_kpa - 50.0).abs() < 0.25, "{report:?}");
+            assert!(m.unbalanced < 0.05, "{report:?}");
+        }
+    }
+    // Isostatic without friction: 6, and a little more under pressure.
+    assert!((5.9..6.6).contains(&dense.before.coordination_held), "{dense:?}");
+    assert!(loose.after.coordination_held < 5.2, "{loose:?}");
+    assert_eq!(loose.before, loose.after);
+    assert!((dense.before.void_ratio - dense.after.void_ratio).abs() < 0.005, "{dense:?}");
+
+    let mut c = started(1.5, &Settings { friction: 0.0, ..settings });
+    while c.stage() != Stage::Settle {
+        assert!(c.spins().iter().all(|w| *w == [0.0; 3]));
+        c.advance(100).unwrap();
+    }
+}
+
+/// A factor of two on every length changes no bit.
+#[test]
+fn lengths_may_be_doubled() {
+    let settings = Settings { grains: 120, stiffness_ratio: 0.01, ..Settings::default() };
+    let pack = |d0_mm: f64| {
+        let filter = Gradation::linear_from_d0(1.0, 1.5).unwrap();
+        let sizes: Vec<f64> = draw(&filter, 120, 1).iter().map(|d| d * d0_mm).collect();
+        let mut c = Compression::new(&random_start(&sizes, &settings).unwrap(), &settings).unwrap();
+        c.advance(3000).unwrap();
+        c.packing()
+    };
+    let (one, two) = (pack(1.0), pack(2.0));
+    assert!(one.x.iter().zip(&two.x).all(|(a, b)| 2.0 * a == *b));
+    assert!(one.diameter.iter().zip(&two.diameter).all(|(a, b)| 2.0 * a == *b));
+}
+
+#[test]
+fn settings_out_of_range_are_named() {
+    let filter = Gradation::linear_from_d0(1.0, 1.5).unwrap();
+    let base = Settings { grains: 100, ..Settings::default() };
+    for (settings, field) in [
+        (Settings { grains: 0, ..base.clone() }, "grains"),
+        (Settings { friction: -0.1, ..base.clone() }, "friction"),
+        (Settings { pressure_kpa: f64::NAN, ..base.clone() }, "pressure_kpa"),
+        (Settings { restitution: 1.1, ..base.clone() }, "restitution"),
+        (Settings { stiffness_ratio: 0.0, ..base.clone() }, "stiffness_ratio"),
+        (Settings { start_fraction: 0.6, ..base.clone() }, "start_fraction"),
+        (Settings { step_fraction: 1.0, ..base.clone() }, "step_fraction"),
+    ] {
+        let error = compress(&filter, &settings, |_| true).unwrap_err();
+        assert!(matches!(error, PackingError::Setting { field: f, .. } if f == field), "{error}");
+        assert!(error.to_string().contains(field));
+    }
+    assert_eq!(compress(&filter, &base, |_| false).unwrap_err(), PackingError::Stopped(1000));
+}
+
+#[test]
+fn a_cell_too_narrow_for_its_largest_grain_is_refused() {
+    let filter = Gradation::linear_from_d0(1.0, 6.0).unwrap();
+    let settings = Settings { grains: 50, ..Settings::default() };
+    let error = compress(&filter, &settings, |_| true).unwrap_err();
+    assert!(matches!(error, PackingError::NarrowCell { .. }), "{error}");
+}
