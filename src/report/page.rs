@@ -240,7 +240,7 @@ fn rules(outcome: &Outcome) -> Markup {
                 tbody { @for rule in &outcome.rules {
                     tr {
                         th { (clean(&rule.name)) br; span.small { (clean(&rule.source)) } }
-                        td.n { (clean(&rule.quantity)) br; "= " (significant(rule.value)) }
+                        td.n { (clean(&rule.quantity)) " " br; "= " (significant(rule.value)) }
                         td.n { "≤ " (trimmed(rule.limit)) }
                         td { @if rule.meets { span.keeps { "✓ met" } } @else { span.breaks { "✗ not met" } } }
                     }

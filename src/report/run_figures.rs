@@ -231,8 +231,9 @@ pub(super) fn layers(folder: &RunFolder) -> Option<Drawn> {
     y.ticks.retain(|tick| tick.at <= y.high);
     let what =
         "Share of the constrictions of each layer that are blocked at the end of each run, depth downward";
-    let mut figure =
-        Figure::new("Blocked constrictions by layer", what, "", x, y).sizes((720.0, 460.0), (358.0, 420.0));
+    let mut figure = Figure::new("Blocked constrictions by layer", what, "", x, y)
+        .sizes((720.0, 460.0), (358.0, 420.0))
+        .names_above();
     let mut bold = Vec::new();
     for run in folder.runs() {
         let (colour, _) = run_look(run);
