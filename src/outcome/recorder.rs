@@ -6,7 +6,7 @@ use crate::walk::{SizeCounts, State, Tally};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wanted {
     /// Keep the sums of every such increment, and of the last one; 0 keeps the last only. A run of more than
-    /// [`LONGEST_SERIES`] such increments is thinned: every second of those kept goes, and so on.
+    /// 20,000 such increments is thinned: every second of those kept goes, and so on.
     pub series_every: u64,
     /// Increments whose size curves are kept, besides the last one's.
     pub size_curves: Vec<u64>,

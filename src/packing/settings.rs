@@ -1,4 +1,4 @@
-//! What a compression needs to know, with defaults chosen by measurement, and what can be wrong.
+//! What a compression needs to know, its defaults, and what can be wrong.
 
 use super::neighbours::Reach;
 
@@ -11,8 +11,11 @@ pub enum Contact {
     Linear(f64),
 }
 
-/// Settings of a compression. The defaults are those of the paper where it gives them, else those of the study in
-/// `results/packing-2026-11-21.md`.
+/// Settings of a compression.
+///
+/// The defaults are those of the paper where it gives them. The others (stiffness ratio, rates, drag, brake, restitution,
+/// mass exponent, share of the critical step) were picked from short runs in `results/packing-2026-11-21.md`, not yet by a
+/// study of void ratio against each of them: treat the void ratio as uncertain by about 0.01.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Grains drawn from the gradation.

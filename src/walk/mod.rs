@@ -27,7 +27,7 @@
 //!
 //! # The end
 //! A run ends when nothing moves, or when every moving particle is *trapped*: x and y are periodic, so
-//! a particle can circle for ever. See [`trapped`].
+//! a particle can circle for ever. The module `trapped` finds that exactly.
 
 mod counts;
 mod engine;

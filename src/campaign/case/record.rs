@@ -39,7 +39,7 @@ impl Case {
                 name: match &self.scene.filter {
                     FilterGradation::Sieve(path, _) => path.display().to_string(),
                     FilterGradation::Linear { .. } => {
-                        format!("linear, Cu {:.3}", self.filter.cu().unwrap_or(f64::NAN))
+                        format!("linear, Cu {}", rounded(self.filter.cu()))
                     }
                 },
                 attribution: match (&self.network_file, self.shipped) {
@@ -84,7 +84,7 @@ impl Case {
                 constrictions,
                 start_nodes,
                 layers,
-                thickness_mm: self.network_file.is_none().then(|| layers as f64 * d50_by_number),
+                thickness_mm: self.network_file.is_none().then_some(layers as f64 * d50_by_number),
             },
             mass_ratio: self.mass_ratio,
             inject_share: self.scene.inject_share,
@@ -102,4 +102,9 @@ impl Case {
                 BaseGradation::Linear { d85: D85::AtDc(..) | D85::Ratio(_), .. } | BaseGradation::Single(_)
             )
     }
+}
+
+/// A coefficient of uniformity without the digits that rounding left.
+fn rounded(cu: Option<f64>) -> f64 {
+    cu.map_or(f64::NAN, |cu| (cu * 1e6).round() / 1e6)
 }
