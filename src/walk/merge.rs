@@ -3,8 +3,15 @@
 //! Counts are added and blocked constrictions joined by OR, which no order can change. Masses are added
 //! within a chunk in particle order and over chunks in chunk order.
 
+use std::cell::RefCell;
+
 use super::sizes::cube;
 use super::{Blocking, SizeClasses, SizeCounts, State};
+
+thread_local! {
+    /// Room for the eroded particles of the chunk that a thread works on.
+    static ROOM: RefCell<Vec<f32>> = const { RefCell::new(Vec::new()) };
+}
 
 /// What one chunk did in one increment.
 #[derive(Default)]
@@ -15,8 +22,9 @@ pub(super) struct Events {
     pub inserted_mass: f64,
     /// Completed moves.
     pub moves: u64,
-    /// Diameters of the particles that left, in particle order.
+    /// Diameters of the particles that left, in particle order; summed up and gone once the chunk is done.
     pub eroded: Vec<f32>,
+    eroded_count: u64,
     /// Constriction and diameter of the particles that were stopped, in particle order.
     pub stopped: Vec<(u32, f32)>,
     /// Void and diameter of the particles without open exit, in particle order.
@@ -36,19 +44,31 @@ impl Events {
         self.inserted_mass = 0.0;
         self.passive_inserted = 0;
         self.moves = 0;
-        self.eroded.clear();
+        self.eroded_count = 0;
         self.stopped.clear();
         self.stranded.clear();
     }
 
-    /// Sums over the chunk; called where the chunk was worked on.
+    /// Takes room for `count` eroded particles that this thread used before.
+    pub fn lend_room(&mut self, count: usize) {
+        self.eroded = ROOM.take();
+        self.eroded.clear();
+        self.eroded.reserve(count);
+    }
+
+    /// Sums over the chunk, and gives the room back; called where the chunk was worked on.
     pub fn sum(&mut self, classes: &SizeClasses, passive_limit: f32) {
-        self.passive_eroded = self.eroded.iter().filter(|&&d| d <= passive_limit).count() as u64;
+        self.eroded_count = self.eroded.len() as u64;
+        self.passive_eroded = self.eroded.iter().map(|&d| u64::from(d <= passive_limit)).sum();
         self.eroded_mass = self.eroded.iter().map(|&d| cube(d)).sum();
-        self.largest = self.eroded.iter().copied().fold(0.0, f32::max);
-        if self.is_quiet() {
-            return;
+        self.largest = self.eroded.iter().fold(0.0, |largest, &d| if d > largest { d } else { largest });
+        if !self.is_quiet() {
+            self.sum_sizes(classes);
         }
+        ROOM.set(std::mem::take(&mut self.eroded));
+    }
+
+    fn sum_sizes(&mut self, classes: &SizeClasses) {
         let new = || [SizeCounts::new(classes), SizeCounts::new(classes)];
         let [eroded, retained] = self.sizes.get_or_insert_with(new);
         eroded.clear();
@@ -58,7 +78,7 @@ impl Events {
     }
 
     fn is_quiet(&self) -> bool {
-        self.eroded.is_empty() && self.stopped.is_empty() && self.stranded.is_empty()
+        self.eroded_count == 0 && self.stopped.is_empty() && self.stranded.is_empty()
     }
 }
 
@@ -73,7 +93,7 @@ pub(super) fn merge(events: &mut [Events], upstream: &[u32], state: &mut State) 
         tally.passive_inserted += u64::from(events.passive_inserted);
         tally.particle_moves += events.moves;
         if !events.is_quiet() {
-            let gone = [events.eroded.len(), events.stopped.len(), events.stranded.len()].map(|n| n as u64);
+            let gone = [events.eroded_count, events.stopped.len() as u64, events.stranded.len() as u64];
             tally.eroded += gone[0];
             tally.retained_in_constrictions += gone[1];
             tally.retained_in_voids += gone[2];

@@ -4,7 +4,14 @@
 #[derive(Clone, Debug, PartialEq)]
 pub struct SizeClasses {
     upper: Vec<f32>,
+    /// Class of the smallest diameter of each bucket; a bucket is the top bits of an f32.
+    guide: Vec<u32>,
+    /// Bucket of the first entry of `guide`.
+    first_bucket: u32,
 }
+
+/// Bits of an f32 below those of its bucket: 32 buckets in a factor of two.
+const BELOW_BUCKET: u32 = 18;
 
 impl SizeClasses {
     /// `count` classes of equal width in the logarithm of the diameter, from `smallest` to `largest`;
@@ -15,7 +22,13 @@ impl SizeClasses {
         let mut upper: Vec<f32> = (1..count).map(|k| bound(k) as f32).collect();
         upper.push(largest);
         upper.dedup();
-        Self { upper }
+        let bucket = |diameter: f32| diameter.to_bits() >> BELOW_BUCKET;
+        let class = |diameter: f32| upper.partition_point(|&bound| bound < diameter);
+        let first_bucket = bucket(upper[0]);
+        let after_first = first_bucket + 1..=bucket(largest);
+        let starts = after_first.map(|bucket| class(f32::from_bits(bucket << BELOW_BUCKET)) as u32);
+        let guide = std::iter::once(0).chain(starts).collect();
+        Self { upper, guide, first_bucket }
     }
 
     /// Upper bound of each class.
@@ -26,7 +39,15 @@ impl SizeClasses {
     /// Class of a diameter; sizes above the last bound count in the last class.
     #[inline]
     pub fn of(&self, diameter: f32) -> usize {
-        self.upper.partition_point(|&bound| bound < diameter).min(self.upper.len() - 1)
+        let bucket = (diameter.to_bits() >> BELOW_BUCKET).saturating_sub(self.first_bucket) as usize;
+        let mut class = self.guide[bucket.min(self.guide.len() - 1)] as usize;
+        let last = self.upper.len() - 1;
+        // A bucket seldom holds more than one bound.
+        class += usize::from(class < last && self.upper[class] < diameter);
+        while class < last && self.upper[class] < diameter {
+            class += 1;
+        }
+        class
     }
 }
 
@@ -85,5 +106,26 @@ mod tests {
         assert_eq!([classes.of(1.0), classes.of(1.9), classes.of(2.1), classes.of(8.0)], [0, 0, 1, 2]);
         assert_eq!(classes.of(9.0), 2);
         assert_eq!(SizeClasses::logarithmic(2.0, 2.0, 64).upper(), [2.0]);
+    }
+
+    /// Against the definition: at every bound, beside it, at every bucket's start, far out.
+    #[test]
+    fn the_guide_finds_the_class_by_definition() {
+        for (smallest, largest, count) in [
+            (1.0, 8.0, 3),
+            (0.016, 0.33, 64),
+            (1e-20, 1e20, 64),
+            (1.0, 1.01, 500),
+            (2.0, 2.0, 1),
+            (1e-3, 1.0, 1),
+        ] {
+            let classes = SizeClasses::logarithmic(smallest, largest, count);
+            let starts = (0..1u32 << 13).map(|bucket| f32::from_bits(bucket << BELOW_BUCKET));
+            let probes = starts.chain(classes.upper().iter().copied()).filter(|d| d.is_finite() && *d > 0.0);
+            for d in probes.flat_map(|d| [d.next_down(), d, d.next_up()]) {
+                let by_definition = classes.upper().iter().filter(|&&bound| bound < d).count();
+                assert_eq!(classes.of(d), by_definition.min(classes.upper().len() - 1), "{d}");
+            }
+        }
     }
 }

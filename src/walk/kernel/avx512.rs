@@ -71,7 +71,7 @@ fn step_vectors(mut chunk: Chunk) -> usize {
         let out = _mm512_cmpge_epu32_mask(to, voids);
         let coarse = _mm512_cmp_ps_mask::<_CMP_GT_OQ>(d, limit);
 
-        let mut gone = out;
+        let mut stopped = 0;
         if coarse | long_way != 0 {
             if long_way != 0 {
                 kept = step_singly(&mut chunk, begin, draws, kept);
@@ -84,25 +84,22 @@ fn step_vectors(mut chunk: Chunk) -> usize {
             let width = unsafe {
                 _mm512_mask_i32gather_ps::<4>(_mm512_setzero_ps(), coarse, constriction, diameters.as_ptr())
             };
-            let stopped = _mm512_mask_cmp_ps_mask::<_CMP_GT_OQ>(coarse, d, width);
+            stopped = _mm512_mask_cmp_ps_mask::<_CMP_GT_OQ>(coarse, d, width);
             if stopped != 0 {
                 note_stopped(&mut chunk, constriction, d, stopped);
-                if out & !stopped != 0 {
-                    note_eroded(&mut chunk, d, out & !stopped);
-                }
-                gone |= stopped;
-            } else if out != 0 {
-                note_eroded(&mut chunk, d, out);
             }
-        } else if out != 0 {
-            note_eroded(&mut chunk, d, out);
+        }
+        let gone = out | stopped;
+        let (mut to, mut d) = (to, d);
+        if gone != 0 {
+            note_eroded(&mut chunk.events.eroded, d, out & !stopped);
+            to = _mm512_maskz_compress_epi32(!gone, to);
+            d = _mm512_maskz_compress_ps(!gone, d);
         }
         // SAFETY: `kept <= begin`, so sixteen entries from `kept` on are within both columns; all up to
         // `begin + 16` have been read.
         unsafe {
-            let to = _mm512_maskz_compress_epi32(!gone, to);
             _mm512_storeu_si512(chunk.void.as_mut_ptr().add(kept).cast(), to);
-            let d = _mm512_maskz_compress_ps(!gone, d);
             _mm512_storeu_ps(chunk.diameter.as_mut_ptr().add(kept), d);
         }
         kept += WIDTH - gone.count_ones() as usize;
@@ -154,8 +151,7 @@ fn note_stopped(chunk: &mut Chunk, constriction: __m512i, d: __m512, stopped: __
 
 #[inline]
 #[target_feature(enable = "avx512f,popcnt")]
-fn note_eroded(chunk: &mut Chunk, d: __m512, eroded: __mmask16) {
-    let column = &mut chunk.events.eroded;
+fn note_eroded(column: &mut Vec<f32>, d: __m512, eroded: __mmask16) {
     column.reserve(WIDTH);
     // SAFETY: there is room for sixteen, of which the first as many as lanes eroded are values.
     unsafe {

@@ -58,6 +58,7 @@ pub(super) fn step(
             let (void, diameter) = (&mut void[old..new], &mut diameter[old..new]);
             insert(network, supply, key, table.isa(), exits.passive_limit, void, diameter, events);
         }
+        events.lend_room(new + 16);
         let kept = step_chunk(&exits, key, &mut void[..new], &mut diameter[..new], events);
         events.moves = (new - events.stopped.len() - events.stranded.len()) as u64;
         events.sum(classes, exits.passive_limit);
