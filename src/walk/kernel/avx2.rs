@@ -84,10 +84,10 @@ fn step_eight(chunk: &mut Chunk, begin: usize, words: &[u64; 2], kept: usize) ->
     let past_second = _mm256_cmpeq_epi32(_mm256_min_epu32(top, second), second);
     let nearest = _mm256_min_epu32(_mm256_xor_si256(top, entry), _mm256_xor_si256(top, second));
     let tie = _mm256_cmpeq_epi32(_mm256_srli_epi32::<17>(nearest), _mm256_setzero_si256());
-    let backward = _mm256_andnot_si256(past_first, past_second);
-    let long_way =
-        _mm256_or_si256(_mm256_or_si256(tie, backward), _mm256_xor_si256(inside, _mm256_set1_epi32(-1)));
-    if bits(long_way) != 0 {
+    // The first threshold is above the second only where every exit is closed.
+    let closed = _mm256_andnot_si256(past_first, past_second);
+    let stranded = bits(closed);
+    if bits(tie) | !bits(inside) & 0xff != 0 {
         return step_singly(chunk, begin, words, kept);
     }
 
@@ -105,27 +105,32 @@ fn step_eight(chunk: &mut Chunk, begin: usize, words: &[u64; 2], kept: usize) ->
     let out = bits(_mm256_cmpgt_epi32(to, last));
 
     let coarse = _mm256_cmp_ps::<_CMP_GT_OQ>(d, _mm256_set1_ps(chunk.exits.passive_limit));
-    let mut stopped = 0;
-    if _mm256_movemask_ps(coarse) != 0 {
+    let mut stays = stranded;
+    if stranded != 0 {
+        note(&mut chunk.events.stranded, from, d, stranded);
+    }
+    let able = _mm256_andnot_ps(_mm256_castsi256_ps(closed), coarse);
+    if _mm256_movemask_ps(able) != 0 {
         // A true lane is -1.
         let exit = _mm256_add_epi32(past_first, past_second);
         let constriction = _mm256_sub_epi32(_mm256_add_epi32(from, _mm256_slli_epi32::<1>(from)), exit);
         let diameters = chunk.exits.network.diameters();
         // SAFETY: voids are less than the table's length and exits less than 3, so that constrictions are
         // less than 3 times it, the number of diameters.
-        let finest = unsafe {
-            _mm256_mask_i32gather_ps::<4>(_mm256_setzero_ps(), diameters.as_ptr(), constriction, coarse)
+        let width = unsafe {
+            _mm256_mask_i32gather_ps::<4>(_mm256_setzero_ps(), diameters.as_ptr(), constriction, able)
         };
-        let coarser = _mm256_cmp_ps::<_CMP_GT_OQ>(d, finest);
-        stopped = _mm256_movemask_ps(_mm256_and_ps(coarse, coarser)) as u32;
+        let coarser = _mm256_and_ps(able, _mm256_cmp_ps::<_CMP_GT_OQ>(d, width));
+        let stopped = _mm256_movemask_ps(coarser) as u32;
         if stopped != 0 {
-            note_stopped(chunk, constriction, d, stopped);
+            note(&mut chunk.events.stopped, constriction, d, stopped);
+            stays |= stopped;
         }
     }
-    let gone = out | stopped;
+    let gone = out | stays;
     let (mut to, mut d) = (to, d);
     if gone != 0 {
-        note_eroded(chunk, d, out & !stopped);
+        note_eroded(chunk, d, out & !stays);
         // SAFETY: a row of the table has eight entries.
         let order = unsafe { _mm256_loadu_si256(STAYING[gone as usize].as_ptr().cast()) };
         to = _mm256_permutevar8x32_epi32(to, order);
@@ -157,17 +162,18 @@ fn step_singly(chunk: &mut Chunk, begin: usize, words: &[u64; 2], mut kept: usiz
     kept
 }
 
-#[inline(never)]
+/// Appends place and diameter of some lanes.
+#[inline]
 #[target_feature(enable = "avx2")]
-fn note_stopped(chunk: &mut Chunk, constriction: __m256i, d: __m256, stopped: u32) {
-    let (mut constrictions, mut diameters) = ([0u32; WIDTH], [0f32; WIDTH]);
+fn note(column: &mut Vec<(u32, f32)>, place: __m256i, d: __m256, lanes: u32) {
+    let (mut places, mut diameters) = ([0u32; WIDTH], [0f32; WIDTH]);
     // SAFETY: both arrays have eight entries.
     unsafe {
-        _mm256_storeu_si256(constrictions.as_mut_ptr().cast(), constriction);
+        _mm256_storeu_si256(places.as_mut_ptr().cast(), place);
         _mm256_storeu_ps(diameters.as_mut_ptr(), d);
     }
-    let lanes = (0..WIDTH).filter(|lane| stopped >> lane & 1 != 0);
-    chunk.events.stopped.extend(lanes.map(|lane| (constrictions[lane], diameters[lane])));
+    let lanes = (0..WIDTH).filter(|lane| lanes >> lane & 1 != 0);
+    column.extend(lanes.map(|lane| (places[lane], diameters[lane])));
 }
 
 #[inline]

@@ -3,8 +3,7 @@
 //! The generator stays in four registers; the words of sixteen voids are gathered; constriction
 //! diameters are gathered for particles that are not passive alone. Particles that still move are
 //! brought together in a register and stored as whole vectors: what lies behind them has been read. Sixteen
-//! particles among which a draw ties with a threshold, or that stand in a void without open exit, go the long way
-//! one by one.
+//! particles among which a draw ties with a threshold go the long way one by one.
 
 use std::arch::x86_64::*;
 
@@ -62,7 +61,9 @@ fn step_vectors(mut chunk: Chunk) -> usize {
         let past_second = _mm512_cmpge_epu32_mask(top, second);
         let nearest = _mm512_min_epu32(_mm512_xor_si512(top, entry), _mm512_xor_si512(top, second));
         let tie = _mm512_cmple_epu32_mask(nearest, below);
-        let long_way = tie | (past_second & !past_first) | !inside;
+        let long_way = tie | !inside;
+        // The first threshold is above the second only where every exit is closed.
+        let stranded = past_second & !past_first;
 
         let mut index = _mm512_and_si512(entry, _mm512_set1_epi32(3));
         index = _mm512_mask_or_epi32(index, past_first, index, _mm512_set1_epi32(PAST_FIRST as i32));
@@ -71,28 +72,32 @@ fn step_vectors(mut chunk: Chunk) -> usize {
         let out = _mm512_cmpge_epu32_mask(to, voids);
         let coarse = _mm512_cmp_ps_mask::<_CMP_GT_OQ>(d, limit);
 
-        let mut stopped = 0;
-        if coarse | long_way != 0 {
+        let mut stays = 0;
+        if coarse | stranded | long_way != 0 {
             if long_way != 0 {
                 kept = step_singly(&mut chunk, begin, draws, kept);
                 begin += WIDTH;
                 continue;
             }
-            let constriction = constriction(from, past_first, past_second);
-            // SAFETY: voids are less than the table's length (no lane is outside here) and exits less than 3,
-            // so that constrictions are less than 3 times it, the number of diameters.
-            let width = unsafe {
-                _mm512_mask_i32gather_ps::<4>(_mm512_setzero_ps(), coarse, constriction, diameters.as_ptr())
-            };
-            stopped = _mm512_mask_cmp_ps_mask::<_CMP_GT_OQ>(coarse, d, width);
-            if stopped != 0 {
-                note_stopped(&mut chunk, constriction, d, stopped);
+            stays = stranded;
+            let able = coarse & !stranded;
+            if able != 0 {
+                let constriction = constriction(from, past_first, past_second);
+                // SAFETY: voids are less than the table's length (no lane is outside here) and exits less than
+                // 3, so that constrictions are less than 3 times it, the number of diameters.
+                let width = unsafe {
+                    _mm512_mask_i32gather_ps::<4>(_mm512_setzero_ps(), able, constriction, diameters.as_ptr())
+                };
+                let stopped = _mm512_mask_cmp_ps_mask::<_CMP_GT_OQ>(able, d, width);
+                note(&mut chunk.events.stopped, constriction, d, stopped);
+                stays |= stopped;
             }
+            note(&mut chunk.events.stranded, from, d, stranded);
         }
-        let gone = out | stopped;
+        let gone = out | stays;
         let (mut to, mut d) = (to, d);
         if gone != 0 {
-            note_eroded(&mut chunk.events.eroded, d, out & !stopped);
+            note_eroded(&mut chunk.events.eroded, d, out & !stays);
             to = _mm512_maskz_compress_epi32(!gone, to);
             d = _mm512_maskz_compress_ps(!gone, d);
         }
@@ -136,17 +141,21 @@ fn step_singly(chunk: &mut Chunk, begin: usize, draws: __m512i, mut kept: usize)
     kept
 }
 
-#[inline(never)]
+/// Appends place and diameter of some lanes.
+#[inline]
 #[target_feature(enable = "avx512f")]
-fn note_stopped(chunk: &mut Chunk, constriction: __m512i, d: __m512, stopped: __mmask16) {
-    let (mut constrictions, mut diameters) = ([0u32; WIDTH], [0f32; WIDTH]);
+fn note(column: &mut Vec<(u32, f32)>, place: __m512i, d: __m512, lanes: __mmask16) {
+    if lanes == 0 {
+        return;
+    }
+    let (mut places, mut diameters) = ([0u32; WIDTH], [0f32; WIDTH]);
     // SAFETY: both arrays have sixteen entries.
     unsafe {
-        _mm512_storeu_si512(constrictions.as_mut_ptr().cast(), constriction);
-        _mm512_storeu_ps(diameters.as_mut_ptr(), d);
+        _mm512_storeu_si512(places.as_mut_ptr().cast(), _mm512_maskz_compress_epi32(lanes, place));
+        _mm512_storeu_ps(diameters.as_mut_ptr(), _mm512_maskz_compress_ps(lanes, d));
     }
-    let lanes = (0..WIDTH).filter(|lane| stopped >> lane & 1 != 0);
-    chunk.events.stopped.extend(lanes.map(|lane| (constrictions[lane], diameters[lane])));
+    let pairs = places.into_iter().zip(diameters);
+    column.extend(pairs.take(lanes.count_ones() as usize));
 }
 
 #[inline]

@@ -4,7 +4,7 @@
 //! The fifteen top bits of a sixteen-bit draw stand beside the thresholds in a word as `draw << 16`, with ones below: that is
 //! no less than the word exactly where they are no less than the first threshold, and no less than the
 //! word shifted by fifteen where they are no less than the second. Where fifteen bits equal a
-//! threshold, or the void has no open exit, the particle goes the long way ([`Chunk::attempt`]).
+//! threshold, the particle goes the long way ([`Chunk::attempt`]).
 
 use super::OpenExits;
 use crate::stream::{DRAWS_PER_BLOCK, LANES, Lanes, draw16};
@@ -174,14 +174,12 @@ impl Chunk<'_> {
         let (from, d) = (self.void[j], self.diameter[j]);
         let entry = self.table.entry[from as usize];
         let (first, second, top) = (entry >> 17, entry >> 2 & 0x7fff, u32::from(draw >> 1));
-        let exit = if top == first || top == second || first > second {
-            match undecided(self.exits, from, self.lanes.extension().complete(draw, j as u64)) {
-                Some(exit) => exit,
-                None => {
-                    self.events.stranded.push((from, d));
-                    return kept;
-                }
-            }
+        if first > second {
+            self.events.stranded.push((from, d));
+            return kept;
+        }
+        let exit = if top == first || top == second {
+            undecided(self.exits, from, self.lanes.extension().complete(draw, j as u64))
         } else {
             u32::from(top >= first) + u32::from(top >= second)
         };
@@ -209,11 +207,11 @@ impl Lattice {
     }
 }
 
-/// Exit picked by a draw whose fifteen top bits equal a threshold's; none where every exit is closed.
+/// Exit picked by a draw whose fifteen top bits equal a threshold's, in a void with an open exit.
 #[cold]
-fn undecided(exits: &OpenExits, void: u32, draw: u64) -> Option<u32> {
+fn undecided(exits: &OpenExits, void: u32, draw: u64) -> u32 {
     let mut thresholds = Vec::with_capacity(3);
-    let last_open = exits::thresholds(exits.network, exits.blocked, void, &mut thresholds)?;
-    let exit = thresholds.iter().position(|&t| draw < t).unwrap_or(last_open);
-    Some(exit as u32)
+    let last_open = exits::thresholds(exits.network, exits.blocked, void, &mut thresholds);
+    let last_open = last_open.expect("thresholds in order say that an exit is open");
+    thresholds.iter().position(|&t| draw < t).unwrap_or(last_open) as u32
 }
