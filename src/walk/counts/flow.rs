@@ -46,23 +46,23 @@ pub(super) struct Flow {
 }
 
 struct Worker {
-    /// By void: particles that this worker moved there.
+    /// By void: particles that this worker moved there; one entry more for those that left the filter.
     next: Vec<u64>,
     /// By block: whether `next` may hold something.
     touched: Vec<bool>,
     moved: Moved,
-    parting: Parting,
+    parting: Box<Parting>,
 }
 
 /// Counts that part over the exits of their voids, as columns: a row is a void whose particles are yet to choose
 /// between an exit and those after it.
-#[derive(Default)]
 struct Parting {
+    rows: usize,
     /// The exit, as a constriction.
-    exit: Vec<u32>,
-    count: Vec<u64>,
-    chance: Vec<u64>,
-    taken: Vec<u64>,
+    exit: [u32; BLOCK],
+    count: [u64; BLOCK],
+    chance: [u64; BLOCK],
+    taken: [u64; BLOCK],
     scratch: Scratch,
 }
 
@@ -70,10 +70,10 @@ impl Flow {
     pub fn new(network: &Network, moving: &[u64]) -> Self {
         let blocks = moving.len().div_ceil(BLOCK);
         let worker = || Worker {
-            next: vec![0; moving.len()],
+            next: vec![0; moving.len() + 1],
             touched: vec![false; blocks],
             moved: Moved::default(),
-            parting: Parting::default(),
+            parting: Box::new(Parting::new()),
         };
         Self {
             downstream: (0..blocks).map(|block| downstream(network, block)).collect(),
@@ -144,10 +144,11 @@ impl Flow {
             if part.moves == 0 && part.stranded.is_empty() {
                 continue;
             }
+            let (next, left) = worker.next.split_at_mut(moving.len());
             moved.moves += part.moves;
-            moved.eroded += part.eroded;
+            moved.eroded += std::mem::take(&mut left[0]);
             moved.stranded.append(&mut part.stranded);
-            let touched = worker.touched.par_iter_mut().zip(worker.next.par_chunks_mut(BLOCK));
+            let touched = worker.touched.par_iter_mut().zip(next.par_chunks_mut(BLOCK));
             let blocks = touched.zip(moving.par_chunks_mut(BLOCK)).zip(&mut self.occupied);
             self.moving += blocks
                 .with_min_len(16)
@@ -182,6 +183,7 @@ fn downstream(network: &Network, block: usize) -> Vec<u32> {
 
 impl Worker {
     /// Moves the particles of the voids in `range`.
+    #[inline(always)]
     fn step(
         &mut self,
         network: &Network,
@@ -191,13 +193,13 @@ impl Worker {
         range: std::ops::Range<usize>,
     ) {
         let Self { next, moved, parting, .. } = self;
-        let mut arrive = |constriction: usize, n: u64| match network.targets()[constriction] {
-            END => moved.eroded += n,
-            target => next[target as usize] += n,
-        };
-        parting.clear();
-        for void in range {
-            let n = counts[void];
+        let targets = network.targets();
+        let outside = next.len() - 1;
+        // END is beyond every void.
+        let mut arrive =
+            |constriction: usize, n: u64| next[(targets[constriction] as usize).min(outside)] += n;
+        parting.rows = 0;
+        for (void, &n) in range.clone().zip(&counts[range]) {
             if n == 0 {
                 continue;
             }
@@ -206,11 +208,13 @@ impl Worker {
                 continue;
             }
             moved.moves += n;
-            parting.face(network.exits(void as u32).start, n, shares, &mut arrive);
+            let exits = network.exits(void as u32);
+            let row = parting.rows;
+            parting.rows = parting.face(row, exits.start, n, shares, &mut arrive);
         }
-        if !parting.exit.is_empty() {
+        if parting.rows > 0 {
             let mut draws = Draws::new(key);
-            while !parting.exit.is_empty() {
+            while parting.rows > 0 {
                 parting.round(&mut draws, shares, &mut arrive);
             }
         }
@@ -218,57 +222,53 @@ impl Worker {
 }
 
 impl Parting {
-    fn clear(&mut self) {
-        self.exit.clear();
-        self.count.clear();
-        self.chance.clear();
+    fn new() -> Self {
+        Self {
+            rows: 0,
+            exit: [0; BLOCK],
+            count: [0; BLOCK],
+            chance: [0; BLOCK],
+            taken: [0; BLOCK],
+            scratch: Scratch::default(),
+        }
     }
 
-    /// `n` particles face the exits of a void from `exit` on: they are through where the next open one is the last.
+    /// `n` particles face the exits of a void from `exit` on: they are through where the next open one is the last,
+    /// else they are row `row`. Returns the row after them.
     #[inline(always)]
-    fn face(&mut self, mut exit: usize, n: u64, shares: &Shares, arrive: &mut impl FnMut(usize, u64)) {
+    fn face(
+        &mut self,
+        row: usize,
+        mut exit: usize,
+        n: u64,
+        shares: &Shares,
+        arrive: &mut impl FnMut(usize, u64),
+    ) -> usize {
         while shares.chance()[exit] == 0 {
             exit += 1;
         }
         let chance = shares.chance()[exit];
         if chance == CERTAIN {
             arrive(exit, n);
-        } else {
-            self.exit.push(exit as u32);
-            self.count.push(n);
-            self.chance.push(chance);
+            return row;
         }
+        (self.exit[row], self.count[row], self.chance[row]) = (exit as u32, n, chance);
+        row + 1
     }
 
     /// Draws how many take the exit they face; the others face the next.
+    #[inline(always)]
     fn round(&mut self, draws: &mut Draws, shares: &Shares, arrive: &mut impl FnMut(usize, u64)) {
-        let rows = self.exit.len();
-        self.taken.resize(rows, 0);
-        fill(draws, &self.count, &self.chance, &mut self.taken, &mut self.scratch);
-        let mut kept = 0;
+        let rows = self.rows;
+        fill(draws, &self.count[..rows], &self.chance[..rows], &mut self.taken[..rows], &mut self.scratch);
+        self.rows = 0;
         for row in 0..rows {
-            let (mut exit, taken) = (self.exit[row] as usize, self.taken[row]);
-            if taken > 0 {
-                arrive(exit, taken);
-            }
+            let (exit, taken) = (self.exit[row] as usize, self.taken[row]);
+            arrive(exit, taken);
             let left = self.count[row] - taken;
-            if left == 0 {
-                continue;
-            }
-            exit += 1;
-            while shares.chance()[exit] == 0 {
-                exit += 1;
-            }
-            let chance = shares.chance()[exit];
-            if chance == CERTAIN {
-                arrive(exit, left);
-            } else {
-                (self.exit[kept], self.count[kept], self.chance[kept]) = (exit as u32, left, chance);
-                kept += 1;
+            if left > 0 {
+                self.rows = self.face(self.rows, exit + 1, left, shares, arrive);
             }
         }
-        self.exit.truncate(kept);
-        self.count.truncate(kept);
-        self.chance.truncate(kept);
     }
 }
