@@ -394,3 +394,21 @@ fn what_once_slipped_through_is_refused() {
         serde_json::from_slice(&voidwalk(&["check", "--json", "--set", "filter.cu=3"]).stdout).unwrap();
     assert!(json["warnings"][0].as_str().unwrap().contains("constrictions of another filter"));
 }
+
+/// Without --out the first free folder is taken; one that a stopped run left empty is free.
+#[test]
+fn unnamed_runs_do_not_overwrite_each_other() {
+    let root = tempfile::tempdir().unwrap();
+    fs::create_dir(root.path().join("voidwalk-run-2")).unwrap();
+    fs::write(root.path().join("voidwalk-run-2/.voidwalk.lock"), "").unwrap();
+    for (expected, missing) in [("voidwalk-run", "voidwalk-run-2"), ("voidwalk-run-2", "voidwalk-run-3")] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_voidwalk"));
+        command.current_dir(root.path()).args(["run", "--quiet"]);
+        for set in SMALL {
+            command.args(["--set", set]);
+        }
+        assert!(command.status().unwrap().success());
+        assert!(root.path().join(expected).join("outcome.json").is_file());
+        assert!(!root.path().join(missing).join("outcome.json").exists());
+    }
+}

@@ -1,7 +1,7 @@
 //! `voidwalk run` and `voidwalk report`.
 
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::{Instant, SystemTime};
@@ -129,14 +129,7 @@ pub(super) fn refused_or_failed(error: StoreError) -> Ending {
 
 /// The folder to write to: the one that is named, or the first free one.
 fn open_folder(args: &RunArgs) -> Result<Folder, Ending> {
-    let Some(path) = &args.out else {
-        let free = (1..).map(|n| match n {
-            1 => PathBuf::from("voidwalk-run"),
-            n => PathBuf::from(format!("voidwalk-run-{n}")),
-        });
-        let free = free.into_iter().find(|path| path.symlink_metadata().is_err());
-        return Folder::open(&free.unwrap_or_default()).map_err(refused_or_failed);
-    };
+    let Some(path) = &args.out else { return first_free_folder() };
     let folder = Folder::open(path).map_err(refused_or_failed)?;
     if folder.has("manifest.json") && !args.overwrite {
         let problem = format!(
@@ -146,6 +139,22 @@ fn open_folder(args: &RunArgs) -> Result<Folder, Ending> {
         return Err(Ending::refused(plain(&problem)));
     }
     Ok(folder)
+}
+
+/// The first of `voidwalk-run`, `voidwalk-run-2`, ... that is new, or that an earlier run left without results.
+fn first_free_folder() -> Result<Folder, Ending> {
+    let mut n = 1;
+    loop {
+        let name = if n == 1 { "voidwalk-run".to_string() } else { format!("voidwalk-run-{n}") };
+        match Folder::open(Path::new(&name)) {
+            Ok(folder) if !folder.has("outcome.json") => return Ok(folder),
+            Ok(_)
+            | Err(StoreError::Held { .. } | StoreError::NotOurs { .. } | StoreError::NotAFolder { .. }) => {
+                n += 1
+            }
+            Err(other) => return Err(refused_or_failed(other)),
+        }
+    }
 }
 
 /// What a user wants to know first.
