@@ -27,7 +27,12 @@
 //!
 //! # The end
 //! A run ends when nothing moves, or when every moving particle is *trapped*: x and y are periodic, so
-//! a particle can circle for ever. The module `trapped` finds that exactly.
+//! a particle can circle for ever (module `trapped`).
+//!
+//! # Engines
+//! Passive particles may be kept as one count a void instead ([`Plan`], module `counts`): each increment then
+//! also inserts and parts counts, on the same open set, before the merge. Everything else is the same code,
+//! so whoever watches a [`State`] need not know which engine walks.
 
 mod counts;
 mod engine;
