@@ -1,12 +1,14 @@
 //! Scenes and campaigns: the only place that knows all stages.
 //!
 //! - [`scene`] is one base-filter combination as the user states it ([`settings`] reads and checks it).
+//! - [`packed`] makes the packing of a scene that gives a sieve curve and a density instead of constrictions.
 //! - [`case`] is a scene with its files read and every number worked out.
 //! - [`walks`] walks its replicates.
 //! - [`results`] writes what came of it into a run folder.
 
 pub mod case;
 pub mod machine;
+pub mod packed;
 pub mod results;
 pub mod scene;
 pub mod settings;

@@ -4,6 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::packed::Recipe;
 use super::settings::{Names, SceneError, Settings};
 use crate::outcome::Wanted;
 use crate::walk::Engine;
@@ -26,6 +27,30 @@ const NAMES: Names = Names {
         "filter.d0_mm",
         "filter.sieve",
         "filter.grains_per_void",
+        "filter.density",
+        "filter.friction",
+        "packing.merge_overlap",
+        "packing.grains",
+        "packing.seed",
+        "packing.final_friction",
+        "packing.pressure_kpa",
+        "packing.shear_modulus_gpa",
+        "packing.poisson_ratio",
+        "packing.stiffness_ratio",
+        "packing.density_kg_m3",
+        "packing.restitution",
+        "packing.drag",
+        "packing.brake",
+        "packing.local_damping",
+        "packing.start_fraction",
+        "packing.squeeze_to",
+        "packing.squeeze_rate",
+        "packing.servo_rate",
+        "packing.servo_gain",
+        "packing.mass_exponent",
+        "packing.step_fraction",
+        "packing.hold_steps",
+        "packing.max_steps",
         "base.cu",
         "base.d85_mm",
         "base.d85_at_dc",
@@ -48,6 +73,12 @@ const NAMES: Names = Names {
         "record.sensitivity_replicates",
     ],
     replaces: &[
+        ("filter.curve", "filter.density"),
+        ("filter.curve", "filter.friction"),
+        ("filter.density", "filter.curve"),
+        ("filter.density", "filter.friction"),
+        ("filter.friction", "filter.curve"),
+        ("filter.friction", "filter.density"),
         ("filter.sieve", "filter.cu"),
         ("filter.sieve", "filter.d0_mm"),
         ("filter.cu", "filter.sieve"),
@@ -179,8 +210,10 @@ pub struct Scene {
     pub replicates: u64,
     /// Share of the base inserted in each increment.
     pub inject_share: f64,
-    /// The filter's constriction curve; missing only where a network is read from a file.
+    /// The filter's constriction curve; missing where the filter is to be packed, or a network is read from a file.
     pub curve: Option<CurveSource>,
+    /// How the filter is to be packed, where it is.
+    pub recipe: Option<Recipe>,
     /// The filter's gradation.
     pub filter: FilterGradation,
     /// Filter grains per void; from the shipped curve where it is not given.
@@ -247,7 +280,9 @@ impl Scene {
             "a list of increments, from 1",
         )?;
         let factors = s.numbers("record.sensitivity", |n| n > 0.0, "a list of numbers above 0")?;
+        let filter = filter(&s)?;
         Ok(Self {
+            recipe: Recipe::new(&s, &filter)?,
             name: name.into(),
             seed: s.whole("seed", 0..=u64::MAX)?.unwrap_or(1),
             engine,
@@ -255,7 +290,7 @@ impl Scene {
             replicates: s.whole("replicates", 1..=100_000)?.unwrap_or(10),
             inject_share: inject_share.unwrap_or(0.01),
             curve: curve(&s)?,
-            filter: filter(&s)?,
+            filter,
             grains_per_void: positive(&s, "filter.grains_per_void")?,
             base: base(&s)?,
             amount: amount(&s)?,
@@ -272,6 +307,21 @@ impl Scene {
                 factors.unwrap_or_else(|| vec![0.25, 0.5, 2.0, 4.0]),
                 s.whole("record.sensitivity_replicates", 1..=1000)?.unwrap_or(3),
             ),
+        })
+    }
+
+    /// How the filter of a file is to be packed; a scene will do, of which nothing else is looked at.
+    ///
+    /// # Errors
+    /// As [`Scene::read`], or neither density nor friction is given.
+    pub fn recipe(path: &Path, assignments: &[String]) -> Result<Recipe, SceneError> {
+        let mut s = Settings::read(path, &NAMES)?;
+        for assignment in assignments {
+            s.set(assignment, &NAMES)?;
+        }
+        let recipe = Recipe::new(&s, &filter(&s)?)?;
+        recipe.ok_or_else(|| {
+            s.clash("filter.density is missing: \"dense\", \"intermediate\" or \"loose\"; or filter.friction")
         })
     }
 
@@ -295,9 +345,10 @@ fn positive(s: &Settings, name: &str) -> Result<Option<f64>, SceneError> {
 
 fn curve(s: &Settings) -> Result<Option<CurveSource>, SceneError> {
     let source = named_curve(s, "filter.curve")?;
-    if source.is_none() && !s.has("network.file") {
+    let to_be_packed = s.has("filter.density") || s.has("filter.friction");
+    if source.is_none() && !s.has("network.file") && !to_be_packed {
         return Err(s.clash(
-            "filter.curve is missing: a shipped name, or a CSV file with percent_smaller,diameter_mm",
+            "filter.curve is missing: a shipped name, or a CSV file with percent_smaller,diameter_mm; or filter.density, for a filter to be packed",
         ));
     }
     Ok(source)

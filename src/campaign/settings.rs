@@ -227,6 +227,16 @@ impl Settings {
         Ok(())
     }
 
+    /// What errors call the file.
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// The first setting that is given among those whose names begin like this.
+    pub fn first_in(&self, beginning: &str) -> Option<&str> {
+        self.values.keys().find(|name| name.starts_with(beginning)).map(String::as_str)
+    }
+
     /// Whether a setting is given.
     pub fn has(&self, name: &str) -> bool {
         self.values.contains_key(name)

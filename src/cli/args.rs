@@ -27,6 +27,8 @@ pub enum Command {
         /// File to write; the scene goes to stdout without one
         path: Option<PathBuf>,
     },
+    /// Pack a filter's grains from its gradation and density, and measure the constrictions
+    Pack(PackArgs),
     /// Measure the constrictions of a packing of grains
     Constrictions(ConstrictionsArgs),
     /// Write report.html and the figures of a finished run folder again
@@ -47,6 +49,9 @@ pub struct SceneArgs {
     /// Seed; the same seed gives the same bits
     #[arg(long, value_name = "S")]
     pub seed: Option<u64>,
+    /// Folder in which packings that scenes ask for are kept, so that each is made once
+    #[arg(long, value_name = "DIR", default_value = "voidwalk-packings")]
+    pub packings: PathBuf,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
@@ -68,6 +73,39 @@ pub struct RunArgs {
     /// Worker threads [default: one per core]; they change no bit of the result
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+    /// No progress and no summary
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// Which filter, and where its packing goes.
+#[derive(Debug, Args)]
+pub struct PackArgs {
+    /// The filter (TOML): [filter] with cu or sieve, d0_mm, and density or friction; settings of [packing] as wanted. A
+    /// scene will do
+    pub filter: PathBuf,
+    /// Replace a setting, as in --set packing.grains=20000; can be given again
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub settings: Vec<String>,
+    /// Seed of the grains' sizes and places
+    #[arg(long, value_name = "S")]
+    pub seed: Option<u64>,
+    /// Folder for the packing: new, empty, or with a packing that was stopped, which goes on [default: one of its own in
+    /// voidwalk-packings]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Begin anew where --out holds a packing
+    #[arg(long)]
+    pub overwrite: bool,
+    /// Worker threads [default: one per core]; they change no bit of the result
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Keep the state this often, so that a packing that is killed goes on from there
+    #[arg(long, value_name = "TIME", default_value = "1min", value_parser = humantime::parse_duration)]
+    pub checkpoint_every: std::time::Duration,
+    /// Print packing.json
+    #[arg(long)]
+    pub json: bool,
     /// No progress and no summary
     #[arg(long, short)]
     pub quiet: bool,

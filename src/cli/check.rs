@@ -8,6 +8,7 @@ use super::args::SceneArgs;
 use super::print::{count, plain, to_stdout};
 use crate::campaign::case::{Case, in_words};
 use crate::campaign::machine::Machine;
+use crate::campaign::packed::{Order, PackedFilter};
 use crate::campaign::scene::{BUILT_IN, Scene};
 use crate::campaign::walks::runs_to_walk;
 use crate::constrictions::shipped;
@@ -25,10 +26,34 @@ pub fn scene(args: &SceneArgs) -> Result<Scene, Ending> {
 
 /// Says what a run would do.
 pub fn check(args: &SceneArgs) -> Result<(), Ending> {
-    let case = Case::new(scene(args)?).map_err(Ending::refused)?;
+    let scene = scene(args)?;
+    let (packed, packing) = match &scene.recipe {
+        None => (None, None),
+        Some(recipe) => {
+            let order = Order::new(recipe).map_err(Ending::refused)?;
+            let (filter, sentence) = look_for_packing(&order, &args.packings)?;
+            (Some(filter), Some(sentence))
+        }
+    };
+    let case = Case::with_packed(scene, packed).map_err(Ending::refused)?;
     let machine = Machine::here();
-    to_stdout(&if args.json { json(&case, &machine)? } else { words(&case, &machine) });
+    to_stdout(&if args.json { json(&case, &machine, packing)? } else { words(&case, &machine, packing) });
     case.check_memory(machine.available, cores()).map_err(Ending::refused)
+}
+
+/// The packing where it is kept, or a guess at it; and what is to be said of it.
+fn look_for_packing(order: &Order, packings: &Path) -> Result<(PackedFilter, String), Ending> {
+    let grains = count(order.compression.grains as u64);
+    let folder = packings.join(order.folder_name());
+    if let Some(filter) = super::pack::read(&folder, order)? {
+        return Ok((filter, format!("{grains} grains, made already: {}", folder.display())));
+    }
+    let guess = PackedFilter::stand_in(order).map_err(Ending::refused)?;
+    let sentence = format!(
+        "{grains} grains, still to be made, in {}; until then constrictions and grains per void are guesses",
+        folder.display()
+    );
+    Ok((guess, sentence))
 }
 
 /// Worker threads of a run that does not say how many.
@@ -51,7 +76,7 @@ pub fn init(path: Option<&Path>) -> Result<(), Ending> {
     Ok(())
 }
 
-fn json(case: &Case, machine: &Machine) -> Result<String, Ending> {
+fn json(case: &Case, machine: &Machine, packing: Option<String>) -> Result<String, Ending> {
     let value = serde_json::json!({
         "n_base": case.n_base,
         "n_base_eq2": case.n_base_eq2,
@@ -63,6 +88,7 @@ fn json(case: &Case, machine: &Machine) -> Result<String, Ending> {
         "bytes": case.bytes(case.n_base),
         "bytes_available": machine.available,
         "ratios": case.ratios(),
+        "packing": packing,
         "inputs": case.record(),
         "left_out": case.left_out(),
         "warnings": case.warnings(),
@@ -70,7 +96,7 @@ fn json(case: &Case, machine: &Machine) -> Result<String, Ending> {
     Ok(format!("{}\n", serde_json::to_string_pretty(&value).map_err(Ending::failed)?))
 }
 
-fn words(case: &Case, machine: &Machine) -> String {
+fn words(case: &Case, machine: &Machine, packing: Option<String>) -> String {
     let inputs = case.record();
     let ratios = case.ratios();
     let unit = if inputs.scale_free { "D0F" } else { "mm" };
@@ -94,6 +120,9 @@ fn words(case: &Case, machine: &Machine) -> String {
             case.curve.largest()
         ),
     );
+    if let Some(packing) = packing {
+        line("  packing", packing);
+    }
     let base = &inputs.base;
     line("base", base.name.clone());
     line(
@@ -104,8 +133,9 @@ fn words(case: &Case, machine: &Machine) -> String {
         ),
     );
     line("ratios", format!("D15F/D85B {:.3}, D15F/D95B {:.3}", ratios.d15f_over_d85b, ratios.d15f_over_d95b));
+    let rounded = |grains: f64| (grains * 1e4).round() / 1e4;
     let given = |value: Option<f64>| value.map_or("not given".to_string(), |v| format!("{v}"));
-    line("grains per void", format!("{} (N_p / N_voids of Eq. 2)", given(case.grains_per_void)));
+    line("grains per void", format!("{} (N_p / N_voids of Eq. 2)", given(case.grains_per_void.map(rounded))));
     line("mass ratio", format!("{} (base over filter)", given(case.mass_ratio)));
     line(
         "base particles",

@@ -22,17 +22,14 @@ pub fn constrictions(args: &ConstrictionsArgs) -> Result<(), Ending> {
             format!("{}: holds constrictions already; name another folder or add --overwrite", out.display());
         return Err(Ending::refused(plain(&problem)));
     }
-    let json = serde_json::to_string_pretty(&summary).map_err(Ending::failed)? + "\n";
-    for (name, text) in [
-        ("constrictions.csv", found.curve_csv().map_err(Ending::failed)?),
-        ("constrictions.vtp", found.to_vtp()),
-        ("grains.vtp", packing.to_vtp()),
-        ("constrictions.json", json.clone()),
-    ] {
+    folder.write("grains.vtp", packing.to_vtp().as_bytes()).map_err(Ending::failed)?;
+    for (name, text) in found.files().map_err(Ending::failed)? {
         folder.write(name, text.as_bytes()).map_err(Ending::failed)?;
+        if args.json && name.ends_with(".json") {
+            to_stdout(&text);
+        }
     }
     if args.json {
-        to_stdout(&json);
         return Ok(());
     }
     to_stdout(&plain_lines(&[

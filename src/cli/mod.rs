@@ -1,13 +1,15 @@
 //! The command line: the only place that prints.
 //!
-//! Exit codes: 0 done, 1 failed, 2 refused (before any work, nothing written).
+//! Exit codes: 0 done, 1 failed, 2 refused (before any work, nothing written), 3 stopped but resumable.
 
 mod args;
 mod check;
 mod constrictions;
+mod pack;
 mod print;
 mod progress;
 mod run;
+mod signals;
 
 use std::process::ExitCode;
 
@@ -27,6 +29,11 @@ impl Ending {
         Self { code: 2, message: error.to_string() }
     }
 
+    /// Stopped on request; the same command goes on.
+    pub fn stopped(message: impl std::fmt::Display) -> Self {
+        Self { code: 3, message: message.to_string() }
+    }
+
     /// The work failed.
     pub fn failed(error: impl std::fmt::Display) -> Self {
         Self { code: 1, message: error.to_string() }
@@ -39,13 +46,18 @@ pub fn main() -> ExitCode {
         Command::Run(args) => run::run(&args),
         Command::Check(args) => check::check(&args),
         Command::Init { path } => check::init(path.as_deref()),
+        Command::Pack(args) => pack::pack(&args),
         Command::Constrictions(args) => constrictions::constrictions(&args),
         Command::Report { folder } => run::report(&folder),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(ending) => {
-            let kind = if ending.code == 2 { "refused" } else { "error" };
+            let kind = match ending.code {
+                2 => "refused",
+                3 => "stopped",
+                _ => "error",
+            };
             print::to_stderr(&format!("{kind}: {}\n", ending.message));
             ExitCode::from(ending.code)
         }

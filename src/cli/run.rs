@@ -2,17 +2,19 @@
 
 use std::fmt::Write;
 use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::{Instant, SystemTime};
 
 use super::Ending;
 use super::args::RunArgs;
 use super::check::scene;
+use super::pack::provide;
 use super::print::{count, percent, plain, to_stderr, to_stdout};
 use super::progress::Progress;
+use super::signals::stop_on_signals;
 use crate::campaign::case::Case;
 use crate::campaign::machine::Machine;
+use crate::campaign::packed::{Order, PackedFilter};
 use crate::campaign::results;
 use crate::campaign::walks::{self, RunError, Watch, replicates, runs_to_walk, sensitivity};
 use crate::outcome::record::{Manifest, Outcome, RunSummary};
@@ -21,10 +23,21 @@ use crate::store::{Folder, StoreError};
 
 /// Walks a scene and writes its folder.
 pub fn run(args: &RunArgs) -> Result<(), Ending> {
-    let case = Case::new(scene(&args.scene)?).map_err(Ending::refused)?;
+    let scene = scene(&args.scene)?;
+    let stop = stop_on_signals()?;
     let machine = Machine::here();
-    let threads = args.threads.map_or(0, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(Ending::failed)?;
+    let pool = pool(args.threads)?;
+    let packed = match &scene.recipe {
+        None => None,
+        Some(recipe) => {
+            let order = Order::new(recipe).map_err(Ending::refused)?;
+            // Whatever else is wrong with the scene is said before hours of packing, not after.
+            let stand_in = PackedFilter::stand_in(&order).map_err(Ending::refused)?;
+            Case::with_packed(scene.clone(), Some(stand_in)).map_err(Ending::refused)?;
+            Some(pool.install(|| provide(&order, &args.scene.packings, args.quiet, &stop))?)
+        }
+    };
+    let case = Case::with_packed(scene, packed).map_err(Ending::refused)?;
     case.check_memory(machine.available, pool.current_num_threads() as u64).map_err(Ending::refused)?;
     let folder = open_folder(args)?;
     for warning in case.warnings() {
@@ -43,7 +56,7 @@ pub fn run(args: &RunArgs) -> Result<(), Ending> {
         finished: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
         command: command_line(),
     };
-    let outcome = walk(&case, &pool, args.quiet, |outcome, walked| {
+    let outcome = walk(&case, &pool, args.quiet, &stop, |outcome, walked| {
         results::write(&folder, &case, outcome, walked, &manifest()).map_err(Ending::failed)?;
         report::write(folder.path()).map_err(Ending::failed)?;
         Ok(())
@@ -74,12 +87,12 @@ fn walk(
     case: &Case,
     pool: &rayon::ThreadPool,
     quiet: bool,
+    stop: &AtomicBool,
     keep: impl Fn(&Outcome, &[walks::Walked]) -> Result<(), Ending>,
 ) -> Result<Outcome, Ending> {
     let begun = Instant::now();
-    let stop = stop_on_signals()?;
     let progress = Progress::new(quiet, runs_to_walk(case));
-    let watch = Watch { tell: &|event| progress.tell(event), stop: &stop };
+    let watch = Watch { tell: &|event| progress.tell(event), stop };
     let stopped = |what: &str, error: RunError| {
         progress.finish();
         match error {
@@ -106,15 +119,10 @@ fn walk(
     Ok(outcome)
 }
 
-/// A flag that the first SIGINT or SIGTERM sets; the second ends the program at once.
-fn stop_on_signals() -> Result<Arc<AtomicBool>, Ending> {
-    let stop = Arc::new(AtomicBool::new(false));
-    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-        signal_hook::flag::register_conditional_shutdown(signal, 1, Arc::clone(&stop))
-            .and_then(|_| signal_hook::flag::register(signal, Arc::clone(&stop)))
-            .map_err(Ending::failed)?;
-    }
-    Ok(stop)
+/// The workers of a command.
+pub(super) fn pool(threads: Option<u16>) -> Result<rayon::ThreadPool, Ending> {
+    let threads = threads.map_or(0, usize::from);
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(Ending::failed)
 }
 
 /// The command line in words, whatever bytes it is made of.
@@ -188,7 +196,7 @@ fn summary(outcome: &Outcome, folder: &Path) -> String {
         outcome.ratios.d15f_over_d85b,
         outcome.ratios.d15f_over_d95b,
         match outcome.grains_per_void {
-            Some(grains) => format!("{grains} grains per void"),
+            Some(grains) => format!("{} grains per void", (grains * 1e4).round() / 1e4),
             None => "grains per void not given".into(),
         }
     ));

@@ -6,7 +6,7 @@ use super::triangulation::{Point, Positions, Shift, Triangulation, Triangulation
 use super::voids::{Room, Voids};
 use crate::packing::Packing;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
 /// Two discs between the same voids are one when centre and radius agree to this part of the radius
@@ -26,7 +26,7 @@ pub const DEFAULT_MERGE_OVERLAP: f64 = 0.1;
 /// grains of each void and counts a triangle that is on two such hulls. With its overlap of 0.5 this
 /// gives, on packings of Cu 1.5 and Cu 3, the curve that all facets give at an overlap of 0.1, within 1 %
 /// from Dc5 to Dc75 (`results/triangulation-2026-11-21.md`).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Facets {
     /// Every facet between two voids.

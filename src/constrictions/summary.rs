@@ -3,7 +3,7 @@
 use super::curve::CurveError;
 use super::measure::{Constrictions, Facets};
 use crate::packing::vtp_points;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
 /// Percent smaller at which [`Summary`] gives diameters.
@@ -11,7 +11,7 @@ pub const SUMMARY_PERCENT: [f64; 13] =
     [0.0, 1.0, 1.5, 5.0, 10.0, 15.0, 25.0, 50.0, 60.0, 75.0, 90.0, 99.0, 100.0];
 
 /// The figures of a packing's constrictions, as in `constrictions.json`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// Grains, hidden ones left out.
     pub grains: usize,
@@ -76,6 +76,19 @@ impl Constrictions {
             hidden_grains: self.hidden.clone(),
             duplicate_grains: self.duplicates.clone(),
         })
+    }
+
+    /// The files that say all of it, by name: curve, figures, and the constrictions for ParaView.
+    ///
+    /// # Errors
+    /// As [`Constrictions::curve`].
+    pub fn files(&self) -> Result<[(&'static str, String); 3], CurveError> {
+        let json = serde_json::to_string_pretty(&self.summary()?).expect("numbers and names") + "\n";
+        Ok([
+            ("constrictions.csv", self.curve_csv()?),
+            ("constrictions.vtp", self.to_vtp()),
+            ("constrictions.json", json),
+        ])
     }
 
     /// The curve as CSV, `percent_smaller,diameter_mm`.

@@ -1,12 +1,15 @@
 //! What came of a walk: series, size curves, blocked by layer, and the verdict with its uncertainty.
 //!
-//! - [`record`] holds the names and shapes of everything in a run folder.
+//! - [`record`] holds the names and shapes of everything in a run folder, [`packing`] of a packing's.
 //! - [`Recorder`] watches a run and keeps what was asked for.
 //! - [`Figures`] are the figures of one run at its end.
 //! - [`verdict`] classifies, by mass eroded, one replicate or many.
+//! - [`paper`] holds what the paper states.
 //! - [`rules`] applies the empirical filter rules to the same two curves.
 
 mod figures;
+pub mod packing;
+pub mod paper;
 pub mod record;
 mod recorder;
 pub mod rules;

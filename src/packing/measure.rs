@@ -4,7 +4,7 @@ use super::compression::Compression;
 use super::neighbours::{Memory, nearest};
 
 /// Observables of one instant.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Measure {
     /// Volume of the voids by that of the grains.
     pub void_ratio: f64,

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::de::DeserializeOwned;
 use thiserror::Error;
 
+use crate::outcome::packing::PackingRecord;
 use crate::outcome::record::{LayerRow, Manifest, Outcome, Sensitivity, SeriesRow, SizeRow};
 use crate::store::StoreError;
 
@@ -52,6 +53,8 @@ pub enum ReportError {
 pub(super) struct RunFolder {
     pub outcome: Outcome,
     pub manifest: Manifest,
+    /// The packing of the filter, if the program made it.
+    pub packing: Option<PackingRecord>,
     /// `scene.toml`, verbatim.
     pub scene: String,
     /// By (run, replicate); rows in the order of the file.
@@ -124,7 +127,9 @@ impl RunFolder {
         let (retained, eroded) = (curves("retained.csv")?, curves("eroded.csv")?);
         let manifest = json(&folder.join("manifest.json"))?;
         let scene = text(&folder.join("scene.toml"))?;
-        Ok(RunFolder { outcome, manifest, scene, series, layers, retained, eroded })
+        let path = folder.join("inputs/packing.json");
+        let packing = if path.is_file() { Some(json(&path)?) } else { None };
+        Ok(RunFolder { packing, outcome, manifest, scene, series, layers, retained, eroded })
     }
 
     /// Run numbers, ascending.
@@ -155,7 +160,7 @@ fn text(path: &Path) -> Result<String, ReportError> {
     fs::read_to_string(path).map_err(|source| ReportError::Read { path: path.to_owned(), source })
 }
 
-fn json<T: DeserializeOwned>(path: &Path) -> Result<T, ReportError> {
+pub(super) fn json<T: DeserializeOwned>(path: &Path) -> Result<T, ReportError> {
     serde_json::from_str(&text(path)?).map_err(|error| ReportError::Form {
         path: path.to_owned(),
         line: error.line() as u64,
@@ -164,7 +169,7 @@ fn json<T: DeserializeOwned>(path: &Path) -> Result<T, ReportError> {
 }
 
 /// The rows of a CSV file with their lines.
-fn rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<(u64, T)>, ReportError> {
+pub(super) fn rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<(u64, T)>, ReportError> {
     let content = text(path)?;
     let mut reader = csv::Reader::from_reader(content.as_bytes());
     let form = |line, error: csv::Error| {

@@ -1,7 +1,8 @@
 //! The report: one page and its figures, from a finished run folder alone.
 //!
 //! [`write()`] reads what a run left behind (`outcome.json`, `manifest.json`, `scene.toml`, `series.csv`, `layers.csv`,
-//! `retained.csv`, `eroded.csv`; see [`crate::outcome::record`]) and runs nothing. It writes `figures/*.svg`, each a
+//! `retained.csv`, `eroded.csv`; see [`crate::outcome::record`]) and runs nothing; [`write_packing()`] does the same for
+//! the folder of a packing. They write `figures/*.svg`, each a
 //! file of its own, and `report.html`.
 //!
 //! # What the page may do
@@ -16,15 +17,18 @@
 pub mod figures;
 mod folder;
 mod numbers;
+mod packing;
 mod page;
 mod run_figures;
+mod shell;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 pub use folder::ReportError;
 use folder::RunFolder;
-use run_figures::Drawn;
+pub use packing::write_packing;
+use shell::Drawn;
 
 use crate::store::{StoreError, write_whole};
 
@@ -53,11 +57,19 @@ pub fn write(folder: &Path) -> Result<Written, ReportError> {
         run_figures::layers(&run),
         run_figures::retained(&run),
         run_figures::sensitivity(&run),
+        run.packing.as_ref().map(packing::slice),
     ]
     .into_iter()
     .flatten()
     .collect();
 
+    let page = page::page(&run, &verdict, &figures);
+    let all: Vec<Drawn> = std::iter::once(verdict).chain(figures).collect();
+    keep(folder, &all, &page)
+}
+
+/// Writes the figures, then the page.
+fn keep(folder: &Path, figures: &[Drawn], page: &str) -> Result<Written, ReportError> {
     let drawings = folder.join("figures");
     fs::create_dir_all(&drawings).map_err(|source| StoreError::Io {
         path: drawings.clone(),
@@ -65,12 +77,12 @@ pub fn write(folder: &Path) -> Result<Written, ReportError> {
         source,
     })?;
     let mut written = Vec::new();
-    for drawn in std::iter::once(&verdict).chain(&figures) {
+    for drawn in figures {
         let path = drawings.join(format!("{}.svg", drawn.name));
         write_whole(&path, drawn.figure.file().as_bytes())?;
         written.push(path);
     }
-    let page = folder.join("report.html");
-    write_whole(&page, page::page(&run, &verdict, &figures).as_bytes())?;
-    Ok(Written { page, figures: written })
+    let path = folder.join("report.html");
+    write_whole(&path, page.as_bytes())?;
+    Ok(Written { page: path, figures: written })
 }

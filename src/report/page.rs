@@ -1,19 +1,16 @@
-//! The page: one HTML file that fetches nothing.
+//! The page of a run.
 
-use base64::Engine as _;
-use base64::prelude::BASE64_STANDARD;
-use maud::{DOCTYPE, Markup, PreEscaped, html};
-use sha2::{Digest, Sha256};
+use maud::{Markup, html};
 
-use super::figures::{Size, shorten, visible};
+use super::figures::{shorten, visible};
 use super::folder::RunFolder;
 use super::numbers::{
     duration, interval, known, percent, percent_interval, significant, size, threshold, whole,
 };
-use super::run_figures::{Drawn, run_name, trimmed};
+use super::run_figures::{run_name, trimmed};
+use super::shell::{Drawn, clean, drawing, fact, figure, whole_page};
+use crate::outcome::packing::PackingRecord;
 use crate::outcome::record::{NetworkKind, Outcome, Run, RunSummary, Statistic, Verdict};
-
-const STYLE: &str = include_str!("page.css");
 
 /// Replicates listed one by one; all are in `outcome.json`.
 const LISTED: usize = 100;
@@ -25,78 +22,38 @@ const SCENE: usize = 100_000;
 pub(super) fn page(folder: &RunFolder, verdict: &Drawn, figures: &[Drawn]) -> String {
     let outcome = &folder.outcome;
     let (filter, base) = (&outcome.inputs.filter, &outcome.inputs.base);
-    // the style is named by its hash: a style that a hostile name might bring along would not be obeyed
-    let hash = BASE64_STANDARD.encode(Sha256::digest(STYLE.as_bytes()));
-    let policy =
-        format!("default-src 'none'; style-src 'sha256-{hash}'; base-uri 'none'; form-action 'none'");
     let title = format!(
         "{}: {} on {}",
         outcome.verdict.words(),
         clean(&shorten(&base.name, 60)),
         clean(&shorten(&filter.name, 60))
     );
-    html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta http-equiv="Content-Security-Policy" content=(policy);
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="referrer" content="no-referrer";
-                title { (title) }
-                style { (PreEscaped(STYLE)) }
-            }
-            body {
-                header {
-                    h1 { "Will this filter hold this soil?" }
-                    p.names { "Base " b { bdi { (clean(&base.name)) } } " against filter " b { bdi { (clean(&filter.name)) } } }
-                }
-                main {
-                    div.first {
-                        (verdict_box(outcome, verdict))
-                        aside.leaves {
-                            h2 { "What the model leaves out" }
-                            @if outcome.model_leaves_out.is_empty() { p { "outcome.json does not say." } }
-                            ul { @for item in &outcome.model_leaves_out { li { (clean(item)) } } }
-                            p { "The verdict is the model’s. It does not replace a filter test or a designer’s judgement." }
-                        }
-                    }
-                    (warnings(outcome))
-                    h2 { "Figures" }
-                    @for (index, drawn) in figures.iter().enumerate() { (figure(index + 1, drawn)) }
-                    (missing(folder, figures))
-                    (rules(outcome))
-                    (results(outcome))
-                    (replicates(outcome))
-                    (sensitivity(outcome))
-                    (inputs(outcome))
-                    (provenance(folder))
-                }
-                footer { (citation(outcome)) }
+    let header = html! {
+        h1 { "Will this filter hold this soil?" }
+        p.names { "Base " b { bdi { (clean(&base.name)) } } " against filter " b { bdi { (clean(&filter.name)) } } }
+    };
+    let main = html! {
+        div.first {
+            (verdict_box(outcome, verdict))
+            aside.leaves {
+                h2 { "What the model leaves out" }
+                @if outcome.model_leaves_out.is_empty() { p { "outcome.json does not say." } }
+                ul { @for item in &outcome.model_leaves_out { li { (clean(item)) } } }
+                p { "The verdict is the model’s. It does not replace a filter test or a designer’s judgement." }
             }
         }
-    }
-    .into_string()
-}
-
-/// A text from outside without characters that are no text; maud escapes the markup in it.
-fn clean(text: &str) -> String {
-    text.chars().map(visible).collect()
-}
-
-fn drawing(drawn: &Drawn) -> Markup {
-    let wide = drawn.figure.inline(&format!("{}-wide", drawn.name), Size::Wide);
-    let narrow = drawn.figure.inline(&format!("{}-narrow", drawn.name), Size::Narrow);
-    html! { div.wide { (PreEscaped(wide)) } div.narrow { (PreEscaped(narrow)) } }
-}
-
-fn figure(number: usize, drawn: &Drawn) -> Markup {
-    html! {
-        figure {
-            (drawing(drawn))
-            figcaption { b { "Figure " (number) ". " } (clean(&drawn.caption)) }
-        }
-    }
+        (warnings(outcome))
+        h2 { "Figures" }
+        @for (index, drawn) in figures.iter().enumerate() { (figure(index + 1, drawn)) }
+        (missing(folder, figures))
+        (rules(outcome))
+        (results(outcome))
+        (replicates(outcome))
+        (sensitivity(outcome))
+        (inputs(outcome, folder.packing.as_ref()))
+        (provenance(folder))
+    };
+    whole_page(&title, &header, &main, &citation(outcome))
 }
 
 fn verdict_box(outcome: &Outcome, verdict: &Drawn) -> Markup {
@@ -382,11 +339,7 @@ fn sensitivity(outcome: &Outcome) -> Markup {
     }
 }
 
-fn fact(name: &str, value: impl AsRef<str>) -> Markup {
-    html! { tr { th { (name) } td { (clean(value.as_ref())) } } }
-}
-
-fn inputs(outcome: &Outcome) -> Markup {
+fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
     let inputs = &outcome.inputs;
     let (filter, base, network) = (&inputs.filter, &inputs.base, &inputs.network);
     let mm = |value: f64| size(value, inputs.scale_free);
@@ -413,6 +366,10 @@ fn inputs(outcome: &Outcome) -> Markup {
             (fact("D0, D15, D50, D85 (by mass)",
                 [filter.d0_mm, filter.d15_mm, filter.d50_mm, filter.d85_mm].map(mm).join(", ")))
             (fact("D50 by number", mm(filter.d50_by_number_mm)))
+            @if let Some(packing) = packing {
+                (fact("Packing", format!("{} grains, friction {}, {} kPa, {} contacts of a grain, seed {}", whole(packing.grains),
+                    significant(packing.friction), significant(packing.pressure_kpa), significant(packing.after.coordination), packing.seed)))
+            }
             (fact("Void ratio", filter.void_ratio.map_or_else(|| "not given".to_owned(), significant)))
             (fact("Grains per void, N_p/N_voids", known(outcome.grains_per_void, significant)))
             (fact("Constriction curve", format!("{}, Cu of the curve {}", filter.curve_name, significant(filter.cu_csd))))

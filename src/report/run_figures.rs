@@ -8,17 +8,11 @@ use super::figures::{
 };
 use super::folder::RunFolder;
 use super::numbers::{interval, known, percent, significant, size, threshold, whole};
+use super::shell::Drawn;
 use crate::outcome::record::{LayerRow, SeriesRow, SizeRow, Verdict};
 
 /// Replicates drawn one by one; with more, the mean and the first ones are drawn.
 const DRAWN: usize = 40;
-
-/// A figure, the name of its file and what stands below it.
-pub(super) struct Drawn {
-    pub name: &'static str,
-    pub caption: String,
-    pub figure: Figure,
-}
 
 /// "first run", "second run".
 pub(super) fn run_name(run: u64) -> &'static str {

@@ -131,6 +131,33 @@ impl Folder {
         self.path.join(name).symlink_metadata().is_ok()
     }
 
+    /// What a file of the folder holds; `None` where there is none.
+    ///
+    /// # Errors
+    /// What the system says, with the file's path.
+    pub fn read(&self, name: &str) -> Result<Option<Vec<u8>>, StoreError> {
+        let path = self.path.join(name);
+        match fs::read(&path) {
+            Ok(bytes) => Ok(Some(bytes)),
+            Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(None),
+            Err(source) => Err(StoreError::Io { path, action: "read", source }),
+        }
+    }
+
+    /// Removes a file of the folder, if it is there.
+    ///
+    /// # Errors
+    /// What the system says, with the file's path.
+    pub fn remove(&self, name: &str) -> Result<(), StoreError> {
+        let path = self.path.join(name);
+        match fs::remove_file(&path) {
+            Err(source) if source.kind() != io::ErrorKind::NotFound => {
+                Err(StoreError::Io { path, action: "remove", source })
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Writes a whole file: either all of it is there afterwards, or what was there before.
     ///
     /// # Errors

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::CaseError;
+use crate::campaign::packed::{PackedFilter, RECORD};
 use crate::campaign::scene::CurveSource;
 use crate::campaign::settings::SceneError;
 use crate::constrictions::{Curve, ShippedFilter, find};
@@ -29,7 +30,7 @@ const LARGEST_NETWORK: u64 = 1 << 36;
 
 /// Reads the files of a scene, and remembers them.
 #[derive(Default)]
-pub(super) struct Files(pub Vec<Input>);
+pub struct Files(pub Vec<Input>);
 
 impl Files {
     /// Reads a regular file once, and keeps what was read.
@@ -69,6 +70,20 @@ impl Files {
                 Ok((Curve::from_csv_text(&name, bytes)?, None))
             }
         }
+    }
+
+    /// The curve of a filter that was packed; kept as if it had been given.
+    pub fn packed(&mut self, packed: &PackedFilter) -> Curve {
+        if let Some(folder) = &packed.folder {
+            for (setting, name, kept_as, bytes) in [
+                ("filter.curve", "constrictions.csv", "filter-curve.csv", packed.curve_csv.as_bytes()),
+                ("filter.density", RECORD, RECORD, &packed.record),
+            ] {
+                let (path, bytes) = (folder.join(name), bytes.to_vec());
+                self.0.push(Input { setting, path, kept_as: format!("inputs/{kept_as}"), bytes });
+            }
+        }
+        packed.curve.clone()
     }
 
     pub fn sieve(

@@ -4,9 +4,10 @@ mod files;
 mod record;
 mod warnings;
 
-use files::Files;
+pub(super) use files::Files;
 pub use files::Input;
 
+use super::packed::PackedFilter;
 use super::scene::{Amount, BaseGradation, D85, FilterGradation, NetworkSource, Scene};
 use super::settings::SceneError;
 use crate::constrictions::{Curve, CurveError, CurveUnit, ShippedFilter};
@@ -33,6 +34,12 @@ pub enum CaseError {
     /// The network.
     #[error(transparent)]
     Network(#[from] NetworkError),
+    /// The filter has to be packed first.
+    #[error("{file}: the filter has not been packed yet")]
+    NotPacked {
+        /// The scene.
+        file: String,
+    },
     /// More memory than there is.
     #[error(
         "{n_base} base particles walked one by one on {voids} voids need {needed} of memory, but {available} are \
@@ -64,6 +71,8 @@ pub struct Case {
     pub curve: Curve,
     /// The shipped filter that the curve is, if it is one.
     pub shipped: Option<&'static ShippedFilter>,
+    /// The packing that the curve was measured on, if the program made it.
+    pub packed: Option<PackedFilter>,
     /// The base's gradation.
     pub base: Gradation,
     /// Draws the base's sizes, in units of `unit_mm`.
@@ -94,10 +103,22 @@ impl Case {
     /// # Errors
     /// A file that is refused, or numbers that clash.
     pub fn new(scene: Scene) -> Result<Self, CaseError> {
+        Self::with_packed(scene, None)
+    }
+
+    /// The same for a scene whose filter has been packed.
+    ///
+    /// # Errors
+    /// As [`Case::new`]; the scene's filter is to be packed and has not been.
+    pub fn with_packed(scene: Scene, packed: Option<PackedFilter>) -> Result<Self, CaseError> {
         let mut files = Files::default();
-        let curve = match &scene.curve {
-            Some(source) => Some(files.curve(source, "filter.curve", "filter-curve.csv")?),
-            None => None,
+        let curve = match (&scene.curve, &packed) {
+            (_, Some(packed)) => Some((files.packed(packed), None)),
+            (Some(source), None) => Some(files.curve(source, "filter.curve", "filter-curve.csv")?),
+            (None, None) if scene.recipe.is_some() => {
+                return Err(CaseError::NotPacked { file: scene.name.clone() });
+            }
+            (None, None) => None,
         };
         let shipped = curve.as_ref().and_then(|(_, shipped)| *shipped);
         let filter = match &scene.filter {
@@ -140,7 +161,8 @@ impl Case {
             (None, NetworkSource::File(_)) => unreachable!("a network file was read above"),
         };
         // The grains per void of a shipped packing say nothing of a network from elsewhere.
-        let of_packing = shipped.filter(|_| network_file.is_none()).map(|s| s.grains_per_void);
+        let of_shipped = shipped.filter(|_| network_file.is_none()).map(|s| s.grains_per_void);
+        let of_packing = packed.as_ref().map(|p| p.grains_per_void).or(of_shipped);
         let grains_per_void = scene.grains_per_void.or(of_packing);
         let (supply, mass_ratio) = supply(&scene, grains_per_void, counts[0], &base, &filter)?;
         if base.tail_mass_fraction() > 0.0 && base.smallest_mm() > curve.smallest() {
@@ -162,6 +184,7 @@ impl Case {
             }
         }
         Ok(Self {
+            packed,
             filter,
             curve,
             shipped,
@@ -268,6 +291,9 @@ impl Case {
     pub fn left_out(&self) -> Vec<String> {
         let mut left_out = vec![match self.network_file {
             Some(_) => "packing, triangulation and constriction curve: the network is given".to_string(),
+            None if self.packed.is_some() => {
+                "a given constriction curve: it is measured on the packing".to_string()
+            }
             None => "packing and triangulation: the constriction curve is given".to_string(),
         }];
         if self.scene.runs == 1 {

@@ -30,6 +30,7 @@ impl Case {
             NetworkSource::File(path) => (record::NetworkKind::File, path.display().to_string(), [None; 3]),
         };
         let curve_name = match (&self.network_file, &self.scene.curve) {
+            (None, None) if self.packed.is_some() => "measured on its packing".to_string(),
             (Some(_), _) | (None, None) => "the network's own constrictions".to_string(),
             (None, Some(CurveSource::Shipped(name))) => name.clone(),
             (None, Some(CurveSource::File(path))) => path.display().to_string(),
@@ -52,7 +53,10 @@ impl Case {
                 d50_mm: d(&self.filter, 50.0),
                 d50_by_number_mm: d50_by_number,
                 d85_mm: d(&self.filter, 85.0),
-                void_ratio: self.shipped.filter(|_| self.network_file.is_none()).map(|s| s.void_ratio),
+                void_ratio: match &self.packed {
+                    Some(packed) => Some(packed.void_ratio),
+                    None => self.shipped.filter(|_| self.network_file.is_none()).map(|s| s.void_ratio),
+                },
                 gradation: pairs(self.filter.points()),
                 constrictions: self.curve.points().into_iter().map(|(percent, d)| [d, percent]).collect(),
                 cu_csd: self.curve.cu(),
@@ -95,7 +99,7 @@ impl Case {
     /// Whether lengths are in units of the smallest filter grain: a scale-free curve with d0_mm = 1.
     pub fn is_scale_free(&self) -> bool {
         matches!(self.scene.filter, FilterGradation::Linear { d0_mm, .. } if d0_mm == 1.0)
-            && self.shipped.is_some()
+            && (self.shipped.is_some() || self.packed.is_some())
             && self.network_file.is_none()
             && matches!(
                 self.scene.base,

@@ -100,6 +100,7 @@ fn label_of(mark: &Mark) -> Option<(&str, Colour)> {
         Mark::Point(point) => (&point.label, point.colour),
         Mark::Rule(rule) => (&rule.label, rule.colour),
         Mark::Area(area) => (&area.label, area.colour),
+        Mark::Disc(_) => return None,
     };
     label.as_deref().map(|label| (label, colour))
 }
@@ -223,6 +224,7 @@ fn key(svg: &mut Svg, figure: &Figure, above: &[usize], width: f64, top: f64) ->
                 let paint = format!("fill=\"{}\" fill-opacity=\"{}\"", area.colour.line, short(area.opacity));
                 svg.rect(left, middle - 6.0, SAMPLE, 12.0, &paint);
             }
+            Mark::Disc(_) => {}
         }
         let paint = format!("fill=\"{}\"", colour.text);
         svg.text((left + SAMPLE + 6.0, middle + 4.5), Anchor::Start, &label, &paint);
@@ -246,7 +248,10 @@ fn frame(figure: &Figure, width: f64, height: f64, top: f64) -> Frame<'_> {
     let left = 12.0 + y_lines as f64 * LINE_HEIGHT + widest(&figure.y) + 12.0;
     let x_lines = wrap(&figure.x.label, LABEL_TEXT, right - left).len() as f64;
     let bottom = height - 10.0 - (x_lines + rows) * LINE_HEIGHT - 6.0;
-    Frame { x: &figure.x, y: &figure.y, area: Rect { left, top: top + 4.0, right, bottom } }
+    let top = top + 4.0;
+    let side = if figure.square { (right - left).min(bottom - top) } else { f64::INFINITY };
+    let (right, bottom) = (right.min(left + side), bottom.min(top + side));
+    Frame { x: &figure.x, y: &figure.y, area: Rect { left, top, right, bottom } }
 }
 
 fn grid(svg: &mut Svg, frame: &Frame<'_>) {
@@ -355,6 +360,12 @@ fn draw_mark(svg: &mut Svg, canvas: &mut Canvas, frame: &Frame<'_>, mark: &Mark,
                 canvas.draw(&[from, to], index);
             }
         }
+        Mark::Disc(disc) => {
+            let edge = frame.x_at(disc.centre.0 + disc.diameter);
+            if let (Some((x, y)), Some(edge)) = (frame.at(disc.centre), edge) {
+                svg.circle((x, y), 0.5 * (edge - x).abs(), &format!("fill=\"{}\"", disc.colour.line));
+            }
+        }
         Mark::Point(point) => {
             if let (true, Some((x, y))) = (point.drop, frame.at(point.at)) {
                 let line = Line::new(Vec::new(), point.colour).width(1.3).dash(Dash::Dotted);
@@ -440,6 +451,7 @@ fn anchors(frame: &Frame<'_>, mark: &Mark) -> Vec<(f64, f64)> {
     let Rect { left, top, right, bottom } = frame.area;
     match mark {
         Mark::Point(point) => frame.at(point.at).into_iter().collect(),
+        Mark::Disc(_) => Vec::new(),
         Mark::Rule(rule) => [0.97, 0.85, 0.7, 0.5, 0.3, 0.15, 0.03]
             .into_iter()
             .filter_map(|share| match rule.across {

@@ -250,6 +250,21 @@ impl Rule {
     }
 }
 
+/// A circle to scale; its diameter is a length on the x axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disc {
+    centre: (f64, f64),
+    diameter: f64,
+    colour: Colour,
+}
+
+impl Disc {
+    /// A filled circle.
+    pub fn new(centre: (f64, f64), diameter: f64, colour: Colour) -> Disc {
+        Disc { centre, diameter, colour }
+    }
+}
+
 /// Anything that is drawn between the axes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mark {
@@ -261,6 +276,14 @@ pub enum Mark {
     Point(Point),
     /// See [`Rule`].
     Rule(Rule),
+    /// See [`Disc`].
+    Disc(Disc),
+}
+
+impl From<Disc> for Mark {
+    fn from(disc: Disc) -> Mark {
+        Mark::Disc(disc)
+    }
 }
 
 impl From<Line> for Mark {
@@ -306,6 +329,7 @@ pub struct Figure {
     y: Axis,
     marks: Vec<Mark>,
     naming: Naming,
+    square: bool,
     wide: (f64, f64),
     narrow: (f64, f64),
 }
@@ -322,6 +346,7 @@ impl Figure {
             y,
             marks: Vec::new(),
             naming: Naming::Direct,
+            square: false,
             wide: (720.0, 440.0),
             narrow: (358.0, 380.0),
         }
@@ -330,6 +355,12 @@ impl Figure {
     /// Other widths and heights in pixels.
     pub fn sizes(mut self, wide: (f64, f64), narrow: (f64, f64)) -> Figure {
         (self.wide, self.narrow) = (wide, narrow);
+        self
+    }
+
+    /// A square frame, as large as there is room for: equal axes then have equal scales.
+    pub fn square(mut self) -> Figure {
+        self.square = true;
         self
     }
 

@@ -1,0 +1,198 @@
+//! `voidwalk pack`, and the packing that a scene asks for.
+
+use std::cell::Cell;
+use std::io::IsTerminal;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+use indicatif::ProgressBar;
+
+use super::Ending;
+use super::args::PackArgs;
+use super::print::{count, plain, to_stderr, to_stdout};
+use super::run::{pool, refused_or_failed};
+use super::signals::stop_on_signals;
+use crate::campaign::packed::{Order, PackError, PackedError, PackedFilter, RECORD, STATE, Watch, make};
+use crate::campaign::scene::Scene;
+use crate::outcome::packing::PackingRecord;
+use crate::packing::{PackingError, Progress, Stage};
+use crate::report;
+use crate::store::Folder;
+
+/// How often a packing that a scene asks for keeps its state.
+const KEEP_EVERY: Duration = Duration::from_secs(60);
+
+/// Packs a filter into a folder.
+pub fn pack(args: &PackArgs) -> Result<(), Ending> {
+    let mut settings = args.settings.clone();
+    settings.extend(args.seed.map(|seed| format!("packing.seed={seed}")));
+    let recipe = Scene::recipe(&args.filter, &settings).map_err(Ending::refused)?;
+    let order = Order::new(&recipe).map_err(Ending::refused)?;
+    let stop = stop_on_signals()?;
+    let out = args.out.clone().unwrap_or_else(|| Path::new("voidwalk-packings").join(order.folder_name()));
+    let folder = Folder::open(&out).map_err(refused_or_failed)?;
+    if folder.has(RECORD) && !args.overwrite {
+        let problem =
+            format!("{}: holds a packing already; name another folder or add --overwrite", out.display());
+        return Err(Ending::refused(plain(&problem)));
+    }
+    if args.overwrite {
+        for name in [RECORD, STATE] {
+            folder.remove(name).map_err(Ending::failed)?;
+        }
+    }
+    pool(args.threads)?.install(|| packed(&folder, &order, args.quiet, &stop, args.checkpoint_every))?;
+    let text = folder.read(RECORD).map_err(Ending::failed)?.unwrap_or_default();
+    if args.json {
+        to_stdout(&String::from_utf8_lossy(&text));
+    } else if !args.quiet {
+        let record: PackingRecord = serde_json::from_slice(&text).map_err(Ending::failed)?;
+        let filter = read(&out, &order)?.ok_or_else(|| Ending::failed("the packing is gone"))?;
+        to_stdout(&summary(&record, &filter, &out));
+    }
+    Ok(())
+}
+
+/// The packing of a scene's filter: taken from where packings are kept, or made and kept there.
+pub fn provide(
+    order: &Order,
+    packings: &Path,
+    quiet: bool,
+    stop: &AtomicBool,
+) -> Result<PackedFilter, Ending> {
+    let path = packings.join(order.folder_name());
+    if let Some(filter) = read(&path, order)? {
+        return Ok(filter);
+    }
+    let folder = Folder::open(&path).map_err(refused_or_failed)?;
+    packed(&folder, order, quiet, stop, KEEP_EVERY)?;
+    read(&path, order)?.ok_or_else(|| Ending::failed(format!("{}: the packing is gone", path.display())))
+}
+
+/// A finished packing, or none.
+pub fn read(path: &Path, order: &Order) -> Result<Option<PackedFilter>, Ending> {
+    PackedFilter::read(path, order).map_err(|error: PackedError| Ending::refused(plain(&error.to_string())))
+}
+
+fn packed(
+    folder: &Folder,
+    order: &Order,
+    quiet: bool,
+    stop: &AtomicBool,
+    keep_every: Duration,
+) -> Result<(), Ending> {
+    let shown = Shown::new(quiet, order);
+    let result = make(folder, order, &Watch { tell: &|progress| shown.tell(progress), stop, keep_every });
+    shown.finish();
+    let path = folder.path().display();
+    result.map_err(|error| match error {
+        PackError::Stopped(steps) => Ending::stopped(plain(&format!(
+            "after {} steps of the packing; the same command goes on from {path}",
+            count(steps)
+        ))),
+        PackError::State { .. } | PackError::Packing(PackingError::Setting { .. }) => {
+            Ending::refused(plain(&error.to_string()))
+        }
+        PackError::Packing(problem @ (PackingError::NarrowCell { .. } | PackingError::Placement { .. })) => {
+            Ending::refused(problem)
+        }
+        other => Ending::failed(plain(&other.to_string())),
+    })?;
+    report::write_packing(folder.path()).map_err(Ending::failed)?;
+    Ok(())
+}
+
+/// Progress of a compression on stderr.
+enum Shown {
+    Quiet,
+    Bar(ProgressBar, Instant),
+    Lines { begun: Instant, last: Cell<Instant> },
+}
+
+impl Shown {
+    fn new(quiet: bool, order: &Order) -> Self {
+        if quiet {
+            return Self::Quiet;
+        }
+        let now = Instant::now();
+        to_stderr(&format!(
+            "packing {} grains ({}), friction {}; it takes 10 000 to 100 000 steps, most without friction\n",
+            count(order.compression.grains as u64),
+            plain(&order.name),
+            order.compression.friction
+        ));
+        if std::io::stderr().is_terminal() {
+            let bar = ProgressBar::new_spinner();
+            bar.enable_steady_tick(Duration::from_millis(200));
+            return Self::Bar(bar, now);
+        }
+        Self::Lines { begun: now, last: Cell::new(now) }
+    }
+
+    fn tell(&self, progress: &Progress) {
+        let line = |begun: &Instant| {
+            let stage = match progress.stage {
+                Stage::Squeeze => "squeeze",
+                Stage::Compress => "compress",
+                Stage::Settle => "settle with the final friction",
+                Stage::Done => "done",
+            };
+            let seconds = begun.elapsed().as_secs_f64();
+            format!(
+                "{stage}: {} steps, void ratio {:.4}, pressure {:.3} of the target, coordination {:.2}, unbalanced {:.3}, {seconds:.0} s gone",
+                count(progress.steps),
+                progress.void_ratio,
+                progress.pressure,
+                progress.coordination,
+                progress.unbalanced,
+            )
+        };
+        match self {
+            Self::Quiet => {}
+            Self::Bar(bar, begun) => bar.set_message(line(begun)),
+            Self::Lines { begun, last } => {
+                if last.get().elapsed() >= Duration::from_secs(5) {
+                    last.set(Instant::now());
+                    to_stderr(&(line(begun) + "\n"));
+                }
+            }
+        }
+    }
+
+    fn finish(&self) {
+        if let Self::Bar(bar, _) = self {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+fn summary(record: &PackingRecord, filter: &PackedFilter, out: &Path) -> String {
+    let change = match record.friction == record.final_friction {
+        true => String::new(),
+        false => {
+            format!(" ({:.4} before friction {} was set)", record.before.void_ratio, record.final_friction)
+        }
+    };
+    let lines = [
+        format!("Void ratio {:.4}{change} at {:.2} kPa", record.after.void_ratio, record.after.pressure_kpa),
+        format!(
+            "  {} grains, coordination {:.2} ({:.2} without the {:.1} % rattlers), {} steps",
+            count(record.grains),
+            record.after.coordination,
+            record.after.coordination_held,
+            100.0 * record.after.rattlers,
+            count(record.steps)
+        ),
+        format!(
+            "  Cu_CSD {:.3}, Dc5 {:.4} mm, Dc50 {:.4} mm, {:.3} grains per void (Eq. 2)",
+            filter.curve.cu(),
+            filter.curve.dc(5.0).unwrap_or(f64::NAN),
+            filter.curve.dc(50.0).unwrap_or(f64::NAN),
+            filter.grains_per_void
+        ),
+        format!("{:.1} s; report: {}", record.seconds, out.join("report.html").display()),
+        format!("for a scene: filter.curve = \"{}\"", out.join("constrictions.csv").display()),
+    ];
+    lines.iter().map(|line| plain(line) + "\n").collect()
+}

@@ -1,0 +1,221 @@
+//! The page of a packing, from its folder alone.
+
+use std::path::Path;
+
+use maud::{Markup, html};
+
+use super::Written;
+use super::figures::{Axis, BLUE, Dash, Disc, Figure, GREY, Line, Point, Shape, VERMILLION, ramp};
+use super::folder::{ReportError, json, rows};
+use super::numbers::{duration, known, percent, significant, whole};
+use super::shell::{Drawn, clean, fact, figure, whole_page};
+use crate::outcome::packing::{CurveRow, Measure, PackingRecord, Summary};
+use crate::outcome::paper;
+
+/// Grains of a slice are drawn in this many shades, by size.
+const SHADES: usize = 6;
+
+/// Everything that a packing's folder says, but for the grains.
+struct Packed {
+    record: PackingRecord,
+    summary: Summary,
+    /// Ascending.
+    curve: Vec<CurveRow>,
+}
+
+/// Writes `report.html` and `figures/*.svg` into the folder of a packing.
+///
+/// # Errors
+/// A file that is missing or malformed; nothing is written then.
+pub fn write_packing(folder: &Path) -> Result<Written, ReportError> {
+    let packed = Packed {
+        record: json(&folder.join("packing.json"))?,
+        summary: json(&folder.join("constrictions.json"))?,
+        curve: rows(&folder.join("constrictions.csv"))?.into_iter().map(|(_, row)| row).collect(),
+    };
+    let figures = [curves(&packed), slice(&packed.record), connectivity(&packed)];
+    super::keep(folder, &figures, &page(&packed, &figures))
+}
+
+/// A diameter (mm) of the summary.
+fn dc(summary: &Summary, percent: f64) -> Option<f64> {
+    summary.dc_mm.get(&percent.to_string()).and_then(serde_json::Value::as_f64)
+}
+
+/// Gradation and constriction curve together.
+fn curves(packed: &Packed) -> Drawn {
+    let gradation: Vec<(f64, f64)> = packed.record.gradation.iter().map(|row| (row[0], row[1])).collect();
+    let constrictions: Vec<(f64, f64)> =
+        packed.curve.iter().map(|row| (row.diameter_mm, row.percent_smaller)).collect();
+    let low = constrictions.first().map_or(0.1, |p| p.0);
+    let high = gradation.last().map_or(1.0, |p| p.0);
+    let x = Axis::log("Diameter (mm)", low, high);
+    let what = "Percent finer against size: the grains by mass, the constrictions by number";
+    let mut figure =
+        Figure::new("Gradation and constriction curve", what, "", x, Axis::percent("Percent finer (%)"));
+    figure.add(Line::new(gradation, BLUE).width(2.5).label("grains, by mass"));
+    figure.add(
+        Line::new(constrictions, VERMILLION).width(2.5).dash(Dash::Dashed).label("constrictions,\nby number"),
+    );
+    for percent in [5.0, 50.0] {
+        if let Some(d) = dc(&packed.summary, percent) {
+            let label = format!("Dc{percent} = {} mm", significant(d));
+            figure.add(Point::new(d, percent, VERMILLION, Shape::Circle).label(&label));
+        }
+    }
+    let caption = format!(
+        "The filter’s gradation (percent finer by mass) and its constrictions (percent smaller by number). Voids whose \
+         inscribed spheres overlap by at least {} of the smaller one’s radius count as one void.",
+        significant(packed.summary.merge_overlap)
+    );
+    Drawn { name: "curves", caption, figure }
+}
+
+/// The plane through the middle of the cell.
+pub(super) fn slice(record: &PackingRecord) -> Drawn {
+    let edge = record.cell_mm;
+    let axis = |label| {
+        let mut axis = Axis::linear(label, 0.0, edge);
+        (axis.low, axis.high) = (0.0, edge);
+        axis.ticks.retain(|tick| tick.at <= edge);
+        axis
+    };
+    let what =
+        "Grains cut by the plane through the middle of the periodic cell; the darker, the larger the grain";
+    let mut figure = Figure::new("A slice through the packing", what, "", axis("x (mm)"), axis("y (mm)"))
+        .sizes((720.0, 690.0), (358.0, 360.0))
+        .square();
+    let sizes = || record.gradation.iter().map(|row| row[0]);
+    let (low, high) = (sizes().fold(f64::MAX, f64::min), sizes().fold(0.0, f64::max));
+    for &[x, y, cut, grain] in &record.slice {
+        let share = if high > low { libm::log(grain / low) / libm::log(high / low) } else { 0.5 };
+        let shade = (share * SHADES as f64).clamp(0.0, SHADES as f64 - 1.0) as usize;
+        figure.add(Disc::new((x, y), cut, ramp(shade, SHADES)));
+    }
+    let caption = format!(
+        "The plane z = {} mm through the middle of the periodic cell. A circle is the cut of a grain, not its diameter; \
+         the darker, the larger the grain.",
+        significant(0.5 * edge)
+    );
+    Drawn { name: "slice", caption, figure }
+}
+
+/// Share of the voids by number of their constrictions.
+fn connectivity(packed: &Packed) -> Drawn {
+    let counts = &packed.summary.connectivity;
+    let total = counts.iter().sum::<usize>().max(1) as f64;
+    let share = |n: usize| 100.0 * n as f64 / total;
+    let last = counts.iter().rposition(|&n| share(n) >= 0.05).unwrap_or(0);
+    let highest = counts.iter().copied().map(share).fold(0.0, f64::max);
+    let x = Axis::linear("Constrictions of a void (–)", 0.0, last as f64);
+    let y = Axis::linear("Voids (%)", 0.0, highest);
+    let what = "Percent of the voids against the number of their constrictions";
+    let mut figure =
+        Figure::new("Connectivity of the voids", what, "", x, y).sizes((720.0, 320.0), (358.0, 300.0));
+    let points: Vec<(f64, f64)> =
+        counts.iter().take(last + 1).enumerate().map(|(k, &n)| (k as f64, share(n))).collect();
+    figure.add(Line::new(points.clone(), GREY).width(1.0));
+    for (k, percent) in points {
+        figure.add(Point::new(k, percent, BLUE, Shape::Circle));
+    }
+    let caption = format!(
+        "Number of constrictions of a void; {} on average.",
+        significant(packed.summary.mean_connectivity)
+    );
+    Drawn { name: "connectivity", caption, figure }
+}
+
+fn page(packed: &Packed, figures: &[Drawn]) -> String {
+    let (record, summary) = (&packed.record, &packed.summary);
+    let header = html! {
+        h1 { "A filter, packed" }
+        p.names { b { bdi { (clean(&record.name)) } } ", friction " (significant(record.friction)) " during compression" }
+    };
+    let at = |percent: f64| known(dc(summary, percent), |d| format!("{} mm", significant(d)));
+    let main = html! {
+        p.lead {
+            "Void ratio " b { (format!("{:.4}", record.after.void_ratio)) } ", " (whole(record.grains)) " grains, "
+            (whole(summary.constrictions as u64)) " constrictions with Cu " b { (format!("{:.3}", summary.cu_csd)) }
+            ", " b { (format!("{:.3}", summary.grains_per_void)) } " grains per void."
+        }
+        @for (index, drawn) in figures.iter().enumerate() { (figure(index + 1, drawn)) }
+        (beside_the_paper(packed))
+        h2 { "Constrictions and voids" }
+        table.facts { tbody {
+            (fact("Dc0, Dc5, Dc15", [0.0, 5.0, 15.0].map(at).join(", ")))
+            (fact("Dc50, Dc75, Dc99", [50.0, 75.0, 99.0].map(at).join(", ")))
+            (fact("Constrictions, tetrahedra", format!("{}, {}", whole(summary.constrictions as u64), whole(summary.tetrahedra as u64))))
+            (fact("Voids", whole(summary.voids as u64)))
+            (fact("Grains per void, N_p/N_voids of Eq. (2)", significant(summary.grains_per_void)))
+            (fact("Constrictions of a void, on average", significant(summary.mean_connectivity)))
+            (fact("Overlap from which tetrahedra are one void", significant(summary.merge_overlap)))
+        } }
+        h2 { "Compression" }
+        (states(record))
+        table.facts { tbody {
+            (fact("Mean pressure", format!("{} kPa", significant(record.pressure_kpa))))
+            (fact("Edge of the periodic cell", format!("{} mm", significant(record.cell_mm))))
+            (fact("Steps", whole(record.steps)))
+            (fact("Simulated time", format!("{} s, with masses scaled so that small grains do not set the step alone", significant(record.simulated_s))))
+            (fact("Seed", record.seed.to_string()))
+            (fact("Wall time", duration(record.seconds)))
+            @for (name, value) in &record.settings { (fact(name, value.to_string())) }
+        } }
+        p.small { "Spheres, Hertz-Mindlin contacts with Coulomb friction, no gravity, no cohesion, no breakage." }
+    };
+    let footer = html! {
+        h2 { "How to cite" }
+        p { "The model: Shire and O’Sullivan, " cite { "A network model to assess base-filter combinations" } "." }
+    };
+    whole_page(&format!("Packing: {}", clean(&record.name)), &header, &main, &footer)
+}
+
+fn states(record: &PackingRecord) -> Markup {
+    let row = |name: &str, of: fn(&Measure) -> String| {
+        html! { tr { th { (name) } td.n { (of(&record.before)) } td.n { (of(&record.after)) } } }
+    };
+    html! {
+        table {
+            thead { tr {
+                th { "At rest with friction" }
+                th.n { (significant(record.friction)) } th.n { (significant(record.final_friction)) }
+            } }
+            tbody {
+                (row("Void ratio", |s| format!("{:.4}", s.void_ratio)))
+                (row("Pressure (kPa)", |s| format!("{:.3}", s.pressure_kpa)))
+                (row("Contacts of a grain", |s| format!("{:.3}", s.coordination)))
+                (row("the same without rattlers", |s| format!("{:.3}", s.coordination_held)))
+                (row("Rattlers, of the grains", |s| percent(s.rattlers)))
+                (row("Kinetic by elastic energy", |s| format!("{:.1e}", s.kinetic_ratio)))
+                (row("Unbalanced force by mean contact force", |s| format!("{:.1e}", s.unbalanced)))
+                (row("Largest overlap by smaller diameter", |s| format!("{:.1e}", s.largest_overlap)))
+            }
+        }
+    }
+}
+
+/// The paper's values, where its Table 2 has this filter.
+fn beside_the_paper(packed: &Packed) -> Markup {
+    let record = &packed.record;
+    let found = record.cu.filter(|_| record.linear).and_then(|cu| paper::filter(cu, record.friction));
+    let Some(paper) = found else { return html! {} };
+    let row = |name: &str, ours: f64, theirs: f64| {
+        html! { tr {
+            th { (name) } td.n { (format!("{ours:.3}")) } td.n { (format!("{theirs:.3}")) }
+            td.n { (format!("{:+.3}", ours - theirs)) }
+        } }
+    };
+    html! {
+        h2 { "Beside the paper’s Table 2" }
+        table {
+            thead { tr { th {} th.n { "this packing" } th.n { "paper" } th.n { "difference" } } }
+            tbody {
+                (row("Void ratio", record.after.void_ratio, paper.void_ratio))
+                @if record.friction != record.final_friction {
+                    (row("Void ratio before the final friction", record.before.void_ratio, paper.void_ratio))
+                }
+                (row("Cu of the constrictions", packed.summary.cu_csd, paper.cu_csd))
+            }
+        }
+    }
+}

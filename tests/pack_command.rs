@@ -1,0 +1,186 @@
+//! `voidwalk pack`, and scenes whose filter is packed: files, refusals, stops and kills, and the whole chain.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+
+const FILTER: &str =
+    "[filter]\ncu = 1.5\ndensity = \"loose\"\n[packing]\ngrains = 600\nstiffness_ratio = 0.01\n";
+
+fn voidwalk(folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_voidwalk"));
+    command.current_dir(folder).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+}
+
+fn call(folder: &Path, args: &[&str]) -> Output {
+    voidwalk(folder).args(args).output().unwrap()
+}
+
+fn done(output: &Output) {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+fn refused(output: &Output, message: &str) {
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{stderr}");
+    assert!(stderr.contains(message), "{stderr:?} lacks {message:?}");
+}
+
+fn with_filter(text: &str) -> (tempfile::TempDir, PathBuf) {
+    let root = tempfile::tempdir().unwrap();
+    fs::write(root.path().join("filter.toml"), text).unwrap();
+    let path = root.path().to_owned();
+    (root, path)
+}
+
+#[test]
+fn a_packing_folder_holds_what_is_promised() {
+    let (_root, at) = with_filter(FILTER);
+    done(&call(&at, &["pack", "filter.toml", "--out", "out"]));
+    let out = at.join("out");
+    for name in [
+        "grains.csv",
+        "grains.vtp",
+        "constrictions.csv",
+        "constrictions.json",
+        "constrictions.vtp",
+        "packing.json",
+        "report.html",
+        "figures/slice.svg",
+    ] {
+        assert!(out.join(name).is_file(), "{name}");
+    }
+    assert!(!out.join("compression.state").exists());
+    let record: serde_json::Value =
+        serde_json::from_slice(&fs::read(out.join("packing.json")).unwrap()).unwrap();
+    let after = &record["after"];
+    assert!((after["pressure_kpa"].as_f64().unwrap() - 50.0).abs() < 0.25);
+    assert!((0.55..0.75).contains(&after["void_ratio"].as_f64().unwrap()), "{after}");
+    assert_eq!(record["grains"], 600);
+    let grains = voidwalk::packing::Packing::read(out.join("grains.csv")).unwrap();
+    assert_eq!(grains.x.len(), 600);
+    refused(&call(&at, &["pack", "filter.toml", "--out", "out"]), "holds a packing already");
+    let before = fs::read(out.join("grains.csv")).unwrap();
+    done(&call(&at, &["pack", "filter.toml", "--out", "out", "--overwrite", "--seed", "2"]));
+    assert_ne!(before, fs::read(out.join("grains.csv")).unwrap());
+}
+
+#[test]
+fn the_grains_are_the_same_for_any_threads() {
+    let (_root, at) = with_filter(FILTER);
+    for threads in ["1", "2", "3"] {
+        done(&call(&at, &["pack", "filter.toml", "--out", threads, "--threads", threads]));
+    }
+    let grains = |n: &str| fs::read(at.join(n).join("grains.csv")).unwrap();
+    assert!(grains("1") == grains("2") && grains("1") == grains("3"));
+}
+
+/// Files that must not depend on how often the program was started: all but those that tell the time.
+fn lasting(folder: &Path) -> Vec<Vec<u8>> {
+    ["grains.csv", "grains.vtp", "constrictions.csv", "constrictions.json", "constrictions.vtp"]
+        .map(|name| fs::read(folder.join(name)).unwrap())
+        .to_vec()
+}
+
+#[test]
+fn a_packing_goes_on_after_stops_and_kills_with_the_same_bits() {
+    let (_root, at) = with_filter(FILTER);
+    done(&call(&at, &["pack", "filter.toml", "--out", "whole"]));
+    let start = || {
+        voidwalk(&at)
+            .args(["pack", "filter.toml", "--out", "broken", "--checkpoint-every", "1ms"])
+            .spawn()
+            .unwrap()
+    };
+    let (mut stops, mut kills) = (0, 0);
+    for attempt in 0..1000 {
+        let mut child = start();
+        std::thread::sleep(Duration::from_millis(15 + 7 * (attempt % 5)));
+        let signal = if attempt % 2 == 0 { "-TERM" } else { "-KILL" };
+        let _ = Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
+        let status = child.wait().unwrap();
+        match status.code() {
+            Some(0) => break,
+            Some(3) => stops += 1,
+            Some(2) => break,
+            // A signal that arrives before the program listens for it ends it as a kill does.
+            None => kills += 1,
+            code => panic!("{code:?}"),
+        }
+    }
+    if !at.join("broken/packing.json").is_file() {
+        done(&call(&at, &["pack", "filter.toml", "--out", "broken"]));
+    }
+    assert!(stops + kills >= 2, "{stops} stops and {kills} kills: the packing is too short to be broken");
+    assert_eq!(lasting(&at.join("whole")), lasting(&at.join("broken")));
+}
+
+#[test]
+fn an_unfinished_packing_of_another_recipe_is_left_alone() {
+    let (_root, at) = with_filter(FILTER);
+    fs::create_dir(at.join("out")).unwrap();
+    done(&call(&at, &["pack", "filter.toml", "--out", "out"]));
+    fs::remove_file(at.join("out/packing.json")).unwrap();
+    fs::write(at.join("out/compression.state"), b"not a state at all").unwrap();
+    refused(&call(&at, &["pack", "filter.toml", "--out", "out"]), "cannot go on");
+    assert_eq!(fs::read(at.join("out/compression.state")).unwrap(), b"not a state at all");
+    done(&call(&at, &["pack", "filter.toml", "--out", "out", "--overwrite"]));
+    assert!(!at.join("out/compression.state").exists());
+}
+
+#[test]
+fn bad_filters_are_refused_before_any_work() {
+    for (text, message) in [
+        ("[filter]\ncu = 1.5\n", "filter.density is missing"),
+        ("[filter]\ndensity = \"loose\"\n", "filter.cu or filter.sieve is missing"),
+        ("[filter]\ncu = 1.5\ndensity = \"lose\"\n", "line 3, filter.density: `lose` is not allowed"),
+        ("[filter]\ncu = 1.5\nfriction = -1\n", "line 3, filter.friction: `-1` is not allowed"),
+        ("[filter]\ncu = 1.5\nfriction = 0\ndensity = \"dense\"\n", "keep one"),
+        ("[filter]\ncu = 1.5\ndensity = \"dense\"\ncurve = \"a.csv\"\n", "keep one"),
+        ("[filter]\ncu = 1.5\n[packing]\ngrains = 500\n", "packing.grains goes with"),
+        ("[filter]\ncu = 1.5\ndensity = \"dense\"\n[packing]\ngrains = 9\n", "line 5, packing.grains"),
+        (
+            "[filter]\ncu = 1.5\ndensity = \"dense\"\n[packing]\nrestitution = 1.5\n",
+            "line 5, packing.restitution",
+        ),
+        ("[filter]\ncu = 6\ndensity = \"dense\"\n[packing]\ngrains = 500\n", "at least 2.2 times"),
+        (
+            "[filter]\ncu = 1.5\ndensity = \"dense\"\n[packing]\ngrain = 500\n",
+            "did you mean `packing.grains`",
+        ),
+        ("[filter]\nsieve = \"none.csv\"\ndensity = \"dense\"\n", "none.csv"),
+    ] {
+        let (_root, at) = with_filter(text);
+        refused(&call(&at, &["pack", "filter.toml", "--out", "out"]), message);
+        assert!(!at.join("out").exists(), "{text}");
+    }
+}
+
+#[test]
+fn a_scene_with_a_density_packs_once_and_runs_the_whole_chain() {
+    let base =
+        "[base]\ncu = 1.5\nd85_at_dc = 5\n[network]\nnx = 6\nny = 6\nnz = 8\n[record]\nsensitivity = []\n";
+    let (_root, at) = with_filter(&format!("replicates = 2\n{FILTER}{base}"));
+    done(&call(&at, &["check", "filter.toml"]));
+    assert!(!at.join("voidwalk-packings").exists(), "check makes nothing");
+    // What is wrong with the base is said before the filter is packed.
+    refused(&call(&at, &["run", "filter.toml", "--set", "base.sieve=none.csv", "--out", "r0"]), "none.csv");
+    assert!(!at.join("voidwalk-packings").exists());
+    done(&call(&at, &["run", "filter.toml", "--out", "r1"]));
+    let kept: Vec<_> = fs::read_dir(at.join("voidwalk-packings")).unwrap().collect();
+    assert_eq!(kept.len(), 1);
+    let record = kept[0].as_ref().unwrap().path().join("packing.json");
+    let first = fs::read(&record).unwrap();
+    done(&call(&at, &["run", "filter.toml", "--out", "r2"]));
+    assert_eq!(first, fs::read(&record).unwrap(), "the packing is made once");
+    // The resolved scene needs no packing, and gives the same.
+    done(&call(&at.join("r1"), &["run", "scene.toml", "--out", "../r3"]));
+    for name in ["series.csv", "layers.csv", "retained.csv", "eroded.csv", "inputs/filter-curve.csv"] {
+        let read = |r: &str| fs::read(at.join(r).join(name)).unwrap();
+        assert_eq!(read("r1"), read("r2"), "{name}");
+        assert_eq!(read("r1"), read("r3"), "{name}");
+    }
+    assert!(fs::read_to_string(at.join("r1/outcome.json")).unwrap().contains("measured on its packing"));
+}
