@@ -5,10 +5,14 @@
 //! - [`case`] is a scene with its files read and every number worked out.
 //! - [`walks`] walks its replicates.
 //! - [`results`] writes what came of it into a run folder.
+//! - [`plan`] is many scenes, [`conduct`] walks those that are not done, [`ledger`] collects what came of them.
 
 pub mod case;
+pub mod conduct;
+pub mod ledger;
 pub mod machine;
 pub mod packed;
+pub mod plan;
 pub mod results;
 pub mod scene;
 pub mod settings;

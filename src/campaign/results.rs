@@ -1,10 +1,12 @@
 //! Writes what came of a case into a run folder.
 
 use std::fmt::Write;
+use std::time::SystemTime;
 
 use serde::Serialize;
 
 use super::case::Case;
+use super::machine::Machine;
 use super::scene::{Amount, BaseGradation, CurveSource, D85, FilterGradation, NetworkSource};
 use super::walks::{Walked, as_it_is, summarise};
 use crate::outcome::record::{Manifest, Outcome, Sensitivity};
@@ -57,6 +59,23 @@ pub fn outcome(case: &Case, walked: &[Walked], mut sensitivity: Vec<Sensitivity>
     }
 }
 
+/// What is said of a run besides its results.
+pub fn manifest(case: &Case, threads: u64, started: SystemTime, command: String) -> Manifest {
+    let machine = Machine::here();
+    Manifest {
+        version: env!("CARGO_PKG_VERSION").into(),
+        commit: option_env!("VOIDWALK_COMMIT").map(String::from),
+        seed: case.scene.seed,
+        inputs: case.input_files(),
+        threads,
+        host: machine.host,
+        machine: machine.description,
+        started: humantime::format_rfc3339_seconds(started).to_string(),
+        finished: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
+        command,
+    }
+}
+
 /// What the scene did not need, and what the first replicate's first run did not.
 fn left_out(case: &Case, walked: &[Walked]) -> Vec<String> {
     let of_run = walked.first().map(|w| w.left_out.clone()).unwrap_or_default();
@@ -96,7 +115,11 @@ const SERIES: &str = "replicate,run,increment,inserted,moving,eroded,retained_in
 const LAYERS: &str = "replicate,run,layer,constrictions,blocked,retained_in_constrictions,retained_in_voids";
 const SIZES: &str = "replicate,run,increment,diameter_mm,percent_finer_by_mass,percent_finer_by_number";
 
-fn json(file: &'static str, value: &impl Serialize) -> Result<Vec<u8>, ResultError> {
+/// A value as indented JSON with a newline at its end.
+///
+/// # Errors
+/// What cannot be put into words.
+pub fn json(file: &'static str, value: &impl Serialize) -> Result<Vec<u8>, ResultError> {
     let mut bytes =
         serde_json::to_vec_pretty(value).map_err(|e| ResultError::Format { file, source: e.into() })?;
     bytes.push(b'\n');

@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 
 use super::packed::Recipe;
-use super::settings::{Names, SceneError, Settings};
+use super::settings::{Names, Origin, SceneError, Settings};
 use crate::outcome::Wanted;
 use crate::walk::Engine;
 
@@ -257,10 +257,29 @@ impl Scene {
         Self::new(Settings::parse(bytes, name, PathBuf::new(), &NAMES)?, name, assignments)
     }
 
+    /// The scene of a plan's case: the built-in scene or one from a file, with the case's settings.
+    ///
+    /// # Errors
+    /// As [`Scene::read`].
+    pub fn planned(base: Option<&Path>, assignments: &[String], origin: &Origin) -> Result<Self, SceneError> {
+        let mut s = match base {
+            Some(path) => Settings::read(path, &NAMES)?,
+            None => Settings::parse(BUILT_IN.as_bytes(), BUILT_IN_NAME, PathBuf::new(), &NAMES)?,
+        };
+        for assignment in assignments {
+            s.set_from(assignment, &NAMES, origin.clone())?;
+        }
+        Self::from_settings(&s, &origin.to_string())
+    }
+
     fn new(mut s: Settings, name: &str, assignments: &[String]) -> Result<Self, SceneError> {
         for assignment in assignments {
             s.set(assignment, &NAMES)?;
         }
+        Self::from_settings(&s, name)
+    }
+
+    fn from_settings(s: &Settings, name: &str) -> Result<Self, SceneError> {
         let engine = match s.text("engine", ENGINES)? {
             None => Engine::Auto,
             Some(word) => match Engine::ALL.into_iter().find(|e| e.name() == word) {
@@ -280,21 +299,21 @@ impl Scene {
             "a list of increments, from 1",
         )?;
         let factors = s.numbers("record.sensitivity", |n| n > 0.0, "a list of numbers above 0")?;
-        let filter = filter(&s)?;
+        let filter = filter(s)?;
         Ok(Self {
-            recipe: Recipe::new(&s, &filter)?,
+            recipe: Recipe::new(s, &filter)?,
             name: name.into(),
             seed: s.whole("seed", 0..=u64::MAX)?.unwrap_or(1),
             engine,
             runs: s.whole("runs", 1..=2)?.unwrap_or(2),
             replicates: s.whole("replicates", 1..=100_000)?.unwrap_or(10),
             inject_share: inject_share.unwrap_or(0.01),
-            curve: curve(&s)?,
+            curve: curve(s)?,
             filter,
-            grains_per_void: positive(&s, "filter.grains_per_void")?,
-            base: base(&s)?,
-            amount: amount(&s)?,
-            network: network(&s)?,
+            grains_per_void: positive(s, "filter.grains_per_void")?,
+            base: base(s)?,
+            amount: amount(s)?,
+            network: network(s)?,
             wanted: Wanted {
                 series_every: every.unwrap_or(1),
                 size_curves: match curves {

@@ -69,6 +69,8 @@ pub enum Origin {
     Line(String, usize),
     /// The command line.
     CommandLine,
+    /// A case of a plan: its file and the case's name.
+    Plan(String, String),
 }
 
 impl fmt::Display for Origin {
@@ -76,6 +78,7 @@ impl fmt::Display for Origin {
         match self {
             Self::Line(file, line) => write!(f, "{file}, line {line}"),
             Self::CommandLine => write!(f, "--set"),
+            Self::Plan(file, case) => write!(f, "{file}, case {case}"),
         }
     }
 }
@@ -205,7 +208,14 @@ impl Settings {
     /// # Errors
     /// There is no `=`, or no such setting.
     pub fn set(&mut self, assignment: &str, names: &Names) -> Result<(), SceneError> {
-        let origin = Origin::CommandLine;
+        self.set_from(assignment, names, Origin::CommandLine)
+    }
+
+    /// The same from somewhere else.
+    ///
+    /// # Errors
+    /// As [`Settings::set`].
+    pub fn set_from(&mut self, assignment: &str, names: &Names, origin: Origin) -> Result<(), SceneError> {
         let Some((name, value)) = assignment.split_once('=') else {
             return Err(SceneError::Value {
                 origin,
@@ -314,6 +324,7 @@ impl Settings {
     pub fn resolve(&self, name: &str, path: &str) -> PathBuf {
         match self.values.get(name) {
             Some((_, Origin::Line(..))) => self.folder.join(path),
+            Some((_, Origin::Plan(file, _))) => Path::new(file).with_file_name(path),
             _ => PathBuf::from(path),
         }
     }

@@ -27,6 +27,8 @@ pub enum Command {
         /// File to write; the scene goes to stdout without one
         path: Option<PathBuf>,
     },
+    /// Walk every case of a plan that is not done, and compare them
+    Campaign(CampaignArgs),
     /// Pack a filter's grains from its gradation and density, and measure the constrictions
     Pack(PackArgs),
     /// Measure the constrictions of a packing of grains
@@ -70,6 +72,32 @@ pub struct RunArgs {
     /// Replace the results of an earlier run in --out
     #[arg(long)]
     pub overwrite: bool,
+    /// Worker threads [default: one per core]; they change no bit of the result
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// No progress and no summary
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// Which plan, and where its results go.
+#[derive(Debug, Args)]
+pub struct CampaignArgs {
+    /// Plan (TOML): factors that are crossed, and single cases
+    pub plan: PathBuf,
+    /// Folder for the results: new, empty, or with cases of this plan, which are not walked again. Several processes may work
+    /// on one folder
+    #[arg(long, value_name = "DIR", default_value = "voidwalk-campaign")]
+    pub out: PathBuf,
+    /// Walk this case only; the ledger is left to a call without it
+    #[arg(long, value_name = "NAME")]
+    pub case: Option<String>,
+    /// Print the names of the cases and do nothing
+    #[arg(long)]
+    pub list: bool,
+    /// Folder in which the packings of filters are kept [default: packings in --out]
+    #[arg(long, value_name = "DIR")]
+    pub packings: Option<PathBuf>,
     /// Worker threads [default: one per core]; they change no bit of the result
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,

@@ -3,6 +3,7 @@
 //! Exit codes: 0 done, 1 failed, 2 refused (before any work, nothing written), 3 stopped but resumable.
 
 mod args;
+mod campaign;
 mod check;
 mod constrictions;
 mod pack;
@@ -46,6 +47,7 @@ pub fn main() -> ExitCode {
         Command::Run(args) => run::run(&args),
         Command::Check(args) => check::check(&args),
         Command::Init { path } => check::init(path.as_deref()),
+        Command::Campaign(args) => campaign::campaign(&args),
         Command::Pack(args) => pack::pack(&args),
         Command::Constrictions(args) => constrictions::constrictions(&args),
         Command::Report { folder } => run::report(&folder),

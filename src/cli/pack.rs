@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::io::IsTerminal;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use indicatif::ProgressBar;
@@ -18,10 +18,13 @@ use crate::campaign::scene::Scene;
 use crate::outcome::packing::PackingRecord;
 use crate::packing::{PackingError, Progress, Stage};
 use crate::report;
-use crate::store::Folder;
+use crate::store::{Folder, StoreError};
 
 /// How often a packing that a scene asks for keeps its state.
 const KEEP_EVERY: Duration = Duration::from_secs(60);
+
+/// How often a packing that another process makes is looked for.
+const LOOK: Duration = Duration::from_millis(500);
 
 /// Packs a filter into a folder.
 pub fn pack(args: &PackArgs) -> Result<(), Ending> {
@@ -65,8 +68,16 @@ pub fn provide(
     if let Some(filter) = read(&path, order)? {
         return Ok(filter);
     }
-    let folder = Folder::open(&path).map_err(refused_or_failed)?;
-    packed(&folder, order, quiet, stop, KEEP_EVERY)?;
+    let folder = loop {
+        match Folder::open(&path) {
+            // Another process makes the same packing: it is taken from there.
+            Err(StoreError::Held { .. }) if !stop.load(Ordering::Relaxed) => std::thread::sleep(LOOK),
+            other => break other.map_err(refused_or_failed)?,
+        }
+    };
+    if !folder.has(RECORD) {
+        packed(&folder, order, quiet, stop, KEEP_EVERY)?;
+    }
     read(&path, order)?.ok_or_else(|| Ending::failed(format!("{}: the packing is gone", path.display())))
 }
 

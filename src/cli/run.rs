@@ -17,7 +17,7 @@ use crate::campaign::machine::Machine;
 use crate::campaign::packed::{Order, PackedFilter};
 use crate::campaign::results;
 use crate::campaign::walks::{self, RunError, Watch, replicates, runs_to_walk, sensitivity};
-use crate::outcome::record::{Manifest, Outcome, RunSummary};
+use crate::outcome::record::{Outcome, RunSummary};
 use crate::report;
 use crate::store::{Folder, StoreError};
 
@@ -44,18 +44,8 @@ pub fn run(args: &RunArgs) -> Result<(), Ending> {
         to_stderr(&format!("warning: {}\n", plain(&warning)));
     }
     let started = SystemTime::now();
-    let manifest = || Manifest {
-        version: env!("CARGO_PKG_VERSION").into(),
-        commit: option_env!("VOIDWALK_COMMIT").map(String::from),
-        seed: case.scene.seed,
-        inputs: case.input_files(),
-        threads: pool.current_num_threads() as u64,
-        host: machine.host.clone(),
-        machine: machine.description.clone(),
-        started: humantime::format_rfc3339_seconds(started).to_string(),
-        finished: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
-        command: command_line(),
-    };
+    let threads = pool.current_num_threads() as u64;
+    let manifest = || results::manifest(&case, threads, started, command_line());
     let outcome = walk(&case, &pool, args.quiet, &stop, |outcome, walked| {
         results::write(&folder, &case, outcome, walked, &manifest()).map_err(Ending::failed)?;
         report::write(folder.path()).map_err(Ending::failed)?;
@@ -126,7 +116,7 @@ pub(super) fn pool(threads: Option<u16>) -> Result<rayon::ThreadPool, Ending> {
 }
 
 /// The command line in words, whatever bytes it is made of.
-fn command_line() -> String {
+pub(super) fn command_line() -> String {
     let words: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
     words.join(" ")
 }

@@ -8,6 +8,7 @@
 //! - [`rules`] applies the empirical filter rules to the same two curves.
 
 mod figures;
+pub mod ledger;
 pub mod packing;
 pub mod paper;
 pub mod record;

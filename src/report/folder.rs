@@ -168,6 +168,18 @@ pub(super) fn json<T: DeserializeOwned>(path: &Path) -> Result<T, ReportError> {
     })
 }
 
+/// The lines of a file of JSON lines.
+pub(super) fn lines<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, ReportError> {
+    let one = |(index, line): (usize, &str)| {
+        serde_json::from_str(line).map_err(|error| ReportError::Form {
+            path: path.to_owned(),
+            line: index as u64 + 1,
+            message: error.to_string(),
+        })
+    };
+    text(path)?.lines().enumerate().map(one).collect()
+}
+
 /// The rows of a CSV file with their lines.
 pub(super) fn rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<(u64, T)>, ReportError> {
     let content = text(path)?;

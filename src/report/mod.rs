@@ -14,6 +14,7 @@
 //! An engineer reads the verdict first, with its numbers, and beside it what the model leaves out; then warnings,
 //! figures, the rules of practice, tables, and how to make the same again.
 
+mod campaign;
 pub mod figures;
 mod folder;
 mod numbers;
@@ -25,6 +26,7 @@ mod shell;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+pub use campaign::write_campaign;
 pub use folder::ReportError;
 use folder::RunFolder;
 pub use packing::write_packing;

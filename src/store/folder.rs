@@ -73,6 +73,19 @@ impl Folder {
     /// # Errors
     /// The folder is a link, holds other things, is held by another process, or cannot be written.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
+        Self::open_locked(path, false)
+    }
+
+    /// The same for a folder that several processes work in, each in folders of its own inside; it is not taken while one
+    /// process holds it alone.
+    ///
+    /// # Errors
+    /// As [`Folder::open`].
+    pub fn open_shared(path: &Path) -> Result<Self, StoreError> {
+        Self::open_locked(path, true)
+    }
+
+    fn open_locked(path: &Path, shared: bool) -> Result<Self, StoreError> {
         // Without a trailing slash, which would follow a link.
         let path: &Path = &path.components().collect::<PathBuf>();
         let io = |action| move |source| StoreError::Io { path: path.to_owned(), action, source };
@@ -105,7 +118,7 @@ impl Folder {
             .truncate(false)
             .open(&lock_path)
             .map_err(io("write to the folder"))?;
-        match lock.try_lock() {
+        match if shared { lock.try_lock_shared() } else { lock.try_lock() } {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
                 let holder = fs::read_to_string(&lock_path).unwrap_or_default();
@@ -113,6 +126,9 @@ impl Folder {
                 return Err(StoreError::Held { path: path.to_owned(), holder });
             }
             Err(TryLockError::Error(e)) => return Err(io("lock the folder")(e)),
+        }
+        if shared {
+            return Ok(Self { path: path.to_owned(), _lock: lock });
         }
         let host = rustix::system::uname().nodename().to_string_lossy().into_owned();
         lock.set_len(0)

@@ -1,0 +1,389 @@
+//! A plan: factors that are crossed, and single cases, each a scene with a name and a seed of its own.
+//!
+//! ```toml
+//! seed = 1
+//! scene = "common.toml"              # settings that all cases start from; the built-in scene without it
+//! [set]
+//! replicates = 10
+//! [[factor]]                         # one setting, many values
+//! name = "cu_b"
+//! setting = "base.cu"
+//! values = [1.5, 3, 4.5]
+//! [[factor]]                         # or named levels, each with settings
+//! name = "filter"
+//! [factor.levels]
+//! loose = { "filter.curve" = "shire2016-cu1.5-loose" }
+//! dense = { "filter.curve" = "shire2016-cu1.5-dense" }
+//! [[leave_out]]                      # combinations that are not walked
+//! filter = "dense"
+//! cu_b = "4.5"
+//! [[case]]                           # a case outside the cross
+//! name = "site"
+//! set = { "base.sieve" = "site.csv" }
+//! ```
+//!
+//! A case is called after its levels (`filter=loose,cu_b=3`), and its seed follows from the plan's seed and that name alone:
+//! a case that is added, left out or changed changes no other.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+use super::scene::Scene;
+use super::settings::{Origin, SceneError};
+
+/// More cases than this are a mistake.
+const MOST_CASES: usize = 100_000;
+
+/// A larger plan is refused (bytes).
+const LARGEST_FILE: u64 = 1 << 20;
+
+/// A plan as it is written.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    #[serde(default)]
+    title: String,
+    #[serde(default = "one")]
+    seed: u64,
+    #[serde(default)]
+    seeds: Seeds,
+    scene: Option<PathBuf>,
+    #[serde(default)]
+    set: toml::Table,
+    #[serde(default)]
+    factor: Vec<Factor>,
+    #[serde(default)]
+    leave_out: Vec<BTreeMap<String, String>>,
+    #[serde(default)]
+    case: Vec<Single>,
+}
+
+fn one() -> u64 {
+    1
+}
+
+/// Which seeds the cases have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Seeds {
+    /// Each its own.
+    #[default]
+    Own,
+    /// All the plan's: cases that differ in one factor then share their random numbers, and so differ less by chance.
+    Common,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Factor {
+    name: String,
+    setting: Option<String>,
+    #[serde(default)]
+    values: Vec<toml::Value>,
+    #[serde(default)]
+    levels: toml::Table,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Single {
+    name: String,
+    #[serde(default)]
+    set: toml::Table,
+}
+
+/// A case of a plan.
+#[derive(Clone, Debug)]
+pub struct PlannedCase {
+    /// Its name, as a user says it.
+    pub name: String,
+    /// Level by factor, in the order of the plan; empty for a case outside the cross.
+    pub levels: Vec<(String, String)>,
+    /// The scene.
+    pub scene: Scene,
+}
+
+/// A plan, its cases worked out.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// What errors call it.
+    pub file: String,
+    /// What it is about, in a line.
+    pub title: String,
+    /// Factors in the order of the plan.
+    pub factors: Vec<String>,
+    /// Cases: the cross with the last factor running fastest, then the single ones.
+    pub cases: Vec<PlannedCase>,
+}
+
+/// A level of a factor: its name and settings.
+type Level = (String, Vec<String>);
+
+impl Plan {
+    /// Reads a plan and every scene in it.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is no plan, two cases of one name, a case whose settings are refused.
+    pub fn read(path: &Path) -> Result<Self, SceneError> {
+        let file = path.display().to_string();
+        let io = |source| SceneError::File { file: file.clone(), source };
+        let meta = std::fs::metadata(path).map_err(io)?;
+        let syntax = |at: String, problem: String| SceneError::Syntax { file: file.clone(), at, problem };
+        if !meta.is_file() || meta.len() > LARGEST_FILE {
+            return Err(syntax(
+                String::new(),
+                format!("must be a regular file of at most {LARGEST_FILE} bytes"),
+            ));
+        }
+        let bytes = std::fs::read(path).map_err(io)?;
+        let text = String::from_utf8(bytes).map_err(|_| syntax(String::new(), "is not UTF-8 text".into()))?;
+        let written: Written = toml::from_str(&text).map_err(|e| {
+            let line = e.span().map(|span| text[..span.start.min(text.len())].matches('\n').count() + 1);
+            syntax(line.map_or(String::new(), |n| format!(", line {n}")), e.message().to_string())
+        })?;
+        Self::expand(file.clone(), path, written)
+    }
+
+    fn expand(file: String, path: &Path, written: Written) -> Result<Self, SceneError> {
+        let clash = |problem: String| SceneError::Clash { file: file.clone(), problem };
+        let mut factors: Vec<(String, Vec<Level>)> = Vec::new();
+        for factor in &written.factor {
+            check_name("factor", &factor.name).map_err(clash)?;
+            if factors.iter().any(|(name, _)| *name == factor.name) {
+                return Err(clash(format!("two factors are called `{}`", factor.name)));
+            }
+            factors.push((factor.name.clone(), levels(factor).map_err(clash)?));
+        }
+        let total = factors.iter().try_fold(1usize, |n, (_, levels)| n.checked_mul(levels.len()));
+        let total = total.filter(|n| n + written.case.len() <= MOST_CASES).ok_or_else(|| {
+            clash(format!("the factors make too many cases; at most {MOST_CASES} are allowed"))
+        })?;
+        for left_out in &written.leave_out {
+            check_left_out(left_out, &factors).map_err(clash)?;
+        }
+        let common = assignments(&written.set).map_err(clash)?;
+        let mut plan = Self {
+            title: written.title.clone(),
+            factors: factors.iter().map(|(name, _)| name.clone()).collect(),
+            cases: Vec::new(),
+            file: file.clone(),
+        };
+        let crossed = if factors.is_empty() { 0 } else { total };
+        let base = written.scene.as_ref().map(|scene| path.parent().unwrap_or(Path::new("")).join(scene));
+        for index in 0..crossed {
+            let mut rest = index;
+            let mut chosen = Vec::new();
+            for (name, levels) in factors.iter().rev() {
+                chosen.push((name, &levels[rest % levels.len()]));
+                rest /= levels.len();
+            }
+            chosen.reverse();
+            let levels: Vec<(String, String)> =
+                chosen.iter().map(|(factor, level)| ((*factor).clone(), level.0.clone())).collect();
+            let is_left_out = |which: &BTreeMap<String, String>| {
+                which.iter().all(|(factor, level)| levels.iter().any(|(f, l)| f == factor && l == level))
+            };
+            if written.leave_out.iter().any(is_left_out) {
+                continue;
+            }
+            let name = levels
+                .iter()
+                .map(|(factor, level)| format!("{factor}={level}"))
+                .collect::<Vec<_>>()
+                .join(",");
+            let settings: Vec<String> =
+                common.iter().chain(chosen.iter().flat_map(|(_, level)| &level.1)).cloned().collect();
+            plan.add(&written, base.as_deref(), name, levels, &settings)?;
+        }
+        for single in &written.case {
+            check_name("case", &single.name).map_err(clash)?;
+            let own = assignments(&single.set).map_err(clash)?;
+            let settings: Vec<String> = common.iter().cloned().chain(own).collect();
+            plan.add(&written, base.as_deref(), single.name.clone(), Vec::new(), &settings)?;
+        }
+        if plan.cases.is_empty() {
+            return Err(clash("there is no case: add [[factor]] or [[case]]".into()));
+        }
+        Ok(plan)
+    }
+
+    fn add(
+        &mut self,
+        written: &Written,
+        base: Option<&Path>,
+        name: String,
+        levels: Vec<(String, String)>,
+        settings: &[String],
+    ) -> Result<(), SceneError> {
+        if self.cases.iter().any(|case| case.name == name) {
+            let problem = format!("two cases are called `{name}`");
+            return Err(SceneError::Clash { file: self.file.clone(), problem });
+        }
+        let origin = Origin::Plan(self.file.clone(), name.clone());
+        let mut scene = Scene::planned(base, settings, &origin)?;
+        if !settings.iter().any(|s| s.starts_with("seed=")) {
+            scene.seed = match written.seeds {
+                Seeds::Common => written.seed,
+                Seeds::Own => xxhash_rust::xxh3::xxh3_64_with_seed(name.as_bytes(), written.seed),
+            };
+        }
+        self.cases.push(PlannedCase { name, levels, scene });
+        Ok(())
+    }
+
+    /// The case called `name`.
+    pub fn case(&self, name: &str) -> Option<&PlannedCase> {
+        self.cases.iter().find(|case| case.name == name)
+    }
+}
+
+impl PlannedCase {
+    /// Name of the folder that holds its results.
+    pub fn folder_name(&self) -> String {
+        let safe = |c: char| if c.is_ascii_alphanumeric() || "=.,-_".contains(c) { c } else { '_' };
+        let name: String = self.name.chars().take(120).map(safe).collect();
+        if name == self.name {
+            name
+        } else {
+            format!("{name}-{:08x}", xxhash_rust::xxh3::xxh3_64(self.name.as_bytes()) as u32)
+        }
+    }
+}
+
+/// A name that can stand in a file name, a table and a page.
+fn check_name(what: &str, name: &str) -> Result<(), String> {
+    let bad = |c: char| c.is_control() || "=,/\\\"'".contains(c);
+    if name.is_empty() || name.len() > 100 || name.starts_with('.') || name.chars().any(bad) {
+        return Err(format!(
+            "{what} name `{}` is not allowed; 1 to 100 characters, none of = , / \\ and quotes, no dot in front",
+            name.chars().filter(|c| !c.is_control()).take(100).collect::<String>()
+        ));
+    }
+    Ok(())
+}
+
+fn levels(factor: &Factor) -> Result<Vec<Level>, String> {
+    let name = &factor.name;
+    let levels: Vec<Level> = match (&factor.setting, factor.values.is_empty(), factor.levels.is_empty()) {
+        (Some(setting), false, true) => {
+            factor.values.iter().map(|value| (word(value), vec![format!("{setting}={value}")])).collect()
+        }
+        (None, true, false) => {
+            let one = |(level, set): (&String, &toml::Value)| match set {
+                toml::Value::Table(set) => Ok((level.clone(), assignments(set)?)),
+                _ => Err(format!("factor `{name}`, level `{level}`: a table of settings is needed")),
+            };
+            factor.levels.iter().map(one).collect::<Result<_, _>>()?
+        }
+        _ => return Err(format!("factor `{name}` needs either `setting` and `values`, or `levels`")),
+    };
+    for (index, (level, _)) in levels.iter().enumerate() {
+        check_name("level", level)?;
+        if levels[..index].iter().any(|(other, _)| other == level) {
+            return Err(format!("factor `{name}` has level `{level}` twice"));
+        }
+    }
+    Ok(levels)
+}
+
+/// A value as part of a name.
+fn word(value: &toml::Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+}
+
+fn assignments(set: &toml::Table) -> Result<Vec<String>, String> {
+    let one = |(name, value): (&String, &toml::Value)| match value {
+        toml::Value::Table(inner) => {
+            inner.iter().map(|(key, value)| format!("{name}.{key}={value}")).collect::<Vec<_>>()
+        }
+        _ => vec![format!("{name}={value}")],
+    };
+    Ok(set.iter().flat_map(one).collect())
+}
+
+fn check_left_out(
+    left_out: &BTreeMap<String, String>,
+    factors: &[(String, Vec<Level>)],
+) -> Result<(), String> {
+    if left_out.is_empty() {
+        return Err("a [[leave_out]] without a factor would leave out everything".into());
+    }
+    for (factor, level) in left_out {
+        let Some((_, levels)) = factors.iter().find(|(name, _)| name == factor) else {
+            return Err(format!("leave_out: there is no factor `{factor}`"));
+        };
+        if !levels.iter().any(|(name, _)| name == level) {
+            let all: Vec<&str> = levels.iter().map(|(name, _)| name.as_str()).collect();
+            return Err(format!(
+                "leave_out: factor `{factor}` has no level `{level}`; it has {}",
+                all.join(", ")
+            ));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plan(text: &str) -> Result<Plan, SceneError> {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("plan.toml");
+        std::fs::write(&path, text).unwrap();
+        Plan::read(&path)
+    }
+
+    const TWO_BY_TWO: &str = "[[factor]]\nname = \"cu_b\"\nsetting = \"base.cu\"\nvalues = [1.5, 3]\n\
+        [[factor]]\nname = \"filter\"\n[factor.levels]\n\
+        a = { \"filter.curve\" = \"shire2016-cu1.5-loose\" }\nb = { filter = { curve = \"shire2016-cu1.5-dense\" } }\n";
+
+    #[test]
+    fn factors_are_crossed_with_the_last_running_fastest() {
+        let plan = plan(TWO_BY_TWO).unwrap();
+        let names: Vec<&str> = plan.cases.iter().map(|c| c.name.as_str()).collect();
+        assert_eq!(names, ["cu_b=1.5,filter=a", "cu_b=1.5,filter=b", "cu_b=3,filter=a", "cu_b=3,filter=b"]);
+        let seeds: std::collections::BTreeSet<u64> = plan.cases.iter().map(|c| c.scene.seed).collect();
+        assert_eq!(seeds.len(), 4);
+    }
+
+    #[test]
+    fn a_case_keeps_its_seed_when_others_come_and_go() {
+        let all = plan(TWO_BY_TWO).unwrap();
+        let fewer =
+            plan(&format!("{TWO_BY_TWO}[[leave_out]]\ncu_b = \"1.5\"\n[[case]]\nname = \"x\"\n")).unwrap();
+        assert_eq!(fewer.cases.len(), 3);
+        for case in &fewer.cases[..2] {
+            assert_eq!(all.case(&case.name).unwrap().scene.seed, case.scene.seed);
+        }
+        let common = plan(&format!("seeds = \"common\"\nseed = 7\n{TWO_BY_TWO}")).unwrap();
+        assert!(common.cases.iter().all(|c| c.scene.seed == 7));
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        for (text, message) in [
+            ("", "there is no case"),
+            ("sed = 1", "line 1: unknown field `sed`"),
+            ("[[factor]]\nname = \"a\"\n", "needs either `setting` and `values`"),
+            (
+                "[[factor]]\nname = \"a\"\nsetting = \"base.uc\"\nvalues = [1]\n",
+                "case a=1: there is no setting `base.uc`",
+            ),
+            (
+                "[[factor]]\nname = \"a\"\nsetting = \"base.cu\"\nvalues = [0.1]\n",
+                "case a=0.1, base.cu: `0.1` is not allowed",
+            ),
+            ("[[factor]]\nname = \"a\"\nsetting = \"base.cu\"\nvalues = [2, 2]\n", "level `2` twice"),
+            ("[[factor]]\nname = \"a=b\"\nsetting = \"base.cu\"\nvalues = [2]\n", "is not allowed"),
+            ("[[case]]\nname = \"../x\"\n", "is not allowed"),
+            ("[[case]]\nname = \"x\"\n[[case]]\nname = \"x\"\n", "two cases are called `x`"),
+            ("[[case]]\nname = \"x\"\n[[leave_out]]\nfilter = \"x\"\n", "there is no factor `filter`"),
+        ] {
+            let error = plan(text).unwrap_err().to_string();
+            assert!(error.contains(message), "{text}: {error}");
+        }
+    }
+}
