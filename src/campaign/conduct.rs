@@ -71,7 +71,7 @@ pub enum ConductError {
         /// The case.
         case: String,
         /// What went wrong.
-        source: RunError,
+        source: Box<RunError>,
     },
     /// A case's results could not be written.
     #[error("case {case}: {source}")]
@@ -79,7 +79,7 @@ pub enum ConductError {
         /// The case.
         case: String,
         /// What went wrong.
-        source: ResultError,
+        source: Box<ResultError>,
     },
     /// A case's folder.
     #[error(transparent)]
@@ -192,13 +192,13 @@ fn one(ready: &Ready, out: &Path, threads: usize, overseer: &Overseer) -> Result
         .and_then(|walked| Ok((walks::sensitivity(&ready.case, &watch)?, walked)));
     let (sensitivity, walked) = match walked {
         Err(RunError::Walk(WalkError::Stopped { .. })) => return Ok(()),
-        Err(source) => return Err(ConductError::Run { case: name.clone(), source }),
+        Err(source) => return Err(ConductError::Run { case: name.clone(), source: source.into() }),
         Ok(both) => both,
     };
     let seconds = begun.elapsed().as_secs_f64();
     let outcome = results::outcome(&ready.case, &walked, sensitivity, seconds);
     let manifest = results::manifest(&ready.case, threads as u64, started, overseer.command.clone());
-    let failed = |source| ConductError::Results { case: name.clone(), source };
+    let failed = |source: ResultError| ConductError::Results { case: name.clone(), source: source.into() };
     folder.remove(LINE)?;
     results::write(&folder, &ready.case, &outcome, &walked, &manifest).map_err(failed)?;
     (overseer.finish)(folder.path())
