@@ -17,8 +17,8 @@ const PRESSURE: f64 = 0.005;
 /// Departure of the pressure from its target at which the brake is put on.
 const BRAKE: f64 = 0.02;
 
-/// Allowed root mean square unbalanced force by mean contact force.
-const UNBALANCED: f64 = 0.05;
+/// Allowed root mean square unbalanced force by mean contact force: a frictionless packing between two avalanches has 0.03 to 0.1.
+const UNBALANCED: f64 = 0.02;
 
 /// Allowed kinetic by elastic energy.
 const KINETIC: f64 = 1e-2;
@@ -26,8 +26,9 @@ const KINETIC: f64 = 1e-2;
 /// Allowed change of the coordination number while it is held.
 const COORDINATION: f64 = 0.05;
 
-/// Allowed change of the void ratio while it is held.
-const VOID_RATIO: f64 = 2e-4;
+/// Allowed change of the void ratio while it is held: a quarter of the 0.002 that two seeds or half the rate change it by. A wide grading
+/// with high friction creeps on as the logarithm of time, so some rate has to count as rest.
+const VOID_RATIO: f64 = 5e-4;
 
 /// What the protocol remembers between its looks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -96,7 +96,7 @@ impl Default for Settings {
             squeeze_to: 0.87,
             squeeze_rate: 0.01,
             servo_rate: 2e-3,
-            servo_gain: 2e-3,
+            servo_gain: 1e-2,
             mass_exponent: 1.0,
             step_fraction: 0.7,
             step: None,
