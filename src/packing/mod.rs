@@ -34,6 +34,7 @@ mod motion;
 mod neighbours;
 mod place;
 mod protocol;
+mod renewal;
 mod settings;
 mod state;
 
