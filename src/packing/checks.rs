@@ -1,11 +1,13 @@
 //! The contact law and the time integration against what is known exactly.
 
 use super::compression::Compression;
+use super::draw::{draw, random_start};
 use super::grains::{Cell, Packing};
 use super::limits::critical_step;
 use super::measure::Energy;
 use super::motion::LONGEST_MOVE;
 use super::settings::{Contact, PackingError, Settings};
+use crate::gradation::Gradation;
 use crate::stream::{Key, Purpose, unit};
 use rand::Rng;
 use std::f64::consts::PI;
@@ -190,6 +192,46 @@ fn the_step_is_refused_with_both_numbers() {
     assert!(Compression::new(&grains, &settings).is_ok());
 }
 
+/// Squeezed and then held by the servo: the step that follows the contacts is below the critical one of every instant, with room.
+#[test]
+fn the_automatic_step_stays_below_the_critical_one() {
+    let filter = Gradation::linear_from_d0(1.0, 2.0).unwrap();
+    for friction in [0.0, 0.5] {
+        let settings = Settings { grains: 150, friction, ..Settings::default() };
+        let start = random_start(&draw(&filter, 150, 1), &settings).unwrap();
+        let mut c = Compression::new(&start, &settings).unwrap();
+        let mut closest: f64 = 0.0;
+        for _ in 0..9000 {
+            let step = c.step;
+            c.advance(1).unwrap();
+            closest = closest.max(step / c.critical_step());
+        }
+        assert!(c.pressure > 0.5 && closest > 0.5 && closest < 1.0, "{friction}: {closest} {}", c.pressure);
+    }
+}
+
+/// With a gain far above the inverse of the contacts' viscosity, the strain rate goes to where it has to be instead of swinging between its
+/// limits: its changes of sign stay rare.
+#[test]
+fn the_servo_does_not_swing() {
+    let filter = Gradation::linear_from_d0(1.0, 2.0).unwrap();
+    let settings =
+        Settings { grains: 300, squeeze_rate: 0.05, servo_gain: 0.1, drag: 0.2, ..Settings::default() };
+    let start = random_start(&draw(&filter, 300, 1), &settings).unwrap();
+    let mut c = Compression::new(&start, &settings).unwrap();
+    while (c.pressure - 1.0).abs() > 0.005 {
+        c.advance(1).unwrap();
+    }
+    c.advance(2000).unwrap();
+    let mut swings = 0;
+    for _ in 0..1000 {
+        let before = c.strain_rate;
+        c.advance(1).unwrap();
+        swings += u64::from(before * c.strain_rate < 0.0);
+    }
+    assert!(swings < 100 && (c.pressure - 1.0).abs() < 0.005, "{swings} {}", c.pressure);
+}
+
 /// The step at which a chain of two grains really becomes unstable is not below the critical step of their contact.
 #[test]
 fn the_critical_step_is_stable_and_not_far_from_the_limit() {
@@ -266,7 +308,7 @@ fn gas(n: usize, ratio: f64, fraction: f64, speed: f64, settings: &Settings) -> 
     let diameter: Vec<f64> =
         (0..n).map(|i| if i < n.div_ceil(20) { ratio } else { 1.0 + 0.1 * u() }).collect();
     let settings = Settings { start_fraction: fraction, ..settings.clone() };
-    let start = super::draw::random_start(&diameter, &settings).unwrap();
+    let start = random_start(&diameter, &settings).unwrap();
     let mut c = Compression::new(&start, &settings).unwrap();
     let (mut sum, mut mass) = ([0.0; 3], 0.0);
     for v in &mut c.velocity {

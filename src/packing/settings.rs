@@ -238,7 +238,12 @@ impl Settings {
                 self.start_fraction > 0.0 && self.start_fraction <= 0.5,
                 "more than 0, at most 0.5",
             ),
-            ("squeeze_to", self.squeeze_to, self.squeeze_to > 0.0 && self.squeeze_to <= 1.0, part),
+            (
+                "squeeze_to",
+                self.squeeze_to,
+                self.squeeze_to > 0.0 && self.squeeze_to <= 1.0,
+                "more than 0, at most 1",
+            ),
             ("squeeze_rate", self.squeeze_rate, above(self.squeeze_rate), positive),
             ("servo_rate", self.servo_rate, above(self.servo_rate), positive),
             ("servo_gain", self.servo_gain, above(self.servo_gain), positive),
