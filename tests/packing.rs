@@ -90,6 +90,19 @@ fn friction_sets_the_density_and_none_makes_no_torque() {
     }
 }
 
+/// A wide grading made loose by high friction settles, gives way when its friction is lowered, and settles again.
+#[test]
+fn a_wide_grading_gives_way_to_lower_friction() {
+    let filter = Gradation::linear_from_d0(1.0, 3.0).unwrap();
+    let settings = Settings { grains: 800, friction: 0.7, stiffness_ratio: 0.02, ..Settings::default() };
+    let (_, report) = compress(&filter, &settings, |_| true).unwrap();
+    assert!(report.before.void_ratio > report.after.void_ratio + 0.01, "{report:?}");
+    assert!(report.before.coordination_held < report.after.coordination_held, "{report:?}");
+    for m in [&report.before, &report.after] {
+        assert!((m.pressure_kpa - 50.0).abs() < 0.25 && m.kinetic_ratio < 0.01, "{report:?}");
+    }
+}
+
 /// Over two decades of stiffness the overlaps follow Hertz's law (stiffness to the power of -2/3) and void ratio hardly changes. 600 grains
 /// scatter by 0.006 in void ratio, so this would miss a drift below 0.02; `scripts/study_packing.py` measures it.
 #[test]
