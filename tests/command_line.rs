@@ -412,3 +412,45 @@ fn unnamed_runs_do_not_overwrite_each_other() {
         assert!(!root.path().join(missing).join("outcome.json").exists());
     }
 }
+
+/// A small study: the folder, the numbers, the same bits for any number of threads, and what is refused.
+#[test]
+fn a_percolation_study_fills_a_folder() {
+    let root = tempfile::tempdir().unwrap();
+    let out = root.path().join("study");
+    let on = |threads: &str, out: &Path| {
+        let out = out.to_str().unwrap();
+        voidwalk(&[
+            "percolation",
+            "--sizes",
+            "4,6,8,12",
+            "--realisations",
+            "50",
+            "--threads",
+            threads,
+            "--out",
+            out,
+        ])
+    };
+    let output = on("1", &out);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let words = String::from_utf8_lossy(&output.stdout);
+    assert!(words.contains("95 % interval") && words.contains("many starts"), "{words}");
+    let study: Value =
+        serde_json::from_str(&fs::read_to_string(out.join("percolation.json")).unwrap()).unwrap();
+    let mean = |i: usize| study["sizes"][i]["threshold"]["mean"].as_f64().unwrap();
+    assert!((0.25..0.35).contains(&mean(0)) && mean(3) > mean(0) && mean(3) < 0.38222);
+    for file in ["report.html", "figures/percolation-sd.svg", "figures/percolation-threshold.svg"] {
+        assert!(!fs::read_to_string(out.join(file)).unwrap().contains("NaN"), "{file}");
+    }
+    refused(&on("1", &out), &["--overwrite"]);
+    let other = root.path().join("other");
+    assert!(on("3", &other).status.success());
+    let csv = |folder: &Path| fs::read_to_string(folder.join("percolation.csv")).unwrap();
+    assert_eq!(csv(&out), csv(&other));
+    let none = root.path().join("none");
+    let too_large = ["percolation", "--sizes", "10,2000", "--out", none.to_str().unwrap()];
+    refused(&voidwalk(&too_large), &["2000 x 2000 x 2000"]);
+    assert_eq!(voidwalk(&["percolation", "--sizes", "0"]).status.code(), Some(2));
+    assert!(!none.exists());
+}

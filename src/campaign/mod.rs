@@ -6,12 +6,14 @@
 //! - [`walks`] walks its replicates.
 //! - [`results`] writes what came of it into a run folder.
 //! - [`plan`] is many scenes, [`conduct`] walks those that are not done, [`ledger`] collects what came of them.
+//! - [`percolation`] is a study of its own: the percolation threshold against the size of the lattice.
 
 pub mod case;
 pub mod conduct;
 pub mod ledger;
 pub mod machine;
 pub mod packed;
+pub mod percolation;
 pub mod plan;
 pub mod results;
 pub mod scene;

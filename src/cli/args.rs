@@ -33,6 +33,8 @@ pub enum Command {
     Pack(PackArgs),
     /// Measure the constrictions of a packing of grains
     Constrictions(ConstrictionsArgs),
+    /// Find the percolation threshold of cubic lattices of several sizes
+    Percolation(PercolationArgs),
     /// Write report.html and the figures of a finished run folder again
     Report {
         /// The run folder
@@ -154,6 +156,33 @@ pub struct ConstrictionsArgs {
     #[arg(long)]
     pub overwrite: bool,
     /// Print constrictions.json
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Which lattices, and how many.
+#[derive(Debug, Args)]
+pub struct PercolationArgs {
+    /// Voids along each side, one lattice size after another
+    #[arg(long, value_name = "L,L,...", value_delimiter = ',', default_values_t = [10, 20, 40, 80, 160],
+          value_parser = clap::value_parser!(u32).range(1..))]
+    pub sizes: Vec<u32>,
+    /// Realisations of each size
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    pub realisations: u64,
+    /// Seed; the same seed gives the same bits
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub seed: u64,
+    /// Folder for the results [default: voidwalk-percolation]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace the results of an earlier call in --out
+    #[arg(long)]
+    pub overwrite: bool,
+    /// Worker threads [default: one per core]; they change no bit of the result
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Print percolation.json
     #[arg(long)]
     pub json: bool,
 }

@@ -7,6 +7,7 @@ mod campaign;
 mod check;
 mod constrictions;
 mod pack;
+mod percolation;
 mod print;
 mod progress;
 mod run;
@@ -50,6 +51,7 @@ pub fn main() -> ExitCode {
         Command::Campaign(args) => campaign::campaign(&args),
         Command::Pack(args) => pack::pack(&args),
         Command::Constrictions(args) => constrictions::constrictions(&args),
+        Command::Percolation(args) => percolation::percolation(&args),
         Command::Report { folder } => run::report(&folder),
     };
     match result {

@@ -12,9 +12,11 @@
 
 mod cubic;
 mod file;
+mod percolation;
 mod reach;
 
 pub use file::NetworkError;
+pub use percolation::percolation_threshold;
 pub use reach::Reach;
 
 /// Target of an exit that leaves the filter.

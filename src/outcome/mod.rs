@@ -6,11 +6,13 @@
 //! - [`verdict`] classifies, by mass eroded, one replicate or many.
 //! - [`paper`] holds what the paper states.
 //! - [`rules`] applies the empirical filter rules to the same two curves.
+//! - [`percolation`] puts percolation thresholds of several sizes together.
 
 mod figures;
 pub mod ledger;
 pub mod packing;
 pub mod paper;
+pub mod percolation;
 pub mod record;
 mod recorder;
 pub mod rules;

@@ -20,6 +20,7 @@ mod folder;
 mod numbers;
 mod packing;
 mod page;
+mod percolation;
 mod run_figures;
 mod shell;
 
@@ -30,6 +31,7 @@ pub use campaign::write_campaign;
 pub use folder::ReportError;
 use folder::RunFolder;
 pub use packing::write_packing;
+pub use percolation::write_percolation;
 use shell::Drawn;
 
 use crate::store::{StoreError, write_whole};

@@ -1,0 +1,97 @@
+//! Runs a study of the percolation threshold and writes it into a folder.
+
+use std::fmt::Write;
+use std::time::Instant;
+
+use rayon::prelude::*;
+
+use crate::network::{Network, NetworkError, percolation_threshold};
+use crate::outcome::percolation::PercolationStudy;
+
+/// Thresholds of several sizes of lattice.
+#[derive(Debug)]
+pub struct PercolationRun {
+    /// What `percolation.json` holds.
+    pub study: PercolationStudy,
+    /// Size, and the threshold of each of its realisations in order.
+    pub thresholds: Vec<(u64, Vec<f64>)>,
+}
+
+/// What a study is asked for, checked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PercolationPlan {
+    /// Voids along each side, ascending, each once.
+    sizes: Vec<u32>,
+    realisations: u64,
+    seed: u64,
+}
+
+impl PercolationPlan {
+    /// `realisations` lattices of each of these sizes.
+    ///
+    /// # Errors
+    /// A size of 0, or one with more constrictions than 32 bits can number.
+    pub fn new(mut sizes: Vec<u32>, realisations: u64, seed: u64) -> Result<Self, NetworkError> {
+        sizes.sort_unstable();
+        sizes.dedup();
+        for &size in &sizes {
+            Network::lattice_constrictions([size; 3])?;
+        }
+        Ok(Self { sizes, realisations, seed })
+    }
+
+    /// Finds every threshold, realisations side by side; the same bits for any number of threads.
+    ///
+    /// # Errors
+    /// None that [`PercolationPlan::new`] has not found.
+    pub fn run(&self) -> Result<PercolationRun, NetworkError> {
+        let begun = Instant::now();
+        let mut thresholds = Vec::new();
+        for &size in &self.sizes {
+            let one = |realisation| percolation_threshold([size; 3], self.seed, realisation);
+            let all: Result<Vec<f64>, NetworkError> =
+                (1..=self.realisations).into_par_iter().map(one).collect();
+            thresholds.push((u64::from(size), all?));
+        }
+        let study = PercolationStudy::new(self.seed, &thresholds, begun.elapsed().as_secs_f64());
+        Ok(PercolationRun { study, thresholds })
+    }
+}
+
+impl PercolationRun {
+    /// One row a realisation: `size,realisation,threshold`.
+    pub fn csv(&self) -> String {
+        let mut text = String::from("size,realisation,threshold\n");
+        for (size, all) in &self.thresholds {
+            for (index, threshold) in all.iter().enumerate() {
+                // Writing to a string cannot fail.
+                let _ = writeln!(text, "{size},{},{threshold}", index + 1);
+            }
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn threads_change_no_bit() {
+        let plan = PercolationPlan::new(vec![12, 6, 6], 20, 3).unwrap();
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| plan.run()).unwrap().csv()
+        };
+        let one = on(1);
+        assert_eq!(one, on(3));
+        assert!(one.starts_with("size,realisation,threshold\n6,1,"));
+        assert_eq!(one.lines().count(), 41);
+    }
+
+    #[test]
+    fn impossible_sizes_are_refused_before_any_work() {
+        assert!(PercolationPlan::new(vec![10, 0], 1, 1).is_err());
+        assert!(PercolationPlan::new(vec![2000], 1, 1).is_err());
+    }
+}

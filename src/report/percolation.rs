@@ -1,0 +1,157 @@
+//! The page and the figures of a percolation study.
+
+use std::path::Path;
+
+use maud::{Markup, html};
+
+use super::Written;
+use super::figures::{Across, Axis, BLUE, Dash, Figure, GREY, Line, PURPLE, Point, Rule, Shape, Tick};
+use super::folder::ReportError;
+use super::numbers::{duration, significant, whole};
+use super::shell::{Drawn, figure, whole_page};
+use crate::outcome::percolation::{NU_PARALLEL, PercolationStudy, Z};
+
+/// Writes `report.html` and its figures into the folder of a percolation study.
+///
+/// # Errors
+/// What the folder says.
+pub fn write_percolation(folder: &Path, study: &PercolationStudy) -> Result<Written, ReportError> {
+    let figures = [spread(study), threshold(study)];
+    let title = "Percolation threshold of the directed cubic lattice";
+    let header = html! { h1 { (title) } };
+    let main = html! {
+        p {
+            "Constrictions of an L × L × L lattice, periodic sideways, opened one by one at random until a path leads from "
+            "the start layer out of the last: the share that is then open. " (whole(study.realisations))
+            " realisations of each size, seed " (study.seed) ", each threshold exact."
+        }
+        (table(study))
+        (fits(study))
+        @for (index, drawn) in figures.iter().enumerate() { (figure(index + 1, drawn)) }
+    };
+    let footer = html! { p.small { "voidwalk " (study.version) ", " (duration(study.seconds)) "." } };
+    super::keep(folder, &figures, &whole_page(title, &header, &main, &footer))
+}
+
+fn table(study: &PercolationStudy) -> Markup {
+    let digits = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.5}"));
+    html! {
+        table {
+            thead { tr {
+                th.n { "L" } th.n { "Mean threshold" } th.n { "95 % interval of the mean" }
+                th.n { "Standard deviation" } th.n { "its standard error" }
+            } }
+            tbody { @for size in &study.sizes { tr {
+                td.n { (size.size) }
+                td.n { (digits(Some(size.threshold.mean))) }
+                td.n { (digits(size.threshold.low)) " to " (digits(size.threshold.high)) }
+                td.n { (digits(size.threshold.sd)) }
+                td.n { (digits(size.sd_error)) }
+            } } }
+        }
+    }
+}
+
+fn fits(study: &PercolationStudy) -> Markup {
+    let quality = |chi_squared, degrees| {
+        html! { ", χ² = " (significant(chi_squared)) " on " (degrees) " degrees of freedom" }
+    };
+    html! {
+        @if let Some(fit) = &study.one_length {
+            p { "Threshold of the infinite lattice; the known value is " (study.infinite_lattice) ":" }
+            ul {
+                li {
+                    "One length, p(L) = p − a L" sup { "−1/ν" } " with ν = " (NU_PARALLEL) ": " (format!("{:.5}", fit.threshold)) " ± "
+                    (format!("{:.5}", fit.threshold_error)) (quality(fit.chi_squared, fit.degrees))
+                }
+                @if let Some(fit) = &study.many_starts { li {
+                    "Many starts, L d" sup { "ν" } " = b + c ln(L d" sup { "ν/z" } ") with d = p − p(L), z = " (Z) ": "
+                    (format!("{:.5}", fit.threshold)) " (" (format!("{:.5} to {:.5}", fit.threshold_low, fit.threshold_high)) ", 68 %)"
+                    (quality(fit.chi_squared, fit.degrees))
+                } }
+                @if let Some(slope) = study.sd_exponent { li {
+                    "The standard deviation falls as L" sup { (format!("{slope:.2}")) } " over all sizes."
+                } }
+            }
+            p.small {
+                "A χ² far above the degrees of freedom says that the law does not describe these sizes; its error then says nothing."
+            }
+        }
+    }
+}
+
+/// Fig. 6 of the paper: standard deviation against size.
+fn spread(study: &PercolationStudy) -> Drawn {
+    let points: Vec<(f64, f64, f64)> = study
+        .sizes
+        .iter()
+        .filter_map(|s| Some((s.size as f64, s.threshold.sd?, s.sd_error.unwrap_or(0.0))))
+        .collect();
+    let widest = points.iter().map(|(x, ..)| *x).fold(1.0, f64::max);
+    let highest = points.iter().map(|(_, sd, error)| sd + 2.0 * error).fold(0.001, f64::max);
+    let x = Axis::linear("Size of the lattice, L (voids along each side)", 0.0, widest);
+    let y = Axis::linear("Standard deviation of the threshold (–)", 0.0, highest);
+    let what = "Standard deviation of the percolation threshold against the size of the lattice";
+    let mut figure = Figure::new("Spread of the percolation threshold", what, "", x, y);
+    figure.add(Line::new(points.iter().map(|(x, sd, _)| (*x, *sd)).collect(), BLUE));
+    for (x, sd, error) in points {
+        let bar = Some((sd - 1.96 * error, sd + 1.96 * error));
+        figure.add(Point::new(x, sd, BLUE, Shape::Circle).y_interval(bar));
+    }
+    let caption = "Standard deviation of the percolation threshold over the realisations, as in Fig. 6 of the paper. Bars: \
+                   95 % intervals, for normal thresholds."
+        .to_owned();
+    Drawn { name: "percolation-sd", caption, figure }
+}
+
+/// Mean threshold against `L^(-1/nu)`, where a power law is a straight line.
+fn threshold(study: &PercolationStudy) -> Drawn {
+    let at = |size: f64| libm::pow(size, -1.0 / NU_PARALLEL);
+    let widest = study.sizes.iter().map(|s| at(s.size as f64)).fold(0.0, f64::max);
+    let means = || study.sizes.iter().map(|s| s.threshold.mean);
+    let lowest = means().fold(study.infinite_lattice, f64::min);
+    let highest = means().fold(study.infinite_lattice, f64::max);
+    let room = 0.1 * (highest - lowest).max(0.001);
+    let mut x = Axis::linear(
+        "L, spaced as L to the power of −1/ν∥; the infinite lattice is at the left",
+        0.0,
+        widest,
+    );
+    let sizes = study.sizes.iter().map(|s| Tick::new(at(s.size as f64), &[&s.size.to_string()]));
+    x = x.with_ticks(std::iter::once(Tick::new(0.0, &["∞"])).chain(sizes).collect());
+    let y = Axis::linear("Mean threshold (–)", lowest - room, highest + room);
+    let what = "Mean percolation threshold against the size of the lattice, with the fitted law";
+    let mut figure = Figure::new("Percolation threshold against size", what, "", x, y);
+    let known = format!("known, {}", study.infinite_lattice);
+    figure.add(Rule::new(Across::Y, study.infinite_lattice, GREY).dash(Dash::Dashed).label(&known));
+    if let Some(fit) = &study.one_length {
+        let ends = [0.0, widest].map(|x| (x, fit.threshold - fit.amplitude * x));
+        figure.add(Line::new(ends.to_vec(), BLUE).label("one length"));
+    }
+    if let Some(fit) = &study.many_starts {
+        // By d, from which L follows: y = b + c ln(L d^(nu / z)) with y = L d^nu, by repetition, which contracts.
+        let least = means().map(|mean| fit.threshold - mean).fold(f64::MAX, f64::min);
+        let most = means().map(|mean| fit.threshold - mean).fold(0.0, f64::max);
+        let size = |d: f64| {
+            (0..200).fold(1.0 / d, |size, _| {
+                let starts = libm::log(size * libm::pow(d, NU_PARALLEL / Z));
+                ((fit.offset + fit.slope * starts) / libm::pow(d, NU_PARALLEL)).max(1.0)
+            })
+        };
+        let at_step = |i: u32| {
+            let d = least * libm::pow(most / least, f64::from(i) / 60.0);
+            (at(size(d)), fit.threshold - d)
+        };
+        let curve = (0..=60).map(at_step).collect();
+        figure.add(Line::new(curve, PURPLE).dash(Dash::Dashed).label("many starts"));
+    }
+    for size in &study.sizes {
+        let bar = size.threshold.low.zip(size.threshold.high);
+        figure
+            .add(Point::new(at(size.size as f64), size.threshold.mean, BLUE, Shape::Circle).y_interval(bar));
+    }
+    let caption =
+        "Mean threshold of each size, and the two laws fitted to them. Bars: 95 % intervals of the mean."
+            .to_owned();
+    Drawn { name: "percolation-threshold", caption, figure }
+}
