@@ -33,15 +33,28 @@ impl Network {
     /// A length of 0, or more constrictions than 32 bits can number.
     pub fn cubic(shape: [u32; 3], curve: &Curve, unit_mm: f64, seed: u64) -> Result<Self, NetworkError> {
         let count = Self::lattice_constrictions(shape)?;
+        let diameter = Self::draw_diameters(count, 0, curve, unit_mm, seed);
+        Self::cubic_from_diameters(shape, diameter, unit_mm)
+    }
+
+    /// `count` independent draws from `curve`, divided by `unit_mm`; the streams of the network's blocks from
+    /// `first_block` on.
+    pub(super) fn draw_diameters(
+        count: usize,
+        first_block: u64,
+        curve: &Curve,
+        unit_mm: f64,
+        seed: u64,
+    ) -> Vec<f32> {
         let mut diameter = vec![0f32; count];
         diameter.par_chunks_mut(BLOCK).enumerate().for_each(|(block, diameters)| {
-            let key = Key { seed, purpose: Purpose::Network, run: 0, increment: 0, chunk: block as u64 };
-            let mut draws = key.generator();
+            let chunk = first_block + block as u64;
+            let mut draws = Key { seed, purpose: Purpose::Network, run: 0, increment: 0, chunk }.generator();
             for diameter in diameters {
                 *diameter = (curve.quantile(unit(draws.next_u64())) / unit_mm) as f32;
             }
         });
-        Self::cubic_from_diameters(shape, diameter, unit_mm)
+        diameter
     }
 
     /// The directed cubic lattice with given diameters, in units of `unit_mm`: exit `e` of void `v`

@@ -43,6 +43,14 @@ pub enum NetworkError {
         /// The value found.
         value: f32,
     },
+    /// A distribution of connectivity that cannot be.
+    #[error("connectivity {value} is not allowed; {allowed}")]
+    Connectivity {
+        /// What was given.
+        value: String,
+        /// What is allowed.
+        allowed: String,
+    },
     /// A row that is not understood.
     #[error("{file}, line {line}, {field}: `{value}` is not allowed; {allowed}")]
     Row {

@@ -5,16 +5,19 @@
 //! base particles; an exit whose target is [`END`] leaves the filter.
 //!
 //! The paper's network is the directed cubic lattice ([`Network::cubic`], Fig. 2): `nx x ny x nz`
-//! voids, periodic in x and y, flow along +z.
+//! voids, periodic in x and y, flow along +z. [`Network::connected`] changes it until its voids have a given
+//! distribution of connectivity (Table 3).
 //!
 //! Diameters are held in units of a reference length ([`Network::unit_mm`]), so that a change of
 //! units by a power of two changes no bit of a walk.
 
+mod connectivity;
 mod cubic;
 mod file;
 mod percolation;
 mod reach;
 
+pub use connectivity::{Connectivity, TABLE_3, TOLERANCE_PERCENT};
 pub use file::NetworkError;
 pub use percolation::percolation_threshold;
 pub use reach::Reach;

@@ -1,0 +1,458 @@
+//! Lattices with a given distribution of void connectivity (paper, section 6, Table 3 and Fig. 20).
+//!
+//! The *connectivity* of a void is the number of its entrances and exits. On the cubic lattice it is 6 for every void:
+//! the inlet of a start node counts as an entrance, the way out of the last layer as an exit. The paper keeps the mean
+//! of 6 but spreads it over 4 to 8: "constrictions were created between diagonally neighbouring voids, or
+//! deleted until the connectivity distribution shown in Table 3 was reached". It does not say in which order,
+//! or which diagonals. Decided here:
+//!
+//! - Every void has six possible exits: the lattice's +x, +y, +z and the three face diagonals +x+y, +x+z, +y+z. All lead in
+//!   positive directions, so the network stays directed: no move leads upstream, and the only cycles are those of the lattice,
+//!   around a periodic side within one layer. A diagonal that would leave the last layer does not exist.
+//! - One possible exit of one void is drawn at a time, uniformly. If it is there, deleting it is proposed, otherwise
+//!   creating it. The proposal is taken when it brings the distribution nearer to the wanted one; *near* is the sum over k of
+//!   | voids with connectivity up to k, less those wanted |. It ends when that sum is 0. So hardly more constrictions are
+//!   changed than must be. Where as many proposals as there are possible exits brought nothing nearer, those that
+//!   leave it as near are taken too, until one does.
+//! - A void never loses its last exit or its last entrance (the inlet of a start node is an entrance).
+//! - The wanted numbers of voids are the percentages rounded by largest remainder. A sum that stays above 0 (parity, or a
+//!   distribution that no such network has) is accepted when every number is within [`TOLERANCE_PERCENT`] of all voids, or one
+//!   void, of what is wanted; otherwise the distribution is refused.
+//!
+//! Constrictions that are kept have the diameters that the cubic lattice has for the same seed; diagonals are further
+//! independent draws from the same curve. Layers are those of the lattice: voids with the same z.
+
+use rand::Rng;
+
+use super::{END, Network, NetworkError};
+use crate::constrictions::Curve;
+use crate::stream::{Key, Purpose, below};
+
+/// Table 3 of the paper: connectivity, and percent of the voids.
+pub const TABLE_3: [(u32, f64); 5] = [(4, 3.5), (5, 22.8), (6, 47.6), (7, 22.6), (8, 3.5)];
+
+/// How far the share of a connectivity may be from what is wanted (percent of all voids).
+pub const TOLERANCE_PERCENT: f64 = 0.05;
+
+/// Possible exits of a void.
+const SLOTS: usize = 6;
+
+/// What each possible exit adds to x, y and z.
+const STEPS: [[u32; 3]; SLOTS] = [[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, 0, 1], [0, 1, 1]];
+
+/// The largest connectivity: six exits and six entrances.
+const MOST: usize = 2 * SLOTS;
+
+/// Proposals without progress, for each possible exit, after which a distribution is given up.
+const PATIENCE: u64 = 60;
+
+/// First block of the stream that diagonals draw their diameters from; those of the lattice begin at 0.
+const FIRST_DIAGONAL_BLOCK: u64 = 1 << 32;
+
+/// A distribution of connectivity: percent of the voids by connectivity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Connectivity {
+    /// Rising connectivity, each with its percent; they sum to 100.
+    percent: Vec<(u32, f64)>,
+}
+
+impl Connectivity {
+    /// That of Table 3.
+    pub fn table_3() -> Self {
+        Self { percent: TABLE_3.to_vec() }
+    }
+
+    /// A distribution from pairs of connectivity and percent of the voids, in any order.
+    ///
+    /// # Errors
+    /// A connectivity outside 2 to 12 or given twice, a percentage that is negative or not finite, or percentages that do
+    /// not sum to 100 within 0.5; the sum is then made exact.
+    pub fn new(percent: &[(u32, f64)]) -> Result<Self, NetworkError> {
+        let refused =
+            |value: String, allowed: &str| Err(NetworkError::Connectivity { value, allowed: allowed.into() });
+        let mut percent = percent.to_vec();
+        percent.sort_by_key(|&(k, _)| k);
+        for &(k, share) in &percent {
+            if !(2..=MOST as u32).contains(&k) {
+                return refused(k.to_string(), "a whole number from 2 (one entrance, one exit) to 12");
+            }
+            if !(share.is_finite() && share >= 0.0) {
+                return refused(format!("{k} = {share}"), "a percentage of the voids, not negative");
+            }
+        }
+        if let Some(twice) = percent.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+            return refused(twice[0].0.to_string(), "every connectivity once");
+        }
+        let sum: f64 = percent.iter().map(|(_, share)| share).sum();
+        if (sum - 100.0).abs() > 0.5 {
+            return refused(format!("a sum of {sum}"), "percentages that sum to 100");
+        }
+        percent.iter_mut().for_each(|(_, share)| *share *= 100.0 / sum);
+        percent.retain(|(_, share)| *share > 0.0);
+        Ok(Self { percent })
+    }
+
+    /// Connectivity and percent of the voids, rising.
+    pub fn percent(&self) -> &[(u32, f64)] {
+        &self.percent
+    }
+
+    /// Voids by connectivity, summing to `voids`: rounded down, then up where the remainder is largest.
+    fn voids(&self, voids: u64) -> [i64; MOST + 1] {
+        let mut counts = [0; MOST + 1];
+        let exact = |share: f64| share / 100.0 * voids as f64;
+        for &(k, share) in &self.percent {
+            counts[k as usize] = exact(share) as i64;
+        }
+        let mut order: Vec<&(u32, f64)> = self.percent.iter().collect();
+        order.sort_by(|a, b| exact(b.1).fract().total_cmp(&exact(a.1).fract()));
+        let missing = voids as i64 - counts.iter().sum::<i64>();
+        for &&(k, _) in order.iter().cycle().take(missing.max(0) as usize) {
+            counts[k as usize] += 1;
+        }
+        counts
+    }
+}
+
+impl Network {
+    /// A lattice of this shape whose voids have this distribution of connectivity; diameters as in [`Network::cubic`].
+    ///
+    /// # Errors
+    /// As [`Network::cubic`], and a distribution that no such network has.
+    ///
+    /// ```
+    /// use voidwalk::constrictions::{Curve, CurveUnit};
+    /// use voidwalk::network::{Connectivity, Network};
+    /// let curve = Curve::from_points(&[(0.0, 0.15), (100.0, 0.35)], CurveUnit::D0f)?;
+    /// let network = Network::connected([10, 10, 20], &curve, 1.0, 7, &Connectivity::table_3())?;
+    /// let six = network.connectivity().iter().filter(|&&k| k == 6).count();
+    /// assert_eq!(six, 952); // 47.6 % of 2,000 voids
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn connected(
+        shape: [u32; 3],
+        curve: &Curve,
+        unit_mm: f64,
+        seed: u64,
+        connectivity: &Connectivity,
+    ) -> Result<Self, NetworkError> {
+        let count = Self::lattice_constrictions(shape)?;
+        if 2 * count as u64 >= u64::from(END) {
+            return Err(NetworkError::Shape { shape });
+        }
+        let mut exits = PossibleExits::cubic(shape);
+        exits.change_to(connectivity, seed)?;
+        let on_axes = Self::draw_diameters(count, 0, curve, unit_mm, seed);
+        let diagonals = exits.present.iter().map(|bits| (bits >> 3).count_ones() as usize).sum();
+        let mut diagonals =
+            Self::draw_diameters(diagonals, FIRST_DIAGONAL_BLOCK, curve, unit_mm, seed).into_iter();
+        let voids = exits.present.len();
+        let mut network = Self {
+            exit_begin: Vec::with_capacity(voids + 1),
+            target: Vec::with_capacity(count),
+            diameter: Vec::with_capacity(count),
+            start: (0..shape[0] * shape[1]).collect(),
+            layer: (0..voids as u32).map(|v| v / (shape[0] * shape[1])).collect(),
+            unit_mm,
+            shape: None,
+        };
+        for void in 0..voids {
+            network.exit_begin.push(network.target.len() as u32);
+            for slot in (0..SLOTS).filter(|slot| exits.present[void] >> slot & 1 == 1) {
+                let Some(target) = exits.target(void as u32, slot) else { continue };
+                network.target.push(target);
+                network.diameter.push(match slot {
+                    0..3 => on_axes[3 * void + slot],
+                    _ => diagonals.next().unwrap_or_default(),
+                });
+            }
+        }
+        network.exit_begin.push(network.target.len() as u32);
+        Ok(network)
+    }
+
+    /// Connectivity of each void: its entrances and exits; that it is a start node counts as an entrance.
+    pub fn connectivity(&self) -> Vec<u32> {
+        let mut connectivity: Vec<u32> =
+            (0..self.voids() as u32).map(|v| self.exits(v).len() as u32).collect();
+        for &target in self.target.iter().filter(|&&target| target != END) {
+            connectivity[target as usize] += 1;
+        }
+        for &void in &self.start {
+            connectivity[void as usize] += 1;
+        }
+        connectivity
+    }
+}
+
+/// The exits that voids have, while they are changed.
+struct PossibleExits {
+    shape: [u32; 3],
+    /// Void, and in bit s whether possible exit s is there.
+    present: Vec<u8>,
+    /// Entrances of each void, its inlet included.
+    entrances: Vec<u8>,
+    /// For each k: voids with connectivity up to k, less those wanted.
+    surplus: [i64; MOST + 1],
+}
+
+impl PossibleExits {
+    fn cubic(shape: [u32; 3]) -> Self {
+        let voids = shape.iter().map(|&n| n as usize).product();
+        Self { shape, present: vec![0b111; voids], entrances: vec![3; voids], surplus: [0; MOST + 1] }
+    }
+
+    /// Where a possible exit leads; `None` for a diagonal out of the last layer.
+    fn target(&self, void: u32, slot: usize) -> Option<u32> {
+        let [nx, ny, nz] = self.shape;
+        let (x, y, z) = (void % nx, void / nx % ny, void / (nx * ny));
+        let [dx, dy, dz] = STEPS[slot];
+        if z + dz == nz {
+            return (slot == 2).then_some(END);
+        }
+        let x = if x + dx == nx { 0 } else { x + dx };
+        let y = if y + dy == ny { 0 } else { y + dy };
+        Some(x + nx * (y + ny * (z + dz)))
+    }
+
+    fn connectivity(&self, void: u32) -> usize {
+        (self.present[void as usize].count_ones() + u32::from(self.entrances[void as usize])) as usize
+    }
+
+    /// Books that a void's connectivity goes from `k` to one more, or one less; how much nearer that is (negative) or not.
+    fn book(&mut self, k: usize, more: bool) -> i64 {
+        // One more: the voids up to k are one fewer. One less: those up to k - 1 are one more.
+        let (at, by) = if more { (k, -1) } else { (k - 1, 1) };
+        let before = self.surplus[at].abs();
+        self.surplus[at] += by;
+        self.surplus[at].abs() - before
+    }
+
+    /// Creates or deletes a possible exit.
+    fn toggle(&mut self, void: u32, slot: usize, target: u32, more: bool) -> i64 {
+        let mut change = self.book(self.connectivity(void), more);
+        self.present[void as usize] ^= 1 << slot;
+        if target != END {
+            change += self.book(self.connectivity(target), more);
+            let entrances = &mut self.entrances[target as usize];
+            *entrances = if more { *entrances + 1 } else { *entrances - 1 };
+        }
+        change
+    }
+
+    /// Whether an exit can be deleted without leaving a void without exit or entrance.
+    fn spare(&self, void: u32, target: u32) -> bool {
+        self.present[void as usize].count_ones() > 1 && (target == END || self.entrances[target as usize] > 1)
+    }
+
+    fn change_to(&mut self, wanted: &Connectivity, seed: u64) -> Result<(), NetworkError> {
+        let voids = self.present.len() as u64;
+        let counts = wanted.voids(voids);
+        let mut sum = 0;
+        for (k, count) in counts.iter().enumerate() {
+            sum += count;
+            self.surplus[k] = if k >= 6 { voids as i64 } else { 0 } - sum;
+        }
+        let mut distance: i64 = self.surplus.iter().map(|s| s.abs()).sum();
+        let mut draws =
+            Key { seed, purpose: Purpose::Connectivity, run: 0, increment: 0, chunk: 0 }.generator();
+        let possible = SLOTS as u64 * voids;
+        let mut without_progress = 0;
+        while distance > 0 && without_progress < PATIENCE * possible + 100_000 {
+            without_progress += 1;
+            let drawn = below(draws.next_u64(), possible);
+            let (void, slot) = ((drawn / SLOTS as u64) as u32, (drawn % SLOTS as u64) as usize);
+            let Some(target) = self.target(void, slot) else { continue };
+            let more = self.present[void as usize] >> slot & 1 == 0;
+            if !more && !self.spare(void, target) {
+                continue;
+            }
+            let change = self.toggle(void, slot, target, more);
+            if change < 0 {
+                distance += change;
+                without_progress = 0;
+            } else if change > 0 || without_progress <= possible {
+                self.toggle(void, slot, target, !more);
+            }
+        }
+        self.check(&counts)
+    }
+
+    /// Whether every number of voids is near enough to what is wanted.
+    fn check(&self, counts: &[i64; MOST + 1]) -> Result<(), NetworkError> {
+        let voids = self.present.len() as f64;
+        let off = |k: usize| self.surplus[k] - if k == 0 { 0 } else { self.surplus[k - 1] };
+        let tolerance = (TOLERANCE_PERCENT / 100.0 * voids).max(1.0);
+        if (0..=MOST).all(|k| off(k).abs() as f64 <= tolerance) {
+            return Ok(());
+        }
+        let list = |count: &dyn Fn(usize) -> i64| {
+            let percent = |k: usize| format!("{k} = {:.2}", 100.0 * count(k) as f64 / voids);
+            (0..=MOST).filter(|&k| count(k) != 0).map(percent).collect::<Vec<_>>().join(", ")
+        };
+        Err(NetworkError::Connectivity {
+            value: list(&|k| counts[k]),
+            allowed: format!(
+                "a distribution (percent of voids by connectivity) that adding diagonals and deleting constrictions reaches; \
+                 the nearest found was {}",
+                list(&|k| counts[k] + off(k))
+            ),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::constrictions::CurveUnit;
+    use proptest::prelude::*;
+
+    fn curve() -> Curve {
+        Curve::from_points(&[(0.0, 0.15), (100.0, 0.35)], CurveUnit::D0f).unwrap()
+    }
+
+    fn connected(shape: [u32; 3], seed: u64, percent: &[(u32, f64)]) -> Result<Network, NetworkError> {
+        Network::connected(shape, &curve(), 1.0, seed, &Connectivity::new(percent)?)
+    }
+
+    fn counts(network: &Network) -> [usize; MOST + 1] {
+        let mut counts = [0; MOST + 1];
+        network.connectivity().iter().for_each(|&k| counts[k as usize] += 1);
+        counts
+    }
+
+    #[test]
+    fn table_3_is_met_to_the_void() {
+        let network = connected([40, 40, 60], 1, &TABLE_3).unwrap();
+        assert_eq!(counts(&network)[4..9], [3360, 21_888, 45_696, 21_696, 3360]);
+        let mean = network.connectivity().iter().sum::<u32>() as f64 / 96_000.0;
+        assert!((mean - 5.998).abs() < 1e-9, "{mean}");
+    }
+
+    /// Steps lead to x, y, z or one more, around the periodic sides; without the steps over a seam nothing is cyclic, since
+    /// every step then leads to a larger number.
+    fn check_directed(network: &Network, shape: [u32; 3]) {
+        let [nx, ny, nz] = shape;
+        let place = |v: u32| [v % nx, v / nx % ny, v / (nx * ny)];
+        let upstream = network.upstream();
+        for (c, &target) in network.targets().iter().enumerate() {
+            let from = place(upstream[c]);
+            if target == END {
+                assert_eq!(from[2], nz - 1);
+                continue;
+            }
+            let to = place(target);
+            let step = [(to[0] + nx - from[0]) % nx, (to[1] + ny - from[1]) % ny, to[2] - from[2]];
+            assert!(STEPS.contains(&step), "{from:?} {to:?}");
+            let over_seam = to[0] < from[0] || to[1] < from[1];
+            assert!(over_seam || target > upstream[c]);
+        }
+        let (begin, _) = network.entrances();
+        for void in 0..network.voids() as u32 {
+            let start = void < nx * ny;
+            assert_eq!(network.layer_of()[void as usize], place(void)[2]);
+            assert!(
+                !network.exits(void).is_empty() && (start || begin[void as usize + 1] > begin[void as usize])
+            );
+        }
+        assert_eq!(network.layers(), nz as usize);
+    }
+
+    #[test]
+    fn every_step_leads_in_a_positive_direction() {
+        check_directed(&connected([12, 9, 15], 3, &TABLE_3).unwrap(), [12, 9, 15]);
+    }
+
+    #[test]
+    fn kept_constrictions_keep_their_diameters_and_diagonals_follow_the_curve() {
+        let shape = [20, 20, 30];
+        let cubic = Network::cubic(shape, &curve(), 1.0, 5).unwrap();
+        let network = connected(shape, 5, &TABLE_3).unwrap();
+        let (mut kept, mut sum, mut diagonals) = (0, 0.0, 0.0);
+        for void in 0..network.voids() as u32 {
+            for exit in network.exits(void) {
+                let (target, d) = (network.targets()[exit], network.diameters()[exit]);
+                let on_axis = cubic.exits(void).find(|&c| cubic.targets()[c] == target);
+                match on_axis {
+                    Some(c) => {
+                        assert_eq!(d, cubic.diameters()[c]);
+                        kept += 1;
+                    }
+                    None => {
+                        sum += f64::from(d);
+                        diagonals += 1.0;
+                    }
+                }
+            }
+        }
+        // A void that goes from 6 to k takes | k - 6 | changes, and a change serves two voids: 29.8 % of the voids are entrances or
+        // exits lost, 29.6 % gained. Of 36,000 constrictions 1,788 must go and 1,776 diagonals be made; few more do.
+        let deleted = cubic.constrictions() - kept;
+        assert!(
+            (1788..1900).contains(&deleted) && (1776.0..1900.0).contains(&diagonals),
+            "{deleted} {diagonals}"
+        );
+        // Mean of a uniform curve: 0.25, standard error 0.0577 / sqrt(1500) at most.
+        assert!((sum / diagonals - 0.25).abs() < 5.0 * 0.0577 / f64::sqrt(diagonals));
+    }
+
+    #[test]
+    fn the_same_seed_gives_the_same_network_on_any_number_of_threads() {
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| connected([16, 16, 20], 9, &TABLE_3).unwrap())
+        };
+        let one = on(1);
+        assert_eq!(one, on(3));
+        assert_ne!(one, connected([16, 16, 20], 10, &TABLE_3).unwrap());
+    }
+
+    #[test]
+    fn what_no_such_network_has_is_refused_with_the_nearest() {
+        let error = connected([6, 6, 6], 1, &[(12, 100.0)]).unwrap_err().to_string();
+        assert!(error.contains("the nearest found was") && error.contains("12 = 100"), "{error}");
+        for (percent, message) in [
+            (vec![(1, 100.0)], "from 2"),
+            (vec![(13, 100.0)], "to 12"),
+            (vec![(6, 90.0)], "a sum of 90"),
+            (vec![(6, 50.0), (6, 50.0)], "every connectivity once"),
+            (vec![(6, -1.0), (5, 101.0)], "not negative"),
+            (vec![(6, f64::NAN)], "not negative"),
+        ] {
+            let error = connected([3, 3, 3], 1, &percent).unwrap_err().to_string();
+            assert!(error.contains(message), "{error}");
+        }
+    }
+
+    #[test]
+    fn all_six_is_the_cubic_lattice() {
+        let shape = [5, 4, 6];
+        let network = connected(shape, 2, &[(6, 100.0)]).unwrap();
+        let cubic = Network::cubic(shape, &curve(), 1.0, 2).unwrap();
+        assert_eq!((network.targets(), network.diameters()), (cubic.targets(), cubic.diameters()));
+        assert_eq!(cubic.connectivity(), vec![6; 120]);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(40))]
+        /// Around a mean of 5 to 7 any distribution over 3 to 9 is met.
+        #[test]
+        fn distributions_are_met(
+            shares in proptest::array::uniform7(0.0f64..1.0), seed: u64, shape in [6u32..12, 6u32..12, 6u32..12],
+        ) {
+            let sum: f64 = shares.iter().sum();
+            prop_assume!(sum > 0.5);
+            let mean = shares.iter().zip(3..).map(|(s, k)| s / sum * f64::from(k)).sum::<f64>();
+            prop_assume!((5.0..=7.0).contains(&mean));
+            let percent: Vec<(u32, f64)> = (3..).zip(shares.map(|s| 100.0 * s / sum)).collect();
+            let network = connected(shape, seed, &percent).unwrap();
+            check_directed(&network, shape);
+            let voids = network.voids() as f64;
+            let found = counts(&network);
+            for (k, share) in percent {
+                // Rounding moves a number by one, the tolerance by one more.
+                prop_assert!((found[k as usize] as f64 - share / 100.0 * voids).abs() <= 2.0);
+            }
+        }
+    }
+}
