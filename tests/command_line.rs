@@ -454,3 +454,39 @@ fn a_percolation_study_fills_a_folder() {
     assert_eq!(voidwalk(&["percolation", "--sizes", "0"]).status.code(), Some(2));
     assert!(!none.exists());
 }
+
+/// A network that is not uniform is walked, reported by connectivity, and comes again from its own folder bit for bit.
+#[test]
+fn connectivity_is_spread_and_reported() {
+    let root = tempfile::tempdir().unwrap();
+    for (name, set) in
+        [("a", "network.connectivity=table3"), ("b", "network.connectivity={3=1,5=34,6=30,7=35}")]
+    {
+        let out = root.path().join(name);
+        assert!(run_small(&out, &["--set", set, "--quiet"]).status.success());
+        let value = outcome(&out);
+        let rows = value["replicates"][0]["runs"][0]["by_connectivity"].as_array().unwrap().clone();
+        let sum = |field: &str| rows.iter().map(|row| row[field].as_u64().unwrap()).sum::<u64>();
+        let run = &value["replicates"][0]["runs"][0];
+        assert_eq!(sum("voids"), 640);
+        assert_eq!(sum("blocked"), run["blocked"].as_u64().unwrap());
+        assert_eq!(sum("retained_in_constrictions"), run["retained_in_constrictions"].as_u64().unwrap());
+        assert_eq!(sum("retained_in_voids"), run["retained_in_voids"].as_u64().unwrap());
+        let wanted: &[u64] = if name == "a" { &[4, 5, 6, 7, 8] } else { &[3, 5, 6, 7] };
+        assert_eq!(rows.iter().map(|r| r["connectivity"].as_u64().unwrap()).collect::<Vec<_>>(), wanted);
+        assert!(fs::read_to_string(out.join("report.html")).unwrap().contains("By connectivity of the void"));
+        let again = root.path().join(format!("{name}-again"));
+        let scene = out.join("scene.toml");
+        let args =
+            ["run", scene.to_str().unwrap(), "--out", again.to_str().unwrap(), "--quiet", "--threads", "1"];
+        assert!(voidwalk(&args).status.success());
+        assert_eq!(without_seconds(outcome(&again)), without_seconds(value));
+    }
+    let none = root.path().join("none");
+    refused(&run_small(&none, &["--set", "network.connectivity={12=100}"]), &["the nearest found was"]);
+    refused(
+        &run_small(&none, &["--set", "network.connectivity=table4"]),
+        &["--set, network.connectivity", "table3"],
+    );
+    assert!(!none.exists());
+}

@@ -12,6 +12,7 @@ pub mod case;
 pub mod conduct;
 pub mod ledger;
 pub mod machine;
+mod network_source;
 pub mod packed;
 pub mod percolation;
 pub mod plan;

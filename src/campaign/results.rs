@@ -9,6 +9,7 @@ use super::case::Case;
 use super::machine::Machine;
 use super::scene::{Amount, BaseGradation, CurveSource, D85, FilterGradation, NetworkSource};
 use super::walks::{Walked, as_it_is, summarise};
+use crate::network::Connectivity;
 use crate::outcome::record::{Manifest, Outcome, Sensitivity};
 use crate::outcome::{MODEL_LEAVES_OUT, Recorded, rules, verdict};
 use crate::store::{Folder, StoreError};
@@ -218,11 +219,20 @@ pub fn resolved(case: &Case) -> String {
         }
     }
     line("network", String::new());
+    if let Some([nx, ny, nz]) = scene.network.shape() {
+        line("nx", nx.to_string());
+        line("ny", ny.to_string());
+        line("nz", nz.to_string());
+    }
     match &scene.network {
-        NetworkSource::Cubic([nx, ny, nz]) => {
-            line("nx", nx.to_string());
-            line("ny", ny.to_string());
-            line("nz", nz.to_string());
+        NetworkSource::Cubic(_) => {}
+        NetworkSource::Connected(_, wanted) if *wanted == Connectivity::table_3() => {
+            line("connectivity", quoted("table3"));
+        }
+        NetworkSource::Connected(_, wanted) => {
+            let shares: Vec<String> =
+                wanted.percent().iter().map(|(k, share)| format!("{k} = {}", number(*share))).collect();
+            line("connectivity", format!("{{ {} }}", shares.join(", ")));
         }
         NetworkSource::File(_) => line("file", kept("network.file")),
     }

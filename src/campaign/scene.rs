@@ -4,6 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
+pub use super::network_source::NetworkSource;
 use super::packed::Recipe;
 use super::settings::{Names, Origin, SceneError, Settings};
 use crate::outcome::Wanted;
@@ -66,6 +67,7 @@ const NAMES: Names = Names {
         "network.ny",
         "network.nz",
         "network.file",
+        "network.connectivity",
         "record.series_every",
         "record.size_curves",
         "record.size_classes",
@@ -121,6 +123,8 @@ const NAMES: Names = Names {
         ("network.file", "network.nx"),
         ("network.file", "network.ny"),
         ("network.file", "network.nz"),
+        ("network.file", "network.connectivity"),
+        ("network.connectivity", "network.file"),
         ("network.nx", "network.file"),
         ("network.ny", "network.file"),
         ("network.nz", "network.file"),
@@ -184,15 +188,6 @@ pub enum Amount {
     MassRatio(f64, Option<u64>),
     /// The number itself.
     Number(u64),
-}
-
-/// The network to walk.
-#[derive(Clone, Debug, PartialEq)]
-pub enum NetworkSource {
-    /// The directed cubic lattice with this many voids along x, y, z.
-    Cubic([u32; 3]),
-    /// A CSV file.
-    File(PathBuf),
 }
 
 /// A scene, each value checked on its own.
@@ -313,7 +308,7 @@ impl Scene {
             grains_per_void: positive(s, "filter.grains_per_void")?,
             base: base(s)?,
             amount: amount(s)?,
-            network: network(s)?,
+            network: NetworkSource::of(s)?,
             wanted: Wanted {
                 series_every: every.unwrap_or(1),
                 size_curves: match curves {
@@ -454,26 +449,6 @@ fn amount(s: &Settings) -> Result<Amount, SceneError> {
         }
         (Some(n), None) => Ok(Amount::Number(n)),
         (None, ratio) => Ok(Amount::MassRatio(ratio.unwrap_or(0.05), cap)),
-    }
-}
-
-fn network(s: &Settings) -> Result<NetworkSource, SceneError> {
-    let file = s.path("network.file")?;
-    let length = |name| s.whole(name, 1..=u64::from(u32::MAX));
-    let shape = [length("network.nx")?, length("network.ny")?, length("network.nz")?];
-    match file {
-        Some(_) if shape.iter().any(Option::is_some) => {
-            Err(s.clash("network.file and network.nx, ny, nz both give the network: keep one"))
-        }
-        Some(path) => Ok(NetworkSource::File(path)),
-        None => {
-            let [nx, ny, nz] = shape;
-            Ok(NetworkSource::Cubic([
-                nx.unwrap_or(40) as u32,
-                ny.unwrap_or(40) as u32,
-                nz.unwrap_or(60) as u32,
-            ]))
-        }
     }
 }
 

@@ -92,6 +92,8 @@ pub enum Value {
     Number(String),
     /// A list.
     List(Vec<Value>),
+    /// A table, in the order in which it was written.
+    Table(Vec<(String, Value)>),
     /// Anything else: a date, a truth value, an integer that is not decimal.
     Other(String),
 }
@@ -107,6 +109,12 @@ impl fmt::Display for Value {
                 let items: Vec<String> = items.iter().take(10).map(ToString::to_string).collect();
                 write!(f, "[{}]", items.join(", "))
             }
+            Self::Table(items) => {
+                let printable = |text: &String| text.chars().filter(|c| !c.is_control()).collect::<String>();
+                let items: Vec<String> =
+                    items.iter().take(14).map(|(k, v)| format!("{} = {v}", printable(k))).collect();
+                write!(f, "{{ {} }}", items.join(", "))
+            }
         }
     }
 }
@@ -121,7 +129,12 @@ impl From<&DeValue<'_>> for Value {
             DeValue::Integer(i) => Self::Other(i.to_string()),
             DeValue::Boolean(b) => Self::Other(b.to_string()),
             DeValue::Datetime(d) => Self::Other(d.to_string()),
-            DeValue::Table(_) => Self::Other("a table".into()),
+            DeValue::Table(items) => Self::Table(
+                items
+                    .iter()
+                    .map(|(key, value)| (key.get_ref().to_string(), value.get_ref().into()))
+                    .collect(),
+            ),
         }
     }
 }
@@ -247,6 +260,11 @@ impl Settings {
         self.values.keys().find(|name| name.starts_with(beginning)).map(String::as_str)
     }
 
+    /// A setting as it was written.
+    pub fn value(&self, name: &str) -> Option<&Value> {
+        self.values.get(name).map(|(value, _)| value)
+    }
+
     /// Whether a setting is given.
     pub fn has(&self, name: &str) -> bool {
         self.values.contains_key(name)
@@ -278,10 +296,7 @@ impl Settings {
         allowed: &str,
     ) -> Result<Option<f64>, SceneError> {
         let Some((value, _)) = self.values.get(name) else { return Ok(None) };
-        let parsed = match value {
-            Value::Number(digits) => digits.parse::<f64>().ok().filter(|n| n.is_finite() && valid(*n)),
-            _ => None,
-        };
+        let parsed = value.number().filter(|n| valid(*n));
         parsed.map(Some).ok_or_else(|| self.refuse(name, allowed))
     }
 
@@ -341,12 +356,19 @@ impl Settings {
     ) -> Result<Option<Vec<f64>>, SceneError> {
         let Some((value, _)) = self.values.get(name) else { return Ok(None) };
         let Value::List(items) = value else { return Err(self.refuse(name, allowed)) };
-        let one = |item: &Value| match item {
-            Value::Number(digits) => digits.parse::<f64>().ok().filter(|n| n.is_finite() && valid(*n)),
-            _ => None,
-        };
+        let one = |item: &Value| item.number().filter(|n| valid(*n));
         let all: Option<Vec<f64>> = items.iter().map(one).collect();
         all.map(Some).ok_or_else(|| self.refuse(name, allowed))
+    }
+}
+
+impl Value {
+    /// A finite number.
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number(digits) => digits.parse::<f64>().ok().filter(|n| n.is_finite()),
+            _ => None,
+        }
     }
 }
 

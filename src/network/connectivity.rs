@@ -87,7 +87,10 @@ impl Connectivity {
         if (sum - 100.0).abs() > 0.5 {
             return refused(format!("a sum of {sum}"), "percentages that sum to 100");
         }
-        percent.iter_mut().for_each(|(_, share)| *share *= 100.0 / sum);
+        // What was made exact before stays as it is, bit for bit.
+        if (sum - 100.0).abs() > 1e-9 {
+            percent.iter_mut().for_each(|(_, share)| *share *= 100.0 / sum);
+        }
         percent.retain(|(_, share)| *share > 0.0);
         Ok(Self { percent })
     }

@@ -1,5 +1,6 @@
 //! The figures of one run at its end, and its rows of the CSV files.
 
+use super::by_connectivity;
 use super::record::{LayerRow, Run, SeriesRow, SizeRow};
 use super::recorder::Recorder;
 use super::verdict::{below_by_count, below_by_mass};
@@ -92,6 +93,7 @@ impl Figures {
             retained_per_void: retained as f64 / network.voids() as f64,
             increments: state.increment,
             particle_moves: tally.particle_moves,
+            by_connectivity: by_connectivity::of_run(network, state),
             seconds,
         };
         Self { run, below_threshold }

@@ -3,11 +3,13 @@
 //! - [`record`] holds the names and shapes of everything in a run folder, [`packing`] of a packing's.
 //! - [`Recorder`] watches a run and keeps what was asked for.
 //! - [`Figures`] are the figures of one run at its end.
+//! - [`by_connectivity`] parts what a run retained by the connectivity of the voids (Table 3).
 //! - [`verdict`] classifies, by mass eroded, one replicate or many.
 //! - [`paper`] holds what the paper states.
 //! - [`rules`] applies the empirical filter rules to the same two curves.
 //! - [`percolation`] puts percolation thresholds of several sizes together.
 
+pub mod by_connectivity;
 mod figures;
 pub mod ledger;
 pub mod packing;

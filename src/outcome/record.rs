@@ -132,8 +132,34 @@ pub struct Run {
     pub increments: u64,
     /// Moves completed, the one that leaves included.
     pub particle_moves: u64,
+    /// The same by connectivity of the void, rising; empty where all voids have the same.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub by_connectivity: Vec<ByConnectivity>,
     /// Wall time, s.
     pub seconds: f64,
+}
+
+/// What the voids of one connectivity (entrances and exits) did in a run; Table 3 of the paper.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ByConnectivity {
+    /// Entrances and exits; that a void is a start node counts as an entrance.
+    pub connectivity: u64,
+    /// Voids that have it.
+    pub voids: u64,
+    /// Their share of all voids.
+    pub voids_fraction: f64,
+    /// Their exits.
+    pub constrictions: u64,
+    /// Those of them that are blocked when the run ends.
+    pub blocked: u64,
+    /// Particles of the run stopped by them.
+    pub retained_in_constrictions: u64,
+    /// Particles of the run retained in these voids.
+    pub retained_in_voids: u64,
+    /// Particles retained either way, over these voids.
+    pub retained_per_void: f64,
+    /// Their share of all particles retained either way.
+    pub retained_fraction: f64,
 }
 
 /// Statistics of one run over the replicates.
@@ -262,6 +288,9 @@ pub struct Network {
     pub start_nodes: u64,
     /// Number of layers.
     pub layers: u64,
+    /// Rows of (connectivity, percent of the voids), rising; empty where all voids have the same.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub connectivity: Vec<[f64; 2]>,
     /// Thickness of filter that it stands for: layers times D50F by number; `None` where a layer has no thickness.
     pub thickness_mm: Option<f64>,
 }
@@ -272,6 +301,8 @@ pub struct Network {
 pub enum NetworkKind {
     /// Directed cubic lattice.
     Cubic,
+    /// The lattice changed until its voids have a given distribution of connectivity.
+    Connected,
     /// Read from a file.
     File,
 }

@@ -15,6 +15,7 @@
 //! figures, the rules of practice, tables, and how to make the same again.
 
 mod campaign;
+mod connectivity;
 pub mod figures;
 mod folder;
 mod numbers;

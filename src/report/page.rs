@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 
+use super::connectivity::by_connectivity;
 use super::figures::{shorten, visible};
 use super::folder::RunFolder;
 use super::numbers::{
@@ -48,6 +49,7 @@ pub(super) fn page(folder: &RunFolder, verdict: &Drawn, figures: &[Drawn]) -> St
         (missing(folder, figures))
         (rules(outcome))
         (results(outcome))
+        (by_connectivity(outcome))
         (replicates(outcome))
         (sensitivity(outcome))
         (inputs(outcome, folder.packing.as_ref()))
@@ -347,7 +349,12 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
         (NetworkKind::Cubic, Some(nx), Some(ny), Some(nz)) => {
             format!("directed cubic lattice, {nx} × {ny} × {nz} voids ({nz} along the flow)")
         }
-        (NetworkKind::Cubic, ..) => "directed cubic lattice".to_owned(),
+        (NetworkKind::Connected, Some(nx), Some(ny), Some(nz)) => {
+            format!(
+                "directed lattice, {nx} × {ny} × {nz} voids ({nz} along the flow), diagonals added and constrictions deleted"
+            )
+        }
+        (NetworkKind::Cubic | NetworkKind::Connected, ..) => "directed lattice".to_owned(),
         (NetworkKind::File, ..) => "read from a file".to_owned(),
     };
     html! {

@@ -69,6 +69,7 @@ pub fn outcome(replicates: u64) -> Outcome {
             retained_per_void: 149.4,
             increments: 404 + replicate,
             particle_moves: 1_904_220_114,
+            by_connectivity: Vec::new(),
             seconds: 11.9,
         }
     };
@@ -166,6 +167,7 @@ pub fn outcome(replicates: u64) -> Outcome {
                 constrictions: 288_000,
                 start_nodes: 1_600,
                 layers: 60,
+                connectivity: Vec::new(),
                 thickness_mm: Some(60.0 * 4.93),
             },
             mass_ratio: Some(0.05),

@@ -2,6 +2,7 @@
 
 mod files;
 mod record;
+mod sizes;
 mod warnings;
 
 pub(super) use files::Files;
@@ -10,6 +11,7 @@ pub use files::Input;
 use super::packed::PackedFilter;
 use super::scene::{Amount, BaseGradation, D85, FilterGradation, NetworkSource, Scene};
 use super::settings::SceneError;
+use super::walks::replicate_seed;
 use crate::constrictions::{Curve, CurveError, CurveUnit, ShippedFilter};
 use crate::gradation::{BaseSupply, Gradation, GradationError, NumberError, SizeSampler, base_particles};
 use crate::network::{Network, NetworkError};
@@ -91,8 +93,10 @@ pub struct Case {
     pub unit_mm: f64,
     /// The network, where it comes from a file.
     pub network_file: Option<Network>,
-    /// Voids, constrictions, start nodes, layers.
+    /// Voids, constrictions (of the first replicate), start nodes, layers.
     pub counts: [u64; 4],
+    /// Connectivity and percent of the voids, where not all voids have the same.
+    pub connectivity: Vec<[f64; 2]>,
     /// Files that were read.
     pub inputs: Vec<Input>,
 }
@@ -135,7 +139,7 @@ impl Case {
         let unit_mm = filter.smallest_mm();
         let network_file = match &scene.network {
             NetworkSource::File(path) => Some(files.network(path, unit_mm)?),
-            NetworkSource::Cubic(_) => None,
+            _ => None,
         };
         let curve = match (&network_file, curve) {
             (Some(network), _) => curve_of(network)?,
@@ -149,16 +153,15 @@ impl Case {
             (None, None) => return Err(scene.clash("filter.curve is missing").into()),
         };
         let base = base_gradation(&scene, &filter, &curve, unit_mm, &mut files)?;
-        let counts = match (&network_file, &scene.network) {
-            (Some(n), _) => {
-                [n.voids() as u64, n.constrictions() as u64, n.start().len() as u64, n.layers() as u64]
+        let (counts, connectivity) = match (&network_file, &scene.network) {
+            (Some(n), _) => (sizes::of_network(n), sizes::connectivity_of(n)),
+            (None, NetworkSource::Connected(shape, wanted)) => {
+                sizes::of_connected(*shape, wanted, &curve, unit_mm, replicate_seed(scene.seed, 1))?
             }
-            (None, NetworkSource::Cubic(shape)) => {
-                let [nx, ny, nz] = shape.map(u64::from);
-                let constrictions = Network::lattice_constrictions(*shape)? as u64;
-                [constrictions / 3, constrictions, nx * ny, nz]
+            (None, source) => {
+                let shape = source.shape().expect("a network file was read above");
+                (sizes::of_lattice(shape)?, Vec::new())
             }
-            (None, NetworkSource::File(_)) => unreachable!("a network file was read above"),
         };
         // The grains per void of a shipped packing say nothing of a network from elsewhere.
         let of_shipped = shipped.filter(|_| network_file.is_none()).map(|s| s.grains_per_void);
@@ -198,6 +201,7 @@ impl Case {
             unit_mm,
             network_file,
             counts,
+            connectivity,
             inputs: files.0,
             scene,
         })
@@ -210,6 +214,9 @@ impl Case {
     pub fn network(&self, seed: u64) -> Result<Network, NetworkError> {
         match (&self.network_file, &self.scene.network) {
             (None, NetworkSource::Cubic(shape)) => Network::cubic(*shape, &self.curve, self.unit_mm, seed),
+            (None, NetworkSource::Connected(shape, wanted)) => {
+                Network::connected(*shape, &self.curve, self.unit_mm, seed, wanted)
+            }
             (file, _) => Ok(file.clone().expect("a network from a file was read")),
         }
     }

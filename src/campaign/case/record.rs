@@ -21,13 +21,20 @@ impl Case {
         let pairs = |points: Vec<(f64, f64)>| points.into_iter().map(|(a, b)| [a, b]).collect();
         let [voids, constrictions, start_nodes, layers] = self.counts;
         let d50_by_number = self.filter.d_by_number(50.0).unwrap_or(f64::NAN);
-        let (kind, name, shape) = match &self.scene.network {
-            NetworkSource::Cubic(n) => (
-                record::NetworkKind::Cubic,
-                format!("cubic {} x {} x {}", n[0], n[1], n[2]),
-                n.map(|n| Some(u64::from(n))),
-            ),
-            NetworkSource::File(path) => (record::NetworkKind::File, path.display().to_string(), [None; 3]),
+        let cubic = |n: &[u32; 3]| format!("cubic {} x {} x {}", n[0], n[1], n[2]);
+        let (kind, name) = match &self.scene.network {
+            NetworkSource::Cubic(n) => (record::NetworkKind::Cubic, cubic(n)),
+            NetworkSource::Connected(n, wanted) => {
+                let shares: Vec<String> =
+                    wanted.percent().iter().map(|(k, share)| format!("{k}: {share:.1} %")).collect();
+                let name = format!("{} with connectivity {}", cubic(n), shares.join(", "));
+                (record::NetworkKind::Connected, name)
+            }
+            NetworkSource::File(path) => (record::NetworkKind::File, path.display().to_string()),
+        };
+        let shape = match self.scene.network.shape() {
+            Some(shape) => shape.map(|n| Some(u64::from(n))),
+            None => [None; 3],
         };
         let curve_name = match (&self.network_file, &self.scene.curve) {
             (None, None) if self.packed.is_some() => "measured on its packing".to_string(),
@@ -88,6 +95,7 @@ impl Case {
                 constrictions,
                 start_nodes,
                 layers,
+                connectivity: self.connectivity.clone(),
                 thickness_mm: self.network_file.is_none().then_some(layers as f64 * d50_by_number),
             },
             mass_ratio: self.mass_ratio,

@@ -1,0 +1,59 @@
+//! The section on connectivity of a report page: Table 3 of the paper for this run.
+
+use maud::{Markup, html};
+
+use super::numbers::{percent, significant, whole};
+use super::run_figures::run_name;
+use crate::outcome::by_connectivity::of_replicates;
+use crate::outcome::record::{ByConnectivity, Outcome};
+
+/// Nothing where all voids have the same connectivity.
+pub(super) fn by_connectivity(outcome: &Outcome) -> Markup {
+    let runs: Vec<(u64, Vec<ByConnectivity>)> = outcome
+        .summary
+        .iter()
+        .map(|run| (run.run, of_replicates(&outcome.replicates, run.run)))
+        .filter(|(_, rows)| !rows.is_empty())
+        .collect();
+    html! {
+        @if !runs.is_empty() {
+            h2 { "By connectivity of the void" }
+            p {
+                "A void’s connectivity is the number of its entrances and exits. The network is not uniform: voids with few "
+                "connections close early and then retain whatever enters (Table 3 of the paper). All replicates together."
+            }
+            @for (run, rows) in &runs { (table(*run, rows)) }
+        }
+    }
+}
+
+fn table(run: u64, rows: &[ByConnectivity]) -> Markup {
+    let sum = |of: fn(&ByConnectivity) -> u64| rows.iter().map(of).sum::<u64>();
+    let retained = sum(|r| r.retained_in_constrictions + r.retained_in_voids);
+    let blocked = |blocked: u64, all: u64| percent(blocked as f64 / all.max(1) as f64);
+    html! {
+        h3 { span class={ "run-" (run) } { (run_name(run)) } }
+        div.scroll { table {
+            thead { tr {
+                th.n { "Connectivity" } th.n { "Share of voids" } th.n { "Retained per void" } th.n { "Share of retained" }
+                th.n { "Exits blocked" }
+            } }
+            tbody {
+                @for row in rows { tr {
+                    td.n { (row.connectivity) }
+                    td.n { (percent(row.voids_fraction)) }
+                    td.n { (significant(row.retained_per_void)) }
+                    td.n { (percent(row.retained_fraction)) }
+                    td.n { (blocked(row.blocked, row.constrictions)) }
+                } }
+                tr {
+                    th { "All (" (whole(sum(|r| r.voids))) " voids)" }
+                    td.n { (percent(1.0)) }
+                    td.n { (significant(retained as f64 / sum(|r| r.voids) as f64)) }
+                    td.n { (percent(1.0)) }
+                    td.n { (blocked(sum(|r| r.blocked), sum(|r| r.constrictions))) }
+                }
+            }
+        } }
+    }
+}
