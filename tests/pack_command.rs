@@ -184,3 +184,31 @@ fn a_scene_with_a_density_packs_once_and_runs_the_whole_chain() {
     }
     assert!(fs::read_to_string(at.join("r1/outcome.json")).unwrap().contains("measured on its packing"));
 }
+
+#[test]
+fn a_guess_by_inscribed_circles_walks_without_a_packing_and_says_so() {
+    let text = "replicates = 2\n[filter]\ncu = 1.5\nestimate = 0\ngrains_per_void = 0.6\n[base]\ncu = 1.5\nd85_at_dc = 5\n\
+        [network]\nnx = 6\nny = 6\nnz = 8\n[record]\nsensitivity = []\n";
+    let (_root, at) = with_filter(text);
+    let output = call(&at, &["run", "filter.toml", "--out", "r1"]);
+    done(&output);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("a guess from circles inscribed"));
+    assert!(!at.join("voidwalk-packings").exists());
+    done(&call(&at.join("r1"), &["run", "scene.toml", "--out", "../r2"]));
+    let read = |r: &str| fs::read(at.join(r).join("series.csv")).unwrap();
+    assert_eq!(read("r1"), read("r2"));
+    let clash = call(
+        &at,
+        &[
+            "run",
+            "filter.toml",
+            "--set",
+            "filter.grains_per_void=1",
+            "--out",
+            "r3",
+            "--set",
+            "network.file=n.csv",
+        ],
+    );
+    refused(&clash, "keep one");
+}

@@ -164,7 +164,9 @@ pub fn resolved(case: &Case) -> String {
     line("replicates", scene.replicates.to_string());
     line("inject_share", number(scene.inject_share));
     line("filter", String::new());
-    if case.packed.is_some() {
+    if let Some(density) = scene.estimate {
+        line("estimate", number(density));
+    } else if case.packed.is_some() {
         line("curve", kept("filter.curve"));
     } else if let Some(source) = &scene.curve {
         line("curve", named(source, "filter.curve"));

@@ -30,6 +30,7 @@ const NAMES: Names = Names {
         "filter.grains_per_void",
         "filter.density",
         "filter.friction",
+        "filter.estimate",
         "packing.merge_overlap",
         "packing.grains",
         "packing.seed",
@@ -75,6 +76,12 @@ const NAMES: Names = Names {
         "record.sensitivity_replicates",
     ],
     replaces: &[
+        ("filter.estimate", "filter.curve"),
+        ("filter.curve", "filter.estimate"),
+        ("filter.estimate", "filter.density"),
+        ("filter.density", "filter.estimate"),
+        ("filter.estimate", "filter.friction"),
+        ("filter.friction", "filter.estimate"),
         ("filter.curve", "filter.density"),
         ("filter.curve", "filter.friction"),
         ("filter.density", "filter.curve"),
@@ -209,6 +216,8 @@ pub struct Scene {
     pub curve: Option<CurveSource>,
     /// How the filter is to be packed, where it is.
     pub recipe: Option<Recipe>,
+    /// Relative density at which circles inscribed between touching grains stand for its constrictions, where they do.
+    pub estimate: Option<f64>,
     /// The filter's gradation.
     pub filter: FilterGradation,
     /// Filter grains per void; from the shipped curve where it is not given.
@@ -297,6 +306,11 @@ impl Scene {
         let filter = filter(s)?;
         Ok(Self {
             recipe: Recipe::new(s, &filter)?,
+            estimate: s.number(
+                "filter.estimate",
+                |n| (0.0..=1.0).contains(&n),
+                "a relative density from 0 (loose) to 1 (dense)",
+            )?,
             name: name.into(),
             seed: s.whole("seed", 0..=u64::MAX)?.unwrap_or(1),
             engine,
@@ -358,9 +372,17 @@ fn positive(s: &Settings, name: &str) -> Result<Option<f64>, SceneError> {
 }
 
 fn curve(s: &Settings) -> Result<Option<CurveSource>, SceneError> {
+    if let Some(other) =
+        ["filter.curve", "filter.density", "filter.friction", "network.file"].iter().find(|n| s.has(n))
+        && s.has("filter.estimate")
+    {
+        return Err(s.clash(format!(
+            "filter.estimate and {other} both say what the filter's constrictions are: keep one"
+        )));
+    }
     let source = named_curve(s, "filter.curve")?;
-    let to_be_packed = s.has("filter.density") || s.has("filter.friction");
-    if source.is_none() && !s.has("network.file") && !to_be_packed {
+    let ways = ["filter.density", "filter.friction", "filter.estimate", "network.file"];
+    if source.is_none() && !ways.iter().any(|way| s.has(way)) {
         return Err(s.clash(
             "filter.curve is missing: a shipped name, or a CSV file with percent_smaller,diameter_mm; or filter.density, for a filter to be packed",
         ));

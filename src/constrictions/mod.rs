@@ -3,9 +3,11 @@
 //! ```text
 //! Packing -> Triangulation -> voids, discs -> Constrictions -> Curve
 //! ```
+//! [`inscribed()`] guesses a curve from the gradation alone.
 
 mod curve;
 mod discs;
+mod inscribed;
 mod measure;
 mod shipped;
 mod summary;
@@ -14,6 +16,7 @@ mod triangulation;
 mod voids;
 
 pub use curve::{Curve, CurveError, CurveUnit};
+pub use inscribed::inscribed;
 pub use measure::{Constrictions, ConstrictionsError, DEFAULT_MERGE_OVERLAP, Facets};
 pub use shipped::{ShippedFilter, find, shipped};
 pub use summary::{SUMMARY_PERCENT, Summary};

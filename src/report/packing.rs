@@ -57,6 +57,12 @@ fn curves(packed: &Packed) -> Drawn {
     figure.add(
         Line::new(constrictions, VERMILLION).width(2.5).dash(Dash::Dashed).label("constrictions,\nby number"),
     );
+    for (rows, name) in
+        packed.record.inscribed.iter().zip(["inscribed circles, dense", "inscribed circles, loose"])
+    {
+        let guess = rows.iter().map(|row| (row[0], row[1])).collect();
+        figure.add(Line::new(guess, GREY).width(1.2).dash(Dash::Dotted).label(name));
+    }
     for percent in [5.0, 50.0] {
         if let Some(d) = dc(&packed.summary, percent) {
             let label = format!("Dc{percent} = {} mm", significant(d));
@@ -65,7 +71,9 @@ fn curves(packed: &Packed) -> Drawn {
     }
     let caption = format!(
         "The filter’s gradation (percent finer by mass) and its constrictions (percent smaller by number). Voids whose \
-         inscribed spheres overlap by at least {} of the smaller one’s radius count as one void.",
+         inscribed spheres overlap by at least {} of the smaller one’s radius count as one void. Dotted: what circles inscribed \
+         between three (dense) and four (loose) touching grains would give without a packing; the wider the gradation, the \
+         worse that guess.",
         significant(packed.summary.merge_overlap)
     );
     Drawn { name: "curves", caption, figure }

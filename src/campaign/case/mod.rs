@@ -12,7 +12,7 @@ use super::packed::PackedFilter;
 use super::scene::{Amount, BaseGradation, D85, FilterGradation, NetworkSource, Scene};
 use super::settings::SceneError;
 use super::walks::replicate_seed;
-use crate::constrictions::{Curve, CurveError, CurveUnit, ShippedFilter};
+use crate::constrictions::{Curve, CurveError, CurveUnit, ShippedFilter, inscribed};
 use crate::gradation::{BaseSupply, Gradation, GradationError, NumberError, SizeSampler, base_particles};
 use crate::network::{Network, NetworkError};
 use crate::outcome::record::Ratios;
@@ -135,6 +135,10 @@ impl Case {
             FilterGradation::Sieve(path, d0_mm) => {
                 files.sieve(path, *d0_mm, "filter.sieve", "filter-sieve.csv")?
             }
+        };
+        let curve = match scene.estimate {
+            Some(density) => Some((inscribed(&filter, density)?, None)),
+            None => curve,
         };
         let unit_mm = filter.smallest_mm();
         let network_file = match &scene.network {
@@ -300,6 +304,9 @@ impl Case {
             Some(_) => "packing, triangulation and constriction curve: the network is given".to_string(),
             None if self.packed.is_some() => {
                 "a given constriction curve: it is measured on the packing".to_string()
+            }
+            None if self.scene.estimate.is_some() => {
+                "packing and triangulation: the constriction curve is guessed from the gradation".to_string()
             }
             None => "packing and triangulation: the constriction curve is given".to_string(),
         }];

@@ -38,6 +38,9 @@ impl Case {
         };
         let curve_name = match (&self.network_file, &self.scene.curve) {
             (None, None) if self.packed.is_some() => "measured on its packing".to_string(),
+            (None, None) if self.scene.estimate.is_some() => {
+                "guessed from the gradation by inscribed circles".to_string()
+            }
             (Some(_), _) | (None, None) => "the network's own constrictions".to_string(),
             (None, Some(CurveSource::Shipped(name))) => name.clone(),
             (None, Some(CurveSource::File(path))) => path.display().to_string(),
@@ -107,7 +110,7 @@ impl Case {
     /// Whether lengths are in units of the smallest filter grain: a scale-free curve with d0_mm = 1.
     pub fn is_scale_free(&self) -> bool {
         matches!(self.scene.filter, FilterGradation::Linear { d0_mm, .. } if d0_mm == 1.0)
-            && (self.shipped.is_some() || self.packed.is_some())
+            && (self.shipped.is_some() || self.packed.is_some() || self.scene.estimate.is_some())
             && self.network_file.is_none()
             && matches!(
                 self.scene.base,

@@ -39,6 +39,13 @@ impl Case {
                 shipped.name, shipped.cu
             ));
         }
+        if self.scene.estimate.is_some() {
+            warnings.push(
+                "the constriction curve is a guess from circles inscribed between three or four grains; the wider the \
+                 filter's gradation, the more it is off. filter.density packs the grains and measures it"
+                    .into(),
+            );
+        }
         if self.filter.tail_mass_fraction() > 0.0 {
             warnings.push(format!(
                 "{:.1} % of the filter is finer than its finest sieve: its grains are not in Eq. (2), which then asks for too \

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use super::Order;
-use crate::constrictions::{Constrictions, ConstrictionsError, CurveError};
+use crate::constrictions::{Constrictions, ConstrictionsError, CurveError, inscribed};
 use crate::outcome::packing::PackingRecord;
 use crate::packing::{
     Cell, Compression, PackReport, Packing, PackingError, Progress, Settings, draw, random_start,
@@ -80,7 +80,7 @@ pub fn make(folder: &Folder, order: &Order, watch: &Watch) -> Result<(), PackErr
         folder.write(name, text.as_bytes())?;
     }
     let seconds = seconds_before + begun.elapsed().as_secs_f64();
-    let record = serde_json::to_string_pretty(&record(order, &packing, &report, seconds))? + "\n";
+    let record = serde_json::to_string_pretty(&record(order, &packing, &report, seconds)?)? + "\n";
     folder.write(RECORD, record.as_bytes())?;
     folder.remove(STATE)?;
     Ok(())
@@ -134,7 +134,12 @@ fn resume(settings: &Settings, bytes: &[u8]) -> Result<(Compression, f64), Strin
     Ok((compression, f64::from_bits(u64::from_le_bytes(*seconds))))
 }
 
-fn record(order: &Order, packing: &Packing, report: &PackReport, seconds: f64) -> PackingRecord {
+fn record(
+    order: &Order,
+    packing: &Packing,
+    report: &PackReport,
+    seconds: f64,
+) -> Result<PackingRecord, CurveError> {
     let s = &order.compression;
     let cell_mm = match packing.cell {
         Cell::Periodic([x, ..]) => x,
@@ -161,7 +166,15 @@ fn record(order: &Order, packing: &Packing, report: &PackReport, seconds: f64) -
     ] {
         settings.insert(name.into(), value.into());
     }
-    PackingRecord {
+    let guess = |density| -> Result<Vec<[f64; 2]>, CurveError> {
+        Ok(inscribed(&order.gradation, density)?
+            .points()
+            .into_iter()
+            .map(|(percent, d)| [d, percent])
+            .collect())
+    };
+    Ok(PackingRecord {
+        inscribed: [guess(1.0)?, guess(0.0)?],
         fingerprint: order.fingerprint(),
         name: order.name.clone(),
         linear: order.linear,
@@ -180,7 +193,7 @@ fn record(order: &Order, packing: &Packing, report: &PackReport, seconds: f64) -
         seconds,
         cell_mm,
         slice: slice(packing, cell_mm),
-    }
+    })
 }
 
 /// The grains that the plane through the middle of the cell cuts, with those that reach over its sides on both.
