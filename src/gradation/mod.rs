@@ -4,6 +4,7 @@
 //!   between its points. "Linear" in the paper is one such straight line:
 //!   `D_x = D_0 Cu^(x / 50)`, so `D_60 / D_10 = Cu` and `D_100 / D_0 = Cu^2`.
 //! - [`SizeSampler`] draws diameters from it by number.
+//! - [`Gradation::kenney_lau`] and [`Gradation::kezdi`] say whether a soil holds its own fines.
 //! - [`base_particles`] is Eq. (2) of the paper: how many base particles a test inserts.
 //!
 //! # By mass and by number
@@ -24,6 +25,7 @@ mod numbers;
 mod root;
 mod sampler;
 mod sieve;
+mod stability;
 mod supply;
 mod table;
 
@@ -31,6 +33,7 @@ pub(crate) use error::shortened;
 pub use error::{GradationError, NumberError, Position, TableError};
 pub use sampler::{Part, SizeSampler};
 pub use sieve::{Gradation, SIZE_MAX_MM, SIZE_MIN_MM};
+pub use stability::ShapeIndex;
 pub use supply::{BaseSupply, base_particles};
 pub use table::FILE_LIMIT_BYTES;
 pub(crate) use table::{Direction, Row, Table, check_size, rising};

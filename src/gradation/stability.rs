@@ -1,0 +1,165 @@
+//! Whether a soil holds its own fines: the two classical indices of a sieve curve's shape.
+//!
+//! - Kenney and Lau (1985, 1986): F is the mass finer than D, H the mass between D and 4 D. Where H is less than F, the coarse
+//!   part does not hold the fine part. Only the part of a curve that can be loose counts: F up to 20 % where Cu > 3, up to 30 %
+//!   otherwise. The limit of 1986 is H / F = 1 (1985: 1.3).
+//! - Kezdi (1979): the curve is split at every size; Terzaghi's ratio of the coarser part over the finer, D'15 / d'85, is not to be
+//!   more than 4. Whatever the split, 15 % of the whole mass lie between the two sizes.
+//!
+//! Definitions and limits as in the technical manual of the U.S. Army Corps of Engineers' Internal Instability Toolbox
+//! (Risk Management Center, RMC-CPD-2023-10, "Modified Kenney and Lau method"), which follows Li and Fannin (2008).
+//!
+//! Both indices are extreme at a point of the curve, or where the other end of their window is at one; so they are found
+//! exactly. A tail of unknown size is left out: what it would say is not known.
+
+use super::Gradation;
+
+/// Largest Cu of a narrowly graded soil.
+const NARROW_CU: f64 = 3.0;
+
+/// An extreme of a shape index.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeIndex {
+    /// Its value.
+    pub value: f64,
+    /// Percent finer where it is: F of Kenney and Lau, the split of Kezdi.
+    pub percent: f64,
+}
+
+impl Gradation {
+    /// Percent finer up to which Kenney and Lau look: 20 where Cu > 3, 30 otherwise; `None` where Cu is not known.
+    pub fn loose_percent(&self) -> Option<f64> {
+        Some(if self.cu()? > NARROW_CU { 20.0 } else { 30.0 })
+    }
+
+    /// Kenney and Lau: the least H / F over F up to [`Gradation::loose_percent`].
+    ///
+    /// `None` for a single size, where D_10 lies in a tail of unknown size, or where that tail reaches beyond F.
+    ///
+    /// ```
+    /// use voidwalk::gradation::Gradation;
+    /// // 20 % of fines, then a gap of a factor 10: nothing between D and 4 D at F = 20 %.
+    /// let gap = Gradation::from_points(&[(0.1, 0.0), (0.2, 20.0), (2.0, 20.0), (20.0, 100.0)], None)?;
+    /// assert_eq!(gap.kenney_lau().unwrap().value, 0.0);
+    /// # Ok::<(), voidwalk::gradation::GradationError>(())
+    /// ```
+    pub fn kenney_lau(&self) -> Option<ShapeIndex> {
+        let limit = self.loose_percent()?;
+        let last = self.highest_size_at(limit)?;
+        let candidates = self.size_mm.iter().flat_map(|&d| [d, d / 4.0]).chain([last]);
+        let index = |d: f64| {
+            let finer = self.percent_finer_by_mass(d);
+            let next = self.percent_finer_by_mass(4.0 * d) - finer;
+            (finer > 0.0 && finer <= limit).then_some(ShapeIndex { value: next / finer, percent: finer })
+        };
+        candidates
+            .filter(|d| (self.smallest_mm()..=last).contains(d))
+            .filter_map(index)
+            .min_by(|a, b| a.value.total_cmp(&b.value))
+    }
+
+    /// Kezdi: the greatest D'15 / d'85 over all splits of the curve.
+    ///
+    /// `None` for a single size, or where more than 85 % of the mass is in a tail of unknown size.
+    pub fn kezdi(&self) -> Option<ShapeIndex> {
+        // A split at n % has d'85 at 0.85 n % and D'15 at 15 % more of the whole mass.
+        const BETWEEN: f64 = 15.0;
+        if self.size_mm.len() < 2 {
+            return None;
+        }
+        let tail = self.percent[0];
+        let candidates = self.percent.iter().flat_map(|&p| [p, p - BETWEEN]).chain([100.0 - BETWEEN]);
+        let index = |finer: f64| {
+            let value = self.highest_size_at(finer + BETWEEN)? / self.d(finer)?;
+            Some(ShapeIndex { value, percent: finer / 0.85 })
+        };
+        candidates
+            .filter(|&finer| (tail..=100.0 - BETWEEN).contains(&finer))
+            .filter_map(index)
+            .max_by(|a, b| a.value.total_cmp(&b.value))
+    }
+
+    /// The largest size (mm) that no more than `percent` of the mass is finer than; [`Gradation::d`] gives the smallest.
+    fn highest_size_at(&self, percent: f64) -> Option<f64> {
+        let above = self.percent.partition_point(|&p| p <= percent);
+        match above.checked_sub(1).map(|i| (self.percent[i], self.size_mm[i])) {
+            Some((p, d)) if p == percent => Some(d),
+            _ => self.d(percent),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn points(points: &[(f64, f64)]) -> Gradation {
+        Gradation::from_points(points, None).unwrap()
+    }
+
+    /// Straight on semi-log paper the mass between D and 4 D is the same everywhere, 50 ln 4 / ln Cu percent, so H / F is least at
+    /// the largest F; and 15 % of the mass always spans Cu^0.3.
+    #[test]
+    fn straight_curves_by_hand() {
+        for (cu, limit) in [(3.0, 30.0), (8.0, 20.0), (60.0, 20.0)] {
+            let g = Gradation::linear_from_d0(0.1, cu).unwrap();
+            let h = (50.0 * libm::log(4.0) / libm::log(cu)).min(100.0 - limit);
+            let kenney_lau = g.kenney_lau().unwrap();
+            assert!((kenney_lau.value - h / limit).abs() < 1e-9, "{cu} {kenney_lau:?}");
+            assert!((kenney_lau.percent - limit).abs() < 1e-9);
+            assert!((g.kezdi().unwrap().value - libm::pow(cu, 0.3)).abs() < 1e-9, "{cu}");
+        }
+    }
+
+    /// A gap from 0.2 to 2 mm at 25 %: F = 25 % is within the loose part of no widely graded soil, but Kezdi's split there
+    /// has d'85 at 21.25 % and D'15 at 36.25 %.
+    #[test]
+    fn a_gap_by_hand() {
+        let gap = points(&[(0.1, 0.0), (0.2, 25.0), (2.0, 25.0), (20.0, 100.0)]);
+        let fine = 0.1 * libm::pow(2.0, 21.25 / 25.0);
+        let coarse = 2.0 * libm::pow(10.0, 11.25 / 75.0);
+        assert!(gap.kezdi().unwrap().value >= coarse / fine - 1e-12);
+        // The widest window of 15 % begins where the other end has just passed the gap: D(25+) over D(10), or D(40) over D(25).
+        let d_40 = 2.0 * libm::pow(10.0, 15.0 / 75.0);
+        let d_10 = 0.1 * libm::pow(2.0, 0.4);
+        let widest = (d_40 / 0.2).max(2.0 / d_10);
+        assert!((gap.kezdi().unwrap().value - widest).abs() < 1e-9);
+        // At F = 20 %, D = 0.1 * 2^0.8, 4 D lies in the gap: H = 5 %.
+        assert!((gap.kenney_lau().unwrap().value - 0.25).abs() < 1e-9);
+    }
+
+    /// Against a fine scan of the curve.
+    #[test]
+    fn extremes_are_those_of_a_scan() {
+        let g = points(&[
+            (0.05, 0.0),
+            (0.2, 8.0),
+            (0.5, 11.0),
+            (2.0, 30.0),
+            (5.0, 34.0),
+            (9.0, 80.0),
+            (40.0, 100.0),
+        ]);
+        let limit = g.loose_percent().unwrap();
+        let (mut least, mut most) = (f64::MAX, 0f64);
+        for i in 1..=20_000 {
+            let percent = f64::from(i) / 20_000.0 * limit;
+            let d = g.d(percent).unwrap();
+            least = least.min((g.percent_finer_by_mass(4.0 * d) - percent) / percent);
+            let finer = f64::from(i) / 20_000.0 * 85.0;
+            most = most.max(g.d(finer + 15.0).unwrap() / g.d(finer).unwrap());
+        }
+        let (kenney_lau, kezdi) = (g.kenney_lau().unwrap().value, g.kezdi().unwrap().value);
+        assert!(kenney_lau <= least && least - kenney_lau < 1e-3 * least, "{kenney_lau} {least}");
+        assert!(kezdi >= most * (1.0 - 1e-12) && kezdi - most < 1e-3 * most, "{kezdi} {most}");
+    }
+
+    #[test]
+    fn what_a_tail_hides_is_not_guessed() {
+        let tail = points(&[(0.1, 35.0), (1.0, 60.0), (10.0, 100.0)]);
+        assert_eq!(tail.kenney_lau(), None);
+        assert!(tail.kezdi().is_some());
+        assert_eq!(Gradation::single(1.0).unwrap().kezdi(), None);
+        assert_eq!(Gradation::single(1.0).unwrap().kenney_lau(), None);
+    }
+}
