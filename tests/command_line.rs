@@ -490,3 +490,39 @@ fn connectivity_is_spread_and_reported() {
     );
     assert!(!none.exists());
 }
+
+/// With sieve curves in mm every rule that the program knows has a result or says why not.
+#[test]
+fn filter_rules_and_equation_one_stand_in_the_outcome() {
+    let root = tempfile::tempdir().unwrap();
+    let sieve = |name: &str, rows: &str| {
+        let path = root.path().join(name);
+        fs::write(&path, format!("opening_mm,percent_finer\n{rows}")).unwrap();
+        path.display().to_string()
+    };
+    let filter = format!("filter.sieve={}", sieve("filter.csv", "2,0\n3,40\n4.5,100\n"));
+    let base = format!("base.sieve={}", sieve("base.csv", "0.05,0\n0.075,20\n0.4,85\n0.6,100\n"));
+    let out = root.path().join("out");
+    let more = ["--set", &filter, "--set", &base, "--set", "base.n_base=100000", "--quiet"];
+    let output = run_small(&out, &more);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let value = outcome(&out);
+    let rule = |name: &str| {
+        let rules = value["rules"].as_array().unwrap();
+        rules.iter().find(|r| r["name"].as_str().unwrap().starts_with(name)).unwrap().clone()
+    };
+    assert_eq!(rule("Kézdi")["meets"], true);
+    assert_eq!(rule("Kenney and Lau")["meets"], true);
+    assert!(rule("Foster and Fell: no")["note"].as_str().unwrap().contains("20 % of it is finer"));
+    let found = &value["infiltration"];
+    assert_eq!(found["layers"], 10);
+    let run = &value["replicates"][0]["runs"][0];
+    let (alone, walked) =
+        (found["eroded_without_blocking"].as_f64().unwrap(), run["eroded_mass_fraction"].as_f64().unwrap());
+    assert!(alone > walked - 0.05 && alone <= 1.0, "{alone} {walked}");
+    // The built-in scene has a linear filter: its shape is an assumption, not a measurement.
+    let linear = root.path().join("linear");
+    assert!(run_small(&linear, &["--quiet"]).status.success());
+    let text = fs::read_to_string(linear.join("outcome.json")).unwrap();
+    assert_eq!(text.matches("needs the filter's sieve curve").count(), 2);
+}

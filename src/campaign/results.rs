@@ -10,8 +10,9 @@ use super::machine::Machine;
 use super::scene::{Amount, BaseGradation, CurveSource, D85, FilterGradation, NetworkSource};
 use super::walks::{Walked, as_it_is, summarise};
 use crate::network::Connectivity;
-use crate::outcome::record::{Manifest, Outcome, Sensitivity};
-use crate::outcome::{MODEL_LEAVES_OUT, Recorded, rules, verdict};
+use crate::outcome::record::{Manifest, Outcome, Sensitivity, Statistic};
+use crate::outcome::rules::RuleInputs;
+use crate::outcome::{MODEL_LEAVES_OUT, Recorded, infiltration, rules, verdict};
 use crate::store::{Folder, StoreError};
 
 /// Why results cannot be written.
@@ -54,7 +55,11 @@ pub fn outcome(case: &Case, walked: &[Walked], mut sensitivity: Vec<Sensitivity>
         model_leaves_out: MODEL_LEAVES_OUT.map(String::from).to_vec(),
         inputs: case.record(),
         ratios,
-        rules: rules::beside_the_verdict(&ratios),
+        rules: rules::beside_the_verdict(&rule_inputs(case, walked)),
+        infiltration: match case.scene.network {
+            NetworkSource::Cubic(_) => Some(infiltration(&case.curve, &case.base, case.counts[3])),
+            _ => None,
+        },
         sensitivity,
         seconds,
     }
@@ -74,6 +79,21 @@ pub fn manifest(case: &Case, threads: u64, started: SystemTime, command: String)
         started: humantime::format_rfc3339_seconds(started).to_string(),
         finished: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
         command,
+    }
+}
+
+/// What the filter rules read of a case that has been walked.
+fn rule_inputs<'a>(case: &'a Case, walked: &[Walked]) -> RuleInputs<'a> {
+    let first = |w: &Walked| w.replicate.runs.first()?.largest_eroded_over_d15f;
+    let largest: Vec<f64> = walked.iter().filter_map(first).collect();
+    RuleInputs {
+        ratios: case.ratios(),
+        filter_sieve: match case.scene.filter {
+            FilterGradation::Sieve(..) => Some(&case.filter),
+            FilterGradation::Linear { .. } => None,
+        },
+        base_mm: (!case.is_scale_free()).then_some(&case.base),
+        largest_eroded_over_d15f: (!largest.is_empty()).then(|| Statistic::of(&largest).mean),
     }
 }
 

@@ -14,11 +14,13 @@
 mod connectivity;
 mod cubic;
 mod file;
+mod passage;
 mod percolation;
 mod reach;
 
 pub use connectivity::{Connectivity, TABLE_3, TOLERANCE_PERCENT};
 pub use file::NetworkError;
+pub use passage::Passage;
 pub use percolation::percolation_threshold;
 pub use reach::Reach;
 

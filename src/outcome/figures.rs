@@ -75,6 +75,7 @@ impl Figures {
         };
         let largest_mm = (tally.eroded > 0).then(|| f64::from(tally.largest_eroded) * network.unit_mm());
         let retained = tally.retained_in_constrictions + tally.retained_in_voids + tally.trapped;
+        let [deepest, most] = retained_layers(network, state);
         let run = Run {
             run: of.run,
             eroded_mass_fraction,
@@ -91,6 +92,8 @@ impl Figures {
             retained_in_voids: tally.retained_in_voids,
             trapped: tally.trapped,
             retained_per_void: retained as f64 / network.voids() as f64,
+            deepest_retained_layer: deepest,
+            retained_95_layer: most,
             increments: state.increment,
             particle_moves: tally.particle_moves,
             by_connectivity: by_connectivity::of_run(network, state),
@@ -133,6 +136,21 @@ impl Recorded {
         self.retained.append(&mut later.retained);
         self.eroded.append(&mut later.eroded);
     }
+}
+
+/// The deepest layer with a retained particle, and the one down to which 95 % of those that a layer retains lie.
+fn retained_layers(network: &Network, state: &State) -> [Option<u64>; 2] {
+    let mut by_layer = vec![0u64; network.layers()];
+    for (void, &layer) in network.layer_of().iter().enumerate().filter(|&(_, &layer)| layer != NO_LAYER) {
+        by_layer[layer as usize] += state.retained_in_constrictions[void] + state.retained_in_voids[void];
+    }
+    let all: u128 = by_layer.iter().map(|&n| u128::from(n)).sum();
+    let mut down_to = 0u128;
+    let most = by_layer.iter().position(|&n| {
+        down_to += u128::from(n);
+        all > 0 && down_to * 100 >= all * 95
+    });
+    [by_layer.iter().rposition(|&n| n > 0), most].map(|layer| layer.map(|l| l as u64))
 }
 
 fn blocked_first_layers(network: &Network, state: &State, layers: u32) -> f64 {

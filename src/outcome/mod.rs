@@ -7,10 +7,12 @@
 //! - [`verdict`] classifies, by mass eroded, one replicate or many.
 //! - [`paper`] holds what the paper states.
 //! - [`rules`] applies the empirical filter rules to the same two curves.
+//! - [`infiltration()`] is Eq. (1) beside the walk.
 //! - [`percolation`] puts percolation thresholds of several sizes together.
 
 pub mod by_connectivity;
 mod figures;
+mod infiltration;
 pub mod ledger;
 pub mod packing;
 pub mod paper;
@@ -22,6 +24,7 @@ mod statistic;
 pub mod verdict;
 
 pub use figures::{Figures, Recorded, RunOf};
+pub use infiltration::infiltration;
 pub use recorder::{Recorder, Wanted};
 
 /// What the model does not contain, for any scene; shown next to every verdict.

@@ -49,6 +49,9 @@ pub struct Outcome {
     pub ratios: Ratios,
     /// Empirical filter rules applied to the same two curves.
     pub rules: Vec<Rule>,
+    /// Eq. (1) for single particles; `None` where the network is no cubic lattice.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub infiltration: Option<Infiltration>,
     /// How the verdict moves with the number of base particles; empty when it was not asked for.
     pub sensitivity: Vec<Sensitivity>,
     /// Wall time of everything, s.
@@ -128,6 +131,12 @@ pub struct Run {
     pub trapped: u64,
     /// Particles retained in any way, over voids.
     pub retained_per_void: f64,
+    /// Deepest layer in which a particle of this run is retained; `None` where none is.
+    #[serde(default)]
+    pub deepest_retained_layer: Option<u64>,
+    /// The layer down to which 95 % of the particles of this run that a layer retains lie.
+    #[serde(default)]
+    pub retained_95_layer: Option<u64>,
     /// Increments until nothing moved.
     pub increments: u64,
     /// Moves completed, the one that leaves included.
@@ -323,14 +332,53 @@ pub struct Rule {
     pub name: String,
     /// What it limits, as `D15F/D85B`.
     pub quantity: String,
-    /// Its value for these inputs.
-    pub value: f64,
-    /// The most that the rule allows.
-    pub limit: f64,
-    /// Whether the value keeps the limit.
-    pub meets: bool,
+    /// Its value for these inputs; `None` where they do not give it.
+    pub value: Option<f64>,
+    /// The most, or the least, that the rule allows; `None` where no figure is known.
+    pub limit: Option<f64>,
+    /// Whether `limit` is the least that the rule allows instead of the most.
+    #[serde(default)]
+    pub at_least: bool,
+    /// Whether the value keeps the limit; `None` where the rule has no result.
+    pub meets: Option<bool>,
+    /// What the rule was made for.
+    #[serde(default)]
+    pub applies_to: String,
+    /// What the rule needs, or where its value is; may be empty.
+    #[serde(default)]
+    pub note: String,
     /// Where the rule is published.
     pub source: String,
+}
+
+/// Eq. (1) of the paper: how far single particles come in the clean filter.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Infiltration {
+    /// Layers of the network.
+    pub layers: u64,
+    /// Sizes of the base, ascending.
+    pub sizes: Vec<InfiltrationSize>,
+    /// The coarsest size that comes through all layers with a chance of 5 %.
+    pub coarsest_through_mm: f64,
+    /// Share of the base's mass that would leave if nothing were ever blocked.
+    pub eroded_without_blocking: f64,
+}
+
+/// One size of the base in the clean filter.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct InfiltrationSize {
+    /// As `D85B`.
+    pub name: String,
+    /// Its size.
+    pub diameter_mm: f64,
+    /// P(F): its chance to come one layer downstream.
+    pub downstream: f64,
+    /// Layers that it does not pass with a confidence of 95 %; `None` where nothing stops it.
+    pub layers_95: Option<f64>,
+    /// The same with 99 %.
+    pub layers_99: Option<f64>,
+    /// Its chance to come through all layers.
+    pub through: f64,
 }
 
 /// The outcome with another number of base particles.

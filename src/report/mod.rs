@@ -18,10 +18,12 @@ mod campaign;
 mod connectivity;
 pub mod figures;
 mod folder;
+mod infiltration;
 mod numbers;
 mod packing;
 mod page;
 mod percolation;
+mod rules;
 mod run_figures;
 mod shell;
 

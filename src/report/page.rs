@@ -5,9 +5,11 @@ use maud::{Markup, html};
 use super::connectivity::by_connectivity;
 use super::figures::{shorten, visible};
 use super::folder::RunFolder;
+use super::infiltration::infiltration;
 use super::numbers::{
     duration, interval, known, percent, percent_interval, significant, size, threshold, whole,
 };
+use super::rules::rules;
 use super::run_figures::{run_name, trimmed};
 use super::shell::{Drawn, clean, drawing, fact, figure, whole_page};
 use crate::outcome::packing::PackingRecord;
@@ -49,6 +51,7 @@ pub(super) fn page(folder: &RunFolder, verdict: &Drawn, figures: &[Drawn]) -> St
         (missing(folder, figures))
         (rules(outcome))
         (results(outcome))
+        (infiltration(outcome))
         (by_connectivity(outcome))
         (replicates(outcome))
         (sensitivity(outcome))
@@ -182,29 +185,6 @@ fn missing(folder: &RunFolder, figures: &[Drawn]) -> Markup {
             && has("eroded")
         {
             p.small { "series.csv does not hold every replicate and run: the mean is over those that it holds." }
-        }
-    }
-}
-
-fn rules(outcome: &Outcome) -> Markup {
-    html! {
-        h2 { "Filter rules beside the verdict" }
-        @if outcome.rules.is_empty() { p { "No rule was applied." } } @else {
-            p {
-                "Empirical rules on the same two curves. They draw their lines by experience with tests; the verdict above "
-                "is “" (outcome.verdict.words()) "”. Where they differ, neither is proof."
-            }
-            table.rules {
-                thead { tr { th { "Rule and source" } th.n { "Ratio here" } th.n { "Limit" } th { "" } } }
-                tbody { @for rule in &outcome.rules {
-                    tr {
-                        th { (clean(&rule.name)) br; span.small { (clean(&rule.source)) } }
-                        td.n { (clean(&rule.quantity)) " " br; "= " (significant(rule.value)) }
-                        td.n { "≤ " (trimmed(rule.limit)) }
-                        td { @if rule.meets { span.keeps { "✓ met" } } @else { span.breaks { "✗ not met" } } }
-                    }
-                } }
-            }
         }
     }
 }

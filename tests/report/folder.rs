@@ -67,6 +67,8 @@ pub fn outcome(replicates: u64) -> Outcome {
             retained_in_voids: 13_034_102,
             trapped: 248,
             retained_per_void: 149.4,
+            deepest_retained_layer: Some(59),
+            retained_95_layer: Some(11),
             increments: 404 + replicate,
             particle_moves: 1_904_220_114,
             by_connectivity: Vec::new(),
@@ -191,9 +193,34 @@ pub fn outcome(replicates: u64) -> Outcome {
         .map(|(name, quantity, limit, source)| {
             let value = filter_at(15.0) / base_at(if quantity == "D15F/D85B" { 85.0 } else { 95.0 });
             let (name, quantity, source) = (name.into(), quantity.into(), source.into());
-            Rule { name, quantity, value, limit, meets: value <= limit, source }
+            let (applies_to, note) = ("bases in general".into(), String::new());
+            let (meets, value, limit) = (Some(value <= limit), Some(value), Some(limit));
+            Rule { name, quantity, value, limit, at_least: false, meets, applies_to, note, source }
         })
         .into(),
+        infiltration: Some(Infiltration {
+            layers: 60,
+            sizes: vec![
+                InfiltrationSize {
+                    name: "D50B".into(),
+                    diameter_mm: base_at(50.0),
+                    downstream: 1.0,
+                    layers_95: None,
+                    layers_99: None,
+                    through: 1.0,
+                },
+                InfiltrationSize {
+                    name: "D85B".into(),
+                    diameter_mm: base_at(85.0),
+                    downstream: 0.96,
+                    layers_95: Some(73.4),
+                    layers_99: Some(112.8),
+                    through: 0.086,
+                },
+            ],
+            coarsest_through_mm: 0.85,
+            eroded_without_blocking: 0.873,
+        }),
         sensitivity: sensitivity.collect(),
         seconds: 239.4,
     }

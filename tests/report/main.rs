@@ -355,3 +355,65 @@ fn the_names_of_the_folder_are_a_contract() {
     assert!(value["summary"][0]["eroded_mass_fraction"]["low"].is_f64());
     assert_eq!(serde_json::from_value::<Outcome>(value).unwrap(), folder::outcome(2));
 }
+
+#[test]
+fn a_rule_says_what_it_is_for_and_what_it_needs() {
+    let mut plan = Plan::usual();
+    plan.outcome.rules[0].value = None;
+    plan.outcome.rules[0].meets = None;
+    plan.outcome.rules[0].note = "needs the filter's <sieve> curve".into();
+    plan.outcome.rules[1].at_least = true;
+    plan.outcome.rules[2].limit = None;
+    let (page, ..) = made(&plan);
+    assert!(page.contains("needs the filter's &lt;sieve&gt; curve"));
+    let text = words(&page);
+    for expected in ["For bases in general.", "no result", "≥ 7", "D15F/D95B = "] {
+        assert!(text.contains(expected), "{expected}");
+    }
+}
+
+#[test]
+fn equation_one_stands_beside_the_walk() {
+    let mut plan = Plan::usual();
+    let text = words(&made(&plan).0);
+    for expected in [
+        "Infiltration depth, Eq. (1)",
+        "D85B",
+        "73.4",
+        "no end",
+        "If nothing were ever blocked, 87.3 % of the base’s mass would leave",
+        "down to 59.0, 95 % of them down to 11.0 (first run)",
+        "The difference is what blocking holds",
+    ] {
+        assert!(text.contains(expected), "{expected}");
+    }
+    plan.outcome.infiltration = None;
+    assert!(words(&made(&plan).0).contains("Not given: Eq. (1) speaks of a regular cubic lattice"));
+}
+
+#[test]
+fn results_by_connectivity_add_the_replicates_up() {
+    let mut plan = Plan::usual();
+    assert!(!made(&plan).0.contains("By connectivity"));
+    for replicate in &mut plan.outcome.replicates {
+        let row = |connectivity, voids, retained: u64| voidwalk::outcome::record::ByConnectivity {
+            connectivity,
+            voids,
+            voids_fraction: 0.0,
+            constrictions: 3 * voids,
+            blocked: voids,
+            retained_in_constrictions: retained / 2,
+            retained_in_voids: retained / 2,
+            retained_per_void: 0.0,
+            retained_fraction: 0.0,
+        };
+        replicate.runs[0].by_connectivity = vec![row(5, 25, 10_000), row(6, 75, 2500)];
+    }
+    // a blank between cells
+    let text = words(&made(&plan).0.replace("</t", " </t"));
+    for expected in
+        ["5 25.0 % 400 80.0 % 33.3 %", "6 75.0 % 33.3 20.0 % 33.3 %", "All (1000 voids) 100.0 % 125"]
+    {
+        assert!(text.contains(expected), "{expected}");
+    }
+}

@@ -1,0 +1,96 @@
+//! The section on Eq. (1) of a report page.
+
+use maud::{Markup, html};
+
+use super::numbers::{percent, significant, size, whole};
+use super::run_figures::run_name;
+use super::shell::clean;
+use crate::outcome::record::{Infiltration, Outcome, Run};
+
+/// Eq. (1) for single particles, what the walk found, and where the two part.
+pub(super) fn infiltration(outcome: &Outcome) -> Markup {
+    html! {
+        h2 { "Infiltration depth, Eq. (1)" }
+        @match &outcome.infiltration {
+            None => p {
+                "Not given: Eq. (1) speaks of a regular cubic lattice, and this network is none."
+            },
+            Some(found) => {
+                p {
+                    "How far a particle comes that enters the clean filter alone, n = ln(1 − P) / ln(P(F)): with a confidence of 95 % (or "
+                    "99 %) it does not pass more layers. P(F), the chance to come one layer downstream, is that of the directed "
+                    "lattice that is walked. Nothing is blocked here."
+                }
+                (sizes(found, outcome.inputs.scale_free))
+                (parting(found, outcome))
+            },
+        }
+    }
+}
+
+fn sizes(found: &Infiltration, scale_free: bool) -> Markup {
+    let layers = |layers: Option<f64>| layers.map_or_else(|| "no end".to_owned(), significant);
+    html! {
+        div.scroll { table {
+            thead { tr {
+                th { "Particle" } th.n { "Size" } th.n { "P(F)" } th.n { "Layers, 95 %" } th.n { "Layers, 99 %" }
+                th.n { "Passes all " (whole(found.layers)) }
+            } }
+            tbody { @for row in &found.sizes { tr {
+                th { (clean(&row.name)) }
+                td.n { (size(row.diameter_mm, scale_free)) }
+                td.n { (format!("{:.4}", row.downstream)) }
+                td.n { (layers(row.layers_95)) }
+                td.n { (layers(row.layers_99)) }
+                td.n { (percent(row.through)) }
+            } } }
+        } }
+    }
+}
+
+fn parting(found: &Infiltration, outcome: &Outcome) -> Markup {
+    let scale_free = outcome.inputs.scale_free;
+    let mean = |run: u64, of: fn(&Run) -> Option<f64>| {
+        let runs = outcome.replicates.iter().flat_map(|r| &r.runs).filter(|r| r.run == run);
+        let values: Vec<f64> = runs.filter_map(of).collect();
+        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+    };
+    let layer = |value: Option<f64>| value.map_or_else(|| "none".to_owned(), |l| format!("{l:.1}"));
+    let eroded = |run: usize| outcome.summary.get(run).map(|s| s.eroded_mass_fraction.mean);
+    html! {
+        ul {
+            li {
+                "Eq. (1) lets particles up to " (size(found.coarsest_through_mm, scale_free)) " through all layers with a chance of 5 % or more. "
+                "The largest that left in the walk: "
+                @for (index, run) in outcome.summary.iter().enumerate() {
+                    @if index > 0 { ", " }
+                    (mean(run.run, |r| r.largest_eroded_mm).map_or_else(|| "none".to_owned(), |d| size(d, scale_free)))
+                    " (" (run_name(run.run)) ")"
+                }
+                ", mean over the replicates; of many particles a few come further than one in twenty does."
+            }
+            li {
+                "Layers with retained particles, counted from 0: "
+                @for (index, run) in outcome.summary.iter().enumerate() {
+                    @if index > 0 { "; " }
+                    "down to " (layer(mean(run.run, |r| r.deepest_retained_layer.map(|l| l as f64))))
+                    ", 95 % of them down to " (layer(mean(run.run, |r| r.retained_95_layer.map(|l| l as f64))))
+                    " (" (run_name(run.run)) ")"
+                }
+                ", means over the replicates."
+            }
+            @if let Some(first) = eroded(0) { li {
+                "If nothing were ever blocked, " b { (percent(found.eroded_without_blocking)) } " of the base’s mass would leave; in the walk "
+                b { (percent(first)) } " left in the first run"
+                @if let Some(second) = eroded(1) { " and " b { (percent(second)) } " in the second" }
+                ". "
+                @if found.eroded_without_blocking - first > 0.01 {
+                    "The difference is what blocking holds: coarser particles close constrictions, and finer ones, which Eq. (1) lets pass, "
+                    "stay behind them."
+                } @else {
+                    "Here blocking changes little: what Eq. (1) lets pass leaves."
+                }
+            } }
+        }
+    }
+}
