@@ -36,7 +36,7 @@ pub fn write_percolation(folder: &Path, study: &PercolationStudy) -> Result<Writ
 fn table(study: &PercolationStudy) -> Markup {
     let digits = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.5}"));
     html! {
-        table {
+        div.scroll { table {
             thead { tr {
                 th.n { "L" } th.n { "Mean threshold" } th.n { "95 % interval of the mean" }
                 th.n { "Standard deviation" } th.n { "its standard error" }
@@ -48,7 +48,7 @@ fn table(study: &PercolationStudy) -> Markup {
                 td.n { (digits(size.threshold.sd)) }
                 td.n { (digits(size.sd_error)) }
             } } }
-        }
+        } }
     }
 }
 
