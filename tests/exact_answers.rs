@@ -3,7 +3,7 @@
 use bitvec::vec::BitVec;
 use voidwalk::constrictions::{Curve, CurveUnit, find};
 use voidwalk::gradation::{Gradation, SizeSampler};
-use voidwalk::network::{END, Network};
+use voidwalk::network::{END, Network, Passage};
 use voidwalk::walk::{Progress, SizeClasses, State, Supply, Walk};
 
 fn shipped(name: &str) -> Curve {
@@ -107,6 +107,8 @@ fn a_lone_particle_survives_each_layer_as_the_closed_form_says() {
     }
     q /= 120f64.powi(3);
     let p = ((1.0 - q) / (1.0 + 2.0 * q)).powi(6);
+    let passage = Passage::new(&curve);
+    assert!((passage.stopped(d) - q).abs() < 5e-4 && (passage.through(d, 6) / p - 1.0).abs() < 0.01);
     let lone = one_size(d, 1, 1);
     let n = 20_000;
     let passed = (0..n).filter(|&seed| {

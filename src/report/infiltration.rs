@@ -84,13 +84,21 @@ fn parting(found: &Infiltration, outcome: &Outcome) -> Markup {
                 b { (percent(first)) } " left in the first run"
                 @if let Some(second) = eroded(1) { " and " b { (percent(second)) } " in the second" }
                 ". "
-                @if found.eroded_without_blocking - first > 0.01 {
-                    "The difference is what blocking holds: coarser particles close constrictions, and finer ones, which Eq. (1) lets pass, "
-                    "stay behind them."
-                } @else {
-                    "Here blocking changes little: what Eq. (1) lets pass leaves."
-                }
+                (what_blocking_does(found.eroded_without_blocking - first))
             } }
         }
+    }
+}
+
+/// What the difference between all that Eq. (1) lets through and what left says.
+fn what_blocking_does(held: f64) -> &'static str {
+    if held > 0.01 {
+        "The difference is what blocking holds: coarser particles close constrictions, and finer ones, which Eq. (1) lets pass, stay \
+         behind them."
+    } else if held < -0.01 {
+        "More left than Eq. (1) lets pass: a constriction that stops one particle is closed to the next, which then takes a coarser \
+         exit."
+    } else {
+        "Here blocking changes little: what Eq. (1) lets pass leaves."
     }
 }

@@ -387,6 +387,13 @@ fn equation_one_stands_beside_the_walk() {
     ] {
         assert!(text.contains(expected), "{expected}");
     }
+    for (alone, expected) in
+        [(0.1, "More left than Eq. (1) lets pass"), (0.19, "Here blocking changes little")]
+    {
+        plan.outcome.infiltration.as_mut().unwrap().eroded_without_blocking = alone;
+        plan.outcome.summary[0].eroded_mass_fraction.mean = 0.19;
+        assert!(words(&made(&plan).0).contains(expected), "{expected}");
+    }
     plan.outcome.infiltration = None;
     assert!(words(&made(&plan).0).contains("Not given: Eq. (1) speaks of a regular cubic lattice"));
 }
