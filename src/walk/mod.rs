@@ -120,6 +120,9 @@ impl<'a> Walk<'a> {
     pub fn with_isa(mut self, isa: Isa) -> Self {
         assert!(isa.is_available(), "{isa:?} is not available on this machine");
         self.table.set_isa(isa);
+        if let Some(passive) = &mut self.passive {
+            passive.set_isa(isa);
+        }
         self
     }
 

@@ -4,6 +4,7 @@
 //! add what moves to a column of their own; the columns are then added. Integer sums do not depend on
 //! their order, so neither do the bits on the number of workers.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
@@ -13,6 +14,7 @@ use super::shares::Shares;
 use super::sizes::fraction;
 use crate::network::{END, Network};
 use crate::stream::{Key, below};
+use crate::walk::Isa;
 
 /// Voids that share a stream. Part of the definition of every stream: changing it changes results.
 const BLOCK: usize = 1 << 10;
@@ -43,6 +45,8 @@ pub(super) struct Flow {
     workers: Vec<Worker>,
     /// Particles that move, counted afresh in every step.
     moving: u64,
+    /// Instructions that it uses.
+    isa: Isa,
 }
 
 struct Worker {
@@ -80,7 +84,12 @@ impl Flow {
             occupied: moving.chunks(BLOCK).map(|counts| counts.iter().any(|&n| n > 0)).collect(),
             workers: (0..rayon::current_num_threads()).map(|_| worker()).collect(),
             moving: moving.iter().sum(),
+            isa: Isa::chosen(),
         }
+    }
+
+    pub fn set_isa(&mut self, isa: Isa) {
+        self.isa = isa;
     }
 
     /// Particles that moved on in the last step.
@@ -114,11 +123,12 @@ impl Flow {
     pub fn step(&mut self, network: &Network, shares: &Shares, key: Key, moving: &mut [u64]) -> Moved {
         let occupied: Vec<usize> = (0..self.occupied.len()).filter(|&b| self.occupied[b]).collect();
         let next_block = AtomicUsize::new(0);
-        let (counts, downstream) = (&*moving, &self.downstream);
+        let (counts, downstream, isa) = (&*moving, &self.downstream, self.isa);
         let work = |worker: &mut Worker| {
             while let Some(&block) = occupied.get(next_block.fetch_add(1, Ordering::Relaxed)) {
                 let end = counts.len().min((block + 1) * BLOCK);
-                worker.step(network, shares, Key { chunk: block as u64, ..key }, counts, block * BLOCK..end);
+                let key = Key { chunk: block as u64, ..key };
+                step(isa, worker, network, shares, key, counts, block * BLOCK..end);
                 downstream[block].iter().for_each(|&to| worker.touched[to as usize] = true);
             }
         };
@@ -171,6 +181,32 @@ impl Flow {
     }
 }
 
+/// [`Worker::step`] with the instructions of `isa`, to the same bits.
+fn step(isa: Isa, worker: &mut Worker, network: &Network, shares: &Shares, key: Key, counts: &[u64], range: Range<usize>) {
+    assert!(isa.is_available());
+    match isa {
+        // SAFETY: the machine has the instructions.
+        #[cfg(target_arch = "x86_64")]
+        Isa::Avx512 => unsafe { with_avx512(worker, network, shares, key, counts, range) },
+        // SAFETY: the machine has the instructions.
+        #[cfg(target_arch = "x86_64")]
+        Isa::Avx2 => unsafe { with_avx2(worker, network, shares, key, counts, range) },
+        _ => worker.step(network, shares, key, counts, range),
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
+fn with_avx512(worker: &mut Worker, network: &Network, shares: &Shares, key: Key, counts: &[u64], range: Range<usize>) {
+    worker.step(network, shares, key, counts, range);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,popcnt")]
+fn with_avx2(worker: &mut Worker, network: &Network, shares: &Shares, key: Key, counts: &[u64], range: Range<usize>) {
+    worker.step(network, shares, key, counts, range);
+}
+
 fn downstream(network: &Network, block: usize) -> Vec<u32> {
     let end = network.voids().min((block + 1) * BLOCK) as u32;
     let exits = network.exits((block * BLOCK) as u32).start..network.exits(end - 1).end;
@@ -190,7 +226,7 @@ impl Worker {
         shares: &Shares,
         key: Key,
         counts: &[u64],
-        range: std::ops::Range<usize>,
+        range: Range<usize>,
     ) {
         let Self { next, moved, parting, .. } = self;
         let targets = network.targets();

@@ -28,7 +28,7 @@ mod sizes;
 
 pub use expected::Expected;
 
-use super::{State, Supply};
+use super::{Isa, State, Supply};
 use crate::network::{END, Network};
 use crate::stream::{Key, Purpose};
 use binomial::{Draws, one};
@@ -105,6 +105,13 @@ impl<'a> PassiveWalk<'a> {
             trap: None,
             thresholds: Vec::new(),
         })
+    }
+
+    /// The same with the instructions of `isa`, to the same bits.
+    pub fn set_isa(&mut self, isa: Isa) {
+        if let Mover::Counts(flow) = &mut self.mover {
+            flow.set_isa(isa);
+        }
     }
 
     /// Inserts this increment's passive particles, moves all, and books what became of them.
