@@ -3,7 +3,7 @@
 use bitvec::vec::BitVec;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
-use voidwalk::walk::{Engine, Passive, Plan, Progress, SizeClasses, State, Supply, Tally, Walk};
+use voidwalk::walk::{Engine, Isa, Passive, Plan, Progress, SizeClasses, State, Supply, Tally, Walk};
 
 fn sampler(d0: f64, cu: f64) -> SizeSampler {
     let base = if cu == 1.0 { Gradation::single(d0) } else { Gradation::linear_from_d0(d0, cu) };
@@ -197,6 +197,24 @@ fn threads_change_no_bit() {
             assert_same(&alone.1, &many.1);
         }
     }
+}
+
+/// A whole run with each instruction set that this machine has.
+#[test]
+fn instructions_change_no_bit() {
+    let (network, base) = blocking_scene();
+    let plan = Plan::new(Engine::Counts, &network, &base, &open(&network));
+    let supply = plan.supply(base.clone(), 30_000_000, 50, 12, 1);
+    let with = |isa: Isa| {
+        let classes = SizeClasses::logarithmic(base.smallest(), base.largest(), 20);
+        let mut state = State::new(&network, &supply, classes, open(&network), 12, 1);
+        let mut walk = Walk::new(&network, &supply, &state).with_isa(isa);
+        walk.run(&mut state, &mut |_| Progress::Continue).unwrap();
+        state
+    };
+    let portable = with(Isa::Portable);
+    assert!(portable.tally.eroded > 100_000);
+    Isa::ALL.into_iter().filter(|isa| isa.is_available()).for_each(|isa| assert_same(&portable, &with(isa)));
 }
 
 /// The state alone is enough to go on from.

@@ -3,13 +3,16 @@
 //! The voids are cut into blocks of fixed size, each with its own stream. Workers take blocks as they come and
 //! add what moves to a column of their own; the columns are then added. Integer sums do not depend on
 //! their order, so neither do the bits on the number of workers.
+//!
+//! A few particles in a void of three exits choose each by themselves, with one random word for both thresholds. More of them
+//! part exit by exit, and draws for many voids are made at once.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::binomial::{CERTAIN, Draws, Scratch, fill, one};
+use super::binomial::{CERTAIN, Draws, FEW, below_both, fill, one};
 use super::shares::Shares;
 use super::sizes::fraction;
 use crate::network::{END, Network};
@@ -67,7 +70,6 @@ struct Parting {
     count: [u64; BLOCK],
     chance: [u64; BLOCK],
     taken: [u64; BLOCK],
-    scratch: Scratch,
 }
 
 impl Flow {
@@ -126,9 +128,9 @@ impl Flow {
         let (counts, downstream, isa) = (&*moving, &self.downstream, self.isa);
         let work = |worker: &mut Worker| {
             while let Some(&block) = occupied.get(next_block.fetch_add(1, Ordering::Relaxed)) {
-                let end = counts.len().min((block + 1) * BLOCK);
+                let voids = block * BLOCK..counts.len().min((block + 1) * BLOCK);
                 let key = Key { chunk: block as u64, ..key };
-                step(isa, worker, network, shares, key, counts, block * BLOCK..end);
+                step(isa, worker, Block { network, shares, key, counts, voids });
                 downstream[block].iter().for_each(|&to| worker.touched[to as usize] = true);
             }
         };
@@ -181,30 +183,39 @@ impl Flow {
     }
 }
 
+/// A block of voids in one increment: all that its step reads.
+struct Block<'a> {
+    network: &'a Network,
+    shares: &'a Shares,
+    key: Key,
+    counts: &'a [u64],
+    voids: Range<usize>,
+}
+
 /// [`Worker::step`] with the instructions of `isa`, to the same bits.
-fn step(isa: Isa, worker: &mut Worker, network: &Network, shares: &Shares, key: Key, counts: &[u64], range: Range<usize>) {
+fn step(isa: Isa, worker: &mut Worker, block: Block) {
     assert!(isa.is_available());
     match isa {
         // SAFETY: the machine has the instructions.
         #[cfg(target_arch = "x86_64")]
-        Isa::Avx512 => unsafe { with_avx512(worker, network, shares, key, counts, range) },
+        Isa::Avx512 => unsafe { with_avx512(worker, block) },
         // SAFETY: the machine has the instructions.
         #[cfg(target_arch = "x86_64")]
-        Isa::Avx2 => unsafe { with_avx2(worker, network, shares, key, counts, range) },
-        _ => worker.step(network, shares, key, counts, range),
+        Isa::Avx2 => unsafe { with_avx2(worker, block) },
+        _ => worker.step(block),
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
-fn with_avx512(worker: &mut Worker, network: &Network, shares: &Shares, key: Key, counts: &[u64], range: Range<usize>) {
-    worker.step(network, shares, key, counts, range);
+fn with_avx512(worker: &mut Worker, block: Block) {
+    worker.step(block);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,popcnt")]
-fn with_avx2(worker: &mut Worker, network: &Network, shares: &Shares, key: Key, counts: &[u64], range: Range<usize>) {
-    worker.step(network, shares, key, counts, range);
+fn with_avx2(worker: &mut Worker, block: Block) {
+    worker.step(block);
 }
 
 fn downstream(network: &Network, block: usize) -> Vec<u32> {
@@ -218,16 +229,10 @@ fn downstream(network: &Network, block: usize) -> Vec<u32> {
 }
 
 impl Worker {
-    /// Moves the particles of the voids in `range`.
+    /// Moves the particles of the voids of a block.
     #[inline(always)]
-    fn step(
-        &mut self,
-        network: &Network,
-        shares: &Shares,
-        key: Key,
-        counts: &[u64],
-        range: Range<usize>,
-    ) {
+    fn step(&mut self, block: Block) {
+        let Block { network, shares, key, counts, voids } = block;
         let Self { next, moved, parting, .. } = self;
         let targets = network.targets();
         let outside = next.len() - 1;
@@ -235,7 +240,8 @@ impl Worker {
         let mut arrive =
             |constriction: usize, n: u64| next[(targets[constriction] as usize).min(outside)] += n;
         parting.rows = 0;
-        for (void, &n) in range.clone().zip(&counts[range]) {
+        let mut draws = Draws::new(key);
+        for (void, &n) in voids.clone().zip(&counts[voids]) {
             if n == 0 {
                 continue;
             }
@@ -245,28 +251,28 @@ impl Worker {
             }
             moved.moves += n;
             let exits = network.exits(void as u32);
+            if n <= FEW && exits.len() == 3 {
+                let (first, second, thresholds) = shares.of_three(exits.start);
+                let [mut to_first, mut to_second] = below_both(&mut draws, n, thresholds);
+                to_first = if first == CERTAIN { n } else { to_first };
+                to_second = if first == CERTAIN || second == CERTAIN { n } else { to_second };
+                arrive(exits.start, to_first);
+                arrive(exits.start + 1, to_second - to_first);
+                arrive(exits.start + 2, n - to_second);
+                continue;
+            }
             let row = parting.rows;
             parting.rows = parting.face(row, exits.start, n, shares, &mut arrive);
         }
-        if parting.rows > 0 {
-            let mut draws = Draws::new(key);
-            while parting.rows > 0 {
-                parting.round(&mut draws, shares, &mut arrive);
-            }
+        while parting.rows > 0 {
+            parting.round(&mut draws, shares, &mut arrive);
         }
     }
 }
 
 impl Parting {
     fn new() -> Self {
-        Self {
-            rows: 0,
-            exit: [0; BLOCK],
-            count: [0; BLOCK],
-            chance: [0; BLOCK],
-            taken: [0; BLOCK],
-            scratch: Scratch::default(),
-        }
+        Self { rows: 0, exit: [0; BLOCK], count: [0; BLOCK], chance: [0; BLOCK], taken: [0; BLOCK] }
     }
 
     /// `n` particles face the exits of a void from `exit` on: they are through where the next open one is the last,
@@ -296,7 +302,7 @@ impl Parting {
     #[inline(always)]
     fn round(&mut self, draws: &mut Draws, shares: &Shares, arrive: &mut impl FnMut(usize, u64)) {
         let rows = self.rows;
-        fill(draws, &self.count[..rows], &self.chance[..rows], &mut self.taken[..rows], &mut self.scratch);
+        fill(draws, &self.count[..rows], &self.chance[..rows], &mut self.taken[..rows]);
         self.rows = 0;
         for row in 0..rows {
             let (exit, taken) = (self.exit[row] as usize, self.taken[row]);

@@ -22,7 +22,6 @@
 mod binomial;
 mod expected;
 mod flow;
-mod saddle;
 mod shares;
 mod sizes;
 

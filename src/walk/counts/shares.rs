@@ -53,6 +53,16 @@ impl Shares {
         &self.chance
     }
 
+    /// Chances of the first two of three exits, and the same two as thresholds for one 64-bit draw: it picks the first
+    /// exit below the first threshold, else the second below the second, else the third. They do not hold beyond an exit that is
+    /// certain.
+    #[inline(always)]
+    pub fn of_three(&self, exit: usize) -> (u64, u64, [u64; 2]) {
+        let (first, second) = (self.chance[exit], self.chance[exit + 1]);
+        let of_rest = second - ((u128::from(second) * u128::from(first)) >> 64) as u64;
+        (first, second, [first, first + of_rest])
+    }
+
     /// Whether a void has an open exit.
     #[inline]
     pub fn leads_on(&self, void: usize) -> bool {

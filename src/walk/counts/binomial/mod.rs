@@ -1,0 +1,184 @@
+//! Exact binomial draws: the same bits on every machine, for any count and any probability.
+//!
+//! A probability is a 64-bit fraction `p / 2^64`; [`CERTAIN`] stands for 1. The methods share the range:
+//!
+//! - *Trials*, for few of them: sixteen random bits each are compared with `p`, more where they are equal.
+//! - *Quantiles*, for a variance from 6 and up to 2^32 trials: one random word is turned into the number of successes.
+//! - *Bits*, for more trials with few successes: uniform words are compared with `p` bit by bit, all at
+//!   once. At each bit of `p` a random bit decides about half of the trials that are still open, so `n`
+//!   trials cost some `2 n` random bits.
+//! - *Inversion*, for large counts of rare events: probabilities are summed from 0 up.
+//! - *Transformed rejection*, for what is left: a mean from 10 of huge counts.
+//!
+//! Beyond [`LARGEST`] trials, where f64 would lose whole numbers, a draw is the sum of draws.
+//!
+//! [`fill`] draws for many pairs at once, in loops over eight lanes that the compiler turns into vector
+//! instructions. Only `+ - * /`, `sqrt` and the `libm` crate touch a float, so the instruction set changes no bit.
+
+mod quantile;
+mod rejection;
+mod saddle;
+mod trials;
+
+use crate::stream::{Key, LANES, Lanes, unit};
+use quantile::Normal;
+use rejection::{Hat, LEAST_MEAN};
+pub(super) use trials::below_both;
+use trials::by_bits;
+
+/// The probability 1.
+pub(super) const CERTAIN: u64 = u64::MAX;
+
+/// Most trials of a single draw by rejection or inversion.
+const LARGEST: u64 = 1 << 50;
+
+/// Up to this many trials, each is made, whatever the probability.
+pub(super) const FEW: u64 = 64;
+
+/// Up to this many trials, bits are compared where the variance is small.
+const FEW_RARE: u64 = 2048;
+
+const TWO_TO_MINUS_64: f64 = 1.0 / 18_446_744_073_709_551_616.0;
+
+/// 2^52: adding it rounds a smaller float to a whole number.
+const ROUNDER: f64 = 4_503_599_627_370_496.0;
+const MANTISSA: u64 = (1 << 52) - 1;
+
+/// The random words of one stream, one after another or a block at a time.
+pub(super) struct Draws {
+    lanes: Lanes,
+    block: [u64; LANES],
+    used: usize,
+    normal: &'static Normal,
+}
+
+impl Draws {
+    pub fn new(key: Key) -> Self {
+        Self { lanes: key.lanes(), block: [0; LANES], used: LANES, normal: Normal::table() }
+    }
+
+    #[inline(always)]
+    pub fn word(&mut self) -> u64 {
+        if self.used == LANES {
+            self.block = self.lanes.next_block();
+            self.used = 0;
+        }
+        self.used += 1;
+        self.block[self.used - 1]
+    }
+
+    /// A fresh block; words left of the current one stay for [`Draws::word`].
+    #[inline(always)]
+    fn block(&mut self) -> [u64; LANES] {
+        self.lanes.next_block()
+    }
+}
+
+/// How many of `n` trials with probability `p` succeed.
+pub(super) fn one(draws: &mut Draws, n: u64, p: u64) -> u64 {
+    if p == CERTAIN {
+        n
+    } else if n <= FEW {
+        below_both(draws, n, [p, p])[0]
+    } else if quantile::holds(n, p) {
+        let word = draws.word();
+        quantile::draw(draws.normal, n, p, word)
+    } else {
+        by_other(draws, n, p)
+    }
+}
+
+/// How many of `n[i]` trials with probability `p[i]` succeed, for every `i`, into `k`.
+///
+/// # Panics
+/// If the slices differ in length.
+#[inline(always)]
+pub(super) fn fill(draws: &mut Draws, n: &[u64], p: &[u64], k: &mut [u64]) {
+    assert!(n.len() == k.len() && p.len() == k.len());
+    let eights = n.chunks_exact(LANES).zip(p.chunks_exact(LANES)).zip(k.chunks_exact_mut(LANES));
+    for ((n, p), k) in eights {
+        fill_eight(draws, LANES, n.try_into().unwrap(), p.try_into().unwrap(), k.try_into().unwrap());
+    }
+    let done = k.len() / LANES * LANES;
+    let left = k.len() - done;
+    if left > 0 {
+        let (mut last_n, mut last_p, mut last_k) = ([0; LANES], [0; LANES], [0; LANES]);
+        last_n[..left].copy_from_slice(&n[done..]);
+        last_p[..left].copy_from_slice(&p[done..]);
+        fill_eight(draws, left, &last_n, &last_p, &mut last_k);
+        k[done..].copy_from_slice(&last_k[..left]);
+    }
+}
+
+/// The first `used` of eight draws.
+#[inline(always)]
+fn fill_eight(draws: &mut Draws, used: usize, n: &[u64; LANES], p: &[u64; LANES], k: &mut [u64; LANES]) {
+    let words = draws.block();
+    let mut open = quantile::draw_eight(draws.normal, n, p, &words, k);
+    open &= (1 << used) - 1;
+    while open != 0 {
+        let l = open.trailing_zeros() as usize;
+        k[l] = match quantile::holds(n[l], p[l]) {
+            true => quantile::decide(n[l], p[l], words[l]),
+            false => one(draws, n[l], p[l]),
+        };
+        open &= open - 1;
+    }
+}
+
+/// `drawn` is of the rarer outcome.
+#[inline(always)]
+fn turned(n: u64, p: u64, drawn: u64) -> u64 {
+    if p > 1 << 63 { n.wrapping_sub(drawn) } else { drawn }
+}
+
+/// The probability of the rarer outcome.
+#[inline(always)]
+fn rarer(p: u64) -> u64 {
+    p.min(p.wrapping_neg())
+}
+
+#[inline(always)]
+fn as_unit(p: u64) -> f64 {
+    p as f64 * TWO_TO_MINUS_64
+}
+
+/// A draw that is neither by trials nor by quantiles.
+#[cold]
+fn by_other(draws: &mut Draws, n: u64, p: u64) -> u64 {
+    if n <= FEW_RARE {
+        by_bits(draws, n, p)
+    } else if n > LARGEST {
+        let (mut left, mut sum) = (n, 0);
+        while left > 0 {
+            let part = left.min(LARGEST);
+            sum += one(draws, part, p);
+            left -= part;
+        }
+        sum
+    } else if n as f64 * as_unit(rarer(p)) >= LEAST_MEAN {
+        turned(n, p, Hat::of(n, p).draw(draws))
+    } else {
+        turned(n, p, by_inversion(draws, n, as_unit(rarer(p))))
+    }
+}
+
+/// Sums probabilities from 0 up until they exceed a uniform draw.
+fn by_inversion(draws: &mut Draws, n: u64, p: f64) -> u64 {
+    let (odds, none) = (p / (1.0 - p), libm::exp(n as f64 * libm::log1p(-p)));
+    // No mean below 10 gets here but with a probability far below 2^-53.
+    const BEYOND: u64 = 200;
+    loop {
+        let (mut left, mut probability) = (unit(draws.word()), none);
+        for k in 0..=n.min(BEYOND) {
+            if left <= probability {
+                return k;
+            }
+            left -= probability;
+            probability *= (n - k) as f64 / (k + 1) as f64 * odds;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
