@@ -211,6 +211,28 @@ fn bad_scenes_are_refused_and_leave_nothing() {
     }
 }
 
+/// Particles that do not fit the memory that is allowed live in files: `check` says so, and the run gives the same results.
+#[test]
+fn little_memory_changes_no_result() {
+    let root = tempfile::tempdir().unwrap();
+    let (plenty, little) = (root.path().join("plenty"), root.path().join("little"));
+    let many = ["--set", "engine=particles", "--set", "base.n_base=200000", "--set", "replicates=2"];
+    assert!(run_small(&plenty, &many).status.success());
+    let output = run_small(&little, &[&many[..], &["--memory", "500kB"]].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(without_seconds(outcome(&plenty)), without_seconds(outcome(&little)));
+    assert_eq!(fs::read(plenty.join("series.csv")).unwrap(), fs::read(little.join("series.csv")).unwrap());
+
+    let mut args = vec!["check", "--memory", "500kB"];
+    SMALL.iter().for_each(|set| args.extend(["--set", set]));
+    let output = voidwalk(&[&args[..], &many[..]].concat());
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success() && text.contains("in files in the run folder"), "{text}");
+    // Not even the network fits; no size.
+    refused(&voidwalk(&["check", "--memory", "20kB"]), &["available"]);
+    assert_eq!(voidwalk(&["check", "--memory", "much"]).status.code(), Some(2));
+}
+
 #[test]
 fn folders_that_are_not_ours_or_finished_are_left_alone() {
     let root = tempfile::tempdir().unwrap();

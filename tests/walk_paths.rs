@@ -1,14 +1,15 @@
-//! Whole runs by every kernel and number of threads: the same bits.
+//! Whole runs by every kernel, number of threads and kind of memory: the same bits.
 
 use bitvec::vec::BitVec;
 use voidwalk::constrictions;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
+use voidwalk::store::Placement;
 use voidwalk::walk::{CHUNK, Isa, Progress, SizeClasses, State, Supply, Walk, threads};
 
 /// Two runs of `n` particles of a base with D85 = Dc`percent`: every column after increments 7 and 60, and at
 /// the end.
-fn columns(isa: Isa, n: u64, cu: f64, percent: f64) -> Vec<String> {
+fn columns(isa: Isa, placement: &Placement, n: u64, cu: f64, percent: f64) -> Vec<String> {
     let curve = constrictions::find("shire2016-cu1.5-loose").unwrap().curve().unwrap();
     let network = Network::cubic([12, 10, 15], &curve, 1.0, 5).unwrap();
     let base = Gradation::linear_from_dx(85.0, curve.dc(percent).unwrap(), cu).unwrap();
@@ -18,7 +19,7 @@ fn columns(isa: Isa, n: u64, cu: f64, percent: f64) -> Vec<String> {
     for run in 1..=2 {
         let classes = SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), 32);
         let supply = Supply::new(sampler.clone(), n, 30);
-        let mut state = State::new(&network, &supply, classes, blocked, 3, run);
+        let mut state = State::placed(placement, &network, &supply, classes, blocked, 3, run).unwrap();
         let mut note = |state: &State| {
             let chunks = 0..state.particles.live.len();
             let columns: Vec<_> = chunks.map(|chunk| state.particles.chunk(chunk)).collect();
@@ -48,12 +49,26 @@ fn kernels_and_threads_change_no_bit() {
     for (n, cu, percent) in
         [(several_chunks, 4.5, 5.0), (several_chunks, 1.5, 50.0), (20_001, 3.0, 25.0), (33, 1.5, 10.0)]
     {
-        let expected = threads(1, false).unwrap().install(|| columns(Isa::Portable, n, cu, percent));
+        let expected =
+            threads(1, false).unwrap().install(|| columns(Isa::Portable, &Placement::Memory, n, cu, percent));
         for isa in Isa::ALL.into_iter().filter(|isa| isa.is_available()) {
             for count in [1, 2, 3] {
-                let seen = threads(count, false).unwrap().install(|| columns(isa, n, cu, percent));
+                let pool = threads(count, false).unwrap();
+                let seen = pool.install(|| columns(isa, &Placement::Memory, n, cu, percent));
                 assert!(seen == expected, "{isa:?}, {count} threads, N = {n}");
             }
         }
     }
+}
+
+/// Columns in mapped files, with the instructions that this machine walks with, against columns in memory.
+#[test]
+fn mapped_files_change_no_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    let several_chunks = 6 * CHUNK as u64 + 4321;
+    let on = |placement: &Placement| {
+        threads(2, false).unwrap().install(|| columns(Isa::chosen(), placement, several_chunks, 4.5, 5.0))
+    };
+    assert!(on(&Placement::Memory) == on(&Placement::Mapped(folder.path().to_owned())));
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }

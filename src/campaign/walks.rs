@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
+use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
 use rand::Rng;
 use rayon::prelude::*;
@@ -24,6 +25,14 @@ pub enum RunError {
     /// The walk went wrong, or was stopped.
     #[error(transparent)]
     Walk(#[from] WalkError),
+    /// There is no room for the particles.
+    #[error("cannot keep {particles} base particles: {source}")]
+    Room {
+        /// Base particles walked one by one.
+        particles: u64,
+        /// What the system says.
+        source: std::io::Error,
+    },
 }
 
 /// What happens while a case is walked.
@@ -111,7 +120,7 @@ fn walk_replicate(
     let network = case.network(seed).map_err(CaseError::from)?;
     let mut blocked = BitVec::repeat(false, network.constrictions());
     let (mut runs, mut below, mut recorded) = (Vec::new(), Vec::new(), Recorded::default());
-    let first = Plan::new(case.scene.engine, &network, &case.sampler, &blocked);
+    let first = plan(case, &network, &blocked, n_base);
     for run in 1..=case.scene.runs {
         let of = RunOf {
             replicate,
@@ -140,6 +149,20 @@ fn walk_replicate(
     })
 }
 
+fn plan(case: &Case, network: &Network, blocked: &BitSlice<u64>, n_base: u64) -> Plan {
+    Plan::new(case.scene.engine, network, &case.sampler, blocked, n_base / case.increments())
+}
+
+/// What the first run of the first replicate does not need, in words.
+///
+/// # Errors
+/// As [`Case::network`].
+pub fn left_out_of_first_run(case: &Case) -> Result<Vec<String>, RunError> {
+    let network = case.network(replicate_seed(case.scene.seed, 1)).map_err(CaseError::from)?;
+    let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
+    Ok(plan(case, &network, &open, case.n_base).left_out().to_vec())
+}
+
 #[expect(clippy::too_many_arguments, reason = "one run of one replicate is all of these")]
 fn walk_run(
     case: &Case,
@@ -150,12 +173,13 @@ fn walk_run(
     n_base: u64,
     record: bool,
     watch: &Watch,
-) -> Result<(State, Recorder), WalkError> {
-    let plan = Plan::new(case.scene.engine, network, &case.sampler, &blocked);
+) -> Result<(State, Recorder), RunError> {
+    let plan = plan(case, network, &blocked, n_base);
     let supply = plan.supply(case.sampler.clone(), n_base, case.increments(), seed, of.run);
     let (smallest, largest) = (case.sampler.smallest(), case.sampler.largest());
     let classes = SizeClasses::logarithmic(smallest, largest, case.scene.wanted.size_classes);
-    let mut state = State::new(network, &supply, classes, blocked, seed, of.run);
+    let state = State::placed(&case.placement, network, &supply, classes, blocked, seed, of.run);
+    let mut state = state.map_err(|source| RunError::Room { particles: supply.total(), source })?;
     let mut recorder = Recorder::default();
     Walk::new(network, &supply, &state).run(&mut state, &mut |state| {
         if record {

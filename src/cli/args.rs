@@ -56,6 +56,10 @@ pub struct SceneArgs {
     /// Folder in which packings that scenes ask for are kept, so that each is made once
     #[arg(long, value_name = "DIR", default_value = "voidwalk-packings")]
     pub packings: PathBuf,
+    /// Memory that the walks may take, as 4GB: base particles that do not fit live in files in the run folder, mapped into memory
+    /// [default: 80 % of what is available]; it changes no bit of the result
+    #[arg(long, value_name = "SIZE", value_parser = bytes)]
+    pub memory: Option<u64>,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
@@ -185,4 +189,42 @@ pub struct PercolationArgs {
     /// Print percolation.json
     #[arg(long)]
     pub json: bool,
+}
+
+/// A size in bytes: `4GB`, `500 MB`, `1.5GiB`.
+fn bytes(text: &str) -> Result<u64, String> {
+    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let unit = match text[digits.len()..].to_lowercase().as_str() {
+        "" | "b" => 1.0,
+        "kb" => 1e3,
+        "mb" => 1e6,
+        "gb" => 1e9,
+        "tb" => 1e12,
+        "kib" => 1024.0,
+        "mib" => 1_048_576.0,
+        "gib" => 1_073_741_824.0,
+        "tib" => 1_099_511_627_776.0,
+        _ => return Err("write a size as 4GB, 500MB or 2GiB".into()),
+    };
+    match digits.trim().parse::<f64>() {
+        Ok(number) if number > 0.0 && number * unit < 1e18 => Ok((number * unit) as u64),
+        _ => Err("write a size above 0 as 4GB, 500MB or 2GiB".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::bytes;
+
+    #[test]
+    fn sizes_are_read_with_their_units() {
+        for (text, size) in
+            [("4GB", 4_000_000_000), ("500 mb", 500_000_000), ("1.5GiB", 1_610_612_736), ("77", 77)]
+        {
+            assert_eq!(bytes(text), Ok(size));
+        }
+        for text in ["", "GB", "-1GB", "0", "4 apples", "nan", "inf", "1e30TB"] {
+            assert!(bytes(text).is_err(), "{text}");
+        }
+    }
 }

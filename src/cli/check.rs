@@ -6,12 +6,13 @@ use std::path::Path;
 use super::Ending;
 use super::args::SceneArgs;
 use super::print::{count, plain, to_stdout};
-use crate::campaign::case::{Case, in_words};
+use crate::campaign::case::{Case, Room};
 use crate::campaign::machine::Machine;
 use crate::campaign::packed::{Order, PackedFilter};
 use crate::campaign::scene::{BUILT_IN, Scene};
-use crate::campaign::walks::runs_to_walk;
+use crate::campaign::walks::{left_out_of_first_run, runs_to_walk};
 use crate::constrictions::shipped;
+use crate::store::Placement;
 
 /// The scene that the arguments name, with their settings applied.
 pub fn scene(args: &SceneArgs) -> Result<Scene, Ending> {
@@ -35,10 +36,15 @@ pub fn check(args: &SceneArgs) -> Result<(), Ending> {
             (Some(filter), Some(sentence))
         }
     };
-    let case = Case::with_packed(scene, packed).map_err(Ending::refused)?;
-    let machine = Machine::here();
-    to_stdout(&if args.json { json(&case, &machine, packing)? } else { words(&case, &machine, packing) });
-    case.check_memory(machine.available, cores()).map_err(Ending::refused)
+    let mut case = Case::with_packed(scene, packed).map_err(Ending::refused)?;
+    let room = Room::new(args.memory, Machine::here().available, Path::new("."));
+    let placed = case.place(&room, cores(), Path::new("."));
+    let left_out = match &placed {
+        Ok(()) => [case.left_out(), left_out_of_first_run(&case).map_err(Ending::refused)?].concat(),
+        Err(_) => case.left_out(),
+    };
+    to_stdout(&if args.json { json(&case, &left_out, packing)? } else { words(&case, &left_out, packing) });
+    placed.map_err(Ending::refused)
 }
 
 /// The packing where it is kept, or a guess at it; and what is to be said of it.
@@ -76,7 +82,7 @@ pub fn init(path: Option<&Path>) -> Result<(), Ending> {
     Ok(())
 }
 
-fn json(case: &Case, machine: &Machine, packing: Option<String>) -> Result<String, Ending> {
+fn json(case: &Case, left_out: &[String], packing: Option<String>) -> Result<String, Ending> {
     let value = serde_json::json!({
         "n_base": case.n_base,
         "n_base_eq2": case.n_base_eq2,
@@ -86,17 +92,18 @@ fn json(case: &Case, machine: &Machine, packing: Option<String>) -> Result<Strin
         "one_by_one": case.one_by_one(case.n_base),
         "runs_to_walk": runs_to_walk(case),
         "bytes": case.bytes(case.n_base),
-        "bytes_available": machine.available,
+        "bytes_allowed": case.memory,
+        "particles_on_disk": case.placement != Placement::Memory,
         "ratios": case.ratios(),
         "packing": packing,
         "inputs": case.record(),
-        "left_out": case.left_out(),
+        "left_out": left_out,
         "warnings": case.warnings(),
     });
     Ok(format!("{}\n", serde_json::to_string_pretty(&value).map_err(Ending::failed)?))
 }
 
-fn words(case: &Case, machine: &Machine, packing: Option<String>) -> String {
+fn words(case: &Case, left_out: &[String], packing: Option<String>) -> String {
     let inputs = case.record();
     let ratios = case.ratios();
     let unit = if inputs.scale_free { "D0F" } else { "mm" };
@@ -150,10 +157,10 @@ fn words(case: &Case, machine: &Machine, packing: Option<String>) -> String {
     );
     line(
         "  one by one",
-        format!(
-            "at most about {}; the others are passive and kept as counts",
-            count(case.one_by_one(case.n_base))
-        ),
+        match case.one_by_one(case.n_base) {
+            all if all == case.n_base => "all".into(),
+            some => format!("at most about {}; the others are passive and kept as counts", count(some)),
+        },
     );
     let network = &inputs.network;
     line(
@@ -170,12 +177,9 @@ fn words(case: &Case, machine: &Machine, packing: Option<String>) -> String {
         "to walk",
         format!("{} runs, at most {} increments of insertion each", runs_to_walk(case), case.increments()),
     );
-    line(
-        "memory",
-        format!("{} a walk, {} available", in_words(case.bytes(case.n_base)), in_words(machine.available)),
-    );
-    for part in case.left_out() {
-        line("left out", part);
+    line("memory", case.memory_in_words());
+    for part in left_out {
+        line("left out", part.clone());
     }
     for warning in case.warnings() {
         line("warning", warning);

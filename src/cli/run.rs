@@ -12,7 +12,7 @@ use super::pack::provide;
 use super::print::{count, percent, plain, to_stderr, to_stdout};
 use super::progress::Progress;
 use super::signals::stop_on_signals;
-use crate::campaign::case::Case;
+use crate::campaign::case::{Case, Room};
 use crate::campaign::machine::Machine;
 use crate::campaign::packed::{Order, PackedFilter};
 use crate::campaign::results;
@@ -37,9 +37,13 @@ pub fn run(args: &RunArgs) -> Result<(), Ending> {
             Some(pool.install(|| provide(&order, &args.scene.packings, args.quiet, &stop))?)
         }
     };
-    let case = Case::with_packed(scene, packed).map_err(Ending::refused)?;
-    case.check_memory(machine.available, pool.current_num_threads() as u64).map_err(Ending::refused)?;
+    let mut case = Case::with_packed(scene, packed).map_err(Ending::refused)?;
+    let threads = pool.current_num_threads() as u64;
+    let wanted = args.out.as_deref().unwrap_or(Path::new("."));
+    let room = Room::new(args.scene.memory, machine.available, wanted);
+    case.place(&room, threads, wanted).map_err(Ending::refused)?;
     let folder = open_folder(args)?;
+    case.place(&room, threads, folder.path()).map_err(Ending::refused)?;
     for warning in case.warnings() {
         to_stderr(&format!("warning: {}\n", plain(&warning)));
     }

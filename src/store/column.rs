@@ -1,22 +1,81 @@
 //! One column of a simulation, wherever its memory comes from.
 
+use std::fs::File;
+use std::io::{self, Write};
 use std::ops::{Deref, DerefMut};
+use std::path::{Path, PathBuf};
 
 use bytemuck::Pod;
+use memmap2::{MmapMut, MmapOptions};
+
+/// Where the values of columns live.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Placement {
+    /// In memory.
+    #[default]
+    Memory,
+    /// In files without a name, in this folder, mapped into memory: the system keeps in memory what is in
+    /// use and takes the rest out to the disk. They vanish with the process.
+    Mapped(PathBuf),
+}
 
 /// A column of plain values that is used as a slice.
 ///
-/// The simulation sees slices only, so that a column can live in memory or in a mapped file without a
-/// change to any kernel.
+/// The simulation sees slices only, so that a column lives in memory or in a mapped file without a
+/// change to any kernel, and with the same bits.
 #[derive(Debug)]
 pub struct Column<T: Pod> {
-    values: Vec<T>,
+    values: Values<T>,
+}
+
+#[derive(Debug)]
+enum Values<T: Pod> {
+    Owned(Vec<T>),
+    Mapped(MmapMut),
 }
 
 impl<T: Pod> Column<T> {
-    /// `len` zeros. Pages are touched when they are first written.
-    pub fn zeroed(len: usize) -> Self {
-        Self { values: bytemuck::zeroed_vec(len) }
+    /// `len` zeros. Pages of memory are touched when they are first written; blocks of a file are
+    /// allocated here, so that a full disk is an error now and not a crash later.
+    ///
+    /// # Errors
+    /// The file cannot be made, allocated or mapped.
+    pub fn zeroed(len: usize, placement: &Placement) -> io::Result<Self> {
+        let values = match placement {
+            Placement::Mapped(folder) if len > 0 => {
+                let bytes = len.checked_mul(size_of::<T>()).ok_or(io::ErrorKind::FileTooLarge)?;
+                Values::Mapped(map_zeros(folder, bytes)?)
+            }
+            _ => Values::Owned(bytemuck::zeroed_vec(len)),
+        };
+        Ok(Self { values })
+    }
+}
+
+/// A mapped file without a name that holds `bytes` zeros, all of its blocks allocated.
+fn map_zeros(folder: &Path, bytes: usize) -> io::Result<MmapMut> {
+    let file: File = tempfile::tempfile_in(folder)?;
+    allocate(&file, bytes as u64)?;
+    // SAFETY: the file has no name, so no other process can open it, and this process keeps no other
+    // handle to it that could change or cut it while it is mapped. Its blocks are allocated, so a
+    // write to the mapping cannot run out of disk.
+    unsafe { MmapOptions::new().len(bytes).map_mut(&file) }
+}
+
+/// Makes the file `bytes` long with every block allocated: by the file system, or else by writing.
+fn allocate(mut file: &File, bytes: u64) -> io::Result<()> {
+    match rustix::fs::fallocate(file, rustix::fs::FallocateFlags::empty(), 0, bytes) {
+        Err(rustix::io::Errno::OPNOTSUPP) => {
+            let zeros = vec![0; 1 << 20];
+            let mut left = bytes;
+            while left > 0 {
+                let part = left.min(zeros.len() as u64);
+                file.write_all(&zeros[..part as usize])?;
+                left -= part;
+            }
+            file.sync_all()
+        }
+        other => Ok(other?),
     }
 }
 
@@ -24,12 +83,47 @@ impl<T: Pod> Deref for Column<T> {
     type Target = [T];
 
     fn deref(&self) -> &[T] {
-        &self.values
+        match &self.values {
+            Values::Owned(values) => values,
+            // A mapping begins on a page, so it is aligned, and its length is a whole number of values.
+            Values::Mapped(map) => bytemuck::cast_slice(map),
+        }
     }
 }
 
 impl<T: Pod> DerefMut for Column<T> {
     fn deref_mut(&mut self) -> &mut [T] {
-        &mut self.values
+        match &mut self.values {
+            Values::Owned(values) => values,
+            Values::Mapped(map) => bytemuck::cast_slice_mut(map),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_slices_wherever_they_live() {
+        let folder = tempfile::tempdir().unwrap();
+        for placement in [Placement::Memory, Placement::Mapped(folder.path().to_owned())] {
+            let mut column = Column::<u32>::zeroed(10_001, &placement).unwrap();
+            assert!(column.len() == 10_001 && column.iter().all(|&v| v == 0));
+            column[10_000] = 7;
+            assert_eq!(column[9_999..], [0, 7]);
+            assert_eq!(Column::<f32>::zeroed(0, &placement).unwrap().len(), 0);
+        }
+        // The mapped file has no name.
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn a_folder_or_disk_that_cannot_hold_it_is_an_error() {
+        let missing = Placement::Mapped("/no/such/folder".into());
+        assert!(Column::<u32>::zeroed(1, &missing).is_err());
+        let folder = tempfile::tempdir().unwrap();
+        let placement = Placement::Mapped(folder.path().to_owned());
+        assert!(Column::<u32>::zeroed(1 << 58, &placement).is_err());
     }
 }

@@ -3,5 +3,5 @@
 mod column;
 mod folder;
 
-pub use column::Column;
+pub use column::{Column, Placement};
 pub use folder::{Folder, LOCK_FILE, StoreError, write_whole};

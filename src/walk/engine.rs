@@ -9,7 +9,7 @@ use crate::network::Network;
 /// How passive base particles are moved; the law of a run is the same for the first three.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Engine {
-    /// `Counts` where a particle can be passive, else `Particles`.
+    /// `Counts` where a particle can be passive and there are enough of them for that to be faster, else `Particles`.
     Auto,
     /// Every base particle one by one.
     Particles,
@@ -23,6 +23,16 @@ impl Engine {
     /// Every engine, in the order in which a user is told of them.
     pub const ALL: [Engine; 4] = [Engine::Auto, Engine::Particles, Engine::Counts, Engine::Expected];
 
+    /// Whether it walks every base particle one by one when each increment inserts `share` of them on this many start nodes,
+    /// whatever their sizes. A question of numbers alone, so that a seed gives the same bits on every machine.
+    pub fn takes_each(self, share: u64, start_nodes: u64) -> bool {
+        match self {
+            Engine::Particles => true,
+            Engine::Auto => share < start_nodes.saturating_mul(WORTH_COUNTS),
+            Engine::Counts | Engine::Expected => false,
+        }
+    }
+
     /// The word for it.
     pub fn name(self) -> &'static str {
         match self {
@@ -33,6 +43,10 @@ impl Engine {
         }
     }
 }
+
+/// Base particles inserted on a start node in an increment from which counts are faster than particles one by one: where both
+/// took as long lies between 4 (portable instructions) and 13 (AVX-512), see `results/`.
+const WORTH_COUNTS: u64 = 8;
 
 /// What one run needs: an engine, and how much of the base is passive.
 ///
@@ -45,7 +59,7 @@ impl Engine {
 /// let network = Network::cubic_from_diameters([4, 4, 6], vec![1.0; 288], 1.0)?;
 /// let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.2, 1.5)?, 1.0)?;
 /// let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
-/// let plan = Plan::new(Engine::Auto, &network, &sampler, &open);
+/// let plan = Plan::new(Engine::Auto, &network, &sampler, &open, 10_000_000_000);
 /// assert_eq!(plan.engine(), Engine::Counts);
 /// let supply = plan.supply(sampler, 1_000_000_000_000, 100, 7, 1);
 /// let classes = SizeClasses::logarithmic(0.2, 0.45, 32);
@@ -62,17 +76,31 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// What a run of this base needs on the constrictions that `blocked` leaves open.
-    pub fn new(wanted: Engine, network: &Network, sampler: &SizeSampler, blocked: &BitSlice<u64>) -> Self {
+    /// What a run of this base needs on the constrictions that `blocked` leaves open, where each increment inserts `share`
+    /// base particles.
+    pub fn new(
+        wanted: Engine,
+        network: &Network,
+        sampler: &SizeSampler,
+        blocked: &BitSlice<u64>,
+        share: u64,
+    ) -> Self {
         let limit = network.finest_open(|c| blocked[c]);
         let passive_words = sampler.word_limit(limit);
         let engine = match wanted {
-            Engine::Particles => Engine::Particles,
+            wanted if wanted.takes_each(share, network.start().len() as u64) => Engine::Particles,
             _ if passive_words == 0 => Engine::Particles,
             Engine::Auto => Engine::Counts,
             chosen => chosen,
         };
-        let left_out = left_out(engine, limit, passive_words, network.unit_mm());
+        let mut left_out = left_out(engine, limit, passive_words, network.unit_mm());
+        if wanted == Engine::Auto && engine == Engine::Particles && passive_words > 0 {
+            left_out.push(format!(
+                "None is kept as a count: {share} base particles an increment for {} start nodes are so few that walking each by \
+                 itself is faster, and the law is the same.",
+                network.start().len()
+            ));
+        }
         Self { engine, passive_words, left_out }
     }
 

@@ -91,7 +91,7 @@ pub(super) fn merge(events: &mut [Events], upstream: &[u32], state: &mut State) 
         tally.moving += u64::from(events.inserted);
         tally.inserted_mass += events.inserted_mass;
         tally.passive_inserted += u64::from(events.passive_inserted);
-        tally.particle_moves += events.moves;
+        tally.particle_moves = tally.particle_moves.saturating_add(events.moves);
         if !events.is_quiet() {
             let gone = [events.eroded_count, events.stopped.len() as u64, events.stranded.len() as u64];
             tally.eroded += gone[0];

@@ -1,10 +1,12 @@
 //! The state of a run: columns, and nothing that belongs to an engine.
 
+use std::io;
+
 use bitvec::vec::BitVec;
 
 use super::{Passive, SizeClasses, SizeCounts, Supply, Tally};
 use crate::network::Network;
-use crate::store::Column;
+use crate::store::{Column, Placement};
 
 /// Base particles of one chunk: 128 KiB of columns, so that a chunk stays in a core's second-level
 /// cache while it is worked on. Part of the definition of every stream: changing it changes results.
@@ -85,18 +87,35 @@ impl State {
         seed: u64,
         run: u64,
     ) -> Self {
+        let state = Self::placed(&Placement::Memory, network, supply, classes, blocked, seed, run);
+        state.expect("columns in memory need no file")
+    }
+
+    /// The same, with the columns of the particles in `placement`; what is there changes no bit.
+    ///
+    /// # Errors
+    /// Files for the columns cannot be made or allocated.
+    pub fn placed(
+        placement: &Placement,
+        network: &Network,
+        supply: &Supply,
+        classes: SizeClasses,
+        blocked: BitVec<u64>,
+        seed: u64,
+        run: u64,
+    ) -> io::Result<Self> {
         assert_eq!(blocked.len(), network.constrictions(), "one bit a constriction");
         let chunks = (supply.total() as usize).div_ceil(CHUNK);
         let tally = Tally { blocked: blocked.count_ones() as u64, ..Tally::default() };
-        Self {
+        Ok(Self {
             seed,
             run,
             increment: 0,
             finished: false,
             passive_limit: network.finest_open(|c| blocked[c]),
             particles: Particles {
-                void: Column::zeroed(chunks * CHUNK),
-                diameter: Column::zeroed(chunks * CHUNK),
+                void: Column::zeroed(chunks * CHUNK, placement)?,
+                diameter: Column::zeroed(chunks * CHUNK, placement)?,
                 live: vec![0; chunks],
             },
             passive: supply.no_passive_yet(network.voids()),
@@ -108,7 +127,7 @@ impl State {
             eroded_sizes: SizeCounts::new(&classes),
             retained_sizes: SizeCounts::new(&classes),
             classes,
-        }
+        })
     }
 
     /// Whether base particles cannot use constriction `c`: blocked, or of size 0.

@@ -20,7 +20,7 @@ pub struct Tally {
     pub trapped: u64,
     /// Blocked constrictions, those of earlier runs included.
     pub blocked: u64,
-    /// Completed moves, the one that leaves included.
+    /// Completed moves, the one that leaves included; stays at 2^64 - 1 once it is there.
     pub particle_moves: u64,
     /// Mass inserted.
     pub inserted_mass: f64,

@@ -1,12 +1,14 @@
 //! A case: a scene with its files read and every number worked out, before any work is done.
 
 mod files;
+mod memory;
 mod record;
 mod sizes;
 mod warnings;
 
 pub(super) use files::Files;
 pub use files::Input;
+pub use memory::{Room, in_words};
 
 use super::packed::PackedFilter;
 use super::scene::{Amount, BaseGradation, D85, FilterGradation, NetworkSource, Scene};
@@ -16,7 +18,7 @@ use crate::constrictions::{Curve, CurveError, CurveUnit, ShippedFilter, inscribe
 use crate::gradation::{BaseSupply, Gradation, GradationError, NumberError, SizeSampler, base_particles};
 use crate::network::{Network, NetworkError};
 use crate::outcome::record::Ratios;
-use crate::walk::{CHUNK, Engine};
+use crate::store::Placement;
 
 /// Why a scene cannot be walked.
 #[derive(Debug, thiserror::Error)]
@@ -42,10 +44,10 @@ pub enum CaseError {
         /// The scene.
         file: String,
     },
-    /// More memory than there is.
+    /// More memory, or more disk, than there is.
     #[error(
         "{n_base} base particles walked one by one on {voids} voids need {needed} of memory, but {available} are \
-         available; set base.cap or base.n_base lower, or a smaller network"
+         available{disk}; set base.cap or base.n_base lower, or a smaller network"
     )]
     Memory {
         /// Base particles.
@@ -56,12 +58,10 @@ pub enum CaseError {
         needed: String,
         /// Bytes available, in words.
         available: String,
+        /// What there is to say of the disk.
+        disk: String,
     },
 }
-
-/// Replicates walk side by side only while all of them together stay below this, so that memory does not grow with
-/// the number of threads.
-const SIDE_BY_SIDE_BYTES: u64 = 1 << 30;
 
 /// A scene, worked out.
 pub struct Case {
@@ -99,6 +99,10 @@ pub struct Case {
     pub connectivity: Vec<[f64; 2]>,
     /// Files that were read.
     pub inputs: Vec<Input>,
+    /// Memory that the walks may take (bytes): no limit until [`Case::place`] sets one.
+    pub memory: u64,
+    /// Where the columns of the particles live.
+    pub placement: Placement,
 }
 
 impl Case {
@@ -207,6 +211,8 @@ impl Case {
             counts,
             connectivity,
             inputs: files.0,
+            memory: u64::MAX,
+            placement: Placement::Memory,
             scene,
         })
     }
@@ -225,31 +231,9 @@ impl Case {
         }
     }
 
-    /// Base particles of a run of `n_base` that are walked one by one: all, or those that may be coarser than the
-    /// finest constriction.
-    pub fn one_by_one(&self, n_base: u64) -> u64 {
-        if self.scene.engine == Engine::Particles {
-            return n_base;
-        }
-        let finest = match &self.network_file {
-            Some(network) => network.finest_open(|_| false),
-            None => (self.curve.smallest() / self.unit_mm) as f32,
-        };
-        let passive = self.sampler.word_limit(finest) as f64 / 18_446_744_073_709_551_616.0;
-        (n_base as f64 * (1.0 - passive)).ceil() as u64
-    }
-
     /// Increments over which the base is inserted: a whole number, so that every part is equal.
     pub fn increments(&self) -> u64 {
         (1.0 / self.scene.inject_share).round().max(1.0) as u64
-    }
-
-    /// Bytes that walking `n_base` particles takes, network and tallies included.
-    pub fn bytes(&self, n_base: u64) -> u64 {
-        let chunks = self.one_by_one(n_base).div_ceil(CHUNK as u64);
-        let particles = chunks.saturating_mul(8 * CHUNK as u64 + 256);
-        let [voids, constrictions, ..] = self.counts;
-        particles.saturating_add(voids * 140 + constrictions * 25)
     }
 
     /// Multiples of N_base that the sensitivity study walks: those asked for, none above a cap that the user set.
@@ -259,36 +243,6 @@ impl Case {
             _ => f64::INFINITY,
         };
         self.scene.sensitivity.0.iter().copied().filter(|f| f * self.n_base as f64 <= cap).collect()
-    }
-
-    /// The most bytes that the whole case takes at once on this many threads.
-    pub fn peak_bytes(&self, threads: u64) -> u64 {
-        let largest = self.sensitivity_factors().into_iter().fold(1.0, f64::max);
-        let n_base = (self.n_base as f64 * largest) as u64;
-        self.bytes(n_base).saturating_mul(self.side_by_side(n_base, threads))
-    }
-
-    /// Replicates of `n_base` particles that walk at the same time on this many threads: one, unless they are small.
-    pub fn side_by_side(&self, n_base: u64, threads: u64) -> u64 {
-        let all = self.bytes(n_base).saturating_mul(threads);
-        if all <= SIDE_BY_SIDE_BYTES { threads.max(1) } else { 1 }
-    }
-
-    /// Refuses what does not fit the memory that is available.
-    ///
-    /// # Errors
-    /// [`CaseError::Memory`].
-    pub fn check_memory(&self, available: u64, threads: u64) -> Result<(), CaseError> {
-        let needed = self.peak_bytes(threads);
-        if needed <= available {
-            return Ok(());
-        }
-        Err(CaseError::Memory {
-            n_base: self.one_by_one(self.n_base),
-            voids: self.counts[0],
-            needed: in_words(needed),
-            available: in_words(available),
-        })
     }
 
     /// D15F over D85B and D95B.
@@ -396,17 +350,4 @@ fn supply(
         return Err(scene.clash(problem).into());
     }
     Ok(((n_base, Some(n_base_eq2), capped), Some(ratio)))
-}
-
-/// Bytes in words: `1.6 GB`.
-pub fn in_words(bytes: u64) -> String {
-    let (mut value, mut unit) = (bytes as f64, "bytes");
-    for larger in ["kB", "MB", "GB", "TB", "PB", "EB"] {
-        if value < 1000.0 {
-            break;
-        }
-        value /= 1000.0;
-        unit = larger;
-    }
-    if unit == "bytes" { format!("{bytes} bytes") } else { format!("{value:.2} {unit}") }
 }

@@ -1,0 +1,140 @@
+//! How much memory a case takes, and where the columns of its particles live.
+
+use std::path::Path;
+
+use super::{Case, CaseError};
+use crate::store::Placement;
+use crate::walk::CHUNK;
+
+/// Replicates walk side by side only while all of them together stay below this, so that memory does not grow with
+/// the number of threads.
+const SIDE_BY_SIDE_BYTES: u64 = 1 << 30;
+
+/// What the walks of a case may take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Room {
+    /// Memory (bytes).
+    pub memory: u64,
+    /// Disk where the results go (bytes).
+    pub disk: u64,
+}
+
+impl Room {
+    /// As much memory as was asked for, else 80 % of what is available, and never more than that; the disk that is free where
+    /// `folder` is or will be.
+    pub fn new(asked: Option<u64>, available: u64, folder: &Path) -> Self {
+        let share = available / 5 * 4;
+        let there = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
+        let disk = there.ancestors().find_map(|folder| rustix::fs::statvfs(folder).ok());
+        Self {
+            memory: asked.map_or(share, |asked| asked.min(available)),
+            disk: disk.map_or(0, |disk| disk.f_bavail.saturating_mul(disk.f_frsize)),
+        }
+    }
+}
+
+impl Case {
+    /// Base particles of a run of `n_base` that are walked one by one: all, or those that may be coarser than the
+    /// finest constriction.
+    pub fn one_by_one(&self, n_base: u64) -> u64 {
+        if self.scene.engine.takes_each(n_base / self.increments(), self.counts[2]) {
+            return n_base;
+        }
+        let finest = match &self.network_file {
+            Some(network) => network.finest_open(|_| false),
+            None => (self.curve.smallest() / self.unit_mm) as f32,
+        };
+        let passive = self.sampler.word_limit(finest) as f64 / 18_446_744_073_709_551_616.0;
+        (n_base as f64 * (1.0 - passive)).ceil() as u64
+    }
+
+    /// Bytes of the columns of a walk of `n_base` particles.
+    pub fn column_bytes(&self, n_base: u64) -> u64 {
+        self.one_by_one(n_base).div_ceil(CHUNK as u64).saturating_mul(8 * CHUNK as u64)
+    }
+
+    /// Bytes that walking `n_base` particles takes besides: network, tallies, book-keeping.
+    fn other_bytes(&self, n_base: u64) -> u64 {
+        let [voids, constrictions, ..] = self.counts;
+        let chunks = self.one_by_one(n_base).div_ceil(CHUNK as u64);
+        chunks.saturating_mul(256).saturating_add(voids * 140 + constrictions * 25)
+    }
+
+    /// Bytes that walking `n_base` particles takes, network and tallies included.
+    pub fn bytes(&self, n_base: u64) -> u64 {
+        self.column_bytes(n_base).saturating_add(self.other_bytes(n_base))
+    }
+
+    /// The most base particles of any run of the case.
+    fn most_particles(&self) -> u64 {
+        let largest = self.sensitivity_factors().into_iter().fold(1.0, f64::max);
+        (self.n_base as f64 * largest) as u64
+    }
+
+    /// The most bytes that the whole case takes at once on this many threads, all columns in memory.
+    pub fn peak_bytes(&self, threads: u64) -> u64 {
+        let n_base = self.most_particles();
+        self.bytes(n_base).saturating_mul(self.side_by_side(n_base, threads))
+    }
+
+    /// Replicates of `n_base` particles that walk at the same time on this many threads: one, unless they are small.
+    pub fn side_by_side(&self, n_base: u64, threads: u64) -> u64 {
+        let all = self.bytes(n_base).saturating_mul(threads);
+        if all <= SIDE_BY_SIDE_BYTES.min(self.memory) { threads.max(1) } else { 1 }
+    }
+
+    /// Says where the columns of the particles go: into memory where they fit, else into files in `folder` that are mapped
+    /// into memory.
+    ///
+    /// # Errors
+    /// [`CaseError::Memory`]: they fit neither.
+    pub fn place(&mut self, room: &Room, threads: u64, folder: &Path) -> Result<(), CaseError> {
+        self.memory = room.memory;
+        let (n_base, needed) = (self.most_particles(), self.peak_bytes(threads));
+        if needed <= room.memory {
+            self.placement = Placement::Memory;
+        } else if self.other_bytes(n_base) <= room.memory && self.column_bytes(n_base) <= room.disk {
+            self.placement = Placement::Mapped(folder.to_owned());
+        } else {
+            return Err(CaseError::Memory {
+                n_base: self.one_by_one(self.n_base),
+                voids: self.counts[0],
+                needed: in_words(needed),
+                available: in_words(room.memory),
+                disk: match self.other_bytes(n_base) <= room.memory {
+                    true => format!(" and the disk has {} for the particles", in_words(room.disk)),
+                    false => String::new(),
+                },
+            });
+        }
+        Ok(())
+    }
+
+    /// Where the particles live, for a reader.
+    pub fn memory_in_words(&self) -> String {
+        let bytes = in_words(self.bytes(self.n_base));
+        let limit = in_words(self.memory);
+        match &self.placement {
+            Placement::Memory => format!("{bytes} a walk, of {limit} that it may take"),
+            Placement::Mapped(_) => format!(
+                "{} a walk, of {limit} that it may take, and {} in files in the run folder for the particles, mapped into memory: \
+                 slower, the same bits",
+                in_words(self.other_bytes(self.n_base)),
+                in_words(self.column_bytes(self.most_particles()))
+            ),
+        }
+    }
+}
+
+/// Bytes in words: `1.6 GB`.
+pub fn in_words(bytes: u64) -> String {
+    let (mut value, mut unit) = (bytes as f64, "bytes");
+    for larger in ["kB", "MB", "GB", "TB", "PB", "EB"] {
+        if value < 1000.0 {
+            break;
+        }
+        value /= 1000.0;
+        unit = larger;
+    }
+    if unit == "bytes" { format!("{bytes} bytes") } else { format!("{value:.2} {unit}") }
+}
