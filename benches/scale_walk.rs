@@ -2,7 +2,7 @@
 //!
 //! `cargo bench --bench scale_walk -- ENGINE N NX NY NZ THREADS ISA [CU]` prints one line of name and value pairs. The filter is
 //! the loose Cu 1.5 one, the base linear with D85B = Dc5 and Cu 4.5 unless CU says otherwise. `cpu` is the processor time of all
-//! threads; both times are of the run alone, without the network. `scripts/scale_walk.sh` calls it and draws the figures.
+//! threads, which are pinned unless the environment says PIN=0; both times are of the run alone, without the network. `scripts/scale_walk.sh` calls it and draws the figures.
 
 use std::sync::OnceLock;
 use std::time::Instant;
@@ -36,7 +36,8 @@ fn main() {
     let isa = Isa::ALL.into_iter().find(|i| i.name() == isa).expect("portable, avx2 or avx512");
     let shape = [nx, ny, nz].map(|n| number(n) as u32);
     let cu = rest.first().map_or(4.5, |text| text.parse().expect("a number"));
-    let pool = voidwalk::walk::threads(number(threads) as usize, true).expect("threads");
+    let pinned = std::env::var_os("PIN").is_none_or(|pin| pin != "0");
+    let pool = voidwalk::walk::threads(number(threads) as usize, pinned).expect("threads");
     let n = number(n);
     pool.install(|| run(engine, n, shape, cu, isa));
 }

@@ -10,6 +10,9 @@ use crate::walk::CHUNK;
 /// the number of threads.
 const SIDE_BY_SIDE_BYTES: u64 = 1 << 30;
 
+/// What happens to the particles of a chunk in an increment, and their size classes (measured).
+const EVENT_BYTES: u64 = 16 << 10;
+
 /// What the walks of a case may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Room {
@@ -57,7 +60,7 @@ impl Case {
     fn other_bytes(&self, n_base: u64) -> u64 {
         let [voids, constrictions, ..] = self.counts;
         let chunks = self.one_by_one(n_base).div_ceil(CHUNK as u64);
-        chunks.saturating_mul(256).saturating_add(voids * 140 + constrictions * 25)
+        chunks.saturating_mul(EVENT_BYTES).saturating_add(voids * 140 + constrictions * 25)
     }
 
     /// Bytes that walking `n_base` particles takes, network and tallies included.
