@@ -1,8 +1,9 @@
 //! One first run of any engine on a lattice of any shape, timed: how the cost grows with particles, voids and threads.
 //!
-//! `cargo bench --bench scale_walk -- ENGINE N NX NY NZ THREADS ISA [CU]` prints one line of name and value pairs. The filter is
-//! the loose Cu 1.5 one, the base linear with D85B = Dc5 and Cu 4.5 unless CU says otherwise. `cpu` is the processor time of all
-//! threads, which are pinned unless the environment says PIN=0; both times are of the run alone, without the network. `scripts/scale_walk.sh` calls it and draws the figures.
+//! `cargo bench --bench scale_walk -- ENGINE N NX NY NZ THREADS ISA [CU]` prints one line of name and value pairs. The filter
+//! is the loose Cu 1.5 one, the base linear with D85B = Dc5 and Cu 4.5 unless CU says otherwise. `cpu` is the processor time
+//! of all threads, which are pinned unless the environment says PIN=0; both times are of the run alone, without the network.
+//! `scripts/scale_walk.sh` collects such lines in a table, and `-- draw TABLE.csv FIGURES` draws it.
 
 use std::sync::OnceLock;
 use std::time::Instant;
@@ -10,6 +11,7 @@ use std::time::Instant;
 use voidwalk::constrictions;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
+use voidwalk::report::figures::{Axis, BLUE, Colour, Dash, Figure, GREEN, Line, Point, Shape, VERMILLION};
 use voidwalk::walk::{Engine, Isa, Plan, Progress, SizeClasses, State, Walk};
 
 const SEED: u64 = 1;
@@ -27,6 +29,11 @@ fn now() -> [f64; 2] {
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|a| a != "--bench").collect();
+    if let [draw, table, prefix] = &arguments[..]
+        && draw == "draw"
+    {
+        return figures(table, prefix);
+    }
     let [engine, n, nx, ny, nz, threads, isa, rest @ ..] = &arguments[..] else {
         eprintln!("usage: scale_walk ENGINE N NX NY NZ THREADS portable|avx2|avx512 [CU]");
         std::process::exit(2);
@@ -70,4 +77,88 @@ fn run(engine: Engine, n: u64, shape: [u32; 3], cu: f64, isa: Isa) {
         state.tally.blocked,
         peak.map_or(0, |kib| kib.parse::<u64>().unwrap_or(0) / 1024),
     );
+}
+
+/// A row of the table: how often each combination was run does not matter, the quickest counts.
+struct Measured {
+    engine: String,
+    n: f64,
+    shape: [u32; 3],
+    cu: String,
+    threads: u32,
+    cpu: f64,
+}
+
+fn measured(table: &str) -> Vec<Measured> {
+    let text = std::fs::read_to_string(table).expect("the table");
+    let row = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        let whole = |cell: usize| cells[cell].parse().expect("a whole number");
+        Measured {
+            engine: cells[0].into(),
+            n: cells[1].parse().expect("a number"),
+            shape: [whole(2), whole(3), whole(4)],
+            cu: cells[5].into(),
+            threads: whole(6),
+            cpu: cells[9].parse().expect("a number"),
+        }
+    };
+    text.lines().skip(1).map(row).collect()
+}
+
+/// Quickest runs by `x`, in its order.
+fn series(
+    rows: &[Measured],
+    keep: impl Fn(&Measured) -> bool,
+    x: impl Fn(&Measured) -> f64,
+) -> Vec<(f64, f64)> {
+    let mut points: Vec<(f64, f64)> =
+        rows.iter().filter(|row| keep(row)).map(|row| (x(row), row.cpu)).collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    points.dedup_by_key(|point| point.0);
+    points
+}
+
+fn add(figure: &mut Figure, name: &str, points: Vec<(f64, f64)>, colour: Colour, dash: Dash) {
+    points.iter().for_each(|&(x, y)| figure.add(Point::new(x, y, colour, Shape::Circle)));
+    figure.add(Line::new(points, colour).dash(dash).label(name));
+}
+
+fn figures(table: &str, prefix: &str) {
+    let rows = measured(table);
+    let seconds = || Axis::log("Processor time of a first run (s)", 0.01, 200.0);
+    let on_paper = |row: &Measured| row.shape == [40, 40, 60] && row.threads == 1;
+    let mut figure = Figure::new(
+        "Cost against the number of base particles",
+        "Processor time of a first run on 40 x 40 x 60 voids, one thread, by engine",
+        "",
+        Axis::log("Base particles", 1e5, 1e12),
+        seconds(),
+    );
+    for (name, engine, cu, colour, dash) in [
+        ("particles", "particles", "4.5", VERMILLION, Dash::Solid),
+        ("counts, Cu 4.5", "counts", "4.5", BLUE, Dash::Solid),
+        ("counts, Cu 24", "counts", "24", BLUE, Dash::Dashed),
+        ("expected, Cu 4.5", "expected", "4.5", GREEN, Dash::Dotted),
+    ] {
+        let keep = |row: &Measured| on_paper(row) && row.engine == engine && row.cu == cu;
+        add(&mut figure, name, series(&rows, keep, |row| row.n), colour, dash);
+    }
+    std::fs::write(format!("{prefix}-particles.svg"), figure.names_above().file()).expect("a figure");
+
+    let voids = |row: &Measured| row.shape.map(f64::from).iter().product::<f64>();
+    let mut figure = Figure::new(
+        "Cost against the number of voids",
+        "Processor time of a first run on cubes of 10 to 160 voids a side, one thread",
+        "",
+        Axis::log("Voids", 1e3, 4.1e6),
+        seconds(),
+    );
+    for (name, engine, colour) in
+        [("counts, 2083 particles a void", "counts", BLUE), ("particles, 2e6", "particles", VERMILLION)]
+    {
+        let keep = |row: &Measured| row.engine == engine && row.shape[0] == row.shape[2] && row.threads == 1;
+        add(&mut figure, name, series(&rows, keep, voids), colour, Dash::Solid);
+    }
+    std::fs::write(format!("{prefix}-voids.svg"), figure.names_above().file()).expect("a figure");
 }

@@ -1,6 +1,6 @@
 """Times the plain walks and the library's in turns and writes results/walk-speed-DATE.md.
 
-Called by compare_walk.sh: BUILD BINARY N...
+Called by compare_walk.sh: BUILD BINARY SCALE_BINARY N...
 """
 
 import datetime
@@ -87,6 +87,56 @@ def table(seen):
     return rows
 
 
+def counts(build, scale):
+    """Whole first runs of engine counts beside the time that the plain walks would take for the same moves."""
+    plain = {}
+    for label, program in (("plain C++", "walk_cpp"), ("plain Rust", "walk_rust")):
+        plain[label] = values([f"{build}/{program}", "200000000", CURVE, "graded", str(SEED), "110"])["ns_step_all"]
+    best = min(plain.values())
+    lines = [
+        "",
+        "## Engine `counts`: whole first runs",
+        "",
+        "The plain walks' first 110 increments with 2e8 particles (a whole run takes minutes) cost "
+        + " and ".join(f"{ns:.1f} ns a step ({label})" for label, ns in plain.items())
+        + ". The ratio is the faster of these times the completed moves, over the run's processor time: a plain walk on one "
+        "core against all that counts need, its coarse particles included. Least of three runs; 1e12 is of a wider base (Cu 24), "
+        "of which as many particles are coarse as of 2e8 at Cu 4.5.",
+        "",
+        "| walk | N | processor s | wall s | increments | walked one by one | moves | ratio to plain | peak MB |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
+    cases = [(isa, 1, "200000000", "4.5") for isa in reversed(isas_of(scale))]
+    cases += [("best", 2, "200000000", "4.5")]
+    cases += [("best", 1, "1000000000", "4.5"), ("best", 1, "1000000000000", "24")]
+    top = isas_of(scale)[-1]
+    for isa, threads, n, cu in cases:
+        isa = top if isa == "best" else isa
+        command = [scale, "counts", n, "40", "40", "60", str(threads), isa, cu]
+        runs = [values_of(command) for _ in range(3)]
+        run = min(runs, key=lambda run: float(run["cpu"]))
+        wall = min(float(run["wall"]) for run in runs)
+        ratio = best * 1e-9 * float(run["moves"]) / float(run["cpu"])
+        lines.append(
+            f"| voidwalk {isa}, {threads} thread{'s' * (threads > 1)} | {float(n):.0e} | {float(run['cpu']):.2f} | {wall:.2f} | "
+            f"{run['increments']} | {run['one_by_one']} | {float(run['moves']):.3g} | {ratio:.3g} | {run['peak_mb']} |"
+        )
+    return lines
+
+
+def values_of(command):
+    """The name-value pairs of a line, as words."""
+    words = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()
+    return dict(zip(words[::2], words[1::2]))
+
+
+def isas_of(scale):
+    """Instruction sets of this machine, the slowest first."""
+    names = ["portable", "avx2", "avx512"]
+    tries = [subprocess.run([scale, "counts", "1", "2", "2", "2", "1", n], capture_output=True) for n in names]
+    return [name for name, tried in zip(names, tries) if tried.returncode == 0]
+
+
 def first_line(*command):
     return subprocess.run(command, capture_output=True, text=True).stdout.splitlines()[0]
 
@@ -97,7 +147,7 @@ def processor():
 
 
 def main():
-    build, binary, *sizes = sys.argv[1:]
+    build, binary, scale, *sizes = sys.argv[1:]
     date = datetime.date.today().isoformat()
     lines = [
         "# The walk against plain walks",
@@ -111,6 +161,7 @@ def main():
         "time; two threads: wall time. Walks are timed in turns; ratios are against the faster of plain C++ and",
         "plain Rust (one core). Made by `scripts/compare_walk.sh`.",
     ]
+    lines += counts(build, scale)
     for n in map(int, sizes):
         for name in ("graded", "passive"):
             repeats = REPEATS if n < 10_000_000 else 1

@@ -1,7 +1,8 @@
 #!/bin/sh
 # Builds and times the plain walks of benches/baseline beside the library's, in turns, and writes the ratios to
 # results/walk-speed-DATE.md. NumPy and Numba are installed into target/venv-compare.
-# Usage: scripts/compare_walk.sh [N ...]   (default 2000000 20000000; 200000000 takes half an hour)
+# Usage: scripts/compare_walk.sh [N ...]   (default 2000000 20000000; 200000000 takes half an hour). Whole runs of engine counts
+# are always among them.
 set -eu
 cd "$(dirname "$0")/.."
 build=target/compare
@@ -12,7 +13,9 @@ if [ ! -x target/venv-compare/bin/python ]; then
     python3 -m venv target/venv-compare
     target/venv-compare/bin/pip install --quiet numpy numba
 fi
-binary=$(cargo bench --bench compare_walk --no-run --message-format=json 2>/dev/null |
-    sed -n 's/.*"name":"compare_walk".*"executable":"\([^"]*\)".*/\1/p' | tail -1)
+built() { # BENCH: its program
+    cargo bench --bench "$1" --no-run --message-format=json 2>/dev/null |
+        sed -n 's/.*"name":"'"$1"'".*"executable":"\([^"]*\)".*/\1/p' | tail -1
+}
 [ $# -gt 0 ] || set -- 2000000 20000000
-target/venv-compare/bin/python scripts/compare_walk.py "$build" "$binary" "$@"
+target/venv-compare/bin/python scripts/compare_walk.py "$build" "$(built compare_walk)" "$(built scale_walk)" "$@"

@@ -211,6 +211,36 @@ fn bad_scenes_are_refused_and_leave_nothing() {
     }
 }
 
+/// No second run, no sensitivity, no series and no early size curves: what is left is what the whole gives, and both `check` and
+/// the outcome say what is left out.
+#[test]
+fn what_is_left_out_changes_nothing_else() {
+    let root = tempfile::tempdir().unwrap();
+    let (whole, part) = (root.path().join("whole"), root.path().join("part"));
+    assert!(run_small(&whole, &[]).status.success());
+    let sets = ["runs=1", "record.sensitivity=[]", "record.series_every=0", "record.size_curves=[]"];
+    let less: Vec<&str> = sets.iter().flat_map(|set| ["--set", set]).collect();
+    assert!(run_small(&part, &less).status.success());
+    let (whole_outcome, part_outcome) = (without_seconds(outcome(&whole)), without_seconds(outcome(&part)));
+    for replicate in 0..3 {
+        let [a, b] = [&whole_outcome, &part_outcome].map(|outcome| &outcome["replicates"][replicate]);
+        assert_eq!((&a["seed"], &a["runs"][0]), (&b["seed"], &b["runs"][0]));
+        assert!(a["runs"][1].is_object() && b["runs"][1].is_null());
+    }
+    // The rows that are kept are rows of the whole.
+    for file in ["series.csv", "retained.csv", "eroded.csv", "layers.csv"] {
+        let [rows, fewer] = [&whole, &part].map(|folder| fs::read_to_string(folder.join(file)).unwrap());
+        let rows: std::collections::HashSet<&str> = rows.lines().collect();
+        assert!(fewer.lines().count() > 3 && fewer.lines().all(|row| rows.contains(row)), "{file}");
+    }
+    let mut args = vec!["check", "--json"];
+    SMALL.iter().for_each(|set| args.extend(["--set", set]));
+    let checked: Value = serde_json::from_slice(&voidwalk(&[&args[..], &less[..]].concat()).stdout).unwrap();
+    assert_eq!(checked["left_out"], part_outcome["left_out"]);
+    let sentences = checked["left_out"].to_string();
+    assert!(sentences.contains("the second run") && sentences.contains("so few that walking"), "{sentences}");
+}
+
 /// Particles that do not fit the memory that is allowed live in files: `check` says so, and the run gives the same results.
 #[test]
 fn little_memory_changes_no_result() {
@@ -218,12 +248,12 @@ fn little_memory_changes_no_result() {
     let (plenty, little) = (root.path().join("plenty"), root.path().join("little"));
     let many = ["--set", "engine=particles", "--set", "base.n_base=200000", "--set", "replicates=2"];
     assert!(run_small(&plenty, &many).status.success());
-    let output = run_small(&little, &[&many[..], &["--memory", "500kB"]].concat());
+    let output = run_small(&little, &[&many[..], &["--memory", "1MB"]].concat());
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     assert_eq!(without_seconds(outcome(&plenty)), without_seconds(outcome(&little)));
     assert_eq!(fs::read(plenty.join("series.csv")).unwrap(), fs::read(little.join("series.csv")).unwrap());
 
-    let mut args = vec!["check", "--memory", "500kB"];
+    let mut args = vec!["check", "--memory", "1MB"];
     SMALL.iter().for_each(|set| args.extend(["--set", set]));
     let output = voidwalk(&[&args[..], &many[..]].concat());
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
