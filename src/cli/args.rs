@@ -104,6 +104,10 @@ pub struct CampaignArgs {
     /// Folder in which the packings of filters are kept [default: packings in --out]
     #[arg(long, value_name = "DIR")]
     pub packings: Option<PathBuf>,
+    /// Memory that the walks may take, as 4GB: base particles that do not fit live in files in the run folder, mapped into memory
+    /// [default: 80 % of what is available]; it changes no bit of the result
+    #[arg(long, value_name = "SIZE", value_parser = bytes)]
+    pub memory: Option<u64>,
     /// Worker threads [default: one per core]; they change no bit of the result
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,

@@ -16,7 +16,7 @@ use super::pack::provide;
 use super::print::{percent, plain, to_stderr, to_stdout};
 use super::run::{command_line, pool, refused_or_failed};
 use super::signals::stop_on_signals;
-use crate::campaign::case::{Case, CaseError};
+use crate::campaign::case::{Case, CaseError, Room};
 use crate::campaign::conduct::{ConductError, Overseer, Ready, conduct};
 use crate::campaign::ledger;
 use crate::campaign::machine::Machine;
@@ -46,11 +46,12 @@ pub fn campaign(args: &CampaignArgs) -> Result<(), Ending> {
     let packings = args.packings.clone().unwrap_or_else(|| args.out.join("packings"));
     let packed = pack(&orders, &packings, args.quiet, &pool, &stop)?;
     let ready = |case: &&'_ PlannedCase| worked_out(case, packed.get(&case.name).cloned());
-    let cases: Vec<Ready> =
+    let mut cases: Vec<Ready> =
         wanted.iter().map(|case| Ok(Ready::new(case, ready(case)?))).collect::<Result<_, Ending>>()?;
-    let available = Machine::here().available;
-    for ready in &cases {
-        ready.case.check_memory(available, threads as u64).map_err(|e| refuse(ready.planned, &e))?;
+    let room = Room::new(args.memory, Machine::here().available, out.path());
+    for ready in &mut cases {
+        let placed = ready.case.place(&room, threads as u64, out.path());
+        placed.map_err(|e| refuse(ready.planned, &e))?;
     }
     let progress = Progress::new(args.quiet, &cases, out.path());
     let overseer = Overseer {
