@@ -57,7 +57,7 @@ while read -r name cu friction grains state paper_e paper_cu; do
     {
         echo "[[filter]]"
         echo "name = \"$name\""
-        echo "title = \"Linear gradation, Cu $cu, $state\""
+        echo "title = \"Linear gradation, Cu $cu, ${state/-/ }\""
         echo "cu = $cu"
         echo "void_ratio = $after"
         echo "void_ratio_source = \"voidwalk pack: $grains grains, friction $friction, seed 1 (scripts/make_filters.sh)\""
