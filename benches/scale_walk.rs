@@ -126,14 +126,14 @@ fn add(figure: &mut Figure, name: &str, points: Vec<(f64, f64)>, colour: Colour,
 
 fn figures(table: &str, prefix: &str) {
     let rows = measured(table);
-    let seconds = || Axis::log("Processor time of a first run (s)", 0.01, 200.0);
+    let seconds = |least| Axis::log("Processor time of a first run (s)", least, 200.0);
     let on_paper = |row: &Measured| row.shape == [40, 40, 60] && row.threads == 1;
     let mut figure = Figure::new(
         "Cost against the number of base particles",
         "Processor time of a first run on 40 x 40 x 60 voids, one thread, by engine",
         "",
         Axis::log("Base particles", 1e5, 1e12),
-        seconds(),
+        seconds(0.01),
     );
     for (name, engine, cu, colour, dash) in [
         ("particles", "particles", "4.5", VERMILLION, Dash::Solid),
@@ -152,7 +152,7 @@ fn figures(table: &str, prefix: &str) {
         "Processor time of a first run on cubes of 10 to 160 voids a side, one thread",
         "",
         Axis::log("Voids", 1e3, 4.1e6),
-        seconds(),
+        seconds(0.002),
     );
     for (name, engine, colour) in
         [("counts, 2083 particles a void", "counts", BLUE), ("particles, 2e6", "particles", VERMILLION)]

@@ -32,7 +32,12 @@
 //! # Engines
 //! Passive particles may be kept as one count a void instead ([`Plan`], module `counts`): each increment then
 //! also inserts and parts counts, on the same open set, before the merge. Everything else is the same code,
-//! so whoever watches a [`State`] need not know which engine walks.
+//! so whoever watches a [`State`] need not know which engine walks. [`Engine::Auto`] takes counts unless particles are few: a choice
+//! by numbers alone, never by the clock, so a seed stands for the same bits everywhere.
+//!
+//! # Memory
+//! The columns of the particles take 8 bytes each. [`State::placed`] puts them into mapped files where they would not fit; the
+//! kernels see slices either way, and the bits are the same.
 
 mod counts;
 mod engine;
