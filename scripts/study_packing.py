@@ -3,7 +3,7 @@
 
     python3 scripts/study_packing.py [--set narrow|wide|table2] [--grains 5000] [--seeds 1,2,3] [--work DIR] [--only NAME,...]
 
-Every row is the protocol with its default settings except for the one it names, for each of the seeds; the table gives the mean over the
+Every row is the protocol with its default settings, but a tenth of the stiffness (half the time), and except for what it names, for each of the seeds; the table gives the mean over the
 seeds and, after the sign, the standard deviation of one packing. `narrow` is Cu 1.5, dense and loose; `wide` is Cu 3, dense and
 loose, and Cu 6; `table2` is the six filters of the paper with the numbers of grains that go with them, one row each (then --grains is ignored). One thread,
 so that CPU seconds mean something on a busy machine. Prints Markdown; every run is also kept as a JSON line in DIR/runs.jsonl, and is
@@ -24,10 +24,13 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
+BASE = {"stiffness_ratio": 0.1, "hold_steps": 4000, "max_steps": 400_000}
+
 # The hold is a number of steps, and the step goes with stiffness to the power of -1/3: rows of other stiffness hold for the same time.
 VARIANTS = {
-    "default": {},
+    "none": {},
     "stiffness 0.01": {"stiffness_ratio": 0.01, "hold_steps": 1860},
+    "stiffness 0.3": {"stiffness_ratio": 0.3, "hold_steps": 5770},
     "stiffness 1": {"stiffness_ratio": 1, "hold_steps": 8620},
     "half the squeeze and servo rate": {"squeeze_rate": 5e-3, "servo_rate": 1e-3},
     "mass exponent 0 (true masses)": {"mass_exponent": 0},
@@ -104,6 +107,7 @@ def main():
     parser.add_argument("--set", choices=["narrow", "wide", "table2"], default="narrow")
     parser.add_argument("--grains", type=int, default=5000)
     parser.add_argument("--seeds", default="1,2,3")
+    parser.add_argument("--filters", help="Cu:friction, ... instead of those of the set")
     parser.add_argument("--only", help="names of rows, separated by commas")
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path(tempfile.gettempdir()) / "study-packing")
     options = parser.parse_args()
@@ -148,11 +152,14 @@ def main():
             row(f"{cu:g}, {friction:g}, {grains} ({paper})",
                 [result({"cu": cu, "friction": friction, "grains": grains, "seed": s}) for s in seeds])
         return
-    for cu, friction in FILTERS[options.set]:
+    filters = FILTERS[options.set]
+    if options.filters:
+        filters = [tuple(map(float, pair.split(":"))) for pair in options.filters.split(",")]
+    for cu, friction in filters:
         print(f"\nCu {cu:g}, friction {friction:g}, {options.grains} grains, seeds {options.seeds}\n")
         header("changed")
         for name in names:
-            base = {"cu": cu, "friction": friction, "grains": options.grains, "max_steps": 400_000}
+            base = {"cu": cu, "friction": friction, "grains": options.grains, **BASE}
             row(name, [result({**base, **VARIANTS[name], "seed": s}) for s in seeds])
 
 
