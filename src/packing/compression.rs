@@ -16,7 +16,7 @@
 
 use super::contact::{Grains, Law, Now, Work, pass};
 use super::grains::{Cell, Packing};
-use super::limits::{critical_step, law, mass, stability};
+use super::limits::{critical_step, damped_part, law, mass, stability};
 use super::motion::{LONGEST_MOVE, Part, Rule, Sums, split};
 use super::neighbours::{Chunk, Reach, chunk_bounds};
 use super::settings::{PackingError, Settings};
@@ -405,7 +405,8 @@ impl Compression {
             }
             Some(_) => Ok(()),
             None => {
-                let goal = self.settings.step_fraction * critical.min(2.0 * self.loose_step);
+                let part = self.settings.step_fraction.min(damped_part(&self.law));
+                let goal = part * critical.min(2.0 * self.loose_step);
                 self.step = if goal < self.step { goal } else { goal.min(1.02 * self.step) };
                 Ok(())
             }
