@@ -10,6 +10,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
 use super::case::Case;
+use super::keeper::Keeper;
 use super::machine::Machine;
 use super::plan::PlannedCase;
 use super::results::{self, ResultError};
@@ -40,12 +41,7 @@ pub struct Ready<'a> {
 impl<'a> Ready<'a> {
     /// A case with its fingerprint.
     pub fn new(planned: &'a PlannedCase, case: Case) -> Self {
-        let mut text = results::resolved(&case).into_bytes();
-        for input in case.inputs.iter().filter(|input| input.setting != "filter.density") {
-            text.extend_from_slice(input.setting.as_bytes());
-            text.extend_from_slice(&input.bytes);
-        }
-        let fingerprint = format!("{:032x}", xxhash_rust::xxh3::xxh3_128(&text));
+        let fingerprint = results::fingerprint(&case);
         Self { planned, case, fingerprint }
     }
 
@@ -108,6 +104,8 @@ pub struct Overseer<'a> {
     pub finish: &'a (dyn Fn(&Path) -> Result<(), String> + Sync),
     /// Set to stop after the current increments.
     pub stop: &'a AtomicBool,
+    /// How often a case that is being walked is kept.
+    pub keep_every: Duration,
     /// Job and task of a cluster.
     pub job: Option<String>,
     /// The command line.
@@ -187,18 +185,24 @@ fn one(ready: &Ready, out: &Path, threads: usize, overseer: &Overseer) -> Result
     let name = &ready.planned.name;
     (overseer.tell)(name, None);
     let (begun, started) = (Instant::now(), SystemTime::now());
-    let watch = Watch { tell: &|_| {}, stop: overseer.stop };
+    let failed = |source: ResultError| ConductError::Results { case: name.clone(), source: source.into() };
+    let keeper = Keeper::new(&folder, &ready.fingerprint, overseer.keep_every)?;
+    let watch = Watch { tell: &|_| {}, stop: overseer.stop, keeper: Some(&keeper) };
     let walked = walks::replicates(&ready.case, &watch)
         .and_then(|walked| Ok((walks::sensitivity(&ready.case, &watch)?, walked)));
     let (sensitivity, walked) = match walked {
-        Err(RunError::Walk(WalkError::Stopped { .. })) => return Ok(()),
+        Err(RunError::Walk(WalkError::Stopped { .. })) => return Ok(keeper.flush()?),
+        // Checkpoints of what the case was before the plan was changed, or harmed ones: it is walked from its start.
+        Err(RunError::Harmed(_)) => {
+            keeper.clear()?;
+            return Ok(());
+        }
         Err(source) => return Err(ConductError::Run { case: name.clone(), source: source.into() }),
         Ok(both) => both,
     };
     let seconds = begun.elapsed().as_secs_f64();
     let outcome = results::outcome(&ready.case, &walked, sensitivity, seconds);
     let manifest = results::manifest(&ready.case, threads as u64, started, overseer.command.clone());
-    let failed = |source: ResultError| ConductError::Results { case: name.clone(), source: source.into() };
     folder.remove(LINE)?;
     results::write(&folder, &ready.case, &outcome, &walked, &manifest).map_err(failed)?;
     (overseer.finish)(folder.path())
@@ -214,6 +218,7 @@ fn one(ready: &Ready, out: &Path, threads: usize, overseer: &Overseer) -> Result
     let line = LedgerLine::new(name, &ready.planned.levels, place, ready.fingerprint.clone(), &outcome, made);
     let text = results::json(LINE, &line).map_err(failed)?;
     folder.write(LINE, &text)?;
+    keeper.clear()?;
     (overseer.tell)(name, Some(&line));
     Ok(())
 }

@@ -3,13 +3,14 @@
 //! - [`scene`] is one base-filter combination as the user states it ([`settings`] reads and checks it).
 //! - [`packed`] makes the packing of a scene that gives a sieve curve and a density instead of constrictions.
 //! - [`case`] is a scene with its files read and every number worked out.
-//! - [`walks`] walks its replicates.
+//! - [`walks`] walks its replicates, [`keeper`] keeps them so that a stopped run goes on.
 //! - [`results`] writes what came of it into a run folder.
 //! - [`plan`] is many scenes, [`conduct`] walks those that are not done, [`ledger`] collects what came of them.
 //! - [`percolation`] is a study of its own: the percolation threshold against the size of the lattice.
 
 pub mod case;
 pub mod conduct;
+pub mod keeper;
 pub mod ledger;
 pub mod machine;
 mod network_source;

@@ -65,6 +65,27 @@ pub fn outcome(case: &Case, walked: &[Walked], mut sensitivity: Vec<Sensitivity>
     }
 }
 
+/// Fingerprint of everything that the results of a case follow from: the resolved scene and its files.
+pub fn fingerprint(case: &Case) -> String {
+    let mut text = resolved(case).into_bytes();
+    for input in case.inputs.iter().filter(|input| input.setting != "filter.density") {
+        text.extend_from_slice(input.setting.as_bytes());
+        text.extend_from_slice(&input.bytes);
+    }
+    format!("{:032x}", xxhash_rust::xxh3::xxh3_128(&text))
+}
+
+/// Writes what a run can be started again from: the resolved scene and its input files.
+///
+/// # Errors
+/// What the folder says.
+pub fn write_scene(folder: &Folder, case: &Case) -> Result<(), StoreError> {
+    for input in &case.inputs {
+        folder.write(&input.kept_as, &input.bytes)?;
+    }
+    folder.write("scene.toml", resolved(case).as_bytes())
+}
+
 /// What is said of a run besides its results.
 pub fn manifest(case: &Case, threads: u64, started: SystemTime, command: String) -> Manifest {
     let machine = Machine::here();
@@ -114,10 +135,7 @@ pub fn write(
     walked: &[Walked],
     manifest: &Manifest,
 ) -> Result<(), ResultError> {
-    for input in &case.inputs {
-        folder.write(&input.kept_as, &input.bytes)?;
-    }
-    folder.write("scene.toml", resolved(case).as_bytes())?;
+    write_scene(folder, case)?;
     let mut recorded = Recorded::default();
     for walked in walked {
         recorded.append(walked.recorded.clone());

@@ -9,10 +9,13 @@ use rand::Rng;
 use rayon::prelude::*;
 
 use super::case::{Case, CaseError};
+use super::keeper::{Done, Keeper, network_fingerprint};
 use crate::network::Network;
 use crate::outcome::record::{Replicate, RunSummary, Sensitivity, Statistic, Verdict};
 use crate::outcome::verdict::{below_by_interval, classify};
-use crate::outcome::{Figures, Recorded, Recorder, RunOf};
+use crate::outcome::{Figures, Recorded, RunOf};
+use crate::store::StoreError;
+use crate::store::checkpoint::{Harmed, Saved};
 use crate::stream::{Key, Purpose};
 use crate::walk::{Engine, Plan, Progress, SizeClasses, State, Walk, WalkError};
 
@@ -22,6 +25,12 @@ pub enum RunError {
     /// The case cannot be walked.
     #[error(transparent)]
     Case(#[from] CaseError),
+    /// A checkpoint that cannot be gone on from.
+    #[error(transparent)]
+    Harmed(#[from] Harmed),
+    /// A checkpoint that cannot be kept.
+    #[error(transparent)]
+    Keep(#[from] StoreError),
     /// The walk went wrong, or was stopped.
     #[error(transparent)]
     Walk(#[from] WalkError),
@@ -59,6 +68,8 @@ pub struct Watch<'a> {
     pub tell: &'a (dyn Fn(Event) + Sync),
     /// Set to stop after the current increment.
     pub stop: &'a AtomicBool,
+    /// Keeps what is done, so that the next start goes on from there.
+    pub keeper: Option<&'a Keeper>,
 }
 
 /// One replicate: its figures, and its rows of the CSV files.
@@ -90,17 +101,18 @@ pub fn replicate_seed(seed: u64, replicate: u64) -> u64 {
 /// # Errors
 /// A walk that loses particles, or that was stopped.
 pub fn replicates(case: &Case, watch: &Watch) -> Result<Vec<Walked>, RunError> {
-    some_replicates(case, case.scene.replicates, case.n_base, true, watch)
+    some_replicates(case, 0, case.scene.replicates, case.n_base, watch)
 }
 
+/// Replicates with `n_base` particles each; part 0 are those of the case itself, the only ones that are recorded.
 fn some_replicates(
     case: &Case,
+    part: u64,
     count: u64,
     n_base: u64,
-    record: bool,
     watch: &Watch,
 ) -> Result<Vec<Walked>, RunError> {
-    let one = |replicate| walk_replicate(case, replicate, n_base, record, watch);
+    let one = |replicate| walk_replicate(case, part, replicate, n_base, watch);
     let threads = rayon::current_num_threads() as u64;
     if case.side_by_side(n_base, threads) > 1 {
         (1..=count).into_par_iter().map(one).collect()
@@ -111,41 +123,53 @@ fn some_replicates(
 
 fn walk_replicate(
     case: &Case,
+    part: u64,
     replicate: u64,
     n_base: u64,
-    record: bool,
     watch: &Watch,
 ) -> Result<Walked, RunError> {
     let seed = replicate_seed(case.scene.seed, replicate);
     let network = case.network(seed).map_err(CaseError::from)?;
     let mut blocked = BitVec::repeat(false, network.constrictions());
-    let (mut runs, mut below, mut recorded) = (Vec::new(), Vec::new(), Recorded::default());
     let first = plan(case, &network, &blocked, n_base);
-    for run in 1..=case.scene.runs {
+    let (mut done, mut saved) = match watch.keeper.map(|keeper| keeper.load(part, replicate)).transpose()? {
+        Some(Some((done, saved))) => (done, Some(saved)),
+        _ => (Done::default(), None),
+    };
+    if done.complete {
+        done.runs.iter().for_each(|_| (watch.tell)(Event::Run));
+    }
+    while !done.complete {
         let of = RunOf {
             replicate,
-            run,
+            run: done.runs.len() as u64 + 1,
             d15f_mm: case.filter.d(15.0).unwrap_or(f64::NAN),
             tail_mass_fraction: case.base.tail_mass_fraction(),
         };
         let begun = Instant::now();
-        let (state, recorder) = walk_run(case, &network, blocked, seed, of, n_base, record, watch)?;
+        let walk = RunWalk { case, network: &network, part, seed, of, n_base };
+        let state = walk.run(blocked, &mut done, saved.take(), watch)?;
         let figures = Figures::new(&network, &state, of, begun.elapsed().as_secs_f64());
-        if record {
-            recorded.append(Recorded::new(&network, &state, &recorder, of));
+        let recorder = std::mem::take(&mut done.recorder);
+        if part == 0 {
+            done.recorded.append(Recorded::new(&network, &state, &recorder, of));
         }
-        below.push(figures.below_threshold);
-        runs.push(figures.run);
+        done.below.push(figures.below_threshold);
+        done.runs.push(figures.run);
+        done.complete = done.runs.len() as u64 == case.scene.runs;
         blocked = state.blocked;
         (watch.tell)(Event::Run);
+        if let (true, Some(keeper)) = (done.complete, watch.keeper) {
+            keeper.keep_done(part, replicate, seed, &done);
+        }
     }
-    let verdict = classify(below.first().copied(), below.get(1).copied());
+    let verdict = classify(done.below.first().copied(), done.below.get(1).copied());
     Ok(Walked {
-        replicate: Replicate { seed, verdict, runs },
-        recorded,
+        replicate: Replicate { seed, verdict, runs: done.runs },
+        recorded: done.recorded,
         engine: first.engine(),
         left_out: first.left_out().to_vec(),
-        below,
+        below: done.below,
     })
 }
 
@@ -163,36 +187,86 @@ pub fn left_out_of_first_run(case: &Case) -> Result<Vec<String>, RunError> {
     Ok(plan(case, &network, &open, case.n_base).left_out().to_vec())
 }
 
-#[expect(clippy::too_many_arguments, reason = "one run of one replicate is all of these")]
-fn walk_run(
-    case: &Case,
-    network: &Network,
-    blocked: BitVec<u64>,
+/// One run of one replicate.
+struct RunWalk<'a> {
+    case: &'a Case,
+    network: &'a Network,
+    part: u64,
     seed: u64,
     of: RunOf,
     n_base: u64,
-    record: bool,
-    watch: &Watch,
-) -> Result<(State, Recorder), RunError> {
-    let plan = plan(case, network, &blocked, n_base);
-    let supply = plan.supply(case.sampler.clone(), n_base, case.increments(), seed, of.run);
-    let (smallest, largest) = (case.sampler.smallest(), case.sampler.largest());
-    let classes = SizeClasses::logarithmic(smallest, largest, case.scene.wanted.size_classes);
-    let state = State::placed(&case.placement, network, &supply, classes, blocked, seed, of.run);
-    let mut state = state.map_err(|source| RunError::Room { particles: supply.total(), source })?;
-    let mut recorder = Recorder::default();
-    Walk::new(network, &supply, &state).run(&mut state, &mut |state| {
-        if record {
-            recorder.observe(&case.scene.wanted, state);
+}
+
+impl RunWalk<'_> {
+    /// Walks from the start, or from where it was saved.
+    fn run(
+        &self,
+        blocked: BitVec<u64>,
+        done: &mut Done,
+        mut saved: Option<Saved>,
+        watch: &Watch,
+    ) -> Result<State, RunError> {
+        let Self { case, network, part, seed, of, n_base } = *self;
+        let blocked = match &mut saved {
+            Some(saved) if of.run > 1 => blocked_at_start(network, saved)?,
+            _ => blocked,
+        };
+        let plan = plan(case, network, &blocked, n_base);
+        let supply = plan.supply(case.sampler.clone(), n_base, case.increments(), seed, of.run);
+        let (smallest, largest) = (case.sampler.smallest(), case.sampler.largest());
+        let classes = SizeClasses::logarithmic(smallest, largest, case.scene.wanted.size_classes);
+        let state = State::placed(&case.placement, network, &supply, classes, blocked, seed, of.run);
+        let mut state = state.map_err(|source| RunError::Room { particles: supply.total(), source })?;
+        if let Some(mut saved) = saved {
+            if saved.label.network != network_fingerprint(network) {
+                let (file, problem) =
+                    (format!("checkpoint of replicate {}", of.replicate), "is of another network".into());
+                return Err(Harmed { file, problem }.into());
+            }
+            state.restore(network, &mut saved)?;
         }
-        let (increment, moving) = (state.increment, state.tally.moving);
-        (watch.tell)(Event::Increment { replicate: of.replicate, run: of.run, increment, moving });
-        match watch.stop.load(Ordering::Relaxed) {
-            true => Progress::Stop,
-            false => Progress::Continue,
+        if state.finished {
+            return Ok(state);
         }
-    })?;
-    Ok((state, recorder))
+        let (mut last, mut failed) = (Instant::now(), None);
+        let walked = Walk::new(network, &supply, &state).run(&mut state, &mut |state| {
+            if part == 0 {
+                done.recorder.observe(&case.scene.wanted, state);
+            }
+            let (increment, moving) = (state.increment, state.tally.moving);
+            (watch.tell)(Event::Increment { replicate: of.replicate, run: of.run, increment, moving });
+            let stop = watch.stop.load(Ordering::Relaxed);
+            if let Some(keeper) = watch.keeper.filter(|keeper| keeper.is_due(last, stop)) {
+                if let Err(error) = keeper.keep_walk(part, of.replicate, network, state, done) {
+                    failed = Some(error);
+                    return Progress::Stop;
+                }
+                last = Instant::now();
+            }
+            match stop {
+                true => Progress::Stop,
+                false => Progress::Continue,
+            }
+        });
+        if let Some(error) = failed {
+            return Err(error.into());
+        }
+        walked?;
+        Ok(state)
+    }
+}
+
+/// Constrictions that were blocked when the saved run began: those blocked now, less those that it blocked itself.
+fn blocked_at_start(network: &Network, saved: &mut Saved) -> Result<BitVec<u64>, RunError> {
+    let mut blocked = BitVec::from_vec(saved.read::<u64>("blocked")?);
+    blocked.truncate(network.constrictions());
+    for constriction in saved.read::<u32>("history_constriction")? {
+        if let Some(mut bit) = blocked.get_mut(constriction as usize) {
+            *bit = false;
+        }
+    }
+    blocked.resize(network.constrictions(), false);
+    Ok(blocked)
 }
 
 /// The verdict that the replicates support together, and their statistics by run.
@@ -231,17 +305,19 @@ fn run_summary(walked: &[Walked], run: usize) -> RunSummary {
 /// As [`replicates`].
 pub fn sensitivity(case: &Case, watch: &Watch) -> Result<Vec<Sensitivity>, RunError> {
     let each = case.scene.sensitivity.1;
-    case.sensitivity_factors().into_iter().map(|factor| one_sensitivity(case, factor, each, watch)).collect()
+    let factors = case.sensitivity_factors().into_iter().zip(1..);
+    factors.map(|(factor, part)| one_sensitivity(case, part, factor, each, watch)).collect()
 }
 
 fn one_sensitivity(
     case: &Case,
+    part: u64,
     factor: f64,
     replicates: u64,
     watch: &Watch,
 ) -> Result<Sensitivity, RunError> {
     let n_base = ((case.n_base as f64 * factor).round() as u64).max(1);
-    let walked = some_replicates(case, replicates, n_base, false, watch)?;
+    let walked = some_replicates(case, part, replicates, n_base, watch)?;
     Ok(of_walked(case, factor, n_base, &walked))
 }
 

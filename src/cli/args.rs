@@ -20,6 +20,8 @@ pub struct Arguments {
 pub enum Command {
     /// Walk a scene's base through its filter, and judge
     Run(RunArgs),
+    /// Go on with a run that was stopped or killed, with the same bits
+    Resume(ResumeArgs),
     /// Say what a run would do: number of base particles, memory, parts that are needed
     Check(SceneArgs),
     /// Write the built-in scene, commented, as a start for your own
@@ -81,6 +83,31 @@ pub struct RunArgs {
     /// Worker threads [default: one per core]; they change no bit of the result
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+    /// Keep the walks this often, so that a run that is killed goes on from there; a stop (Ctrl-C, SIGTERM) always keeps them
+    #[arg(long, value_name = "TIME", default_value = "10min", value_parser = humantime::parse_duration)]
+    pub checkpoint_every: std::time::Duration,
+    /// No progress and no summary
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// Which run, and how it goes on.
+#[derive(Debug, Args)]
+pub struct ResumeArgs {
+    /// The run's folder
+    pub folder: PathBuf,
+    /// Worker threads [default: one per core]; they change no bit of the result
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Memory that the walks may take, as 4GB [default: 80 % of what is available]; it changes no bit of the result
+    #[arg(long, value_name = "SIZE", value_parser = bytes)]
+    pub memory: Option<u64>,
+    /// Keep the walks this often, so that a run that is killed goes on from there; a stop (Ctrl-C, SIGTERM) always keeps them
+    #[arg(long, value_name = "TIME", default_value = "10min", value_parser = humantime::parse_duration)]
+    pub checkpoint_every: std::time::Duration,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
     /// No progress and no summary
     #[arg(long, short)]
     pub quiet: bool,
@@ -111,6 +138,9 @@ pub struct CampaignArgs {
     /// Worker threads [default: one per core]; they change no bit of the result
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+    /// Keep the walks this often, so that a campaign that is killed goes on from there; a stop (Ctrl-C, SIGTERM) always keeps them
+    #[arg(long, value_name = "TIME", default_value = "10min", value_parser = humantime::parse_duration)]
+    pub checkpoint_every: std::time::Duration,
     /// No progress and no summary
     #[arg(long, short)]
     pub quiet: bool,

@@ -58,6 +58,7 @@ pub fn campaign(args: &CampaignArgs) -> Result<(), Ending> {
         tell: &|case, line| progress.tell(case, line),
         finish: &|folder| report::write(folder).map(drop).map_err(|e| e.to_string()),
         stop: &stop,
+        keep_every: args.checkpoint_every,
         job: job(),
         command: command_line(),
     };

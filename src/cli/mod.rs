@@ -46,6 +46,7 @@ impl Ending {
 pub fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Run(args) => run::run(&args),
+        Command::Resume(args) => run::resume(&args),
         Command::Check(args) => check::check(&args),
         Command::Init { path } => check::init(path.as_deref()),
         Command::Campaign(args) => campaign::campaign(&args),

@@ -6,13 +6,14 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Instant, SystemTime};
 
 use super::Ending;
-use super::args::RunArgs;
+use super::args::{ResumeArgs, RunArgs, SceneArgs};
 use super::check::scene;
 use super::pack::provide;
 use super::print::{count, percent, plain, to_stderr, to_stdout};
 use super::progress::Progress;
 use super::signals::stop_on_signals;
 use crate::campaign::case::{Case, Room};
+use crate::campaign::keeper::{self, Keeper};
 use crate::campaign::machine::Machine;
 use crate::campaign::packed::{Order, PackedFilter};
 use crate::campaign::results;
@@ -48,19 +49,63 @@ pub fn run(args: &RunArgs) -> Result<(), Ending> {
         to_stderr(&format!("warning: {}\n", plain(&warning)));
     }
     let started = SystemTime::now();
-    let threads = pool.current_num_threads() as u64;
+    if args.overwrite {
+        keeper::discard(folder.path()).map_err(Ending::failed)?;
+    }
+    let fingerprint = results::fingerprint(&case);
+    if Keeper::scene_in(folder.path()).is_some_and(|scene| scene != fingerprint) {
+        return Err(Ending::refused(plain(&format!(
+            "{}: holds checkpoints of another scene; `voidwalk resume` goes on with that one, --overwrite begins anew",
+            folder.path().display()
+        ))));
+    }
+    results::write_scene(&folder, &case).map_err(Ending::failed)?;
+    let keeper = Keeper::new(&folder, &fingerprint, args.checkpoint_every);
+    let keeper = keeper.map_err(Ending::failed)?;
     let manifest = || results::manifest(&case, threads, started, command_line());
-    let outcome = walk(&case, &pool, args.quiet, &stop, |outcome, walked| {
+    let outcome = walk(&case, &pool, args.quiet, &stop, &keeper, folder.path(), |outcome, walked| {
         results::write(&folder, &case, outcome, walked, &manifest()).map_err(Ending::failed)?;
         report::write(folder.path()).map_err(Ending::failed)?;
         Ok(())
     })?;
+    keeper.clear().map_err(Ending::failed)?;
     if args.scene.json {
         to_stdout(&format!("{}\n", serde_json::to_string_pretty(&outcome).map_err(Ending::failed)?));
     } else if !args.quiet {
         to_stdout(&summary(&outcome, folder.path()));
     }
     Ok(())
+}
+
+/// Goes on with a run that was stopped or killed.
+pub fn resume(args: &ResumeArgs) -> Result<(), Ending> {
+    let shown = plain(&args.folder.display().to_string());
+    let scene = args.folder.join("scene.toml");
+    if !scene.is_file() {
+        return Err(Ending::refused(format!(
+            "{shown}: holds no scene.toml; name the folder of a run that was stopped"
+        )));
+    }
+    if args.folder.join("manifest.json").is_file() && !Keeper::is_in(&args.folder) {
+        return Err(Ending::refused(format!(
+            "{shown}: this run is finished; voidwalk report writes its page again"
+        )));
+    }
+    run(&RunArgs {
+        scene: SceneArgs {
+            scene: Some(scene),
+            settings: Vec::new(),
+            seed: None,
+            packings: args.folder.join("packings"),
+            memory: args.memory,
+            json: args.json,
+        },
+        out: Some(args.folder.clone()),
+        overwrite: false,
+        threads: args.threads,
+        checkpoint_every: args.checkpoint_every,
+        quiet: args.quiet,
+    })
 }
 
 /// Writes the report of a finished run folder again.
@@ -82,28 +127,37 @@ fn walk(
     pool: &rayon::ThreadPool,
     quiet: bool,
     stop: &AtomicBool,
+    keeper: &Keeper,
+    folder: &Path,
     keep: impl Fn(&Outcome, &[walks::Walked]) -> Result<(), Ending>,
 ) -> Result<Outcome, Ending> {
     let begun = Instant::now();
     let progress = Progress::new(quiet, runs_to_walk(case));
-    let watch = Watch { tell: &|event| progress.tell(event), stop };
-    let stopped = |what: &str, error: RunError| {
+    let watch = Watch { tell: &|event| progress.tell(event), stop, keeper: Some(keeper) };
+    let shown = plain(&folder.display().to_string());
+    let stopped = |error: RunError| {
         progress.finish();
-        match error {
-            RunError::Walk(crate::walk::WalkError::Stopped { .. }) => {
-                Ending::failed(format!("stopped on request; {what}"))
+        // What is done and not on the disk yet goes there, whatever ended the walk.
+        let flushed = keeper.flush();
+        match (error, flushed) {
+            (RunError::Walk(crate::walk::WalkError::Stopped { .. }), Ok(())) => {
+                Ending::stopped(format!("what is done is kept; `voidwalk resume {shown}` goes on"))
             }
-            other => Ending::failed(other),
+            (RunError::Harmed(harmed), _) => Ending::refused(format!(
+                "{}; --overwrite begins anew, another --out leaves it alone",
+                plain(&harmed.to_string())
+            )),
+            (RunError::Walk(crate::walk::WalkError::Stopped { .. }), Err(error)) => Ending::failed(error),
+            (other, _) => Ending::failed(other),
         }
     };
-    let walked = pool
-        .install(|| replicates(case, &watch))
-        .map_err(|e| stopped("no results were written, and the same command gives the same bits", e))?;
+    let walked = pool.install(|| replicates(case, &watch)).map_err(&stopped)?;
+    for problem in keeper.passed_over() {
+        to_stderr(&format!("warning: {}; the checkpoint before it was taken\n", plain(&problem)));
+    }
     let outcome = results::outcome(case, &walked, Vec::new(), begun.elapsed().as_secs_f64());
     keep(&outcome, &walked)?;
-    let sensitivity = pool
-        .install(|| sensitivity(case, &watch))
-        .map_err(|e| stopped("the results are written, without the sensitivity study", e))?;
+    let sensitivity = pool.install(|| sensitivity(case, &watch)).map_err(&stopped)?;
     progress.finish();
     if sensitivity.is_empty() {
         return Ok(outcome);
@@ -133,7 +187,7 @@ pub(super) fn refused_or_failed(error: StoreError) -> Ending {
 fn open_folder(args: &RunArgs) -> Result<Folder, Ending> {
     let Some(path) = &args.out else { return first_free_folder() };
     let folder = Folder::open(path).map_err(refused_or_failed)?;
-    if folder.has("manifest.json") && !args.overwrite {
+    if folder.has("manifest.json") && !args.overwrite && !Keeper::is_in(folder.path()) {
         let problem = format!(
             "{}: holds the results of an earlier run; name another folder or add --overwrite",
             path.display()
@@ -149,7 +203,7 @@ fn first_free_folder() -> Result<Folder, Ending> {
     loop {
         let name = if n == 1 { "voidwalk-run".to_string() } else { format!("voidwalk-run-{n}") };
         match Folder::open(Path::new(&name)) {
-            Ok(folder) if !folder.has("outcome.json") => return Ok(folder),
+            Ok(folder) if !folder.has("outcome.json") && !Keeper::is_in(folder.path()) => return Ok(folder),
             Ok(_)
             | Err(StoreError::Held { .. } | StoreError::NotOurs { .. } | StoreError::NotAFolder { .. }) => {
                 n += 1

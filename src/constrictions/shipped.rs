@@ -113,7 +113,10 @@ mod tests {
             assert_eq!(curve.unit(), super::super::CurveUnit::D0f);
             assert!(filter.cu >= 1.0 && filter.grains_per_void > 0.0 && filter.void_ratio > 0.0);
             let published = filter.name.starts_with("shire2016");
-            assert_eq!(published, filter.curve_csv.contains("CC BY 4.0") && filter.attribution.contains("doi"));
+            assert_eq!(
+                published,
+                filter.curve_csv.contains("CC BY 4.0") && filter.attribution.contains("doi")
+            );
             // Three touching smallest grains leave 0.1547 D0F: nothing can be finer.
             assert!(curve.smallest() >= 0.1547, "{}", filter.name);
         }

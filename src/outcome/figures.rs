@@ -30,7 +30,7 @@ pub struct Figures {
 }
 
 /// Rows of the CSV files of one run.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Recorded {
     /// Rows of `series.csv`.
     pub series: Vec<SeriesRow>,

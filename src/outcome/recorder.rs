@@ -18,7 +18,7 @@ pub struct Wanted {
 pub const LONGEST_SERIES: usize = 20_000;
 
 /// Sums and size curves of one run, as it went.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Recorder {
     /// Increment and sums.
     pub series: Vec<(u64, Tally)>,

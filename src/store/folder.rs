@@ -193,13 +193,24 @@ impl Folder {
 /// # Errors
 /// What the system says, with the file's path.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
+    write_whole_with(path, |file| file.write_all(bytes))
+}
+
+/// The same for what does not lie in one piece.
+///
+/// # Errors
+/// What the system says, with the file's path.
+pub fn write_whole_with(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), StoreError> {
     let io = |action| move |source| StoreError::Io { path: path.to_owned(), action, source };
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut file = tempfile::Builder::new()
         .prefix(".voidwalk-part-")
         .tempfile_in(folder)
         .map_err(io("write beside the file"))?;
-    file.write_all(bytes).map_err(io("write"))?;
+    fill(&mut file).map_err(io("write"))?;
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;

@@ -1,5 +1,6 @@
-//! Where things are kept: the run folder, and the columns of a simulation.
+//! Where things are kept: the run folder, its checkpoints, and the columns of a simulation.
 
+pub mod checkpoint;
 mod column;
 mod folder;
 

@@ -52,7 +52,7 @@ impl SizeClasses {
 }
 
 /// Number and mass by size class.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SizeCounts {
     /// Particles by class.
     pub number: Vec<u64>,

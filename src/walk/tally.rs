@@ -4,7 +4,7 @@ use super::WalkError;
 
 /// Sums over a run up to and including an increment. Masses are sums of diameter cubed, in units of the
 /// reference length cubed.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Tally {
     /// Base particles inserted.
     pub inserted: u64,

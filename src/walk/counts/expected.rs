@@ -44,6 +44,32 @@ impl Expected {
         }
     }
 
+    /// All of it as words.
+    pub(super) fn words(&self) -> Vec<u64> {
+        let sums = [self.eroded.to_bits(), self.moves.to_bits(), self.inserted];
+        let reals = self.moving.iter().chain(&self.retained).map(|v| v.to_bits());
+        sums.into_iter().chain(self.booked).chain(reals).chain(self.booked_retained.iter().copied()).collect()
+    }
+
+    /// The same from its words, on a network of `voids` voids; `None` where they cannot be that.
+    pub(in crate::walk) fn from_words(voids: usize, words: &[u64]) -> Option<Self> {
+        if words.len() != 6 + 3 * voids {
+            return None;
+        }
+        let real = |words: &[u64]| words.iter().map(|&w| f64::from_bits(w)).collect::<Vec<f64>>();
+        let (moving, rest) = words[6..].split_at(voids);
+        let (retained, booked_retained) = rest.split_at(voids);
+        Some(Self {
+            moving: real(moving),
+            retained: real(retained),
+            eroded: f64::from_bits(words[0]),
+            moves: f64::from_bits(words[1]),
+            inserted: words[2],
+            booked: [words[3], words[4], words[5]],
+            booked_retained: booked_retained.to_vec(),
+        })
+    }
+
     /// Puts `count` particles on the start nodes, the same number on each.
     pub(super) fn insert(&mut self, network: &Network, count: u64) {
         self.inserted += count;

@@ -56,6 +56,33 @@ impl Passive {
     }
 }
 
+impl Passive {
+    /// A number for each kind, for a checkpoint.
+    pub(super) fn kind(&self) -> u64 {
+        match self {
+            Passive::OneByOne => 0,
+            Passive::Counts(_) => 1,
+            Passive::Expected(_) => 2,
+        }
+    }
+
+    /// The counts, where there are any.
+    pub(super) fn counts(&self) -> &[u64] {
+        match self {
+            Passive::Counts(moving) => moving,
+            _ => &[],
+        }
+    }
+
+    /// The expectation as words, where there is one.
+    pub(super) fn expected_words(&self) -> Vec<u64> {
+        match self {
+            Passive::Expected(expected) => expected.words(),
+            _ => Vec::new(),
+        }
+    }
+}
+
 /// How many of an increment's `share` of base particles are coarse, given that `passive_words` of the sampler's
 /// words draw passive ones.
 pub(super) fn coarse_share(share: u64, passive_words: u128, seed: u64, run: u64, increment: u64) -> u64 {

@@ -1,0 +1,225 @@
+//! Keeps the replicates of a case in checkpoints, so that a run which is stopped or killed goes on where it was.
+//!
+//! A replicate that is being walked keeps its state and what was recorded of it so far; one that is done keeps its figures
+//! and rows. Each is a checkpoint of its own in the folder `checkpoint` of the run ([`crate::store::checkpoint`]), written when
+//! `every` has passed since the last one, or on a stop.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use serde::{Deserialize, Serialize};
+
+use crate::network::Network;
+use crate::outcome::record::Run;
+use crate::outcome::{Recorded, Recorder};
+use crate::store::checkpoint::{Harmed, Label, Saved, Section, keep, newest};
+use crate::store::{Folder, StoreError};
+use crate::walk::{Kept, State};
+
+/// Folder of the checkpoints, inside the run's.
+pub const FOLDER: &str = "checkpoint";
+
+/// What of a replicate is done.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Done {
+    /// Whether all of it is.
+    pub complete: bool,
+    /// Figures of the runs that are done.
+    pub runs: Vec<Run>,
+    /// Whether each of them eroded less than the threshold.
+    pub below: Vec<bool>,
+    /// Their rows of the CSV files.
+    pub recorded: Recorded,
+    /// What has been watched of the run that is under way.
+    pub recorder: Recorder,
+}
+
+/// Keeps the replicates of one case.
+pub struct Keeper {
+    folder: PathBuf,
+    scene: String,
+    every: Duration,
+    stop: AtomicBool,
+    /// Replicates that are done and not on the disk yet, and the next generation of each name.
+    waiting: Mutex<BTreeMap<String, (Label, Vec<u8>)>>,
+    generations: Mutex<BTreeMap<String, u64>>,
+    harmed: Mutex<Vec<String>>,
+}
+
+impl Keeper {
+    /// A keeper of the case with this fingerprint, in a run's folder.
+    ///
+    /// # Errors
+    /// The folder of the checkpoints cannot be made.
+    pub fn new(folder: &Folder, scene: &str, every: Duration) -> Result<Self, StoreError> {
+        let path = folder.path().join(FOLDER);
+        std::fs::create_dir_all(&path).map_err(|source| StoreError::Io {
+            path: path.clone(),
+            action: "make the folder",
+            source,
+        })?;
+        Ok(Self {
+            folder: path,
+            scene: scene.to_owned(),
+            every,
+            stop: AtomicBool::new(false),
+            waiting: Mutex::default(),
+            generations: Mutex::default(),
+            harmed: Mutex::default(),
+        })
+    }
+
+    /// What the checkpoints in a run's folder are of, by fingerprint; `None` where there are none that can be read.
+    pub fn scene_in(folder: &Path) -> Option<String> {
+        let entries = std::fs::read_dir(folder.join(FOLDER)).ok()?;
+        entries.flatten().find_map(|entry| Some(Saved::open(&entry.path()).ok()??.label.scene))
+    }
+
+    /// Whether a run's folder holds checkpoints.
+    pub fn is_in(folder: &Path) -> bool {
+        std::fs::read_dir(folder.join(FOLDER)).is_ok_and(|mut entries| entries.next().is_some())
+    }
+
+    /// Whether it is time to keep a walk that was kept `last`.
+    pub fn is_due(&self, last: Instant, stop: bool) -> bool {
+        if stop {
+            self.stop.store(true, Ordering::Relaxed);
+        }
+        stop || last.elapsed() >= self.every
+    }
+
+    /// What was kept of a replicate: what is done, and the checkpoint of the state of the run that is under way.
+    ///
+    /// # Errors
+    /// There are checkpoints of it, but none is whole and of this case.
+    pub fn load(&self, part: u64, replicate: u64) -> Result<Option<(Done, Saved)>, Harmed> {
+        let name = name(part, replicate);
+        let (saved, harmed) = newest(&self.folder, &name, &self.scene)?;
+        if let Ok(mut all) = self.harmed.lock() {
+            all.extend(harmed.iter().map(ToString::to_string));
+        }
+        let Some(mut saved) = saved else { return Ok(None) };
+        if let Ok(mut generations) = self.generations.lock() {
+            generations.insert(name, saved.label.generation);
+        }
+        let text = saved.read::<u8>("done")?;
+        let done = serde_json::from_slice(&text).map_err(|e| Harmed {
+            file: self.folder.display().to_string(),
+            problem: format!("what is done of replicate {replicate}: {e}"),
+        })?;
+        Ok(Some((done, saved)))
+    }
+
+    /// Checkpoints that were passed over, and why.
+    pub fn passed_over(&self) -> Vec<String> {
+        self.harmed.lock().map(|all| all.clone()).unwrap_or_default()
+    }
+
+    /// Keeps a walk after a whole increment.
+    ///
+    /// # Errors
+    /// What the system says; the checkpoint before stays then.
+    pub fn keep_walk(
+        &self,
+        part: u64,
+        replicate: u64,
+        network: &Network,
+        state: &State,
+        done: &Done,
+    ) -> Result<(), StoreError> {
+        let text = serde_json::to_vec(done).expect("figures are numbers and words");
+        let kept = Kept::new(state);
+        let mut sections = kept.sections(state);
+        sections.push(Section::new("done", &text));
+        let label = self.label(part, replicate, state, network_fingerprint(network));
+        keep(&self.folder, &name(part, replicate), &label, &sections)?;
+        self.flush()
+    }
+
+    /// Takes a replicate that is done; it goes to the disk with the next checkpoint of any.
+    pub fn keep_done(&self, part: u64, replicate: u64, seed: u64, done: &Done) {
+        let text = serde_json::to_vec(done).expect("figures are numbers and words");
+        let label = Label {
+            scene: self.scene.clone(),
+            seed,
+            replicate,
+            generation: self.next_generation(part, replicate),
+            ..Label::default()
+        };
+        if let Ok(mut waiting) = self.waiting.lock() {
+            waiting.insert(name(part, replicate), (label, text));
+        }
+    }
+
+    /// Writes the replicates that are done and not on the disk yet.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn flush(&self) -> Result<(), StoreError> {
+        let waiting = self.waiting.lock().map(|mut w| std::mem::take(&mut *w)).unwrap_or_default();
+        for (name, (label, text)) in &waiting {
+            keep(&self.folder, name, label, &[Section::new("done", text)])?;
+        }
+        Ok(())
+    }
+
+    /// Removes every checkpoint: the results are whole.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn clear(&self) -> Result<(), StoreError> {
+        clear(&self.folder)
+    }
+
+    fn label(&self, part: u64, replicate: u64, state: &State, network: u64) -> Label {
+        Label {
+            scene: self.scene.clone(),
+            network,
+            seed: state.seed,
+            replicate,
+            run: state.run,
+            increment: state.increment,
+            generation: self.next_generation(part, replicate),
+        }
+    }
+
+    fn next_generation(&self, part: u64, replicate: u64) -> u64 {
+        let Ok(mut generations) = self.generations.lock() else { return 1 };
+        let generation = generations.entry(name(part, replicate)).or_insert(0);
+        *generation += 1;
+        *generation
+    }
+}
+
+/// Removes the checkpoints in a run's folder, whatever they are of.
+///
+/// # Errors
+/// What the system says.
+pub fn discard(folder: &Path) -> Result<(), StoreError> {
+    clear(&folder.join(FOLDER))
+}
+
+fn clear(folder: &Path) -> Result<(), StoreError> {
+    match std::fs::remove_dir_all(folder) {
+        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+            Err(StoreError::Io { path: folder.to_owned(), action: "remove", source })
+        }
+        _ => Ok(()),
+    }
+}
+
+fn name(part: u64, replicate: u64) -> String {
+    format!("{part}-{replicate}")
+}
+
+/// Fingerprint of everything that a walk takes from its network.
+pub fn network_fingerprint(network: &Network) -> u64 {
+    let mut hash = xxhash_rust::xxh3::Xxh3::new();
+    hash.update(bytemuck::cast_slice(network.diameters()));
+    hash.update(bytemuck::cast_slice(network.targets()));
+    hash.update(bytemuck::cast_slice(network.start()));
+    hash.digest()
+}

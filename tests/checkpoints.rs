@@ -1,0 +1,262 @@
+//! Runs that are stopped, killed and resumed: at every increment, on other threads, with harmed checkpoints.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+
+use bitvec::vec::BitVec;
+use serde_json::Value;
+use voidwalk::gradation::{Gradation, SizeSampler};
+use voidwalk::network::Network;
+use voidwalk::store::checkpoint::{Label, keep, newest};
+use voidwalk::walk::{Engine, Kept, Plan, Progress, SizeClasses, State, Supply, Walk};
+
+/// A lattice on which a graded base blocks and passes.
+fn network(seed: u64) -> Network {
+    let curve = voidwalk::constrictions::find("shire2016-cu1.5-loose").unwrap().curve().unwrap();
+    Network::cubic([6, 5, 7], &curve.in_mm(1.0).unwrap(), 1.0, seed).unwrap()
+}
+
+fn fresh(network: &Network, supply: &Supply, blocked: &BitVec<u64>, seed: u64, run: u64) -> State {
+    let classes = SizeClasses::logarithmic(0.1, 0.3, 16);
+    State::new(network, supply, classes, blocked.clone(), seed, run)
+}
+
+/// Everything of a finished state that results follow from, as text.
+fn shown(state: &State) -> String {
+    format!(
+        "{:?} {:?} {:?} {:?} {:?} {:?} {:?} {}",
+        state.tally,
+        state.history,
+        state.blocked.as_raw_slice(),
+        state.retained_in_constrictions,
+        state.retained_in_voids,
+        state.eroded_sizes,
+        state.retained_sizes,
+        state.increment
+    )
+}
+
+#[test]
+fn a_walk_goes_on_from_every_increment_with_every_engine_on_any_threads() {
+    let root = tempfile::tempdir().unwrap();
+    let gradation = Gradation::linear_from_dx(85.0, 0.2, 3.0).unwrap();
+    for engine in [Engine::Particles, Engine::Counts, Engine::Expected] {
+        let (seed, network) = (11, network(4));
+        let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
+        let supply_of = |blocked: &BitVec<u64>, run| {
+            let sampler = SizeSampler::new(&gradation, 1.0).unwrap();
+            Plan::new(engine, &network, &sampler, blocked, 700).supply(sampler, 70_000, 100, seed, run)
+        };
+        let first_supply = supply_of(&open, 1);
+        let mut first = fresh(&network, &first_supply, &open, seed, 1);
+        Walk::new(&network, &first_supply, &first).run(&mut first, &mut |_| Progress::Continue).unwrap();
+        // The second run, which begins on what the first left blocked, is the one that is broken off.
+        let supply = supply_of(&first.blocked, 2);
+        let mut whole = fresh(&network, &supply, &first.blocked, seed, 2);
+        let name = format!("{engine:?}");
+        let mut splits = 0;
+        Walk::new(&network, &supply, &whole)
+            .run(&mut whole, &mut |state| {
+                // Long tails are cut at every seventh increment only.
+                if state.increment <= 110 || state.increment % 7 == 0 {
+                    let label = Label { generation: state.increment, ..Label::default() };
+                    let folder = root.path().join(format!("{name}-{}", state.increment));
+                    fs::create_dir(&folder).unwrap();
+                    keep(&folder, "x", &label, &Kept::new(state).sections(state)).unwrap();
+                    splits += 1;
+                }
+                Progress::Continue
+            })
+            .unwrap();
+        assert!(splits > 100 && whole.tally.blocked > first.tally.blocked, "{engine:?}: {splits} splits");
+        for increment in 1..=whole.increment {
+            let folder = root.path().join(format!("{name}-{increment}"));
+            if !folder.exists() {
+                continue;
+            }
+            let mut saved = newest(&folder, "x", "").unwrap().0.unwrap();
+            let mut state = fresh(&network, &supply, &first.blocked, seed, 2);
+            state.restore(&network, &mut saved).unwrap();
+            let threads = [1, 2, 3, 8][increment as usize % 4];
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let mut walk = Walk::new(&network, &supply, &state);
+                if !state.finished {
+                    walk.run(&mut state, &mut |_| Progress::Continue).unwrap();
+                }
+            });
+            assert_eq!(shown(&state), shown(&whole), "{engine:?}, from increment {increment}");
+        }
+    }
+}
+
+#[test]
+fn a_state_of_another_run_is_refused() {
+    let root = tempfile::tempdir().unwrap();
+    let (network, gradation) = (network(4), Gradation::linear_from_dx(85.0, 0.2, 3.0).unwrap());
+    let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
+    let supply = |engine, n| {
+        let sampler = SizeSampler::new(&gradation, 1.0).unwrap();
+        Plan::new(engine, &network, &sampler, &open, n / 100).supply(sampler, n, 100, 1, 1)
+    };
+    let particles = supply(Engine::Particles, 40_000);
+    let state = fresh(&network, &particles, &open, 1, 1);
+    keep(root.path(), "x", &Label::default(), &Kept::new(&state).sections(&state)).unwrap();
+    let counts = supply(Engine::Counts, 40_000);
+    for mut other in [
+        fresh(&network, &particles, &open, 2, 1),
+        fresh(&network, &particles, &open, 1, 2),
+        fresh(&network, &counts, &open, 1, 1),
+        fresh(&network, &supply(Engine::Particles, 20_000), &open, 1, 1),
+    ] {
+        let mut saved = newest(root.path(), "x", "").unwrap().0.unwrap();
+        assert!(other.restore(&network, &mut saved).is_err());
+    }
+}
+
+// From here on: the program.
+
+const SCENE: &str = "seed = 3\nreplicates = 3\nengine = \"particles\"\n[filter]\ncurve = \"shire2016-cu1.5-loose\"\n[base]\ncu = 1.5\n\
+    d85_at_dc = 5\nn_base = 150000\n[network]\nnx = 8\nny = 8\nnz = 10\n[record]\nsensitivity = [0.5, 2.0]\n";
+
+fn voidwalk(folder: &Path, args: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_voidwalk"));
+    command.current_dir(folder).args(args).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+}
+
+fn call(folder: &Path, args: &[&str]) -> Output {
+    voidwalk(folder, args).output().unwrap()
+}
+
+fn with_scene() -> (tempfile::TempDir, PathBuf) {
+    let root = tempfile::tempdir().unwrap();
+    fs::write(root.path().join("scene.toml"), SCENE).unwrap();
+    let path = root.path().to_owned();
+    (root, path)
+}
+
+/// What must not depend on how often the program was started.
+fn lasting(folder: &Path) -> Vec<String> {
+    fn strip(value: &mut Value) {
+        match value {
+            Value::Object(map) => {
+                map.remove("seconds");
+                map.values_mut().for_each(strip);
+            }
+            Value::Array(items) => items.iter_mut().for_each(strip),
+            _ => {}
+        }
+    }
+    let mut outcome: Value = serde_json::from_slice(&fs::read(folder.join("outcome.json")).unwrap()).unwrap();
+    strip(&mut outcome);
+    let files = ["series.csv", "layers.csv", "retained.csv", "eroded.csv", "scene.toml"];
+    let mut all: Vec<String> = files.map(|name| fs::read_to_string(folder.join(name)).unwrap()).to_vec();
+    all.push(outcome.to_string());
+    all
+}
+
+#[test]
+fn a_run_goes_on_after_stops_and_kills_with_the_same_bits() {
+    let (_root, at) = with_scene();
+    assert!(call(&at, &["run", "scene.toml", "--out", "whole"]).status.success());
+    let (mut stops, mut kills) = (0, 0);
+    for attempt in 0..300u64 {
+        let threads = ["1", "2", "3"][attempt as usize % 3];
+        let begun = attempt > 0 && at.join("broken/scene.toml").exists();
+        let args = match begun {
+            true => vec!["resume", "broken", "--checkpoint-every", "5ms", "--threads", threads],
+            false => vec![
+                "run",
+                "scene.toml",
+                "--out",
+                "broken",
+                "--checkpoint-every",
+                "5ms",
+                "--threads",
+                threads,
+            ],
+        };
+        let mut child = voidwalk(&at, &args).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(30 + 13 * (attempt % 7)));
+        let signal = if attempt % 2 == 0 { "-TERM" } else { "-KILL" };
+        let _ = Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
+        match child.wait().unwrap().code() {
+            // 2: it was finished already.
+            Some(0 | 2) => break,
+            Some(3) => stops += 1,
+            None => kills += 1,
+            code => panic!("{code:?}"),
+        }
+    }
+    if at.join("broken/checkpoint").exists() {
+        let output = call(&at, &["resume", "broken"]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+    assert!(stops + kills >= 3, "{stops} stops and {kills} kills: the run is too short to be broken");
+    assert_eq!(lasting(&at.join("whole")), lasting(&at.join("broken")));
+    assert!(!at.join("broken/checkpoint").exists());
+}
+
+/// A run that was stopped on its way; the folder holds its checkpoints.
+fn stopped(at: &Path) -> PathBuf {
+    let mut wait = 60;
+    loop {
+        let mut child = voidwalk(
+            at,
+            &["run", "scene.toml", "--out", "run", "--checkpoint-every", "5ms", "--threads", "1"],
+        )
+        .spawn()
+        .unwrap();
+        std::thread::sleep(Duration::from_millis(wait));
+        let _ = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
+        if child.wait().unwrap().code() == Some(3) && at.join("run/checkpoint/0-1.1").exists() {
+            return at.join("run");
+        }
+        let _ = fs::remove_dir_all(at.join("run"));
+        wait = (wait * 3 / 2) % 1000 + 10;
+    }
+}
+
+#[test]
+fn a_harmed_checkpoint_is_passed_over_or_refused_and_never_lost() {
+    let (_root, at) = with_scene();
+    assert!(call(&at, &["run", "scene.toml", "--out", "whole"]).status.success());
+    let run = stopped(&at);
+    // A run of another scene leaves it alone.
+    let other = call(&at, &["run", "scene.toml", "--out", "run", "--seed", "9"]);
+    assert_eq!(other.status.code(), Some(2), "{}", String::from_utf8_lossy(&other.stderr));
+    assert!(String::from_utf8_lossy(&other.stderr).contains("another scene"));
+    // Harm the newest slot of the first replicate: the one before is taken, and said so.
+    let slots = ["0-1.0", "0-1.1"].map(|name| run.join("checkpoint").join(name));
+    let both = slots.iter().all(|slot| slot.exists());
+    let generation = |slot: &PathBuf| {
+        fs::read(slot).ok().map_or(0, |bytes| u64::from_le_bytes(bytes[104..112].try_into().unwrap()))
+    };
+    let newest = slots.iter().max_by_key(|slot| generation(slot)).unwrap();
+    let mut bytes = fs::read(newest).unwrap();
+    let last = bytes.len() - 1;
+    bytes[last] ^= 1;
+    fs::write(newest, &bytes).unwrap();
+    let output = call(&at, &["resume", "run"]);
+    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+    if both {
+        assert!(output.status.success() && stderr.contains("the checkpoint before it was taken"), "{stderr}");
+        assert_eq!(lasting(&at.join("whole")), lasting(&run));
+    } else {
+        assert_eq!(output.status.code(), Some(2), "{stderr}");
+    }
+    let again = call(&at, &["resume", "run"]);
+    assert_eq!(again.status.code(), Some(2));
+}
+
+#[test]
+fn resume_of_what_is_no_run_is_refused() {
+    let (_root, at) = with_scene();
+    fs::create_dir(at.join("empty")).unwrap();
+    let output = call(&at, &["resume", "empty"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("holds no scene.toml"));
+}
