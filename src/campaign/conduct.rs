@@ -4,6 +4,7 @@
 //! the case's fingerprint. Nothing else is shared: a process that is killed loses the case it was at, and whoever comes
 //! next walks that one again.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -16,7 +17,7 @@ use super::plan::PlannedCase;
 use super::results::{self, ResultError};
 use super::walks::{self, RunError, Watch};
 use crate::outcome::ledger::{LedgerLine, Made};
-use crate::store::{Folder, StoreError};
+use crate::store::{Folder, StoreError, make_folder};
 use crate::walk::WalkError;
 
 /// A finished case.
@@ -91,6 +92,14 @@ pub enum ConductError {
         /// What went wrong.
         problem: String,
     },
+    /// Results that were written are gone.
+    #[error(
+        "case {case}: its results were overwritten by another process; is another plan, or this one changed, at work on the folder?"
+    )]
+    Lost {
+        /// The case.
+        case: String,
+    },
     /// Stopped on request; what is done is kept.
     #[error("stopped")]
     Stopped,
@@ -117,13 +126,21 @@ pub struct Overseer<'a> {
 /// # Errors
 /// The first that goes wrong; cases that are done stay done.
 pub fn conduct(cases: &[Ready], out: &Path, threads: usize, overseer: &Overseer) -> Result<(), ConductError> {
+    make_folder(&out.join(CASES))?;
     let mut open: Vec<&Ready> = cases.iter().filter(|case| case.line(out).is_none()).collect();
+    let finished = Mutex::new(BTreeSet::new());
     while !open.is_empty() {
-        let busy = pass(&open, out, threads, overseer)?;
+        let busy = pass(&open, out, threads, overseer, &finished)?;
         if overseer.stop.load(Ordering::Relaxed) {
             return Err(ConductError::Stopped);
         }
         open.retain(|case| case.line(out).is_none());
+        // A case that this process has finished and that is not there any more was overwritten: by another plan, or by a
+        // plan that was changed meanwhile.
+        let ours = finished.lock().map(|names| names.clone()).unwrap_or_default();
+        if let Some(lost) = open.iter().find(|case| ours.contains(&case.planned.name)) {
+            return Err(ConductError::Lost { case: lost.planned.name.clone() });
+        }
         if busy && !open.is_empty() {
             std::thread::sleep(LOOK);
         }
@@ -132,7 +149,13 @@ pub fn conduct(cases: &[Ready], out: &Path, threads: usize, overseer: &Overseer)
 }
 
 /// Tries each case once; says whether others were at some.
-fn pass(open: &[&Ready], out: &Path, threads: usize, overseer: &Overseer) -> Result<bool, ConductError> {
+fn pass(
+    open: &[&Ready],
+    out: &Path,
+    threads: usize,
+    overseer: &Overseer,
+    finished: &Mutex<BTreeSet<String>>,
+) -> Result<bool, ConductError> {
     let (next, busy) = (AtomicUsize::new(0), AtomicBool::new(false));
     let failed: Mutex<Option<ConductError>> = Mutex::new(None);
     let side_by_side = side_by_side(open, threads);
@@ -144,7 +167,12 @@ fn pass(open: &[&Ready], out: &Path, threads: usize, overseer: &Overseer) -> Res
             let Some(case) = open.get(next.fetch_add(1, Ordering::Relaxed)) else { return Ok(()) };
             match pool.install(|| one(case, out, share, overseer)) {
                 Err(ConductError::Store(StoreError::Held { .. })) => busy.store(true, Ordering::Relaxed),
-                other => other?,
+                Ok(true) => {
+                    if let Ok(mut names) = finished.lock() {
+                        names.insert(case.planned.name.clone());
+                    }
+                }
+                other => drop(other?),
             }
         }
         Ok(())
@@ -175,12 +203,12 @@ fn side_by_side(open: &[&Ready], threads: usize) -> usize {
     wanted.min(usize::try_from(room).unwrap_or(usize::MAX).max(1))
 }
 
-/// Walks one case into its folder.
-fn one(ready: &Ready, out: &Path, threads: usize, overseer: &Overseer) -> Result<(), ConductError> {
+/// Walks one case into its folder; says whether it was this process that finished it.
+fn one(ready: &Ready, out: &Path, threads: usize, overseer: &Overseer) -> Result<bool, ConductError> {
     let folder = Folder::open(&out.join(ready.folder()))?;
     // Another process may have finished it since the list was made.
     if ready.line(out).is_some() {
-        return Ok(());
+        return Ok(false);
     }
     let name = &ready.planned.name;
     (overseer.tell)(name, None);
@@ -191,11 +219,14 @@ fn one(ready: &Ready, out: &Path, threads: usize, overseer: &Overseer) -> Result
     let walked = walks::replicates(&ready.case, &watch)
         .and_then(|walked| Ok((walks::sensitivity(&ready.case, &watch)?, walked)));
     let (sensitivity, walked) = match walked {
-        Err(RunError::Walk(WalkError::Stopped { .. })) => return Ok(keeper.flush()?),
+        Err(RunError::Walk(WalkError::Stopped { .. })) => {
+            keeper.flush()?;
+            return Ok(false);
+        }
         // Checkpoints of what the case was before the plan was changed, or harmed ones: it is walked from its start.
         Err(RunError::Harmed(_)) => {
             keeper.clear()?;
-            return Ok(());
+            return Ok(false);
         }
         Err(source) => return Err(ConductError::Run { case: name.clone(), source: source.into() }),
         Ok(both) => both,
@@ -220,5 +251,5 @@ fn one(ready: &Ready, out: &Path, threads: usize, overseer: &Overseer) -> Result
     folder.write(LINE, &text)?;
     keeper.clear()?;
     (overseer.tell)(name, Some(&line));
-    Ok(())
+    Ok(true)
 }

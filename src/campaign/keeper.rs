@@ -16,7 +16,7 @@ use crate::network::Network;
 use crate::outcome::record::Run;
 use crate::outcome::{Recorded, Recorder};
 use crate::store::checkpoint::{Harmed, Label, Saved, Section, keep, newest};
-use crate::store::{Folder, StoreError};
+use crate::store::{Folder, StoreError, make_folder};
 use crate::walk::{Kept, State};
 
 /// Folder of the checkpoints, inside the run's.
@@ -56,11 +56,7 @@ impl Keeper {
     /// The folder of the checkpoints cannot be made.
     pub fn new(folder: &Folder, scene: &str, every: Duration) -> Result<Self, StoreError> {
         let path = folder.path().join(FOLDER);
-        std::fs::create_dir_all(&path).map_err(|source| StoreError::Io {
-            path: path.clone(),
-            action: "make the folder",
-            source,
-        })?;
+        make_folder(&path)?;
         Ok(Self {
             folder: path,
             scene: scene.to_owned(),

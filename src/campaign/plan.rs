@@ -221,6 +221,12 @@ impl Plan {
             let problem = format!("two cases are called `{name}`");
             return Err(SceneError::Clash { file: self.file.clone(), problem });
         }
+        let folder = folder_name(&name);
+        if let Some(other) = self.cases.iter().find(|case| case.folder_name() == folder) {
+            let problem =
+                format!("cases `{}` and `{name}` would share the folder {folder}: rename one", other.name);
+            return Err(SceneError::Clash { file: self.file.clone(), problem });
+        }
         let origin = Origin::Plan(self.file.clone(), name.clone());
         let mut scene = Scene::planned(base, settings, &origin)?;
         if !settings.iter().any(|s| s.starts_with("seed=")) {
@@ -242,14 +248,17 @@ impl Plan {
 impl PlannedCase {
     /// Name of the folder that holds its results.
     pub fn folder_name(&self) -> String {
-        let safe = |c: char| if c.is_ascii_alphanumeric() || "=.,-_".contains(c) { c } else { '_' };
-        let name: String = self.name.chars().take(120).map(safe).collect();
-        if name == self.name {
-            name
-        } else {
-            format!("{name}-{:08x}", xxhash_rust::xxh3::xxh3_64(self.name.as_bytes()) as u32)
-        }
+        folder_name(&self.name)
     }
+}
+
+fn folder_name(name: &str) -> String {
+    let safe = |c: char| if c.is_ascii_alphanumeric() || "=.,-_".contains(c) { c } else { '_' };
+    let plain: String = name.chars().take(120).map(safe).collect();
+    if plain == name {
+        return plain;
+    }
+    format!("{plain}-{:016x}", xxhash_rust::xxh3::xxh3_64(name.as_bytes()))
 }
 
 /// A name that can stand in a file name, a table and a page.

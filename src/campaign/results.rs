@@ -65,9 +65,13 @@ pub fn outcome(case: &Case, walked: &[Walked], mut sensitivity: Vec<Sensitivity>
     }
 }
 
+/// Part of the fingerprint of every case: raised whenever the program gives other results for the same scene.
+const PROTOCOL: u32 = 1;
+
 /// Fingerprint of everything that the results of a case follow from: the resolved scene and its files.
 pub fn fingerprint(case: &Case) -> String {
-    let mut text = resolved(case).into_bytes();
+    let mut text = format!("{PROTOCOL}\n{}", resolved(case)).into_bytes();
+    text.extend_from_slice(case.shipped.map_or("", |shipped| shipped.curve_csv).as_bytes());
     for input in case.inputs.iter().filter(|input| input.setting != "filter.density") {
         text.extend_from_slice(input.setting.as_bytes());
         text.extend_from_slice(&input.bytes);
@@ -135,6 +139,10 @@ pub fn write(
     walked: &[Walked],
     manifest: &Manifest,
 ) -> Result<(), ResultError> {
+    // First, so that a folder is not taken for whole while its files are being replaced.
+    for name in ["manifest.json", "outcome.json"] {
+        folder.remove(name)?;
+    }
     write_scene(folder, case)?;
     let mut recorded = Recorded::default();
     for walked in walked {

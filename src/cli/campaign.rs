@@ -67,6 +67,10 @@ pub fn campaign(args: &CampaignArgs) -> Result<(), Ending> {
     if args.case.is_none() || result.is_err() {
         // The whole plan is collected, whichever of its cases this process was at.
         let lines = keep(&plan, &cases, out.path(), args.case.is_some())?;
+        if result.is_ok() && lines.len() < cases.len() && args.case.is_none() {
+            let problem = format!("{} cases are missing from the ledger", cases.len() - lines.len());
+            return Err(Ending::failed(format!("{problem}: another plan is at work on this folder")));
+        }
         if result.is_ok() && !args.quiet {
             to_stdout(&summary(&lines, out.path()));
         }

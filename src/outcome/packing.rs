@@ -19,6 +19,8 @@ pub struct CurveRow {
 pub struct PackingRecord {
     /// Fingerprint of everything that the grains follow from: gradation, settings and protocol.
     pub fingerprint: String,
+    /// XXH3 of `grains.csv`.
+    pub grains_xxh3: String,
     /// The gradation in words.
     pub name: String,
     /// Whether the gradation is linear on semi-log paper.

@@ -27,7 +27,6 @@ mod rules;
 mod run_figures;
 mod shell;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 pub use campaign::write_campaign;
@@ -37,7 +36,7 @@ pub use packing::write_packing;
 pub use percolation::write_percolation;
 use shell::Drawn;
 
-use crate::store::{StoreError, write_whole};
+use crate::store::{make_folder, write_whole};
 
 /// What [`write()`] wrote.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -78,11 +77,7 @@ pub fn write(folder: &Path) -> Result<Written, ReportError> {
 /// Writes the figures, then the page.
 fn keep(folder: &Path, figures: &[Drawn], page: &str) -> Result<Written, ReportError> {
     let drawings = folder.join("figures");
-    fs::create_dir_all(&drawings).map_err(|source| StoreError::Io {
-        path: drawings.clone(),
-        action: "make the folder",
-        source,
-    })?;
+    make_folder(&drawings)?;
     let mut written = Vec::new();
     for drawn in figures {
         let path = drawings.join(format!("{}.svg", drawn.name));

@@ -98,8 +98,9 @@ impl Folder {
             }
             Ok(_) => {
                 let is_file = |name| path.join(name).symlink_metadata().is_ok_and(|m| m.is_file());
-                let marked = is_file(LOCK_FILE) || (is_file("manifest.json") && is_file("outcome.json"));
+                // In this order: a process that has just locked an empty folder leaves its mark in it.
                 let empty = fs::read_dir(path).map_err(io("read the folder"))?.next().is_none();
+                let marked = is_file(LOCK_FILE) || (is_file("manifest.json") && is_file("outcome.json"));
                 if !marked && !empty {
                     return Err(StoreError::NotOurs { path: path.to_owned() });
                 }
@@ -111,13 +112,13 @@ impl Folder {
         }
         let lock_path = path.join(LOCK_FILE);
         let mut options = File::options();
-        let mut lock = options
-            .read(true)
-            .write(true)
-            .create(true)
-            .truncate(false)
-            .open(&lock_path)
-            .map_err(io("write to the folder"))?;
+        options.read(true).write(true).create(true).truncate(false);
+        // A lock file that is a link would have the file it leads to emptied.
+        std::os::unix::fs::OpenOptionsExt::custom_flags(
+            &mut options,
+            rustix::fs::OFlags::NOFOLLOW.bits() as i32,
+        );
+        let mut lock = options.open(&lock_path).map_err(io("write to the folder"))?;
         match if shared { lock.try_lock_shared() } else { lock.try_lock() } {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
@@ -181,10 +182,25 @@ impl Folder {
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), StoreError> {
         let path = self.path.join(name);
         if let Some(folder) = path.parent().filter(|p| *p != self.path) {
-            let io = |source| StoreError::Io { path: folder.to_owned(), action: "make the folder", source };
-            fs::create_dir_all(folder).map_err(io)?;
+            make_folder(folder)?;
         }
         write_whole(&path, bytes)
+    }
+}
+
+/// Makes a folder inside one of ours, if it is not there; one reached through a link is refused.
+///
+/// # Errors
+/// It is a link or a file, or what the system says.
+pub fn make_folder(path: &Path) -> Result<(), StoreError> {
+    let made = fs::create_dir_all(path);
+    match path.symlink_metadata() {
+        Ok(meta) if meta.is_symlink() => {
+            Err(StoreError::NotAFolder { path: path.to_owned(), what: "a symbolic link" })
+        }
+        _ => {
+            made.map_err(|source| StoreError::Io { path: path.to_owned(), action: "make the folder", source })
+        }
     }
 }
 

@@ -5,4 +5,4 @@ mod column;
 mod folder;
 
 pub use column::{Column, Placement};
-pub use folder::{Folder, LOCK_FILE, StoreError, write_whole};
+pub use folder::{Folder, LOCK_FILE, StoreError, make_folder, write_whole};

@@ -10,9 +10,7 @@ use std::time::{Duration, Instant};
 use super::Order;
 use crate::constrictions::{Constrictions, ConstrictionsError, CurveError, inscribed};
 use crate::outcome::packing::PackingRecord;
-use crate::packing::{
-    Cell, Compression, PackReport, Packing, PackingError, Progress, Settings, draw, random_start,
-};
+use crate::packing::{Cell, Compression, PackReport, Packing, PackingError, Progress, draw, random_start};
 use crate::store::{Folder, StoreError};
 
 /// The state of a compression that is not finished.
@@ -74,13 +72,14 @@ pub fn make(folder: &Folder, order: &Order, watch: &Watch) -> Result<(), PackErr
     let (compression, report, seconds_before) = compress(folder, order, watch)?;
     let packing = compression.packing();
     let found = Constrictions::measure(&packing, order.merge_overlap)?;
-    folder.write(GRAINS, packing.to_csv().as_bytes())?;
+    let grains = packing.to_csv();
+    folder.write(GRAINS, grains.as_bytes())?;
     folder.write("grains.vtp", packing.to_vtp().as_bytes())?;
     for (name, text) in found.files()? {
         folder.write(name, text.as_bytes())?;
     }
     let seconds = seconds_before + begun.elapsed().as_secs_f64();
-    let record = serde_json::to_string_pretty(&record(order, &packing, &report, seconds)?)? + "\n";
+    let record = serde_json::to_string_pretty(&record(order, &packing, &grains, &report, seconds)?)? + "\n";
     folder.write(RECORD, record.as_bytes())?;
     folder.remove(STATE)?;
     Ok(())
@@ -94,7 +93,7 @@ fn compress(
 ) -> Result<(Compression, PackReport, f64), PackError> {
     let settings = &order.compression;
     let (mut compression, seconds_before) = match folder.read(STATE)? {
-        Some(bytes) => resume(settings, &bytes)
+        Some(bytes) => resume(order, &bytes)
             .map_err(|why| PackError::State { folder: folder.path().display().to_string(), why })?,
         None => {
             let start = random_start(&draw(&order.gradation, settings.grains, settings.seed), settings)?;
@@ -104,7 +103,7 @@ fn compress(
     let begun = Instant::now();
     let keep = |compression: &Compression| {
         let seconds = seconds_before + begun.elapsed().as_secs_f64();
-        let mut bytes = seconds.to_bits().to_le_bytes().to_vec();
+        let mut bytes = head(&order.fingerprint(), seconds).to_vec();
         bytes.extend(compression.to_bytes());
         folder.write(STATE, &bytes)
     };
@@ -127,16 +126,36 @@ fn compress(
     }
 }
 
-/// The compression that `keep` kept, and the seconds spent on it; or what is wrong.
-fn resume(settings: &Settings, bytes: &[u8]) -> Result<(Compression, f64), String> {
-    let (seconds, state) = bytes.split_first_chunk::<8>().ok_or("the file ends early")?;
-    let compression = Compression::from_bytes(settings, state).map_err(|e| e.to_string())?;
-    Ok((compression, f64::from_bits(u64::from_le_bytes(*seconds))))
+/// What stands before the state of a compression: fingerprint of the order, seconds spent, checksum of both.
+fn head(fingerprint: &str, seconds: f64) -> [u8; 32] {
+    let mut head = [0; 32];
+    head[..16].copy_from_slice(fingerprint.as_bytes());
+    head[16..24].copy_from_slice(&seconds.to_bits().to_le_bytes());
+    let sum = xxhash_rust::xxh3::xxh3_64(&head[..24]);
+    head[24..].copy_from_slice(&sum.to_le_bytes());
+    head
+}
+
+/// The compression that was kept, and the seconds spent on it; or what is wrong.
+fn resume(order: &Order, bytes: &[u8]) -> Result<(Compression, f64), String> {
+    let (start, state) = bytes.split_first_chunk::<32>().ok_or("the file ends early")?;
+    let mut seconds = [0; 8];
+    seconds.copy_from_slice(&start[16..24]);
+    let seconds = f64::from_bits(u64::from_le_bytes(seconds));
+    if xxhash_rust::xxh3::xxh3_64(&start[..24]).to_le_bytes() != start[24..] {
+        return Err("the checksum of its head is wrong".into());
+    }
+    if start[..16] != *order.fingerprint().as_bytes() {
+        return Err("it is of another gradation, or of other settings".into());
+    }
+    let compression = Compression::from_bytes(&order.compression, state).map_err(|e| e.to_string())?;
+    Ok((compression, seconds))
 }
 
 fn record(
     order: &Order,
     packing: &Packing,
+    grains_csv: &str,
     report: &PackReport,
     seconds: f64,
 ) -> Result<PackingRecord, CurveError> {
@@ -176,6 +195,7 @@ fn record(
     Ok(PackingRecord {
         inscribed: [guess(1.0)?, guess(0.0)?],
         fingerprint: order.fingerprint(),
+        grains_xxh3: format!("{:016x}", xxhash_rust::xxh3::xxh3_64(grains_csv.as_bytes())),
         name: order.name.clone(),
         linear: order.linear,
         cu: order.gradation.cu(),

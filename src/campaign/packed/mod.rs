@@ -73,7 +73,15 @@ impl PackedFilter {
         if read.fingerprint != order.fingerprint() {
             return Err(problem("this is the packing of another recipe; name another folder".into()));
         }
-        let packing = Packing::read(folder.join(make::GRAINS))?;
+        let grains = folder.join(make::GRAINS);
+        let bytes = std::fs::read(&grains).map_err(|e| problem(format!("{}: {e}", make::GRAINS)))?;
+        if format!("{:016x}", xxhash_rust::xxh3::xxh3_64(&bytes)) != read.grains_xxh3 {
+            return Err(problem(format!(
+                "{} is not the file that this record was written with",
+                make::GRAINS
+            )));
+        }
+        let packing = Packing::parse(&grains.display().to_string(), &bytes)?;
         let found = Constrictions::measure(&packing, order.merge_overlap).map_err(PackError::from)?;
         Ok(Some(Self {
             folder: Some(folder.to_owned()),
