@@ -94,16 +94,24 @@ fn a_packing_goes_on_after_stops_and_kills_with_the_same_bits() {
             .spawn()
             .unwrap()
     };
-    let (mut stops, mut kills) = (0, 0);
+    let (mut stops, mut kills, mut furthest) = (0, 0, 0);
     for attempt in 0..1000 {
-        let mut child = start();
+        let child = start();
         std::thread::sleep(Duration::from_millis(15 + 7 * (attempt % 5)));
         let signal = if attempt % 2 == 0 { "-TERM" } else { "-KILL" };
         let _ = Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
-        let status = child.wait().unwrap();
-        match status.code() {
+        let output = child.wait_with_output().unwrap();
+        match output.status.code() {
             Some(0) => break,
-            Some(3) => stops += 1,
+            Some(3) => {
+                // "stopped: after 4 000 steps of the packing; ..."
+                let words = String::from_utf8_lossy(&output.stderr).into_owned();
+                let steps = words.split("stopped: after ").nth(1).unwrap().split(" steps").next().unwrap();
+                let steps: u64 = steps.replace(' ', "").parse().unwrap();
+                assert!(steps > furthest, "it went on from the start: {steps} after {furthest}");
+                furthest = steps;
+                stops += 1;
+            }
             Some(2) => break,
             // A signal that arrives before the program listens for it ends it as a kill does.
             None => kills += 1,
@@ -128,6 +136,79 @@ fn an_unfinished_packing_of_another_recipe_is_left_alone() {
     assert_eq!(fs::read(at.join("out/compression.state")).unwrap(), b"not a state at all");
     done(&call(&at, &["pack", "filter.toml", "--out", "out", "--overwrite"]));
     assert!(!at.join("out/compression.state").exists());
+}
+
+#[test]
+fn a_stopped_packing_does_not_become_that_of_another_gradation() {
+    let (_root, at) = with_filter(&FILTER.replace("grains = 600", "grains = 3000"));
+    let child = voidwalk(&at)
+        .args(["pack", "filter.toml", "--out", "out", "--checkpoint-every", "1ms", "--threads", "1"])
+        .spawn()
+        .unwrap();
+    while !at.join("out/compression.state").exists() {
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    let _ = Command::new("kill").args(["-KILL", &child.id().to_string()]).status().unwrap();
+    let output = child.wait_with_output().unwrap();
+    if output.status.success() {
+        return;
+    }
+    for (from, to) in [("cu = 1.5", "cu = 1.2"), ("cu = 1.5", "d0_mm = 2.0\ncu = 1.5")] {
+        let other = FILTER.replace("grains = 600", "grains = 3000").replace(from, to);
+        fs::write(at.join("other.toml"), other).unwrap();
+        refused(&call(&at, &["pack", "other.toml", "--out", "out"]), "of another gradation");
+    }
+}
+
+#[test]
+fn grains_that_were_changed_are_not_taken() {
+    let (_root, at) = with_filter(&format!(
+        "replicates = 1\n{FILTER}[base]\ncu = 1.5\nd85_at_dc = 5\n[network]\nnx = 4\nny = 4\nnz = 4\n[record]\nsensitivity = []\n"
+    ));
+    done(&call(&at, &["run", "filter.toml", "--out", "r1"]));
+    let kept = fs::read_dir(at.join("voidwalk-packings")).unwrap().next().unwrap().unwrap().path();
+    let grains = fs::read_to_string(kept.join("grains.csv")).unwrap();
+    let fewer: Vec<&str> = grains.lines().take(300).collect();
+    fs::write(kept.join("grains.csv"), fewer.join("\n") + "\n").unwrap();
+    refused(
+        &call(&at, &["run", "filter.toml", "--out", "r2"]),
+        "is not the file that this record was written with",
+    );
+}
+
+#[test]
+fn links_inside_a_folder_lead_nowhere() {
+    let (_root, at) = with_filter(FILTER);
+    fs::write(at.join("precious.txt"), "years of work").unwrap();
+    fs::create_dir_all(at.join("out")).unwrap();
+    std::os::unix::fs::symlink("../precious.txt", at.join("out/.voidwalk.lock")).unwrap();
+    let output = call(&at, &["pack", "filter.toml", "--out", "out"]);
+    assert!(matches!(output.status.code(), Some(1 | 2)));
+    assert_eq!(fs::read_to_string(at.join("precious.txt")).unwrap(), "years of work");
+    fs::create_dir_all(at.join("elsewhere")).unwrap();
+    fs::create_dir_all(at.join("two")).unwrap();
+    std::os::unix::fs::symlink("../elsewhere", at.join("two/figures")).unwrap();
+    fs::write(at.join("two/.voidwalk.lock"), "").unwrap();
+    let output = call(&at, &["pack", "filter.toml", "--out", "two"]);
+    assert!(!output.status.success());
+    assert_eq!(fs::read_dir(at.join("elsewhere")).unwrap().count(), 0);
+}
+
+#[test]
+fn a_folder_of_another_kind_is_left_alone() {
+    let base =
+        "[base]\ncu = 1.5\nd85_at_dc = 5\n[network]\nnx = 4\nny = 4\nnz = 4\n[record]\nsensitivity = []\n";
+    let (_root, at) = with_filter(&format!("replicates = 1\n{FILTER}{base}"));
+    done(&call(&at, &["run", "filter.toml", "--out", "a-run"]));
+    let before = fs::read(at.join("a-run/report.html")).unwrap();
+    refused(&call(&at, &["pack", "filter.toml", "--out", "a-run"]), "holds a run");
+    assert_eq!(before, fs::read(at.join("a-run/report.html")).unwrap());
+    done(&call(&at, &["pack", "filter.toml", "--out", "a-packing"]));
+    refused(&call(&at, &["run", "filter.toml", "--out", "a-packing"]), "holds a packing");
+    // Its page can be written again.
+    fs::remove_file(at.join("a-packing/report.html")).unwrap();
+    done(&call(&at, &["report", "a-packing"]));
+    assert!(at.join("a-packing/report.html").is_file());
 }
 
 #[test]

@@ -193,15 +193,14 @@ impl Plan {
                 .map(|(factor, level)| format!("{factor}={level}"))
                 .collect::<Vec<_>>()
                 .join(",");
-            let settings: Vec<String> =
-                common.iter().chain(chosen.iter().flat_map(|(_, level)| &level.1)).cloned().collect();
+            let levels_settings = chosen.iter().map(|(_, level)| level.1.clone());
+            let settings: Vec<Vec<String>> = std::iter::once(common.clone()).chain(levels_settings).collect();
             plan.add(&written, base.as_deref(), name, levels, &settings)?;
         }
         for single in &written.case {
             check_name("case", &single.name).map_err(clash)?;
             let own = assignments(&single.set).map_err(clash)?;
-            let settings: Vec<String> = common.iter().cloned().chain(own).collect();
-            plan.add(&written, base.as_deref(), single.name.clone(), Vec::new(), &settings)?;
+            plan.add(&written, base.as_deref(), single.name.clone(), Vec::new(), &[common.clone(), own])?;
         }
         if plan.cases.is_empty() {
             return Err(clash("there is no case: add [[factor]] or [[case]]".into()));
@@ -215,7 +214,7 @@ impl Plan {
         base: Option<&Path>,
         name: String,
         levels: Vec<(String, String)>,
-        settings: &[String],
+        settings: &[Vec<String>],
     ) -> Result<(), SceneError> {
         if self.cases.iter().any(|case| case.name == name) {
             let problem = format!("two cases are called `{name}`");
@@ -229,7 +228,8 @@ impl Plan {
         }
         let origin = Origin::Plan(self.file.clone(), name.clone());
         let mut scene = Scene::planned(base, settings, &origin)?;
-        if !settings.iter().any(|s| s.starts_with("seed=")) {
+        let names_seed = |s: &String| s.split_once('=').is_some_and(|(name, _)| name.trim() == "seed");
+        if !settings.iter().flatten().any(names_seed) {
             scene.seed = match written.seeds {
                 Seeds::Common => written.seed,
                 Seeds::Own => xxhash_rust::xxh3::xxh3_64_with_seed(name.as_bytes(), written.seed),
@@ -263,7 +263,9 @@ fn folder_name(name: &str) -> String {
 
 /// A name that can stand in a file name, a table and a page.
 fn check_name(what: &str, name: &str) -> Result<(), String> {
-    let bad = |c: char| c.is_control() || "=,/\\\"'".contains(c);
+    // Characters without a width, of other line ends, and those that turn the direction of writing.
+    let hidden = |c: char| matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{2069}' | '\u{feff}');
+    let bad = |c: char| c.is_control() || hidden(c) || "=,/\\\"'".contains(c);
     if name.is_empty() || name.len() > 100 || name.starts_with('.') || name.chars().any(bad) {
         return Err(format!(
             "{what} name `{}` is not allowed; 1 to 100 characters, none of = , / \\ and quotes, no dot in front",
@@ -389,6 +391,10 @@ mod tests {
             ("[[factor]]\nname = \"a=b\"\nsetting = \"base.cu\"\nvalues = [2]\n", "is not allowed"),
             ("[[case]]\nname = \"../x\"\n", "is not allowed"),
             ("[[case]]\nname = \"x\"\n[[case]]\nname = \"x\"\n", "two cases are called `x`"),
+            (
+                "[[case]]\nname = \"x\"\nset = { filter = { curve = \"a.csv\", density = \"loose\", cu = 2 } }\n",
+                "both say what the filter's constrictions are",
+            ),
             ("[[case]]\nname = \"x\"\n[[leave_out]]\nfilter = \"x\"\n", "there is no factor `filter`"),
         ] {
             let error = plan(text).unwrap_err().to_string();

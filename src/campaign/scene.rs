@@ -261,17 +261,22 @@ impl Scene {
         Self::new(Settings::parse(bytes, name, PathBuf::new(), &NAMES)?, name, assignments)
     }
 
-    /// The scene of a plan's case: the built-in scene or one from a file, with the case's settings.
+    /// The scene of a plan's case: the built-in scene or one from a file, with the case's settings, those stated together in
+    /// one list each.
     ///
     /// # Errors
     /// As [`Scene::read`].
-    pub fn planned(base: Option<&Path>, assignments: &[String], origin: &Origin) -> Result<Self, SceneError> {
+    pub fn planned(
+        base: Option<&Path>,
+        assignments: &[Vec<String>],
+        origin: &Origin,
+    ) -> Result<Self, SceneError> {
         let mut s = match base {
             Some(path) => Settings::read(path, &NAMES)?,
             None => Settings::parse(BUILT_IN.as_bytes(), BUILT_IN_NAME, PathBuf::new(), &NAMES)?,
         };
-        for assignment in assignments {
-            s.set_from(assignment, &NAMES, origin.clone())?;
+        for together in assignments {
+            s.set_together(together, &NAMES, origin)?;
         }
         Self::from_settings(&s, &origin.to_string())
     }

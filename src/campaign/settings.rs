@@ -221,32 +221,45 @@ impl Settings {
     /// # Errors
     /// There is no `=`, or no such setting.
     pub fn set(&mut self, assignment: &str, names: &Names) -> Result<(), SceneError> {
-        self.set_from(assignment, names, Origin::CommandLine)
+        self.set_together(&[assignment.to_owned()], names, &Origin::CommandLine)
     }
 
-    /// The same from somewhere else.
+    /// Applies assignments that are stated together: they replace alternatives that were given before, not one another.
     ///
     /// # Errors
     /// As [`Settings::set`].
-    pub fn set_from(&mut self, assignment: &str, names: &Names, origin: Origin) -> Result<(), SceneError> {
-        let Some((name, value)) = assignment.split_once('=') else {
-            return Err(SceneError::Value {
-                origin,
-                name: "assignment".into(),
-                value: Value::Text(assignment.into()).to_string(),
-                allowed: "write name=value, as in base.cu=3".into(),
-            });
-        };
-        let (name, value) = (name.trim(), value.trim());
-        names.check(name, &origin)?;
-        let value = match DeValue::parse(value) {
-            Ok(parsed) => Value::from(parsed.get_ref()),
-            Err(_) => Value::Text(value.into()),
-        };
-        for (_, replaced) in names.replaces.iter().filter(|(by, _)| *by == name) {
-            self.values.remove(*replaced);
+    pub fn set_together(
+        &mut self,
+        assignments: &[String],
+        names: &Names,
+        origin: &Origin,
+    ) -> Result<(), SceneError> {
+        let mut stated = Vec::new();
+        for assignment in assignments {
+            let Some((name, value)) = assignment.split_once('=') else {
+                return Err(SceneError::Value {
+                    origin: origin.clone(),
+                    name: "assignment".into(),
+                    value: Value::Text(assignment.clone()).to_string(),
+                    allowed: "write name=value, as in base.cu=3".into(),
+                });
+            };
+            let (name, value) = (name.trim(), value.trim());
+            names.check(name, origin)?;
+            let value = match DeValue::parse(value) {
+                Ok(parsed) => Value::from(parsed.get_ref()),
+                Err(_) => Value::Text(value.into()),
+            };
+            stated.push((name.to_owned(), value));
         }
-        self.values.insert(name.into(), (value, origin));
+        for (name, _) in &stated {
+            for (_, replaced) in names.replaces.iter().filter(|(by, _)| by == name) {
+                self.values.remove(*replaced);
+            }
+        }
+        for (name, value) in stated {
+            self.values.insert(name, (value, origin.clone()));
+        }
         Ok(())
     }
 

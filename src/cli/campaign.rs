@@ -14,7 +14,7 @@ use super::Ending;
 use super::args::CampaignArgs;
 use super::pack::provide;
 use super::print::{percent, plain, to_stderr, to_stdout};
-use super::run::{command_line, pool, refused_or_failed};
+use super::run::{command_line, pool, refuse_other_kinds, refused_or_failed};
 use super::signals::stop_on_signals;
 use crate::campaign::case::{Case, CaseError, Room};
 use crate::campaign::conduct::{ConductError, Overseer, Ready, conduct};
@@ -43,6 +43,7 @@ pub fn campaign(args: &CampaignArgs) -> Result<(), Ending> {
     let pool = pool(args.threads)?;
     let threads = pool.current_num_threads();
     let out = Folder::open_shared(&args.out).map_err(refused_or_failed)?;
+    refuse_other_kinds(&out, "campaign")?;
     let packings = args.packings.clone().unwrap_or_else(|| args.out.join("packings"));
     let packed = pack(&orders, &packings, args.quiet, &pool, &stop)?;
     let ready = |case: &&'_ PlannedCase| worked_out(case, packed.get(&case.name).cloned());

@@ -63,7 +63,9 @@ pub fn main() -> ExitCode {
                 3 => "stopped",
                 _ => "error",
             };
-            print::to_stderr(&format!("{kind}: {}\n", ending.message));
+            // Messages name files and values that may hold anything.
+            let lines: Vec<String> = ending.message.lines().map(print::plain).collect();
+            print::to_stderr(&format!("{kind}: {}\n", lines.join("\n")));
             ExitCode::from(ending.code)
         }
     }

@@ -11,7 +11,7 @@ use indicatif::ProgressBar;
 use super::Ending;
 use super::args::PackArgs;
 use super::print::{count, plain, to_stderr, to_stdout};
-use super::run::{pool, refused_or_failed};
+use super::run::{pool, refuse_other_kinds, refused_or_failed};
 use super::signals::stop_on_signals;
 use crate::campaign::packed::{Order, PackError, PackedError, PackedFilter, RECORD, STATE, Watch, make};
 use crate::campaign::scene::Scene;
@@ -35,13 +35,23 @@ pub fn pack(args: &PackArgs) -> Result<(), Ending> {
     let stop = stop_on_signals()?;
     let out = args.out.clone().unwrap_or_else(|| Path::new("voidwalk-packings").join(order.folder_name()));
     let folder = Folder::open(&out).map_err(refused_or_failed)?;
+    refuse_other_kinds(&folder, "packing")?;
     if folder.has(RECORD) && !args.overwrite {
         let problem =
             format!("{}: holds a packing already; name another folder or add --overwrite", out.display());
         return Err(Ending::refused(plain(&problem)));
     }
     if args.overwrite {
-        for name in [RECORD, STATE] {
+        for name in [
+            RECORD,
+            STATE,
+            "report.html",
+            "grains.csv",
+            "grains.vtp",
+            "constrictions.csv",
+            "constrictions.json",
+            "constrictions.vtp",
+        ] {
             folder.remove(name).map_err(Ending::failed)?;
         }
     }
@@ -68,10 +78,27 @@ pub fn provide(
     if let Some(filter) = read(&path, order)? {
         return Ok(filter);
     }
+    let mut waiting = false;
     let folder = loop {
         match Folder::open(&path) {
             // Another process makes the same packing: it is taken from there.
-            Err(StoreError::Held { .. }) if !stop.load(Ordering::Relaxed) => std::thread::sleep(LOOK),
+            Err(StoreError::Held { holder, .. }) => {
+                if stop.load(Ordering::Relaxed) {
+                    return Err(Ending::stopped(
+                        "while another process made the packing; the same command goes on",
+                    ));
+                }
+                if !waiting && !quiet {
+                    let shown = path.display().to_string();
+                    to_stderr(&format!(
+                        "waiting for the packing in {} ({})\n",
+                        plain(&shown),
+                        plain(&holder)
+                    ));
+                }
+                waiting = true;
+                std::thread::sleep(LOOK);
+            }
             other => break other.map_err(refused_or_failed)?,
         }
     };

@@ -2,6 +2,8 @@
 
 use std::io::Write;
 
+use crate::report::figures::visible;
+
 /// Prints to stdout; a reader that has left is no fault of ours.
 pub fn to_stdout(text: &str) {
     let mut out = std::io::stdout().lock();
@@ -13,9 +15,9 @@ pub fn to_stderr(text: &str) {
     let _ = std::io::stderr().lock().write_all(text.as_bytes());
 }
 
-/// A name made safe for a terminal: control characters show as `?`.
+/// A name made safe for a terminal: characters that control it or turn the direction of writing are replaced.
 pub fn plain(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { '?' } else { c }).collect()
+    text.chars().map(|c| if c.is_control() { '?' } else { visible(c) }).collect()
 }
 
 /// A count with thin groups: `2 620 000`.

@@ -28,22 +28,19 @@ pub fn run(args: &RunArgs) -> Result<(), Ending> {
     let stop = stop_on_signals()?;
     let machine = Machine::here();
     let pool = pool(args.threads)?;
-    let packed = match &scene.recipe {
-        None => None,
-        Some(recipe) => {
-            let order = Order::new(recipe).map_err(Ending::refused)?;
-            // Whatever else is wrong with the scene is said before hours of packing, not after.
-            let stand_in = PackedFilter::stand_in(&order).map_err(Ending::refused)?;
-            Case::with_packed(scene.clone(), Some(stand_in)).map_err(Ending::refused)?;
-            Some(pool.install(|| provide(&order, &args.scene.packings, args.quiet, &stop))?)
-        }
-    };
-    let mut case = Case::with_packed(scene, packed).map_err(Ending::refused)?;
     let threads = pool.current_num_threads() as u64;
     let wanted = args.out.as_deref().unwrap_or(Path::new("."));
     let room = Room::new(args.scene.memory, machine.available, wanted);
+    let order = scene.recipe.as_ref().map(Order::new).transpose().map_err(Ending::refused)?;
+    let guess = order.as_ref().map(PackedFilter::stand_in).transpose().map_err(Ending::refused)?;
+    // Whatever is wrong with the scene, the memory or the folder is said before hours of packing, not after.
+    let mut case = Case::with_packed(scene.clone(), guess).map_err(Ending::refused)?;
     case.place(&room, threads, wanted).map_err(Ending::refused)?;
     let folder = open_folder(args)?;
+    if let Some(order) = &order {
+        let filter = pool.install(|| provide(order, &args.scene.packings, args.quiet, &stop))?;
+        case = Case::with_packed(scene, Some(filter)).map_err(Ending::refused)?;
+    }
     case.place(&room, threads, folder.path()).map_err(Ending::refused)?;
     for warning in case.warnings() {
         to_stderr(&format!("warning: {}\n", plain(&warning)));
@@ -110,14 +107,25 @@ pub fn resume(args: &ResumeArgs) -> Result<(), Ending> {
 
 /// Writes the report of a finished run folder again.
 pub fn report(folder: &Path) -> Result<(), Ending> {
-    if !folder.join("outcome.json").is_file() {
-        let problem =
-            format!("{}: holds no outcome.json; name the folder of a finished run", folder.display());
+    let writers: [(&str, fn(&Path) -> Result<report::Written, report::ReportError>); 3] = [
+        ("outcome.json", report::write),
+        ("packing.json", report::write_packing),
+        ("campaign.json", report::write_campaign),
+    ];
+    let Some((marker, write)) = writers.iter().find(|(marker, _)| folder.join(marker).is_file()) else {
+        let problem = format!(
+            "{}: holds no outcome.json, packing.json or campaign.json; name the folder of a finished run, packing or campaign",
+            folder.display()
+        );
         return Err(Ending::refused(plain(&problem)));
-    }
-    let folder = Folder::open(folder).map_err(refused_or_failed)?;
-    report::write(folder.path()).map_err(Ending::failed)?;
-    to_stdout(&format!("{}\n", folder.path().join("report.html").display()));
+    };
+    let folder = match *marker {
+        "campaign.json" => Folder::open_shared(folder),
+        _ => Folder::open(folder),
+    };
+    let folder = folder.map_err(refused_or_failed)?;
+    write(folder.path()).map_err(Ending::failed)?;
+    to_stdout(&format!("{}\n", plain(&folder.path().join("report.html").display().to_string())));
     Ok(())
 }
 
@@ -183,10 +191,33 @@ pub(super) fn refused_or_failed(error: StoreError) -> Ending {
     if error.is_refusal() { Ending::refused(error) } else { Ending::failed(error) }
 }
 
+/// What marks the folder of each kind of work.
+const KINDS: [(&str, &[&str]); 5] = [
+    ("run", &["outcome.json", "series.csv", "checkpoint"]),
+    ("packing", &["packing.json", "compression.state"]),
+    ("campaign", &["campaign.json", "cases"]),
+    ("percolation study", &["percolation.json"]),
+    ("set of constrictions", &["constrictions.json"]),
+];
+
+/// Refuses a folder that holds the work of another kind: nothing of it is overwritten.
+pub(super) fn refuse_other_kinds(folder: &Folder, own: &str) -> Result<(), Ending> {
+    for (kind, markers) in KINDS {
+        // A packing holds constrictions of its own.
+        let own = kind == own || (own == "packing" && kind == "set of constrictions");
+        if !own && markers.iter().any(|marker| folder.has(marker)) {
+            let problem = format!("{}: holds a {kind}; name another folder", folder.path().display());
+            return Err(Ending::refused(plain(&problem)));
+        }
+    }
+    Ok(())
+}
+
 /// The folder to write to: the one that is named, or the first free one.
 fn open_folder(args: &RunArgs) -> Result<Folder, Ending> {
     let Some(path) = &args.out else { return first_free_folder() };
     let folder = Folder::open(path).map_err(refused_or_failed)?;
+    refuse_other_kinds(&folder, "run")?;
     if folder.has("manifest.json") && !args.overwrite && !Keeper::is_in(folder.path()) {
         let problem = format!(
             "{}: holds the results of an earlier run; name another folder or add --overwrite",

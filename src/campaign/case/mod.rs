@@ -176,7 +176,8 @@ impl Case {
         let of_packing = packed.as_ref().map(|p| p.grains_per_void).or(of_shipped);
         let grains_per_void = scene.grains_per_void.or(of_packing);
         let (supply, mass_ratio) = supply(&scene, grains_per_void, counts[0], &base, &filter)?;
-        if base.tail_mass_fraction() > 0.0 && base.smallest_mm() > curve.smallest() {
+        let is_guess = packed.as_ref().is_some_and(|packed| packed.folder.is_none());
+        if base.tail_mass_fraction() > 0.0 && base.smallest_mm() > curve.smallest() && !is_guess {
             let problem = format!(
                 "the base's finest sieve, {} mm, is coarser than the finest constriction, {:.4} mm: its tail of unknown size \
                  may not be passive; give base.d0_mm or a finer sieve",

@@ -37,6 +37,9 @@ impl Case {
             None => [None; 3],
         };
         let curve_name = match (&self.network_file, &self.scene.curve) {
+            (None, None) if self.packed.as_ref().is_some_and(|packed| packed.folder.is_none()) => {
+                "a guess, until the filter is packed".to_string()
+            }
             (None, None) if self.packed.is_some() => "measured on its packing".to_string(),
             (None, None) if self.scene.estimate.is_some() => {
                 "guessed from the gradation by inscribed circles".to_string()
