@@ -4,7 +4,7 @@ use bitvec::vec::BitVec;
 use voidwalk::constrictions;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
-use voidwalk::store::Placement;
+use voidwalk::store::{Column, Placement};
 use voidwalk::walk::{CHUNK, Isa, Progress, SizeClasses, State, Supply, Walk, threads};
 
 /// Two runs of `n` particles of a base with D85 = Dc`percent`: every column after increments 7 and 60, and at
@@ -57,6 +57,45 @@ fn kernels_and_threads_change_no_bit() {
                 let seen = pool.install(|| columns(isa, &Placement::Memory, n, cu, percent));
                 assert!(seen == expected, "{isa:?}, {count} threads, N = {n}");
             }
+        }
+    }
+}
+
+/// A base of one size keeps no column of diameters: the same as with a full one, by every kernel and on several threads.
+#[test]
+fn one_size_needs_no_column_of_diameters() {
+    let curve = constrictions::find("shire2016-cu1.5-loose").unwrap().curve().unwrap();
+    let network = Network::cubic([12, 10, 15], &curve, 1.0, 5).unwrap();
+    let size = curve.dc(8.0).unwrap();
+    let sampler = SizeSampler::new(&Gradation::single(size).unwrap(), 1.0).unwrap();
+    let n = 5 * CHUNK as u64 + 4321;
+    let walked = |isa: Isa, full: bool| {
+        let classes = SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), 32);
+        let supply = Supply::new(sampler.clone(), n, 30);
+        let blocked = BitVec::repeat(false, network.constrictions());
+        let mut state = State::new(&network, &supply, classes, blocked, 3, 1);
+        assert_eq!((state.particles.void.len(), state.particles.diameter.len()), (6 * CHUNK, CHUNK));
+        if full {
+            state.particles.diameter = Column::zeroed(6 * CHUNK, &Placement::Memory).unwrap();
+        }
+        let mut seen = Vec::new();
+        Walk::new(&network, &supply, &state)
+            .with_isa(isa)
+            .run(&mut state, &mut |state| {
+                let chunks = 0..state.particles.live.len();
+                let columns: Vec<_> = chunks.map(|chunk| state.particles.chunk(chunk)).collect();
+                seen.push(xxhash_rust::xxh3::xxh3_64(format!("{columns:?} {:?}", state.tally).as_bytes()));
+                Progress::Continue
+            })
+            .unwrap();
+        assert!(state.tally.blocked > 0 && state.tally.inserted == n);
+        (seen, state.history.clone(), state.retained_in_constrictions.clone(), state.eroded_sizes.clone())
+    };
+    let expected = threads(1, false).unwrap().install(|| walked(Isa::Portable, true));
+    for isa in Isa::ALL.into_iter().filter(|isa| isa.is_available()) {
+        for count in [1, 2] {
+            let pool = threads(count, false).unwrap();
+            assert!(pool.install(|| walked(isa, false)) == expected, "{isa:?}, {count} threads");
         }
     }
 }

@@ -94,6 +94,10 @@ impl Plan {
             chosen => chosen,
         };
         let mut left_out = left_out(engine, limit, passive_words, network.unit_mm());
+        if sampler.smallest() == sampler.largest() && (engine == Engine::Particles || passive_words < 1 << 64)
+        {
+            left_out.push("The base has one size: no column of diameters is kept.".into());
+        }
         if wanted == Engine::Auto && engine == Engine::Particles && passive_words > 0 {
             left_out.push(format!(
                 "None is kept as a count: {share} base particles an increment for {} start nodes are so few that walking each by \

@@ -55,14 +55,13 @@ impl Kept {
     /// The sections of a state.
     pub fn sections<'a>(&'a self, state: &'a State) -> Vec<Section<'a>> {
         let particles = &state.particles;
-        let chunk = |c: usize| c * CHUNK..c * CHUNK + particles.live[c] as usize;
         let chunks = 0..particles.live.len();
         vec![
             Section::new("words", &self.words),
             Section::new("reals", &self.reals),
             Section::new("live", &particles.live),
-            Section::parts("void", chunks.clone().map(|c| &particles.void[chunk(c)])),
-            Section::parts("diameter", chunks.map(|c| &particles.diameter[chunk(c)])),
+            Section::parts("void", chunks.clone().map(|c| particles.chunk(c).0)),
+            Section::parts("diameter", chunks.map(|c| particles.chunk(c).1)),
             Section::new("counts", state.passive.counts()),
             Section::new("expected", &self.expected),
             Section::new("blocked", state.blocked.as_raw_slice()),
@@ -111,9 +110,12 @@ impl State {
             voids &= piece.iter().all(|&v| (v as usize) < network.voids());
             place.put(piece, column);
         })?;
-        let mut place = Place::new(&live);
-        let column = &mut self.particles.diameter;
-        saved.read_pieces::<f32>("diameter", |piece| place.put(piece, column))?;
+        // One size is known without them.
+        if !self.particles.has_one_size() {
+            let mut place = Place::new(&live);
+            let column = &mut self.particles.diameter;
+            saved.read_pieces::<f32>("diameter", |piece| place.put(piece, column))?;
+        }
         if !voids {
             return Err(wrong("void of a particle"));
         }

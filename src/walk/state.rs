@@ -22,7 +22,7 @@ pub struct Blocking {
 }
 
 /// Moving base particles as columns. Chunk `c` holds its `live[c]` particles, in order of insertion, in
-/// entries `c * CHUNK ..` of each column.
+/// entries `c * CHUNK ..` of each column. Where all have one size, that column holds one chunk of it for all.
 #[derive(Debug)]
 pub struct Particles {
     /// Void that the particle is in.
@@ -36,8 +36,14 @@ pub struct Particles {
 impl Particles {
     /// Void and diameter of the moving particles of one chunk.
     pub fn chunk(&self, chunk: usize) -> (&[u32], &[f32]) {
-        let range = chunk * CHUNK..chunk * CHUNK + self.live[chunk] as usize;
-        (&self.void[range.clone()], &self.diameter[range])
+        let live = self.live[chunk] as usize;
+        let sizes = if self.has_one_size() { 0 } else { chunk * CHUNK };
+        (&self.void[chunk * CHUNK..][..live], &self.diameter[sizes..][..live])
+    }
+
+    /// Whether the column of diameters stands for chunks that it does not hold.
+    pub(super) fn has_one_size(&self) -> bool {
+        self.diameter.len() < self.void.len()
     }
 }
 
@@ -107,6 +113,14 @@ impl State {
         assert_eq!(blocked.len(), network.constrictions(), "one bit a constriction");
         let chunks = (supply.total() as usize).div_ceil(CHUNK);
         let tally = Tally { blocked: blocked.count_ones() as u64, ..Tally::default() };
+        let diameter = match supply.single_size() {
+            Some(size) => {
+                let mut sizes = Column::zeroed(chunks.min(1) * CHUNK, &Placement::Memory)?;
+                sizes.fill(size);
+                sizes
+            }
+            None => Column::zeroed(chunks * CHUNK, placement)?,
+        };
         Ok(Self {
             seed,
             run,
@@ -115,7 +129,7 @@ impl State {
             passive_limit: network.finest_open(|c| blocked[c]),
             particles: Particles {
                 void: Column::zeroed(chunks * CHUNK, placement)?,
-                diameter: Column::zeroed(chunks * CHUNK, placement)?,
+                diameter,
                 live: vec![0; chunks],
             },
             passive: supply.no_passive_yet(network.voids()),

@@ -92,6 +92,12 @@ impl Supply {
         &self.sampler
     }
 
+    /// The diameter of every base particle, where they have one size.
+    pub fn single_size(&self) -> Option<f32> {
+        let size = self.sampler.smallest();
+        (size == self.sampler.largest()).then_some(size)
+    }
+
     /// All base particles of the run that are walked one by one.
     pub fn total(&self) -> u64 {
         self.inserted(self.increments())

@@ -53,7 +53,9 @@ impl Case {
 
     /// Bytes of the columns of a walk of `n_base` particles.
     pub fn column_bytes(&self, n_base: u64) -> u64 {
-        self.one_by_one(n_base).div_ceil(CHUNK as u64).saturating_mul(8 * CHUNK as u64)
+        // A void and a diameter; one size needs no column.
+        let bytes = if self.sampler.smallest() == self.sampler.largest() { 4 } else { 8 };
+        self.one_by_one(n_base).div_ceil(CHUNK as u64).saturating_mul(bytes * CHUNK as u64)
     }
 
     /// Bytes that walking `n_base` particles takes besides: network, tallies, book-keeping.

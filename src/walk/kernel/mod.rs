@@ -19,6 +19,8 @@ pub(super) use fill::fill_diameters;
 pub use isa::Isa;
 pub use threads::threads;
 
+use std::cell::RefCell;
+
 use bitvec::slice::BitSlice;
 use rayon::prelude::*;
 
@@ -64,8 +66,26 @@ pub(super) fn step(
         events.sum(classes, exits.passive_limit);
         *live = kept as u32;
     };
+    let one_size = supply.single_size().filter(|_| state.particles.has_one_size());
     let Particles { void, diameter, live } = &mut state.particles;
-    if rayon::current_num_threads() > 1 && attempts + EMPTY_CHUNK * live.len() as u64 > WORTH_THREADS {
+    let spread =
+        rayon::current_num_threads() > 1 && attempts + EMPTY_CHUNK * live.len() as u64 > WORTH_THREADS;
+    if let Some(size) = one_size {
+        let work = |chunk: usize, void: &mut [u32], live: &mut u32, events: &mut Events| {
+            SIZES.with_borrow_mut(|sizes| {
+                sizes.clear();
+                sizes.resize(CHUNK, size);
+                work(chunk, void, sizes, live, events);
+            });
+        };
+        if spread {
+            let chunks = void.par_chunks_mut(CHUNK).zip(live).zip(events).enumerate();
+            chunks.for_each(|(chunk, ((void, live), events))| work(chunk, void, live, events));
+        } else {
+            let chunks = void.chunks_mut(CHUNK).zip(live).zip(events).enumerate();
+            chunks.for_each(|(chunk, ((void, live), events))| work(chunk, void, live, events));
+        }
+    } else if spread {
         let columns = void.par_chunks_mut(CHUNK).zip(diameter.par_chunks_mut(CHUNK));
         let chunks = columns.zip(live).zip(events).enumerate();
         chunks.for_each(|(chunk, (((void, diameter), live), events))| {
@@ -78,6 +98,12 @@ pub(super) fn step(
             work(chunk, void, diameter, live, events)
         });
     }
+}
+
+thread_local! {
+    /// Diameters of the chunk that a thread is at, where all base particles have one size: a column of them would say
+    /// nothing, and be read from memory.
+    static SIZES: RefCell<Vec<f32>> = const { RefCell::new(Vec::new()) };
 }
 
 /// Attempted moves in an increment above which several threads are faster than one.
