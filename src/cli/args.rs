@@ -37,9 +37,9 @@ pub enum Command {
     Constrictions(ConstrictionsArgs),
     /// Find the percolation threshold of cubic lattices of several sizes
     Percolation(PercolationArgs),
-    /// Write report.html and the figures of a finished run folder again
+    /// Write report.html and the figures of a finished run folder again, or of a folder that scripts/paper.sh filled
     Report {
-        /// The run folder
+        /// The folder
         folder: PathBuf,
     },
 }

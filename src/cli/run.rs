@@ -107,6 +107,11 @@ pub fn resume(args: &ResumeArgs) -> Result<(), Ending> {
 
 /// Writes the report of a finished run folder again.
 pub fn report(folder: &Path) -> Result<(), Ending> {
+    if report::is_paper(folder) {
+        let page = report::write_paper(folder).map_err(Ending::failed)?.page;
+        to_stdout(&format!("{}\n", plain(&page.display().to_string())));
+        return Ok(());
+    }
     let writers: [(&str, fn(&Path) -> Result<report::Written, report::ReportError>); 3] = [
         ("outcome.json", report::write),
         ("packing.json", report::write_packing),

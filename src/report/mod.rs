@@ -2,7 +2,8 @@
 //!
 //! [`write()`] reads what a run left behind (`outcome.json`, `manifest.json`, `scene.toml`, `series.csv`, `layers.csv`,
 //! `retained.csv`, `eroded.csv`; see [`crate::outcome::record`]) and runs nothing; [`write_packing()`] does the same for
-//! the folder of a packing. They write `figures/*.svg`, each a
+//! the folder of a packing, [`write_campaign()`] for a campaign's, [`write_percolation()`] for a percolation study's, and
+//! [`write_paper()`] for a reproduction of the paper. They write `figures/*.svg`, each a
 //! file of its own, and `report.html`.
 //!
 //! # What the page may do
@@ -22,6 +23,7 @@ mod infiltration;
 mod numbers;
 mod packing;
 mod page;
+mod paper;
 mod percolation;
 mod rules;
 mod run_figures;
@@ -33,6 +35,7 @@ pub use campaign::write_campaign;
 pub use folder::ReportError;
 use folder::RunFolder;
 pub use packing::write_packing;
+pub use paper::{is_paper, write_paper};
 pub use percolation::write_percolation;
 use shell::Drawn;
 

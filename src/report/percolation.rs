@@ -81,7 +81,7 @@ fn fits(study: &PercolationStudy) -> Markup {
 }
 
 /// Fig. 6 of the paper: standard deviation against size.
-fn spread(study: &PercolationStudy) -> Drawn {
+pub(super) fn spread(study: &PercolationStudy) -> Drawn {
     let points: Vec<(f64, f64, f64)> = study
         .sizes
         .iter()

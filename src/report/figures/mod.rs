@@ -375,6 +375,11 @@ impl Figure {
         self.marks.push(mark.into());
     }
 
+    /// Its title.
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
     /// A file of its own.
     pub fn file(&self) -> String {
         let body = draw::draw(self, Size::Wide, "figure", r#" xmlns="http://www.w3.org/2000/svg""#);
