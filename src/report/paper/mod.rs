@@ -90,9 +90,9 @@ fn page(study: &Study, judged: &[Judged], sections: &[(&Section, Vec<Drawn>)]) -
                     b { (judged.len() - agree - differ) } " cannot be told."
                 }
                 p {
-                    "A statement agrees when our value lies within what the paper states and its tolerance, or when the 95 % interval "
-                    "of ours reaches into it; it differs otherwise; it cannot be told when nothing was walked or when the replicates "
-                    "leave it open. No judgement is typed in, and nothing is tuned to the paper case by case. Where a number differs, the same "
+                    "A statement agrees when our value lies within what the paper states and its tolerance, or when our 95 % interval "
+                    "covers the stated value; it cannot be told when nothing was walked or when the interval lies on both sides of what "
+                    "decides; it differs otherwise. No judgement is typed in, and nothing is tuned to the paper case by case. Where a number differs, the same "
                     "is measured in campaigns that change one thing each: grains per void, cap, constriction curves, overlap rule."
                 }
             }

@@ -186,7 +186,7 @@ pub(super) fn table3_not_less(study: &Study, _: &str, _: &Of) -> Option<Measured
     let (low, high) = range(&falls);
     let words = match falls.is_empty() {
         true => String::new(),
-        false => format!("; where 7.5 % or more erode, {low:.0} to {high:.0} % less"),
+        false => format!("; where 7.5 % or more erode on the cubic one, {low:.1} to {high:.1} % less"),
     };
     Measured::exceptions(not_less, 0, twins.len())
         .map(|measured| Measured { words: measured.words.clone() + &words, ..measured })

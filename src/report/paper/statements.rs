@@ -40,7 +40,7 @@ pub(super) struct Statement {
 /// How ours compares.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Judgement {
-    /// Within what is stated, or not told apart from it by the replicates.
+    /// Within what is stated, or the interval covers it.
     Agrees,
     /// Outside, by so much, above or below.
     Differs(f64),
@@ -57,8 +57,9 @@ impl Statement {
         (low.unwrap_or(f64::NEG_INFINITY), high.unwrap_or(f64::INFINITY))
     }
 
-    /// The rule: agrees when our value lies within what is stated or its 95 % interval reaches into it; cannot tell when
-    /// nothing was walked, or the replicates leave exceptions open; differs otherwise, by the distance to the nearest end.
+    /// The rule: agrees when our value lies within what is stated, or our 95 % interval covers the stated value; cannot tell
+    /// when nothing was walked, or when the interval lies on both sides of what decides; differs otherwise, by the distance
+    /// to the nearest end.
     pub(super) fn judge(&self, ours: Option<&Measured>) -> Judgement {
         let Some(ours) = ours.filter(|ours| !ours.open && !ours.value.is_nan()) else {
             return Judgement::CannotTell;
@@ -66,8 +67,12 @@ impl Statement {
         let ((low, high), (from, to)) = (self.allowed(), ours.interval.unwrap_or((ours.value, ours.value)));
         // Rounding of decimal fractions decides nothing.
         let slack = 1e-9 * ours.value.abs().max(1.0);
-        if (from.min(ours.value) <= high + slack) && (to.max(ours.value) >= low - slack) {
+        let within = |value: f64| value <= high + slack && value >= low - slack;
+        if within(ours.value) || self.value.is_some_and(|stated| from <= stated && stated <= to) {
             return Judgement::Agrees;
+        }
+        if from <= high && to >= low {
+            return Judgement::CannotTell;
         }
         Judgement::Differs(if ours.value > high { ours.value - high } else { ours.value - low })
     }
@@ -103,7 +108,7 @@ impl Judged {
         match self.ours() {
             (_, Judgement::Agrees) => "agrees".into(),
             (None, _) => "cannot tell: not walked".into(),
-            (_, Judgement::CannotTell) => "cannot tell: the replicates leave it open".into(),
+            (_, Judgement::CannotTell) => "cannot tell: the replicates leave both possible".into(),
             (_, Judgement::Differs(by)) => {
                 let sign = if by > 0.0 { "above" } else { "below" };
                 format!(
@@ -248,7 +253,8 @@ mod tests {
         let s = statements().into_iter().find(|s| s.id == "43").unwrap();
         let of = |value, interval| Measured { interval, ..Measured::exact(value) };
         assert_eq!(s.judge(Some(&of(47.9, None))), Judgement::Agrees);
-        assert_eq!(s.judge(Some(&of(50.0, Some((47.0, 53.0))))), Judgement::Agrees);
+        assert_eq!(s.judge(Some(&of(50.0, Some((42.0, 58.0))))), Judgement::Agrees);
+        assert_eq!(s.judge(Some(&of(50.0, Some((47.0, 53.0))))), Judgement::CannotTell);
         assert_eq!(s.judge(Some(&of(50.0, Some((49.0, 51.0))))), Judgement::Differs(2.0));
         assert_eq!(s.judge(Some(&of(36.0, None))), Judgement::Differs(-2.0));
         assert_eq!(s.judge(None), Judgement::CannotTell);
