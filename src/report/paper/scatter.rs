@@ -53,8 +53,10 @@ pub(super) fn scatter(plot: Plot, rules: Vec<Rule>, groups: Vec<Group>) -> Optio
     let (low, high) = points().fold(plot.reach, |(low, high), (x, _)| (low.min(*x), high.max(*x)));
     let highest = points().map(|(_, y)| y.high.unwrap_or(y.mean)).fold(0.0, f64::max);
     let y = if plot.percent { Axis::percent(plot.y) } else { Axis::linear(plot.y, 0.0, 1.08 * highest) };
+    // Names stand above the frame, and are not to take its room.
+    let key = 10.0 * (groups.len() + rules.len()) as f64;
     let mut figure = Figure::new(plot.title, &plot.caption, "", Axis::linear(plot.x, low, high), y)
-        .sizes((720.0, 400.0), (358.0, 400.0))
+        .sizes((720.0, 370.0 + key), (358.0, 330.0 + 2.0 * key))
         .names_above();
     for rule in rules {
         figure.add(rule);

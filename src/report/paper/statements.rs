@@ -77,13 +77,27 @@ impl Statement {
         Judgement::Differs(if ours.value > high { ours.value - high } else { ours.value - low })
     }
 
-    /// A value as this statement shows it.
-    pub(super) fn show(&self, value: f64) -> String {
-        let number = match value {
+    /// By how much a value differs: from what is stated, or from the limit that it breaks by `by`.
+    fn difference(&self, value: f64, by: f64) -> String {
+        let unit = if self.unit == "%" { "\u{202f}points" } else { "" };
+        let from = self.value.map_or(by, |stated| value - stated);
+        let number = Self::number(from.abs());
+        let sign = if from < 0.0 { "−" } else { "+" };
+        let of = if self.value.is_some() { "" } else { " from the limit" };
+        format!("by {sign}{number}{unit}{of}")
+    }
+
+    fn number(value: f64) -> String {
+        match value {
             v if v.fract() == 0.0 && v.abs() < 1e6 => (v as i64).to_string(),
             v if v.fract() == 0.0 && (0.0..1e18).contains(&v) => whole(v as u64),
             v => significant(v),
-        };
+        }
+    }
+
+    /// A value as this statement shows it.
+    pub(super) fn show(&self, value: f64) -> String {
+        let number = Self::number(value);
         if self.unit.is_empty() { number } else { format!("{number}\u{202f}{}", self.unit) }
     }
 }
@@ -108,14 +122,9 @@ impl Judged {
         match self.ours() {
             (_, Judgement::Agrees) => "agrees".into(),
             (None, _) => "cannot tell: not walked".into(),
-            (_, Judgement::CannotTell) => "cannot tell: the replicates leave both possible".into(),
-            (_, Judgement::Differs(by)) => {
-                let sign = if by > 0.0 { "above" } else { "below" };
-                format!(
-                    "differs: {} {sign} what is allowed{}",
-                    self.statement.show(by.abs()),
-                    self.explained()
-                )
+            (Some(_), Judgement::CannotTell) => "cannot tell: the replicates leave both possible".into(),
+            (Some(ours), Judgement::Differs(by)) => {
+                format!("differs {}{}", self.statement.difference(ours.value, by), self.explained())
             }
         }
     }
@@ -251,6 +260,7 @@ mod tests {
     #[test]
     fn the_rule_of_judgement() {
         let s = statements().into_iter().find(|s| s.id == "43").unwrap();
+        assert_eq!(s.difference(36.0, -2.0), "by −7\u{202f}points");
         let of = |value, interval| Measured { interval, ..Measured::exact(value) };
         assert_eq!(s.judge(Some(&of(47.9, None))), Judgement::Agrees);
         assert_eq!(s.judge(Some(&of(50.0, Some((42.0, 58.0))))), Judgement::Agrees);
