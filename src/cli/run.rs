@@ -112,7 +112,8 @@ pub fn report(folder: &Path) -> Result<(), Ending> {
         to_stdout(&format!("{}\n", plain(&page.display().to_string())));
         return Ok(());
     }
-    let writers: [(&str, fn(&Path) -> Result<report::Written, report::ReportError>); 3] = [
+    type Writer = fn(&Path) -> Result<report::Written, report::ReportError>;
+    let writers: [(&str, Writer); 3] = [
         ("outcome.json", report::write),
         ("packing.json", report::write_packing),
         ("campaign.json", report::write_campaign),
