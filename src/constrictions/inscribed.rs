@@ -24,7 +24,7 @@ const DRAWS: usize = 8_000;
 const SIZES: usize = 4000;
 
 /// Steps by which the angle of a ring is found.
-const STEPS: usize = 20;
+const STEPS: usize = 34;
 
 /// The constriction curve (mm, by number) of touching grains of this gradation, at a relative density from 0, loose, to 1,
 /// dense. A tail of unknown size is left out.
