@@ -142,64 +142,95 @@ fn packed(
 }
 
 /// Progress of a compression on stderr.
-enum Shown {
+struct Shown {
+    how: How,
+    begun: Instant,
+    /// Steps that packings of this friction took (`results/filters-2026-11-21.md`).
+    usual: u64,
+    /// Steps done when this start of the program began.
+    first: Cell<Option<u64>>,
+}
+
+enum How {
     Quiet,
-    Bar(ProgressBar, Instant),
-    Lines { begun: Instant, last: Cell<Instant> },
+    Bar(ProgressBar),
+    Lines { last: Cell<Instant> },
 }
 
 impl Shown {
     fn new(quiet: bool, order: &Order) -> Self {
+        let begun = Instant::now();
+        let usual = match order.compression.friction {
+            0.0 => 50_000,
+            friction if friction <= 0.5 => 30_000,
+            _ => 95_000,
+        };
+        let mut shown = Self { how: How::Quiet, begun, usual, first: Cell::new(None) };
         if quiet {
-            return Self::Quiet;
+            return shown;
         }
-        let now = Instant::now();
         to_stderr(&format!(
-            "packing {} grains ({}), friction {}; it takes 10 000 to 100 000 steps, most without friction\n",
+            "packing {} grains ({}), friction {}: about {} steps\n",
             count(order.compression.grains as u64),
             plain(&order.name),
-            order.compression.friction
+            order.compression.friction,
+            count(usual)
         ));
-        if std::io::stderr().is_terminal() {
+        shown.how = if std::io::stderr().is_terminal() {
             let bar = ProgressBar::new_spinner();
             bar.enable_steady_tick(Duration::from_millis(200));
-            return Self::Bar(bar, now);
-        }
-        Self::Lines { begun: now, last: Cell::new(now) }
+            How::Bar(bar)
+        } else {
+            How::Lines { last: Cell::new(begun) }
+        };
+        shown
     }
 
     fn tell(&self, progress: &Progress) {
-        let line = |begun: &Instant| {
-            let stage = match progress.stage {
-                Stage::Squeeze => "squeeze",
-                Stage::Compress => "compress",
-                Stage::Settle => "settle with the final friction",
-                Stage::Done => "done",
-            };
-            let seconds = begun.elapsed().as_secs_f64();
-            format!(
-                "{stage}: {} steps, void ratio {:.4}, pressure {:.3} of the target, coordination {:.2}, unbalanced {:.3}, {seconds:.0} s gone",
-                count(progress.steps),
-                progress.void_ratio,
-                progress.pressure,
-                progress.coordination,
-                progress.unbalanced,
-            )
-        };
-        match self {
-            Self::Quiet => {}
-            Self::Bar(bar, begun) => bar.set_message(line(begun)),
-            Self::Lines { begun, last } => {
+        if self.first.get().is_none() {
+            self.first.set(Some(progress.steps));
+        }
+        match &self.how {
+            How::Quiet => {}
+            How::Bar(bar) => bar.set_message(self.line(progress)),
+            How::Lines { last } => {
                 if last.get().elapsed() >= Duration::from_secs(5) {
                     last.set(Instant::now());
-                    to_stderr(&(line(begun) + "\n"));
+                    to_stderr(&(self.line(progress) + "\n"));
                 }
             }
         }
     }
 
+    fn line(&self, progress: &Progress) -> String {
+        let stage = match progress.stage {
+            Stage::Squeeze => "squeeze",
+            Stage::Compress => "compress",
+            Stage::Settle => "settle with the final friction",
+            Stage::Done => "done",
+        };
+        let seconds = self.begun.elapsed().as_secs_f64();
+        let here = progress.steps - self.first.get().unwrap_or(0);
+        let left = match self.usual.checked_sub(progress.steps) {
+            Some(steps) if here > 0 => {
+                format!("about {:.0} s to go if it is like others", steps as f64 * seconds / here as f64)
+            }
+            Some(_) => "time to go not known yet".to_string(),
+            None => "longer than most".to_string(),
+        };
+        format!(
+            "{stage}: {} steps, void ratio {:.4}, pressure {:.3} of the target, coordination {:.2}, unbalanced {:.3}, \
+             {seconds:.0} s gone, {left}",
+            count(progress.steps),
+            progress.void_ratio,
+            progress.pressure,
+            progress.coordination,
+            progress.unbalanced,
+        )
+    }
+
     fn finish(&self) {
-        if let Self::Bar(bar, _) = self {
+        if let How::Bar(bar) = &self.how {
             bar.finish_and_clear();
         }
     }

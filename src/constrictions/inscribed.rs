@@ -1,8 +1,8 @@
 //! A guess at a filter's constrictions from its gradation alone: circles inscribed between touching grains.
 //!
-//! After the idea of Silveira (1965): grains that meet at a constriction are drawn from the gradation and laid touching in a
+//! After the idea of Silveira: grains that meet at a constriction are drawn from the gradation and laid touching in a
 //! plane. *Dense*: three touch each other, and the constriction is the circle between them. *Loose*: four touch in a ring that
-//! is opened until the room between them is largest (Silveira et al. 1975), and the constriction is the largest circle in
+//! is opened until the room between them is largest and the constriction is the largest circle in
 //! it. Each grain is drawn with a probability proportional to its surface. In between, diameters of one percentage are
 //! mixed by relative density; that mixture is linear here, which is this program's choice.
 //!
