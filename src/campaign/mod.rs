@@ -13,6 +13,7 @@ pub mod conduct;
 pub mod keeper;
 pub mod ledger;
 pub mod machine;
+mod names;
 mod network_source;
 pub mod packed;
 pub mod percolation;
