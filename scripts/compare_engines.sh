@@ -19,20 +19,25 @@ for case in cases:
     key = tuple(level for factor, level in case["levels"].items() if factor != "engine")
     figures.setdefault(key, {})[case["levels"]["engine"]] = outcome["replicates"]
 names = ["eroded_mass_fraction", "eroded_number_fraction", "blocked_fraction", "retained_per_void", "increments"]
-print("| figure | run | combinations | mean of t | its standard deviation | largest absolute t | expected sd | smallest difference seen at 3 sigma, median |")
-print("|---|---|---|---|---|---|---|---|")
+count = min(len(pair["counts"]) for pair in figures.values())
+print("| figure | run | combinations | t | replicates | mean difference by the mean | largest absolute t of one combination |")
+print("|---|---|---|---|---|---|---|")
 for name in names:
     for run in (0, 1):
-        ts, seen = [], []
+        # Combinations share their networks, so it is the replicates that are independent: one figure each, the mean over the
+        # combinations of the difference in units of its own scatter.
+        by_replicate, ts, relative = [0.0] * count, [], []
         for pair in figures.values():
             both = zip(pair["particles"], pair["counts"])
             differences = [p["runs"][run][name] - c["runs"][run][name] for p, c in both]
             spread = statistics.stdev(differences)
-            if spread > 0:
-                error = spread / math.sqrt(len(differences))
-                ts.append(statistics.mean(differences) / error)
-                seen.append(3 * error)
-        degrees = len(differences) - 1
-        print(f"| {name} | {run + 1} | {len(ts)} | {statistics.mean(ts):+.3f} | {statistics.stdev(ts):.3f} | {max(map(abs, ts)):.2f} "
-              f"| {math.sqrt(degrees / (degrees - 2)):.3f} | {statistics.median(seen):.2g} |")
+            mean = statistics.mean(c["runs"][run][name] for c in pair["counts"])
+            if spread == 0 or mean == 0:
+                continue
+            ts.append(statistics.mean(differences) / spread * math.sqrt(count))
+            relative.append(statistics.mean(differences) / mean)
+            by_replicate = [sum(two) for two in zip(by_replicate, (d / spread for d in differences))]
+        error = statistics.stdev(by_replicate) / math.sqrt(count)
+        t = statistics.mean(by_replicate) / error
+        print(f"| {name} | {run + 1} | {len(ts)} | {t:+.2f} | {count} | {100 * statistics.mean(relative):+.2f} % | {max(map(abs, ts)):.2f} |")
 PY
