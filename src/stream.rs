@@ -4,12 +4,13 @@
 //! simulation it is used (run, increment, chunk). The same key gives the same numbers on every
 //! machine, for any number of threads and after any resume; no generator state is ever stored.
 //!
-//! # Two kinds of stream
+//! # Kinds of stream
 //! - [`Key::generator`] is one xoshiro256++ generator, for work that draws numbers one after another
 //!   (constriction diameters, start packings, binomials).
 //! - [`Key::lanes`] is [`Lanes`]: eight xoshiro256++ generators side by side, for chunked columns.
 //!   Its output is a sequence of blocks of eight words; word `w` of the whole stream is word
 //!   `w / 8` of generator `w % 8`. Sixteen-bit draw `j` is bits `16 (j % 4) ..` of word `j / 4`.
+//! - [`Key::words`] is [`Words`]: words by index, for what is asked for in no order (permutations).
 //!
 //! # How a key becomes a state
 //! The five key words are hashed by XXH3 to 128 bits `(a, b)`; state word `i` is
@@ -62,6 +63,8 @@ pub enum Purpose {
     Connectivity = 10,
     /// Resampling for confidence intervals.
     Resampling = 11,
+    /// Permutations of strata (stratified sampling).
+    Strata = 12,
 }
 
 /// The full name of a stream.
@@ -109,6 +112,13 @@ impl Key {
         Xoshiro256PlusPlus::from_seed(state)
     }
 
+    /// Words that can be had in any order.
+    #[inline]
+    pub fn words(&self) -> Words {
+        let (a, b) = self.digest();
+        Words { a, b }
+    }
+
     /// Eight xoshiro256++ generators side by side.
     #[inline]
     pub fn lanes(&self) -> Lanes {
@@ -119,7 +129,7 @@ impl Key {
                 *slot = state_word(a, b, (4 * lane + word) as u64);
             }
         }
-        Lanes { state, extension: Extension { a, b } }
+        Lanes { state, extension: Extension { words: Words { a, b } } }
     }
 }
 
@@ -136,21 +146,35 @@ pub struct Lanes {
     extension: Extension,
 }
 
+/// Words by index: a hash of the key and the index, so that any of them costs the same.
+#[derive(Clone, Copy, Debug)]
+pub struct Words {
+    a: u64,
+    b: u64,
+}
+
+impl Words {
+    /// Word `index`.
+    #[inline]
+    pub fn at(&self, index: u64) -> u64 {
+        mix(self.a ^ mix(self.b.wrapping_add(index.wrapping_mul(EXTENSION))))
+    }
+}
+
 /// The low 48 bits that complete a sixteen-bit draw where sixteen bits do not decide.
 ///
 /// A function of the key and the draw's index, so that it costs nothing unless it is asked for and
 /// leaves the stream where it is.
 #[derive(Clone, Copy, Debug)]
 pub struct Extension {
-    a: u64,
-    b: u64,
+    words: Words,
 }
 
 impl Extension {
     /// The whole 64-bit draw whose top sixteen bits are draw `index` of the stream.
     #[inline]
     pub fn complete(&self, draw: u16, index: u64) -> u64 {
-        let low = mix(self.a ^ mix(self.b.wrapping_add(index.wrapping_mul(EXTENSION)))) >> 16;
+        let low = self.words.at(index) >> 16;
         (u64::from(draw) << 48) | low
     }
 }

@@ -88,7 +88,7 @@ fn compare(network: &Network, supply: &Supply, blocked: &[bool], seed: u64, run:
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(250))]
 
-    /// Both runs, on the lattice and on the same network without its shape.
+    /// Both runs, on the lattice and on the same network without its shape; start nodes and sizes independent or stratified.
     #[test]
     fn kernel_and_reference_agree_particle_by_particle(
         shape in [1u32..5, 1u32..5, 1u32..7],
@@ -102,16 +102,20 @@ proptest! {
         cu in prop::sample::select(vec![1.0f64, 1.5, 3.0]),
         n in 1u64..800,
         increments in 1u64..40,
+        evenly: bool,
         seed: u64,
     ) {
         let count = 3 * shape.iter().product::<u32>() as usize;
         let network = Network::cubic_from_diameters(shape, diameters(count, &palette, seed), 1.0).unwrap();
         let base = if cu == 1.0 { Gradation::single(1.0) } else { Gradation::linear_from_d0(0.7, cu) };
         let sampler = SizeSampler::new(&base.unwrap(), 1.0).unwrap();
-        let supply = Supply::new(sampler, n, increments);
+        let supply = |run| {
+            let independent = Supply::new(sampler.clone(), n, increments);
+            if evenly { independent.stratified(seed, run) } else { independent }
+        };
         for network in [&network, &as_general(&network)] {
-            let blocked = compare(network, &supply, &vec![false; count], seed, 1);
-            compare(network, &supply, &blocked, seed, 2);
+            let blocked = compare(network, &supply(1), &vec![false; count], seed, 1);
+            compare(network, &supply(2), &blocked, seed, 2);
         }
     }
 

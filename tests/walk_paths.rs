@@ -5,11 +5,22 @@ use voidwalk::constrictions;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
 use voidwalk::store::{Column, Placement};
-use voidwalk::walk::{CHUNK, Isa, Progress, SizeClasses, State, Supply, Walk, threads};
+use voidwalk::walk::{CHUNK, Isa, Progress, Sampling, SizeClasses, State, Supply, Walk, threads};
 
 /// Two runs of `n` particles of a base with D85 = Dc`percent`: every column after increments 7 and 60, and at
 /// the end.
 fn columns(isa: Isa, placement: &Placement, n: u64, cu: f64, percent: f64) -> Vec<String> {
+    sampled(Sampling::Independent, isa, placement, n, cu, percent)
+}
+
+fn sampled(
+    sampling: Sampling,
+    isa: Isa,
+    placement: &Placement,
+    n: u64,
+    cu: f64,
+    percent: f64,
+) -> Vec<String> {
     let curve = constrictions::find("shire2016-cu1.5-loose").unwrap().curve().unwrap();
     let network = Network::cubic([12, 10, 15], &curve, 1.0, 5).unwrap();
     let base = Gradation::linear_from_dx(85.0, curve.dc(percent).unwrap(), cu).unwrap();
@@ -18,7 +29,10 @@ fn columns(isa: Isa, placement: &Placement, n: u64, cu: f64, percent: f64) -> Ve
     let mut seen = Vec::new();
     for run in 1..=2 {
         let classes = SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), 32);
-        let supply = Supply::new(sampler.clone(), n, 30);
+        let supply = match sampling {
+            Sampling::Independent => Supply::new(sampler.clone(), n, 30),
+            Sampling::Stratified => Supply::new(sampler.clone(), n, 30).stratified(3, run),
+        };
         let mut state = State::placed(placement, &network, &supply, classes, blocked, 3, run).unwrap();
         let mut note = |state: &State| {
             let chunks = 0..state.particles.live.len();
@@ -57,6 +71,22 @@ fn kernels_and_threads_change_no_bit() {
                 let seen = pool.install(|| columns(isa, &Placement::Memory, n, cu, percent));
                 assert!(seen == expected, "{isa:?}, {count} threads, N = {n}");
             }
+        }
+    }
+}
+
+/// Particles that know their place in the increment know it whatever chunk, thread or kernel they are in.
+#[test]
+fn stratified_particles_are_the_same_on_every_path() {
+    let n = 3 * CHUNK as u64 + 4321;
+    let walked = |threads_wanted, isa| {
+        let pool = threads(threads_wanted, false).unwrap();
+        pool.install(|| sampled(Sampling::Stratified, isa, &Placement::Memory, n, 3.0, 15.0))
+    };
+    let expected = walked(1, Isa::Portable);
+    for isa in Isa::ALL.into_iter().filter(|isa| isa.is_available()) {
+        for count in [2, 3] {
+            assert!(walked(count, isa) == expected, "{isa:?}, {count} threads");
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use bitvec::slice::BitSlice;
 
-use super::Supply;
+use super::{Sampling, Supply};
 use crate::gradation::SizeSampler;
 use crate::network::Network;
 
@@ -72,6 +72,7 @@ const WORTH_COUNTS: u64 = 8;
 pub struct Plan {
     engine: Engine,
     passive_words: u128,
+    sampling: Sampling,
     left_out: Vec<String>,
 }
 
@@ -105,7 +106,12 @@ impl Plan {
                 network.start().len()
             ));
         }
-        Self { engine, passive_words, left_out }
+        Self { engine, passive_words, sampling: Sampling::Independent, left_out }
+    }
+
+    /// The same with start nodes and sizes drawn in this way.
+    pub fn sampled(self, sampling: Sampling) -> Self {
+        Self { sampling, ..self }
     }
 
     /// The engine that walks; never `Auto`.
@@ -121,6 +127,10 @@ impl Plan {
     /// `n` base particles in `increments` equal parts, for run `run` of `seed`.
     pub fn supply(&self, sampler: SizeSampler, n: u64, increments: u64, seed: u64, run: u64) -> Supply {
         let all = Supply::new(sampler, n, increments);
+        let all = match self.sampling {
+            Sampling::Independent => all,
+            Sampling::Stratified => all.stratified(seed, run),
+        };
         match self.engine {
             Engine::Particles => all,
             engine => all.with_passive_part(self.passive_words, engine == Engine::Expected, seed, run),

@@ -4,7 +4,7 @@ use super::merge::Events;
 use super::sizes::cube;
 use super::{CHUNK, Isa, State, Supply, kernel};
 use crate::network::Network;
-use crate::stream::{Key, LANES, Purpose, below};
+use crate::stream::{Key, LANES, Lanes, Purpose, below};
 
 /// Notes in `events` how many particles each chunk receives in this increment.
 pub(super) fn plan(supply: &Supply, state: &mut State, events: &mut Vec<Events>) {
@@ -38,19 +38,45 @@ pub(super) fn insert(
     let mut lanes = Key { purpose: Purpose::Insertion, ..key }.lanes();
     let nodes = network.start();
     let mut mass = 0.0;
+    let layer = supply.layer(key.increment);
+    let mut place = place_in_increment(supply, key);
     for (void, diameter) in void.chunks_mut(BATCH).zip(diameter.chunks_mut(BATCH)) {
         let mut size_words = [0; BATCH];
         let size_words = &mut size_words[..void.len()];
-        for (void, size_words) in void.chunks_mut(LANES / 2).zip(size_words.chunks_mut(LANES / 2)) {
-            let words = lanes.next_block();
-            for ((void, size_word), pair) in void.iter_mut().zip(size_words).zip(words.chunks_exact(2)) {
-                *void = nodes[below(pair[0], nodes.len() as u64) as usize];
-                *size_word = pair[1];
-            }
+        match &layer {
+            None => draw(&mut lanes, void, size_words, |pair| {
+                (nodes[below(pair[0], nodes.len() as u64) as usize], pair[1])
+            }),
+            Some(layer) => draw(&mut lanes, void, size_words, |pair| {
+                place += 1;
+                let node = layer.node(place - 1, pair[0], nodes.len() as u64);
+                (nodes[node], layer.size_word(place - 1, pair[1]))
+            }),
         }
         kernel::fill_diameters(isa, supply, size_words, diameter);
         mass = diameter.iter().fold(mass, |mass, &d| mass + cube(d));
         events.passive_inserted += diameter.iter().map(|&d| u32::from(d <= passive_limit)).sum::<u32>();
     }
     events.inserted_mass = mass;
+}
+
+/// How many particles the increment inserts before those of this chunk.
+fn place_in_increment(supply: &Supply, key: Key) -> u64 {
+    (key.chunk * CHUNK as u64).saturating_sub(supply.inserted(key.increment - 1))
+}
+
+/// Gives each particle in turn the void and the size word that `of` makes of its two words of the stream.
+#[inline(always)]
+fn draw(
+    lanes: &mut Lanes,
+    void: &mut [u32],
+    size_words: &mut [u64],
+    mut of: impl FnMut([u64; 2]) -> (u32, u64),
+) {
+    for (void, size_words) in void.chunks_mut(LANES / 2).zip(size_words.chunks_mut(LANES / 2)) {
+        let words = lanes.next_block();
+        for ((void, size_word), pair) in void.iter_mut().zip(size_words).zip(words.chunks_exact(2)) {
+            (*void, *size_word) = of([pair[0], pair[1]]);
+        }
+    }
 }

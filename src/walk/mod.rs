@@ -20,6 +20,10 @@
 //! takes words `2 k` (start node) and `2 k + 1` (diameter) of (seed, insertion, run, `t`, `c`). Threads
 //! appear nowhere in this, so they change no bit, and a walk can go on from its columns alone.
 //!
+//! # Sampling
+//! Start nodes and sizes are independent draws, as in the paper, or spread evenly over both ([`Sampling::Stratified`], module
+//! `strata`): each particle's law is the same, and replicates scatter less.
+//!
 //! # Exit choice
 //! With `c_e` the sum of open areas up to exit `e` and `c` that of all, exit `e` is the first whose
 //! `floor(2^64 c_e / c)` exceeds the 64-bit draw, else the last open exit. A closed exit has exactly
@@ -49,6 +53,7 @@ pub mod reference;
 mod saved;
 mod sizes;
 mod state;
+mod strata;
 mod supply;
 mod tally;
 mod trapped;
@@ -60,6 +65,7 @@ pub use kernel::{Isa, threads};
 pub use saved::Kept;
 pub use sizes::{SizeClasses, SizeCounts};
 pub use state::{Blocking, CHUNK, Particles, State};
+pub use strata::Sampling;
 pub use supply::Supply;
 pub use tally::Tally;
 

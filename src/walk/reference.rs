@@ -1,7 +1,7 @@
 //! The slow, obvious walk that the fast one is held against.
 //!
 //! One particle after another, every weight computed afresh from the network, in the words of the
-//! model. It shares nothing with the kernel but the network, the base's sizes and the streams.
+//! model. It shares nothing with the kernel but the network, the base's sizes, the strata and the streams.
 
 use std::collections::BTreeSet;
 
@@ -119,10 +119,16 @@ impl<'a> Reference<'a> {
             let place = &mut place_in_chunk[chunk as usize];
             let word = |w: u64| self.word(self.key(Purpose::Insertion, chunk), w);
             let nodes = self.network.start();
-            let node = (u128::from(word(2 * *place)) * nodes.len() as u128) >> 64;
-            let diameter = self.supply.diameter(word(2 * *place + 1));
+            let (mut node, mut size) =
+                (((u128::from(word(2 * *place)) * nodes.len() as u128) >> 64) as usize, word(2 * *place + 1));
+            if let Some(layer) = self.supply.layer(self.increment) {
+                let m = rank - self.supply.inserted(self.increment - 1);
+                (node, size) =
+                    (layer.node(m, word(2 * *place), nodes.len() as u64), layer.size_word(m, size));
+            }
+            let diameter = self.supply.diameter(size);
             *place += 1;
-            self.moving.push(Particle { rank, void: nodes[node as usize], diameter });
+            self.moving.push(Particle { rank, void: nodes[node], diameter });
         }
     }
 

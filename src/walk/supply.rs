@@ -1,7 +1,9 @@
 //! What a run inserts: how many base particles in each increment, and of what sizes.
 
 use super::counts::{Passive, coarse_share};
+use super::strata::{self, Layer, Strata};
 use crate::gradation::SizeSampler;
+use crate::stream::{Key, Purpose};
 
 /// The base particles of a run.
 ///
@@ -16,6 +18,8 @@ pub struct Supply {
     inserted: Vec<u64>,
     /// The particles that are kept as counts.
     passive: PassiveSupply,
+    /// What start nodes and sizes are spread over, where they are not independent.
+    strata: Option<Strata>,
 }
 
 /// The passive particles of a run that are not walked one by one.
@@ -34,7 +38,16 @@ impl Supply {
     pub fn new(sampler: SizeSampler, n: u64, increments: u64) -> Self {
         let part = |t: u64| (u128::from(n) * u128::from(t) / u128::from(increments)) as u64;
         let inserted = (1..=increments).map(part).collect();
-        Self { sampler, first_word: 0, inserted, passive: PassiveSupply::default() }
+        Self { sampler, first_word: 0, inserted, passive: PassiveSupply::default(), strata: None }
+    }
+
+    /// The same with start nodes and sizes spread evenly (module `strata`), for run `run` of `seed`. To be asked before
+    /// a passive part is taken out.
+    pub fn stratified(self, seed: u64, run: u64) -> Self {
+        let share = |t| self.inserted(t) - self.inserted(t - 1);
+        let most = (1..=self.increments()).map(share).max().unwrap_or(0);
+        let strata = Strata::new(seed, run, most.max(1), self.increments().max(1));
+        Self { strata: Some(strata), ..self }
     }
 
     /// The same particles, of which those drawn by words below `passive_words` are kept as counts, or as an
@@ -42,11 +55,22 @@ impl Supply {
     pub fn with_passive_part(self, passive_words: u128, expected: bool, seed: u64, run: u64) -> Self {
         let increments = 1..=self.increments();
         let share = |t| self.inserted(t) - self.inserted(t - 1);
-        let coarse: Vec<u64> =
-            increments.map(|t| coarse_share(share(t), passive_words, seed, run, t)).collect();
+        let coarse: Vec<u64> = match &self.strata {
+            None => increments.map(|t| coarse_share(share(t), passive_words, seed, run, t)).collect(),
+            Some(_) => {
+                let key = Key { seed, purpose: Purpose::CoarseShare, run, increment: 0, chunk: 0 };
+                let word = key.words().at(0);
+                let until = |t| strata::coarse_until(self.inserted(t), (1 << 64) - passive_words, word);
+                increments.map(|t| until(t) - until(t - 1)).collect()
+            }
+        };
         let parts = Self::coarse_part(self.sampler.clone(), passive_words as u64, &coarse);
         let inserted = self.inserted.iter().zip(&parts.inserted).map(|(all, coarse)| all - coarse).collect();
-        Self { passive: PassiveSupply { inserted, words: passive_words, expected }, ..parts }
+        let parts = Self { passive: PassiveSupply { inserted, words: passive_words, expected }, ..parts };
+        match self.strata {
+            None => parts,
+            Some(_) => parts.stratified(seed, run),
+        }
     }
 
     /// Only sizes that the sampler gives for words from `first_word` on, `shares[t - 1]` of them in
@@ -56,7 +80,8 @@ impl Supply {
             *sum += share;
             Some(*sum)
         });
-        Self { sampler, first_word, inserted: running.collect(), passive: PassiveSupply::default() }
+        let inserted = running.collect();
+        Self { sampler, first_word, inserted, passive: PassiveSupply::default(), strata: None }
     }
 
     /// Number of increments after which everything is inserted.
@@ -85,6 +110,17 @@ impl Supply {
             part if part.inserted.is_empty() => Passive::OneByOne,
             part => Passive::none_yet(voids, part.expected),
         }
+    }
+
+    /// The strata of the particles inserted one by one in increment `increment`, where there are any.
+    pub(super) fn layer(&self, increment: u64) -> Option<Layer<'_>> {
+        let count = self.inserted(increment) - self.inserted(increment - 1);
+        self.strata.as_ref().map(|strata| strata.increment(increment, count))
+    }
+
+    /// Whether start nodes are spread evenly.
+    pub fn is_stratified(&self) -> bool {
+        self.strata.is_some()
     }
 
     /// Sizes of the base.

@@ -99,8 +99,9 @@ impl Flow {
         self.moving
     }
 
-    /// Puts `count` particles on start nodes, each drawn uniformly.
-    pub fn insert(&mut self, network: &Network, count: u64, key: Key, moving: &mut [u64]) {
+    /// Puts `count` particles on start nodes, each drawn uniformly, or `evenly`: the same number on each, and the rest on nodes of
+    /// as many equal parts of them.
+    pub fn insert(&mut self, network: &Network, count: u64, evenly: bool, key: Key, moving: &mut [u64]) {
         let nodes = network.start();
         let mut draws = Draws::new(Key { chunk: INSERTION, ..key });
         let mut left = count;
@@ -108,6 +109,15 @@ impl Flow {
             moving[nodes[node] as usize] += n;
             self.occupied[nodes[node] as usize / BLOCK] = true;
         };
+        if evenly {
+            let all = nodes.len() as u64;
+            let rest = count % all;
+            (0..rest).for_each(|m| put(((m * all + below(draws.word(), all)) / rest) as usize, 1));
+            if count >= all {
+                (0..nodes.len()).for_each(|node| put(node, count / all));
+            }
+            return;
+        }
         if count < nodes.len() as u64 {
             (0..count).for_each(|_| put(below(draws.word(), nodes.len() as u64) as usize, 1));
             return;

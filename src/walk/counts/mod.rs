@@ -154,7 +154,7 @@ impl<'a> PassiveWalk<'a> {
                 let purpose = Purpose::Passive;
                 let key =
                     Key { seed: state.seed, purpose, run: state.run, increment: state.increment, chunk: 0 };
-                flow.insert(network, inserted, key, moving);
+                flow.insert(network, inserted, supply.is_stratified(), key, moving);
                 let before: u64 = flow.moving() + inserted;
                 let moved = flow.step(network, &self.shares, key, moving);
                 // Counted afresh, so that the check of the tally means something.
