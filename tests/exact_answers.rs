@@ -277,6 +277,15 @@ fn exactly_n_base_are_inserted() {
     }
 }
 
+/// More than a million particles one by one: all that go in come out, and the tally of every increment says so.
+#[test]
+fn a_million_particles_are_all_accounted_for() {
+    let network = Network::cubic_from_diameters([40, 40, 3], vec![1.0; 3 * 4800], 1.0).unwrap();
+    let n = 1_234_567;
+    let (state, eroded) = walk(&network, &one_size(0.5, n, 100), 3);
+    assert_eq!((state.tally.eroded, eroded.iter().sum::<u64>(), state.tally.blocked), (n, n, 0));
+}
+
 /// A factor of two on every length changes no bit, and diameters a million times apart neither overflow
 /// nor vanish.
 #[test]
