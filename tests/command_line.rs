@@ -241,6 +241,49 @@ fn what_is_left_out_changes_nothing_else() {
     assert!(sentences.contains("the second run") && sentences.contains("so few that walking"), "{sentences}");
 }
 
+/// Replicates are added until the verdict is certain or the error small; where that cannot be, it says what it would take.
+#[test]
+fn a_run_goes_on_until_its_rule_is_met_or_says_what_it_would_take() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = |name: &str| root.path().join(name);
+    // Coarser constrictions than the base anywhere: clear after the first look.
+    let clear = ["--set", "base.d85_at_dc=0", "--decide", "99.9%"];
+    assert!(run_small(&folder("clear"), &clear).status.success());
+    let clear = outcome(&folder("clear"));
+    assert_eq!(
+        (&clear["stopping"]["met"], clear["replicates"].as_array().unwrap().len()),
+        (&Value::from(true), 8)
+    );
+    assert_eq!(clear["verdict"], clear["stopping"]["verdict"]);
+
+    let target = ["--set", "record.sensitivity=[]", "--target-error", "1.5pp", "--threads"];
+    for threads in ["1", "3"] {
+        assert!(run_small(&folder(threads), &[&target[..], &[threads]].concat()).status.success());
+    }
+    let close = outcome(&folder("1"));
+    assert_eq!(without_seconds(close.clone()), without_seconds(outcome(&folder("3"))));
+    let count = close["replicates"].as_array().unwrap().len();
+    assert!(close["stopping"]["met"] == true && count > 8, "{}", close["stopping"]);
+    assert!(close["stopping"]["half_width_pp"].as_f64().unwrap() <= 1.5);
+    // The folder's own scene says the same again.
+    let scene = folder("1").join("scene.toml");
+    let again = folder("again");
+    assert!(voidwalk(&["run", scene.to_str().unwrap(), "--out", again.to_str().unwrap()]).status.success());
+    assert_eq!(without_seconds(close), without_seconds(outcome(&again)));
+
+    let hopeless = ["--target-error", "0.01pp", "--set", "stop.most_replicates=10"];
+    let output = run_small(&folder("hopeless"), &hopeless);
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(
+        output.status.success() && text.contains("was not reached") && text.contains("would do"),
+        "{text}"
+    );
+    for (flag, value) in [("--target-error", "0.1"), ("--decide", "99.9"), ("--decide", "many%")] {
+        refused(&voidwalk(&["run", flag, value]), &["with its unit"]);
+    }
+    refused(&voidwalk(&["run", "--decide", "100%"]), &["stop.decide_percent: `100.0` is not allowed"]);
+}
+
 /// Particles that do not fit the memory that is allowed live in files: `check` says so, and the run gives the same results.
 #[test]
 fn little_memory_changes_no_result() {

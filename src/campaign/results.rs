@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::case::Case;
 use super::machine::Machine;
 use super::scene::{Amount, BaseGradation, CurveSource, D85, FilterGradation, NetworkSource};
-use super::walks::{Walked, as_it_is, summarise};
+use super::walks::{Walked, as_it_is, stopping, summarise};
 use crate::network::Connectivity;
 use crate::outcome::record::{Manifest, Outcome, Sensitivity, Statistic};
 use crate::outcome::rules::RuleInputs;
@@ -34,6 +34,9 @@ pub enum ResultError {
 /// The outcome of a case that has been walked.
 pub fn outcome(case: &Case, walked: &[Walked], mut sensitivity: Vec<Sensitivity>, seconds: f64) -> Outcome {
     let (verdict, summary) = summarise(walked);
+    let stopping = stopping(case, walked);
+    // A verdict that was to be certain is one at the level asked for.
+    let verdict = stopping.as_ref().and_then(|stopping| stopping.verdict).unwrap_or(verdict);
     if !sensitivity.is_empty() {
         sensitivity.push(as_it_is(case, walked));
         sensitivity.sort_by(|a, b| a.factor.total_cmp(&b.factor));
@@ -49,6 +52,7 @@ pub fn outcome(case: &Case, walked: &[Walked], mut sensitivity: Vec<Sensitivity>
         engine: walked.first().map_or(case.scene.engine, |w| w.engine).name().into(),
         replicates: walked.iter().map(|w| w.replicate.clone()).collect(),
         summary,
+        stopping,
         threshold: verdict::THRESHOLD,
         warnings: case.warnings(),
         left_out: left_out(case, walked),
@@ -209,6 +213,17 @@ pub fn resolved(case: &Case) -> String {
     line("runs", scene.runs.to_string());
     line("replicates", scene.replicates.to_string());
     line("inject_share", number(scene.inject_share));
+    line("sampling", quoted(scene.sampling.name()));
+    if scene.stop.is_set() {
+        line("stop", String::new());
+        if let Some(pp) = scene.stop.target_error_pp {
+            line("target_error_pp", number(pp));
+        }
+        if let Some(percent) = scene.stop.decide_percent {
+            line("decide_percent", number(percent));
+        }
+        line("most_replicates", scene.stop.most.to_string());
+    }
     line("filter", String::new());
     if let Some(density) = scene.estimate {
         line("estimate", number(density));

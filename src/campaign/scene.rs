@@ -9,7 +9,8 @@ pub use super::network_source::NetworkSource;
 use super::packed::Recipe;
 use super::settings::{Origin, SceneError, Settings};
 use crate::outcome::Wanted;
-use crate::walk::Engine;
+use crate::outcome::stopping::StopRule;
+use crate::walk::{Engine, Sampling};
 
 /// The built-in scene, commented.
 pub const BUILT_IN: &str = include_str!("../data/scene.toml");
@@ -87,10 +88,14 @@ pub struct Scene {
     pub engine: Engine,
     /// 1 or 2.
     pub runs: u64,
-    /// New network and new walk each.
+    /// New network and new walk each; the first look's number where a rule adds more.
     pub replicates: u64,
+    /// When to stop adding replicates, where more than that may be needed.
+    pub stop: StopRule,
     /// Share of the base inserted in each increment.
     pub inject_share: f64,
+    /// How start nodes and sizes of the base particles are drawn.
+    pub sampling: Sampling,
     /// The filter's constriction curve; missing where the filter is to be packed, or a network is read from a file.
     pub curve: Option<CurveSource>,
     /// How the filter is to be packed, where it is.
@@ -175,6 +180,13 @@ impl Scene {
                 None => return Err(s.refuse("engine", ENGINES)),
             },
         };
+        let sampling = match s.text("sampling", SAMPLINGS)? {
+            None => Sampling::default(),
+            Some(word) => match Sampling::ALL.into_iter().find(|s| s.name() == word) {
+                Some(sampling) => sampling,
+                None => return Err(s.refuse("sampling", SAMPLINGS)),
+            },
+        };
         let inject_share = s.number(
             "inject_share",
             is_whole_part,
@@ -200,7 +212,9 @@ impl Scene {
             engine,
             runs: s.whole("runs", 1..=2)?.unwrap_or(2),
             replicates: s.whole("replicates", 1..=100_000)?.unwrap_or(10),
+            stop: stop(s)?,
             inject_share: inject_share.unwrap_or(0.01),
+            sampling,
             curve: curve(s)?,
             filter,
             grains_per_void: positive(s, "filter.grains_per_void")?,
@@ -245,10 +259,34 @@ impl Scene {
 
 const ENGINES: &str = "\"auto\", \"particles\", \"counts\" or \"expected\"";
 
+const SAMPLINGS: &str = "\"independent\" or \"stratified\"";
+
 /// Whether a share goes into 1 a whole number of times, within a thousandth.
 fn is_whole_part(share: f64) -> bool {
     let parts = 1.0 / share;
     (1e-6..=1.0).contains(&share) && (parts - parts.round()).abs() < 1e-3 * parts
+}
+
+fn stop(s: &Settings) -> Result<StopRule, SceneError> {
+    let rule = StopRule {
+        target_error_pp: s.number(
+            "stop.target_error_pp",
+            |n| n > 0.0 && n < 100.0,
+            "percentage points of the base, above 0 and below 100",
+        )?,
+        decide_percent: s.number(
+            "stop.decide_percent",
+            |n| (50.0..=99.999).contains(&n),
+            "a probability from 50 to 99.999 (%)",
+        )?,
+        most: s.whole("stop.most_replicates", 2..=100_000)?.unwrap_or(1000),
+    };
+    if s.has("stop.most_replicates") && !rule.is_set() {
+        return Err(
+            s.clash("stop.most_replicates says nothing without stop.target_error_pp or stop.decide_percent")
+        );
+    }
+    Ok(rule)
 }
 
 fn positive(s: &Settings, name: &str) -> Result<Option<f64>, SceneError> {
@@ -394,6 +432,10 @@ mod tests {
         for (set, message) in [
             ("seed=-1", "a whole number from 0"),
             ("engine=warp", "\"auto\", \"particles\", \"counts\" or \"expected\""),
+            ("stop.decide_percent=100", "a probability from 50 to 99.999"),
+            ("stop.target_error_pp=0", "percentage points of the base"),
+            ("stop.most_replicates=1", "2 to 100000"),
+            ("sampling=sobol", "\"independent\" or \"stratified\""),
             ("runs=3", "a whole number from 1 to 2"),
             ("replicates=0", "from 1 to"),
             ("inject_share=0", "a whole number of equal parts"),

@@ -1,5 +1,6 @@
 //! Walks the replicates of a case: a new network and a new walk each.
 
+use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -11,7 +12,8 @@ use rayon::prelude::*;
 use super::case::{Case, CaseError};
 use super::keeper::{Done, Keeper, network_fingerprint};
 use crate::network::Network;
-use crate::outcome::record::{Replicate, RunSummary, Sensitivity, Statistic, Verdict};
+use crate::outcome::record::{Replicate, RunSummary, Sensitivity, Statistic, Stopping, Verdict};
+use crate::outcome::stopping::{Look, StopRule};
 use crate::outcome::verdict::{below_by_interval, classify};
 use crate::outcome::{Figures, Recorded, RunOf};
 use crate::store::StoreError;
@@ -60,6 +62,11 @@ pub enum Event {
     },
     /// A run is done.
     Run,
+    /// More runs are needed than was known.
+    More {
+        /// How many.
+        runs: u64,
+    },
 }
 
 /// Watches the work, from any thread, and can stop it.
@@ -85,10 +92,10 @@ pub struct Walked {
     below: Vec<bool>,
 }
 
-/// Number of runs that [`replicates`] and [`sensitivity`] walk for a case.
+/// Number of runs that [`replicates`] and [`sensitivity`] walk for a case, as far as it is known before.
 pub fn runs_to_walk(case: &Case) -> u64 {
     let factors = case.sensitivity_factors().len() as u64;
-    case.scene.runs * (case.scene.replicates + factors * case.scene.sensitivity.1)
+    case.scene.runs * (first_replicates(case) + factors * case.scene.sensitivity.1)
 }
 
 /// Seed of replicate `replicate`, counted from 1: a function of the user's seed and the replicate alone.
@@ -96,28 +103,63 @@ pub fn replicate_seed(seed: u64, replicate: u64) -> u64 {
     Key { seed, purpose: Purpose::Replicate, run: 0, increment: 0, chunk: replicate }.generator().next_u64()
 }
 
-/// Walks every replicate of the case.
+/// Walks every replicate of the case: as many as the scene says, or until its rule stops.
 ///
 /// # Errors
 /// A walk that loses particles, or that was stopped.
 pub fn replicates(case: &Case, watch: &Watch) -> Result<Vec<Walked>, RunError> {
-    some_replicates(case, 0, case.scene.replicates, case.n_base, watch)
+    let mut walked = Vec::new();
+    let mut wanted = first_replicates(case);
+    loop {
+        let more = walked.len() as u64 + 1..=wanted;
+        walked.extend(some_replicates(case, 0, more, case.n_base, watch)?);
+        match look(case, &walked) {
+            Some(Look::Until(next)) => {
+                (watch.tell)(Event::More { runs: (next - wanted) * case.scene.runs });
+                wanted = next;
+            }
+            _ => return Ok(walked),
+        }
+    }
+}
+
+/// What the scene's rule came to, where it has one.
+pub fn stopping(case: &Case, walked: &[Walked]) -> Option<Stopping> {
+    match look(case, walked)? {
+        Look::Stop(stopping) => Some(stopping),
+        Look::Until(_) => None,
+    }
+}
+
+fn first_replicates(case: &Case) -> u64 {
+    let (rule, replicates) = (&case.scene.stop, case.scene.replicates);
+    if rule.is_set() { rule.replicates_at(replicates, 1) } else { replicates }
+}
+
+/// A look of the scene's rule at what is walked.
+fn look(case: &Case, walked: &[Walked]) -> Option<Look> {
+    let rule = Some(case.scene.stop).filter(StopRule::is_set)?;
+    let of_run = |run: usize| {
+        walked.iter().map(|w| (w.replicate.runs[run].eroded_mass_fraction, w.below[run])).collect()
+    };
+    let runs: Vec<_> = (0..case.scene.runs as usize).map(of_run).collect();
+    Some(rule.look(case.scene.replicates, &runs))
 }
 
 /// Replicates with `n_base` particles each; part 0 are those of the case itself, the only ones that are recorded.
 fn some_replicates(
     case: &Case,
     part: u64,
-    count: u64,
+    which: RangeInclusive<u64>,
     n_base: u64,
     watch: &Watch,
 ) -> Result<Vec<Walked>, RunError> {
     let one = |replicate| walk_replicate(case, part, replicate, n_base, watch);
     let threads = rayon::current_num_threads() as u64;
     if case.side_by_side(n_base, threads) > 1 {
-        (1..=count).into_par_iter().map(one).collect()
+        which.into_par_iter().map(one).collect()
     } else {
-        (1..=count).map(one).collect()
+        which.map(one).collect()
     }
 }
 
@@ -175,6 +217,7 @@ fn walk_replicate(
 
 fn plan(case: &Case, network: &Network, blocked: &BitSlice<u64>, n_base: u64) -> Plan {
     Plan::new(case.scene.engine, network, &case.sampler, blocked, n_base / case.increments())
+        .sampled(case.scene.sampling)
 }
 
 /// What the first run of the first replicate does not need, in words.
@@ -317,7 +360,7 @@ fn one_sensitivity(
     watch: &Watch,
 ) -> Result<Sensitivity, RunError> {
     let n_base = ((case.n_base as f64 * factor).round() as u64).max(1);
-    let walked = some_replicates(case, part, replicates, n_base, watch)?;
+    let walked = some_replicates(case, part, 1..=replicates, n_base, watch)?;
     Ok(of_walked(case, factor, n_base, &walked))
 }
 

@@ -55,6 +55,13 @@ pub struct SceneArgs {
     /// Seed; the same seed gives the same bits
     #[arg(long, value_name = "S")]
     pub seed: Option<u64>,
+    /// Add replicates until the 95 % interval of the eroded mass reaches no further than this to either side, as 0.1pp
+    /// (percentage points)
+    #[arg(long, value_name = "ERROR", value_parser = |text: &str| number_with(text, "pp"))]
+    pub target_error: Option<f64>,
+    /// Add replicates until the verdict is right with this probability, as 99.9%
+    #[arg(long, value_name = "PERCENT", value_parser = |text: &str| number_with(text, "%"))]
+    pub decide: Option<f64>,
     /// Folder in which packings that scenes ask for are kept, so that each is made once
     #[arg(long, value_name = "DIR", default_value = "voidwalk-packings")]
     pub packings: PathBuf,
@@ -246,9 +253,26 @@ fn bytes(text: &str) -> Result<u64, String> {
     }
 }
 
+/// A number with its unit.
+fn number_with(text: &str, unit: &str) -> Result<f64, String> {
+    let number = text.trim().strip_suffix(unit).and_then(|digits| digits.trim().parse::<f64>().ok());
+    number
+        .filter(|n| n.is_finite())
+        .ok_or_else(|| format!("write a number with its unit, {unit}, as 0.5{unit}"))
+}
+
 #[cfg(test)]
 mod tests {
-    use super::bytes;
+    use super::{bytes, number_with};
+
+    #[test]
+    fn numbers_carry_their_unit() {
+        assert_eq!(number_with("0.1pp", "pp"), Ok(0.1));
+        assert_eq!(number_with(" 99.9 %", "%"), Ok(99.9));
+        for text in ["0.1", "pp", "nanpp", "0.1%", "1e400pp"] {
+            assert!(number_with(text, "pp").is_err(), "{text}");
+        }
+    }
 
     #[test]
     fn sizes_are_read_with_their_units() {

@@ -18,6 +18,8 @@ use crate::store::Placement;
 pub fn scene(args: &SceneArgs) -> Result<Scene, Ending> {
     let mut settings = args.settings.clone();
     settings.extend(args.seed.map(|seed| format!("seed={seed}")));
+    settings.extend(args.target_error.map(|pp| format!("stop.target_error_pp={pp:?}")));
+    settings.extend(args.decide.map(|percent| format!("stop.decide_percent={percent:?}")));
     let scene = match &args.scene {
         Some(path) => Scene::read(path, &settings),
         None => Scene::built_in(&settings),

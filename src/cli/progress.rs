@@ -20,10 +20,8 @@ pub enum Progress {
     Bar(ProgressBar),
     /// Lines.
     Lines {
-        /// Runs to walk.
-        runs: u64,
-        /// Runs done, and when the last line was printed.
-        done: Mutex<(u64, Instant)>,
+        /// Runs done, runs to walk, and when the last line was printed.
+        done: Mutex<(u64, u64, Instant)>,
         /// When the work began.
         begun: Instant,
     },
@@ -45,7 +43,7 @@ impl Progress {
             return Self::Bar(bar);
         }
         let now = Instant::now();
-        Self::Lines { runs, done: Mutex::new((0, now)), begun: now }
+        Self::Lines { done: Mutex::new((0, runs, now)), begun: now }
     }
 
     /// Takes an event of the walk.
@@ -59,17 +57,23 @@ impl Progress {
                     count(moving)
                 ));
             }
+            (Self::Bar(bar), Event::More { runs }) => bar.inc_length(runs),
             (Self::Lines { .. }, Event::Increment { .. }) => {}
-            (Self::Lines { runs, done, begun }, Event::Run) => {
+            (Self::Lines { done, .. }, Event::More { runs }) => {
+                if let Ok(mut done) = done.lock() {
+                    done.1 += runs;
+                }
+            }
+            (Self::Lines { done, begun }, Event::Run) => {
                 let Ok(mut done) = done.lock() else { return };
                 done.0 += 1;
-                if done.0 == *runs || done.1.elapsed() >= BETWEEN_LINES {
-                    done.1 = Instant::now();
+                let (walked, runs, last) = *done;
+                if walked == runs || last.elapsed() >= BETWEEN_LINES {
+                    done.2 = Instant::now();
                     let gone = begun.elapsed().as_secs_f64();
-                    let left = gone / done.0 as f64 * (runs - done.0) as f64;
+                    let left = gone / walked as f64 * runs.saturating_sub(walked) as f64;
                     to_stderr(&format!(
-                        "{} of {runs} runs, {gone:.0} s gone, about {left:.0} s to go\n",
-                        done.0
+                        "{walked} of {runs} runs, {gone:.0} s gone, about {left:.0} s to go\n"
                     ));
                 }
             }

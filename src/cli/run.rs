@@ -93,6 +93,8 @@ pub fn resume(args: &ResumeArgs) -> Result<(), Ending> {
             scene: Some(scene),
             settings: Vec::new(),
             seed: None,
+            target_error: None,
+            decide: None,
             packings: args.folder.join("packings"),
             memory: args.memory,
             json: args.json,
@@ -261,6 +263,9 @@ fn summary(outcome: &Outcome, folder: &Path) -> String {
     line(format!("Verdict: {}", outcome.verdict.words()));
     for run in &outcome.summary {
         line(format!("  {}", run_line(run)));
+    }
+    if let Some(sentence) = outcome.stopping.as_ref().and_then(|stopping| stopping.sentence.as_ref()) {
+        line(format!("  {sentence}"));
     }
     let trapped: u64 = outcome.replicates.iter().flat_map(|r| &r.runs).map(|r| r.trapped).sum();
     if trapped > 0 {

@@ -4,7 +4,7 @@
 //! - [`Recorder`] watches a run and keeps what was asked for.
 //! - [`Figures`] are the figures of one run at its end.
 //! - [`by_connectivity`] parts what a run retained by the connectivity of the voids (Table 3).
-//! - [`verdict`] classifies, by mass eroded, one replicate or many.
+//! - [`verdict`] classifies, by mass eroded, one replicate or many; [`stopping`] says how many are enough.
 //! - [`paper`] holds what the paper states.
 //! - [`rules`] applies the empirical filter rules to the same two curves.
 //! - [`infiltration()`] is Eq. (1) beside the walk.
@@ -21,6 +21,8 @@ pub mod record;
 mod recorder;
 pub mod rules;
 mod statistic;
+pub mod stopping;
+mod student;
 pub mod verdict;
 
 pub use figures::{Figures, Recorded, RunOf};

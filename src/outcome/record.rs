@@ -35,6 +35,9 @@ pub struct Outcome {
     pub replicates: Vec<Replicate>,
     /// One per run, in order: statistics over the replicates.
     pub summary: Vec<RunSummary>,
+    /// How the number of replicates came about, where a rule made it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stopping: Option<Stopping>,
     /// Eroded mass fraction that divides the classes: 0.075.
     pub threshold: f64,
     /// Where the inputs leave the range in which the model was checked, and what else a reader must know.
@@ -85,6 +88,27 @@ impl Verdict {
             Verdict::Undecided => "undecided",
         }
     }
+}
+
+/// What a rule that adds replicates came to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Stopping {
+    /// Half width asked for of the 95 % interval of the eroded mass, in every run (percentage points of the base).
+    pub target_error_pp: Option<f64>,
+    /// Least probability asked for that the verdict is right (%).
+    pub decide_percent: Option<f64>,
+    /// Replicates beyond which it gives up.
+    pub most: u64,
+    /// How often it looked.
+    pub looks: u64,
+    /// Whether it got what was asked for.
+    pub met: bool,
+    /// The verdict at the level asked for, where one was.
+    pub verdict: Option<Verdict>,
+    /// Widest half of the 95 % intervals of the eroded mass (percentage points); `None` with one replicate.
+    pub half_width_pp: Option<f64>,
+    /// Why it did not get it.
+    pub sentence: Option<String>,
 }
 
 /// One new network, walked once or twice.

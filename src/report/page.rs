@@ -13,7 +13,7 @@ use super::rules::rules;
 use super::run_figures::{run_name, trimmed};
 use super::shell::{Drawn, clean, drawing, fact, figure, whole_page};
 use crate::outcome::packing::PackingRecord;
-use crate::outcome::record::{NetworkKind, Outcome, Run, RunSummary, Statistic, Verdict};
+use crate::outcome::record::{NetworkKind, Outcome, Run, RunSummary, Statistic, Stopping, Verdict};
 
 /// Replicates listed one by one; all are in `outcome.json`.
 const LISTED: usize = 100;
@@ -84,12 +84,30 @@ fn verdict_box(outcome: &Outcome, verdict: &Drawn) -> Markup {
                     }
                 } }
             }
+            @if let Some(stopping) = &outcome.stopping { p { (stopped(stopping)) } }
             p { (tally(outcome)) " Threshold between the classes: " (threshold(outcome.threshold)) "." }
             @if count == 1 {
                 p { b { "One replicate: the scatter is unknown." } " Walk more replicates before relying on this." }
             }
         }
     }
+}
+
+/// What the rule that added replicates came to.
+fn stopped(stopping: &Stopping) -> String {
+    let mut text = String::new();
+    if let Some(percent) = stopping.decide_percent {
+        text += &format!("Replicates were added until the verdict would be right with {percent} %. ");
+    }
+    if let Some(pp) = stopping.target_error_pp {
+        text += &format!("Replicates were added until the error would be {pp} percentage points. ");
+    }
+    text += match (&stopping.sentence, stopping.met) {
+        (_, true) => "That was reached.",
+        (Some(sentence), _) => sentence,
+        (None, false) => "That was not reached.",
+    };
+    text
 }
 
 /// What the class means, in a sentence.

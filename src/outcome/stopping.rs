@@ -1,0 +1,284 @@
+//! How many replicates are enough: a run that goes on until its error is small, or its verdict certain.
+//!
+//! # Looks
+//! The rule looks at the replicates when there are `n_1` of them (the scene's number, at least 8), then `n_2 = 1.5 n_1`, and so on, rounded up,
+//! until it is met or there are `most`.
+//!
+//! # Certain
+//! A fixed interval that is looked at again and again errs more often than it says. So look `k` takes intervals whose error
+//! is `1 / (k (k + 1))` of the whole, which sum to 1 over all looks; and the two runs share it. If each interval holds its level,
+//! the verdict is wrong with no more than the error asked for, however often one looks (Bonferroni), at the price of intervals
+//! that are somewhat wide. The intervals are Student's, for means of independent replicates.
+//!
+//! # Target error
+//! Met when the 95 % interval of the mean reaches no further than the target to either side, in every run (Chow and Robbins). Its
+//! coverage is measured in the tests.
+
+use super::record::{Statistic, Stopping, Verdict};
+use super::student;
+use super::verdict::{THRESHOLD, below_by_interval, classify};
+
+/// Fewer replicates say too little of their own scatter.
+const FEWEST: u64 = 8;
+
+/// When to stop adding replicates.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StopRule {
+    /// Half width of the 95 % interval of the eroded mass, in every run (percentage points of the base).
+    pub target_error_pp: Option<f64>,
+    /// Least probability that the verdict is right (%).
+    pub decide_percent: Option<f64>,
+    /// Replicates beyond which it gives up.
+    pub most: u64,
+}
+
+/// What a look says.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Look {
+    /// Go on until there are this many replicates.
+    Until(u64),
+    /// Stop; what came of it.
+    Stop(Stopping),
+}
+
+/// The eroded mass fraction of each replicate, and whether it is below the threshold exactly.
+pub type Values = Vec<(f64, bool)>;
+
+impl StopRule {
+    /// Whether there is anything to look at.
+    pub fn is_set(&self) -> bool {
+        self.target_error_pp.is_some() || self.decide_percent.is_some()
+    }
+
+    /// Number of replicates at look `look`, counted from 1, where the first is at `first`.
+    pub fn replicates_at(&self, first: u64, look: u64) -> u64 {
+        let grow = |n: u64| n.saturating_add(n.div_ceil(2)).min(self.most);
+        (1..look).fold(first.max(FEWEST).min(self.most), |n, _| grow(n))
+    }
+
+    /// Looks at `runs[r][replicate]`, where the first look is at `first` replicates.
+    pub fn look(&self, first: u64, runs: &[Values]) -> Look {
+        let replicates = runs.first().map_or(0, |values| values.len() as u64);
+        let look = (1..).find(|&k| self.replicates_at(first, k) >= replicates.min(self.most)).unwrap_or(1);
+        let (half_width, close) = self.closeness(runs);
+        let (verdict, settled, sentence) = self.certainty(look, runs);
+        let met = close && settled;
+        let next = self.replicates_at(first, look + 1);
+        if !met && next > replicates && replicates < self.most && !self.is_hopeless(runs) {
+            return Look::Until(next);
+        }
+        Look::Stop(Stopping {
+            target_error_pp: self.target_error_pp,
+            decide_percent: self.decide_percent,
+            most: self.most,
+            looks: look,
+            met,
+            verdict,
+            half_width_pp: half_width.map(|half| 100.0 * half),
+            sentence: sentence.or_else(|| self.too_wide(replicates, half_width, close)),
+        })
+    }
+
+    /// The widest half of the 95 % intervals, and whether it is narrow enough.
+    fn closeness(&self, runs: &[Values]) -> (Option<f64>, bool) {
+        let half = |values: &Values| {
+            let statistic = statistic(values, 0.05);
+            Some(statistic.high? - statistic.mean)
+        };
+        let widest = runs.iter().map(half).try_fold(0.0, |widest, half| Some(f64::max(widest, half?)));
+        let near = |target: f64| widest.is_some_and(|widest| 100.0 * widest <= target);
+        let close = self.target_error_pp.is_none_or(near);
+        (widest, close)
+    }
+
+    /// The verdict at this look, whether it is certain enough, and what to say where it is not.
+    fn certainty(&self, look: u64, runs: &[Values]) -> (Option<Verdict>, bool, Option<String>) {
+        let Some(percent) = self.decide_percent else { return (None, true, None) };
+        let error = (1.0 - 0.01 * percent) / (look * (look + 1)) as f64 / runs.len().max(1) as f64;
+        let lies = |values: &Values| {
+            let each: Vec<bool> = values.iter().map(|&(_, below)| below).collect();
+            below_by_interval(&statistic(values, error), &each)
+        };
+        let below: Vec<_> = runs.iter().map(lies).collect();
+        let verdict = classify(below.first().copied().flatten(), below.get(1).copied().flatten());
+        if verdict != Verdict::Undecided {
+            return (Some(verdict), true, None);
+        }
+        if below == [Some(false)] {
+            let sentence =
+                "The first run alone cannot tell some erosion from continuing erosion: ask for two runs.";
+            return (Some(verdict), false, Some(sentence.into()));
+        }
+        let open = below.iter().position(Option::is_none).unwrap_or(0);
+        let values = &runs[open];
+        let (mean, sd) = (statistic(values, 0.05).mean, statistic(values, 0.05).sd.unwrap_or(0.0));
+        let which = if open == 0 { "first" } else { "second" };
+        let distance = (mean - THRESHOLD).abs();
+        let needed = student::two_sided(1000, error) * sd / distance;
+        let needed = match needed * needed {
+            n if n < 1e9 => {
+                format!("about {} replicates would tell, if the mean stayed where it is", two_digits(n))
+            }
+            _ => "no number of replicates will tell".into(),
+        };
+        let sentence = format!(
+            "Not certain at {percent} %: the mean of the {which} run, {:.3} %, lies {:.3} percentage points from 7.5 %, and replicates \
+             scatter by {:.3}; {needed}.",
+            100.0 * mean,
+            100.0 * distance,
+            100.0 * sd
+        );
+        (Some(verdict), false, Some(sentence))
+    }
+
+    /// Whether no replicate can change what is missing: a first run that is clear, and no second.
+    fn is_hopeless(&self, runs: &[Values]) -> bool {
+        let clear = |values: &Values| {
+            values.len() > 1 && statistic(values, 1e-6).low.is_some_and(|low| low >= THRESHOLD)
+        };
+        self.decide_percent.is_some()
+            && self.target_error_pp.is_none()
+            && runs.len() == 1
+            && runs.iter().all(clear)
+    }
+
+    fn too_wide(&self, replicates: u64, half_width: Option<f64>, close: bool) -> Option<String> {
+        let target = self.target_error_pp.filter(|_| !close)?;
+        let half_width = 100.0 * half_width?;
+        let needed = replicates as f64 * (half_width / target) * (half_width / target);
+        Some(format!(
+            "The error asked for, {target} percentage points, was not reached: the 95 % interval reaches {half_width:.4} to either \
+             side after {replicates} replicates; about {} would do.",
+            two_digits(needed)
+        ))
+    }
+}
+
+fn statistic(values: &Values, error: f64) -> Statistic {
+    let values: Vec<f64> = values.iter().map(|&(value, _)| value).collect();
+    Statistic::with_error(&values, error)
+}
+
+/// A number of replicates to two digits.
+fn two_digits(n: f64) -> u64 {
+    let unit = libm::pow(10.0, libm::floor(libm::log10(n.max(1.0))) - 1.0).max(1.0);
+    (libm::ceil(n / unit) * unit) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stream::{Key, Purpose, unit};
+    use rand::Rng;
+
+    fn certain(percent: f64, most: u64) -> StopRule {
+        StopRule { decide_percent: Some(percent), most, ..StopRule::default() }
+    }
+
+    fn close(pp: f64, most: u64) -> StopRule {
+        StopRule { target_error_pp: Some(pp), most, ..StopRule::default() }
+    }
+
+    fn values(values: impl IntoIterator<Item = f64>) -> Values {
+        values.into_iter().map(|v| (v, v < THRESHOLD)).collect()
+    }
+
+    /// Replicates with this mean and spread until the rule stops; skewed ones are exponential.
+    fn until_stop(
+        rule: StopRule,
+        means: &[f64],
+        sd: f64,
+        skewed: bool,
+        seed: u64,
+    ) -> (Stopping, Vec<Values>) {
+        let mut draws =
+            Key { seed, purpose: Purpose::Resampling, run: 0, increment: 0, chunk: 0 }.generator();
+        let mut draw = |mean: f64| {
+            let (u, v) = (unit(draws.next_u64()), unit(draws.next_u64()));
+            let normal = (-2.0 * libm::log(u)).sqrt() * libm::cos(std::f64::consts::TAU * v);
+            mean + sd * if skewed { -libm::log(u) - 1.0 } else { normal }
+        };
+        let mut runs = vec![Values::new(); means.len()];
+        let mut wanted = rule.replicates_at(10, 1);
+        loop {
+            while (runs[0].len() as u64) < wanted {
+                runs.iter_mut().zip(means).for_each(|(run, &mean)| run.extend(values([draw(mean)])));
+            }
+            match rule.look(10, &runs) {
+                Look::Until(next) => wanted = next,
+                Look::Stop(stopping) => return (stopping, runs),
+            }
+        }
+    }
+
+    #[test]
+    fn looks_come_at_half_as_many_again_and_end() {
+        let rule = certain(99.0, 100);
+        let looks: Vec<u64> = (1..9).map(|k| rule.replicates_at(10, k)).collect();
+        assert_eq!(looks, [10, 15, 23, 35, 53, 80, 100, 100]);
+        assert_eq!(rule.replicates_at(1, 1), 8);
+        assert_eq!(certain(99.0, 5).replicates_at(10, 1), 5);
+    }
+
+    #[test]
+    fn what_is_clear_is_decided_at_once_and_what_is_not_is_said() {
+        let rule = certain(99.9, 60);
+        let far = [
+            values((0..10).map(|k| 0.4 + 0.01 * f64::from(k))),
+            values((0..10).map(|k| 0.01 + 0.001 * f64::from(k))),
+        ];
+        let Look::Stop(stopping) = rule.look(10, &far) else { panic!("clear") };
+        assert!(stopping.met && stopping.verdict == Some(Verdict::Some) && stopping.sentence.is_none());
+        let near = values((0..10).map(|k| THRESHOLD + 0.01 * (f64::from(k) - 4.6)));
+        assert_eq!(rule.look(10, &[near.clone(), near]), Look::Until(15));
+        let (stopping, runs) = until_stop(rule, &[0.0751, 0.01], 0.02, false, 3);
+        assert!(!stopping.met && stopping.verdict == Some(Verdict::Undecided) && runs[0].len() == 60);
+        let sentence = stopping.sentence.unwrap();
+        assert!(sentence.contains("Not certain at 99.9 %") && sentence.contains("first run"), "{sentence}");
+        // A first run that is clearly above, and no second: more replicates cannot help.
+        let Look::Stop(stopping) = rule.look(10, &far[..1]) else { panic!("hopeless") };
+        assert!(!stopping.met && stopping.sentence.unwrap().contains("two runs"));
+    }
+
+    #[test]
+    fn a_target_is_reached_or_what_it_takes_is_said() {
+        let (stopping, runs) = until_stop(close(0.2, 1000), &[0.3, 0.1], 0.01, false, 5);
+        assert!(stopping.met && stopping.half_width_pp.unwrap() <= 0.2 && runs[0].len() > 60, "{stopping:?}");
+        let (stopping, runs) = until_stop(close(0.2, 40), &[0.3, 0.1], 0.01, false, 5);
+        assert!(!stopping.met && runs[0].len() == 40);
+        assert!(stopping.sentence.unwrap().contains("about 1"));
+    }
+
+    /// 1,500 runs with a first-run mean a fifth of the spread beside the threshold, 2 % allowed to be wrong: wrong ones are
+    /// binomial; a true rate of 4 % would be seen with a power of 0.97. Skewed replicates too.
+    #[test]
+    fn the_error_rate_is_kept_however_often_it_looks() {
+        for (skewed, mean) in
+            [(false, THRESHOLD + 0.002), (false, THRESHOLD - 0.002), (true, THRESHOLD + 0.004)]
+        {
+            let truth = if mean < THRESHOLD { Verdict::None } else { Verdict::Some };
+            let wrong = (0..1500).filter(|&seed| {
+                let (stopping, _) = until_stop(certain(98.0, 200), &[mean, 0.02], 0.01, skewed, seed);
+                let verdict = stopping.verdict.unwrap();
+                verdict != truth && verdict != Verdict::Undecided
+            });
+            let wrong = wrong.count();
+            assert!(wrong <= 45, "{wrong} of 1500 wrong, {skewed}, {mean}");
+        }
+    }
+
+    /// 3,000 runs until a 95 % interval is narrow enough: it still covers. A true coverage of 92 % would be seen in about half.
+    #[test]
+    fn an_interval_that_was_waited_for_covers() {
+        for sd in [0.005, 0.02] {
+            let covered = (0..3000).filter(|&seed| {
+                let (stopping, runs) = until_stop(close(0.3, 2000), &[0.2], sd, false, seed);
+                let statistic = statistic(&runs[0], 0.05);
+                assert!(stopping.met);
+                statistic.low.unwrap() <= 0.2 && 0.2 <= statistic.high.unwrap()
+            });
+            let share = covered.count() as f64 / 3000.0;
+            assert!((0.927..0.973).contains(&share), "{share}");
+        }
+    }
+}
