@@ -97,6 +97,8 @@ fn every_class_has_its_words() {
     plan.outcome.verdict = Verdict::Undecided;
     plan.outcome.summary[1].eroded_mass_fraction =
         Statistic { mean: 0.074, sd: Some(0.01), low: Some(0.066), high: Some(0.082) };
+    let rule = "added until the verdict would be right with 99.9 %. That was reached.";
+    assert!(words(&made(&plan).0).contains(rule));
     assert!(words(&made(&plan).0).contains("The interval of the second run includes 7.5 %"));
     plan.outcome.summary.truncate(1);
     plan.outcome.replicates.iter_mut().for_each(|replicate| replicate.runs.truncate(1));
