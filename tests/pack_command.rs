@@ -226,6 +226,10 @@ fn bad_filters_are_refused_before_any_work() {
             "[filter]\ncu = 1.5\ndensity = \"dense\"\n[packing]\nrestitution = 1.5\n",
             "line 5, packing.restitution",
         ),
+        (
+            "[filter]\ncu = 1.5\ndensity = \"dense\"\n[packing]\nstiffness_ratio = 1e-5\n",
+            "packing.stiffness_ratio = 0.00001 is not allowed: under the pressure of 50 kPa grains would overlap by",
+        ),
         ("[filter]\ncu = 6\ndensity = \"dense\"\n[packing]\ngrains = 500\n", "at least 2.2 times"),
         (
             "[filter]\ncu = 1.5\ndensity = \"dense\"\n[packing]\ngrain = 500\n",

@@ -188,6 +188,14 @@ fn settings_out_of_range_are_named() {
         assert!(matches!(error, PackingError::Setting { field: f, .. } if f == field), "{error}");
         assert!(error.to_string().contains(field));
     }
+    // A hundred-thousandth of the stiffness would settle with a void ratio below 0.
+    let soft = Settings { stiffness_ratio: 1e-5, ..base.clone() };
+    let error = compress(&filter, &soft, |_| true).unwrap_err();
+    let PackingError::Soft { least, .. } = error else { panic!("{error}") };
+    assert!(
+        error.to_string().contains("at least 3.8e-4")
+            && Settings { stiffness_ratio: least, ..soft }.check().is_ok()
+    );
     assert_eq!(compress(&filter, &base, |_| false).unwrap_err(), PackingError::Stopped(1000));
 }
 

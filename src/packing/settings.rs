@@ -115,6 +115,10 @@ impl Default for Settings {
     }
 }
 
+/// With larger overlaps (%, of the diameter) grains are no spheres in contact any more: the void ratio falls with the stiffness, below 0 in
+/// the end, although every other criterion of a settled packing is met.
+const MOST_OVERLAP_PERCENT: f64 = 3.0;
+
 /// Why a packing could not be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PackingError {
@@ -127,6 +131,21 @@ pub enum PackingError {
         value: f64,
         /// What is allowed.
         allowed: &'static str,
+    },
+    /// Grains so soft that their overlaps mean nothing.
+    #[error(
+        "stiffness_ratio = {value} is not allowed: under the pressure of {pressure_kpa} kPa grains would overlap by about {overlap_percent:.2} % of \
+         their size; allowed: at least {least:.1e}, where they overlap by {MOST_OVERLAP_PERCENT} %"
+    )]
+    Soft {
+        /// The ratio asked for.
+        value: f64,
+        /// Pressure that is to be held.
+        pressure_kpa: f64,
+        /// Overlap of two grains under it, of their diameter.
+        overlap_percent: f64,
+        /// The least ratio that is allowed.
+        least: f64,
     },
     /// A grain is no grain.
     #[error("grain {grain}: {column} = {value} is not allowed: {allowed}")]
@@ -264,7 +283,30 @@ impl Settings {
         ];
         match rules.into_iter().find(|rule| !rule.2) {
             Some((field, value, _, allowed)) => Err(PackingError::Setting { field, value, allowed }),
-            None => Ok(()),
+            None => self.check_softness(),
         }
+    }
+
+    /// Two equal grains of diameter D that carry the force p D^2 overlap by `0.5 (4.24 (1 - nu) p / G)^(2/3)` of D (Hertz).
+    fn check_softness(&self) -> Result<(), PackingError> {
+        if self.contact != Contact::Hertz {
+            return Ok(());
+        }
+        let shear = self.shear_modulus_gpa * self.stiffness_ratio * 1e6 / self.pressure_kpa;
+        let loaded = 3.0 * std::f64::consts::SQRT_2 * (1.0 - self.poisson_ratio) / shear;
+        let overlap_percent = 50.0 * libm::cbrt(loaded * loaded);
+        if overlap_percent <= MOST_OVERLAP_PERCENT {
+            return Ok(());
+        }
+        let softer = overlap_percent / MOST_OVERLAP_PERCENT;
+        let least = self.stiffness_ratio * softer * softer.sqrt();
+        // To two digits, upwards, so that what is named is allowed.
+        let unit = libm::pow(10.0, libm::floor(libm::log10(least)) - 1.0);
+        Err(PackingError::Soft {
+            value: self.stiffness_ratio,
+            pressure_kpa: self.pressure_kpa,
+            overlap_percent,
+            least: libm::ceil(least / unit) * unit,
+        })
     }
 }

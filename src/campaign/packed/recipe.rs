@@ -78,10 +78,14 @@ impl Recipe {
         compression.seed = s.whole("packing.seed", 0..=u64::MAX)?.unwrap_or(compression.seed);
         compression.hold_steps = whole("packing.hold_steps")?.unwrap_or(compression.hold_steps);
         compression.max_steps = whole("packing.max_steps")?.unwrap_or(compression.max_steps);
-        if let Err(PackingError::Setting { field, allowed, .. }) = compression.check() {
-            let name =
-                if field == "friction" { "filter.friction".into() } else { format!("packing.{field}") };
-            return Err(s.refuse(&name, allowed));
+        match compression.check() {
+            Err(PackingError::Setting { field, allowed, .. }) => {
+                let name =
+                    if field == "friction" { "filter.friction".into() } else { format!("packing.{field}") };
+                return Err(s.refuse(&name, allowed));
+            }
+            Err(soft) => return Err(s.clash(format!("packing.{soft}"))),
+            Ok(()) => {}
         }
         let merge_overlap = s
             .number("packing.merge_overlap", |f| f >= 0.0, "a number from 0")?
