@@ -1,10 +1,16 @@
 //! Walks the cases of a plan that are not done, each in a folder of its own, by as many processes as are at it.
 //!
 //! A case is claimed by the lock of its folder, which dies with its owner, and is done when the folder holds `case.json` with
-//! the case's fingerprint. Nothing else is shared: a process that is killed loses the case it was at, and whoever comes
-//! next walks that one again.
+//! the case's fingerprint. Nothing else is shared: what a process that is killed has not kept in checkpoints is lost, and
+//! whoever comes next goes on from those.
+//!
+//! A case that cannot be walked stops no other: its folder says why in `problem.txt`, and the caller is told at the end.
+//!
+//! Where the locks of a shared folder reach one machine only, two processes may walk one case at the same time. Both write
+//! the same bits, file by file under their final names, so that costs time and nothing else.
 
 use std::collections::BTreeSet;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -26,8 +32,11 @@ const LINE: &str = "case.json";
 /// Folder of the cases, inside the campaign's.
 const CASES: &str = "cases";
 
-/// How often a process looks whether others are done.
-const LOOK: Duration = Duration::from_millis(300);
+/// Why a case could not be walked, where it was tried last.
+const PROBLEM: &str = "problem.txt";
+
+/// How often a process looks whether others are done: at first, and after some waiting.
+const LOOK: (Duration, Duration) = (Duration::from_millis(300), Duration::from_secs(10));
 
 /// A case of a plan, worked out.
 pub struct Ready<'a> {
@@ -59,56 +68,74 @@ impl<'a> Ready<'a> {
     }
 }
 
+/// Why a case is not done.
+#[derive(Debug, thiserror::Error)]
+pub enum CaseProblem {
+    /// It could not be walked.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// Its results could not be written.
+    #[error(transparent)]
+    Results(#[from] ResultError),
+    /// Its folder.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// What the caller does with a finished case failed.
+    #[error("{0}")]
+    Finish(String),
+    /// Results that were written are gone.
+    #[error(
+        "its results were overwritten by another process; is another plan, or this one changed, at work on the folder?"
+    )]
+    Lost,
+    /// The program went wrong.
+    #[error("a fault of the program: {0}")]
+    Fault(String),
+}
+
+/// A case that is not done, and why.
+#[derive(Debug)]
+pub struct Failed {
+    /// The case.
+    pub case: String,
+    /// What went wrong.
+    pub problem: String,
+}
+
 /// Why a campaign ended early.
 #[derive(Debug, thiserror::Error)]
 pub enum ConductError {
-    /// A case could not be walked.
-    #[error("case {case}: {source}")]
-    Run {
-        /// The case.
-        case: String,
-        /// What went wrong.
-        source: Box<RunError>,
-    },
-    /// A case's results could not be written.
-    #[error("case {case}: {source}")]
-    Results {
-        /// The case.
-        case: String,
-        /// What went wrong.
-        source: Box<ResultError>,
-    },
-    /// A case's folder.
+    /// The folder of the cases.
     #[error(transparent)]
     Store(#[from] StoreError),
     /// No threads to be had.
     #[error(transparent)]
     Threads(#[from] rayon::ThreadPoolBuildError),
-    /// What the caller does with a finished case failed.
-    #[error("case {case}: {problem}")]
-    Finish {
-        /// The case.
-        case: String,
-        /// What went wrong.
-        problem: String,
-    },
-    /// Results that were written are gone.
-    #[error(
-        "case {case}: its results were overwritten by another process; is another plan, or this one changed, at work on the folder?"
-    )]
-    Lost {
-        /// The case.
-        case: String,
-    },
     /// Stopped on request; what is done is kept.
     #[error("stopped")]
     Stopped,
 }
 
+/// What a process says of a case.
+#[derive(Clone, Copy, Debug)]
+pub enum News<'a> {
+    /// It begins to walk it, or goes on from its checkpoints.
+    Begun {
+        /// Whether there are checkpoints.
+        resumes: bool,
+    },
+    /// It is done.
+    Done(&'a LedgerLine),
+    /// It cannot be walked.
+    Failed(&'a str),
+    /// Another process is at it, and this one waits.
+    Waiting,
+}
+
 /// Watches a campaign, and can stop it.
 pub struct Overseer<'a> {
-    /// Told of every case that this process begins (`None`) or has finished.
-    pub tell: &'a (dyn Fn(&str, Option<&LedgerLine>) + Sync),
+    /// Told of every case that this process begins, has finished or waits for.
+    pub tell: &'a (dyn Fn(&str, News) + Sync),
     /// Called with the folder of a case whose results are written, before it counts as done.
     pub finish: &'a (dyn Fn(&Path) -> Result<(), String> + Sync),
     /// Set to stop after the current increments.
@@ -121,77 +148,121 @@ pub struct Overseer<'a> {
     pub command: String,
 }
 
-/// Walks every case that is not done, and waits for those that other processes are at.
+/// Walks every case that is not done, and waits for those that other processes are at; gives those that cannot be walked.
 ///
 /// # Errors
-/// The first that goes wrong; cases that are done stay done.
-pub fn conduct(cases: &[Ready], out: &Path, threads: usize, overseer: &Overseer) -> Result<(), ConductError> {
+/// What concerns all cases; those that are done stay done.
+pub fn conduct(
+    cases: &[Ready],
+    out: &Path,
+    threads: usize,
+    overseer: &Overseer,
+) -> Result<Vec<Failed>, ConductError> {
     make_folder(&out.join(CASES))?;
     let mut open: Vec<&Ready> = cases.iter().filter(|case| case.line(out).is_none()).collect();
-    let finished = Mutex::new(BTreeSet::new());
+    let tally = Tally::default();
+    let mut look = LOOK.0;
     while !open.is_empty() {
-        let busy = pass(&open, out, threads, overseer, &finished)?;
+        let (before, told) = (open.len(), tally.waited());
+        pass(&open, out, threads, overseer, &tally)?;
         if overseer.stop.load(Ordering::Relaxed) {
             return Err(ConductError::Stopped);
         }
-        open.retain(|case| case.line(out).is_none());
         // A case that this process has finished and that is not there any more was overwritten: by another plan, or by a
         // plan that was changed meanwhile.
-        let ours = finished.lock().map(|names| names.clone()).unwrap_or_default();
-        if let Some(lost) = open.iter().find(|case| ours.contains(&case.planned.name)) {
-            return Err(ConductError::Lost { case: lost.planned.name.clone() });
-        }
-        if busy && !open.is_empty() {
-            std::thread::sleep(LOOK);
+        open.retain(|case| case.line(out).is_none());
+        let lost = open.iter().filter(|case| tally.has_finished(&case.planned.name));
+        lost.for_each(|case| tally.fail(overseer, &case.planned.name, &CaseProblem::Lost));
+        open.retain(|case| !tally.has_failed(&case.planned.name));
+        if tally.waited() > told && open.len() == before {
+            let until = Instant::now() + look;
+            while Instant::now() < until && !overseer.stop.load(Ordering::Relaxed) {
+                std::thread::sleep(LOOK.0);
+            }
+            look = (look * 2).min(LOOK.1);
+        } else {
+            look = LOOK.0;
         }
     }
-    Ok(())
+    Ok(tally.failed.into_inner().unwrap_or_default())
 }
 
-/// Tries each case once; says whether others were at some.
+/// What this process has done so far.
+#[derive(Default)]
+struct Tally {
+    finished: Mutex<BTreeSet<String>>,
+    failed: Mutex<Vec<Failed>>,
+    waiting: Mutex<BTreeSet<String>>,
+    waits: AtomicUsize,
+}
+
+impl Tally {
+    fn has_finished(&self, name: &str) -> bool {
+        self.finished.lock().is_ok_and(|names| names.contains(name))
+    }
+
+    fn has_failed(&self, name: &str) -> bool {
+        self.failed.lock().is_ok_and(|all| all.iter().any(|failed| failed.case == name))
+    }
+
+    fn waited(&self) -> usize {
+        self.waits.load(Ordering::Relaxed)
+    }
+
+    fn fail(&self, overseer: &Overseer, name: &str, problem: &CaseProblem) {
+        let problem = problem.to_string();
+        (overseer.tell)(name, News::Failed(&problem));
+        if let Ok(mut failed) = self.failed.lock() {
+            failed.push(Failed { case: name.to_owned(), problem });
+        }
+    }
+
+    /// Another process is at the case; said once.
+    fn wait(&self, overseer: &Overseer, name: &str) {
+        self.waits.fetch_add(1, Ordering::Relaxed);
+        if self.waiting.lock().is_ok_and(|mut names| names.insert(name.to_owned())) {
+            (overseer.tell)(name, News::Waiting);
+        }
+    }
+}
+
+/// Tries each case once.
 fn pass(
     open: &[&Ready],
     out: &Path,
     threads: usize,
     overseer: &Overseer,
-    finished: &Mutex<BTreeSet<String>>,
-) -> Result<bool, ConductError> {
-    let (next, busy) = (AtomicUsize::new(0), AtomicBool::new(false));
-    let failed: Mutex<Option<ConductError>> = Mutex::new(None);
+    tally: &Tally,
+) -> Result<(), ConductError> {
+    let next = AtomicUsize::new(0);
     let side_by_side = side_by_side(open, threads);
     let share = (threads / side_by_side).max(1);
     let work = || -> Result<(), ConductError> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(share).build()?;
-        let has_failed = || failed.lock().is_ok_and(|f| f.is_some());
-        while !overseer.stop.load(Ordering::Relaxed) && !has_failed() {
+        while !overseer.stop.load(Ordering::Relaxed) {
             let Some(case) = open.get(next.fetch_add(1, Ordering::Relaxed)) else { return Ok(()) };
-            match pool.install(|| one(case, out, share, overseer)) {
-                Err(ConductError::Store(StoreError::Held { .. })) => busy.store(true, Ordering::Relaxed),
-                Ok(true) => {
-                    if let Ok(mut names) = finished.lock() {
-                        names.insert(case.planned.name.clone());
-                    }
-                }
-                other => drop(other?),
+            let name = &case.planned.name;
+            // A fault in one case is no fault of the others.
+            let walked = catch_unwind(AssertUnwindSafe(|| pool.install(|| one(case, out, share, overseer))));
+            match walked.unwrap_or_else(|panic| Err(CaseProblem::Fault(message(&*panic)))) {
+                Err(CaseProblem::Store(StoreError::Held { .. })) => tally.wait(overseer, name),
+                Err(problem) => tally.fail(overseer, name, &problem),
+                Ok(true) => drop(tally.finished.lock().map(|mut names| names.insert(name.clone()))),
+                Ok(false) => {}
             }
         }
         Ok(())
     };
     std::thread::scope(|scope| {
-        for _ in 0..side_by_side {
-            scope.spawn(|| {
-                if let Err(error) = work()
-                    && let Ok(mut failed) = failed.lock()
-                {
-                    failed.get_or_insert(error);
-                }
-            });
-        }
-    });
-    match failed.into_inner() {
-        Ok(Some(error)) => Err(error),
-        _ => Ok(busy.into_inner()),
-    }
+        let workers: Vec<_> = (0..side_by_side).map(|_| scope.spawn(work)).collect();
+        workers.into_iter().try_for_each(|worker| worker.join().unwrap_or(Ok(())))
+    })
+}
+
+/// What a panic says.
+fn message(panic: &(dyn std::any::Any + Send)) -> String {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    text.or(panic.downcast_ref::<&str>().copied()).unwrap_or("it does not say which").to_owned()
 }
 
 /// Cases walked at the same time: as many as there are threads that one case's replicates would leave idle.
@@ -199,22 +270,35 @@ fn side_by_side(open: &[&Ready], threads: usize) -> usize {
     let fewest = open.iter().map(|ready| ready.case.scene.replicates).min().unwrap_or(1).max(1) as usize;
     let wanted = threads.div_ceil(fewest).clamp(1, open.len().max(1));
     let largest = open.iter().map(|ready| ready.case.peak_bytes(threads as u64)).max().unwrap_or(0);
-    let room = Machine::here().available / 2 / largest.max(1);
+    let allowed = open.iter().map(|ready| ready.case.memory).min().unwrap_or(u64::MAX);
+    let room = allowed.min(Machine::here().available / 2) / largest.max(1);
     wanted.min(usize::try_from(room).unwrap_or(usize::MAX).max(1))
 }
 
-/// Walks one case into its folder; says whether it was this process that finished it.
-fn one(ready: &Ready, out: &Path, threads: usize, overseer: &Overseer) -> Result<bool, ConductError> {
+/// Claims one case and walks it into its folder; says whether it was this process that finished it.
+fn one(ready: &Ready, out: &Path, threads: usize, overseer: &Overseer) -> Result<bool, CaseProblem> {
     let folder = Folder::open(&out.join(ready.folder()))?;
+    // Opening the list of its files asks a server anew, which an open of one file that was missing before may not.
+    drop(std::fs::read_dir(folder.path()));
     // Another process may have finished it since the list was made.
     if ready.line(out).is_some() {
         return Ok(false);
     }
+    folder.remove(PROBLEM)?;
+    let walked = walk(ready, &folder, threads, overseer);
+    if let Err(problem) = &walked {
+        // What cannot be written here is told all the same.
+        let _ = folder.write(PROBLEM, format!("{problem}\n").as_bytes());
+    }
+    walked
+}
+
+fn walk(ready: &Ready, folder: &Folder, threads: usize, overseer: &Overseer) -> Result<bool, CaseProblem> {
     let name = &ready.planned.name;
-    (overseer.tell)(name, None);
+    let resumes = Keeper::is_in(folder.path());
+    (overseer.tell)(name, News::Begun { resumes });
     let (begun, started) = (Instant::now(), SystemTime::now());
-    let failed = |source: ResultError| ConductError::Results { case: name.clone(), source: source.into() };
-    let keeper = Keeper::new(&folder, &ready.fingerprint, overseer.keep_every)?;
+    let keeper = Keeper::new(folder, &ready.fingerprint, overseer.keep_every)?;
     let watch = Watch { tell: &|_| {}, stop: overseer.stop, keeper: Some(&keeper) };
     let walked = walks::replicates(&ready.case, &watch)
         .and_then(|walked| Ok((walks::sensitivity(&ready.case, &watch)?, walked)));
@@ -228,16 +312,14 @@ fn one(ready: &Ready, out: &Path, threads: usize, overseer: &Overseer) -> Result
             keeper.clear()?;
             return Ok(false);
         }
-        Err(source) => return Err(ConductError::Run { case: name.clone(), source: source.into() }),
-        Ok(both) => both,
+        other => other?,
     };
     let seconds = begun.elapsed().as_secs_f64();
     let outcome = results::outcome(&ready.case, &walked, sensitivity, seconds);
     let manifest = results::manifest(&ready.case, threads as u64, started, overseer.command.clone());
     folder.remove(LINE)?;
-    results::write(&folder, &ready.case, &outcome, &walked, &manifest).map_err(failed)?;
-    (overseer.finish)(folder.path())
-        .map_err(|problem| ConductError::Finish { case: name.clone(), problem })?;
+    results::write(folder, &ready.case, &outcome, &walked, &manifest)?;
+    (overseer.finish)(folder.path()).map_err(CaseProblem::Finish)?;
     let made = Made {
         host: manifest.host,
         threads: threads as u64,
@@ -247,9 +329,41 @@ fn one(ready: &Ready, out: &Path, threads: usize, overseer: &Overseer) -> Result
     };
     let place = ready.folder().display().to_string();
     let line = LedgerLine::new(name, &ready.planned.levels, place, ready.fingerprint.clone(), &outcome, made);
-    let text = results::json(LINE, &line).map_err(failed)?;
+    let text = results::json(LINE, &line)?;
     folder.write(LINE, &text)?;
     keeper.clear()?;
-    (overseer.tell)(name, Some(&line));
+    (overseer.tell)(name, News::Done(&line));
     Ok(true)
+}
+
+/// What is known of a case that is not done.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum State {
+    /// Nobody has begun it.
+    NotBegun,
+    /// A process is at it.
+    Walking(String),
+    /// It was stopped or killed; the next start goes on from its checkpoints.
+    Kept,
+    /// It could not be walked.
+    Failed(String),
+}
+
+impl State {
+    /// Looks into the case's folder.
+    pub fn of(ready: &Ready, out: &Path) -> Self {
+        let path = out.join(ready.folder());
+        if !path.is_dir() {
+            return Self::NotBegun;
+        }
+        match Folder::open(&path) {
+            Err(StoreError::Held { holder, .. }) => Self::Walking(holder),
+            Err(other) => Self::Failed(other.to_string()),
+            Ok(folder) => match folder.read(PROBLEM) {
+                Ok(Some(text)) => Self::Failed(String::from_utf8_lossy(&text).trim_end().to_owned()),
+                _ if Keeper::is_in(folder.path()) => Self::Kept,
+                _ => Self::NotBegun,
+            },
+        }
+    }
 }

@@ -8,16 +8,9 @@ use crate::outcome::ledger::{Campaign, LedgerLine};
 use crate::outcome::record::Statistic;
 use crate::store::write_whole;
 
-/// The finished cases, in the order of the plan, and the names of those that are missing.
-pub fn collect(cases: &[Ready], out: &Path) -> (Vec<LedgerLine>, Vec<String>) {
-    let (mut lines, mut missing) = (Vec::new(), Vec::new());
-    for case in cases {
-        match case.line(out) {
-            Some(line) => lines.push(line),
-            None => missing.push(case.planned.name.clone()),
-        }
-    }
-    (lines, missing)
+/// The finished cases, in the order of the plan.
+pub fn collect(cases: &[Ready], out: &Path) -> Vec<LedgerLine> {
+    cases.iter().filter_map(|case| case.line(out)).collect()
 }
 
 /// Writes `ledger.jsonl`, `cases.csv` and `campaign.json` into the campaign's folder.

@@ -1,5 +1,7 @@
 //! What machine a case runs on, and how much memory it may use.
 
+use super::cluster::Allocation;
+
 /// The machine, in words.
 pub struct Machine {
     /// Name of the machine.
@@ -32,8 +34,10 @@ impl Machine {
                 name.sysname().to_string_lossy(),
                 name.machine().to_string_lossy()
             ),
-            // Without word from the system, nothing is refused.
-            available: kib("MemAvailable:").map_or(u64::MAX, |k| k * 1024),
+            // Without word from the system, nothing is refused. A cluster's job has its share of the machine.
+            available: kib("MemAvailable:")
+                .map_or(u64::MAX, |k| k * 1024)
+                .min(Allocation::here().and_then(|job| job.memory).unwrap_or(u64::MAX)),
         }
     }
 }

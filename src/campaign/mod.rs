@@ -6,10 +6,13 @@
 //! - [`walks`] walks its replicates, [`keeper`] keeps them so that a stopped run goes on.
 //! - [`results`] writes what came of it into a run folder.
 //! - [`plan`] is many scenes, [`conduct`] walks those that are not done, [`ledger`] collects what came of them.
+//! - [`cluster`] hands a plan to a cluster's scheduler, by what [`effort`] says that its cases take.
 //! - [`percolation`] is a study of its own: the percolation threshold against the size of the lattice.
 
 pub mod case;
+pub mod cluster;
 pub mod conduct;
+pub mod effort;
 pub mod keeper;
 pub mod ledger;
 pub mod machine;

@@ -239,6 +239,12 @@ impl Plan {
         Ok(())
     }
 
+    /// Name of its file, without the folder: the same wherever the plan is walked.
+    pub fn file_name(&self) -> String {
+        let name = Path::new(&self.file).file_name();
+        name.map_or_else(|| self.file.clone(), |name| name.to_string_lossy().into_owned())
+    }
+
     /// The case called `name`.
     pub fn case(&self, name: &str) -> Option<&PlannedCase> {
         self.cases.iter().find(|case| case.name == name)

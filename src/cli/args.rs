@@ -130,11 +130,27 @@ pub struct CampaignArgs {
     #[arg(long, value_name = "DIR", default_value = "voidwalk-campaign")]
     pub out: PathBuf,
     /// Walk this case only; the ledger is left to a call without it
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", group = "part")]
     pub case: Option<String>,
     /// Print the names of the cases and do nothing
-    #[arg(long)]
+    #[arg(long, group = "part")]
     pub list: bool,
+    /// Walk nothing: write job scripts for Slurm into --out, for the cases that are not done. Processors of a task: --threads
+    /// [default: 4]; its memory and time are estimated
+    #[arg(long, group = "part")]
+    pub slurm: bool,
+    /// With --slurm: bundle the cases into this many tasks [default: so that a task takes some ten minutes]
+    #[arg(long, value_name = "N", requires = "slurm", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    pub tasks: Option<u16>,
+    /// Walk nothing: write the ledger, the table and the page of a campaign whose cases are all done; refused while one is missing
+    #[arg(long, group = "part")]
+    pub collect: bool,
+    /// Walk the cases of task N of a list that --slurm wrote
+    #[arg(long, value_name = "FILE:N", group = "part", value_parser = numbered)]
+    pub task: Option<(PathBuf, u64)>,
+    /// Walk nothing: make the N-th packing that the plan needs
+    #[arg(long, value_name = "N", group = "part", value_parser = clap::value_parser!(u64).range(1..))]
+    pub make_packing: Option<u64>,
     /// Folder in which the packings of filters are kept [default: packings in --out]
     #[arg(long, value_name = "DIR")]
     pub packings: Option<PathBuf>,
@@ -232,6 +248,13 @@ pub struct PercolationArgs {
     pub json: bool,
 }
 
+/// A file and a number: `tasks.tsv:3`.
+fn numbered(text: &str) -> Result<(PathBuf, u64), String> {
+    let parts = text.rsplit_once(':').filter(|(file, _)| !file.is_empty());
+    let read = parts.and_then(|(file, number)| Some((PathBuf::from(file), number.parse().ok()?)));
+    read.ok_or_else(|| "write a file and a task's number as slurm/tasks.tsv:3".into())
+}
+
 /// A size in bytes: `4GB`, `500 MB`, `1.5GiB`.
 fn bytes(text: &str) -> Result<u64, String> {
     let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
@@ -263,7 +286,7 @@ fn number_with(text: &str, unit: &str) -> Result<f64, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{bytes, number_with};
+    use super::{bytes, number_with, numbered};
 
     #[test]
     fn numbers_carry_their_unit() {
@@ -271,6 +294,14 @@ mod tests {
         assert_eq!(number_with(" 99.9 %", "%"), Ok(99.9));
         for text in ["0.1", "pp", "nanpp", "0.1%", "1e400pp"] {
             assert!(number_with(text, "pp").is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_task_is_a_file_and_a_number() {
+        assert_eq!(numbered("a:b/tasks.tsv:12"), Ok(("a:b/tasks.tsv".into(), 12)));
+        for text in ["tasks.tsv", ":3", "tasks.tsv:", "tasks.tsv:-1", "tasks.tsv:x"] {
+            assert!(numbered(text).is_err(), "{text}");
         }
     }
 

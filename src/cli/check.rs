@@ -7,6 +7,7 @@ use super::Ending;
 use super::args::SceneArgs;
 use super::print::{count, plain, to_stdout};
 use crate::campaign::case::{Case, Room};
+use crate::campaign::cluster::scripts::duration;
 use crate::campaign::machine::Machine;
 use crate::campaign::packed::{Order, PackedFilter};
 use crate::campaign::scene::{BUILT_IN, Scene};
@@ -95,6 +96,7 @@ fn json(case: &Case, left_out: &[String], packing: Option<String>) -> Result<Str
         "runs_to_walk": runs_to_walk(case),
         "bytes": case.bytes(case.n_base),
         "bytes_allowed": case.memory,
+        "core_seconds": case.core_seconds(),
         "particles_on_disk": case.placement != Placement::Memory,
         "ratios": case.ratios(),
         "packing": packing,
@@ -180,6 +182,7 @@ fn words(case: &Case, left_out: &[String], packing: Option<String>) -> String {
         format!("{} runs, at most {} increments of insertion each", runs_to_walk(case), case.increments()),
     );
     line("memory", case.memory_in_words());
+    line("time", format!("about {} of one core, a rough guess", duration(case.core_seconds())));
     for part in left_out {
         line("left out", part.clone());
     }

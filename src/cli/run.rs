@@ -13,6 +13,7 @@ use super::print::{count, percent, plain, to_stderr, to_stdout};
 use super::progress::Progress;
 use super::signals::stop_on_signals;
 use crate::campaign::case::{Case, Room};
+use crate::campaign::cluster::Allocation;
 use crate::campaign::keeper::{self, Keeper};
 use crate::campaign::machine::Machine;
 use crate::campaign::packed::{Order, PackedFilter};
@@ -183,9 +184,10 @@ fn walk(
     Ok(outcome)
 }
 
-/// The workers of a command.
+/// The workers of a command: as many as are asked for, else as a cluster's job has, else one per core that it may run on.
 pub(super) fn pool(threads: Option<u16>) -> Result<rayon::ThreadPool, Ending> {
-    let threads = threads.map_or(0, usize::from);
+    let allocated = || Allocation::here().and_then(|job| job.threads());
+    let threads = threads.map(usize::from).or_else(allocated).unwrap_or(0);
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(Ending::failed)
 }
 

@@ -5,13 +5,16 @@ use std::sync::atomic::AtomicBool;
 
 use super::Ending;
 
-/// A flag that the first SIGINT or SIGTERM sets; the second ends the program at once.
+/// A flag that the first SIGINT or SIGTERM sets; a SIGINT after that ends the program at once.
+///
+/// SIGTERM may come several times: a cluster's scheduler sends it to a job's script, which hands it on, and to all of the job's
+/// processes.
 pub fn stop_on_signals() -> Result<Arc<AtomicBool>, Ending> {
     let stop = Arc::new(AtomicBool::new(false));
+    signal_hook::flag::register_conditional_shutdown(signal_hook::consts::SIGINT, 1, Arc::clone(&stop))
+        .map_err(Ending::failed)?;
     for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-        signal_hook::flag::register_conditional_shutdown(signal, 1, Arc::clone(&stop))
-            .and_then(|_| signal_hook::flag::register(signal, Arc::clone(&stop)))
-            .map_err(Ending::failed)?;
+        signal_hook::flag::register(signal, Arc::clone(&stop)).map_err(Ending::failed)?;
     }
     Ok(stop)
 }

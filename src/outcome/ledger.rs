@@ -50,7 +50,7 @@ pub struct LedgerLine {
 pub struct Campaign {
     /// What the plan is about, in a line.
     pub title: String,
-    /// The plan's file.
+    /// Name of the plan's file.
     pub plan: String,
     /// Factors in the order of the plan.
     pub factors: Vec<String>,

@@ -1,0 +1,16 @@
+//! A plan on a cluster whose scheduler is Slurm: job scripts, which cases each task walks, and what the scheduler has given.
+//!
+//! - [`tasks`] bundles cases into tasks of some minutes, and keeps which is which in a file.
+//! - [`scripts`] writes the jobs' scripts: an array that packs filters, an array that walks, a job that collects.
+//! - [`Allocation`] is what the scheduler says of the job that the program runs in.
+//! - [`locks`] says what is known of locks on the file system of a folder.
+//!
+//! The scheduler only starts processes. What is done, and who is at what, is in the campaign's folder
+//! ([`conduct`](super::conduct)), so that a task which is lost, doubled or begun again changes no result.
+
+mod allocation;
+pub mod locks;
+pub mod scripts;
+pub mod tasks;
+
+pub use allocation::Allocation;
