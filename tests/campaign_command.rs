@@ -193,3 +193,72 @@ fn a_bad_case_refuses_the_plan_before_any_work() {
         assert!(!at.join("out").exists());
     }
 }
+
+#[test]
+fn a_case_that_cannot_be_walked_stops_no_other() {
+    let (_root, at) = with_plan(PLAN);
+    done(&call(&at, &["campaign", "plan.toml", "--out", "whole"]));
+    // Its folder cannot be made.
+    fs::create_dir_all(at.join("out/cases")).unwrap();
+    fs::write(at.join("out/.voidwalk.lock"), "").unwrap();
+    let (name, folder) = ("cu_b=1.5,filter=dense", at.join("out/cases/cu_b=1.5,filter=dense"));
+    fs::write(&folder, "a file").unwrap();
+    let output = call(&at, &["campaign", "plan.toml", "--out", "out"]);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{stderr}");
+    assert!(stderr.contains("1 of 6 cases could not be walked; the others are done"), "{stderr}");
+    assert!(stderr.contains(&format!("case {name}: ")), "{stderr}");
+    let mut whole = ledger(&at.join("whole"));
+    whole.retain(|line| line["case"] != name);
+    assert_eq!(ledger(&at.join("out")), whole);
+    let about: Value = serde_json::from_slice(&fs::read(at.join("out/campaign.json")).unwrap()).unwrap();
+    assert_eq!(about["missing"], serde_json::json!([name]));
+    let refused = call(&at, &["campaign", "plan.toml", "--out", "out", "--collect"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains(&format!("case {name}: could not be walked")));
+    // What was in the way is gone: that case alone is walked.
+    fs::remove_file(&folder).unwrap();
+    let output = call(&at, &["campaign", "plan.toml", "--out", "out"]);
+    done(&output);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("5 of 6 cases are done already"));
+    assert_eq!(ledger(&at.join("out")), ledger(&at.join("whole")));
+}
+
+#[test]
+fn a_case_that_needs_too_much_memory_stops_no_other() {
+    let large = "[[case]]\nname = \"large\"\nset = { \"filter.curve\" = \"shire2016-cu1.5-loose\", \
+        network = { nx = 800, ny = 800, nz = 60 } }\n";
+    let (_root, at) = with_plan(&format!("{PLAN}{large}"));
+    let output = call(&at, &["campaign", "plan.toml", "--out", "out", "--memory", "200MB"]);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{stderr}");
+    assert!(
+        stderr.contains("1 of 7 cases could not be walked") && stderr.contains("case large: "),
+        "{stderr}"
+    );
+    assert_eq!(ledger(&at.join("out")).len(), 6);
+}
+
+/// As on a file system whose locks reach one machine only: another process finds a lock that nobody holds.
+#[test]
+fn without_locks_a_case_may_be_walked_twice_and_is_the_same() {
+    let (_root, at) = with_plan(PLAN);
+    done(&call(&at, &["campaign", "plan.toml", "--out", "whole"]));
+    let args = ["campaign", "plan.toml", "--out", "out", "--threads", "1", "--checkpoint-every", "1ms"];
+    let mut children: Vec<Child> = (0..3).map(|_| start(&at, &args)).collect();
+    while children.iter_mut().any(|child| child.try_wait().unwrap().is_none()) {
+        for entry in fs::read_dir(at.join("out/cases")).into_iter().flatten().flatten() {
+            let lock = entry.path().join(".voidwalk.lock");
+            if lock.exists() {
+                fs::write(entry.path().join("new"), "").unwrap();
+                fs::rename(entry.path().join("new"), lock).unwrap();
+            }
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    for child in children {
+        done(&child.wait_with_output().unwrap());
+    }
+    assert_eq!(ledger(&at.join("whole")), ledger(&at.join("out")));
+    assert_eq!(table(&at.join("whole")), table(&at.join("out")));
+}

@@ -13,6 +13,7 @@
 set -euo pipefail
 home=${VOIDWALK_SLURM:-/tmp/voidwalk-slurm-$(id -u)}
 conf=$home/slurm.conf
+mark='# private Slurm of voidwalk'
 PATH=$PATH:/usr/sbin:/sbin
 unset SLURM_CONF
 
@@ -70,8 +71,13 @@ free_port() { # first
 }
 
 configure() {
-    mkdir -p -m 755 "$home"
+    mkdir -p "$home"
     [ -O "$home" ] || { say "$home belongs to somebody else"; exit 1; }
+    if [ -f "$conf" ] && ! grep -q "^$mark" "$conf"; then
+        say "$conf is of another Slurm: name another folder in VOIDWALK_SLURM"
+        exit 1
+    fi
+    chmod 755 "$home"
     mkdir -p "$home/state" "$home/spool"
     if [ ! -f "$home/munge.key" ]; then
         (umask 077 && dd if=/dev/urandom of="$home/munge.key" bs=1024 count=1 2>/dev/null && chmod 400 "$home/munge.key")
@@ -79,11 +85,12 @@ configure() {
     local cpus memory ctld_port d_port
     cpus=${VOIDWALK_SLURM_CPUS:-$(nproc)}
     [ "$cpus" -ge 2 ] || cpus=2
-    memory=$(($(awk '/^MemTotal/ {print $2}' /proc/meminfo) / 1024 * 9 / 10))
+    memory=$(awk '/^MemTotal/ {print int($2 / 1024 * 0.9)}' /proc/meminfo)
     ctld_port=$(free_port 26817)
     d_port=$(free_port 26917)
     # cred_expire: a job that is requeued waits this long before it may start again (two minutes by default).
     cat >"$conf" <<CONF
+$mark
 ClusterName=private
 SlurmctldHost=$(hostname -s)(127.0.0.1)
 SlurmctldPort=$ctld_port
@@ -152,7 +159,7 @@ end() { # program, signal
 end_steps() {
     local pid
     for pid in $(pgrep -x slurmstepd || true); do
-        grep -qs "$conf" "/proc/$pid/environ" && kill -TERM "$pid" || true
+        if grep -qs "$conf" "/proc/$pid/environ" "/proc/$pid/cmdline"; then kill -TERM "$pid" || true; fi
     done
 }
 
@@ -180,7 +187,7 @@ case ${1:-} in
         start_node
         echo "export SLURM_CONF='$conf'" ;;
     stop) stop ;;
-    remove) stop; [ ! -f "$conf" ] || rm -rf "$home" ;;
+    remove) stop; if grep -qs "^$mark" "$conf"; then rm -rf "$home"; fi ;;
     stop-controller) end slurmctld TERM ;;
     start-controller) start_controller ;;
     kill-node) end slurmd KILL ;;

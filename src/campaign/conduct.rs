@@ -165,15 +165,15 @@ pub fn conduct(
     while !open.is_empty() {
         let (before, told) = (open.len(), tally.waited());
         pass(&open, out, threads, overseer, &tally)?;
-        if overseer.stop.load(Ordering::Relaxed) {
-            return Err(ConductError::Stopped);
-        }
         // A case that this process has finished and that is not there any more was overwritten: by another plan, or by a
         // plan that was changed meanwhile.
         open.retain(|case| case.line(out).is_none());
         let lost = open.iter().filter(|case| tally.has_finished(&case.planned.name));
         lost.for_each(|case| tally.fail(overseer, &case.planned.name, &CaseProblem::Lost));
         open.retain(|case| !tally.has_failed(&case.planned.name));
+        if overseer.stop.load(Ordering::Relaxed) && !open.is_empty() {
+            return Err(ConductError::Stopped);
+        }
         if tally.waited() > told && open.len() == before {
             let until = Instant::now() + look;
             while Instant::now() < until && !overseer.stop.load(Ordering::Relaxed) {
@@ -285,15 +285,25 @@ fn one(ready: &Ready, out: &Path, threads: usize, overseer: &Overseer) -> Result
         return Ok(false);
     }
     folder.remove(PROBLEM)?;
-    let walked = walk(ready, &folder, threads, overseer);
-    if let Err(problem) = &walked {
-        // What cannot be written here is told all the same.
-        let _ = folder.write(PROBLEM, format!("{problem}\n").as_bytes());
+    match walk(ready, out, &folder, threads, overseer) {
+        // Where locks reach one machine only, another may have finished it and taken the checkpoints away.
+        Err(_) if ready.line(out).is_some() => Ok(false),
+        Err(problem) => {
+            // What cannot be written here is told all the same.
+            let _ = folder.write(PROBLEM, format!("{problem}\n").as_bytes());
+            Err(problem)
+        }
+        walked => walked,
     }
-    walked
 }
 
-fn walk(ready: &Ready, folder: &Folder, threads: usize, overseer: &Overseer) -> Result<bool, CaseProblem> {
+fn walk(
+    ready: &Ready,
+    out: &Path,
+    folder: &Folder,
+    threads: usize,
+    overseer: &Overseer,
+) -> Result<bool, CaseProblem> {
     let name = &ready.planned.name;
     let resumes = Keeper::is_in(folder.path());
     (overseer.tell)(name, News::Begun { resumes });
@@ -314,6 +324,10 @@ fn walk(ready: &Ready, folder: &Folder, threads: usize, overseer: &Overseer) -> 
         }
         other => other?,
     };
+    if ready.line(out).is_some() {
+        keeper.clear()?;
+        return Ok(false);
+    }
     let seconds = begun.elapsed().as_secs_f64();
     let outcome = results::outcome(&ready.case, &walked, sensitivity, seconds);
     let manifest = results::manifest(&ready.case, threads as u64, started, overseer.command.clone());
@@ -353,7 +367,7 @@ impl State {
     /// Looks into the case's folder.
     pub fn of(ready: &Ready, out: &Path) -> Self {
         let path = out.join(ready.folder());
-        if !path.is_dir() {
+        if path.symlink_metadata().is_err() {
             return Self::NotBegun;
         }
         match Folder::open(&path) {

@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use super::{filters, keep, named, open, packings, summary, work_out};
-use crate::campaign::case::in_words;
 use crate::campaign::cluster::scripts::{FOLDER, Jobs, Need, TASK_S, duration};
 use crate::campaign::cluster::{locks, tasks};
 use crate::campaign::conduct::{Failed, Ready, State};
@@ -156,11 +155,11 @@ fn told(jobs: &Jobs, done: usize, folder: &Path) -> String {
         ));
     }
     lines.push(format!(
-        "{cases} cases in {} tasks, the longest about {}; a task asks for {} processors, {} and {} min",
+        "{cases} cases in {} tasks, the longest about {}; asked for a task: processors {}, memory {} MB, time {} min",
         jobs.tasks.len(),
         duration(jobs.walk.seconds),
         jobs.processors,
-        in_words(jobs.walk.megabytes() << 20),
+        jobs.walk.megabytes(),
         jobs.walk.minutes()
     ));
     lines.push("Submit them (options of sbatch may follow, as --partition=NAME):".into());
