@@ -7,8 +7,10 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 rounds=${1:-1}
 cargo build --release --quiet
-voidwalk=$PWD/target/release/voidwalk
 work=$(mktemp -d)
+# A copy: a build meanwhile changes nothing.
+voidwalk=$work/voidwalk
+cp target/release/voidwalk "$voidwalk"
 export VOIDWALK_SLURM=$work/slurm
 # More tasks at a time than there may be processors: what is tested here is how they meet.
 export VOIDWALK_SLURM_CPUS=8

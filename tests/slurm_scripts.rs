@@ -18,7 +18,7 @@ const PLAN: &str = "title = \"twelve\"\nseed = 5\n[set]\nreplicates = 2\n\
     \"`touch hacked` & >hacked\" = { \"filter.curve\" = \"shire2016-cu1.5-dense\" }\n";
 
 /// One case that takes a while.
-const LONG: &str = "[[case]]\nname = \"long\"\n[case.set]\nreplicates = 12\nnetwork = { nx = 24, ny = 24, nz = 40 }\n\
+const LONG: &str = "[[case]]\nname = \"long\"\n[case.set]\nreplicates = 8\nnetwork = { nx = 24, ny = 24, nz = 40 }\n\
     record = { sensitivity = [], series_every = 0, size_curves = [] }\n";
 
 struct Place {
@@ -178,7 +178,10 @@ fn the_scripts_of_a_plan_give_the_ledger_of_the_local_run() {
     let left = fs::read_to_string(&list).unwrap().lines().filter(|line| line.starts_with("1\t")).count();
     assert!((1..12).contains(&left));
     let again = place.write_scripts(&["--tasks", "1"]);
-    assert!(again.contains(&format!("{} cases are done already\n{left} cases in 1 tasks", 12 - left)), "{again}");
+    assert!(
+        again.contains(&format!("{} cases are done already\n{left} cases in 1 tasks", 12 - left)),
+        "{again}"
+    );
     fs::write(folder.join("array.sh"), array).unwrap();
     let last = done(place.script("array.sh", "1", "0").output().unwrap());
     assert_eq!(last.matches("begins: ").count(), left, "{last}");

@@ -96,7 +96,7 @@ mod tests {
         assert_eq!(bundle(&seconds, 3), [vec![0, 1], vec![2, 3], vec![4, 5, 6]]);
         assert_eq!(bundle(&seconds, 1), [vec![0, 1, 2, 3, 4, 5, 6]]);
         assert_eq!(bundle(&[0.0; 5], 99).len(), 5, "no task without a case");
-        assert_eq!(bundle(&[], 4), [[]; 0]);
+        assert!(bundle(&[], 4).is_empty());
         let many = bundle(&vec![1.0; 2500], 2500);
         assert_eq!(many.len(), MOST_TASKS);
         let mut all: Vec<usize> = many.into_iter().flatten().collect();
