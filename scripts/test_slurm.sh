@@ -133,10 +133,12 @@ disturbed() { # folder, what
     rm -rf "${work:?}/$folder"
 }
 
+commit=
 for round in $(seq "$rounds"); do
     plan "$round"
     RANDOM=$round
     (cd "$work" && rm -rf local && "$voidwalk" campaign plan.toml --out local --quiet)
+    commit=$(sed -n '1s/.*"commit":"\([^"]*\)".*/\1/p' "$work/local/ledger.jsonl")
 
     # An array as it is: every case is begun once.
     write array
@@ -232,7 +234,7 @@ date=$(date -u +%F)
     echo "# Campaigns on Slurm, $date"
     echo
     echo "Made by \`scripts/test_slurm.sh $rounds\`: $(sinfo --version), private, one node of $(nproc) processors ($(grep -m1 'model name' /proc/cpuinfo | cut -d: -f2 | xargs));"
-    echo "commit $(git rev-parse --short=12 HEAD); seeds 1 to $rounds of the plan in that script: 16 cases of some 0.3 s, one thread a task."
+    echo "commit $commit; seeds 1 to $rounds of the plan in that script: 16 cases of some 0.3 s, one thread a task."
     echo "Every campaign gave \`ledger.jsonl\`, \`cases.csv\` and \`campaign.json\` of the local run of the same plan, byte for byte apart from \`made\` (where and when)."
     echo
     echo "| disturbance, at a moment drawn at random | campaigns, all the same | attempts at tasks | walks begun | walks gone on with from checkpoints |"

@@ -24,7 +24,8 @@ const GRAIN_BYTES: u64 = 20_000;
 const PROGRAM_BYTES: u64 = 100_000_000;
 
 impl Case {
-    /// Seconds that one thread of a machine of today takes for the whole case: a rough guess.
+    /// Seconds that one thread of a machine of today takes for the whole case: a rough guess. What a rule that adds replicates
+    /// may ask for besides is not foreseen.
     pub fn core_seconds(&self) -> f64 {
         let [voids, constrictions, start_nodes, layers] = self.counts.map(|n| n as f64);
         let one_run = |n_base: u64| {
