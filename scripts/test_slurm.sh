@@ -3,9 +3,11 @@
 # each with the local run of the same plan, byte for byte apart from where and when:
 #     scripts/test_slurm.sh            # everything once, some two minutes
 #     scripts/test_slurm.sh 10         # the array and its disturbances ten times, and the counts to results/slurm-DATE.md
+#     scripts/test_slurm.sh 10 ""      # the array alone ten times; likewise "kill node"
 set -euo pipefail
 cd "$(dirname "$0")/.."
 rounds=${1:-1}
+disturbances=${2-kill requeue controller node}
 cargo build --release --quiet
 work=$(mktemp -d)
 # A copy: a build meanwhile changes nothing.
@@ -141,7 +143,7 @@ for round in $(seq "$rounds"); do
     commit=$(sed -n '1s/.*"commit":"\([^"]*\)".*/\1/p' "$work/local/ledger.jsonl")
 
     # An array as it is: every case is begun once.
-    write array
+    write array --tasks 6
     submit array
     await 60 "array: end of the jobs" idle
     same array
@@ -153,7 +155,7 @@ for round in $(seq "$rounds"); do
     echo "array: the same ledger and tables, 16 walks begun for 16 cases"
     rm -rf "$work/array"
 
-    for what in kill requeue controller node; do disturbed "$what" "$what"; done
+    for what in $disturbances; do disturbed "$what" "$what"; done
 done
 
 # Two arrays of one plan at once, bundled differently: every case is walked once.
@@ -239,8 +241,8 @@ date=$(date -u +%F)
     echo
     echo "| disturbance, at a moment drawn at random | campaigns, all the same | attempts at tasks | walks begun | walks gone on with from checkpoints |"
     echo "|---|---|---|---|---|"
-    row() { echo "| $2 | ${counts[$1: campaigns]} | ${counts[$1: attempts at tasks]} | ${counts[$1: walks begun]} | ${counts[$1: walks gone on with]:-0} |"; }
-    row undisturbed "none (tasks as bundled by the estimate)"
+    row() { [ -z "${counts[$1: campaigns]:-}" ] || echo "| $2 | ${counts[$1: campaigns]} | ${counts[$1: attempts at tasks]} | ${counts[$1: walks begun]} | ${counts[$1: walks gone on with]:-0} |"; }
+    row undisturbed "none"
     row kill "the process of a task killed (SIGKILL)"
     row requeue "a task requeued (\`scontrol requeue\`)"
     row controller "slurmctld stopped for a second"
