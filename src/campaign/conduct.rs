@@ -194,6 +194,7 @@ struct Tally {
     failed: Mutex<Vec<Failed>>,
     waiting: Mutex<BTreeSet<String>>,
     waits: AtomicUsize,
+    tried_again: Mutex<BTreeSet<String>>,
 }
 
 impl Tally {
@@ -215,6 +216,13 @@ impl Tally {
         if let Ok(mut failed) = self.failed.lock() {
             failed.push(Failed { case: name.to_owned(), problem });
         }
+    }
+
+    /// Whether results that could not be written may be tried once more: where locks reach one machine only, another process may have
+    /// been replacing the same files. What was walked is not walked again.
+    fn may_try_again(&self, name: &str) -> bool {
+        self.waits.fetch_add(1, Ordering::Relaxed);
+        self.tried_again.lock().is_ok_and(|mut names| names.insert(name.to_owned()))
     }
 
     /// Another process is at the case; said once.
@@ -246,6 +254,7 @@ fn pass(
             let walked = catch_unwind(AssertUnwindSafe(|| pool.install(|| one(case, out, share, overseer))));
             match walked.unwrap_or_else(|panic| Err(CaseProblem::Fault(message(&*panic)))) {
                 Err(CaseProblem::Store(StoreError::Held { .. })) => tally.wait(overseer, name),
+                Err(CaseProblem::Results(_) | CaseProblem::Finish(_)) if tally.may_try_again(name) => {}
                 Err(problem) => tally.fail(overseer, name, &problem),
                 Ok(true) => drop(tally.finished.lock().map(|mut names| names.insert(name.clone()))),
                 Ok(false) => {}
@@ -280,11 +289,11 @@ fn one(ready: &Ready, out: &Path, threads: usize, overseer: &Overseer) -> Result
     let folder = Folder::open(&out.join(ready.folder()))?;
     // Opening the list of its files asks a server anew, which an open of one file that was missing before may not.
     drop(std::fs::read_dir(folder.path()));
+    folder.remove(PROBLEM)?;
     // Another process may have finished it since the list was made.
     if ready.line(out).is_some() {
         return Ok(false);
     }
-    folder.remove(PROBLEM)?;
     match walk(ready, out, &folder, threads, overseer) {
         // Where locks reach one machine only, another may have finished it and taken the checkpoints away.
         Err(_) if ready.line(out).is_some() => Ok(false),
