@@ -52,7 +52,7 @@ fn a_packing_folder_holds_what_is_promised() {
     ] {
         assert!(out.join(name).is_file(), "{name}");
     }
-    assert!(!out.join("compression.state").exists());
+    assert!(!out.join("compression.0").exists() && !out.join("compression.1").exists());
     let record: serde_json::Value =
         serde_json::from_slice(&fs::read(out.join("packing.json")).unwrap()).unwrap();
     let after = &record["after"];
@@ -131,11 +131,11 @@ fn an_unfinished_packing_of_another_recipe_is_left_alone() {
     fs::create_dir(at.join("out")).unwrap();
     done(&call(&at, &["pack", "filter.toml", "--out", "out"]));
     fs::remove_file(at.join("out/packing.json")).unwrap();
-    fs::write(at.join("out/compression.state"), b"not a state at all").unwrap();
+    fs::write(at.join("out/compression.1"), b"not a state at all").unwrap();
     refused(&call(&at, &["pack", "filter.toml", "--out", "out"]), "cannot go on");
-    assert_eq!(fs::read(at.join("out/compression.state")).unwrap(), b"not a state at all");
+    assert_eq!(fs::read(at.join("out/compression.1")).unwrap(), b"not a state at all");
     done(&call(&at, &["pack", "filter.toml", "--out", "out", "--overwrite"]));
-    assert!(!at.join("out/compression.state").exists());
+    assert!(!at.join("out/compression.1").exists());
 }
 
 #[test]
@@ -145,7 +145,7 @@ fn a_stopped_packing_does_not_become_that_of_another_gradation() {
         .args(["pack", "filter.toml", "--out", "out", "--checkpoint-every", "1ms", "--threads", "1"])
         .spawn()
         .unwrap();
-    while !at.join("out/compression.state").exists() {
+    while !at.join("out/compression.1").exists() {
         std::thread::sleep(Duration::from_millis(2));
     }
     let _ = Command::new("kill").args(["-KILL", &child.id().to_string()]).status().unwrap();
@@ -156,7 +156,7 @@ fn a_stopped_packing_does_not_become_that_of_another_gradation() {
     for (from, to) in [("cu = 1.5", "cu = 1.2"), ("cu = 1.5", "d0_mm = 2.0\ncu = 1.5")] {
         let other = FILTER.replace("grains = 600", "grains = 3000").replace(from, to);
         fs::write(at.join("other.toml"), other).unwrap();
-        refused(&call(&at, &["pack", "other.toml", "--out", "out"]), "of another gradation");
+        refused(&call(&at, &["pack", "other.toml", "--out", "out"]), "is of another scene");
     }
 }
 

@@ -17,13 +17,13 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
 use super::case::Case;
-use super::keeper::Keeper;
+use super::keeper::{Every, Keeper};
 use super::machine::Machine;
 use super::plan::PlannedCase;
 use super::results::{self, ResultError};
 use super::walks::{self, RunError, Watch};
 use crate::outcome::ledger::{LedgerLine, Made};
-use crate::store::{Folder, StoreError, make_folder};
+use crate::store::{Folder, StoreError, make_folder, read_whole};
 use crate::walk::WalkError;
 
 /// A finished case.
@@ -62,7 +62,7 @@ impl<'a> Ready<'a> {
 
     /// The finished case, if these very results are there.
     pub fn line(&self, out: &Path) -> Option<LedgerLine> {
-        let bytes = std::fs::read(out.join(self.folder()).join(LINE)).ok()?;
+        let bytes = read_whole(&out.join(self.folder()).join(LINE)).ok()?;
         let line: LedgerLine = serde_json::from_slice(&bytes).ok()?;
         (line.fingerprint == self.fingerprint && line.case == self.planned.name).then_some(line)
     }
@@ -141,7 +141,7 @@ pub struct Overseer<'a> {
     /// Set to stop after the current increments.
     pub stop: &'a AtomicBool,
     /// How often a case that is being walked is kept.
-    pub keep_every: Duration,
+    pub keep_every: Every,
     /// Job and task of a cluster.
     pub job: Option<String>,
     /// The command line.
@@ -327,7 +327,7 @@ fn walk(
             return Ok(false);
         }
         // Checkpoints of what the case was before the plan was changed, or harmed ones: it is walked from its start.
-        Err(RunError::Harmed(_)) => {
+        Err(RunError::Harmed(harmed)) if !harmed.unread => {
             keeper.clear()?;
             return Ok(false);
         }

@@ -1,13 +1,13 @@
 //! Keeps the replicates of a case in checkpoints, so that a run which is stopped or killed goes on where it was.
 //!
 //! A replicate that is being walked keeps its state and what was recorded of it so far; one that is done keeps its figures
-//! and rows. Each is a checkpoint of its own in the folder `checkpoint` of the run ([`crate::store::checkpoint`]), written when
-//! `every` has passed since the last one, or on a stop.
+//! and rows. Each is a checkpoint of its own in the folder `checkpoint` of the run ([`crate::store::checkpoint`]), written as
+//! often as [`Every`] says, and on a stop.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
@@ -16,7 +16,7 @@ use crate::network::Network;
 use crate::outcome::record::Run;
 use crate::outcome::{Recorded, Recorder};
 use crate::store::checkpoint::{Harmed, Label, Saved, Section, keep, newest};
-use crate::store::{Folder, StoreError, make_folder};
+use crate::store::{Folder, StoreError, files_in, make_folder, remove_folder};
 use crate::walk::{Kept, State};
 
 /// Folder of the checkpoints, inside the run's.
@@ -37,12 +37,35 @@ pub struct Done {
     pub recorder: Recorder,
 }
 
+/// How often a walk is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Every {
+    /// When this much time has passed since the last time.
+    Time(Duration),
+    /// After every so many increments.
+    Increments(u64),
+}
+
+impl FromStr for Every {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || "a time, as 10min or 90s, or a number of increments from 1, as 50increments".to_string();
+        match text.trim_end_matches('s').strip_suffix("increment") {
+            Some(number) => match number.trim().parse() {
+                Ok(number @ 1..) => Ok(Self::Increments(number)),
+                _ => Err(wrong()),
+            },
+            None => humantime::parse_duration(text).map(Self::Time).map_err(|_| wrong()),
+        }
+    }
+}
+
 /// Keeps the replicates of one case.
 pub struct Keeper {
     folder: PathBuf,
     scene: String,
-    every: Duration,
-    stop: AtomicBool,
+    every: Every,
     /// Replicates that are done and not on the disk yet, and the next generation of each name.
     waiting: Mutex<BTreeMap<String, (Label, Vec<u8>)>>,
     generations: Mutex<BTreeMap<String, u64>>,
@@ -54,37 +77,50 @@ impl Keeper {
     ///
     /// # Errors
     /// The folder of the checkpoints cannot be made.
-    pub fn new(folder: &Folder, scene: &str, every: Duration) -> Result<Self, StoreError> {
+    pub fn new(folder: &Folder, scene: &str, every: Every) -> Result<Self, StoreError> {
         let path = folder.path().join(FOLDER);
         make_folder(&path)?;
         Ok(Self {
             folder: path,
             scene: scene.to_owned(),
             every,
-            stop: AtomicBool::new(false),
             waiting: Mutex::default(),
             generations: Mutex::default(),
             harmed: Mutex::default(),
         })
     }
 
-    /// What the checkpoints in a run's folder are of, by fingerprint; `None` where there are none that can be read.
-    pub fn scene_in(folder: &Path) -> Option<String> {
-        let entries = std::fs::read_dir(folder.join(FOLDER)).ok()?;
-        entries.flatten().find_map(|entry| Some(Saved::open(&entry.path()).ok()??.label.scene))
+    /// What the checkpoints in a run's folder are of, by fingerprint; `None` where there are none that are whole.
+    ///
+    /// # Errors
+    /// The system fails to read one.
+    pub fn scene_in(folder: &Path) -> Result<Option<String>, Harmed> {
+        let folder = folder.join(FOLDER);
+        let files = files_in(&folder).map_err(|e| Harmed::new(FOLDER, e.to_string()))?;
+        for file in files {
+            match Saved::open(&file) {
+                Ok(Some(saved)) => return Ok(Some(saved.label.scene)),
+                Err(error) if error.unread => return Err(error),
+                _ => {}
+            }
+        }
+        Ok(None)
     }
 
     /// Whether a run's folder holds checkpoints.
-    pub fn is_in(folder: &Path) -> bool {
-        std::fs::read_dir(folder.join(FOLDER)).is_ok_and(|mut entries| entries.next().is_some())
+    ///
+    /// # Errors
+    /// The system fails to look.
+    pub fn is_in(folder: &Path) -> Result<bool, StoreError> {
+        Ok(!files_in(&folder.join(FOLDER))?.is_empty())
     }
 
-    /// Whether it is time to keep a walk that was kept `last`.
-    pub fn is_due(&self, last: Instant, stop: bool) -> bool {
-        if stop {
-            self.stop.store(true, Ordering::Relaxed);
+    /// Whether it is time to keep a walk that was kept `last` and has done this increment.
+    pub fn is_due(&self, last: Instant, increment: u64, stop: bool) -> bool {
+        stop || match self.every {
+            Every::Time(time) => last.elapsed() >= time,
+            Every::Increments(number) => increment % number == 0,
         }
-        stop || last.elapsed() >= self.every
     }
 
     /// What was kept of a replicate: what is done, and the checkpoint of the state of the run that is under way.
@@ -102,9 +138,8 @@ impl Keeper {
             generations.insert(name, saved.label.generation);
         }
         let text = saved.read::<u8>("done")?;
-        let done = serde_json::from_slice(&text).map_err(|e| Harmed {
-            file: self.folder.display().to_string(),
-            problem: format!("what is done of replicate {replicate}: {e}"),
+        let done = serde_json::from_slice(&text).map_err(|e| {
+            Harmed::new(self.folder.display().to_string(), format!("what is done of replicate {replicate}: {e}"))
         })?;
         Ok(Some((done, saved)))
     }
@@ -167,7 +202,7 @@ impl Keeper {
     /// # Errors
     /// What the system says.
     pub fn clear(&self) -> Result<(), StoreError> {
-        clear(&self.folder)
+        remove_folder(&self.folder)
     }
 
     fn label(&self, part: u64, replicate: u64, state: &State, network: u64) -> Label {
@@ -195,16 +230,7 @@ impl Keeper {
 /// # Errors
 /// What the system says.
 pub fn discard(folder: &Path) -> Result<(), StoreError> {
-    clear(&folder.join(FOLDER))
-}
-
-fn clear(folder: &Path) -> Result<(), StoreError> {
-    match std::fs::remove_dir_all(folder) {
-        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
-            Err(StoreError::Io { path: folder.to_owned(), action: "remove", source })
-        }
-        _ => Ok(()),
-    }
+    remove_folder(&folder.join(FOLDER))
 }
 
 fn name(part: u64, replicate: u64) -> String {
@@ -218,4 +244,19 @@ pub fn network_fingerprint(network: &Network) -> u64 {
     hash.update(bytemuck::cast_slice(network.targets()));
     hash.update(bytemuck::cast_slice(network.start()));
     hash.digest()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn how_often_is_a_time_or_a_number_of_increments() {
+        assert_eq!("10min".parse(), Ok(Every::Time(Duration::from_secs(600))));
+        assert_eq!("50increments".parse(), Ok(Every::Increments(50)));
+        assert_eq!("1 increment".parse(), Ok(Every::Increments(1)));
+        for wrong in ["", "0increments", "increments", "-1increments", "ten", "1.5increments"] {
+            assert!(wrong.parse::<Every>().unwrap_err().contains("as 10min or 90s"), "{wrong}");
+        }
+    }
 }

@@ -262,9 +262,8 @@ impl RunWalk<'_> {
         let mut state = state.map_err(|source| RunError::Room { particles: supply.total(), source })?;
         if let Some(mut saved) = saved {
             if saved.label.network != network_fingerprint(network) {
-                let (file, problem) =
-                    (format!("checkpoint of replicate {}", of.replicate), "is of another network".into());
-                return Err(Harmed { file, problem }.into());
+                let file = format!("checkpoint of replicate {}", of.replicate);
+                return Err(Harmed::new(file, "is of another network").into());
             }
             state.restore(network, &mut saved)?;
         }
@@ -279,7 +278,7 @@ impl RunWalk<'_> {
             let (increment, moving) = (state.increment, state.tally.moving);
             (watch.tell)(Event::Increment { replicate: of.replicate, run: of.run, increment, moving });
             let stop = watch.stop.load(Ordering::Relaxed);
-            if let Some(keeper) = watch.keeper.filter(|keeper| keeper.is_due(last, stop)) {
+            if let Some(keeper) = watch.keeper.filter(|keeper| keeper.is_due(last, increment, stop)) {
                 if let Err(error) = keeper.keep_walk(part, of.replicate, network, state, done) {
                     failed = Some(error);
                     return Progress::Stop;

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use crate::campaign::keeper::Every;
 use crate::constrictions::DEFAULT_MERGE_OVERLAP;
 
 /// Will this filter hold this soil? A random-walk network model of base-filter combinations.
@@ -90,9 +91,10 @@ pub struct RunArgs {
     /// Worker threads [default: one per core]; they change no bit of the result
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-    /// Keep the walks this often, so that a run that is killed goes on from there; a stop (Ctrl-C, SIGTERM) always keeps them
-    #[arg(long, value_name = "TIME", default_value = "10min", value_parser = humantime::parse_duration)]
-    pub checkpoint_every: std::time::Duration,
+    /// Keep the walks this often, as 10min or 50increments, so that a run that is killed goes on from there; a stop (Ctrl-C,
+    /// SIGTERM) always keeps them
+    #[arg(long, value_name = "TIME", default_value = "10min")]
+    pub checkpoint_every: Every,
     /// No progress and no summary
     #[arg(long, short)]
     pub quiet: bool,
@@ -109,9 +111,10 @@ pub struct ResumeArgs {
     /// Memory that the walks may take, as 4GB [default: 80 % of what is available]; it changes no bit of the result
     #[arg(long, value_name = "SIZE", value_parser = bytes)]
     pub memory: Option<u64>,
-    /// Keep the walks this often, so that a run that is killed goes on from there; a stop (Ctrl-C, SIGTERM) always keeps them
-    #[arg(long, value_name = "TIME", default_value = "10min", value_parser = humantime::parse_duration)]
-    pub checkpoint_every: std::time::Duration,
+    /// Keep the walks this often, as 10min or 50increments, so that a run that is killed goes on from there; a stop (Ctrl-C,
+    /// SIGTERM) always keeps them
+    #[arg(long, value_name = "TIME", default_value = "10min")]
+    pub checkpoint_every: Every,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
@@ -161,9 +164,10 @@ pub struct CampaignArgs {
     /// Worker threads [default: one per core]; they change no bit of the result
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-    /// Keep the walks this often, so that a campaign that is killed goes on from there; a stop (Ctrl-C, SIGTERM) always keeps them
-    #[arg(long, value_name = "TIME", default_value = "10min", value_parser = humantime::parse_duration)]
-    pub checkpoint_every: std::time::Duration,
+    /// Keep the walks this often, as 10min or 50increments, so that a campaign that is killed goes on from there; a stop
+    /// (Ctrl-C, SIGTERM) always keeps them
+    #[arg(long, value_name = "TIME", default_value = "10min")]
+    pub checkpoint_every: Every,
     /// No progress and no summary
     #[arg(long, short)]
     pub quiet: bool,

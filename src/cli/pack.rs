@@ -13,11 +13,12 @@ use super::args::PackArgs;
 use super::print::{count, plain, to_stderr, to_stdout};
 use super::run::{pool, refuse_other_kinds, refused_or_failed};
 use super::signals::stop_on_signals;
-use crate::campaign::packed::{Order, PackError, PackedError, PackedFilter, RECORD, STATE, Watch, make};
+use crate::campaign::packed::{Order, PackError, PackedError, PackedFilter, RECORD, STATES, Watch, make};
 use crate::campaign::scene::Scene;
 use crate::outcome::packing::PackingRecord;
 use crate::packing::{PackingError, Progress, Stage};
 use crate::report;
+use crate::store::checkpoint::Harmed;
 use crate::store::{Folder, StoreError};
 
 /// How often a packing that a scene asks for keeps its state.
@@ -44,7 +45,8 @@ pub fn pack(args: &PackArgs) -> Result<(), Ending> {
     if args.overwrite {
         for name in [
             RECORD,
-            STATE,
+            STATES[0],
+            STATES[1],
             "report.html",
             "grains.csv",
             "grains.vtp",
@@ -110,7 +112,10 @@ pub fn provide(
 
 /// A finished packing, or none.
 pub fn read(path: &Path, order: &Order) -> Result<Option<PackedFilter>, Ending> {
-    PackedFilter::read(path, order).map_err(|error: PackedError| Ending::refused(plain(&error.to_string())))
+    PackedFilter::read(path, order).map_err(|error| match error {
+        PackedError::Read(error) => refused_or_failed(error),
+        other => Ending::refused(plain(&other.to_string())),
+    })
 }
 
 fn packed(
@@ -121,7 +126,11 @@ fn packed(
     keep_every: Duration,
 ) -> Result<(), Ending> {
     let shown = Shown::new(quiet, order);
-    let result = make(folder, order, &Watch { tell: &|progress| shown.tell(progress), stop, keep_every });
+    let warn = |harmed: &Harmed| {
+        to_stderr(&format!("warning: {}; the checkpoint before it was taken\n", plain(&harmed.to_string())));
+    };
+    let watch = Watch { tell: &|progress| shown.tell(progress), warn: &warn, stop, keep_every };
+    let result = make(folder, order, &watch);
     shown.finish();
     let path = folder.path().display();
     result.map_err(|error| match error {

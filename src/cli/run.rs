@@ -51,7 +51,8 @@ pub fn run(args: &RunArgs) -> Result<(), Ending> {
         keeper::discard(folder.path()).map_err(Ending::failed)?;
     }
     let fingerprint = results::fingerprint(&case);
-    if Keeper::scene_in(folder.path()).is_some_and(|scene| scene != fingerprint) {
+    let kept = Keeper::scene_in(folder.path()).map_err(Ending::failed)?;
+    if kept.is_some_and(|scene| scene != fingerprint) {
         return Err(Ending::refused(plain(&format!(
             "{}: holds checkpoints of another scene; `voidwalk resume` goes on with that one, --overwrite begins anew",
             folder.path().display()
@@ -84,7 +85,8 @@ pub fn resume(args: &ResumeArgs) -> Result<(), Ending> {
             "{shown}: holds no scene.toml; name the folder of a run that was stopped"
         )));
     }
-    if args.folder.join("manifest.json").is_file() && !Keeper::is_in(&args.folder) {
+    let is_kept = Keeper::is_in(&args.folder).map_err(Ending::failed)?;
+    if args.folder.join("manifest.json").is_file() && !is_kept {
         return Err(Ending::refused(format!(
             "{shown}: this run is finished; voidwalk report writes its page again"
         )));
@@ -160,6 +162,7 @@ fn walk(
             (RunError::Walk(crate::walk::WalkError::Stopped { .. }), Ok(())) => {
                 Ending::stopped(format!("what is done is kept; `voidwalk resume {shown}` goes on"))
             }
+            (RunError::Harmed(harmed), _) if harmed.unread => Ending::failed(plain(&harmed.to_string())),
             (RunError::Harmed(harmed), _) => Ending::refused(format!(
                 "{}; --overwrite begins anew, another --out leaves it alone",
                 plain(&harmed.to_string())
@@ -173,6 +176,10 @@ fn walk(
         to_stderr(&format!("warning: {}; the checkpoint before it was taken\n", plain(&problem)));
     }
     let outcome = results::outcome(case, &walked, Vec::new(), begun.elapsed().as_secs_f64());
+    if !case.sensitivity_factors().is_empty() {
+        // A folder with results counts as finished unless it holds checkpoints, and the study of the sensitivity is to come.
+        keeper.flush().map_err(Ending::failed)?;
+    }
     keep(&outcome, &walked)?;
     let sensitivity = pool.install(|| sensitivity(case, &watch)).map_err(&stopped)?;
     progress.finish();
@@ -204,7 +211,7 @@ pub(super) fn refused_or_failed(error: StoreError) -> Ending {
 /// What marks the folder of each kind of work.
 const KINDS: [(&str, &[&str]); 5] = [
     ("run", &["outcome.json", "series.csv", "checkpoint"]),
-    ("packing", &["packing.json", "compression.state"]),
+    ("packing", &["packing.json", "compression.0", "compression.1"]),
     ("campaign", &["campaign.json", "cases"]),
     ("percolation study", &["percolation.json"]),
     ("set of constrictions", &["constrictions.json"]),
@@ -228,7 +235,8 @@ fn open_folder(args: &RunArgs) -> Result<Folder, Ending> {
     let Some(path) = &args.out else { return first_free_folder() };
     let folder = Folder::open(path).map_err(refused_or_failed)?;
     refuse_other_kinds(&folder, "run")?;
-    if folder.has("manifest.json") && !args.overwrite && !Keeper::is_in(folder.path()) {
+    let is_kept = Keeper::is_in(folder.path()).map_err(Ending::failed)?;
+    if folder.has("manifest.json") && !args.overwrite && !is_kept {
         let problem = format!(
             "{}: holds the results of an earlier run; name another folder or add --overwrite",
             path.display()
@@ -244,10 +252,15 @@ fn first_free_folder() -> Result<Folder, Ending> {
     loop {
         let name = if n == 1 { "voidwalk-run".to_string() } else { format!("voidwalk-run-{n}") };
         match Folder::open(Path::new(&name)) {
-            Ok(folder) if !folder.has("outcome.json") && !Keeper::is_in(folder.path()) => return Ok(folder),
-            Ok(_)
-            | Err(StoreError::Held { .. } | StoreError::NotOurs { .. } | StoreError::NotAFolder { .. }) => {
-                n += 1
+            Ok(folder) => {
+                let is_kept = Keeper::is_in(folder.path()).map_err(Ending::failed)?;
+                if !folder.has("outcome.json") && !is_kept {
+                    return Ok(folder);
+                }
+                n += 1;
+            }
+            Err(StoreError::Held { .. } | StoreError::NotOurs { .. } | StoreError::NotAFolder { .. }) => {
+                n += 1;
             }
             Err(other) => return Err(refused_or_failed(other)),
         }

@@ -1,7 +1,6 @@
 //! Reads a finished run folder, and refuses what does not fit together.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde::de::DeserializeOwned;
@@ -9,7 +8,7 @@ use thiserror::Error;
 
 use crate::outcome::packing::PackingRecord;
 use crate::outcome::record::{LayerRow, Manifest, Outcome, Sensitivity, SeriesRow, SizeRow};
-use crate::store::StoreError;
+use crate::store::{StoreError, read_whole};
 
 /// Why a report could not be written.
 #[derive(Debug, Error)]
@@ -157,7 +156,9 @@ fn stand_among_its_variations(outcome: &mut Outcome) {
 }
 
 fn text(path: &Path) -> Result<String, ReportError> {
-    fs::read_to_string(path).map_err(|source| ReportError::Read { path: path.to_owned(), source })
+    let not_text = |_| std::io::Error::new(std::io::ErrorKind::InvalidData, "is not UTF-8 text");
+    let read = read_whole(path).and_then(|bytes| String::from_utf8(bytes).map_err(not_text));
+    read.map_err(|source| ReportError::Read { path: path.to_owned(), source })
 }
 
 pub(super) fn json<T: DeserializeOwned>(path: &Path) -> Result<T, ReportError> {

@@ -8,6 +8,8 @@ use std::path::{Path, PathBuf};
 use bytemuck::Pod;
 use memmap2::{MmapMut, MmapOptions};
 
+use super::disk::{Call, ask};
+
 /// Where the values of columns live.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Placement {
@@ -54,12 +56,14 @@ impl<T: Pod> Column<T> {
 
 /// A mapped file without a name that holds `bytes` zeros, all of its blocks allocated.
 fn map_zeros(folder: &Path, bytes: usize) -> io::Result<MmapMut> {
-    let file: File = tempfile::tempfile_in(folder)?;
-    allocate(&file, bytes as u64)?;
-    // SAFETY: the file has no name, so no other process can open it, and this process keeps no other
-    // handle to it that could change or cut it while it is mapped. Its blocks are allocated, so a
-    // write to the mapping cannot run out of disk.
-    unsafe { MmapOptions::new().len(bytes).map_mut(&file) }
+    ask(Call::Map(folder, bytes as u64), || {
+        let file: File = tempfile::tempfile_in(folder)?;
+        allocate(&file, bytes as u64)?;
+        // SAFETY: the file has no name, so no other process can open it, and this process keeps no other
+        // handle to it that could change or cut it while it is mapped. Its blocks are allocated, so a
+        // write to the mapping cannot run out of disk.
+        unsafe { MmapOptions::new().len(bytes).map_mut(&file) }
+    })
 }
 
 /// Makes the file `bytes` long with every block allocated: by the file system, or else by writing.

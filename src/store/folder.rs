@@ -5,14 +5,21 @@
 //! - The lock belongs to the process: the system releases it however the process dies. The lock file
 //!   says who holds it.
 //! - A file appears under its name only when it is whole: written beside it, synced, renamed, and the
-//!   folder synced.
+//!   folder synced. A folder that is made is synced into the one that it is in.
+//! - What a killed process left half written beside a file is removed when its folder is next taken by one process alone.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use super::disk::{self, Call, PART, Part, ask};
 
 /// Name of the lock file, which marks a folder as ours.
 pub const LOCK_FILE: &str = ".voidwalk.lock";
+
+/// How long a folder that is shared is asked for: another process may hold it alone while it clears up.
+const ASK_FOR: Duration = Duration::from_millis(500);
 
 /// Why a folder cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -99,42 +106,30 @@ impl Folder {
             Ok(_) => {
                 let is_file = |name| path.join(name).symlink_metadata().is_ok_and(|m| m.is_file());
                 // In this order: a process that has just locked an empty folder leaves its mark in it.
-                let empty = fs::read_dir(path).map_err(io("read the folder"))?.next().is_none();
+                let empty = is_empty(path).map_err(io("read the folder"))?;
                 let marked = is_file(LOCK_FILE) || (is_file("manifest.json") && is_file("outcome.json"));
                 if !marked && !empty {
                     return Err(StoreError::NotOurs { path: path.to_owned() });
                 }
             }
-            Err(e) if e.kind() == io::ErrorKind::NotFound => {
-                fs::create_dir_all(path).map_err(io("make the folder"))?;
-            }
+            Err(e) if e.kind() == io::ErrorKind::NotFound => make_folders(path).map_err(io("make the folder"))?,
             Err(e) => return Err(io("look at the folder")(e)),
         }
         let lock_path = path.join(LOCK_FILE);
-        let mut options = File::options();
-        options.read(true).write(true).create(true).truncate(false);
-        // A lock file that is a link would have the file it leads to emptied.
-        std::os::unix::fs::OpenOptionsExt::custom_flags(
-            &mut options,
-            rustix::fs::OFlags::NOFOLLOW.bits() as i32,
-        );
-        let mut lock = options.open(&lock_path).map_err(io("write to the folder"))?;
-        match if shared { lock.try_lock_shared() } else { lock.try_lock() } {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => {
-                let holder = fs::read_to_string(&lock_path).unwrap_or_default();
-                let holder = holder.lines().next().unwrap_or("unknown").chars().take(200).collect();
-                return Err(StoreError::Held { path: path.to_owned(), holder });
-            }
-            Err(TryLockError::Error(e)) => return Err(io("lock the folder")(e)),
-        }
-        if shared {
-            return Ok(Self { path: path.to_owned(), _lock: lock });
-        }
-        let host = rustix::system::uname().nodename().to_string_lossy().into_owned();
-        lock.set_len(0)
-            .and_then(|()| writeln!(lock, "process {} on {host}", std::process::id()))
+        let lock = match shared {
+            false => lock(&lock_path, File::try_lock)?,
+            true => share(&lock_path)?,
+        };
+        if !shared {
+            let host = rustix::system::uname().nodename().to_string_lossy().into_owned();
+            let holder = format!("process {} on {host}\n", std::process::id());
+            ask(Call::Sign(&lock_path, holder.as_bytes()), || {
+                lock.set_len(0)?;
+                std::os::unix::fs::FileExt::write_all_at(&lock, holder.as_bytes(), 0)
+            })
             .map_err(io("write to the folder"))?;
+            clear_parts(path).map_err(io("clear up the folder"))?;
+        }
         Ok(Self { path: path.to_owned(), _lock: lock })
     }
 
@@ -154,7 +149,7 @@ impl Folder {
     /// What the system says, with the file's path.
     pub fn read(&self, name: &str) -> Result<Option<Vec<u8>>, StoreError> {
         let path = self.path.join(name);
-        match fs::read(&path) {
+        match disk::read(&path) {
             Ok(bytes) => Ok(Some(bytes)),
             Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(None),
             Err(source) => Err(StoreError::Io { path, action: "read", source }),
@@ -167,7 +162,7 @@ impl Folder {
     /// What the system says, with the file's path.
     pub fn remove(&self, name: &str) -> Result<(), StoreError> {
         let path = self.path.join(name);
-        match fs::remove_file(&path) {
+        match ask(Call::Remove(&path), || fs::remove_file(&path)) {
             Err(source) if source.kind() != io::ErrorKind::NotFound => {
                 Err(StoreError::Io { path, action: "remove", source })
             }
@@ -188,20 +183,131 @@ impl Folder {
     }
 }
 
+/// Opens a lock file and locks it this way.
+fn lock(path: &Path, way: impl Fn(&File) -> Result<(), TryLockError>) -> Result<File, StoreError> {
+    let folder = path.parent().unwrap_or(path);
+    let failed = |source| StoreError::Io { path: folder.to_owned(), action: "write to the folder", source };
+    let mut options = File::options();
+    options.read(true).write(true).create(true).truncate(false);
+    // A lock file that is a link would have the file it leads to emptied.
+    std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, rustix::fs::OFlags::NOFOLLOW.bits() as i32);
+    let file = ask(Call::Lock(path), || options.open(path)).map_err(failed)?;
+    match way(&file) {
+        Ok(()) => Ok(file),
+        Err(TryLockError::WouldBlock) => {
+            let holder = fs::read_to_string(path).unwrap_or_default();
+            let holder = holder.lines().next().unwrap_or("unknown").chars().take(200).collect();
+            Err(StoreError::Held { path: folder.to_owned(), holder })
+        }
+        Err(TryLockError::Error(source)) => {
+            Err(StoreError::Io { path: folder.to_owned(), action: "lock the folder", source })
+        }
+    }
+}
+
+/// Opens a lock file and shares it; whoever happens to be alone with it first clears up.
+fn share(path: &Path) -> Result<File, StoreError> {
+    if let Ok(alone) = lock(path, File::try_lock) {
+        let folder = path.parent().unwrap_or(path);
+        let failed = |source| StoreError::Io { path: folder.to_owned(), action: "clear up the folder", source };
+        clear_parts(folder).map_err(failed)?;
+        drop(alone);
+    }
+    let begun = Instant::now();
+    loop {
+        match lock(path, File::try_lock_shared) {
+            Err(StoreError::Held { .. }) if begun.elapsed() < ASK_FOR => {
+                std::thread::sleep(Duration::from_millis(5));
+            }
+            other => return other,
+        }
+    }
+}
+
+fn is_empty(folder: &Path) -> io::Result<bool> {
+    ask(Call::List(folder), || Ok(fs::read_dir(folder)?.next().is_none()))
+}
+
+/// Removes what killed processes left half written in a folder and in those inside that have no lock of their own.
+fn clear_parts(folder: &Path) -> io::Result<()> {
+    let entries = ask(Call::List(folder), || fs::read_dir(folder)?.collect::<io::Result<Vec<_>>>())?;
+    for entry in entries {
+        let (path, kind) = (entry.path(), entry.file_type()?);
+        if kind.is_file() && entry.file_name().to_string_lossy().starts_with(PART) {
+            ask(Call::Remove(&path), || fs::remove_file(&path))?;
+        } else if kind.is_dir() && path.join(LOCK_FILE).symlink_metadata().is_err() {
+            clear_parts(&path)?;
+        }
+    }
+    Ok(())
+}
+
+/// Makes a folder and those above it that are missing, each synced into the one that it is in.
+fn make_folders(path: &Path) -> io::Result<()> {
+    let missing: Vec<&Path> =
+        path.ancestors().take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists()).collect();
+    for folder in missing.into_iter().rev() {
+        match ask(Call::MakeFolder(folder), || fs::create_dir(folder)) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists && folder.is_dir() => {}
+            other => other?,
+        }
+        disk::sync_folder(folder.parent().unwrap_or(Path::new("")))?;
+    }
+    Ok(())
+}
+
 /// Makes a folder inside one of ours, if it is not there; one reached through a link is refused.
 ///
 /// # Errors
 /// It is a link or a file, or what the system says.
 pub fn make_folder(path: &Path) -> Result<(), StoreError> {
-    let made = fs::create_dir_all(path);
+    let not = |what| Err(StoreError::NotAFolder { path: path.to_owned(), what });
     match path.symlink_metadata() {
-        Ok(meta) if meta.is_symlink() => {
-            Err(StoreError::NotAFolder { path: path.to_owned(), what: "a symbolic link" })
+        Ok(meta) if meta.is_symlink() => not("a symbolic link"),
+        Ok(meta) if !meta.is_dir() => not("a file"),
+        Ok(_) => Ok(()),
+        Err(_) => make_folders(path)
+            .map_err(|source| StoreError::Io { path: path.to_owned(), action: "make the folder", source }),
+    }
+}
+
+/// Removes a folder with all that is in it, if it is there.
+///
+/// # Errors
+/// What the system says.
+pub fn remove_folder(path: &Path) -> Result<(), StoreError> {
+    match ask(Call::RemoveFolder(path), || fs::remove_dir_all(path)) {
+        Err(source) if source.kind() != io::ErrorKind::NotFound => {
+            Err(StoreError::Io { path: path.to_owned(), action: "remove", source })
         }
-        _ => {
-            made.map_err(|source| StoreError::Io { path: path.to_owned(), action: "make the folder", source })
+        _ => Ok(()),
+    }
+}
+
+/// The files of a folder; none where there is no such folder.
+///
+/// # Errors
+/// What the system says.
+pub fn files_in(folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
+    let list = || fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>();
+    match ask(Call::List(folder), list) {
+        Err(source) if source.kind() != io::ErrorKind::NotFound => {
+            Err(StoreError::Io { path: folder.to_owned(), action: "read the folder", source })
+        }
+        found => {
+            let mut files = found.unwrap_or_default();
+            files.sort();
+            Ok(files)
         }
     }
+}
+
+/// A whole file that the program wrote itself.
+///
+/// # Errors
+/// What the system says.
+pub fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
+    disk::read(path)
 }
 
 /// Writes a whole file beside its final name, syncs it, renames it and syncs the folder.
@@ -221,21 +327,12 @@ pub fn write_whole_with(
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), StoreError> {
     let io = |action| move |source| StoreError::Io { path: path.to_owned(), action, source };
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut file = tempfile::Builder::new()
-        .prefix(".voidwalk-part-")
-        .tempfile_in(folder)
-        .map_err(io("write beside the file"))?;
-    fill(&mut file).map_err(io("write"))?;
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        let permissions = fs::Permissions::from_mode(0o644);
-        file.as_file().set_permissions(permissions).map_err(io("set permissions"))?;
-    }
-    file.as_file().sync_all().map_err(io("sync"))?;
-    file.persist(path).map_err(|e| io("rename")(e.error))?;
-    File::open(folder).and_then(|f| f.sync_all()).map_err(io("sync the folder"))
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut part = Part::beside(folder).map_err(io("write beside the file"))?;
+    fill(&mut part).map_err(io("write"))?;
+    part.sync().map_err(io("sync"))?;
+    part.rename(path).map_err(io("rename"))?;
+    disk::sync_folder(folder).map_err(io("sync the folder"))
 }
 
 #[cfg(test)]
@@ -262,6 +359,31 @@ mod tests {
         let error = Folder::open(root.path()).unwrap_err();
         assert!(error.is_refusal());
         assert!(error.to_string().contains(&format!("process {} on", std::process::id())));
+    }
+
+    #[test]
+    fn what_a_killed_process_left_is_cleared_up_by_the_sole_owner_only() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("run");
+        drop(Folder::open(&path).unwrap());
+        let part = |folder: &Path| {
+            fs::create_dir_all(folder).unwrap();
+            fs::write(folder.join(".voidwalk-part-7-1"), "half").unwrap();
+            folder.join(".voidwalk-part-7-1")
+        };
+        let (left, inside) = (part(&path), part(&path.join("checkpoint")));
+        let of_another = part(&path.join("cases/one"));
+        fs::write(path.join("cases/one").join(LOCK_FILE), "process 7 on x").unwrap();
+        fs::write(path.join("notes.txt"), "mine").unwrap();
+        let held = Folder::open_shared(&path).unwrap();
+        assert!(!left.exists() && !inside.exists() && of_another.exists());
+        // While somebody is at it, it may be theirs.
+        part(&path);
+        let _other = Folder::open_shared(&path).unwrap();
+        assert!(left.exists());
+        drop((held, _other));
+        drop(Folder::open(&path).unwrap());
+        assert!(!left.exists() && of_another.exists() && path.join("notes.txt").exists());
     }
 
     #[test]

@@ -2,7 +2,10 @@
 
 pub mod checkpoint;
 mod column;
+pub mod disk;
 mod folder;
 
 pub use column::{Column, Placement};
-pub use folder::{Folder, LOCK_FILE, StoreError, make_folder, write_whole};
+pub use folder::{
+    Folder, LOCK_FILE, StoreError, files_in, make_folder, read_whole, remove_folder, write_whole,
+};

@@ -85,7 +85,7 @@ impl State {
     pub fn restore(&mut self, network: &Network, saved: &mut Saved) -> Result<(), Harmed> {
         let file = format!("checkpoint of replicate {}", saved.label.replicate);
         let wrong =
-            |what: &str| Harmed { file: file.clone(), problem: format!("{what} cannot be of this run") };
+            |what: &str| Harmed::new(file.clone(), format!("{what} cannot be of this run"));
         let words: Vec<u64> = fixed(saved, "words", 18)?;
         let reals: Vec<f64> = fixed(saved, "reals", 2)?;
         if words[0] != self.seed || words[1] != self.run || words[4] != self.passive.kind() {
@@ -182,7 +182,7 @@ fn fixed<T: Pod>(saved: &mut Saved, name: &str, count: usize) -> Result<Vec<T>, 
     let found = saved.count::<T>(name)?;
     if found != count {
         let file = format!("checkpoint of replicate {}", saved.label.replicate);
-        return Err(Harmed { file, problem: format!("section {name} has {found} elements, not {count}") });
+        return Err(Harmed::new(file, format!("section {name} has {found} elements, not {count}")));
     }
     saved.read(name)
 }

@@ -1,8 +1,9 @@
 //! Packs a filter into a folder, in as many starts of the program as it takes.
 //!
 //! The folder holds, once whole: `grains.csv`, `grains.vtp`, `constrictions.csv`, `constrictions.json`,
-//! `constrictions.vtp` and, written last, `packing.json`. While the grains are compressed it holds `compression.state`
-//! instead, from which the next start goes on with the same bits.
+//! `constrictions.vtp` and, written last, `packing.json`. While the grains are compressed it holds the checkpoint
+//! `compression` instead ([`crate::store::checkpoint`]), from which the next start goes on with the same bits: sections
+//! `state` ([`Compression::to_bytes`]) and `seconds` (one number), under the fingerprint of the order.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -11,10 +12,13 @@ use super::Order;
 use crate::constrictions::{Constrictions, ConstrictionsError, CurveError, inscribed};
 use crate::outcome::packing::PackingRecord;
 use crate::packing::{Cell, Compression, PackReport, Packing, PackingError, Progress, draw, random_start};
+use crate::store::checkpoint::{Harmed, Label, Section, keep, newest};
 use crate::store::{Folder, StoreError};
 
-/// The state of a compression that is not finished.
-pub const STATE: &str = "compression.state";
+/// The checkpoint of a compression that is not finished ...
+const STATE: &str = "compression";
+/// ... and its files.
+pub const STATES: [&str; 2] = ["compression.0", "compression.1"];
 /// The packing's figures; a folder that holds it is whole.
 pub const RECORD: &str = "packing.json";
 /// The grains.
@@ -45,6 +49,9 @@ pub enum PackError {
         /// What is wrong with it.
         why: String,
     },
+    /// An unfinished compression that the system fails to read.
+    #[error(transparent)]
+    Unread(Harmed),
     /// Figures that cannot be put into words.
     #[error("cannot write {RECORD}: {0}")]
     Format(#[from] serde_json::Error),
@@ -57,6 +64,8 @@ pub enum PackError {
 pub struct Watch<'a> {
     /// Told how far it is.
     pub tell: &'a dyn Fn(&Progress),
+    /// Told of a harmed state that was passed over for the one before it.
+    pub warn: &'a dyn Fn(&Harmed),
     /// Set to stop.
     pub stop: &'a AtomicBool,
     /// How often the state is kept.
@@ -81,7 +90,7 @@ pub fn make(folder: &Folder, order: &Order, watch: &Watch) -> Result<(), PackErr
     let seconds = seconds_before + begun.elapsed().as_secs_f64();
     let record = serde_json::to_string_pretty(&record(order, &packing, &grains, &report, seconds)?)? + "\n";
     folder.write(RECORD, record.as_bytes())?;
-    folder.remove(STATE)?;
+    STATES.iter().try_for_each(|state| folder.remove(state))?;
     Ok(())
 }
 
@@ -92,20 +101,20 @@ fn compress(
     watch: &Watch,
 ) -> Result<(Compression, PackReport, f64), PackError> {
     let settings = &order.compression;
-    let (mut compression, seconds_before) = match folder.read(STATE)? {
-        Some(bytes) => resume(order, &bytes)
-            .map_err(|why| PackError::State { folder: folder.path().display().to_string(), why })?,
+    let (mut compression, seconds_before, mut generation) = match kept(folder, order, watch)? {
+        Some(kept) => kept,
         None => {
             let start = random_start(&draw(&order.gradation, settings.grains, settings.seed), settings)?;
-            (Compression::new(&start, settings)?, 0.0)
+            (Compression::new(&start, settings)?, 0.0, 0)
         }
     };
     let begun = Instant::now();
-    let keep = |compression: &Compression| {
-        let seconds = seconds_before + begun.elapsed().as_secs_f64();
-        let mut bytes = head(&order.fingerprint(), seconds).to_vec();
-        bytes.extend(compression.to_bytes());
-        folder.write(STATE, &bytes)
+    let mut keep_state = |compression: &Compression| {
+        generation += 1;
+        let label = Label { scene: order.fingerprint(), seed: settings.seed, generation, ..Label::default() };
+        let (seconds, state) = ([seconds_before + begun.elapsed().as_secs_f64()], compression.to_bytes());
+        let sections = [Section::new("seconds", &seconds), Section::new("state", &state)];
+        keep(folder.path(), STATE, &label, &sections)
     };
     loop {
         let since = Instant::now();
@@ -116,7 +125,7 @@ fn compress(
         match run {
             Ok(report) => return Ok((compression, report, seconds_before)),
             Err(PackingError::Stopped(steps)) => {
-                keep(&compression)?;
+                keep_state(&compression)?;
                 if watch.stop.load(Ordering::Relaxed) {
                     return Err(PackError::Stopped(steps));
                 }
@@ -126,30 +135,20 @@ fn compress(
     }
 }
 
-/// What stands before the state of a compression: fingerprint of the order, seconds spent, checksum of both.
-fn head(fingerprint: &str, seconds: f64) -> [u8; 32] {
-    let mut head = [0; 32];
-    head[..16].copy_from_slice(fingerprint.as_bytes());
-    head[16..24].copy_from_slice(&seconds.to_bits().to_le_bytes());
-    let sum = xxhash_rust::xxh3::xxh3_64(&head[..24]);
-    head[24..].copy_from_slice(&sum.to_le_bytes());
-    head
-}
-
-/// The compression that was kept, and the seconds spent on it; or what is wrong.
-fn resume(order: &Order, bytes: &[u8]) -> Result<(Compression, f64), String> {
-    let (start, state) = bytes.split_first_chunk::<32>().ok_or("the file ends early")?;
-    let mut seconds = [0; 8];
-    seconds.copy_from_slice(&start[16..24]);
-    let seconds = f64::from_bits(u64::from_le_bytes(seconds));
-    if xxhash_rust::xxh3::xxh3_64(&start[..24]).to_le_bytes() != start[24..] {
-        return Err("the checksum of its head is wrong".into());
-    }
-    if start[..16] != *order.fingerprint().as_bytes() {
-        return Err("it is of another gradation, or of other settings".into());
-    }
-    let compression = Compression::from_bytes(&order.compression, state).map_err(|e| e.to_string())?;
-    Ok((compression, seconds))
+/// The compression that was kept, the seconds spent on it and its generation.
+fn kept(folder: &Folder, order: &Order, watch: &Watch) -> Result<Option<(Compression, f64, u64)>, PackError> {
+    let refused = |harmed: Harmed| match harmed.unread {
+        true => PackError::Unread(harmed),
+        false => PackError::State { folder: folder.path().display().to_string(), why: harmed.to_string() },
+    };
+    let (saved, harmed) = newest(folder.path(), STATE, &order.fingerprint()).map_err(refused)?;
+    harmed.iter().for_each(watch.warn);
+    let Some(mut saved) = saved else { return Ok(None) };
+    let seconds = saved.read::<f64>("seconds").map_err(refused)?;
+    let state = saved.read::<u8>("state").map_err(refused)?;
+    let compression = Compression::from_bytes(&order.compression, &state);
+    let compression = compression.map_err(|e| refused(Harmed::new(STATE, e.to_string())))?;
+    Ok(Some((compression, seconds.first().copied().unwrap_or(0.0), saved.label.generation)))
 }
 
 fn record(

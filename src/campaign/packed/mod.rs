@@ -12,13 +12,14 @@ mod recipe;
 
 use std::path::{Path, PathBuf};
 
-pub use make::{PackError, RECORD, STATE, Watch, make};
+pub use make::{PackError, RECORD, STATES, Watch, make};
 pub use order::Order;
 pub use recipe::{DENSITIES, Recipe};
 
 use crate::constrictions::{Constrictions, Curve, CurveUnit};
 use crate::outcome::packing::PackingRecord;
 use crate::packing::{ImportError, Packing};
+use crate::store::{StoreError, read_whole};
 
 /// A filter that has been packed: what a walk needs of it.
 #[derive(Clone, Debug)]
@@ -51,6 +52,9 @@ pub enum PackedError {
         /// What is wrong.
         problem: String,
     },
+    /// A file that the system fails to read.
+    #[error(transparent)]
+    Read(#[from] StoreError),
     /// The constrictions.
     #[error(transparent)]
     Pack(#[from] PackError),
@@ -64,17 +68,23 @@ impl PackedFilter {
     pub fn read(folder: &Path, order: &Order) -> Result<Option<Self>, PackedError> {
         let path = folder.join(RECORD);
         let problem = |problem: String| PackedError::Record { file: path.display().to_string(), problem };
-        let record = match std::fs::read(&path) {
+        let record = match read_whole(&path) {
             Ok(bytes) => bytes,
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-            Err(e) => return Err(problem(e.to_string())),
+            Err(source) => return Err(StoreError::Io { path, action: "read", source }.into()),
         };
         let read: PackingRecord = serde_json::from_slice(&record).map_err(|e| problem(e.to_string()))?;
         if read.fingerprint != order.fingerprint() {
             return Err(problem("this is the packing of another recipe; name another folder".into()));
         }
         let grains = folder.join(make::GRAINS);
-        let bytes = std::fs::read(&grains).map_err(|e| problem(format!("{}: {e}", make::GRAINS)))?;
+        let bytes = match read_whole(&grains) {
+            Ok(bytes) => bytes,
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
+                return Err(problem(format!("{} is missing", make::GRAINS)));
+            }
+            Err(source) => return Err(StoreError::Io { path: grains, action: "read", source }.into()),
+        };
         if format!("{:016x}", xxhash_rust::xxh3::xxh3_64(&bytes)) != read.grains_xxh3 {
             return Err(problem(format!(
                 "{} is not the file that this record was written with",

@@ -24,7 +24,13 @@
 //!
 //! # Slots
 //! A checkpoint called `x` lives in `x.0` or `x.1`, whichever is older, and is written whole before it has its name. So the
-//! one before stays until the next is on the disk, and is taken when that one turns out to be harmed.
+//! one before stays until the next is on the disk, and is taken when that one turns out to be harmed. One that the system
+//! fails to read may be whole: nothing is taken in its place, and the program ends with an error instead.
+//!
+//! # Read, not mapped
+//! A checkpoint is read piece by piece into the columns, each piece checked before it is used. It is not mapped: a mapped file
+//! that somebody cuts short ends the process (SIGBUS), and a mapped page can change after its sum was found right. What
+//! that costs is one copy in memory; `results/robustness-2026-11-21.md` holds the measured seconds.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -34,6 +40,7 @@ use bytemuck::Pod;
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
 use super::StoreError;
+use super::disk::{Call, ask};
 use super::folder::write_whole_with;
 
 const MAGIC: [u8; 8] = *b"vwcheckp";
@@ -199,6 +206,25 @@ pub struct Harmed {
     pub file: String,
     /// What is wrong with it.
     pub problem: String,
+    /// Whether the system failed to read it: it may be whole.
+    pub unread: bool,
+}
+
+impl Harmed {
+    /// A file whose content is wrong.
+    pub fn new(file: impl Into<String>, problem: impl Into<String>) -> Self {
+        Self { file: file.into(), problem: problem.into(), unread: false }
+    }
+
+    /// A file that the system did not read, unless it is that it ends too early.
+    fn unread(path: &Path, error: &io::Error) -> Self {
+        let unread = error.kind() != io::ErrorKind::UnexpectedEof;
+        let problem = match unread {
+            true => format!("cannot be read: {error}; it is left as it is, and nothing was taken in its place"),
+            false => "ends early".into(),
+        };
+        Self { file: path.display().to_string(), problem, unread }
+    }
 }
 
 /// A checkpoint whose header has been checked; its sections are as they are read.
@@ -226,23 +252,25 @@ impl Saved {
     /// # Errors
     /// A file that is cut, harmed, of another version or no checkpoint at all.
     pub fn open(path: &Path) -> Result<Option<Self>, Harmed> {
-        let harmed = |problem: String| Harmed { file: path.display().to_string(), problem };
+        let unread = |error: io::Error| Harmed::unread(path, &error);
+        let harmed = |problem: String| Harmed::new(path.display().to_string(), problem);
         let is_file = match path.symlink_metadata() {
             Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(None),
-            Err(e) => return Err(harmed(e.to_string())),
+            Err(e) => return Err(unread(e)),
             Ok(meta) => meta.is_file(),
         };
         if !is_file {
             return Err(harmed("is no regular file".into()));
         }
-        let mut file = File::open(path).map_err(|e| harmed(e.to_string()))?;
-        let length = file.metadata().map_err(|e| harmed(e.to_string()))?.len();
-        let (label, sections) = read_header(&mut file, length).map_err(harmed)?;
+        let mut file = ask(Call::Read(path), || File::open(path)).map_err(unread)?;
+        let length = file.metadata().map_err(unread)?.len();
+        let bytes = header_bytes(path, &mut file, length)?;
+        let (label, sections) = parse_header(&bytes, length).map_err(harmed)?;
         Ok(Some(Self { label, path: path.to_owned(), file, sections }))
     }
 
     fn harmed(&self, problem: impl Into<String>) -> Harmed {
-        Harmed { file: self.path.display().to_string(), problem: problem.into() }
+        Harmed::new(self.path.display().to_string(), problem)
     }
 
     /// Elements of a section.
@@ -279,14 +307,41 @@ impl Saved {
     /// As [`Saved::read`].
     pub fn read_pieces<T: Pod>(&mut self, name: &str, mut take: impl FnMut(&[T])) -> Result<(), Harmed> {
         let entry = self.entry::<T>(name)?;
-        let (offset, mut left, sums) = (entry.offset, entry.count * entry.element, entry.sums.clone());
-        let mut words: Vec<T> = vec![T::zeroed(); PIECE / size_of::<T>()];
-        let failed = |this: &Self, e: io::Error| this.harmed(format!("section {name}: {e}"));
-        self.file.seek(SeekFrom::Start(offset)).map_err(|e| failed(self, e))?;
+        let (offset, left, sums) = (entry.offset, entry.count * entry.element, entry.sums.clone());
+        let mut words: Vec<T> = vec![T::zeroed(); PIECE.min(left as usize).div_ceil(size_of::<T>())];
+        self.pieces(name, offset, left, &sums, &mut words, &mut take)
+    }
+
+    /// Reads every piece of every section and checks it.
+    ///
+    /// # Errors
+    /// The first that is wrong.
+    pub fn check(&mut self) -> Result<(), Harmed> {
+        let mut piece = vec![0u8; PIECE];
+        for number in 0..self.sections.len() {
+            let entry = &self.sections[number];
+            let (name, sums) = (entry.name.clone(), entry.sums.clone());
+            self.pieces(&name, entry.offset, entry.count * entry.element, &sums, &mut piece, &mut |_| {})?;
+        }
+        Ok(())
+    }
+
+    /// Reads `left` bytes from `offset` on through `words`, a piece at a time, and hands on each whose sum is right.
+    fn pieces<T: Pod>(
+        &mut self,
+        name: &str,
+        offset: u64,
+        mut left: u64,
+        sums: &[u64],
+        words: &mut [T],
+        take: &mut impl FnMut(&[T]),
+    ) -> Result<(), Harmed> {
+        let Self { file, path, .. } = self;
+        file.seek(SeekFrom::Start(offset)).map_err(|e| Harmed::unread(path, &e))?;
         for (index, sum) in sums.iter().enumerate() {
             let now = left.min(PIECE as u64) as usize;
-            let piece = &mut bytemuck::cast_slice_mut::<T, u8>(&mut words)[..now];
-            self.file.read_exact(piece).map_err(|e| failed(self, e))?;
+            let piece = &mut bytemuck::cast_slice_mut::<T, u8>(words)[..now];
+            ask(Call::Read(path), || file.read_exact(piece)).map_err(|e| Harmed::unread(path, &e))?;
             if xxh3_64(piece) != *sum {
                 return Err(self.harmed(format!("section {name}, piece {index}: its checksum is wrong")));
             }
@@ -295,61 +350,43 @@ impl Saved {
         }
         Ok(())
     }
+}
 
-    /// Reads every piece of every section and checks it.
-    ///
-    /// # Errors
-    /// The first that is wrong.
-    pub fn check(&mut self) -> Result<(), Harmed> {
-        let all: Vec<(u64, u64, Vec<u64>)> =
-            self.sections.iter().map(|e| (e.offset, e.count * e.element, e.sums.clone())).collect();
-        let mut piece = vec![0; PIECE];
-        for (number, (offset, mut left, sums)) in all.into_iter().enumerate() {
-            self.file.seek(SeekFrom::Start(offset)).map_err(|e| self.harmed(e.to_string()))?;
-            for (index, sum) in sums.iter().enumerate() {
-                let now = left.min(PIECE as u64) as usize;
-                self.file.read_exact(&mut piece[..now]).map_err(|e| self.harmed(e.to_string()))?;
-                if xxh3_64(&piece[..now]) != *sum {
-                    let name = &self.sections[number].name;
-                    return Err(self.harmed(format!("section {name}, piece {index}: its checksum is wrong")));
-                }
-                left -= now as u64;
-            }
-        }
-        Ok(())
+/// The header of a file of this length, if it is one of this program.
+fn header_bytes(path: &Path, file: &mut File, length: u64) -> Result<Vec<u8>, Harmed> {
+    let harmed = |problem: String| Harmed::new(path.display().to_string(), problem);
+    let mut read = |bytes: &mut [u8]| ask(Call::Read(path), || file.read_exact(bytes));
+    let mut bytes = vec![0; FIXED];
+    read(&mut bytes).map_err(|e| Harmed::unread(path, &e))?;
+    if bytes[..8] != MAGIC {
+        return Err(harmed("is no checkpoint of voidwalk".into()));
     }
+    let version = u32::from_le_bytes(array(&bytes, 8));
+    if version != VERSION {
+        return Err(harmed(format!("has format {version}; this program reads format {VERSION}")));
+    }
+    if u32::from_le_bytes(array(&bytes, 12)) != BYTE_ORDER {
+        return Err(harmed("was written by a machine with another byte order".into()));
+    }
+    let (header_length, file_length) = (word(&bytes, 16), word(&bytes, 24));
+    if file_length != length {
+        return Err(harmed(format!("has {length} bytes where its header says {file_length}")));
+    }
+    if !(FIXED as u64 + 8..=LONGEST_HEADER.min(length)).contains(&header_length) {
+        return Err(harmed("its header has an impossible length".into()));
+    }
+    bytes.resize(header_length as usize, 0);
+    read(&mut bytes[FIXED..]).map_err(|e| Harmed::unread(path, &e))?;
+    Ok(bytes)
 }
 
 /// Label and sections from the header of a file of this length; or what is wrong.
-fn read_header(file: &mut File, length: u64) -> Result<(Label, Vec<Entry>), String> {
-    let mut fixed = [0; FIXED];
-    file.read_exact(&mut fixed).map_err(|_| "ends within its header".to_string())?;
-    if fixed[..8] != MAGIC {
-        return Err("is no checkpoint of voidwalk".into());
-    }
-    let version = u32::from_le_bytes(array(&fixed, 8));
-    if version != VERSION {
-        return Err(format!("has format {version}; this program reads format {VERSION}"));
-    }
-    if u32::from_le_bytes(array(&fixed, 12)) != BYTE_ORDER {
-        return Err("was written by a machine with another byte order".into());
-    }
-    let word = |bytes: &[u8], at: usize| u64::from_le_bytes(array(bytes, at));
-    let (header_length, file_length) = (word(&fixed, 16), word(&fixed, 24));
-    if file_length != length {
-        return Err(format!("has {length} bytes where its header says {file_length}"));
-    }
-    if !(FIXED as u64 + 8..=LONGEST_HEADER.min(length)).contains(&header_length) {
-        return Err("its header has an impossible length".into());
-    }
-    let mut bytes = fixed.to_vec();
-    bytes.resize(header_length as usize, 0);
-    file.read_exact(&mut bytes[FIXED..]).map_err(|_| "ends within its header".to_string())?;
-    let body = header_length as usize - 8;
-    if xxh3_64(&bytes[..body]) != word(&bytes, body) {
+fn parse_header(bytes: &[u8], length: u64) -> Result<(Label, Vec<Entry>), String> {
+    let body = bytes.len() - 8;
+    if xxh3_64(&bytes[..body]) != word(bytes, body) {
         return Err("the checksum of its header is wrong".into());
     }
-    let count = word(&bytes, 112);
+    let count = word(bytes, 112);
     if count > MOST_SECTIONS || FIXED + ENTRY * count as usize > body {
         return Err("has an impossible number of sections".into());
     }
@@ -358,8 +395,8 @@ fn read_header(file: &mut File, length: u64) -> Result<(Label, Vec<Entry>), Stri
     for index in 0..count as usize {
         let at = FIXED + ENTRY * index;
         let name = word_text(&bytes[at..at + 24])?;
-        let element = u64::from(u32::from_le_bytes(array(&bytes, at + 24)));
-        let (count, offset) = (word(&bytes, at + 32), word(&bytes, at + 40));
+        let element = u64::from(u32::from_le_bytes(array(bytes, at + 24)));
+        let (count, offset) = (word(bytes, at + 32), word(bytes, at + 40));
         let size = count.checked_mul(element).filter(|_| element > 0);
         let end = size.and_then(|size| size.checked_add(offset)).filter(|end| *end <= length);
         let (Some(size), Some(_)) = (size, end) else {
@@ -369,20 +406,24 @@ fn read_header(file: &mut File, length: u64) -> Result<(Label, Vec<Entry>), Stri
         if pieces > (body - sum_at) / 8 {
             return Err(format!("section {name} lacks checksums"));
         }
-        let sums = (0..pieces).map(|k| word(&bytes, sum_at + 8 * k)).collect();
+        let sums = (0..pieces).map(|k| word(bytes, sum_at + 8 * k)).collect();
         sum_at += 8 * pieces;
         sections.push(Entry { name, element, count, offset, sums });
     }
     let label = Label {
         scene: word_text(&bytes[32..64])?,
-        network: word(&bytes, 64),
-        seed: word(&bytes, 72),
-        replicate: word(&bytes, 80),
-        run: word(&bytes, 88),
-        increment: word(&bytes, 96),
-        generation: word(&bytes, 104),
+        network: word(bytes, 64),
+        seed: word(bytes, 72),
+        replicate: word(bytes, 80),
+        run: word(bytes, 88),
+        increment: word(bytes, 96),
+        generation: word(bytes, 104),
     };
     Ok((label, sections))
+}
+
+fn word(bytes: &[u8], at: usize) -> u64 {
+    u64::from_le_bytes(array(bytes, at))
 }
 
 fn array<const N: usize>(bytes: &[u8], at: usize) -> [u8; N] {
@@ -401,7 +442,7 @@ fn word_text(field: &[u8]) -> Result<String, String> {
 /// The newest whole checkpoint of this name for this scene, and what is wrong with any newer one.
 ///
 /// # Errors
-/// There are checkpoints of this name, but none is whole and of this scene.
+/// There are checkpoints of this name, but none is whole and of this scene; or the system fails to read one.
 pub fn newest(folder: &Path, name: &str, scene: &str) -> Result<(Option<Saved>, Vec<Harmed>), Harmed> {
     let mut harmed = Vec::new();
     let mut found = Vec::new();
@@ -409,9 +450,10 @@ pub fn newest(folder: &Path, name: &str, scene: &str) -> Result<(Option<Saved>, 
         match Saved::open(&slot(folder, name, parity)) {
             Ok(None) => {}
             Ok(Some(saved)) if saved.label.scene != scene => {
-                harmed.push(saved.harmed("is of another scene"));
+                harmed.push(saved.harmed("is of another scene or recipe"));
             }
             Ok(Some(saved)) => found.push(saved),
+            Err(error) if error.unread => return Err(error),
             Err(error) => harmed.push(error),
         }
     }
@@ -419,6 +461,7 @@ pub fn newest(folder: &Path, name: &str, scene: &str) -> Result<(Option<Saved>, 
     for mut saved in found {
         match saved.check() {
             Ok(()) => return Ok((Some(saved), harmed)),
+            Err(error) if error.unread => return Err(error),
             Err(error) => harmed.push(error),
         }
     }

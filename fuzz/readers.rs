@@ -1,0 +1,270 @@
+//! What must hold of every reader, whatever bytes it is given: no panic, no endless loop, no more memory than
+//! [`MOST_BYTES`], an error that can be shown, and what was read comes back from what is written of it.
+//!
+//! The fuzz targets and `tests/hostile_input.rs` both call these functions, so there is one definition.
+#![allow(dead_code)]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::RefCell;
+use std::fmt::Display;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use bitvec::vec::BitVec;
+use voidwalk::campaign::case::Case;
+use voidwalk::campaign::plan::Plan as CampaignPlan;
+use voidwalk::campaign::results::resolved;
+use voidwalk::campaign::scene::{CurveSource, Scene};
+use voidwalk::constrictions::Curve;
+use voidwalk::gradation::{Gradation, SizeSampler};
+use voidwalk::network::Network;
+use voidwalk::packing::Packing;
+use voidwalk::store::checkpoint::{Label, keep, newest};
+use voidwalk::walk::{Engine, Kept, Plan, Progress, SizeClasses, State, Supply, Walk};
+use xxhash_rust::xxh3::xxh3_64;
+
+/// The most memory that a process reading hostile input may hold (bytes).
+pub const MOST_BYTES: usize = 256 << 20;
+
+/// An error message that is longer does not tell a user anything (bytes).
+const LONGEST_MESSAGE: usize = 20_000;
+
+/// The system's allocator, which refuses to hand out more than [`MOST_BYTES`] in all.
+pub struct Bounded;
+
+static HELD: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: every call is handed on to the system's allocator unchanged, or answered with a null pointer, which says that
+// there is no memory.
+unsafe impl GlobalAlloc for Bounded {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        if HELD.fetch_add(layout.size(), Ordering::Relaxed) + layout.size() > MOST_BYTES {
+            HELD.fetch_sub(layout.size(), Ordering::Relaxed);
+            return std::ptr::null_mut();
+        }
+        // SAFETY: the caller's promise.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, ptr: *mut u8, layout: Layout) {
+        HELD.fetch_sub(layout.size(), Ordering::Relaxed);
+        // SAFETY: the caller's promise.
+        unsafe { System.dealloc(ptr, layout) }
+    }
+}
+
+/// What was read, or nothing once the error has been found fit to be shown.
+fn shown<T, E: Display>(result: Result<T, E>) -> Option<T> {
+    match result {
+        Ok(value) => Some(value),
+        Err(error) => {
+            let message = error.to_string();
+            assert!(!message.is_empty() && message.len() < LONGEST_MESSAGE, "{} bytes", message.len());
+            None
+        }
+    }
+}
+
+/// A scene: reads, works out, and comes back from the scene that is kept with the results.
+pub fn scene(bytes: &[u8]) {
+    let Some(scene) = shown(Scene::parse(bytes, "scene.toml", &[])) else { return };
+    // A lattice that is changed void by void is only built where that is quick; files are other readers' matter.
+    let voids = scene.network.shape().map(|lengths| lengths.iter().map(|&n| f64::from(n)).product::<f64>());
+    let given = matches!(scene.curve, Some(CurveSource::Shipped(_)));
+    if !given || voids.is_none_or(|voids| voids > 1000.0) || String::from_utf8_lossy(bytes).contains("sieve") {
+        return;
+    }
+    let Some(case) = shown(Case::new(scene)) else { return };
+    let text = resolved(&case);
+    if case.inputs.is_empty() {
+        let again = Scene::parse(text.as_bytes(), "resolved.toml", &[]).unwrap_or_else(|e| panic!("{text}: {e}"));
+        let again = Case::new(again).unwrap_or_else(|e| panic!("{text}: {e}"));
+        assert_eq!(resolved(&again), text);
+    }
+}
+
+/// A sieve table.
+pub fn sieve(bytes: &[u8]) {
+    for d0_mm in [None, Some(0.05)] {
+        let Some(gradation) = shown(Gradation::from_sieve_text("sieve.csv", bytes, d0_mm)) else { continue };
+        let points = gradation.points();
+        assert!(points.windows(2).all(|pair| pair[0].0 < pair[1].0 && pair[0].1 <= pair[1].1), "{points:?}");
+        for percent in [0.0, 15.0, 50.0, 85.0, 100.0] {
+            let size = gradation.d(percent);
+            assert!(size.is_none_or(|size| size.is_finite() && size > 0.0), "D{percent} = {size:?}");
+        }
+        if let Some(sampler) = shown(SizeSampler::new(&gradation, gradation.smallest_mm())) {
+            for word in [0, 1, u64::MAX / 2, u64::MAX] {
+                let size = sampler.diameter(word);
+                assert!(size >= sampler.smallest() && size <= sampler.largest(), "{size}");
+            }
+        }
+    }
+}
+
+/// A constriction curve.
+pub fn curve(bytes: &[u8]) {
+    let Some(curve) = shown(Curve::from_csv_text("curve.csv", bytes)) else { return };
+    for unit in [0.0, 0.3, 1.0] {
+        let size = curve.quantile(unit);
+        assert!(size >= curve.smallest() && size <= curve.largest(), "{size}");
+    }
+    shown(curve.in_mm(2.0));
+}
+
+/// A network: comes back from its own CSV bit for bit.
+pub fn network(bytes: &[u8]) {
+    let Some(network) = shown(Network::from_csv(bytes, "network.csv", 2.0)) else { return };
+    let mut text = Vec::new();
+    network.write_csv(&mut text).unwrap();
+    assert_eq!(Network::from_csv(&text, "again.csv", 2.0).unwrap(), network);
+}
+
+/// A packing, as CSV or as a dump of LAMMPS: comes back from its own CSV bit for bit.
+pub fn packing(bytes: &[u8]) {
+    let Some(packing) = shown(Packing::parse("packing", bytes)) else { return };
+    let again = Packing::parse("again", packing.to_csv().as_bytes()).unwrap();
+    let bits = |p: &Packing| [&p.x, &p.y, &p.z, &p.diameter].map(|c| c.iter().map(|v| v.to_bits()).collect::<Vec<_>>());
+    assert_eq!((again.cell, bits(&again)), (packing.cell, bits(&packing)));
+}
+
+/// A checkpoint: as it is, and with its checksums made right, so that what they protect is reached.
+pub fn checkpoint(bytes: &[u8]) {
+    let folder = folder();
+    for content in [bytes.to_vec(), with_right_sums(bytes.to_vec())] {
+        fs::write(folder.join("x.0"), &content).unwrap();
+        let scene = content.get(32..64).map_or_else(String::new, |field| {
+            let end = field.iter().position(|&b| b == 0).unwrap_or(32);
+            String::from_utf8_lossy(&field[..end]).into_owned()
+        });
+        let Some((Some(mut saved), _)) = shown(newest(&folder, "x", &scene)) else { continue };
+        SMALL_RUNS.with_borrow(|runs| {
+            for run in runs {
+                let mut state = run.fresh();
+                shown(state.restore(&run.network, &mut saved));
+            }
+        });
+        for name in ["words", "history_increment", "blocked"] {
+            shown(saved.read::<u64>(name));
+        }
+        shown(saved.read::<u8>("done"));
+    }
+}
+
+/// A plan, and the ledger of a campaign: the first line is `campaign.json`, the others are `ledger.jsonl`.
+pub fn ledger(bytes: &[u8]) {
+    let folder = folder();
+    let plan = folder.join("plan.toml");
+    fs::write(&plan, bytes).unwrap();
+    // The cross of many factors takes its time and is bounded by itself.
+    if bytes.len() < 2000
+        && let Some(plan) = shown(CampaignPlan::read(&plan))
+    {
+        for case in &plan.cases {
+            let name = case.folder_name();
+            assert!(!name.contains('/') && !name.starts_with('.') && name.len() < 200, "{name}");
+        }
+    }
+    let (about, lines) = bytes.split_at(bytes.iter().position(|&b| b == b'\n').unwrap_or(bytes.len()));
+    fs::write(folder.join("campaign.json"), about).unwrap();
+    fs::write(folder.join("ledger.jsonl"), lines.strip_prefix(b"\n").unwrap_or(lines)).unwrap();
+    if shown(voidwalk::report::write_campaign(&folder)).is_some() {
+        let page = fs::read_to_string(folder.join("report.html")).unwrap();
+        assert!(!page.to_lowercase().contains("<script"), "a script got into the page");
+    }
+}
+
+/// A folder of this thread, on a disk in memory where there is one.
+fn folder() -> PathBuf {
+    thread_local! {
+        static FOLDER: tempfile::TempDir = {
+            let memory = Path::new("/dev/shm");
+            if memory.is_dir() { tempfile::tempdir_in(memory).unwrap() } else { tempfile::tempdir().unwrap() }
+        };
+    }
+    FOLDER.with(|folder| folder.path().to_owned())
+}
+
+/// A run of a lattice that is made in microseconds.
+pub struct SmallRun {
+    /// Its network.
+    pub network: Network,
+    supply: Supply,
+    open: BitVec<u64>,
+}
+
+thread_local! {
+    static SMALL_RUNS: RefCell<Vec<SmallRun>> =
+        RefCell::new([Engine::Particles, Engine::Counts, Engine::Expected].map(SmallRun::new).into());
+}
+
+impl SmallRun {
+    /// The run walked by this engine.
+    pub fn new(engine: Engine) -> Self {
+        let curve = voidwalk::constrictions::find("shire2016-cu1.5-loose").unwrap().curve().unwrap();
+        let network = Network::cubic([2, 2, 3], &curve.in_mm(1.0).unwrap(), 1.0, 4).unwrap();
+        let gradation = Gradation::linear_from_dx(85.0, 0.2, 3.0).unwrap();
+        let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
+        let sampler = SizeSampler::new(&gradation, 1.0).unwrap();
+        let plan = Plan::new(engine, &network, &sampler, &open, 4);
+        let supply = plan.supply(sampler, 400, 100, 11, 1);
+        Self { network, supply, open }
+    }
+
+    /// Its state before the first increment.
+    pub fn fresh(&self) -> State {
+        let classes = SizeClasses::logarithmic(0.1, 0.3, 4);
+        State::new(&self.network, &self.supply, classes, self.open.clone(), 11, 1)
+    }
+
+    /// Walks on from `state`, and keeps it in `folder` once, after this increment.
+    pub fn walk(&self, state: &mut State, kept: Option<(&Path, u64)>) {
+        let done = br#"{"complete":false}"#;
+        let mut walk = Walk::new(&self.network, &self.supply, state);
+        let result = walk.run(state, &mut |state| {
+            if let Some((folder, increment)) = kept
+                && state.increment == increment
+            {
+                let label = Label { scene: "small".into(), seed: 11, run: 1, generation: 2, increment, ..Label::default() };
+                let parts = Kept::new(state);
+                let mut sections = parts.sections(state);
+                sections.push(voidwalk::store::checkpoint::Section::new("done", done));
+                keep(folder, "x", &label, &sections).unwrap();
+            }
+            Progress::Continue
+        });
+        result.unwrap();
+    }
+}
+
+/// The file with its length, the sums of its pieces and that of its header made right, as far as it has room for them.
+pub fn with_right_sums(mut bytes: Vec<u8>) -> Vec<u8> {
+    const PIECE: usize = 1 << 20;
+    let word = |bytes: &[u8], at: usize| -> usize {
+        bytes.get(at..at + 8).map_or(0, |w| u64::from_le_bytes(w.try_into().unwrap()) as usize)
+    };
+    let (length, header) = (bytes.len(), word(&bytes, 16));
+    if header < 152 || header > length {
+        return bytes;
+    }
+    bytes[24..32].copy_from_slice(&(length as u64).to_le_bytes());
+    let mut sum_at = 144 + 48 * word(&bytes, 112).min(64);
+    for section in 0..word(&bytes, 112).min(64) {
+        let at = 144 + 48 * section;
+        let Some(element) = bytes.get(at + 24..at + 28) else { break };
+        let element = u32::from_le_bytes(element.try_into().unwrap()) as usize;
+        let (count, offset) = (word(&bytes, at + 32), word(&bytes, at + 40));
+        let Some(size) = count.checked_mul(element).filter(|size| *size <= length) else { break };
+        let Some(data) = offset.checked_add(size).and_then(|end| bytes.get(offset..end)) else { break };
+        let sums: Vec<u8> = data.chunks(PIECE).flat_map(|piece| xxh3_64(piece).to_le_bytes()).collect();
+        let Some(place) = bytes.get_mut(sum_at..sum_at + sums.len()).filter(|_| sum_at + sums.len() <= header - 8) else {
+            break;
+        };
+        place.copy_from_slice(&sums);
+        sum_at += sums.len();
+    }
+    let sum = xxh3_64(&bytes[..header - 8]);
+    bytes[header - 8..header].copy_from_slice(&sum.to_le_bytes());
+    bytes
+}

@@ -1,0 +1,173 @@
+//! What is asked of the disk: every call of the program that makes, changes, reads or removes a file of its own goes through
+//! [`ask`], and through one [`Disk`].
+//!
+//! A process has one disk, so it is process-wide and not handed from function to function: a writer that has no folder at
+//! hand (a report, a ledger, a mapped column) cannot forget it, and nothing but a test ever sets it. The real disk is the
+//! absence of another; it costs one load of a pointer a call.
+
+use std::fmt;
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// One call.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Call<'a> {
+    /// Lists a folder.
+    List(&'a Path),
+    /// Makes one folder.
+    MakeFolder(&'a Path),
+    /// Removes a folder with all that is in it.
+    RemoveFolder(&'a Path),
+    /// Opens the lock file, making it where it is missing, and locks it.
+    Lock(&'a Path),
+    /// Writes into the lock file who holds it.
+    Sign(&'a Path, &'a [u8]),
+    /// Makes a new, empty file.
+    Create(&'a Path),
+    /// Adds bytes to the end of a file.
+    Write(&'a Path, &'a [u8]),
+    /// Sends what was written to a file to the disk.
+    Sync(&'a Path),
+    /// Gives a file another name, replacing what had it.
+    Rename(&'a Path, &'a Path),
+    /// Sends the names in a folder to the disk.
+    SyncFolder(&'a Path),
+    /// Makes, in a folder, a file without a name of so many bytes, all of its blocks allocated, and maps it.
+    Map(&'a Path, u64),
+    /// Opens a file or reads from it.
+    Read(&'a Path),
+    /// Removes a file.
+    Remove(&'a Path),
+}
+
+impl fmt::Debug for Call<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (name, path) = match self {
+            Self::List(path) => ("list", path),
+            Self::MakeFolder(path) => ("make folder", path),
+            Self::RemoveFolder(path) => ("remove folder", path),
+            Self::Lock(path) => ("lock", path),
+            Self::Sign(path, _) => ("sign", path),
+            Self::Create(path) => ("create", path),
+            Self::Write(path, _) => ("write", path),
+            Self::Sync(path) => ("sync", path),
+            Self::Rename(_, path) => ("rename to", path),
+            Self::SyncFolder(path) => ("sync folder", path),
+            Self::Map(path, _) => ("map", path),
+            Self::Read(path) => ("read", path),
+            Self::Remove(path) => ("remove", path),
+        };
+        write!(f, "{name} {}", path.display())
+    }
+}
+
+/// A disk that may fail, or take notes.
+pub trait Disk: Send + Sync {
+    /// Answers a call; `act` is what the real disk does.
+    ///
+    /// # Errors
+    /// What `act` says, or whatever this disk likes.
+    fn call(&self, call: Call<'_>, act: &mut dyn FnMut() -> io::Result<()>) -> io::Result<()>;
+}
+
+static DISK: OnceLock<Box<dyn Disk>> = OnceLock::new();
+
+/// Puts another disk in the place of the real one, for the rest of the process; only the first time counts.
+pub fn replace_disk(disk: Box<dyn Disk>) {
+    let _ = DISK.set(disk);
+}
+
+/// Asks the disk; a call that a signal interrupted is made again.
+pub(super) fn ask<T>(call: Call<'_>, mut act: impl FnMut() -> io::Result<T>) -> io::Result<T> {
+    loop {
+        let answer = match DISK.get() {
+            None => act(),
+            Some(disk) => {
+                let mut value = None;
+                let done = disk.call(call, &mut || {
+                    value = Some(act()?);
+                    Ok(())
+                });
+                done.and_then(|()| value.ok_or_else(|| io::Error::other("the disk did nothing")))
+            }
+        };
+        match answer {
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            other => return other,
+        }
+    }
+}
+
+/// What the names of files begin with that are not whole yet; one that a killed process left is removed when its folder is
+/// next taken.
+pub(super) const PART: &str = ".voidwalk-part-";
+
+/// A new file beside the one that it is to become; removed unless it became it.
+pub(super) struct Part {
+    path: PathBuf,
+    file: File,
+    whole: bool,
+}
+
+impl Part {
+    pub fn beside(folder: &Path) -> io::Result<Self> {
+        static NUMBER: AtomicU64 = AtomicU64::new(0);
+        loop {
+            let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+            let path = folder.join(format!("{PART}{}-{number}", std::process::id()));
+            let create = || File::options().write(true).create_new(true).open(&path);
+            match ask(Call::Create(&path), create) {
+                Ok(file) => return Ok(Self { path, file, whole: false }),
+                // Left by a killed process of the same number, or made by one of another machine.
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+                Err(error) => return Err(error),
+            }
+        }
+    }
+
+    /// After an error of this, the file is given up: a second sync may say that all is well when nothing was written.
+    pub fn sync(&self) -> io::Result<()> {
+        ask(Call::Sync(&self.path), || self.file.sync_all())
+    }
+
+    pub fn rename(mut self, to: &Path) -> io::Result<()> {
+        ask(Call::Rename(&self.path, to), || std::fs::rename(&self.path, to))?;
+        self.whole = true;
+        Ok(())
+    }
+}
+
+impl Write for Part {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let Self { path, file, .. } = self;
+        // All of it, so that a disk that takes notes knows what is in the file.
+        ask(Call::Write(path, bytes), || file.write_all(bytes)).map(|()| bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Drop for Part {
+    fn drop(&mut self) {
+        if !self.whole {
+            // If this fails too, whoever takes the folder next removes it.
+            let _ = ask(Call::Remove(&self.path), || std::fs::remove_file(&self.path));
+        }
+    }
+}
+
+/// Sends the names in a folder to the disk.
+pub(super) fn sync_folder(folder: &Path) -> io::Result<()> {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    ask(Call::SyncFolder(folder), || File::open(folder)?.sync_all())
+}
+
+/// A whole file.
+pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
+    ask(Call::Read(path), || std::fs::read(path))
+}
