@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
 use super::case::Case;
-use super::keeper::{Every, Keeper};
+use super::keeper::{self, Every, Keeper};
 use super::machine::Machine;
 use super::plan::PlannedCase;
 use super::results::{self, ResultError};
@@ -159,7 +159,11 @@ pub fn conduct(
     overseer: &Overseer,
 ) -> Result<Vec<Failed>, ConductError> {
     make_folder(&out.join(CASES))?;
-    let mut open: Vec<&Ready> = cases.iter().filter(|case| case.line(out).is_none()).collect();
+    let (done, mut open): (Vec<&Ready>, Vec<&Ready>) = cases.iter().partition(|case| case.line(out).is_some());
+    for case in done {
+        // A process that was killed as soon as the case was done left them.
+        keeper::discard(&out.join(case.folder()))?;
+    }
     let tally = Tally::default();
     let mut look = LOOK.0;
     while !open.is_empty() {

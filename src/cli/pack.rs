@@ -37,7 +37,9 @@ pub fn pack(args: &PackArgs) -> Result<(), Ending> {
     let out = args.out.clone().unwrap_or_else(|| Path::new("voidwalk-packings").join(order.folder_name()));
     let folder = Folder::open(&out).map_err(refused_or_failed)?;
     refuse_other_kinds(&folder, "packing")?;
-    if folder.has(RECORD) && !args.overwrite {
+    // With a state beside it, whoever wrote the record was killed before all was done.
+    let finished = folder.has(RECORD) && !STATES.iter().any(|state| folder.has(state));
+    if finished && !args.overwrite {
         let problem =
             format!("{}: holds a packing already; name another folder or add --overwrite", out.display());
         return Err(Ending::refused(plain(&problem)));

@@ -96,6 +96,7 @@ impl Folder {
         // Without a trailing slash, which would follow a link.
         let path: &Path = &path.components().collect::<PathBuf>();
         let io = |action| move |source| StoreError::Io { path: path.to_owned(), action, source };
+        let mut marked = false;
         match fs::symlink_metadata(path) {
             Ok(meta) if meta.is_symlink() => {
                 return Err(StoreError::NotAFolder { path: path.to_owned(), what: "a symbolic link" });
@@ -107,7 +108,7 @@ impl Folder {
                 let is_file = |name| path.join(name).symlink_metadata().is_ok_and(|m| m.is_file());
                 // In this order: a process that has just locked an empty folder leaves its mark in it.
                 let empty = is_empty(path).map_err(io("read the folder"))?;
-                let marked = is_file(LOCK_FILE) || (is_file("manifest.json") && is_file("outcome.json"));
+                marked = is_file(LOCK_FILE) || (is_file("manifest.json") && is_file("outcome.json"));
                 if !marked && !empty {
                     return Err(StoreError::NotOurs { path: path.to_owned() });
                 }
@@ -120,6 +121,10 @@ impl Folder {
             false => lock(&lock_path, File::try_lock)?,
             true => share(&lock_path)?,
         };
+        if !marked {
+            // Or the power may fail when the folder holds other things and not this mark.
+            disk::sync_folder(path).map_err(io("sync the folder"))?;
+        }
         if !shared {
             let host = rustix::system::uname().nodename().to_string_lossy().into_owned();
             let holder = format!("process {} on {host}\n", std::process::id());

@@ -11,18 +11,19 @@ use voidwalk::store::disk::{Call, Disk};
 /// Name of the variable by which this test program, started again, becomes voidwalk on such a disk.
 pub const VARIABLE: &str = "VOIDWALK_TEST_DISK";
 
-/// What the disk does: `fail N ERRNO`, `late N ERRNO`, `kill N` or `note FILE`.
-pub fn from_words(words: &str) -> Box<dyn Disk> {
+/// What the disk does: `fail N ERRNO`, `late N ERRNO`, `kill N` or `note FILE`; `real` is no other disk.
+pub fn from_words(words: &str) -> Option<Box<dyn Disk>> {
     let words: Vec<&str> = words.split(' ').collect();
     let number = |at: usize| words[at].parse::<u64>().unwrap();
     let way = match words[0] {
         "fail" => Way::Fail(number(2) as i32),
         "late" => Way::Late(number(2) as i32),
         "kill" => Way::Kill,
-        "note" => return Box::new(Notes(Mutex::new(File::create(words[1]).unwrap()))),
+        "note" => return Some(Box::new(Notes(Mutex::new(File::create(words[1]).unwrap())))),
+        "real" => return None,
         other => panic!("{other}"),
     };
-    Box::new(Faulty { way, at: number(1), calls: AtomicU64::new(0) })
+    Some(Box::new(Faulty { way, at: number(1), calls: AtomicU64::new(0) }))
 }
 
 /// How the call goes wrong.

@@ -18,7 +18,7 @@
 //! | 144 | 48 each | sections: name (24), bytes of an element (4), zero (4), elements (8), offset (8) |
 //! | then | 8 each | XXH3-64 of every piece of 1 MiB of each section, in order |
 //! | then | 8 | XXH3-64 of everything before |
-//! | a multiple of 4096 | | the sections, each at a multiple of 64 |
+//! | a multiple of 4096 | | the sections, each at a multiple of 64; zeros between them |
 //!
 //! The checksums find accidents, not forgers.
 //!
@@ -235,6 +235,8 @@ pub struct Saved {
     path: PathBuf,
     file: File,
     sections: Vec<Entry>,
+    /// Offset and length of what lies between the sections, all zeros.
+    gaps: Vec<(u64, usize)>,
 }
 
 #[derive(Debug)]
@@ -266,7 +268,8 @@ impl Saved {
         let length = file.metadata().map_err(unread)?.len();
         let bytes = header_bytes(path, &mut file, length)?;
         let (label, sections) = parse_header(&bytes, length).map_err(harmed)?;
-        Ok(Some(Self { label, path: path.to_owned(), file, sections }))
+        let gaps = gaps(&sections, bytes.len() as u64, length).map_err(harmed)?;
+        Ok(Some(Self { label, path: path.to_owned(), file, sections, gaps }))
     }
 
     fn harmed(&self, problem: impl Into<String>) -> Harmed {
@@ -312,12 +315,23 @@ impl Saved {
         self.pieces(name, offset, left, &sums, &mut words, &mut take)
     }
 
-    /// Reads every piece of every section and checks it.
+    /// Reads every piece of every section, and what lies between them, and checks it.
     ///
     /// # Errors
     /// The first that is wrong.
     pub fn check(&mut self) -> Result<(), Harmed> {
         let mut piece = vec![0u8; PIECE];
+        for &(offset, length) in &self.gaps {
+            let gap = &mut piece[..length];
+            let Self { file, path, .. } = self;
+            let read = |file: &mut File, gap: &mut [u8]| {
+                file.seek(SeekFrom::Start(offset)).and_then(|_| file.read_exact(gap))
+            };
+            ask(Call::Read(path), || read(file, gap)).map_err(|e| Harmed::unread(path, &e))?;
+            if gap.iter().any(|&byte| byte != 0) {
+                return Err(self.harmed(format!("is not zero between its sections, near byte {offset}")));
+            }
+        }
         for number in 0..self.sections.len() {
             let entry = &self.sections[number];
             let (name, sums) = (entry.name.clone(), entry.sums.clone());
@@ -420,6 +434,23 @@ fn parse_header(bytes: &[u8], length: u64) -> Result<(Label, Vec<Entry>), String
         generation: word(bytes, 104),
     };
     Ok((label, sections))
+}
+
+/// What lies between the header and the sections, which follow one another to the end of the file.
+fn gaps(sections: &[Entry], header: u64, length: u64) -> Result<Vec<(u64, usize)>, String> {
+    let mut spans: Vec<(u64, u64)> = sections.iter().map(|e| (e.offset, e.count * e.element)).collect();
+    spans.sort_unstable();
+    spans.push((length, 0));
+    let (mut at, mut gaps) = (header, Vec::new());
+    for (offset, size) in spans {
+        match offset.checked_sub(at) {
+            Some(gap) if gap < 4096 => gaps.push((at, gap as usize)),
+            _ => return Err("its sections do not follow one another".into()),
+        }
+        at = offset + size;
+    }
+    gaps.retain(|&(_, gap)| gap > 0);
+    Ok(gaps)
 }
 
 fn word(bytes: &[u8], at: usize) -> u64 {

@@ -204,17 +204,17 @@ impl SmallRun {
     pub fn new(engine: Engine) -> Self {
         let curve = voidwalk::constrictions::find("shire2016-cu1.5-loose").unwrap().curve().unwrap();
         let network = Network::cubic([2, 2, 3], &curve.in_mm(1.0).unwrap(), 1.0, 4).unwrap();
-        let gradation = Gradation::linear_from_dx(85.0, 0.2, 3.0).unwrap();
+        let gradation = Gradation::linear_from_dx(85.0, 0.45, 3.0).unwrap();
         let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
         let sampler = SizeSampler::new(&gradation, 1.0).unwrap();
-        let plan = Plan::new(engine, &network, &sampler, &open, 4);
-        let supply = plan.supply(sampler, 400, 100, 11, 1);
+        let plan = Plan::new(engine, &network, &sampler, &open, 20);
+        let supply = plan.supply(sampler, 2000, 100, 11, 1);
         Self { network, supply, open }
     }
 
     /// Its state before the first increment.
     pub fn fresh(&self) -> State {
-        let classes = SizeClasses::logarithmic(0.1, 0.3, 4);
+        let classes = SizeClasses::logarithmic(0.1, 0.6, 4);
         State::new(&self.network, &self.supply, classes, self.open.clone(), 11, 1)
     }
 
