@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
 
 use bitvec::vec::BitVec;
@@ -132,7 +132,9 @@ fn call(folder: &Path, args: &[&str]) -> Output {
 }
 
 fn with_scene() -> (tempfile::TempDir, PathBuf) {
-    let root = tempfile::tempdir().unwrap();
+    // On a disk in memory, where there is one, a checkpoint every few milliseconds is no matter.
+    let memory = Path::new("/dev/shm");
+    let root = if memory.is_dir() { tempfile::tempdir_in(memory) } else { tempfile::tempdir() }.unwrap();
     fs::write(root.path().join("scene.toml"), SCENE).unwrap();
     let path = root.path().to_owned();
     (root, path)
@@ -250,6 +252,33 @@ fn a_harmed_checkpoint_is_passed_over_or_refused_and_never_lost() {
     }
     let again = call(&at, &["resume", "run"]);
     assert_eq!(again.status.code(), Some(2));
+}
+
+#[test]
+fn of_many_starts_on_one_folder_one_wins_and_the_others_name_it() {
+    let (_root, at) = with_scene();
+    let args = ["run", "scene.toml", "--set", "base.n_base=50000000", "--threads", "1", "--out", "one"];
+    let mut children: Vec<Child> = (0..24).map(|_| voidwalk(&at, &args).spawn().unwrap()).collect();
+    // The others leave; whoever is left is the one.
+    let mut ended = Vec::new();
+    while ended.len() < 23 {
+        let gone = children.iter_mut().position(|child| child.try_wait().unwrap().is_some());
+        match gone {
+            Some(place) => ended.push(children.remove(place).wait_with_output().unwrap()),
+            None => std::thread::sleep(Duration::from_millis(5)),
+        }
+    }
+    let winner = children[0].id();
+    for output in &ended {
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{stderr}");
+        assert!(stderr.contains("another run writes to this folder"), "{stderr}");
+    }
+    let late = call(&at, &args);
+    let stderr = String::from_utf8_lossy(&late.stderr);
+    assert!(late.status.code() == Some(2) && stderr.contains(&format!("process {winner} on")), "{stderr}");
+    let _ = Command::new("kill").args(["-TERM", &winner.to_string()]).status().unwrap();
+    assert_eq!(children[0].wait().unwrap().code(), Some(3));
 }
 
 #[test]

@@ -1,5 +1,5 @@
-//! A real disk that is full: a small one in memory, filled so that so many bytes are left. It is mounted for the test, which needs
-//! root; where that is not to be had the test says so and passes.
+//! A real disk that is full, or read-only: a small one in memory, filled so that so many bytes are left. It is mounted for the test, which
+//! needs root; where that is not to be had the test says so and passes.
 
 use std::fs;
 use std::io::Write;
@@ -8,7 +8,8 @@ use std::process::{Command, Output};
 
 const SCENE: &str = "seed = 3\nreplicates = 2\nengine = \"particles\"\n[filter]\ncurve = \"shire2016-cu1.5-loose\"\n[base]\ncu = 1.5\n\
     d85_at_dc = 5\nn_base = 60000\n[network]\nnx = 8\nny = 8\nnz = 10\n[record]\nsensitivity = []\n";
-const FILES: [&str; 6] = ["scene.toml", "series.csv", "layers.csv", "retained.csv", "eroded.csv", "figures/eroded.svg"];
+const FILES: [&str; 6] =
+    ["scene.toml", "series.csv", "layers.csv", "retained.csv", "eroded.csv", "figures/eroded.svg"];
 
 /// A disk of 16 MB that is gone with this value.
 struct Disk(tempfile::TempDir);
@@ -56,6 +57,29 @@ fn voidwalk(at: &Path, args: &[&str]) -> Output {
 
 fn lasting(folder: &Path) -> Vec<String> {
     FILES.map(|name| fs::read_to_string(folder.join(name)).unwrap()).to_vec()
+}
+
+#[test]
+fn a_folder_on_a_disk_that_is_read_only_is_refused() {
+    let disk = match Disk::new() {
+        Ok(disk) => disk,
+        Err(problem) => return println!("skipped: a disk cannot be mounted here: {}", problem.trim()),
+    };
+    let at = disk.0.path();
+    fs::write(at.join("scene.toml"), SCENE).unwrap();
+    assert!(voidwalk(at, &["run", "scene.toml", "-q", "--out", "old"]).status.success());
+    let remount = Command::new("mount").args(["-o", "remount,ro"]).arg(at).status().unwrap();
+    assert!(remount.success());
+    for args in [
+        &["run", "scene.toml", "-q", "--out", "new"][..],
+        &["run", "scene.toml", "-q", "--out", "old", "--overwrite"],
+        &["report", "old"],
+    ] {
+        let output = voidwalk(at, args);
+        let text = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{args:?}: {text}");
+        assert!(text.starts_with("refused: "), "{args:?}: {text}");
+    }
 }
 
 #[test]
@@ -115,7 +139,9 @@ fn a_run_on_a_full_disk_ends_with_an_error_and_goes_on_when_there_is_room() {
             assert_eq!(lasting(&folder), expected, "{left} bytes left");
             fs::remove_dir_all(folder).unwrap();
         }
-        println!("{memory}: {failed} failed ({kept} with a checkpoint), {refused} refused, {done} had room; 0 other results");
+        println!(
+            "{memory}: {failed} failed ({kept} with a checkpoint), {refused} refused, {done} had room; 0 other results"
+        );
         assert!(failed > 5 && kept > 0 && done > 0, "{failed} failed, {kept} kept, {done} had room");
     }
 }

@@ -54,7 +54,8 @@ fn old_checkpoints_are_gone_on_from_to_the_same_answer() {
             state.restore(&run.network, &mut saved).unwrap();
             assert_eq!(state.increment, 50);
             run.walk(&mut state, None);
-            let answer = fs::read_to_string(golden(version, name).with_extension(format!("{name}.txt"))).unwrap();
+            let answer =
+                fs::read_to_string(golden(version, name).with_extension(format!("{name}.txt"))).unwrap();
             assert_eq!(shown(&state), answer, "version {version}, {name}");
             tried += 1;
         }

@@ -159,7 +159,8 @@ pub fn conduct(
     overseer: &Overseer,
 ) -> Result<Vec<Failed>, ConductError> {
     make_folder(&out.join(CASES))?;
-    let (done, mut open): (Vec<&Ready>, Vec<&Ready>) = cases.iter().partition(|case| case.line(out).is_some());
+    let (done, mut open): (Vec<&Ready>, Vec<&Ready>) =
+        cases.iter().partition(|case| case.line(out).is_some());
     for case in done {
         // A process that was killed as soon as the case was done left them.
         keeper::discard(&out.join(case.folder()))?;

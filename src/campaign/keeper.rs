@@ -50,7 +50,8 @@ impl FromStr for Every {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || "a time, as 10min or 90s, or a number of increments from 1, as 50increments".to_string();
+        let wrong =
+            || "a time, as 10min or 90s, or a number of increments from 1, as 50increments".to_string();
         match text.trim_end_matches('s').strip_suffix("increment") {
             Some(number) => match number.trim().parse() {
                 Ok(number @ 1..) => Ok(Self::Increments(number)),
@@ -119,7 +120,7 @@ impl Keeper {
     pub fn is_due(&self, last: Instant, increment: u64, stop: bool) -> bool {
         stop || match self.every {
             Every::Time(time) => last.elapsed() >= time,
-            Every::Increments(number) => increment % number == 0,
+            Every::Increments(number) => increment.is_multiple_of(number),
         }
     }
 
@@ -139,7 +140,10 @@ impl Keeper {
         }
         let text = saved.read::<u8>("done")?;
         let done = serde_json::from_slice(&text).map_err(|e| {
-            Harmed::new(self.folder.display().to_string(), format!("what is done of replicate {replicate}: {e}"))
+            Harmed::new(
+                self.folder.display().to_string(),
+                format!("what is done of replicate {replicate}: {e}"),
+            )
         })?;
         Ok(Some((done, saved)))
     }

@@ -7,7 +7,8 @@
 
 use std::fmt;
 use std::fs::File;
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
+use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -101,6 +102,9 @@ pub(super) fn ask<T>(call: Call<'_>, mut act: impl FnMut() -> io::Result<T>) -> 
     }
 }
 
+/// Opening what is a link fails.
+pub(super) const NO_LINK: i32 = rustix::fs::OFlags::NOFOLLOW.bits() as i32;
+
 /// What the names of files begin with that are not whole yet; one that a killed process left is removed when its folder is
 /// next taken.
 pub(super) const PART: &str = ".voidwalk-part-";
@@ -167,7 +171,13 @@ pub(super) fn sync_folder(folder: &Path) -> io::Result<()> {
     ask(Call::SyncFolder(folder), || File::open(folder)?.sync_all())
 }
 
-/// A whole file.
+/// A whole file, which is no link to one elsewhere.
 pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
-    ask(Call::Read(path), || std::fs::read(path))
+    ask(Call::Read(path), || {
+        let mut options = File::options();
+        OpenOptionsExt::custom_flags(options.read(true), NO_LINK);
+        let mut bytes = Vec::new();
+        options.open(path)?.read_to_end(&mut bytes)?;
+        Ok(bytes)
+    })
 }

@@ -21,6 +21,9 @@ pub const LOCK_FILE: &str = ".voidwalk.lock";
 /// How long a folder that is shared is asked for: another process may hold it alone while it clears up.
 const ASK_FOR: Duration = Duration::from_millis(500);
 
+/// How soon after locking a folder a process says who it is.
+const SIGNS_WITHIN: Duration = Duration::from_millis(200);
+
 /// Why a folder cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
@@ -113,7 +116,9 @@ impl Folder {
                     return Err(StoreError::NotOurs { path: path.to_owned() });
                 }
             }
-            Err(e) if e.kind() == io::ErrorKind::NotFound => make_folders(path).map_err(io("make the folder"))?,
+            Err(e) if e.kind() == io::ErrorKind::NotFound => {
+                make_folders(path).map_err(io("make the folder"))?
+            }
             Err(e) => return Err(io("look at the folder")(e)),
         }
         let lock_path = path.join(LOCK_FILE);
@@ -195,17 +200,28 @@ fn lock(path: &Path, way: impl Fn(&File) -> Result<(), TryLockError>) -> Result<
     let mut options = File::options();
     options.read(true).write(true).create(true).truncate(false);
     // A lock file that is a link would have the file it leads to emptied.
-    std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, rustix::fs::OFlags::NOFOLLOW.bits() as i32);
+    std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, disk::NO_LINK);
     let file = ask(Call::Lock(path), || options.open(path)).map_err(failed)?;
     match way(&file) {
         Ok(()) => Ok(file),
         Err(TryLockError::WouldBlock) => {
-            let holder = fs::read_to_string(path).unwrap_or_default();
-            let holder = holder.lines().next().unwrap_or("unknown").chars().take(200).collect();
-            Err(StoreError::Held { path: folder.to_owned(), holder })
+            Err(StoreError::Held { path: folder.to_owned(), holder: holder(path) })
         }
         Err(TryLockError::Error(source)) => {
             Err(StoreError::Io { path: folder.to_owned(), action: "lock the folder", source })
+        }
+    }
+}
+
+/// What the lock file says; whoever has just locked it is about to write that.
+fn holder(path: &Path) -> String {
+    let begun = Instant::now();
+    loop {
+        let text = fs::read_to_string(path).unwrap_or_default();
+        match text.lines().next() {
+            Some(line) => return line.chars().take(200).collect(),
+            None if begun.elapsed() > SIGNS_WITHIN => return "which has not said who it is".into(),
+            None => std::thread::sleep(Duration::from_millis(5)),
         }
     }
 }
@@ -214,7 +230,8 @@ fn lock(path: &Path, way: impl Fn(&File) -> Result<(), TryLockError>) -> Result<
 fn share(path: &Path) -> Result<File, StoreError> {
     if let Ok(alone) = lock(path, File::try_lock) {
         let folder = path.parent().unwrap_or(path);
-        let failed = |source| StoreError::Io { path: folder.to_owned(), action: "clear up the folder", source };
+        let failed =
+            |source| StoreError::Io { path: folder.to_owned(), action: "clear up the folder", source };
         clear_parts(folder).map_err(failed)?;
         drop(alone);
     }
@@ -271,8 +288,11 @@ pub fn make_folder(path: &Path) -> Result<(), StoreError> {
         Ok(meta) if meta.is_symlink() => not("a symbolic link"),
         Ok(meta) if !meta.is_dir() => not("a file"),
         Ok(_) => Ok(()),
-        Err(_) => make_folders(path)
-            .map_err(|source| StoreError::Io { path: path.to_owned(), action: "make the folder", source }),
+        Err(_) => make_folders(path).map_err(|source| StoreError::Io {
+            path: path.to_owned(),
+            action: "make the folder",
+            source,
+        }),
     }
 }
 

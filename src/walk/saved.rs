@@ -84,8 +84,7 @@ impl State {
     /// A checkpoint that is harmed, or whose counts are not those of this run.
     pub fn restore(&mut self, network: &Network, saved: &mut Saved) -> Result<(), Harmed> {
         let file = format!("checkpoint of replicate {}", saved.label.replicate);
-        let wrong =
-            |what: &str| Harmed::new(file.clone(), format!("{what} cannot be of this run"));
+        let wrong = |what: &str| Harmed::new(file.clone(), format!("{what} cannot be of this run"));
         let words: Vec<u64> = fixed(saved, "words", 18)?;
         let reals: Vec<f64> = fixed(saved, "reals", 2)?;
         if words[0] != self.seed || words[1] != self.run || words[4] != self.passive.kind() {

@@ -81,7 +81,8 @@ impl Disk for Notes {
         let kind = if matches!(call, Call::SyncFolder(_)) { "names".into() } else { kind };
         let kind = if matches!(call, Call::RemoveFolder(_)) { "clear".into() } else { kind };
         let mut notes = self.0.lock().unwrap();
-        for part in [kind.as_bytes(), &[u8::from(result.is_ok())], path.as_os_str().as_encoded_bytes(), bytes] {
+        for part in [kind.as_bytes(), &[u8::from(result.is_ok())], path.as_os_str().as_encoded_bytes(), bytes]
+        {
             notes.write_all(&(part.len() as u64).to_le_bytes())?;
             notes.write_all(part)?;
         }

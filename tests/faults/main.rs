@@ -60,7 +60,8 @@ struct Work {
 
 const SCENE: &str = "seed = 3\nreplicates = 2\nengine = \"particles\"\n[filter]\ncurve = \"shire2016-cu1.5-loose\"\n[base]\ncu = 1.5\n\
     d85_at_dc = 5\nn_base = 2000\n[network]\nnx = 4\nny = 4\nnz = 5\n[record]\nsensitivity = [2.0]\nsensitivity_replicates = 1\n";
-const FILTER: &str = "[filter]\ncu = 1.5\ndensity = \"loose\"\n[packing]\ngrains = 150\nstiffness_ratio = 0.01\n";
+const FILTER: &str =
+    "[filter]\ncu = 1.5\ndensity = \"loose\"\n[packing]\ngrains = 150\nstiffness_ratio = 0.01\n";
 const PLAN: &str = "title = \"two\"\nseed = 5\n[set]\nreplicates = 2\nnetwork = { nx = 4, ny = 4, nz = 5 }\n\
     base = { n_base = 2000 }\nengine = \"particles\"\nrecord = { sensitivity = [] }\n\
     [[factor]]\nname = \"cu_b\"\nsetting = \"base.cu\"\nvalues = [1.5, 3]\n";
@@ -68,7 +69,17 @@ const PLAN: &str = "title = \"two\"\nseed = 5\n[set]\nreplicates = 2\nnetwork = 
 const RUN: Work = Work {
     name: "run",
     files: &[("scene.toml", SCENE)],
-    command: &["run", "scene.toml", "--out", "r", "--threads", "1", "-q", "--checkpoint-every", "70increments"],
+    command: &[
+        "run",
+        "scene.toml",
+        "--out",
+        "r",
+        "--threads",
+        "1",
+        "-q",
+        "--checkpoint-every",
+        "70increments",
+    ],
     out: "r",
     killed_at: None,
     one_in: 19,
@@ -98,16 +109,26 @@ const PACKING: Work = Work {
     files: &[("filter.toml", FILTER)],
     command: &["pack", "filter.toml", "--out", "p", "--threads", "1", "-q", "--checkpoint-every", "50ms"],
     out: "p",
-    killed_at: None,
     one_in: 25,
+    ..RUN
 };
 const CAMPAIGN: Work = Work {
     name: "campaign",
     files: &[("plan.toml", PLAN)],
-    command: &["campaign", "plan.toml", "--out", "c", "--threads", "1", "-q", "--checkpoint-every", "100increments"],
+    command: &[
+        "campaign",
+        "plan.toml",
+        "--out",
+        "c",
+        "--threads",
+        "1",
+        "-q",
+        "--checkpoint-every",
+        "100increments",
+    ],
     out: "c",
-    killed_at: None,
     one_in: 31,
+    ..RUN
 };
 
 /// Input or output error, disk full, interrupted.
@@ -171,7 +192,9 @@ impl Work {
         match output.status.code() {
             Some(0) => {}
             // All but the page may be there.
-            Some(2) if stderr(&output).contains("finished") || stderr(&output).contains("holds a packing") => {
+            Some(2)
+                if stderr(&output).contains("finished") || stderr(&output).contains("holds a packing") =>
+            {
                 let output = call(at, &["report", out], None);
                 assert!(output.status.success(), "{}", stderr(&output));
             }
@@ -305,7 +328,10 @@ fn each_failure(work: &Work) {
                 let after = generations(root.path());
                 if !root.path().join(work.out).join("manifest.json").exists() {
                     for (name, generation) in &before {
-                        assert!(after.get(name).is_some_and(|now| now >= generation), "{what}: {name:?} is lost");
+                        assert!(
+                            after.get(name).is_some_and(|now| now >= generation),
+                            "{what}: {name:?} is lost"
+                        );
                     }
                 }
                 work.go_on(root.path());
@@ -330,7 +356,8 @@ fn power_cuts() {
         copy(ready.path(), whole.path());
         let calls = work.noted(whole.path());
         let expected = lasting(&whole.path().join(work.out));
-        let syncs: Vec<usize> = (0..calls.len()).filter(|&at| ["sync", "names"].contains(&calls[at].kind.as_str())).collect();
+        let syncs: Vec<usize> =
+            (0..calls.len()).filter(|&at| ["sync", "names"].contains(&calls[at].kind.as_str())).collect();
         let (mut cuts, mut cases) = (0, 0);
         for (index, &sync) in syncs.iter().enumerate() {
             for after in [sync, sync + 1] {
@@ -345,7 +372,7 @@ fn power_cuts() {
                 for (kind, unsynced) in all.into_iter().enumerate() {
                     cases += 1;
                     let ours = luck as usize * all.len() + kind;
-                    if !is_all() && ours % (2 * work.one_in) != 0 {
+                    if !is_all() && !ours.is_multiple_of(2 * work.one_in) {
                         continue;
                     }
                     let root = room();
@@ -357,11 +384,19 @@ fn power_cuts() {
                     work.go_on(root.path());
                     let found = lasting(&root.path().join(work.out));
                     let what = format!("{}: {unsynced:?} after call {after}", work.name);
-                    assert_eq!(found.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>(), "{what}");
+                    assert_eq!(
+                        found.keys().collect::<Vec<_>>(),
+                        expected.keys().collect::<Vec<_>>(),
+                        "{what}"
+                    );
                     assert!(found == expected, "{what}: other results");
                 }
             }
         }
-        println!("  {}: {} syncs, {cuts} of {cases} power cuts tried; 0 other results", work.name, syncs.len());
+        println!(
+            "  {}: {} syncs, {cuts} of {cases} power cuts tried; 0 other results",
+            work.name,
+            syncs.len()
+        );
     }
 }

@@ -72,7 +72,8 @@ impl Model {
                 self.now.insert(to.into(), content);
             }
             "names" => {
-                let inside = |name: &PathBuf| name.parent() == Some(&path) || (path == Path::new(".") && is_top(name));
+                let inside =
+                    |name: &PathBuf| name.parent() == Some(&path) || (path == Path::new(".") && is_top(name));
                 self.certain.retain(|name, _| !inside(name));
                 let here = self.now.iter().filter(|(name, _)| inside(name));
                 self.certain.extend(here.map(|(name, content)| (name.clone(), *content)));

@@ -72,13 +72,15 @@ pub fn scene(bytes: &[u8]) {
     // A lattice that is changed void by void is only built where that is quick; files are other readers' matter.
     let voids = scene.network.shape().map(|lengths| lengths.iter().map(|&n| f64::from(n)).product::<f64>());
     let given = matches!(scene.curve, Some(CurveSource::Shipped(_)));
-    if !given || voids.is_none_or(|voids| voids > 1000.0) || String::from_utf8_lossy(bytes).contains("sieve") {
+    if !given || voids.is_none_or(|voids| voids > 1000.0) || String::from_utf8_lossy(bytes).contains("sieve")
+    {
         return;
     }
     let Some(case) = shown(Case::new(scene)) else { return };
     let text = resolved(&case);
     if case.inputs.is_empty() {
-        let again = Scene::parse(text.as_bytes(), "resolved.toml", &[]).unwrap_or_else(|e| panic!("{text}: {e}"));
+        let again =
+            Scene::parse(text.as_bytes(), "resolved.toml", &[]).unwrap_or_else(|e| panic!("{text}: {e}"));
         let again = Case::new(again).unwrap_or_else(|e| panic!("{text}: {e}"));
         assert_eq!(resolved(&again), text);
     }
@@ -125,7 +127,9 @@ pub fn network(bytes: &[u8]) {
 pub fn packing(bytes: &[u8]) {
     let Some(packing) = shown(Packing::parse("packing", bytes)) else { return };
     let again = Packing::parse("again", packing.to_csv().as_bytes()).unwrap();
-    let bits = |p: &Packing| [&p.x, &p.y, &p.z, &p.diameter].map(|c| c.iter().map(|v| v.to_bits()).collect::<Vec<_>>());
+    let bits = |p: &Packing| {
+        [&p.x, &p.y, &p.z, &p.diameter].map(|c| c.iter().map(|v| v.to_bits()).collect::<Vec<_>>())
+    };
     assert_eq!((again.cell, bits(&again)), (packing.cell, bits(&packing)));
 }
 
@@ -226,7 +230,14 @@ impl SmallRun {
             if let Some((folder, increment)) = kept
                 && state.increment == increment
             {
-                let label = Label { scene: "small".into(), seed: 11, run: 1, generation: 2, increment, ..Label::default() };
+                let label = Label {
+                    scene: "small".into(),
+                    seed: 11,
+                    run: 1,
+                    generation: 2,
+                    increment,
+                    ..Label::default()
+                };
                 let parts = Kept::new(state);
                 let mut sections = parts.sections(state);
                 sections.push(voidwalk::store::checkpoint::Section::new("done", done));
@@ -258,7 +269,9 @@ pub fn with_right_sums(mut bytes: Vec<u8>) -> Vec<u8> {
         let Some(size) = count.checked_mul(element).filter(|size| *size <= length) else { break };
         let Some(data) = offset.checked_add(size).and_then(|end| bytes.get(offset..end)) else { break };
         let sums: Vec<u8> = data.chunks(PIECE).flat_map(|piece| xxh3_64(piece).to_le_bytes()).collect();
-        let Some(place) = bytes.get_mut(sum_at..sum_at + sums.len()).filter(|_| sum_at + sums.len() <= header - 8) else {
+        let Some(place) =
+            bytes.get_mut(sum_at..sum_at + sums.len()).filter(|_| sum_at + sums.len() <= header - 8)
+        else {
             break;
         };
         place.copy_from_slice(&sums);

@@ -220,7 +220,9 @@ impl Harmed {
     fn unread(path: &Path, error: &io::Error) -> Self {
         let unread = error.kind() != io::ErrorKind::UnexpectedEof;
         let problem = match unread {
-            true => format!("cannot be read: {error}; it is left as it is, and nothing was taken in its place"),
+            true => {
+                format!("cannot be read: {error}; it is left as it is, and nothing was taken in its place")
+            }
             false => "ends early".into(),
         };
         Self { file: path.display().to_string(), problem, unread }

@@ -78,8 +78,10 @@ fn no_harm_goes_unnoticed() {
     };
     let step = if all { 1 } else { 37 };
     let first = header.next_multiple_of(4096) + 64;
-    let edges = (first..whole.len()).step_by(PIECE).chain([whole.len()]).flat_map(|edge| [edge - 1, edge, edge + 1]);
-    let lengths: Vec<usize> = (0..=4096).step_by(step).chain(edges.filter(|&length| length < whole.len())).collect();
+    let edges =
+        (first..whole.len()).step_by(PIECE).chain([whole.len()]).flat_map(|edge| [edge - 1, edge, edge + 1]);
+    let lengths: Vec<usize> =
+        (0..=4096).step_by(step).chain(edges.filter(|&length| length < whole.len())).collect();
     for &length in &lengths {
         File::options().write(true).open(&path).unwrap().set_len(length as u64).unwrap();
         older(&format!("cut to {length}"));
@@ -98,7 +100,12 @@ fn no_harm_goes_unnoticed() {
         write(bit / 8, &whole[bit / 8..][..1]);
     }
     assert_eq!(newest(root.path(), "x", &"s".repeat(32)).unwrap().0.unwrap().label.generation, 2);
-    println!("{} lengths, {} bits of the header, {} of the rest", lengths.len(), header_bits.len(), payload_bits.len());
+    println!(
+        "{} lengths, {} bits of the header, {} of the rest",
+        lengths.len(),
+        header_bits.len(),
+        payload_bits.len()
+    );
     let mut newer = whole.clone();
     newer[8] = 2;
     for (bytes, what) in [(&newer[..], "a newer format"), (b"something else altogether", "another file")] {

@@ -68,7 +68,8 @@ fn picked<T: Copy>(count: usize, palette: &[T], mut seed: u64) -> Vec<T> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    // An interpreter that checks every access is a thousand times slower.
+    #![proptest_config(ProptestConfig::with_cases(if cfg!(miri) { 6 } else { 400 }))]
 
     /// Any number of particles, passive, coarse, as wide as a constriction to the bit; closed constrictions,
     /// voids without open exits, everything closed.
@@ -105,6 +106,7 @@ proptest! {
 
 /// Thresholds whose sixteen top bits equal the draw of a particle, just above and just below it.
 #[test]
+#[cfg_attr(miri, ignore = "hours of it")]
 fn a_draw_that_equals_a_threshold_is_decided_by_all_of_its_bits() {
     let mut lanes = key(3).lanes();
     let extension = lanes.extension();
