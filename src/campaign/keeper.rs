@@ -134,7 +134,7 @@ impl Keeper {
         if let Ok(mut all) = self.harmed.lock() {
             all.extend(harmed.iter().map(ToString::to_string));
         }
-        let Some(mut saved) = saved else { return Ok(None) };
+        let Some(saved) = saved else { return Ok(None) };
         if let Ok(mut generations) = self.generations.lock() {
             generations.insert(name, saved.label.generation);
         }

@@ -10,8 +10,9 @@ use std::fs::File;
 use std::io::{self, Read, Write};
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
+use std::thread::JoinHandle;
 
 /// One call.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -109,10 +110,16 @@ pub(super) const NO_LINK: i32 = rustix::fs::OFlags::NOFOLLOW.bits() as i32;
 /// next taken.
 pub(super) const PART: &str = ".voidwalk-part-";
 
+/// After so many bytes more, a file that is being written is sent to the disk while the writing goes on (bytes).
+const SEND_EVERY: u64 = 64 << 20;
+
 /// A new file beside the one that it is to become; removed unless it became it.
 pub(super) struct Part {
     path: PathBuf,
-    file: File,
+    file: Arc<File>,
+    /// Bytes written since the file was last sent to the disk, and the thread that is sending it.
+    waiting: u64,
+    sending: Option<JoinHandle<io::Result<()>>>,
     whole: bool,
 }
 
@@ -124,7 +131,10 @@ impl Part {
             let path = folder.join(format!("{PART}{}-{number}", std::process::id()));
             let create = || File::options().write(true).create_new(true).open(&path);
             match ask(Call::Create(&path), create) {
-                Ok(file) => return Ok(Self { path, file, whole: false }),
+                Ok(file) => {
+                    let file = Arc::new(file);
+                    return Ok(Self { path, file, waiting: 0, sending: None, whole: false });
+                }
                 // Left by a killed process of the same number, or made by one of another machine.
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(error),
@@ -133,7 +143,8 @@ impl Part {
     }
 
     /// After an error of this, the file is given up: a second sync may say that all is well when nothing was written.
-    pub fn sync(&self) -> io::Result<()> {
+    pub fn sync(&mut self) -> io::Result<()> {
+        self.sent()?;
         ask(Call::Sync(&self.path), || self.file.sync_all())
     }
 
@@ -142,13 +153,37 @@ impl Part {
         self.whole = true;
         Ok(())
     }
+
+    /// Has the disk work on what is there, if it is much and the disk is idle.
+    fn send(&mut self) -> io::Result<()> {
+        if self.waiting < SEND_EVERY || self.sending.as_ref().is_some_and(|thread| !thread.is_finished()) {
+            return Ok(());
+        }
+        self.sent()?;
+        let (path, file) = (self.path.clone(), Arc::clone(&self.file));
+        let send = move || ask(Call::Sync(&path), || file.sync_data());
+        self.sending = Some(std::thread::Builder::new().spawn(send)?);
+        self.waiting = 0;
+        Ok(())
+    }
+
+    /// Waits for what is being sent; the system tells of an error only once.
+    fn sent(&mut self) -> io::Result<()> {
+        match self.sending.take().map(JoinHandle::join) {
+            None => Ok(()),
+            Some(Ok(result)) => result,
+            Some(Err(_)) => Err(io::Error::other("the thread that syncs has panicked")),
+        }
+    }
 }
 
 impl Write for Part {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let Self { path, file, .. } = self;
         // All of it, so that a disk that takes notes knows what is in the file.
-        ask(Call::Write(path, bytes), || file.write_all(bytes)).map(|()| bytes.len())
+        ask(Call::Write(&self.path, bytes), || (&*self.file).write_all(bytes))?;
+        self.waiting += bytes.len() as u64;
+        self.send()?;
+        Ok(bytes.len())
     }
 
     fn flush(&mut self) -> io::Result<()> {
@@ -158,6 +193,7 @@ impl Write for Part {
 
 impl Drop for Part {
     fn drop(&mut self) {
+        let _ = self.sent();
         if !self.whole {
             // If this fails too, whoever takes the folder next removes it.
             let _ = ask(Call::Remove(&self.path), || std::fs::remove_file(&self.path));

@@ -72,8 +72,7 @@ pub fn scene(bytes: &[u8]) {
     // A lattice that is changed void by void is only built where that is quick; files are other readers' matter.
     let voids = scene.network.shape().map(|lengths| lengths.iter().map(|&n| f64::from(n)).product::<f64>());
     let given = matches!(scene.curve, Some(CurveSource::Shipped(_)));
-    if !given || voids.is_none_or(|voids| voids > 1000.0) || String::from_utf8_lossy(bytes).contains("sieve")
-    {
+    if !given || voids.is_none_or(|voids| voids > 60.0) || String::from_utf8_lossy(bytes).contains("sieve") {
         return;
     }
     let Some(case) = shown(Case::new(scene)) else { return };

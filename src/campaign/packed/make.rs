@@ -143,7 +143,7 @@ fn kept(folder: &Folder, order: &Order, watch: &Watch) -> Result<Option<(Compres
     };
     let (saved, harmed) = newest(folder.path(), STATE, &order.fingerprint()).map_err(refused)?;
     harmed.iter().for_each(watch.warn);
-    let Some(mut saved) = saved else { return Ok(None) };
+    let Some(saved) = saved else { return Ok(None) };
     let seconds = saved.read::<f64>("seconds").map_err(refused)?;
     let state = saved.read::<u8>("state").map_err(refused)?;
     let compression = Compression::from_bytes(&order.compression, &state);

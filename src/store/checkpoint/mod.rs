@@ -33,10 +33,12 @@
 //! that costs is one copy in memory; `results/robustness-2026-11-21.md` holds the measured seconds.
 
 use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io::{self, Read, Write};
+use std::os::unix::fs::FileExt;
 use std::path::{Path, PathBuf};
 
 use bytemuck::Pod;
+use rayon::prelude::*;
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
 use super::StoreError;
@@ -96,27 +98,28 @@ impl<'a> Section<'a> {
         self.parts.iter().map(|part| part.len() as u64).sum()
     }
 
-    /// XXH3 of each piece.
+    /// XXH3 of each piece, on as many threads as there are.
     fn sums(&self) -> Vec<u64> {
-        let (mut sums, mut hash, mut filled) = (Vec::new(), Xxh3::new(), 0);
+        let mut pieces: Vec<Vec<&[u8]>> = Vec::new();
+        let mut room = 0;
         for part in &self.parts {
             let mut rest = *part;
             while !rest.is_empty() {
-                let (now, later) = rest.split_at(rest.len().min(PIECE - filled));
-                hash.update(now);
-                filled += now.len();
-                rest = later;
-                if filled == PIECE {
-                    sums.push(hash.digest());
-                    hash.reset();
-                    filled = 0;
+                if room == 0 {
+                    pieces.push(Vec::new());
+                    room = PIECE;
                 }
+                let (now, later) = rest.split_at(rest.len().min(room));
+                pieces.last_mut().expect("one was pushed").push(now);
+                (room, rest) = (room - now.len(), later);
             }
         }
-        if filled > 0 {
-            sums.push(hash.digest());
-        }
-        sums
+        let sum = |piece: Vec<&[u8]>| {
+            let mut hash = Xxh3::new();
+            piece.iter().for_each(|part| hash.update(part));
+            hash.digest()
+        };
+        pieces.into_par_iter().map(sum).collect()
     }
 }
 
@@ -299,7 +302,7 @@ impl Saved {
     ///
     /// # Errors
     /// As [`Saved::count`]; a piece whose checksum is wrong.
-    pub fn read<T: Pod>(&mut self, name: &str) -> Result<Vec<T>, Harmed> {
+    pub fn read<T: Pod>(&self, name: &str) -> Result<Vec<T>, Harmed> {
         // The header's length bounds what is allocated: the file is as long as it says.
         let mut all = Vec::with_capacity(self.count::<T>(name)?);
         self.read_pieces::<T>(name, |piece| all.extend_from_slice(piece))?;
@@ -310,61 +313,60 @@ impl Saved {
     ///
     /// # Errors
     /// As [`Saved::read`].
-    pub fn read_pieces<T: Pod>(&mut self, name: &str, mut take: impl FnMut(&[T])) -> Result<(), Harmed> {
+    pub fn read_pieces<T: Pod>(&self, name: &str, mut take: impl FnMut(&[T])) -> Result<(), Harmed> {
         let entry = self.entry::<T>(name)?;
-        let (offset, left, sums) = (entry.offset, entry.count * entry.element, entry.sums.clone());
+        let (mut offset, mut left, sums) = (entry.offset, entry.count * entry.element, entry.sums.clone());
         let mut words: Vec<T> = vec![T::zeroed(); PIECE.min(left as usize).div_ceil(size_of::<T>())];
-        self.pieces(name, offset, left, &sums, &mut words, &mut take)
+        for (index, sum) in sums.iter().enumerate() {
+            let now = left.min(PIECE as u64) as usize;
+            let piece = &mut bytemuck::cast_slice_mut::<T, u8>(&mut words)[..now];
+            let read = ask(Call::Read(&self.path), || self.file.read_exact_at(piece, offset));
+            read.map_err(|e| Harmed::unread(&self.path, &e))?;
+            if xxh3_64(piece) != *sum {
+                return Err(self.wrong_sum(name, index));
+            }
+            take(&words[..now / size_of::<T>()]);
+            (offset, left) = (offset + now as u64, left - now as u64);
+        }
+        Ok(())
     }
 
-    /// Reads every piece of every section, and what lies between them, and checks it.
+    /// Reads every piece of every section, and what lies between them, and checks it, on as many threads as there are.
     ///
     /// # Errors
-    /// The first that is wrong.
-    pub fn check(&mut self) -> Result<(), Harmed> {
-        let mut piece = vec![0u8; PIECE];
+    /// One that is wrong.
+    pub fn check(&self) -> Result<(), Harmed> {
+        let read = |offset: u64, bytes: &mut [u8]| {
+            let read = ask(Call::Read(&self.path), || self.file.read_exact_at(bytes, offset));
+            read.map_err(|e| Harmed::unread(&self.path, &e))
+        };
         for &(offset, length) in &self.gaps {
-            let gap = &mut piece[..length];
-            let Self { file, path, .. } = self;
-            let read = |file: &mut File, gap: &mut [u8]| {
-                file.seek(SeekFrom::Start(offset)).and_then(|_| file.read_exact(gap))
-            };
-            ask(Call::Read(path), || read(file, gap)).map_err(|e| Harmed::unread(path, &e))?;
+            let mut gap = vec![0; length];
+            read(offset, &mut gap)?;
             if gap.iter().any(|&byte| byte != 0) {
                 return Err(self.harmed(format!("is not zero between its sections, near byte {offset}")));
             }
         }
-        for number in 0..self.sections.len() {
-            let entry = &self.sections[number];
-            let (name, sums) = (entry.name.clone(), entry.sums.clone());
-            self.pieces(&name, entry.offset, entry.count * entry.element, &sums, &mut piece, &mut |_| {})?;
-        }
-        Ok(())
+        let pieces = self.sections.iter().flat_map(|entry| {
+            let size = entry.count * entry.element;
+            entry.sums.iter().enumerate().map(move |(index, sum)| {
+                let from = index as u64 * PIECE as u64;
+                (entry, index, entry.offset + from, (size - from).min(PIECE as u64) as usize, *sum)
+            })
+        });
+        let pieces: Vec<_> = pieces.collect();
+        pieces.into_par_iter().try_for_each_init(Vec::new, |bytes, (entry, index, offset, length, sum)| {
+            bytes.resize(length, 0);
+            read(offset, bytes)?;
+            match xxh3_64(bytes) == sum {
+                true => Ok(()),
+                false => Err(self.wrong_sum(&entry.name, index)),
+            }
+        })
     }
 
-    /// Reads `left` bytes from `offset` on through `words`, a piece at a time, and hands on each whose sum is right.
-    fn pieces<T: Pod>(
-        &mut self,
-        name: &str,
-        offset: u64,
-        mut left: u64,
-        sums: &[u64],
-        words: &mut [T],
-        take: &mut impl FnMut(&[T]),
-    ) -> Result<(), Harmed> {
-        let Self { file, path, .. } = self;
-        file.seek(SeekFrom::Start(offset)).map_err(|e| Harmed::unread(path, &e))?;
-        for (index, sum) in sums.iter().enumerate() {
-            let now = left.min(PIECE as u64) as usize;
-            let piece = &mut bytemuck::cast_slice_mut::<T, u8>(words)[..now];
-            ask(Call::Read(path), || file.read_exact(piece)).map_err(|e| Harmed::unread(path, &e))?;
-            if xxh3_64(piece) != *sum {
-                return Err(self.harmed(format!("section {name}, piece {index}: its checksum is wrong")));
-            }
-            take(&words[..now / size_of::<T>()]);
-            left -= now as u64;
-        }
-        Ok(())
+    fn wrong_sum(&self, name: &str, index: usize) -> Harmed {
+        self.harmed(format!("section {name}, piece {index}: its checksum is wrong"))
     }
 }
 
@@ -491,7 +493,7 @@ pub fn newest(folder: &Path, name: &str, scene: &str) -> Result<(Option<Saved>, 
         }
     }
     found.sort_by_key(|saved| std::cmp::Reverse(saved.label.generation));
-    for mut saved in found {
+    for saved in found {
         match saved.check() {
             Ok(()) => return Ok((Some(saved), harmed)),
             Err(error) if error.unread => return Err(error),

@@ -1,5 +1,7 @@
 //! Checkpoints that come back, and harm that does not go unnoticed.
 
+use std::io::{Seek, SeekFrom};
+
 use super::*;
 
 fn label(generation: u64) -> Label {
@@ -26,7 +28,7 @@ fn what_is_kept_comes_back_and_the_newest_is_taken() {
     for generation in 1..=3 {
         let (numbers, words) = kept(root.path(), generation);
         let (saved, harmed) = newest(root.path(), "x", &"s".repeat(32)).unwrap();
-        let mut saved = saved.unwrap();
+        let saved = saved.unwrap();
         assert!(harmed.is_empty());
         assert_eq!(saved.label, label(generation));
         assert_eq!(saved.read::<u32>("numbers").unwrap(), numbers);
@@ -44,7 +46,7 @@ fn sections_of_many_pieces_and_odd_parts_come_back() {
     let parts: Vec<&[u32]> = column.chunks(12_345).collect();
     keep(root.path(), "x", &label(1), &[Section::parts("c", parts), Section::new::<u64>("empty", &[])])
         .unwrap();
-    let mut saved = newest(root.path(), "x", &"s".repeat(32)).unwrap().0.unwrap();
+    let saved = newest(root.path(), "x", &"s".repeat(32)).unwrap().0.unwrap();
     assert_eq!(saved.read::<u32>("c").unwrap(), column);
     assert!(saved.read::<u64>("empty").unwrap().is_empty());
 }
