@@ -1,8 +1,10 @@
 //! What a checkpoint of a long run costs, against writing and syncing the same bytes, and what resuming costs against reading them.
 //!
 //! `cargo bench --bench checkpoint -- FOLDER [N]` walks N particles (2e8 unless said otherwise; 8 bytes each in memory and twice
-//! on the disk) one by one, keeps the walk after five increments with all of them moving, in turns with a plain
-//! file of the same bytes, and goes on from the last one. Seconds, by increment. Files go into FOLDER and are removed.
+//! on the disk) one by one, keeps the walk after each of seven increments with all of them moving, in turns with a plain file of the
+//! same bytes that takes its place in the same way, and goes on from the last one. Seconds, by increment; in the first two the disk
+//! has not held any of the files before, so they do not count. `cpu` is the processor time of all threads. Files go into FOLDER
+//! and are removed.
 
 use std::fs::File;
 use std::io::{Read, Write};
@@ -16,7 +18,8 @@ use voidwalk::store::checkpoint::{Label, keep, newest};
 use voidwalk::walk::{Engine, Kept, Plan, Progress, SizeClasses, State, Walk};
 
 const SEED: u64 = 1;
-const ROUNDS: u64 = 5;
+/// With two that do not count.
+const ROUNDS: u64 = 7;
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|a| a != "--bench").collect();
@@ -39,38 +42,44 @@ fn main() {
         State::new(&network, &supply, classes, open.clone(), SEED, 1)
     };
     let mut state = fresh();
-    println!("round,moving,bytes,checkpoint_s,plain_s,ratio");
+    println!("round,moving,bytes,checkpoint_s,checkpoint_cpu_s,plain_s,plain_cpu_s,ratio");
     let result = Walk::new(&network, &supply, &state).run(&mut state, &mut |state| {
-        let (checkpoint, bytes) = timed(|| kept(folder.path(), state));
-        let (plain, ()) = timed(|| plain(folder.path(), state, bytes));
+        let ([checkpoint, cpu], bytes) = timed(|| kept(folder.path(), state));
+        let ([plain, plain_cpu], ()) = timed(|| plain(folder.path(), state, bytes));
         let (round, moving) = (state.increment, state.tally.moving);
-        println!("{round},{moving},{bytes},{checkpoint:.3},{plain:.3},{:.3}", checkpoint / plain);
+        let ratio = checkpoint / plain;
+        println!("{round},{moving},{bytes},{checkpoint:.3},{cpu:.3},{plain:.3},{plain_cpu:.3},{ratio:.3}");
         if round < ROUNDS { Progress::Continue } else { Progress::Stop }
     });
     assert!(result.is_err(), "it was stopped");
     let (moving, increment) = (state.tally.moving, state.increment);
     drop(state);
-    println!("round,bytes,plain_read_s,resume_s,more_s");
+    println!("round,bytes,plain_read_s,resume_s,resume_cpu_s,more_s");
     let path = folder.path().join(format!("x.{}", ROUNDS % 2));
-    for round in 1..=ROUNDS {
+    for round in 1..=5 {
         forget(&path);
-        let (read, bytes) = timed(|| read(&path));
+        let ([read, _], bytes) = timed(|| read(&path));
         forget(&path);
-        let (resume, state) = timed(|| {
+        let ([resume, cpu], state) = timed(|| {
             let mut saved = newest(folder.path(), "x", "").unwrap().0.unwrap();
             let mut state = fresh();
             state.restore(&network, &mut saved).unwrap();
             state
         });
         assert_eq!((state.tally.moving, state.increment), (moving, increment));
-        println!("{round},{bytes},{read:.3},{resume:.3},{:.3}", resume - read);
+        println!("{round},{bytes},{read:.3},{resume:.3},{cpu:.3},{:.3}", resume - read);
     }
 }
 
-fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
-    let begin = Instant::now();
+/// Wall and processor time (s), and what the work gives.
+fn timed<T>(work: impl FnOnce() -> T) -> ([f64; 2], T) {
+    let cpu = || {
+        let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+        time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+    };
+    let (begin, spent) = (Instant::now(), cpu());
     let value = work();
-    (begin.elapsed().as_secs_f64(), value)
+    ([begin.elapsed().as_secs_f64(), cpu() - spent], value)
 }
 
 /// Keeps the walk; gives the length of the file.
@@ -82,7 +91,8 @@ fn kept(folder: &Path, state: &State) -> u64 {
 
 /// A plain file with the same columns, filled up to the same length, and synced.
 fn plain(folder: &Path, state: &State, bytes: u64) {
-    let mut file = File::create(folder.join("plain")).unwrap();
+    let beside = folder.join("plain");
+    let mut file = File::create(&beside).unwrap();
     let mut left = bytes;
     let mut write = |part: &[u8]| {
         left -= part.len() as u64;
@@ -96,6 +106,7 @@ fn plain(folder: &Path, state: &State, bytes: u64) {
     }
     file.write_all(&vec![0; left as usize]).unwrap();
     file.sync_all().unwrap();
+    std::fs::rename(beside, folder.join(format!("plain.{}", state.increment % 2))).unwrap();
 }
 
 /// Takes a file out of the memory that the system keeps of the disk.
