@@ -1,5 +1,5 @@
 //! What is asked of the disk: every call of the program that makes, changes, reads or removes a file of its own goes through
-//! [`ask`], and through one [`Disk`].
+//! `ask`, and through one [`Disk`].
 //!
 //! A process has one disk, so it is process-wide and not handed from function to function: a writer that has no folder at
 //! hand (a report, a ledger, a mapped column) cannot forget it, and nothing but a test ever sets it. The real disk is the
