@@ -319,7 +319,7 @@ fn walk(
     overseer: &Overseer,
 ) -> Result<bool, CaseProblem> {
     let name = &ready.planned.name;
-    let resumes = Keeper::is_in(folder.path());
+    let resumes = Keeper::is_in(folder.path())?;
     (overseer.tell)(name, News::Begun { resumes });
     let (begun, started) = (Instant::now(), SystemTime::now());
     let keeper = Keeper::new(folder, &ready.fingerprint, overseer.keep_every)?;
@@ -389,8 +389,11 @@ impl State {
             Err(other) => Self::Failed(other.to_string()),
             Ok(folder) => match folder.read(PROBLEM) {
                 Ok(Some(text)) => Self::Failed(String::from_utf8_lossy(&text).trim_end().to_owned()),
-                _ if Keeper::is_in(folder.path()) => Self::Kept,
-                _ => Self::NotBegun,
+                _ => match Keeper::is_in(folder.path()) {
+                    Ok(true) => Self::Kept,
+                    Ok(false) => Self::NotBegun,
+                    Err(error) => Self::Failed(error.to_string()),
+                },
             },
         }
     }

@@ -5,6 +5,7 @@
 //! often as [`Every`] says, and on a stop.
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Mutex;
@@ -58,6 +59,17 @@ impl FromStr for Every {
                 _ => Err(wrong()),
             },
             None => humantime::parse_duration(text).map(Self::Time).map_err(|_| wrong()),
+        }
+    }
+}
+
+impl fmt::Display for Every {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Time(time) => {
+                write!(f, "{}", humantime::format_duration(*time).to_string().replace(' ', ""))
+            }
+            Self::Increments(number) => write!(f, "{number}increments"),
         }
     }
 }

@@ -99,8 +99,7 @@ pub fn write_scripts(args: &CampaignArgs, plan: &Plan, orders: &[(&str, Order)])
         options.extend(["--packings".to_owned(), absolute.display().to_string()]);
     }
     let collecting = options.clone();
-    let every = humantime::format_duration(args.checkpoint_every).to_string().replace(' ', "");
-    options.extend(["--checkpoint-every".to_owned(), every]);
+    options.extend(["--checkpoint-every".to_owned(), args.checkpoint_every.to_string()]);
     options.extend(args.memory.iter().flat_map(|bytes| ["--memory".to_owned(), bytes.to_string()]));
     let program = std::env::current_exe().map_err(Ending::failed)?;
     let jobs = Jobs {
