@@ -9,7 +9,7 @@
 //! Where the locks of a shared folder reach one machine only, two processes may walk one case at the same time. Both write
 //! the same bits, file by file under their final names, so that costs time and nothing else.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -37,6 +37,9 @@ const PROBLEM: &str = "problem.txt";
 
 /// How often a process looks whether others are done: at first, and after some waiting.
 const LOOK: (Duration, Duration) = (Duration::from_millis(300), Duration::from_secs(10));
+
+/// How often results that could not be written are tried again.
+const TRIES: u32 = 3;
 
 /// A case of a plan, worked out.
 pub struct Ready<'a> {
@@ -199,7 +202,7 @@ struct Tally {
     failed: Mutex<Vec<Failed>>,
     waiting: Mutex<BTreeSet<String>>,
     waits: AtomicUsize,
-    tried_again: Mutex<BTreeSet<String>>,
+    tries: Mutex<BTreeMap<String, u32>>,
 }
 
 impl Tally {
@@ -223,11 +226,14 @@ impl Tally {
         }
     }
 
-    /// Whether results that could not be written may be tried once more: where locks reach one machine only, another process may have
+    /// Whether results that could not be written may be tried again: where locks reach one machine only, another process may have
     /// been replacing the same files. What was walked is not walked again.
     fn may_try_again(&self, name: &str) -> bool {
         self.waits.fetch_add(1, Ordering::Relaxed);
-        self.tried_again.lock().is_ok_and(|mut names| names.insert(name.to_owned()))
+        let Ok(mut tries) = self.tries.lock() else { return false };
+        let tries = tries.entry(name.to_owned()).or_default();
+        *tries += 1;
+        *tries <= TRIES
     }
 
     /// Another process is at the case; said once.
@@ -259,7 +265,8 @@ fn pass(
             let walked = catch_unwind(AssertUnwindSafe(|| pool.install(|| one(case, out, share, overseer))));
             match walked.unwrap_or_else(|panic| Err(CaseProblem::Fault(message(&*panic)))) {
                 Err(CaseProblem::Store(StoreError::Held { .. })) => tally.wait(overseer, name),
-                Err(CaseProblem::Results(_) | CaseProblem::Finish(_)) if tally.may_try_again(name) => {}
+                Err(CaseProblem::Results(_) | CaseProblem::Finish(_) | CaseProblem::Store(_))
+                    if tally.may_try_again(name) => {}
                 Err(problem) => tally.fail(overseer, name, &problem),
                 Ok(true) => drop(tally.finished.lock().map(|mut names| names.insert(name.clone()))),
                 Ok(false) => {}
@@ -301,7 +308,10 @@ fn one(ready: &Ready, out: &Path, threads: usize, overseer: &Overseer) -> Result
     }
     match walk(ready, out, &folder, threads, overseer) {
         // Where locks reach one machine only, another may have finished it and taken the checkpoints away.
-        Err(_) if ready.line(out).is_some() => Ok(false),
+        Err(_) if ready.line(out).is_some() => {
+            keeper::discard(folder.path())?;
+            Ok(false)
+        }
         Err(problem) => {
             // What cannot be written here is told all the same.
             let _ = folder.write(PROBLEM, format!("{problem}\n").as_bytes());
