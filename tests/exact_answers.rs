@@ -3,7 +3,7 @@
 use bitvec::vec::BitVec;
 use voidwalk::constrictions::{Curve, CurveUnit, find};
 use voidwalk::gradation::{Gradation, SizeSampler};
-use voidwalk::network::{END, Network, Passage};
+use voidwalk::network::{Network, Passage};
 use voidwalk::walk::{Progress, SizeClasses, State, Supply, Walk};
 
 fn shipped(name: &str) -> Curve {
@@ -29,35 +29,6 @@ fn walk(network: &Network, supply: &Supply, seed: u64) -> (State, Vec<u64>) {
     (state, eroded.windows(2).map(|w| w[1] - w[0]).collect())
 }
 
-/// For each void, what a lone particle of diameter `d` that starts there has: the chance to leave, and
-/// (where it passes everywhere) the expected number of moves. Gauss-Seidel sweeps, downstream first.
-fn solve(network: &Network, d: f32) -> (Vec<f64>, Vec<f64>) {
-    let (mut leaves, mut moves) = (vec![0.0; network.voids()], vec![0.0; network.voids()]);
-    loop {
-        let mut change = 0f64;
-        for void in (0..network.voids()).rev() {
-            let area = |c: usize| f64::from(network.diameters()[c]).powi(2);
-            let total: f64 = network.exits(void as u32).map(area).sum();
-            let (mut chance, mut steps) = (0.0, 1.0);
-            for exit in network.exits(void as u32).filter(|&c| network.diameters()[c] >= d) {
-                let share = area(exit) / total;
-                match network.targets()[exit] {
-                    END => chance += share,
-                    to => {
-                        chance += share * leaves[to as usize];
-                        steps += share * moves[to as usize];
-                    }
-                }
-            }
-            change = change.max((chance - leaves[void]).abs()).max((steps - moves[void]).abs() / steps);
-            (leaves[void], moves[void]) = (chance, steps);
-        }
-        if change < 1e-13 {
-            return (leaves, moves);
-        }
-    }
-}
-
 fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
@@ -71,8 +42,7 @@ fn the_first_particle_passes_a_given_network_as_the_linear_solve_says() {
     for network_seed in 0..20 {
         let network = Network::cubic([5, 5, 4], &curve, 1.0, network_seed).unwrap();
         let d = curve.dc(10.0).unwrap();
-        let (leaves, _) = solve(&network, d as f32);
-        let p = mean(&leaves[..25]);
+        let (p, _) = network.first_passage(d as f32, |_| false).from_start(&network);
         let lone = one_size(d, 1, 1);
         let n = 4000;
         let passed = (0..n).filter(|&s| walk(&network, &lone, 1000 * network_seed + s).0.tally.eroded == 1);
@@ -155,8 +125,7 @@ fn narrow_lattices_take_longer() {
         let mut solved = Vec::new();
         for seed in 0..400 {
             let network = Network::cubic([width, width, 60], &curve, 1.0, seed).unwrap();
-            let (_, moves) = solve(&network, 0.0);
-            solved.push(mean(&moves[..(width * width) as usize]));
+            solved.push(network.first_passage(0.0, |_| false).from_start(&network).1);
             if seed < 10 {
                 let (state, _) = walk(&network, &one_size(0.1, 20_000, 1), seed);
                 let walked = state.tally.particle_moves as f64 / 20_000.0;
@@ -347,6 +316,6 @@ fn very_long_and_very_wide_networks_run() {
     let moves = state.tally.particle_moves as f64 / 100_000.0;
     assert!((moves - 3.0).abs() < 4.0 * (6.0f64 / 100_000.0).sqrt(), "{moves}");
     let small = equal([2, 2, 2]);
-    let (leaves, moves) = solve(&small, 0.5);
-    assert!((leaves[0] - 1.0).abs() < 1e-9 && (moves[0] - 6.0).abs() < 1e-9);
+    let (leaves, moves) = small.first_passage(0.5, |_| false).from_start(&small);
+    assert!((leaves - 1.0).abs() < 1e-9 && (moves - 6.0).abs() < 1e-9);
 }

@@ -14,12 +14,15 @@
 mod connectivity;
 mod cubic;
 mod file;
+mod first_passage;
 mod passage;
 mod percolation;
 mod reach;
+mod stratified;
 
 pub use connectivity::{Connectivity, TABLE_3, TOLERANCE_PERCENT};
 pub use file::NetworkError;
+pub use first_passage::FirstPassage;
 pub use passage::Passage;
 pub use percolation::percolation_threshold;
 pub use reach::Reach;
