@@ -8,6 +8,7 @@
 //! - [`plan`] is many scenes, [`conduct`] walks those that are not done, [`ledger`] collects what came of them.
 //! - [`cluster`] hands a plan to a cluster's scheduler, by what [`effort`] says that its cases take.
 //! - [`percolation`] is a study of its own: the percolation threshold against the size of the lattice.
+//! - [`precision`] is another: error against run time.
 
 pub mod case;
 pub mod cluster;
@@ -21,6 +22,7 @@ mod network_source;
 pub mod packed;
 pub mod percolation;
 pub mod plan;
+pub mod precision;
 pub mod results;
 pub mod scene;
 pub mod settings;

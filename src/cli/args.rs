@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 use crate::campaign::keeper::Every;
+use crate::campaign::precision::Tier;
 use crate::constrictions::DEFAULT_MERGE_OVERLAP;
 
 /// Will this filter hold this soil? A random-walk network model of base-filter combinations.
@@ -38,6 +39,8 @@ pub enum Command {
     Constrictions(ConstrictionsArgs),
     /// Find the percolation threshold of cubic lattices of several sizes
     Percolation(PercolationArgs),
+    /// Measure error against run time for a scene: exact answers, scatter, bias of settings, wrong verdicts, scaling, packings
+    Precision(PrecisionArgs),
     /// Write report.html and the figures of a finished run folder again, or of a folder that scripts/paper.sh filled
     Report {
         /// The folder
@@ -257,6 +260,49 @@ fn numbered(text: &str) -> Result<(PathBuf, u64), String> {
     let parts = text.rsplit_once(':').filter(|(file, _)| !file.is_empty());
     let read = parts.and_then(|(file, number)| Some((PathBuf::from(file), number.parse().ok()?)));
     read.ok_or_else(|| "write a file and a task's number as slurm/tasks.tsv:3".into())
+}
+
+/// Which scene, and how long.
+#[derive(Debug, Args)]
+pub struct PrecisionArgs {
+    /// Which scene.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Folder for the results [default: voidwalk-precision]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace the results of an earlier call in --out
+    #[arg(long)]
+    pub overwrite: bool,
+    /// Tiers to measure: exact, sampling, bias, decision, scaling, packing [default: all]
+    #[arg(long = "tier", value_name = "NAME", num_args = 1.., value_parser = tier)]
+    pub tiers: Vec<Tier>,
+    /// Processor time to spend, all cores together. It decides how many replicates are walked, by counted work and not by the
+    /// clock: the same seed and budget give the same errors everywhere
+    #[arg(long, value_name = "TIME", default_value = "4min", value_parser = budget)]
+    pub budget: std::time::Duration,
+    /// Runs side by side [default: one per core]; they change no bit of the result
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// No progress and no summary
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// A tier by its name.
+fn tier(text: &str) -> Result<Tier, String> {
+    let named = Tier::ALL.into_iter().find(|tier| tier.name() == text);
+    named.ok_or_else(|| format!("there is no such tier; allowed: {}", Tier::ALL.map(Tier::name).join(", ")))
+}
+
+/// Processor time from a tenth of a second to a week.
+fn budget(text: &str) -> Result<std::time::Duration, String> {
+    let time =
+        humantime::parse_duration(text).map_err(|e| format!("{e}; write a time as 30s, 4min or 1h"))?;
+    match (0.1..=604_800.0).contains(&time.as_secs_f64()) {
+        true => Ok(time),
+        false => Err("allowed: from 100ms to 7days".into()),
+    }
 }
 
 /// A size in bytes: `4GB`, `500 MB`, `1.5GiB`.

@@ -8,6 +8,7 @@ mod check;
 mod constrictions;
 mod pack;
 mod percolation;
+mod precision;
 mod print;
 mod progress;
 mod run;
@@ -53,6 +54,7 @@ pub fn main() -> ExitCode {
         Command::Pack(args) => pack::pack(&args),
         Command::Constrictions(args) => constrictions::constrictions(&args),
         Command::Percolation(args) => percolation::percolation(&args),
+        Command::Precision(args) => precision::precision(&args),
         Command::Report { folder } => run::report(&folder),
     };
     match result {

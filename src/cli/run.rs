@@ -118,14 +118,15 @@ pub fn report(folder: &Path) -> Result<(), Ending> {
         return Ok(());
     }
     type Writer = fn(&Path) -> Result<report::Written, report::ReportError>;
-    let writers: [(&str, Writer); 3] = [
+    let writers: [(&str, Writer); 4] = [
         ("outcome.json", report::write),
         ("packing.json", report::write_packing),
         ("campaign.json", report::write_campaign),
+        ("precision.json", report::write_precision),
     ];
     let Some((marker, write)) = writers.iter().find(|(marker, _)| folder.join(marker).is_file()) else {
         let problem = format!(
-            "{}: holds no outcome.json, packing.json or campaign.json; name the folder of a finished run, packing or campaign",
+            "{}: holds no outcome.json, packing.json, campaign.json or precision.json; name the folder of a finished run, packing, campaign or precision study",
             folder.display()
         );
         return Err(Ending::refused(plain(&problem)));
@@ -135,8 +136,8 @@ pub fn report(folder: &Path) -> Result<(), Ending> {
         _ => Folder::open(folder),
     };
     let folder = folder.map_err(refused_or_failed)?;
-    write(folder.path()).map_err(Ending::failed)?;
-    to_stdout(&format!("{}\n", plain(&folder.path().join("report.html").display().to_string())));
+    let page = write(folder.path()).map_err(Ending::failed)?.page;
+    to_stdout(&format!("{}\n", plain(&page.display().to_string())));
     Ok(())
 }
 
@@ -209,11 +210,12 @@ pub(super) fn refused_or_failed(error: StoreError) -> Ending {
 }
 
 /// What marks the folder of each kind of work.
-const KINDS: [(&str, &[&str]); 5] = [
+const KINDS: [(&str, &[&str]); 6] = [
     ("run", &["outcome.json", "series.csv", "checkpoint"]),
     ("packing", &["packing.json", "compression.0", "compression.1"]),
     ("campaign", &["campaign.json", "cases"]),
     ("percolation study", &["percolation.json"]),
+    ("precision study", &["precision.json"]),
     ("set of constrictions", &["constrictions.json"]),
 ];
 

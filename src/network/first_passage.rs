@@ -83,9 +83,8 @@ impl Network {
         loop {
             let mut changed = false;
             for void in (0..self.voids()).rev() {
-                let leads = |c: usize| {
-                    share[c] > 0.0 && self.target[c] != END && marked[self.target[c] as usize]
-                };
+                let leads =
+                    |c: usize| share[c] > 0.0 && self.target[c] != END && marked[self.target[c] as usize];
                 if !marked[void] && self.exits(void as u32).any(leads) {
                     (marked[void], changed) = (true, true);
                 }
@@ -126,7 +125,8 @@ impl Network {
         let stop = self.voids() as u32;
         let end = self.exit_begin[self.voids()];
         let finer = |c: usize| self.diameter[c] < d && self.diameter[c] > 0.0;
-        let target = (0..self.constrictions()).map(|c| if finer(c) { stop } else { self.target[c] }).collect();
+        let target =
+            (0..self.constrictions()).map(|c| if finer(c) { stop } else { self.target[c] }).collect();
         let last = self.layer.iter().filter(|&&layer| layer != super::NO_LAYER).max();
         Network {
             exit_begin: self.exit_begin.iter().copied().chain([end]).collect(),
@@ -156,7 +156,10 @@ mod tests {
     fn a_particle_that_circles_never_leaves() {
         let network = Network::cubic_from_diameters([2, 2, 2], vec![1.0; 24], 1.0).unwrap();
         let passage = network.first_passage(0.5, |c| c % 3 == 2 && c >= 12);
-        assert_eq!((passage.leaves[0], passage.moves[0], passage.moves[4]), (0.0, f64::INFINITY, f64::INFINITY));
+        assert_eq!(
+            (passage.leaves[0], passage.moves[0], passage.moves[4]),
+            (0.0, f64::INFINITY, f64::INFINITY)
+        );
         // Where everything is closed it moves no more.
         let stuck = network.first_passage(0.5, |_| true);
         assert_eq!((stuck.leaves[0], stuck.moves[0]), (0.0, 0.0));

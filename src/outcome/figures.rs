@@ -46,7 +46,7 @@ pub struct Recorded {
 ///
 /// A tail of unknown size is passive: as much of it erodes as of the passive particles, and all of it
 /// where the base has none.
-fn eroded_mass_fraction(tally: &Tally, end: &Tally, tail: f64) -> f64 {
+pub(crate) fn eroded_mass_fraction(tally: &Tally, end: &Tally, tail: f64) -> f64 {
     let sized = match end.inserted_mass > 0.0 {
         // The same masses added in two orders may differ in their last bits.
         true => (tally.eroded_mass / end.inserted_mass).min(1.0),

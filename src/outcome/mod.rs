@@ -9,6 +9,7 @@
 //! - [`rules`] applies the empirical filter rules to the same two curves.
 //! - [`infiltration()`] is Eq. (1) beside the walk.
 //! - [`percolation`] puts percolation thresholds of several sizes together.
+//! - [`precision`] is error against run time.
 
 pub mod by_connectivity;
 mod figures;
@@ -17,14 +18,16 @@ pub mod ledger;
 pub mod packing;
 pub mod paper;
 pub mod percolation;
+pub mod precision;
 pub mod record;
 mod recorder;
 pub mod rules;
 mod statistic;
 pub mod stopping;
-mod student;
+pub(crate) mod student;
 pub mod verdict;
 
+pub(crate) use figures::eroded_mass_fraction;
 pub use figures::{Figures, Recorded, RunOf};
 pub use infiltration::infiltration;
 pub use recorder::{Recorder, Wanted};

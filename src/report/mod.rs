@@ -2,8 +2,8 @@
 //!
 //! [`write()`] reads what a run left behind (`outcome.json`, `manifest.json`, `scene.toml`, `series.csv`, `layers.csv`,
 //! `retained.csv`, `eroded.csv`; see [`crate::outcome::record`]) and runs nothing; [`write_packing()`] does the same for
-//! the folder of a packing, [`write_campaign()`] for a campaign's, [`write_percolation()`] for a percolation study's, and
-//! [`write_paper()`] for a reproduction of the paper. They write `figures/*.svg`, each a
+//! the folder of a packing, [`write_campaign()`] for a campaign's, [`write_percolation()`] for a percolation study's,
+//! [`write_precision()`] for error against run time, and [`write_paper()`] for a reproduction of the paper. They write `figures/*.svg`, each a
 //! file of its own, and `report.html`.
 //!
 //! # What the page may do
@@ -25,6 +25,7 @@ mod packing;
 mod page;
 mod paper;
 mod percolation;
+mod precision;
 mod rules;
 mod run_figures;
 mod shell;
@@ -37,6 +38,7 @@ use folder::RunFolder;
 pub use packing::write_packing;
 pub use paper::{is_paper, write_paper};
 pub use percolation::write_percolation;
+pub use precision::{precision_judgements, write_precision};
 use shell::Drawn;
 
 use crate::store::{make_folder, write_whole};
@@ -79,6 +81,11 @@ pub fn write(folder: &Path) -> Result<Written, ReportError> {
 
 /// Writes the figures, then the page.
 fn keep(folder: &Path, figures: &[Drawn], page: &str) -> Result<Written, ReportError> {
+    keep_as("report.html", folder, figures, page)
+}
+
+/// The same for a page of another name.
+fn keep_as(name: &str, folder: &Path, figures: &[Drawn], page: &str) -> Result<Written, ReportError> {
     let drawings = folder.join("figures");
     make_folder(&drawings)?;
     let mut written = Vec::new();
@@ -87,7 +94,7 @@ fn keep(folder: &Path, figures: &[Drawn], page: &str) -> Result<Written, ReportE
         write_whole(&path, drawn.figure.file().as_bytes())?;
         written.push(path);
     }
-    let path = folder.join("report.html");
+    let path = folder.join(name);
     write_whole(&path, page.as_bytes())?;
     Ok(Written { page: path, figures: written })
 }

@@ -1,0 +1,220 @@
+//! How often the class is wrong, against the time that is spent on it.
+//!
+//! The question is whether less than 7.5 % of the mass erodes in the first run, which divides "no erosion" from the rest. Cases near
+//! that are made of the scene by a factor on every size of its base (the number of particles follows by Eq. 2). The class of all
+//! replicates of a case is the reference; rules that stop earlier are tried on random subsets of them.
+
+use rand::Rng;
+
+use super::first_run::{FirstRun, nominal};
+use super::work::affordable;
+use super::{PrecisionError, Study};
+use crate::gradation::SizeSampler;
+use crate::outcome::precision::{Decision, DecisionCase, DecisionRow, wilson};
+use crate::outcome::record::Statistic;
+use crate::outcome::verdict::THRESHOLD;
+use crate::stream::{Key, Purpose, below};
+
+/// Eroded mass fractions that the cases aim at.
+const WANTED: [f64; 5] = [0.063, 0.071, 0.079, 0.087, 0.1];
+
+/// Replicates of the reference, at least and at most.
+const REPLICATES: (u64, u64) = (64, 1024);
+
+/// Random subsets on which a rule is tried.
+const TRIALS: u64 = 4000;
+
+/// Cross-sections tried, widest first, until the least number of replicates is paid for.
+const WIDTHS: [u32; 5] = [40, 28, 20, 14, 10];
+
+/// Steps of the search for the factor on the base's sizes.
+const STEPS: u32 = 14;
+
+/// When to stop.
+#[derive(Clone, Copy)]
+enum Rule {
+    /// After so many replicates.
+    Fixed(u64),
+}
+
+impl Rule {
+    fn all(replicates: u64) -> Vec<Rule> {
+        let powers = (0..).map(|power| 1u64 << power);
+        powers.take_while(|&k| 4 * k <= replicates).map(Rule::Fixed).collect()
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Rule::Fixed(_) => "fixed",
+        }
+    }
+
+    /// The class by the replicates that it takes of these, in order, and how many that are.
+    fn class(self, eroded: impl Iterator<Item = f64>) -> (Option<bool>, u64) {
+        match self {
+            Rule::Fixed(k) => {
+                let mean = eroded.take(k as usize).sum::<f64>() / k as f64;
+                (Some(mean < THRESHOLD), k)
+            }
+        }
+    }
+}
+
+/// The scene on a lattice of this shape with its base's sizes multiplied.
+struct Near<'a> {
+    study: &'a Study<'a>,
+    shape: Option<[u32; 3]>,
+}
+
+impl Near<'_> {
+    fn run(&self, size_factor: f64) -> Result<FirstRun, PrecisionError> {
+        let case = self.study.case;
+        let count = |shape: Option<[u32; 3]>| shape.map_or(1.0, |n| n.map(f64::from).iter().product::<f64>());
+        let voids = count(self.shape) / count(self.study.shape());
+        // By Eq. (2) a base of grains half as large is eight times as many.
+        let whole = case.n_base_eq2.filter(|_| case.capped).unwrap_or(case.n_base) as f64;
+        let wanted = whole / (size_factor * size_factor * size_factor);
+        let n = if case.capped { wanted.min(case.n_base as f64) } else { wanted };
+        let sampler = SizeSampler::new(&case.base.scaled(size_factor)?, case.unit_mm)?;
+        Ok(FirstRun { sampler, n_base: ((n * voids).round() as u64).max(1), ..FirstRun::of(self.study) })
+    }
+
+    /// Eroded mass fraction and processor time of so many replicates.
+    fn replicates(&self, size_factor: f64, count: u64) -> Result<Vec<(f64, f64)>, PrecisionError> {
+        let run = self.run(size_factor)?;
+        self.study.side_by_side(count as usize, |i| {
+            let seed = self.study.seed(1 + i as u64);
+            let ended = run.walk(&self.study.network(self.shape, seed)?, seed)?;
+            Ok((ended.eroded_mass_fraction, ended.core_seconds))
+        })
+    }
+}
+
+/// The tier; `None` where no factor on the base's sizes brings its erosion near 7.5 %.
+pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Option<Decision>, PrecisionError> {
+    let narrow = study.shape().map(|[nx, ny, nz]| [nx.min(10), ny.min(10), nz]);
+    let search = Near { study, shape: narrow };
+    let Some(factors) = factors(&search)? else {
+        (study.tell)("decision: no factor on the base's sizes brings its erosion near 7.5 %");
+        return Ok(None);
+    };
+    let near = Near { study, shape: shape(study, &search, factors[2], budget_s)? };
+    let (mut cases, mut rows) = (Vec::new(), Vec::new());
+    let network = study.network(near.shape, study.seed(1))?;
+    let pilot = near.run(factors[2])?.walk(&network, study.seed(1))?;
+    let case_s = 0.9 * budget_s / factors.len() as f64;
+    let replicates = affordable(case_s, nominal(&pilot, &network), REPLICATES.0, REPLICATES.1);
+    let on = near.shape.map_or("the network".into(), |[nx, ny, nz]| format!("{nx} x {ny} x {nz} voids"));
+    for factor in factors {
+        (study.tell)(&format!("decision: sizes x {factor:.3}, {replicates} replicates on {on}"));
+        let walked = near.replicates(factor, replicates)?;
+        let eroded: Vec<f64> = walked.iter().map(|w| w.0).collect();
+        let of = Statistic::of_fraction(&eroded);
+        let (low, high) = (of.low.unwrap_or(of.mean), of.high.unwrap_or(of.mean));
+        let case = DecisionCase {
+            name: format!("{:.2} % eroded", 100.0 * of.mean),
+            size_factor: factor,
+            n_base: near.run(factor)?.n_base,
+            replicates,
+            mean: of.mean,
+            low,
+            high,
+            sd: of.sd.unwrap_or(0.0),
+            below: of.mean < THRESHOLD,
+            certain: high < THRESHOLD || low >= THRESHOLD,
+            core_seconds: walked.iter().map(|w| w.1).sum::<f64>() / replicates as f64,
+        };
+        for rule in Rule::all(replicates) {
+            rows.push(tried(study, &case, rule, &eroded));
+        }
+        cases.push(case);
+    }
+    Ok(Some(Decision { cases, rows }))
+}
+
+/// The widest lattice on which the least number of replicates of every case is paid for.
+fn shape(
+    study: &Study,
+    search: &Near,
+    factor: f64,
+    budget_s: f64,
+) -> Result<Option<[u32; 3]>, PrecisionError> {
+    let (Some([nx, ny, nz]), Some(narrow)) = (study.shape(), search.shape) else { return Ok(None) };
+    let network = study.network(search.shape, study.seed(1))?;
+    let pilot = search.run(factor)?.walk(&network, study.seed(1))?;
+    let a_column = nominal(&pilot, &network) / f64::from(narrow[0] * narrow[1]);
+    let fits = |width: u32| {
+        let columns = f64::from(nx.min(width) * ny.min(width));
+        columns * a_column * (WANTED.len() as u64 * REPLICATES.0) as f64 <= 0.9 * budget_s
+    };
+    let width = WIDTHS.into_iter().find(|&width| fits(width)).unwrap_or(WIDTHS[WIDTHS.len() - 1]);
+    Ok(Some([nx.min(width), ny.min(width), nz]))
+}
+
+/// Factors on the base's sizes at which the wanted fractions erode, about: coarser grains erode less.
+fn factors(near: &Near) -> Result<Option<Vec<f64>>, PrecisionError> {
+    let eroded = |factor: f64| -> Result<f64, PrecisionError> {
+        let walked = near.replicates(factor, 4)?;
+        Ok(walked.iter().map(|w| w.0).sum::<f64>() / walked.len() as f64)
+    };
+    // Factor and eroded mass, eroded mass falling.
+    let mut known = vec![(1.0, eroded(1.0)?)];
+    let (most, least) = (WANTED[WANTED.len() - 1], WANTED[0]);
+    for _ in 0..STEPS {
+        let (first, last) = (known[0], known[known.len() - 1]);
+        if first.1 < most {
+            known.insert(0, (first.0 / 1.06, eroded(first.0 / 1.06)?));
+        } else if last.1 > least {
+            // Far from it larger steps do.
+            let step = if last.1 > 3.0 * most { 1.15 } else { 1.06 };
+            known.push((last.0 * step, eroded(last.0 * step)?));
+        } else {
+            break;
+        }
+    }
+    let at = |wanted: f64| {
+        let pair = known.windows(2).find(|pair| pair[0].1 >= wanted && wanted > pair[1].1)?;
+        let part = (pair[0].1 - wanted) / (pair[0].1 - pair[1].1);
+        Some(pair[0].0 + part * (pair[1].0 - pair[0].0))
+    };
+    Ok(WANTED.into_iter().map(at).collect())
+}
+
+/// A rule, tried on random subsets of the replicates.
+fn tried(study: &Study, case: &DecisionCase, rule: Rule, eroded: &[f64]) -> DecisionRow {
+    let key = Key {
+        seed: study.case.scene.seed,
+        purpose: Purpose::Resampling,
+        run: 0,
+        increment: 0,
+        chunk: case.size_factor.to_bits(),
+    };
+    let mut draws = key.generator();
+    let mut order: Vec<usize> = (0..eroded.len()).collect();
+    let (mut wrong, mut undecided, mut used) = (0u64, 0u64, 0u64);
+    for _ in 0..TRIALS {
+        for i in (1..order.len()).rev() {
+            order.swap(i, below(draws.next_u64(), i as u64 + 1) as usize);
+        }
+        let (class, taken) = rule.class(order.iter().map(|&i| eroded[i]));
+        used += taken;
+        match class {
+            Some(below) => wrong += u64::from(below != case.below),
+            None => undecided += 1,
+        }
+    }
+    let of = |count: u64| count as f64 / TRIALS as f64;
+    let replicates = used as f64 / TRIALS as f64;
+    // Subsets overlap: only as many as have no replicate in common count as independent.
+    let interval = wilson(of(wrong), (eroded.len() as f64 / replicates).max(1.0));
+    DecisionRow {
+        case: case.name.clone(),
+        rule: rule.name().into(),
+        replicates,
+        wrong: of(wrong),
+        wrong_low: interval.low,
+        wrong_high: interval.high,
+        undecided: of(undecided),
+        core_seconds: replicates * case.core_seconds,
+    }
+}

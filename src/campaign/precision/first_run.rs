@@ -1,0 +1,144 @@
+//! One first run on a given network: its eroded mass, and what it costs.
+
+use bitvec::vec::BitVec;
+
+use super::work::timed;
+use super::{PrecisionError, Study};
+use crate::campaign::scene::NetworkSource;
+use crate::campaign::walks::replicate_seed;
+use crate::gradation::SizeSampler;
+use crate::network::Network;
+use crate::outcome::eroded_mass_fraction;
+use crate::walk::{Engine, Plan, Progress, SizeClasses, State, Walk};
+
+/// A first run, up to its network and seed.
+#[derive(Clone)]
+pub(super) struct FirstRun {
+    pub engine: Engine,
+    pub sampler: SizeSampler,
+    /// Share of the base's mass in a tail of unknown size.
+    pub tail: f64,
+    pub n_base: u64,
+    pub increments: u64,
+}
+
+/// How it ended.
+#[derive(Clone, Debug)]
+pub(super) struct Ended {
+    pub eroded_mass_fraction: f64,
+    pub eroded: u64,
+    pub increments: u64,
+    pub particle_moves: u64,
+    /// Base particles that were walked one by one.
+    pub one_by_one: u64,
+    /// Whether that is all of them.
+    pub all_one_by_one: bool,
+    pub blocked: BitVec<u64>,
+    /// Processor time, without that of the network (s).
+    pub core_seconds: f64,
+}
+
+impl FirstRun {
+    /// The scene's.
+    pub fn of(study: &Study) -> Self {
+        let case = study.case;
+        Self {
+            engine: case.scene.engine,
+            sampler: case.sampler.clone(),
+            tail: case.base.tail_mass_fraction(),
+            n_base: case.n_base,
+            increments: case.increments(),
+        }
+    }
+
+    /// On a clean network.
+    pub fn walk(&self, network: &Network, seed: u64) -> Result<Ended, PrecisionError> {
+        self.walk_from(network, BitVec::repeat(false, network.constrictions()), seed)
+    }
+
+    /// On the constrictions that `blocked` leaves open.
+    pub fn walk_from(
+        &self,
+        network: &Network,
+        blocked: BitVec<u64>,
+        seed: u64,
+    ) -> Result<Ended, PrecisionError> {
+        let (walked, core_seconds) = timed(|| self.walk_untimed(network, blocked, seed));
+        let (state, one_by_one) = walked?;
+        let tally = &state.tally;
+        Ok(Ended {
+            eroded_mass_fraction: eroded_mass_fraction(tally, tally, self.tail),
+            eroded: tally.eroded,
+            increments: state.increment,
+            particle_moves: tally.particle_moves,
+            one_by_one,
+            all_one_by_one: one_by_one == tally.inserted,
+            blocked: state.blocked,
+            core_seconds,
+        })
+    }
+
+    fn walk_untimed(
+        &self,
+        network: &Network,
+        blocked: BitVec<u64>,
+        seed: u64,
+    ) -> Result<(State, u64), PrecisionError> {
+        let plan = Plan::new(self.engine, network, &self.sampler, &blocked, self.n_base / self.increments);
+        let supply = plan.supply(self.sampler.clone(), self.n_base, self.increments, seed, 1);
+        let classes = SizeClasses::logarithmic(self.sampler.smallest(), self.sampler.largest(), 64);
+        let mut state = State::new(network, &supply, classes, blocked, seed, 1);
+        Walk::new(network, &supply, &state).run(&mut state, &mut |_| Progress::Continue)?;
+        Ok((state, supply.total()))
+    }
+}
+
+impl Study<'_> {
+    /// Seed of replicate `k`, counted from 1: of its network, and of its walk.
+    pub(super) fn seed(&self, k: u64) -> u64 {
+        replicate_seed(self.case.scene.seed, k)
+    }
+
+    /// The scene's network with another shape, where it is a lattice.
+    pub(super) fn network(&self, shape: Option<[u32; 3]>, seed: u64) -> Result<Network, PrecisionError> {
+        let case = self.case;
+        Ok(match (&case.scene.network, shape) {
+            (NetworkSource::Cubic(_), Some(shape)) => Network::cubic(shape, &case.curve, case.unit_mm, seed)?,
+            (NetworkSource::Connected(_, wanted), Some(shape)) => {
+                Network::connected(shape, &case.curve, case.unit_mm, seed, wanted)?
+            }
+            _ => case.network(seed)?,
+        })
+    }
+
+    /// The scene's shape, where its network is a lattice.
+    pub(super) fn shape(&self) -> Option<[u32; 3]> {
+        self.case.scene.network.shape()
+    }
+}
+
+/// Processor time of a constriction drawn, and of a void of a table.
+const CONSTRICTION_S: f64 = 3.5e-8;
+
+/// Processor time of a void in an increment, as a count.
+const COUNT_S: f64 = 1.3e-8;
+
+/// Processor time of a move of a particle walked one by one.
+const MOVE_S: f64 = 2.5e-9;
+
+/// Processor time of the insertion of one.
+const INSERTION_S: f64 = 1.5e-8;
+
+/// Processor time of a run counted from what it did, network included: the same on every machine, about right on one of 2024.
+pub(super) fn nominal(ended: &Ended, network: &Network) -> f64 {
+    let each = ended.one_by_one as f64;
+    // Where the others are counts, the coarse ones are soon stopped.
+    let (moves, voids) = match ended.all_one_by_one {
+        true => (ended.particle_moves as f64, 0.0),
+        false => (each * 4.0, network.voids() as f64),
+    };
+    CONSTRICTION_S * network.constrictions() as f64
+        + COUNT_S * ended.increments as f64 * voids
+        + INSERTION_S * each
+        + MOVE_S * moves
+}

@@ -1,0 +1,72 @@
+//! Work side by side, each piece on one thread, and the processor time it takes.
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rustix::time::{ClockId, clock_gettime};
+
+use super::{PrecisionError, Study};
+
+/// Processor time of this thread (s).
+pub(super) fn this_thread() -> f64 {
+    seconds(ClockId::ThreadCPUTime)
+}
+
+/// Processor time of all threads of the program (s).
+pub(super) fn all_threads() -> f64 {
+    seconds(ClockId::ProcessCPUTime)
+}
+
+fn seconds(clock: ClockId) -> f64 {
+    let time = clock_gettime(clock);
+    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+}
+
+/// What some work gives, and the processor time of this thread that it takes (s).
+pub(super) fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
+    let begun = this_thread();
+    let made = work();
+    (made, this_thread() - begun)
+}
+
+impl Study<'_> {
+    /// `work(0 .. count)`, pieces side by side, each on one thread alone; in order.
+    pub(super) fn side_by_side<T: Send>(
+        &self,
+        count: usize,
+        work: impl Fn(usize) -> Result<T, PrecisionError> + Sync,
+    ) -> Result<Vec<T>, PrecisionError> {
+        let next = AtomicUsize::new(0);
+        let done: Mutex<Vec<(usize, Result<T, PrecisionError>)>> = Mutex::new(Vec::new());
+        let worker = || -> Result<(), PrecisionError> {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+            loop {
+                let piece = next.fetch_add(1, Ordering::Relaxed);
+                if piece >= count {
+                    return Ok(());
+                }
+                if self.stop.load(Ordering::Relaxed) {
+                    return Err(PrecisionError::Stopped);
+                }
+                let made = pool.install(|| work(piece));
+                done.lock().unwrap_or_else(|e| e.into_inner()).push((piece, made));
+            }
+        };
+        std::thread::scope(|scope| {
+            let workers: Vec<_> =
+                (0..self.threads.clamp(1, count.max(1))).map(|_| scope.spawn(worker)).collect();
+            workers.into_iter().try_for_each(|worker| match worker.join() {
+                Ok(result) => result,
+                Err(panic) => std::panic::resume_unwind(panic),
+            })
+        })?;
+        let mut done = done.into_inner().unwrap_or_else(|e| e.into_inner());
+        done.sort_by_key(|(piece, _)| *piece);
+        done.into_iter().map(|(_, made)| made).collect()
+    }
+}
+
+/// How many of something a budget pays for, between the least and the most that make sense.
+pub(super) fn affordable(budget_s: f64, each_s: f64, least: u64, most: u64) -> u64 {
+    ((budget_s / each_s.max(1e-9)) as u64).clamp(least, most)
+}
