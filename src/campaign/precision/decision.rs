@@ -1,9 +1,10 @@
 //! How often the class is wrong, against the time that is spent on it.
 //!
-//! The question is whether less than 7.5 % of the mass erodes in the first run, which divides "no erosion" from the rest. Cases near
-//! that are made of the scene by a factor on every size of its base (the number of particles follows by Eq. 2). The class of all
-//! replicates of a case is the reference; rules that stop earlier are tried on random subsets of them.
+//! Cases near the 7.5 % of the first run, which divide "no erosion" from the rest, are made of the scene by a factor on every size of
+//! its base (the number of particles follows by Eq. 2). Each replicate walks the scene's runs. The class of all replicates of a
+//! case is the reference; rules that stop earlier are tried on random subsets of them.
 
+use bitvec::vec::BitVec;
 use rand::Rng;
 
 use super::first_run::{FirstRun, nominal};
@@ -11,8 +12,8 @@ use super::work::affordable;
 use super::{PrecisionError, Study};
 use crate::gradation::SizeSampler;
 use crate::outcome::precision::{Decision, DecisionCase, DecisionRow, wilson};
-use crate::outcome::record::Statistic;
-use crate::outcome::verdict::THRESHOLD;
+use crate::outcome::record::{Statistic, Verdict};
+use crate::outcome::verdict::{THRESHOLD, classify};
 use crate::stream::{Key, Purpose, below};
 
 /// Eroded mass fractions that the cases aim at.
@@ -50,14 +51,20 @@ impl Rule {
     }
 
     /// The class by the replicates that it takes of these, in order, and how many that are.
-    fn class(self, eroded: impl Iterator<Item = f64>) -> (Option<bool>, u64) {
+    fn class(self, eroded: &[&[f64]]) -> (Verdict, u64) {
         match self {
-            Rule::Fixed(k) => {
-                let mean = eroded.take(k as usize).sum::<f64>() / k as f64;
-                (Some(mean < THRESHOLD), k)
-            }
+            Rule::Fixed(k) => (class_of(&eroded[..k as usize]), k),
         }
     }
+}
+
+/// The class by the means of replicates; `eroded[replicate][run]`.
+fn class_of(eroded: &[&[f64]]) -> Verdict {
+    let below = |run: usize| {
+        let of_run = eroded.iter().map(|runs| runs.get(run)).collect::<Option<Vec<_>>>()?;
+        Some(of_run.into_iter().sum::<f64>() / (eroded.len() as f64) < THRESHOLD)
+    };
+    classify(below(0), below(1))
 }
 
 /// The scene on a lattice of this shape with its base's sizes multiplied.
@@ -79,13 +86,26 @@ impl Near<'_> {
         Ok(FirstRun { sampler, n_base: ((n * voids).round() as u64).max(1), ..FirstRun::of(self.study) })
     }
 
-    /// Eroded mass fraction and processor time of so many replicates.
-    fn replicates(&self, size_factor: f64, count: u64) -> Result<Vec<(f64, f64)>, PrecisionError> {
-        let run = self.run(size_factor)?;
+    /// Eroded mass fraction of each of `runs` runs and processor time, of so many replicates.
+    fn replicates(
+        &self,
+        size_factor: f64,
+        runs: u64,
+        count: u64,
+    ) -> Result<Vec<(Vec<f64>, f64)>, PrecisionError> {
+        let of_run = self.run(size_factor)?;
         self.study.side_by_side(count as usize, |i| {
             let seed = self.study.seed(1 + i as u64);
-            let ended = run.walk(&self.study.network(self.shape, seed)?, seed)?;
-            Ok((ended.eroded_mass_fraction, ended.core_seconds))
+            let network = self.study.network(self.shape, seed)?;
+            let mut blocked = BitVec::repeat(false, network.constrictions());
+            let (mut eroded, mut core_seconds) = (Vec::new(), 0.0);
+            for run in 1..=runs {
+                let ended = of_run.walk_from(&network, blocked, seed, run)?;
+                eroded.push(ended.eroded_mass_fraction);
+                core_seconds += ended.core_seconds;
+                blocked = ended.blocked;
+            }
+            Ok((eroded, core_seconds))
         })
     }
 }
@@ -102,14 +122,16 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Option<Decision>, Pre
     let (mut cases, mut rows) = (Vec::new(), Vec::new());
     let network = study.network(near.shape, study.seed(1))?;
     let pilot = near.run(factors[2])?.walk(&network, study.seed(1))?;
+    let runs = study.case.scene.runs;
     let case_s = 0.9 * budget_s / factors.len() as f64;
-    let replicates = affordable(case_s, nominal(&pilot, &network), REPLICATES.0, REPLICATES.1);
+    let replicates = affordable(case_s, runs as f64 * nominal(&pilot, &network), REPLICATES.0, REPLICATES.1);
     let on = near.shape.map_or("the network".into(), |[nx, ny, nz]| format!("{nx} x {ny} x {nz} voids"));
     for factor in factors {
         (study.tell)(&format!("decision: sizes x {factor:.3}, {replicates} replicates on {on}"));
-        let walked = near.replicates(factor, replicates)?;
-        let eroded: Vec<f64> = walked.iter().map(|w| w.0).collect();
-        let of = Statistic::of_fraction(&eroded);
+        let walked = near.replicates(factor, runs, replicates)?;
+        let first: Vec<f64> = walked.iter().map(|w| w.0[0]).collect();
+        let of = Statistic::of_fraction(&first);
+        let eroded: Vec<&[f64]> = walked.iter().map(|w| w.0.as_slice()).collect();
         let (low, high) = (of.low.unwrap_or(of.mean), of.high.unwrap_or(of.mean));
         let case = DecisionCase {
             name: format!("{:.2} % eroded", 100.0 * of.mean),
@@ -120,7 +142,7 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Option<Decision>, Pre
             low,
             high,
             sd: of.sd.unwrap_or(0.0),
-            below: of.mean < THRESHOLD,
+            class: class_of(&eroded),
             certain: high < THRESHOLD || low >= THRESHOLD,
             core_seconds: walked.iter().map(|w| w.1).sum::<f64>() / replicates as f64,
         };
@@ -145,7 +167,8 @@ fn shape(
     let a_column = nominal(&pilot, &network) / f64::from(narrow[0] * narrow[1]);
     let fits = |width: u32| {
         let columns = f64::from(nx.min(width) * ny.min(width));
-        columns * a_column * (WANTED.len() as u64 * REPLICATES.0) as f64 <= 0.9 * budget_s
+        columns * a_column * (WANTED.len() as u64 * REPLICATES.0 * study.case.scene.runs) as f64
+            <= 0.9 * budget_s
     };
     let width = WIDTHS.into_iter().find(|&width| fits(width)).unwrap_or(WIDTHS[WIDTHS.len() - 1]);
     Ok(Some([nx.min(width), ny.min(width), nz]))
@@ -154,8 +177,8 @@ fn shape(
 /// Factors on the base's sizes at which the wanted fractions erode, about: coarser grains erode less.
 fn factors(near: &Near) -> Result<Option<Vec<f64>>, PrecisionError> {
     let eroded = |factor: f64| -> Result<f64, PrecisionError> {
-        let walked = near.replicates(factor, 4)?;
-        Ok(walked.iter().map(|w| w.0).sum::<f64>() / walked.len() as f64)
+        let walked = near.replicates(factor, 1, 4)?;
+        Ok(walked.iter().map(|w| w.0[0]).sum::<f64>() / walked.len() as f64)
     };
     // Factor and eroded mass, eroded mass falling.
     let mut known = vec![(1.0, eroded(1.0)?)];
@@ -181,7 +204,7 @@ fn factors(near: &Near) -> Result<Option<Vec<f64>>, PrecisionError> {
 }
 
 /// A rule, tried on random subsets of the replicates.
-fn tried(study: &Study, case: &DecisionCase, rule: Rule, eroded: &[f64]) -> DecisionRow {
+fn tried(study: &Study, case: &DecisionCase, rule: Rule, eroded: &[&[f64]]) -> DecisionRow {
     let key = Key {
         seed: study.case.scene.seed,
         purpose: Purpose::Resampling,
@@ -190,17 +213,18 @@ fn tried(study: &Study, case: &DecisionCase, rule: Rule, eroded: &[f64]) -> Deci
         chunk: case.size_factor.to_bits(),
     };
     let mut draws = key.generator();
-    let mut order: Vec<usize> = (0..eroded.len()).collect();
+    let mut order: Vec<&[f64]> = eroded.to_vec();
     let (mut wrong, mut undecided, mut used) = (0u64, 0u64, 0u64);
     for _ in 0..TRIALS {
         for i in (1..order.len()).rev() {
             order.swap(i, below(draws.next_u64(), i as u64 + 1) as usize);
         }
-        let (class, taken) = rule.class(order.iter().map(|&i| eroded[i]));
+        let (class, taken) = rule.class(&order);
         used += taken;
+        // One run alone leaves the class open for all: then that is the class.
         match class {
-            Some(below) => wrong += u64::from(below != case.below),
-            None => undecided += 1,
+            Verdict::Undecided if case.class != class => undecided += 1,
+            class => wrong += u64::from(class != case.class),
         }
     }
     let of = |count: u64| count as f64 / TRIALS as f64;

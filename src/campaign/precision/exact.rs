@@ -2,10 +2,10 @@
 //!
 //! Two chances to leave are known by a linear solve ([`Network::first_passage`]), on random networks:
 //!
-//! - *first particle*: a lone particle of size Dc25 on a clean lattice. It is walked alone, over and over, with the rule that
+//! - *first particle*: a lone particle of size Dc35 on a clean lattice. It is walked alone, over and over, with the rule that
 //!   stops it; and, so that each of many million particles is a first one, as particles that fit everywhere on the network
 //!   in which finer exits lead into a void without exits ([`Network::as_first_particle_of`]).
-//! - *clogged lattice*: particles that fit everywhere, on a lattice of which 40 % of the constrictions are blocked from the start, as
+//! - *clogged lattice*: particles that fit everywhere, on a lattice of which half of the constrictions are blocked from the start, as
 //!   a second run meets it. They end in voids without open exits, circle for ever, or leave.
 //!
 //! On one of these networks the particles are independent, so here, and only here, the error must be the binomial one; the
@@ -37,10 +37,10 @@ const TRIES: u64 = 32;
 const CHANCES: std::ops::Range<f64> = 0.02..0.98;
 
 /// Share of constrictions that are blocked from the start.
-const CLOGGED: f64 = 0.4;
+const CLOGGED: f64 = 0.5;
 
 /// Percent of the constrictions finer than the first particle.
-const FIRST_AT_DC: f64 = 25.0;
+const FIRST_AT_DC: f64 = 35.0;
 
 /// Expected particles that leave, and that do not, from which a deviation is counted in standard errors.
 const NORMAL_FROM: f64 = 50.0;
@@ -73,8 +73,8 @@ struct Line<'a> {
     engine: &'static str,
     known: &'a [Known],
     way: Way,
-    /// The most particles: 10 to this power.
-    decades: u32,
+    /// The most particles.
+    most: u64,
 }
 
 /// The tier.
@@ -85,17 +85,14 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<(Exact, Vec<NetworkRo
     let made: Vec<Known> = lone.iter().map(|known| known.as_many(d)).collect();
     let mut quantities = Vec::new();
     let mut lines = Vec::new();
-    let decades = |part: f64, each_s: f64| {
-        let all = budget_s * part / (NETWORKS as f64 * each_s * 1.111);
-        (libm::log10(all.max(1.0)) as u32).clamp(3, 8)
-    };
+    let most = |part: f64, each_s: f64| tidy(budget_s * part / (NETWORKS as f64 * each_s * 1.2));
     // Counts and expectations cost the same for any number.
-    let counts = decades(0.55, PARTICLE_S[0]) + 3;
+    let counts = 1000 * most(0.55, PARTICLE_S[0]);
     if !clogged.is_empty() {
-        let words = "chance of a particle that fits everywhere to leave a 6 x 6 x 4 lattice of which 40 % of the constrictions are blocked from the start";
+        let words = "chance of a particle that fits everywhere to leave a 6 x 6 x 4 lattice of which half of the constrictions are blocked from the start";
         quantities.push(quantity("clogged lattice", words, &clogged));
-        for (engine, decades) in [
-            (Engine::Particles, decades(0.55, PARTICLE_S[0])),
+        for (engine, most) in [
+            (Engine::Particles, most(0.55, PARTICLE_S[0])),
             (Engine::Counts, counts),
             (Engine::Expected, counts),
         ] {
@@ -105,47 +102,38 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<(Exact, Vec<NetworkRo
                 engine: engine.name(),
                 known: &clogged,
                 way,
-                decades,
+                most,
             });
         }
     }
     if !lone.is_empty() {
-        let words = "chance of a lone particle of size Dc25 to leave a clean 6 x 6 x 4 lattice";
+        let words = "chance of a lone particle of size Dc35 to leave a clean 6 x 6 x 4 lattice";
         quantities.push(quantity("first particle", words, &lone));
-        let alone = decades(0.18, LONE_S);
+        let alone = most(0.18, LONE_S);
         lines.push(Line {
             quantity: "first particle",
             engine: "one at a time",
             known: &lone,
             way: Way::Alone,
-            decades: alone,
+            most: alone,
         });
-        for (engine, decades) in [
-            (Engine::Particles, decades(0.12, PARTICLE_S[1])),
+        for (engine, most) in [
+            (Engine::Particles, most(0.12, PARTICLE_S[1])),
             (Engine::Counts, counts),
             (Engine::Expected, counts),
         ] {
             let way = Way::Together(engine);
-            lines.push(Line {
-                quantity: "first particle",
-                engine: engine.name(),
-                known: &made,
-                way,
-                decades,
-            });
+            lines.push(Line { quantity: "first particle", engine: engine.name(), known: &made, way, most });
         }
     }
     let (mut rows, mut networks, mut slopes) = (Vec::new(), Vec::new(), Vec::new());
     for line in &lines {
-        (study.tell)(&format!(
-            "exact: {}, {}, up to 1e{} particles",
-            line.quantity, line.engine, line.decades
-        ));
+        (study.tell)(&format!("exact: {}, {}, up to {:e} particles", line.quantity, line.engine, line.most));
         let first = rows.len();
-        for decade in 2..=line.decades {
-            let (row, mut each) = line.row(study, decade)?;
+        for particles in line.numbers() {
+            let (row, mut each) = line.row(study, particles)?;
             rows.push(row);
-            if decade == line.decades {
+            if particles == line.most {
                 networks.append(&mut each);
             }
         }
@@ -154,6 +142,12 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<(Exact, Vec<NetworkRo
     (study.tell)("exact: integers and closed forms");
     let closed = closed_forms::rows(study, budget_s * 0.15)?;
     Ok((Exact { networks: NETWORKS as u64, quantities, rows, slopes, closed }, networks))
+}
+
+/// One, two or five times a power of ten, from 1,000 to 1e8.
+fn tidy(number: f64) -> u64 {
+    let powers = (3..=8).rev().flat_map(|power| [5, 2, 1].map(|digit| digit * 10u64.pow(power)));
+    powers.filter(|n| *n <= 100_000_000).find(|n| *n as f64 <= number).unwrap_or(1000)
 }
 
 fn quantity(name: &str, words: &str, known: &[Known]) -> Quantity {
@@ -205,11 +199,16 @@ impl Study<'_> {
 }
 
 impl Line<'_> {
-    /// All networks with 10 to the power `decade` particles each.
-    fn row(&self, study: &Study, decade: u32) -> Result<(ExactRow, Vec<NetworkRow>), PrecisionError> {
-        let particles = 10u64.pow(decade);
+    /// Powers of ten, and the most.
+    fn numbers(&self) -> Vec<u64> {
+        let powers = (2..).map(|power| 10u64.pow(power));
+        powers.take_while(|n| 2 * n <= self.most).chain([self.most]).collect()
+    }
+
+    /// All networks with so many particles each.
+    fn row(&self, study: &Study, particles: u64) -> Result<(ExactRow, Vec<NetworkRow>), PrecisionError> {
         let walked = study.side_by_side(self.known.len(), |i| {
-            self.found(&self.known[i], particles, study.seed(1 + i as u64) ^ u64::from(decade))
+            self.found(&self.known[i], particles, study.seed(1 + i as u64) ^ particles)
         })?;
         let n = particles as f64;
         let networks: Vec<NetworkRow> = (1..)
@@ -255,7 +254,8 @@ impl Line<'_> {
             |engine, n_base| FirstRun { engine, sampler: sampler.clone(), tail: 0.0, n_base, increments: 1 };
         match self.way {
             Way::Together(engine) => {
-                let ended = run(engine, particles).walk_from(&known.network, known.blocked.clone(), seed)?;
+                let ended =
+                    run(engine, particles).walk_from(&known.network, known.blocked.clone(), seed, 1)?;
                 Ok((ended.eroded as f64 / particles as f64, ended.core_seconds))
             }
             Way::Alone => {

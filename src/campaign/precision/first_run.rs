@@ -53,17 +53,18 @@ impl FirstRun {
 
     /// On a clean network.
     pub fn walk(&self, network: &Network, seed: u64) -> Result<Ended, PrecisionError> {
-        self.walk_from(network, BitVec::repeat(false, network.constrictions()), seed)
+        self.walk_from(network, BitVec::repeat(false, network.constrictions()), seed, 1)
     }
 
-    /// On the constrictions that `blocked` leaves open.
+    /// On the constrictions that `blocked` leaves open, with the streams of run `run`.
     pub fn walk_from(
         &self,
         network: &Network,
         blocked: BitVec<u64>,
         seed: u64,
+        run: u64,
     ) -> Result<Ended, PrecisionError> {
-        let (walked, core_seconds) = timed(|| self.walk_untimed(network, blocked, seed));
+        let (walked, core_seconds) = timed(|| self.walk_untimed(network, blocked, seed, run));
         let (state, one_by_one) = walked?;
         let tally = &state.tally;
         Ok(Ended {
@@ -83,11 +84,12 @@ impl FirstRun {
         network: &Network,
         blocked: BitVec<u64>,
         seed: u64,
+        run: u64,
     ) -> Result<(State, u64), PrecisionError> {
         let plan = Plan::new(self.engine, network, &self.sampler, &blocked, self.n_base / self.increments);
-        let supply = plan.supply(self.sampler.clone(), self.n_base, self.increments, seed, 1);
+        let supply = plan.supply(self.sampler.clone(), self.n_base, self.increments, seed, run);
         let classes = SizeClasses::logarithmic(self.sampler.smallest(), self.sampler.largest(), 64);
-        let mut state = State::new(network, &supply, classes, blocked, seed, 1);
+        let mut state = State::new(network, &supply, classes, blocked, seed, run);
         Walk::new(network, &supply, &state).run(&mut state, &mut |_| Progress::Continue)?;
         Ok((state, supply.total()))
     }

@@ -11,10 +11,13 @@ use crate::packing::{Compression, Packing, PackingError, Settings, draw, random_
 
 /// Grains of the reference, fewest first; the most that the budget pays for, and no fewer than make the cell three of the largest
 /// grain wide.
-const GRAINS: [usize; 4] = [500, 1000, 2000, 4000];
+const GRAINS: [usize; 5] = [300, 500, 1000, 2000, 4000];
 
 /// Packings of each setting, at least and at most.
-const SEEDS: (u64, u64) = (3, 10);
+const SEEDS: (u64, u64) = (2, 10);
+
+/// Packings of each setting before more grains are taken.
+const ENOUGH_SEEDS: f64 = 4.0;
 
 /// Processor time to compress a grain with friction and without, at a tenth of the stiffness.
 const GRAIN_S: [(f64, f64); 2] = [(0.3, 6.5e-4), (0.0, 2.4e-3)];
@@ -77,7 +80,7 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<PackingTier, Precisio
         let setting_s = |grains: usize| grain_s * grains as f64 * ALL_COST;
         let wide = |grains: &&usize| width_by_largest(gradation, **grains) >= 3.0;
         let usable: Vec<usize> = GRAINS.iter().filter(wide).copied().collect();
-        let pays = |grains: &&usize| setting_s(**grains) * SEEDS.0 as f64 <= part * budget_s;
+        let pays = |grains: &&usize| setting_s(**grains) * ENOUGH_SEEDS <= part * budget_s;
         let grains = match (usable.iter().rev().find(pays), usable.first()) {
             (Some(&grains), _) => grains,
             // With friction something is always shown; without, only where it is paid for.

@@ -3,6 +3,7 @@
 //! Two kinds of replicate: *new networks* (what a verdict is about), and *one network* walked anew (what a way of drawing base
 //! particles can change; what is left beside it is the scatter between networks, the floor of all that draws better).
 
+use super::changes::Change;
 use super::first_run::{FirstRun, nominal};
 use super::work::affordable;
 use super::{PrecisionError, Study};
@@ -14,12 +15,19 @@ use crate::walk::Engine;
 struct Variant {
     name: &'static str,
     engine: Engine,
+    /// Its networks, where they are new.
+    networks: Change,
 }
 
-const VARIANTS: [Variant; 3] = [
-    Variant { name: "counts", engine: Engine::Counts },
-    Variant { name: "particles", engine: Engine::Particles },
-    Variant { name: "expected", engine: Engine::Expected },
+const fn of(name: &'static str, engine: Engine) -> Variant {
+    Variant { name, engine, networks: Change::Nothing }
+}
+
+const VARIANTS: [Variant; 4] = [
+    of("counts", Engine::Counts),
+    of("particles", Engine::Particles),
+    of("expected", Engine::Expected),
+    Variant { networks: Change::Stratified, ..of("counts, stratified constrictions", Engine::Counts) },
 ];
 
 /// A kind of replicate.
@@ -42,7 +50,8 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Sampling, PrecisionEr
     let case = study.case;
     let network = study.network(study.shape(), study.seed(1))?;
     let mut variants = Vec::new();
-    for variant in &VARIANTS {
+    let lattice = Change::all(study).contains(&Change::Stratified);
+    for variant in VARIANTS.iter().filter(|v| lattice || v.networks == Change::Nothing) {
         let run = FirstRun { engine: variant.engine, ..FirstRun::of(study) };
         // By the moves of the counts it is known what the particles would cost, before they are walked.
         let costs = match (variant.engine, variants.first()) {
@@ -62,7 +71,9 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Sampling, PrecisionEr
     let mut sampling = Sampling { rows: Vec::new(), lines: Vec::new() };
     for (kind, networks) in KINDS.into_iter().enumerate() {
         let mut first: Option<Vec<One>> = None;
-        for (variant, run, ..) in &variants {
+        // On one given network there is nothing to stratify.
+        let of_kind = |v: &&(&Variant, FirstRun, f64, u64)| kind == 0 || v.0.networks == Change::Nothing;
+        for (variant, run, ..) in variants.iter().filter(of_kind) {
             let walked = study.side_by_side(replicates as usize, |i| {
                 let seed = study.seed(1 + i as u64);
                 let network = study.network(study.shape(), if kind == 0 { seed } else { study.seed(1) })?;

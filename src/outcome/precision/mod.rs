@@ -16,6 +16,8 @@ pub use statistics::{Bounds, Spread, merit, spread, wilson};
 
 use serde::{Deserialize, Serialize};
 
+use super::record::Verdict;
+
 /// The whole of `precision.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Precision {
@@ -277,7 +279,7 @@ pub struct DecisionCase {
     pub n_base: u64,
     /// Replicates of the reference.
     pub replicates: u64,
-    /// Eroded mass fraction of the reference, mean.
+    /// Eroded mass fraction of the first run, mean over the reference.
     pub mean: f64,
     /// 95 % interval.
     pub low: f64,
@@ -285,9 +287,9 @@ pub struct DecisionCase {
     pub high: f64,
     /// Standard deviation of a replicate.
     pub sd: f64,
-    /// Whether less than 7.5 % erodes, by the whole reference.
-    pub below: bool,
-    /// Whether the interval leaves that certain.
+    /// The class, by the means of all replicates.
+    pub class: Verdict,
+    /// Whether the interval of the first run leaves its side of 7.5 % certain.
     pub certain: bool,
     /// Processor time of a replicate, mean, s.
     pub core_seconds: f64,

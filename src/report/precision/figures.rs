@@ -16,6 +16,7 @@ fn look(name: &str) -> (Colour, Shape) {
         "counts" => (BLUE, Shape::Circle),
         "expected" => (GREEN, Shape::Diamond),
         "one at a time" => (PURPLE, Shape::Triangle),
+        "counts, stratified constrictions" => (PURPLE, Shape::Triangle),
         _ => (ORANGE, Shape::Triangle),
     }
 }
@@ -256,7 +257,8 @@ fn amount(rows: &[BiasRow]) -> Option<Drawn> {
     }
     figure.add(Rule::new(Across::Y, 0.0, GREY).dash(Dash::Dashed));
     let caption = format!(
-        "Fewer base particles than Eq. (2) asks for block less, so a larger share erodes: a bias that no replicate takes away. With all of them {:.1} % erode. Bars: 95 % intervals.",
+        "Difference of the eroded mass when only a part of the base particles that Eq. (2) asks for is walked: a bias that no replicate takes away. With all of them {:.1} % erode. Bars: 95 % \
+         intervals.",
         PP * reference.value
     );
     Some(Drawn { name: "bias-base-particles", caption, figure })

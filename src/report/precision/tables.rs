@@ -11,7 +11,7 @@ use crate::report::numbers::{duration, percent, significant, whole};
 /// A table of texts, the first column left, the others right.
 fn table(head: &[&str], rows: Vec<Vec<String>>) -> Markup {
     html! {
-        div.scroll { table {
+        div.scroll { table.study {
             thead { tr { @for (i, cell) in head.iter().enumerate() {
                 @if i == 0 { th { (cell) } } @else { th.n { (cell) } }
             } } }
@@ -183,7 +183,7 @@ pub(super) fn decision(decision: &Decision) -> Markup {
             case.replicates.to_string(),
             format!("{} ({} to {})", points(case.mean), points(case.low), points(case.high)),
             points(case.sd),
-            if case.certain { "certain".into() } else { "not certain".into() },
+            format!("{}{}", case.class.words(), if case.certain { "" } else { " (not certain)" }),
             significant(case.core_seconds),
         ]
     });
@@ -200,7 +200,7 @@ pub(super) fn decision(decision: &Decision) -> Markup {
     });
     html! {
         (table(
-            &["Case", "Factor on sizes", "Base particles", "Replicates", "Eroded mass (%, 95 %)", "Standard deviation (points)", "Side of 7.5 %", "Processor time of a replicate (s)"],
+            &["Case", "Factor on sizes", "Base particles", "Replicates", "First run, eroded mass (%, 95 %)", "Standard deviation (points)", "Class", "Processor time of a replicate (s)"],
             cases.collect(),
         ))
         details {
