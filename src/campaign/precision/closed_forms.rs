@@ -8,7 +8,7 @@ use super::{PrecisionError, Study};
 use crate::gradation::{Gradation, SizeSampler};
 use crate::network::{Network, Passage};
 use crate::outcome::precision::ClosedRow;
-use crate::walk::{Engine, Plan, Progress, SizeClasses, State, Walk};
+use crate::walk::{Engine, Plan, Progress, Sampling, SizeClasses, State, Walk};
 
 /// Every row that the budget pays for.
 pub(super) fn rows(study: &Study, budget_s: f64) -> Result<Vec<ClosedRow>, PrecisionError> {
@@ -20,7 +20,7 @@ pub(super) fn rows(study: &Study, budget_s: f64) -> Result<Vec<ClosedRow>, Preci
 
 fn one_size(diameter: f64, n_base: u64, increments: u64, engine: Engine) -> Result<FirstRun, PrecisionError> {
     let sampler = SizeSampler::new(&Gradation::single(diameter)?, 1.0)?;
-    Ok(FirstRun { engine, sampler, tail: 0.0, n_base, increments })
+    Ok(FirstRun { engine, sampler, tail: 0.0, n_base, increments, sampling: Sampling::Independent })
 }
 
 fn drawn(what: String, exact: f64, found: f64, error: f64, samples: u64, core_seconds: f64) -> ClosedRow {

@@ -13,6 +13,7 @@ use super::{PrecisionError, Study};
 use crate::gradation::SizeSampler;
 use crate::outcome::precision::{Decision, DecisionCase, DecisionRow, wilson};
 use crate::outcome::record::{Statistic, Verdict};
+use crate::outcome::stopping::{Look, StopRule};
 use crate::outcome::verdict::{THRESHOLD, classify};
 use crate::stream::{Key, Purpose, below};
 
@@ -23,7 +24,7 @@ const WANTED: [f64; 5] = [0.063, 0.071, 0.079, 0.087, 0.1];
 const REPLICATES: (u64, u64) = (64, 1024);
 
 /// Random subsets on which a rule is tried.
-const TRIALS: u64 = 4000;
+const TRIALS: u64 = 1000;
 
 /// Cross-sections tried, widest first, until the least number of replicates is paid for.
 const WIDTHS: [u32; 5] = [40, 28, 20, 14, 10];
@@ -36,17 +37,24 @@ const STEPS: u32 = 14;
 enum Rule {
     /// After so many replicates.
     Fixed(u64),
+    /// Where the verdict is certain to so many percent, or at the end of the reference.
+    Certain(f64),
 }
+
+/// Certainties asked for (%).
+const CERTAIN: [f64; 2] = [95.0, 99.9];
 
 impl Rule {
     fn all(replicates: u64) -> Vec<Rule> {
         let powers = (0..).map(|power| 1u64 << power);
-        powers.take_while(|&k| 4 * k <= replicates).map(Rule::Fixed).collect()
+        let fixed = powers.take_while(|&k| 4 * k <= replicates).map(Rule::Fixed);
+        fixed.chain(CERTAIN.map(Rule::Certain)).collect()
     }
 
-    fn name(self) -> &'static str {
+    fn name(self) -> String {
         match self {
-            Rule::Fixed(_) => "fixed",
+            Rule::Fixed(_) => "fixed".into(),
+            Rule::Certain(percent) => format!("certain to {percent} %"),
         }
     }
 
@@ -54,6 +62,24 @@ impl Rule {
     fn class(self, eroded: &[&[f64]]) -> (Verdict, u64) {
         match self {
             Rule::Fixed(k) => (class_of(&eroded[..k as usize]), k),
+            Rule::Certain(percent) => sequential(percent, eroded),
+        }
+    }
+}
+
+/// The class of the rule that `--decide` follows, and the replicates that it takes of these.
+fn sequential(percent: f64, eroded: &[&[f64]]) -> (Verdict, u64) {
+    let most = eroded.len() as u64;
+    let rule = StopRule { target_error_pp: None, decide_percent: Some(percent), most };
+    let runs = eroded[0].len();
+    let mut wanted = rule.replicates_at(0, 1);
+    loop {
+        let of_run = |run: usize| {
+            eroded[..wanted as usize].iter().map(|runs| (runs[run], runs[run] < THRESHOLD)).collect()
+        };
+        match rule.look(0, &(0..runs).map(of_run).collect::<Vec<_>>()) {
+            Look::Until(next) => wanted = next,
+            Look::Stop(stopping) => return (stopping.verdict.unwrap_or(Verdict::Undecided), wanted),
         }
     }
 }
@@ -233,7 +259,7 @@ fn tried(study: &Study, case: &DecisionCase, rule: Rule, eroded: &[&[f64]]) -> D
     let interval = wilson(of(wrong), (eroded.len() as f64 / replicates).max(1.0));
     DecisionRow {
         case: case.name.clone(),
-        rule: rule.name().into(),
+        rule: rule.name(),
         replicates,
         wrong: of(wrong),
         wrong_low: interval.low,

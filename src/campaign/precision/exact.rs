@@ -22,7 +22,7 @@ use crate::gradation::{Gradation, SizeSampler};
 use crate::network::Network;
 use crate::outcome::precision::{Exact, ExactRow, NetworkRow, Quantity, Slope, merit, spread};
 use crate::stream::{Key, Purpose, unit};
-use crate::walk::Engine;
+use crate::walk::{Engine, Sampling};
 
 /// Random networks: more than a hundred, as many as make a row of bits.
 const NETWORKS: usize = 128;
@@ -250,8 +250,14 @@ impl Line<'_> {
     /// The share that leaves, and the processor time (s).
     fn found(&self, known: &Known, particles: u64, seed: u64) -> Result<(f64, f64), PrecisionError> {
         let sampler = SizeSampler::new(&Gradation::single(known.diameter)?, 1.0)?;
-        let run =
-            |engine, n_base| FirstRun { engine, sampler: sampler.clone(), tail: 0.0, n_base, increments: 1 };
+        let run = |engine, n_base| FirstRun {
+            engine,
+            sampler: sampler.clone(),
+            tail: 0.0,
+            n_base,
+            increments: 1,
+            sampling: Sampling::Independent,
+        };
         match self.way {
             Way::Together(engine) => {
                 let ended =

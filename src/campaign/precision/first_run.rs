@@ -9,7 +9,7 @@ use crate::campaign::walks::replicate_seed;
 use crate::gradation::SizeSampler;
 use crate::network::Network;
 use crate::outcome::eroded_mass_fraction;
-use crate::walk::{Engine, Plan, Progress, SizeClasses, State, Walk};
+use crate::walk::{Engine, Plan, Progress, Sampling, SizeClasses, State, Walk};
 
 /// A first run, up to its network and seed.
 #[derive(Clone)]
@@ -20,6 +20,8 @@ pub(super) struct FirstRun {
     pub tail: f64,
     pub n_base: u64,
     pub increments: u64,
+    /// How start nodes and sizes are drawn.
+    pub sampling: Sampling,
 }
 
 /// How it ended.
@@ -48,6 +50,7 @@ impl FirstRun {
             tail: case.base.tail_mass_fraction(),
             n_base: case.n_base,
             increments: case.increments(),
+            sampling: case.scene.sampling,
         }
     }
 
@@ -86,7 +89,8 @@ impl FirstRun {
         seed: u64,
         run: u64,
     ) -> Result<(State, u64), PrecisionError> {
-        let plan = Plan::new(self.engine, network, &self.sampler, &blocked, self.n_base / self.increments);
+        let share = self.n_base / self.increments;
+        let plan = Plan::new(self.engine, network, &self.sampler, &blocked, share).sampled(self.sampling);
         let supply = plan.supply(self.sampler.clone(), self.n_base, self.increments, seed, run);
         let classes = SizeClasses::logarithmic(self.sampler.smallest(), self.sampler.largest(), 64);
         let mut state = State::new(network, &supply, classes, blocked, seed, run);

@@ -9,25 +9,36 @@ use super::work::affordable;
 use super::{PrecisionError, Study};
 use crate::outcome::precision::{Sampling, SamplingLine, SamplingRow, merit, spread};
 use crate::outcome::record::Statistic;
-use crate::walk::Engine;
+use crate::walk::{Engine, Sampling as Drawn};
 
 /// A way of drawing and moving base particles, all of one law. The first that is walked is what the others are held against.
 struct Variant {
     name: &'static str,
     engine: Engine,
+    /// How its start nodes and sizes are drawn.
+    base: Drawn,
     /// Its networks, where they are new.
     networks: Change,
 }
 
-const fn of(name: &'static str, engine: Engine) -> Variant {
-    Variant { name, engine, networks: Change::Nothing }
+const fn of(name: &'static str, engine: Engine, base: Drawn) -> Variant {
+    Variant { name, engine, base, networks: Change::Nothing }
 }
 
-const VARIANTS: [Variant; 4] = [
-    of("counts", Engine::Counts),
-    of("particles", Engine::Particles),
-    of("expected", Engine::Expected),
-    Variant { networks: Change::Stratified, ..of("counts, stratified constrictions", Engine::Counts) },
+const VARIANTS: [Variant; 7] = [
+    of("counts", Engine::Counts, Drawn::Independent),
+    of("particles", Engine::Particles, Drawn::Independent),
+    of("expected", Engine::Expected, Drawn::Independent),
+    of("counts, stratified base", Engine::Counts, Drawn::Stratified),
+    of("expected, stratified base", Engine::Expected, Drawn::Stratified),
+    Variant {
+        networks: Change::Stratified,
+        ..of("counts, stratified constrictions", Engine::Counts, Drawn::Independent)
+    },
+    Variant {
+        networks: Change::Stratified,
+        ..of("expected, both stratified", Engine::Expected, Drawn::Stratified)
+    },
 ];
 
 /// A kind of replicate.
@@ -52,7 +63,7 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Sampling, PrecisionEr
     let mut variants = Vec::new();
     let lattice = Change::all(study).contains(&Change::Stratified);
     for variant in VARIANTS.iter().filter(|v| lattice || v.networks == Change::Nothing) {
-        let run = FirstRun { engine: variant.engine, ..FirstRun::of(study) };
+        let run = FirstRun { engine: variant.engine, sampling: variant.base, ..FirstRun::of(study) };
         // By the moves of the counts it is known what the particles would cost, before they are walked.
         let costs = match (variant.engine, variants.first()) {
             (Engine::Particles, Some((_, _, _, moves))) => 3e-9 * *moves as f64 + 1.5e-8 * case.n_base as f64,

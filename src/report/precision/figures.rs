@@ -16,7 +16,10 @@ fn look(name: &str) -> (Colour, Shape) {
         "counts" => (BLUE, Shape::Circle),
         "expected" => (GREEN, Shape::Diamond),
         "one at a time" => (PURPLE, Shape::Triangle),
-        "counts, stratified constrictions" => (PURPLE, Shape::Triangle),
+        "counts, stratified base" => (ORANGE, Shape::Circle),
+        "expected, stratified base" => (ORANGE, Shape::Diamond),
+        "counts, stratified constrictions" => (PURPLE, Shape::Circle),
+        "expected, both stratified" => (PURPLE, Shape::Diamond),
         _ => (ORANGE, Shape::Triangle),
     }
 }

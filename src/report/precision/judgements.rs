@@ -127,6 +127,15 @@ fn decision(decision: &Decision) -> String {
             )
         );
     }
+    let stopped = || decision.rows.iter().filter(|row| row.rule.contains("99.9"));
+    if let Some(worst) = stopped().map(|row| row.wrong).reduce(f64::max) {
+        let undecided = stopped().map(|row| row.undecided).fold(0.0, f64::max);
+        text += &format!(
+            "stopping where the verdict is certain to 99.9 % is wrong in at most {:.1} % of trials of a case (and leaves up to {:.0} % undecided); ",
+            100.0 * worst,
+            100.0 * undecided
+        );
+    }
     let uncertain = decision.cases.iter().filter(|case| !case.certain).count();
     text += &match uncertain {
         0 => "the reference is certain of every case.".to_owned(),
