@@ -1,7 +1,7 @@
 //! What a setting does to the eroded mass of the scene's first run, with the interval of the difference.
 
 use super::changes::Change;
-use super::first_run::nominal;
+use super::first_run::Scene;
 use super::twin;
 use super::work::affordable;
 use super::{PrecisionError, Study};
@@ -11,6 +11,9 @@ use crate::outcome::student;
 
 /// Replicates of a row, at least and at most.
 const REPLICATES: (u64, u64) = (4, 256);
+
+/// Replicates of a row for which the lattice is made narrower.
+const ENOUGH: u64 = 16;
 
 /// Part of the budget for the twins.
 const TWINS: f64 = 0.1;
@@ -23,17 +26,17 @@ pub(super) struct Walked {
 
 /// The tier.
 pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Vec<BiasRow>, PrecisionError> {
-    let network = study.network(study.shape(), study.seed(1))?;
-    let pilot = Change::Nothing.run(study).walk(&network, study.seed(1))?;
-    let each_s = nominal(&pilot, &network);
-    let all = Change::all(study);
+    let scene = Scene::affordable(study, 25 * ENOUGH, budget_s * (1.0 - TWINS))?;
+    (study.tell)(&format!("bias: on {}", scene.words()));
+    let each_s = scene.cost_s()?;
+    let all = Change::all(&scene);
     // Each row has the same time, the reference three times as much: all others lean on it.
     let row_s = budget_s * (1.0 - TWINS) / (all.len() + 2) as f64;
     let mut rows = Vec::new();
     let mut reference = None;
     for change in all {
         let row_s = if change == Change::Nothing { 3.0 * row_s } else { row_s };
-        let cost_s = each_s * change.cost(study);
+        let cost_s = each_s * change.cost(&scene);
         if cost_s * REPLICATES.0 as f64 > 3.0 * row_s.max(0.1 * budget_s) {
             (study.tell)(&format!(
                 "bias: {}, {} left out: {cost_s:.0} s a replicate",
@@ -44,10 +47,10 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Vec<BiasRow>, Precisi
         }
         let count = affordable(row_s, cost_s, REPLICATES.0, REPLICATES.1);
         (study.tell)(&format!("bias: {}, {}: {count} replicates", change.factor(), change.level()));
-        let run = change.run(study);
+        let run = change.run(&scene);
         let walked = study.side_by_side(count as usize, |i| {
             let seed = study.seed(1 + i as u64);
-            let ended = run.walk(&change.network(study, seed)?, seed)?;
+            let ended = run.walk(&change.network(&scene, seed)?, seed)?;
             Ok((ended.eroded_mass_fraction, ended.core_seconds))
         })?;
         let walked = Walked {
@@ -55,15 +58,11 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Vec<BiasRow>, Precisi
             eroded: walked.into_iter().map(|(eroded, _)| eroded).collect(),
         };
         let paired = change.keeps_network();
-        rows.push(row(
-            change.factor(),
-            change.level(),
-            change.at(),
-            run.n_base,
-            &walked,
-            reference.as_ref(),
-            paired,
-        ));
+        let level = match change {
+            Change::Nothing => format!("{}, {}", change.level(), scene.words()),
+            _ => change.level(),
+        };
+        rows.push(row(change.factor(), level, change.at(), run.n_base, &walked, reference.as_ref(), paired));
         reference.get_or_insert(walked);
     }
     rows.extend(twin::rows(study, budget_s * TWINS)?);

@@ -1,8 +1,7 @@
 //! Settings that are changed one at a time, and what is held against what.
 
 use super::PrecisionError;
-use super::Study;
-use super::first_run::FirstRun;
+use super::first_run::{FirstRun, Scene};
 use crate::campaign::scene::NetworkSource;
 use crate::network::Network;
 
@@ -33,12 +32,12 @@ const INJECTED: [f64; 5] = [0.002, 0.01, 0.05, 0.1, 1.0];
 
 impl Change {
     /// All that make sense for the scene, the reference first.
-    pub fn all(study: &Study) -> Vec<Change> {
-        let case = study.case;
+    pub fn all(scene: &Scene) -> Vec<Change> {
+        let case = scene.study.case;
         let mut all = vec![Change::Nothing];
         all.extend(SHARES.map(Change::Share));
         all.extend(CAPS.into_iter().filter(|&cap| cap < case.n_base).map(Change::Cap));
-        if let Some([nx, ny, nz]) = study.shape() {
+        if let Some([nx, ny, nz]) = scene.shape {
             all.extend(WIDTHS.into_iter().filter(|&w| [w, w] != [nx, ny]).map(Change::Width));
             all.extend(LENGTHS.into_iter().filter(|&l| l != nz).map(Change::Length));
         }
@@ -92,8 +91,8 @@ impl Change {
     }
 
     /// The scene's shape, changed.
-    fn shape(self, study: &Study) -> Option<[u32; 3]> {
-        let [nx, ny, nz] = study.shape()?;
+    fn shape(self, scene: &Scene) -> Option<[u32; 3]> {
+        let [nx, ny, nz] = scene.shape?;
         Some(match self {
             Change::Width(width) => [width, width, nz],
             Change::Length(length) => [nx, ny, length],
@@ -102,46 +101,41 @@ impl Change {
     }
 
     /// Its network of this seed.
-    pub fn network(self, study: &Study, seed: u64) -> Result<Network, PrecisionError> {
-        let shape = self.shape(study);
-        match (self, shape) {
+    pub fn network(self, scene: &Scene, seed: u64) -> Result<Network, PrecisionError> {
+        let changed = Scene { shape: self.shape(scene), ..*scene };
+        match (self, changed.shape) {
             (Change::Stratified, Some(shape)) => {
-                let case = study.case;
+                let case = scene.study.case;
                 Ok(Network::cubic_stratified(shape, &case.curve, case.unit_mm, seed)?)
             }
-            _ => study.network(shape, seed),
+            _ => changed.network(seed),
         }
     }
 
     /// The scene's run, changed; more voids take more base by Eq. (2).
-    pub fn run(self, study: &Study) -> FirstRun {
-        let reference = FirstRun::of(study);
-        let of = |share: f64| ((reference.n_base as f64 * share).round() as u64).max(1);
+    pub fn run(self, scene: &Scene) -> FirstRun {
+        let run = Scene { shape: self.shape(scene), ..*scene }.run();
+        let of = |share: f64| ((run.n_base as f64 * share).round() as u64).max(1);
         let n_base = match self {
             Change::Share(share) => of(share),
-            Change::Cap(cap) => reference.n_base.min(cap),
-            _ => of(self.voids(study)),
+            // A cap is one of the whole scene: a narrower lattice has the same share.
+            Change::Cap(cap) => of((cap as f64 / scene.study.case.n_base as f64).min(1.0)),
+            _ => run.n_base,
         };
         let increments = match self {
             Change::Inject(share) => (1.0 / share).round() as u64,
-            _ => reference.increments,
+            _ => run.increments,
         };
-        FirstRun { n_base, increments, ..reference }
-    }
-
-    /// Voids, by those of the scene.
-    fn voids(self, study: &Study) -> f64 {
-        let count = |shape: Option<[u32; 3]>| shape.map_or(1.0, |n| n.map(f64::from).iter().product());
-        count(self.shape(study)) / count(study.shape())
+        FirstRun { n_base, increments, ..run }
     }
 
     /// About what it costs, by what the reference costs: a run takes some 3.6 increments a layer beside those of insertion.
-    pub fn cost(self, study: &Study) -> f64 {
+    pub fn cost(self, scene: &Scene) -> f64 {
         let last = |increments: f64, layers: f64| increments + 3.6 * layers;
-        let Some([_, _, nz]) = study.shape() else { return 1.0 };
-        let layers = self.shape(study).map_or(nz, |[_, _, nz]| nz);
-        let increments = self.run(study).increments as f64;
-        self.voids(study) * last(increments, f64::from(layers))
-            / last(study.case.increments() as f64, f64::from(nz))
+        let Some([_, _, nz]) = scene.shape else { return 1.0 };
+        let changed = Scene { shape: self.shape(scene), ..*scene };
+        let layers = changed.shape.map_or(nz, |[_, _, nz]| nz);
+        changed.by_voids() / scene.by_voids() * last(self.run(scene).increments as f64, f64::from(layers))
+            / last(scene.run().increments as f64, f64::from(nz))
     }
 }

@@ -7,7 +7,7 @@
 use bitvec::vec::BitVec;
 use rand::Rng;
 
-use super::first_run::{FirstRun, nominal};
+use super::first_run::{FirstRun, Scene, nominal};
 use super::work::affordable;
 use super::{PrecisionError, Study};
 use crate::gradation::SizeSampler;
@@ -25,9 +25,6 @@ const REPLICATES: (u64, u64) = (64, 1024);
 
 /// Random subsets on which a rule is tried.
 const TRIALS: u64 = 1000;
-
-/// Cross-sections tried, widest first, until the least number of replicates is paid for.
-const WIDTHS: [u32; 5] = [40, 28, 20, 14, 10];
 
 /// Steps of the search for the factor on the base's sizes.
 const STEPS: u32 = 14;
@@ -93,23 +90,19 @@ fn class_of(eroded: &[&[f64]]) -> Verdict {
     classify(below(0), below(1))
 }
 
-/// The scene on a lattice of this shape with its base's sizes multiplied.
-struct Near<'a> {
-    study: &'a Study<'a>,
-    shape: Option<[u32; 3]>,
-}
+/// The scene with its base's sizes multiplied.
+struct Near<'a>(Scene<'a>);
 
 impl Near<'_> {
     fn run(&self, size_factor: f64) -> Result<FirstRun, PrecisionError> {
-        let case = self.study.case;
-        let count = |shape: Option<[u32; 3]>| shape.map_or(1.0, |n| n.map(f64::from).iter().product::<f64>());
-        let voids = count(self.shape) / count(self.study.shape());
+        let case = self.0.study.case;
         // By Eq. (2) a base of grains half as large is eight times as many.
         let whole = case.n_base_eq2.filter(|_| case.capped).unwrap_or(case.n_base) as f64;
         let wanted = whole / (size_factor * size_factor * size_factor);
         let n = if case.capped { wanted.min(case.n_base as f64) } else { wanted };
         let sampler = SizeSampler::new(&case.base.scaled(size_factor)?, case.unit_mm)?;
-        Ok(FirstRun { sampler, n_base: ((n * voids).round() as u64).max(1), ..FirstRun::of(self.study) })
+        let n_base = ((n * self.0.by_voids()).round() as u64).max(1);
+        Ok(FirstRun { sampler, n_base, ..self.0.run() })
     }
 
     /// Eroded mass fraction of each of `runs` runs and processor time, of so many replicates.
@@ -120,9 +113,9 @@ impl Near<'_> {
         count: u64,
     ) -> Result<Vec<(Vec<f64>, f64)>, PrecisionError> {
         let of_run = self.run(size_factor)?;
-        self.study.side_by_side(count as usize, |i| {
-            let seed = self.study.seed(1 + i as u64);
-            let network = self.study.network(self.shape, seed)?;
+        self.0.study.side_by_side(count as usize, |i| {
+            let seed = self.0.study.seed(1 + i as u64);
+            let network = self.0.network(seed)?;
             let mut blocked = BitVec::repeat(false, network.constrictions());
             let (mut eroded, mut core_seconds) = (Vec::new(), 0.0);
             for run in 1..=runs {
@@ -139,19 +132,21 @@ impl Near<'_> {
 /// The tier; `None` where no factor on the base's sizes brings its erosion near 7.5 %.
 pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Option<Decision>, PrecisionError> {
     let narrow = study.shape().map(|[nx, ny, nz]| [nx.min(10), ny.min(10), nz]);
-    let search = Near { study, shape: narrow };
+    let search = Near(Scene { study, shape: narrow });
     let Some(factors) = factors(&search)? else {
         (study.tell)("decision: no factor on the base's sizes brings its erosion near 7.5 %");
         return Ok(None);
     };
-    let near = Near { study, shape: shape(study, &search, factors[2], budget_s)? };
-    let (mut cases, mut rows) = (Vec::new(), Vec::new());
-    let network = study.network(near.shape, study.seed(1))?;
-    let pilot = near.run(factors[2])?.walk(&network, study.seed(1))?;
     let runs = study.case.scene.runs;
+    // The cases erode less than the scene, and take about as long.
+    let replicates = factors.len() as u64 * REPLICATES.0 * runs;
+    let near = Near(Scene::affordable(study, replicates, 0.9 * budget_s)?);
+    let (mut cases, mut rows) = (Vec::new(), Vec::new());
+    let network = near.0.network(study.seed(1))?;
+    let pilot = near.run(factors[2])?.walk(&network, study.seed(1))?;
     let case_s = 0.9 * budget_s / factors.len() as f64;
     let replicates = affordable(case_s, runs as f64 * nominal(&pilot, &network), REPLICATES.0, REPLICATES.1);
-    let on = near.shape.map_or("the network".into(), |[nx, ny, nz]| format!("{nx} x {ny} x {nz} voids"));
+    let on = near.0.words();
     for factor in factors {
         (study.tell)(&format!("decision: sizes x {factor:.3}, {replicates} replicates on {on}"));
         let walked = near.replicates(factor, runs, replicates)?;
@@ -177,27 +172,7 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Option<Decision>, Pre
         }
         cases.push(case);
     }
-    Ok(Some(Decision { cases, rows }))
-}
-
-/// The widest lattice on which the least number of replicates of every case is paid for.
-fn shape(
-    study: &Study,
-    search: &Near,
-    factor: f64,
-    budget_s: f64,
-) -> Result<Option<[u32; 3]>, PrecisionError> {
-    let (Some([nx, ny, nz]), Some(narrow)) = (study.shape(), search.shape) else { return Ok(None) };
-    let network = study.network(search.shape, study.seed(1))?;
-    let pilot = search.run(factor)?.walk(&network, study.seed(1))?;
-    let a_column = nominal(&pilot, &network) / f64::from(narrow[0] * narrow[1]);
-    let fits = |width: u32| {
-        let columns = f64::from(nx.min(width) * ny.min(width));
-        columns * a_column * (WANTED.len() as u64 * REPLICATES.0 * study.case.scene.runs) as f64
-            <= 0.9 * budget_s
-    };
-    let width = WIDTHS.into_iter().find(|&width| fits(width)).unwrap_or(WIDTHS[WIDTHS.len() - 1]);
-    Ok(Some([nx.min(width), ny.min(width), nz]))
+    Ok(Some(Decision { on, cases, rows }))
 }
 
 /// Factors on the base's sizes at which the wanted fractions erode, about: coarser grains erode less.

@@ -123,6 +123,60 @@ impl Study<'_> {
     }
 }
 
+/// The scene on a lattice that may be narrower than its own, with as much base a void.
+#[derive(Clone, Copy)]
+pub(super) struct Scene<'a> {
+    pub study: &'a Study<'a>,
+    /// Voids along x, y, z, where its network is a lattice.
+    pub shape: Option<[u32; 3]>,
+}
+
+/// Cross-sections tried, widest first.
+const WIDTHS: [u32; 6] = [u32::MAX, 40, 28, 20, 14, 10];
+
+impl<'a> Scene<'a> {
+    /// On the widest lattice on which so many first runs are paid for.
+    pub fn affordable(study: &'a Study<'a>, runs: u64, budget_s: f64) -> Result<Self, PrecisionError> {
+        let Some([nx, ny, nz]) = study.shape() else { return Ok(Self { study, shape: None }) };
+        let of = |width: u32| Self { study, shape: Some([nx.min(width), ny.min(width), nz]) };
+        let narrow = of(WIDTHS[WIDTHS.len() - 1]);
+        let a_run = narrow.cost_s()? / narrow.by_voids();
+        let fits = |scene: &Self| a_run * scene.by_voids() * runs as f64 <= budget_s;
+        Ok(WIDTHS.into_iter().map(of).find(fits).unwrap_or(narrow))
+    }
+
+    /// Voids, by those of the scene.
+    pub fn by_voids(&self) -> f64 {
+        let count = |shape: Option<[u32; 3]>| shape.map_or(1.0, |n| n.map(f64::from).iter().product::<f64>());
+        count(self.shape) / count(self.study.shape())
+    }
+
+    /// The scene's first run.
+    pub fn run(&self) -> FirstRun {
+        let whole = FirstRun::of(self.study);
+        FirstRun { n_base: ((whole.n_base as f64 * self.by_voids()).round() as u64).max(1), ..whole }
+    }
+
+    /// The network of this seed.
+    pub fn network(&self, seed: u64) -> Result<Network, PrecisionError> {
+        self.study.network(self.shape, seed)
+    }
+
+    /// Counted processor time of a first run (s).
+    pub fn cost_s(&self) -> Result<f64, PrecisionError> {
+        let network = self.network(self.study.seed(1))?;
+        Ok(nominal(&self.run().walk(&network, self.study.seed(1))?, &network))
+    }
+
+    /// The lattice in words.
+    pub fn words(&self) -> String {
+        match self.shape {
+            Some([nx, ny, nz]) => format!("{nx} x {ny} x {nz} voids"),
+            None => "its network".into(),
+        }
+    }
+}
+
 /// Processor time of a constriction drawn, and of a void of a table.
 const CONSTRICTION_S: f64 = 3.5e-8;
 

@@ -82,12 +82,12 @@ impl Tier {
     /// Its part of the budget, before those that are not wanted are left out.
     fn part(self) -> f64 {
         match self {
-            Tier::Exact => 0.22,
+            Tier::Exact => 0.25,
             Tier::Sampling => 0.2,
-            Tier::Bias => 0.23,
-            Tier::Decision => 0.15,
+            Tier::Bias => 0.22,
+            Tier::Decision => 0.14,
             Tier::Scaling => 0.08,
-            Tier::Packing => 0.12,
+            Tier::Packing => 0.11,
         }
     }
 }

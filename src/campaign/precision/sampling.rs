@@ -4,7 +4,7 @@
 //! particles can change; what is left beside it is the scatter between networks, the floor of all that draws better).
 
 use super::changes::Change;
-use super::first_run::{FirstRun, nominal};
+use super::first_run::{FirstRun, Scene, nominal};
 use super::work::affordable;
 use super::{PrecisionError, Study};
 use crate::outcome::precision::{Sampling, SamplingLine, SamplingRow, merit, spread};
@@ -47,6 +47,9 @@ const KINDS: [&str; 2] = ["new networks", "one network"];
 /// Replicates of every line, at least and at most.
 const REPLICATES: (u64, u64) = (8, 1024);
 
+/// Replicates of a line for which the lattice is made narrower.
+const ENOUGH: u64 = 40;
+
 /// Groups of replicates of which a standard deviation is taken, at least.
 const GROUPS: u64 = 4;
 
@@ -58,15 +61,17 @@ struct One {
 
 /// The tier.
 pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Sampling, PrecisionError> {
-    let case = study.case;
-    let network = study.network(study.shape(), study.seed(1))?;
+    let scene = Scene::affordable(study, ENOUGH * (KINDS.len() * VARIANTS.len()) as u64, budget_s)?;
+    (study.tell)(&format!("sampling: on {}", scene.words()));
+    let network = scene.network(study.seed(1))?;
+    let n_base = scene.run().n_base;
     let mut variants = Vec::new();
-    let lattice = Change::all(study).contains(&Change::Stratified);
+    let lattice = Change::all(&scene).contains(&Change::Stratified);
     for variant in VARIANTS.iter().filter(|v| lattice || v.networks == Change::Nothing) {
-        let run = FirstRun { engine: variant.engine, sampling: variant.base, ..FirstRun::of(study) };
+        let run = FirstRun { engine: variant.engine, sampling: variant.base, ..scene.run() };
         // By the moves of the counts it is known what the particles would cost, before they are walked.
         let costs = match (variant.engine, variants.first()) {
-            (Engine::Particles, Some((_, _, _, moves))) => 3e-9 * *moves as f64 + 1.5e-8 * case.n_base as f64,
+            (Engine::Particles, Some((_, _, _, moves))) => 3e-9 * *moves as f64 + 1.5e-8 * n_base as f64,
             _ => 0.0,
         };
         if costs * (2 * REPLICATES.0) as f64 > 0.7 * budget_s {
@@ -79,7 +84,7 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Sampling, PrecisionEr
     let all: f64 = variants.iter().map(|(_, _, cost, _)| cost).sum();
     let replicates = affordable(budget_s, all * KINDS.len() as f64, REPLICATES.0, REPLICATES.1);
     (study.tell)(&format!("sampling: {replicates} replicates of {} lines", variants.len() * KINDS.len()));
-    let mut sampling = Sampling { rows: Vec::new(), lines: Vec::new() };
+    let mut sampling = Sampling { on: scene.words(), rows: Vec::new(), lines: Vec::new() };
     for (kind, networks) in KINDS.into_iter().enumerate() {
         let mut first: Option<Vec<One>> = None;
         // On one given network there is nothing to stratify.
@@ -91,7 +96,7 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Sampling, PrecisionEr
                 let ended = run.walk(&network, seed)?;
                 Ok(One { eroded: ended.eroded_mass_fraction, core_seconds: ended.core_seconds })
             })?;
-            sampling.lines.push(line(variant.name, networks, &walked, first.as_deref(), case.n_base));
+            sampling.lines.push(line(variant.name, networks, &walked, first.as_deref(), n_base));
             sampling.rows.extend(rows(variant.name, networks, &walked));
             first.get_or_insert(walked);
         }

@@ -170,6 +170,8 @@ pub struct ClosedRow {
 /// The tier of sampling.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sampling {
+    /// The lattice that it was walked on.
+    pub on: String,
     /// One row a variant, kind of replicate and group size.
     pub rows: Vec<SamplingRow>,
     /// One line a variant and kind of replicate.
@@ -262,6 +264,8 @@ pub struct BiasRow {
 /// The tier of verdicts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Decision {
+    /// The lattice that it was walked on.
+    pub on: String,
     /// The cases.
     pub cases: Vec<DecisionCase>,
     /// One row a case, rule and number of replicates.

@@ -20,7 +20,7 @@ pub use judgements::precision_judgements;
 struct Section {
     name: &'static str,
     heading: &'static str,
-    question: &'static str,
+    question: String,
     figures: Vec<Drawn>,
     tables: Markup,
 }
@@ -48,7 +48,7 @@ pub fn write_precision(folder: &Path) -> Result<Written, ReportError> {
         (tables::merits(&study))
         @for section in &sections {
             h2 { (section.heading) }
-            p { (section.question) }
+            p { (clean(&section.question)) }
             @for (_, sentence) in judgements.iter().filter(|(tier, _)| *tier == section.name) { p { b { (clean(sentence)) } } }
             @for drawn in &section.figures { ({ number += 1; figure(number, drawn) }) }
             (section.tables)
@@ -69,7 +69,7 @@ fn sections(study: &Precision) -> Vec<Section> {
             name: "exact",
             heading: "Against exact answers",
             question: "On a given network the chance of a first particle to leave is known by a linear solve. Does every engine find it, and \
-                       does its error fall as that of independent particles must?",
+                       does its error fall as that of independent particles must?".into(),
             figures: figures::exact(exact),
             tables: tables::exact(exact),
         });
@@ -78,8 +78,8 @@ fn sections(study: &Precision) -> Vec<Section> {
         sections.push(Section {
             name: "sampling",
             heading: "Scatter of this scene",
-            question: "Eroded mass of the first run. Replicates differ by their network and their walk, or by their walk alone; the scatter between networks is the \
-                       floor of every better way of drawing base particles.",
+            question: format!("Eroded mass of the first run, walked on {}. Replicates differ by their network and their walk, or by their walk alone; the scatter between networks is the \
+                       floor of every better way of drawing base particles.", sampling.on),
             figures: figures::sampling(sampling),
             tables: tables::sampling(sampling),
         });
@@ -88,7 +88,7 @@ fn sections(study: &Precision) -> Vec<Section> {
         sections.push(Section {
             name: "bias",
             heading: "What settings do to the answer",
-            question: "One setting is changed at a time. A difference that its interval keeps apart from zero is a bias: no number of replicates takes it away.",
+            question: "One setting is changed at a time. A difference that its interval keeps apart from zero is a bias: no number of replicates takes it away.".into(),
             figures: figures::bias(bias),
             tables: tables::bias(bias),
         });
@@ -97,7 +97,7 @@ fn sections(study: &Precision) -> Vec<Section> {
         sections.push(Section {
             name: "decision",
             heading: "Wrong verdicts",
-            question: "Cases near the 7.5 % that divide \"no erosion\" from the rest, made of this scene by other sizes of its base: how often is the class wrong, by the time spent?",
+            question: format!("Cases near the 7.5 % that divide \"no erosion\" from the rest, made of this scene by other sizes of its base and walked on {}: how often is the class wrong, by the time spent?", decision.on),
             figures: figures::decision(decision),
             tables: tables::decision(decision),
         });
@@ -106,7 +106,7 @@ fn sections(study: &Precision) -> Vec<Section> {
         sections.push(Section {
             name: "scaling",
             heading: "What a larger problem costs",
-            question: "Processor time of one first run.",
+            question: "Processor time of one first run.".into(),
             figures: figures::scaling(scaling),
             tables: tables::scaling(scaling),
         });
@@ -116,7 +116,7 @@ fn sections(study: &Precision) -> Vec<Section> {
             name: "packing",
             heading: "Packing and triangulation",
             question: "Void ratio and constriction curve of small packings of this scene's filter, one setting changed at a time; and the time and the identities of \
-                       triangulations.",
+                       triangulations.".into(),
             figures: figures::packing(packing),
             tables: tables::packing(packing),
         });
