@@ -175,7 +175,7 @@ fn threads_change_nothing_but_times_and_the_page_shows_every_tier() {
     assert!(
         !page.contains("<script") && page.contains("slope −1/2") && !page.contains("Against exact answers")
     );
-    assert!(one.join("figures/sampling.svg").is_file());
+    assert!(one.join("figures/sampling-new-networks.svg").is_file());
 
     // The page is made of precision.json alone.
     fs::remove_file(one.join("precision.html")).unwrap();

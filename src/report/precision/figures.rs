@@ -24,6 +24,10 @@ fn look(name: &str) -> (Colour, Shape) {
     }
 }
 
+/// Room for names above the frame, on a page and on a telephone.
+const WIDE: (f64, f64) = (720.0, 500.0);
+const NARROW: (f64, f64) = (358.0, 600.0);
+
 /// Least and most of positive values.
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let positive = values.filter(|v| *v > 0.0 && v.is_finite());
@@ -54,7 +58,7 @@ pub(super) fn exact(exact: &Exact) -> Vec<Drawn> {
         (
             "exact-particles",
             "Root mean square error of the chance to leave over the random networks, against the number of particles. Dashed: the error of independent \
-             particles, slope −1/2; particles, counts and single particles must lie on it. \"Expected\" draws nothing: its error is the rounding of its whole numbers.",
+             particles, slope −1/2; particles, counts and single particles must lie on it. \"Expected\" draws nothing: its error is the rounding of its whole numbers. Filled: clogged lattice; hollow, dotted: first particle.",
         ),
         (
             "exact-time",
@@ -77,7 +81,9 @@ pub(super) fn exact(exact: &Exact) -> Vec<Drawn> {
             Axis::log(label, low, high),
             Axis::log("Error of the chance to leave (–)", least, most),
         )
-        .names_above();
+        .names_above()
+        .sizes(WIDE, NARROW);
+        let mut named: Vec<&str> = Vec::new();
         for quantity in &exact.quantities {
             let rows: Vec<&ExactRow> =
                 exact.rows.iter().filter(|row| row.quantity == quantity.name).collect();
@@ -93,8 +99,10 @@ pub(super) fn exact(exact: &Exact) -> Vec<Drawn> {
                 let of_engine: Vec<&&ExactRow> = rows.iter().filter(|row| row.engine == engine).collect();
                 let path = of_engine.iter().map(|row| (x(row), row.error)).collect();
                 let dash = if first { Dash::Solid } else { Dash::Dotted };
-                let words = format!("{engine}, {}", quantity.name);
-                figure.add(Line::new(path, colour).width(1.5).dash(dash).label(&words));
+                let line = Line::new(path, colour).width(1.5).dash(dash);
+                let is_new = !named.contains(&engine);
+                figure.add(if is_new { line.label(engine) } else { line });
+                named.push(engine);
                 for row in of_engine {
                     let bar = Some((row.error_low, row.error_high));
                     let point = Point::new(x(row), row.error, colour, shape).y_interval(bar);
@@ -112,53 +120,63 @@ pub(super) fn exact(exact: &Exact) -> Vec<Drawn> {
 }
 
 pub(super) fn sampling(sampling: &Sampling) -> Vec<Drawn> {
+    let captions = [
+        (
+            "sampling-new-networks",
+            "new networks",
+            "Over new networks and new walks: standard deviation of the mean of 1, 2, 4, ... replicates against the processor time that they take together. Bars: 95 % intervals from the \
+             independent groups of replicates. The floor is the scatter between networks, which no other way of drawing base particles lowers.",
+        ),
+        (
+            "sampling-one-network",
+            "one network",
+            "The same over new walks on one network: what a way of drawing base particles can change.",
+        ),
+    ];
+    let drawn = |(name, kind, caption): (&'static str, &str, &str)| {
+        let lines: Vec<&SamplingLine> = sampling.lines.iter().filter(|line| line.networks == kind).collect();
+        (!lines.is_empty()).then(|| scatter(sampling, name, caption, &lines))
+    };
+    captions.into_iter().filter_map(drawn).collect()
+}
+
+fn scatter(sampling: &Sampling, name: &'static str, caption: &str, lines: &[&SamplingLine]) -> Drawn {
     const PP: f64 = 100.0;
-    let (low, high) = range(sampling.rows.iter().map(|row| row.core_seconds));
-    let binomials = sampling.lines.iter().map(|line| PP * line.binomial);
-    let errors = sampling.rows.iter().flat_map(|row| [PP * row.error_low, PP * row.error_high]);
-    let (least, most) = range(errors.chain(binomials));
+    let kind = &lines[0].networks;
+    let rows = || sampling.rows.iter().filter(|row| row.networks == *kind);
+    let (low, high) = range(rows().map(|row| row.core_seconds));
+    let errors = rows().flat_map(|row| [PP * row.error_low, PP * row.error_high]);
+    let (least, most) = range(errors.chain([PP * lines[0].binomial]));
     let mut figure = Figure::new(
-        "Standard error of the eroded mass against time",
+        &format!("Standard error of the eroded mass against time, {kind}"),
         "Standard deviation of means over replicates of the eroded mass fraction against processor time",
         "",
         Axis::log("Processor time of the replicates averaged (s)", low, high),
         Axis::log("Standard error of the eroded mass (percentage points)", least, most),
     )
-    .names_above();
-    for line in &sampling.lines {
+    .names_above()
+    .sizes(WIDE, NARROW);
+    for line in lines {
         let (colour, shape) = look(&line.variant);
-        let new = line.networks == "new networks";
-        let rows = || {
-            sampling.rows.iter().filter(|row| row.variant == line.variant && row.networks == line.networks)
-        };
-        let path = rows().map(|row| (row.core_seconds, PP * row.error)).collect();
-        let dash = if new { Dash::Solid } else { Dash::Dotted };
-        let words = format!("{}, {}", line.variant, line.networks);
-        figure.add(Line::new(path, colour).width(1.5).dash(dash).label(&words));
-        for row in rows() {
+        let of_line = || rows().filter(|row| row.variant == line.variant);
+        let path = of_line().map(|row| (row.core_seconds, PP * row.error)).collect();
+        figure.add(Line::new(path, colour).width(1.5).label(&line.variant));
+        for row in of_line() {
             let bar = Some((PP * row.error_low, PP * row.error_high));
-            let point = Point::new(row.core_seconds, PP * row.error, colour, shape).y_interval(bar);
-            figure.add(if new { point } else { point.hollow() });
+            figure.add(Point::new(row.core_seconds, PP * row.error, colour, shape).y_interval(bar));
         }
     }
-    if let Some(line) = sampling.lines.first() {
-        figure.add(guide((line.core_seconds, PP * line.sd), low, high));
-        if let Some(floor) = between_networks(sampling, line) {
-            let at = |x: f64| (x, PP * floor * (line.core_seconds / x).sqrt());
-            let floor = Line::new(vec![at(low), at(high)], BLACK).width(1.5).dash(Dash::Dashed);
-            figure.add(floor.label("networks alone: the sampling floor"));
-        }
-        figure.add(
-            Line::new(vec![(low, PP * line.binomial), (high, PP * line.binomial)], GREY)
-                .width(1.0)
-                .dash(Dash::Dotted)
-                .label("one replicate by a binomial: too small"),
-        );
+    let first = lines[0];
+    figure.add(guide((first.core_seconds, PP * first.sd), low, high));
+    if let (true, Some(floor)) = (kind == "new networks", between_networks(sampling, first)) {
+        let at = |x: f64| (x, PP * floor * (first.core_seconds / x).sqrt());
+        let floor = Line::new(vec![at(low), at(high)], BLACK).width(1.5).dash(Dash::Dashed);
+        figure.add(floor.label("networks alone: the sampling floor"));
     }
-    let caption = "Standard deviation of the mean of 1, 2, 4, ... replicates against the processor time that they take together. Bars: 95 % intervals from the independent groups of \
-                   replicates. The floor is the scatter between networks, which no other way of drawing base particles lowers."
-        .to_owned();
-    vec![Drawn { name: "sampling", caption, figure }]
+    let binomial = vec![(low, PP * first.binomial), (high, PP * first.binomial)];
+    let binomial = Line::new(binomial, BLACK).width(1.0).dash(Dash::Dotted);
+    figure.add(binomial.label("one replicate by a binomial: too small"));
+    Drawn { name, caption: caption.to_owned(), figure }
 }
 
 /// The scatter between networks alone: what a line over new networks has beyond that over one.
@@ -207,7 +225,8 @@ pub(super) fn bias(rows: &[BiasRow]) -> Vec<Drawn> {
         Axis::log("Processor time of a replicate (s)", low, high),
         Axis::log("Size of the difference from the reference (percentage points)", least, most),
     )
-    .names_above();
+    .names_above()
+        .sizes(WIDE, NARROW);
     for factor in distinct(rows, |row| &row.factor) {
         let (colour, shape) = factor_look(factor);
         let of_factor: Vec<&&BiasRow> = changed.iter().filter(|row| row.factor == factor).collect();
@@ -277,7 +296,8 @@ pub(super) fn decision(decision: &Decision) -> Vec<Drawn> {
         Axis::log("Processor time (s)", low, high),
         Axis::linear("Wrong class (% of trials)", 0.0, 100.0 * most),
     )
-    .names_above();
+    .names_above()
+    .sizes(WIDE, NARROW);
     for (index, case) in decision.cases.iter().enumerate() {
         let colour = ramp(index, decision.cases.len());
         let of = |rule: bool| {
@@ -331,7 +351,8 @@ pub(super) fn scaling(rows: &[ScalingRow]) -> Vec<Drawn> {
             Axis::log(label, low, high),
             Axis::log("Processor time of a first run (s)", least, most),
         )
-        .names_above();
+        .names_above()
+        .sizes(WIDE, NARROW);
         for engine in distinct(rows, |row| &row.engine) {
             let (colour, shape) = look(engine);
             let points: Vec<(f64, f64)> =
@@ -365,7 +386,8 @@ pub(super) fn packing(tier: &PackingTier) -> Vec<Drawn> {
             Axis::log("Processor time of a packing (s)", low, high),
             Axis::log("Size of the difference of the void ratio (–)", least, most),
         )
-        .names_above();
+        .names_above()
+        .sizes(WIDE, NARROW);
         for factor in distinct(&tier.packings, |row| &row.factor) {
             let mut named = false;
             for row in changed.iter().filter(|row| row.factor == factor) {
@@ -399,7 +421,8 @@ pub(super) fn packing(tier: &PackingTier) -> Vec<Drawn> {
             Axis::log("Grains", low, high),
             Axis::log("Processor time (s)", least, most),
         )
-        .names_above();
+        .names_above()
+        .sizes(WIDE, NARROW);
         for (index, row) in rows.iter().enumerate() {
             let x = row.grains as f64;
             let points = [

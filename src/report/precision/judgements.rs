@@ -63,11 +63,28 @@ fn sampling(sampling: &Sampling) -> Option<String> {
     let floor = between_networks(sampling, best).map_or_else(String::new, |floor| {
         format!(", of which {} come from the networks alone", significant(100.0 * floor))
     });
+    let gain = |variant: &str, networks: &str| {
+        let of =
+            |variant: &str| sampling.lines.iter().find(|l| l.variant == variant && l.networks == networks);
+        let (plain, other) = (of("counts")?, of(variant)?);
+        (other.sd > 0.0).then(|| significant((plain.sd / other.sd) * (plain.sd / other.sd)))
+    };
+    let mut gains = String::new();
+    if let (Some(one), Some(new)) =
+        (gain("counts, stratified base", "one network"), gain("counts, stratified base", "new networks"))
+    {
+        gains += &format!(
+            " Stratified start nodes and sizes divide the variance by {one} on one network and by {new} over new ones."
+        );
+    }
+    if let Some(new) = gain("counts, stratified constrictions", "new networks") {
+        gains += &format!(" Stratified constrictions divide it by {new} over new networks.");
+    }
     // For half a percentage point at 95 %: 1.96 standard errors.
     let needed = (1.96 * best.sd / 0.005).powi(2).max(1.0).ceil();
     Some(format!(
         "A replicate scatters by {} percentage points{floor}, {} times what a binomial of its particles would say. {} buys most: ± 0.5 points (95 %) take {needed:.0} replicates, {} of processor \
-         time.",
+         time.{gains}",
         significant(100.0 * best.sd),
         significant(best.sd / best.binomial),
         best.variant,
