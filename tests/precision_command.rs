@@ -130,7 +130,8 @@ fn threads_change_nothing_but_times_and_the_page_shows_every_tier() {
     for line in tables["sampling_merit.csv"].iter().filter(|line| !line["difference_error"].is_empty()) {
         let (off, error) = (number(line, "difference"), number(line, "difference_error"));
         assert!(off.abs() <= 4.0 * error + 1e-12, "{line:?}");
-        assert!(number(line, "sd") > number(line, "binomial"));
+        // All particles share a network: a binomial of them is too small by far.
+        assert!(line["networks"] == "one network" || number(line, "sd") > 4.0 * number(line, "binomial"), "{line:?}");
     }
     let factors: Vec<&str> = tables["bias.csv"].iter().map(|row| row["factor"].as_str()).collect();
     for factor in [
