@@ -131,7 +131,10 @@ fn threads_change_nothing_but_times_and_the_page_shows_every_tier() {
         let (off, error) = (number(line, "difference"), number(line, "difference_error"));
         assert!(off.abs() <= 4.0 * error + 1e-12, "{line:?}");
         // All particles share a network: a binomial of them is too small by far.
-        assert!(line["networks"] == "one network" || number(line, "sd") > 4.0 * number(line, "binomial"), "{line:?}");
+        assert!(
+            line["networks"] == "one network" || number(line, "sd") > 4.0 * number(line, "binomial"),
+            "{line:?}"
+        );
     }
     let factors: Vec<&str> = tables["bias.csv"].iter().map(|row| row["factor"].as_str()).collect();
     for factor in [

@@ -10,10 +10,12 @@ use crate::network::{Network, Passage};
 use crate::outcome::precision::ClosedRow;
 use crate::walk::{Engine, Plan, Progress, Sampling, SizeClasses, State, Walk};
 
+/// Rows of one kind, for this budget (s).
+type Kind = fn(&Study, f64) -> Result<Vec<ClosedRow>, PrecisionError>;
+
 /// Every row that the budget pays for.
 pub(super) fn rows(study: &Study, budget_s: f64) -> Result<Vec<ClosedRow>, PrecisionError> {
-    let kinds: [fn(&Study, f64) -> Result<Vec<ClosedRow>, PrecisionError>; 5] =
-        [moves, giant, blocked_sets, coarse_base, survival];
+    let kinds: [Kind; 5] = [moves, giant, blocked_sets, coarse_base, survival];
     let all = study.side_by_side(kinds.len(), |kind| kinds[kind](study, budget_s))?;
     Ok(all.into_iter().flatten().collect())
 }
