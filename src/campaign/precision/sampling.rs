@@ -92,7 +92,8 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Sampling, PrecisionEr
         for (variant, run, ..) in variants.iter().filter(of_kind) {
             let walked = study.side_by_side(replicates as usize, |i| {
                 let seed = study.seed(1 + i as u64);
-                let network = study.network(study.shape(), if kind == 0 { seed } else { study.seed(1) })?;
+                let of_network = if kind == 0 { seed } else { study.seed(1) };
+                let network = variant.networks.network(&scene, of_network)?;
                 let ended = run.walk(&network, seed)?;
                 Ok(One { eroded: ended.eroded_mass_fraction, core_seconds: ended.core_seconds })
             })?;
