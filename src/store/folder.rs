@@ -255,13 +255,22 @@ fn clear_parts(folder: &Path) -> io::Result<()> {
     let entries = ask(Call::List(folder), || fs::read_dir(folder)?.collect::<io::Result<Vec<_>>>())?;
     for entry in entries {
         let (path, kind) = (entry.path(), entry.file_type()?);
-        if kind.is_file() && entry.file_name().to_string_lossy().starts_with(PART) {
-            ask(Call::Remove(&path), || fs::remove_file(&path))?;
+        if kind.is_file() && is_left(&entry.file_name().to_string_lossy()) {
+            match ask(Call::Remove(&path), || fs::remove_file(&path)) {
+                Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+                other => other?,
+            }
         } else if kind.is_dir() && path.join(LOCK_FILE).symlink_metadata().is_err() {
             clear_parts(&path)?;
         }
     }
     Ok(())
+}
+
+/// Whether a name is that of a part whose process is gone. Where locks do not work, a process that lives may be at it.
+fn is_left(name: &str) -> bool {
+    let Some(process) = name.strip_prefix(PART).and_then(|rest| rest.split('-').next()) else { return false };
+    process == std::process::id().to_string() || !Path::new("/proc").join(process).exists()
 }
 
 /// Makes a folder and those above it that are missing, each synced into the one that it is in.
@@ -393,8 +402,8 @@ mod tests {
         drop(Folder::open(&path).unwrap());
         let part = |folder: &Path| {
             fs::create_dir_all(folder).unwrap();
-            fs::write(folder.join(".voidwalk-part-7-1"), "half").unwrap();
-            folder.join(".voidwalk-part-7-1")
+            fs::write(folder.join(".voidwalk-part-4999999-1"), "half").unwrap();
+            folder.join(".voidwalk-part-4999999-1")
         };
         let (left, inside) = (part(&path), part(&path.join("checkpoint")));
         let of_another = part(&path.join("cases/one"));
