@@ -21,7 +21,8 @@ pub struct Spread {
 /// The 97.5 % point of the normal distribution.
 const Z: f64 = 1.959_963_984_540_054;
 
-/// Chi squared over its degrees of freedom at the normal point `z` (Wilson and Hilferty; error below 3 % from 4 degrees on).
+/// Chi squared over its degrees of freedom at the normal point `z` (Wilson and Hilferty; its lower points are up to 8 % low
+/// at 4 degrees, 1 % at 10, so that intervals are somewhat wide).
 fn chi_squared_over(degrees: f64, z: f64) -> f64 {
     let a = 2.0 / (9.0 * degrees);
     let root = 1.0 - a + z * a.sqrt();
@@ -66,8 +67,11 @@ mod tests {
     /// Chi squared of the tables: 2.5 % and 97.5 % points of 4, 10 and 30 degrees.
     #[test]
     fn chi_squared_points_are_those_of_the_tables() {
-        for (degrees, low, high) in [(4.0, 0.484, 11.143), (10.0, 3.247, 20.483), (30.0, 16.791, 46.979)] {
-            assert!((chi_squared_over(degrees, -Z) * degrees / low - 1.0).abs() < 0.03, "{degrees}");
+        for (degrees, low, high, error) in
+            [(4.0, 0.484, 11.143, 0.08), (10.0, 3.247, 20.483, 0.01), (30.0, 16.791, 46.979, 0.01)]
+        {
+            let lower = chi_squared_over(degrees, -Z) * degrees / low - 1.0;
+            assert!((-error..0.01).contains(&lower), "{degrees}: {lower}");
             assert!((chi_squared_over(degrees, Z) * degrees / high - 1.0).abs() < 0.01, "{degrees}");
         }
     }
