@@ -446,7 +446,24 @@ by_tests("Machine", "kill at any instant, also during a resume", "final results 
          ("pack_command", "a_packing_goes_on_after_stops_and_kills_with_the_same_bits"),
          ("campaign_command", "a_campaign_that_is_killed_again_and_again_gives_the_same_ledger"))
 by_tests("Machine", "checkpoint cut, flipped, newer, of another program or scene", "refused, or the older slot taken and said",
-         ("lib", "store::checkpoint::tests::no_harm_goes_unnoticed"), ("checkpoints", "a_harmed_checkpoint_is_passed_over_or_refused_and_never_lost"))
+         ("torn_checkpoints", "no_harm_goes_unnoticed"), ("checkpoints", "a_harmed_checkpoint_is_passed_over_or_refused_and_never_lost"))
+by_tests("Machine", "disk full at the start or in between; read-only disk", "clear error, last checkpoint intact, no SIGBUS; refused",
+         ("full_disk", "a_run_on_a_full_disk_ends_with_an_error_and_goes_on_when_there_is_room"),
+         ("full_disk", "a_folder_on_a_disk_that_is_read_only_is_refused"))
+by_tests("Machine", "checkpoint of an older version", "is read, and gone on from to the same answer",
+         ("golden", "old_checkpoints_are_gone_on_from_to_the_same_answer"))
+by_tests("Machine", "symlinked folder, hostile names", "refused; inert", ("hostile_names", "no_link_leads_out_of_a_folder"),
+         ("hostile_names", "an_error_of_any_reader_says_the_name_and_leaves_the_terminal_alone"))
+
+
+@case("Machine", "every n-th write, sync, rename or allocation fails (EIO, ENOSPC, EINTR); power cuts (the fixed part; all of them: results/robustness-*.md)",
+      "clear error, last checkpoint intact, the same results after going on")
+def _(_):
+    done = subprocess.run([TESTS["faults"]], capture_output=True, text=True, cwd=ROOT)
+    assert done.returncode == 0, done.stderr[-300:]
+    return "; ".join(line.strip() for line in (done.stdout + done.stderr).splitlines() if "other results" in line)
+
+
 by_tests("Machine", "another thread count on resume", "same bits", ("checkpoints", "a_walk_goes_on_from_every_increment_with_every_engine_on_any_threads"))
 by_tests("Machine", "two processes on one folder; folders that are not ours; closed stdout", "the second leaves and names the first; left alone; no panic",
          ("lib", "store::folder::tests::a_second_writer_is_told_who_holds_the_folder"), ("lib", "store::folder::tests::what_is_not_ours_is_left_alone"),
