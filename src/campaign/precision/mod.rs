@@ -2,12 +2,12 @@
 //!
 //! | tier | question | error |
 //! |---|---|---|
-//! | [`exact`] | does each engine give what is known exactly? | against a linear solve, integers, closed forms |
-//! | [`sampling`] | what does a second of the scene buy? | standard deviation over replicates |
-//! | [`bias`] | what does a setting do to the answer? | difference from the reference setting |
-//! | [`decision`] | how often is the class wrong? | against a long reference |
-//! | [`scaling`] | what does a larger problem cost? | none: time alone |
-//! | [`packing`] | the same for packings and triangulations | difference from the reference setting |
+//! | `exact` | does each engine give what is known exactly? | against a linear solve, integers, closed forms |
+//! | `sampling` | what does a second of the scene buy? | standard deviation over replicates |
+//! | `bias` | what does a setting do to the answer? | difference from the reference setting |
+//! | `decision` | how often is the class wrong? | against a long reference |
+//! | `scaling` | what does a larger problem cost? | none: time alone |
+//! | `packing` | the same for packings and triangulations | difference from the reference setting |
 //!
 //! # Budget and determinism
 //! The budget is processor time. It decides how many replicates are walked, by the work that a run is counted to be (moves,
