@@ -92,9 +92,9 @@ pub(super) fn exact(exact: &Exact) -> Markup {
         vec![
             row.what.clone(),
             significant(row.exact),
-            if row.z.is_some() { format!("{:.7}", row.found) } else { format!("{}", row.found) },
+            if row.z.is_some() { format!("{:.4}", row.found) } else { format!("{}", row.found) },
             row.z.map_or_else(|| "must be equal".into(), |z| format!("{z:+.2}")),
-            if row.holds { "holds".into() } else { "BROKEN".into() },
+            if row.holds { "✓".into() } else { "BROKEN".into() },
             significant(row.core_seconds),
         ]
     });
@@ -265,7 +265,7 @@ pub(super) fn packing(tier: &PackingTier) -> Markup {
             whole(row.constrictions),
             duration(row.triangulate_seconds),
             duration(row.measure_seconds),
-            if row.identities_hold { "hold".into() } else { "BROKEN".into() },
+            if row.identities_hold { "✓".into() } else { "BROKEN".into() },
         ]
     });
     html! {
