@@ -65,9 +65,22 @@ impl<'a> Ready<'a> {
 
     /// The finished case, if these very results are there.
     pub fn line(&self, out: &Path) -> Option<LedgerLine> {
-        let bytes = read_whole(&out.join(self.folder()).join(LINE)).ok()?;
-        let line: LedgerLine = serde_json::from_slice(&bytes).ok()?;
-        (line.fingerprint == self.fingerprint && line.case == self.planned.name).then_some(line)
+        self.read_line(out).ok().flatten()
+    }
+
+    /// The same; a file that is there and cannot be read is no case that is not done.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn read_line(&self, out: &Path) -> Result<Option<LedgerLine>, StoreError> {
+        let path = out.join(self.folder()).join(LINE);
+        let bytes = match read_whole(&path) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            Err(source) => return Err(StoreError::Io { path, action: "read", source }),
+        };
+        let line: Option<LedgerLine> = serde_json::from_slice(&bytes).ok();
+        Ok(line.filter(|line| line.fingerprint == self.fingerprint && line.case == self.planned.name))
     }
 }
 

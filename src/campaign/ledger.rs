@@ -6,11 +6,14 @@ use super::conduct::Ready;
 use super::results::{ResultError, json};
 use crate::outcome::ledger::{Campaign, LedgerLine};
 use crate::outcome::record::Statistic;
-use crate::store::write_whole;
+use crate::store::{StoreError, write_whole};
 
 /// The finished cases, in the order of the plan.
-pub fn collect(cases: &[Ready], out: &Path) -> Vec<LedgerLine> {
-    cases.iter().filter_map(|case| case.line(out)).collect()
+///
+/// # Errors
+/// One that is there and cannot be read: a ledger without it would be wrong.
+pub fn collect(cases: &[Ready], out: &Path) -> Result<Vec<LedgerLine>, StoreError> {
+    cases.iter().filter_map(|case| case.read_line(out).transpose()).collect()
 }
 
 /// Writes `ledger.jsonl`, `cases.csv` and `campaign.json` into the campaign's folder.

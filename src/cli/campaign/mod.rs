@@ -237,7 +237,7 @@ fn work_out<'a>(
 
 /// Collects what is done into the campaign's folder.
 fn keep(plan: &Plan, cases: &[Ready], out: &Path) -> Result<Vec<LedgerLine>, Ending> {
-    let lines = ledger::collect(cases, out);
+    let lines = ledger::collect(cases, out).map_err(Ending::failed)?;
     let there: BTreeSet<&str> = lines.iter().map(|line| line.case.as_str()).collect();
     let is_missing = |case: &&PlannedCase| !there.contains(case.name.as_str());
     let about = Campaign {
