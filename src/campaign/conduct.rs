@@ -10,6 +10,7 @@
 //! the same bits, file by file under their final names, so that costs time and nothing else.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::io::ErrorKind;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -76,7 +77,9 @@ impl<'a> Ready<'a> {
         let path = out.join(self.folder()).join(LINE);
         let bytes = match read_whole(&path) {
             Ok(bytes) => bytes,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+                return Ok(None);
+            }
             Err(source) => return Err(StoreError::Io { path, action: "read", source }),
         };
         let line: Option<LedgerLine> = serde_json::from_slice(&bytes).ok();
