@@ -4,7 +4,7 @@ use bitvec::vec::BitVec;
 use rayon::prelude::*;
 use voidwalk::constrictions::find;
 use voidwalk::gradation::{Gradation, SizeSampler};
-use voidwalk::network::{END, Network};
+use voidwalk::network::Network;
 use voidwalk::outcome::record::Statistic;
 use voidwalk::walk::{Engine, Plan, Progress, SizeClasses, State, Walk};
 
@@ -34,28 +34,10 @@ fn eroded(
     state.tally.eroded_mass / state.tally.inserted_mass
 }
 
-/// The chance that a particle which passes every open constriction leaves, over uniform start nodes: Gauss-Seidel sweeps,
-/// downstream first. Constrictions of size 0 are closed, and a void without an open exit keeps what enters it.
+/// The chance that a particle which passes every open constriction leaves, over uniform start nodes. A void without an open exit keeps
+/// what enters it.
 fn leaves(network: &Network) -> f64 {
-    let mut leaves = vec![0.0; network.voids()];
-    loop {
-        let mut change = 0f64;
-        for void in (0..network.voids()).rev() {
-            let area = |c: usize| f64::from(network.diameters()[c]).powi(2);
-            let total: f64 = network.exits(void as u32).map(area).sum();
-            let part = |c: usize| match network.targets()[c] {
-                END => area(c) / total,
-                to => area(c) / total * leaves[to as usize],
-            };
-            let chance = if total > 0.0 { network.exits(void as u32).map(part).sum() } else { 0.0 };
-            change = change.max(f64::abs(chance - leaves[void]));
-            leaves[void] = chance;
-        }
-        if change < 1e-14 {
-            return network.start().iter().map(|&void| leaves[void as usize]).sum::<f64>()
-                / network.start().len() as f64;
-        }
-    }
+    network.first_passage(0.1, |_| false).from_start(network).0
 }
 
 fn covers(values: &[f64], answer: f64) -> bool {

@@ -173,20 +173,8 @@ impl Scene {
     }
 
     fn from_settings(s: &Settings, name: &str) -> Result<Self, SceneError> {
-        let engine = match s.text("engine", ENGINES)? {
-            None => Engine::Auto,
-            Some(word) => match Engine::ALL.into_iter().find(|e| e.name() == word) {
-                Some(engine) => engine,
-                None => return Err(s.refuse("engine", ENGINES)),
-            },
-        };
-        let sampling = match s.text("sampling", SAMPLINGS)? {
-            None => Sampling::default(),
-            Some(word) => match Sampling::ALL.into_iter().find(|s| s.name() == word) {
-                Some(sampling) => sampling,
-                None => return Err(s.refuse("sampling", SAMPLINGS)),
-            },
-        };
+        let engine = s.word("engine", Engine::ALL.map(|e| (e.name(), e)), ENGINES)?;
+        let sampling = s.word("sampling", Sampling::ALL.map(|s| (s.name(), s)), SAMPLINGS)?;
         let inject_share = s.number(
             "inject_share",
             is_whole_part,
@@ -209,12 +197,12 @@ impl Scene {
             )?,
             name: name.into(),
             seed: s.whole("seed", 0..=u64::MAX)?.unwrap_or(1),
-            engine,
+            engine: engine.unwrap_or(Engine::Auto),
             runs: s.whole("runs", 1..=2)?.unwrap_or(2),
             replicates: s.whole("replicates", 1..=100_000)?.unwrap_or(10),
             stop: stop(s)?,
             inject_share: inject_share.unwrap_or(0.01),
-            sampling,
+            sampling: sampling.unwrap_or_default(),
             curve: curve(s)?,
             filter,
             grains_per_void: positive(s, "filter.grains_per_void")?,

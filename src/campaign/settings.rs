@@ -339,6 +339,21 @@ impl Settings {
         }
     }
 
+    /// What one of a few words stands for.
+    ///
+    /// # Errors
+    /// Another word, or no text.
+    pub fn word<T>(
+        &self,
+        name: &str,
+        words: impl IntoIterator<Item = (&'static str, T)>,
+        allowed: &str,
+    ) -> Result<Option<T>, SceneError> {
+        let Some(text) = self.text(name, allowed)? else { return Ok(None) };
+        let found = words.into_iter().find(|(word, _)| *word == text);
+        found.map(|(_, meaning)| Some(meaning)).ok_or_else(|| self.refuse(name, allowed))
+    }
+
     /// A path; one in a file starts from that file's folder, one on the command line from the working folder.
     ///
     /// # Errors

@@ -16,7 +16,7 @@
 
 use super::record::{Statistic, Stopping, Verdict};
 use super::student;
-use super::verdict::{THRESHOLD, below_by_interval, classify};
+use super::verdict::{BelowThreshold, THRESHOLD, below_by_interval, classify};
 
 /// Fewer replicates say too little of their own scatter.
 const FEWEST: u64 = 8;
@@ -61,8 +61,12 @@ impl StopRule {
         let replicates = runs.first().map_or(0, |values| values.len() as u64);
         let look = (1..).find(|&k| self.replicates_at(first, k) >= replicates.min(self.most)).unwrap_or(1);
         let (half_width, close) = self.closeness(runs);
-        let (verdict, settled, sentence) = self.certainty(look, runs);
-        let met = close && settled;
+        let error = self.error_of(look, runs.len());
+        let below: Vec<BelowThreshold> =
+            error.map_or(vec![], |error| runs.iter().map(|run| lies(run, error)).collect());
+        let verdict =
+            error.map(|_| classify(below.first().copied().flatten(), below.get(1).copied().flatten()));
+        let met = close && verdict != Some(Verdict::Undecided);
         let next = self.replicates_at(first, look + 1);
         if !met && next > replicates && replicates < self.most && !self.is_hopeless(runs) {
             return Look::Until(next);
@@ -75,7 +79,10 @@ impl StopRule {
             met,
             verdict,
             half_width_pp: half_width.map(|half| 100.0 * half),
-            sentence: sentence.or_else(|| self.too_wide(replicates, half_width, close)),
+            sentence: match verdict {
+                Some(Verdict::Undecided) => Some(self.undecided(error.unwrap_or(1.0), &below, runs)),
+                _ => self.too_wide(replicates, half_width, close),
+            },
         })
     }
 
@@ -91,27 +98,21 @@ impl StopRule {
         (widest, close)
     }
 
-    /// The verdict at this look, whether it is certain enough, and what to say where it is not.
-    fn certainty(&self, look: u64, runs: &[Values]) -> (Option<Verdict>, bool, Option<String>) {
-        let Some(percent) = self.decide_percent else { return (None, true, None) };
-        let error = (1.0 - 0.01 * percent) / (look * (look + 1)) as f64 / runs.len().max(1) as f64;
-        let lies = |values: &Values| {
-            let each: Vec<bool> = values.iter().map(|&(_, below)| below).collect();
-            below_by_interval(&statistic(values, error), &each)
-        };
-        let below: Vec<_> = runs.iter().map(lies).collect();
-        let verdict = classify(below.first().copied().flatten(), below.get(1).copied().flatten());
-        if verdict != Verdict::Undecided {
-            return (Some(verdict), true, None);
-        }
+    /// What each interval of look `look` may err by, where a verdict is wanted.
+    fn error_of(&self, look: u64, runs: usize) -> Option<f64> {
+        let percent = self.decide_percent?;
+        Some((1.0 - 0.01 * percent) / (look * (look + 1)) as f64 / runs.max(1) as f64)
+    }
+
+    /// What to say where the verdict is open.
+    fn undecided(&self, error: f64, below: &[BelowThreshold], runs: &[Values]) -> String {
         if below == [Some(false)] {
-            let sentence =
-                "The first run alone cannot tell some erosion from continuing erosion: ask for two runs.";
-            return (Some(verdict), false, Some(sentence.into()));
+            return "The first run alone cannot tell some erosion from continuing erosion: ask for two runs."
+                .into();
         }
         let open = below.iter().position(Option::is_none).unwrap_or(0);
-        let values = &runs[open];
-        let (mean, sd) = (statistic(values, 0.05).mean, statistic(values, 0.05).sd.unwrap_or(0.0));
+        let Statistic { mean, sd, .. } = statistic(&runs[open], error);
+        let sd = sd.unwrap_or(0.0);
         let which = if open == 0 { "first" } else { "second" };
         let distance = (mean - THRESHOLD).abs();
         let needed = student::two_sided(1000, error) * sd / distance;
@@ -121,14 +122,14 @@ impl StopRule {
             }
             _ => "no number of replicates will tell".into(),
         };
-        let sentence = format!(
-            "Not certain at {percent} %: the mean of the {which} run, {:.3} %, lies {:.3} percentage points from 7.5 %, and replicates \
+        format!(
+            "Not certain at {} %: the mean of the {which} run, {:.3} %, lies {:.3} percentage points from 7.5 %, and replicates \
              scatter by {:.3}; {needed}.",
+            self.decide_percent.unwrap_or(0.0),
             100.0 * mean,
             100.0 * distance,
             100.0 * sd
-        );
-        (Some(verdict), false, Some(sentence))
+        )
     }
 
     /// Whether no replicate can change what is missing: a first run that is clear, and no second.
@@ -152,6 +153,12 @@ impl StopRule {
             two_digits(needed)
         ))
     }
+}
+
+/// Where the mean of a run lies, by an interval that may err so often.
+fn lies(run: &Values, error: f64) -> BelowThreshold {
+    let each: Vec<bool> = run.iter().map(|&(_, below)| below).collect();
+    below_by_interval(&statistic(run, error), &each)
 }
 
 fn statistic(values: &Values, error: f64) -> Statistic {

@@ -60,9 +60,8 @@ impl Recipe {
         }
         let mut compression = Compression::default();
         let words = "\"dense\" (friction 0), \"intermediate\" (0.1) or \"loose\" (0.3)";
-        if let Some(word) = s.text("filter.density", words)? {
-            let found = DENSITIES.into_iter().find(|(name, _)| *name == word);
-            compression.friction = found.ok_or_else(|| s.refuse("filter.density", words))?.1;
+        if let Some(friction) = s.word("filter.density", DENSITIES, words)? {
+            compression.friction = friction;
         }
         if let Some(friction) = s.number("filter.friction", |_| true, "a number from 0 to 10")? {
             compression.friction = friction;
