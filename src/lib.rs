@@ -25,7 +25,15 @@ pub mod walk;
 
 pub mod outcome;
 
+pub mod scene;
+
+pub mod case;
+
+pub mod run;
+
 pub mod campaign;
+
+pub mod study;
 
 pub mod report;
 

@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
-use super::conduct::Ready;
-use super::results::{ResultError, json};
+use super::run_cases::PreparedCase;
 use crate::outcome::ledger::{Campaign, LedgerLine};
 use crate::outcome::record::Statistic;
+use crate::run::results::{ResultError, json};
 use crate::store::{StoreError, write_whole};
 
 /// The finished cases, in the order of the plan.
 ///
 /// # Errors
 /// One that is there and cannot be read: a ledger without it would be wrong.
-pub fn collect(cases: &[Ready], out: &Path) -> Result<Vec<LedgerLine>, StoreError> {
+pub fn collect(cases: &[PreparedCase], out: &Path) -> Result<Vec<LedgerLine>, StoreError> {
     cases.iter().filter_map(|case| case.read_line(out).transpose()).collect()
 }
 

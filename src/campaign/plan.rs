@@ -30,8 +30,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use super::scene::Scene;
-use super::settings::{Origin, SceneError};
+use crate::scene::{Origin, Scene, SceneError};
 
 /// More cases than this are a mistake.
 const MOST_CASES: usize = 100_000;

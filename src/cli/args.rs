@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::campaign::keeper::Every;
-use crate::campaign::precision::Tier;
 use crate::constrictions::DEFAULT_MERGE_OVERLAP;
+use crate::run::checkpoints::CheckpointInterval;
+use crate::study::precision::Tier;
 
 /// Will this filter hold this soil? A random-walk network model of base-filter combinations.
 #[derive(Debug, Parser)]
@@ -97,7 +97,7 @@ pub struct RunArgs {
     /// Keep the walks this often, as 10min or 50increments, so that a run that is killed goes on from there; a stop (Ctrl-C,
     /// SIGTERM) always keeps them
     #[arg(long, value_name = "TIME", default_value = "10min")]
-    pub checkpoint_every: Every,
+    pub checkpoint_every: CheckpointInterval,
     /// No progress and no summary
     #[arg(long, short)]
     pub quiet: bool,
@@ -117,7 +117,7 @@ pub struct ResumeArgs {
     /// Keep the walks this often, as 10min or 50increments, so that a run that is killed goes on from there; a stop (Ctrl-C,
     /// SIGTERM) always keeps them
     #[arg(long, value_name = "TIME", default_value = "10min")]
-    pub checkpoint_every: Every,
+    pub checkpoint_every: CheckpointInterval,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
@@ -170,7 +170,7 @@ pub struct CampaignArgs {
     /// Keep the walks this often, as 10min or 50increments, so that a campaign that is killed goes on from there; a stop
     /// (Ctrl-C, SIGTERM) always keeps them
     #[arg(long, value_name = "TIME", default_value = "10min")]
-    pub checkpoint_every: Every,
+    pub checkpoint_every: CheckpointInterval,
     /// No progress and no summary
     #[arg(long, short)]
     pub quiet: bool,

@@ -3,20 +3,20 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use super::Ending;
+use super::Exit;
 use super::args::SceneArgs;
 use super::print::{count, plain, to_stdout};
-use crate::campaign::case::{Case, Room};
 use crate::campaign::cluster::scripts::duration;
-use crate::campaign::machine::Machine;
-use crate::campaign::packed::{Order, PackedFilter};
-use crate::campaign::scene::{BUILT_IN, Scene};
-use crate::campaign::walks::{left_out_of_first_run, runs_to_walk};
+use crate::case::{Case, ResourceLimits};
+use crate::case::{PackedFilter, PackingPlan};
 use crate::constrictions::shipped;
+use crate::run::machine::Machine;
+use crate::run::replicates::{left_out_of_first_run, runs_to_walk};
+use crate::scene::{BUILT_IN, Scene};
 use crate::store::Placement;
 
 /// The scene that the arguments name, with their settings applied.
-pub fn scene(args: &SceneArgs) -> Result<Scene, Ending> {
+pub fn scene(args: &SceneArgs) -> Result<Scene, Exit> {
     let mut settings = args.settings.clone();
     settings.extend(args.seed.map(|seed| format!("seed={seed}")));
     settings.extend(args.target_error.map(|pp| format!("stop.target_error_pp={pp:?}")));
@@ -25,39 +25,39 @@ pub fn scene(args: &SceneArgs) -> Result<Scene, Ending> {
         Some(path) => Scene::read(path, &settings),
         None => Scene::built_in(&settings),
     };
-    scene.map_err(Ending::refused)
+    scene.map_err(Exit::refused)
 }
 
 /// Says what a run would do.
-pub fn check(args: &SceneArgs) -> Result<(), Ending> {
+pub fn check(args: &SceneArgs) -> Result<(), Exit> {
     let scene = scene(args)?;
     let (packed, packing) = match &scene.recipe {
         None => (None, None),
         Some(recipe) => {
-            let order = Order::new(recipe).map_err(Ending::refused)?;
+            let order = PackingPlan::new(recipe).map_err(Exit::refused)?;
             let (filter, sentence) = look_for_packing(&order, &args.packings)?;
             (Some(filter), Some(sentence))
         }
     };
-    let mut case = Case::with_packed(scene, packed).map_err(Ending::refused)?;
-    let room = Room::new(args.memory, Machine::here().available, Path::new("."));
+    let mut case = Case::with_packed(scene, packed).map_err(Exit::refused)?;
+    let room = ResourceLimits::new(args.memory, Machine::here().available, Path::new("."));
     let placed = case.place(&room, cores(), Path::new("."));
     let left_out = match &placed {
-        Ok(()) => [case.left_out(), left_out_of_first_run(&case).map_err(Ending::refused)?].concat(),
+        Ok(()) => [case.left_out(), left_out_of_first_run(&case).map_err(Exit::refused)?].concat(),
         Err(_) => case.left_out(),
     };
     to_stdout(&if args.json { json(&case, &left_out, packing)? } else { words(&case, &left_out, packing) });
-    placed.map_err(Ending::refused)
+    placed.map_err(Exit::refused)
 }
 
 /// The packing where it is kept, or a guess at it; and what is to be said of it.
-fn look_for_packing(order: &Order, packings: &Path) -> Result<(PackedFilter, String), Ending> {
+fn look_for_packing(order: &PackingPlan, packings: &Path) -> Result<(PackedFilter, String), Exit> {
     let grains = count(order.compression.grains as u64);
     let folder = packings.join(order.folder_name());
     if let Some(filter) = super::pack::read(&folder, order)? {
         return Ok((filter, format!("{grains} grains, made already: {}", folder.display())));
     }
-    let guess = PackedFilter::stand_in(order).map_err(Ending::refused)?;
+    let guess = PackedFilter::placeholder(order).map_err(Exit::refused)?;
     let sentence = format!(
         "{grains} grains, still to be made, in {}; until then constrictions and grains per void are guesses",
         folder.display()
@@ -71,21 +71,21 @@ fn cores() -> u64 {
 }
 
 /// Writes the built-in scene.
-pub fn init(path: Option<&Path>) -> Result<(), Ending> {
+pub fn init(path: Option<&Path>) -> Result<(), Exit> {
     let Some(path) = path else {
         to_stdout(BUILT_IN);
         return Ok(());
     };
     if path.symlink_metadata().is_ok() {
         let problem = format!("{}: is there already; name a file that is not", path.display());
-        return Err(Ending::refused(plain(&problem)));
+        return Err(Exit::refused(plain(&problem)));
     }
     crate::store::write_whole(path, BUILT_IN.as_bytes()).map_err(super::run::refused_or_failed)?;
     to_stdout(&format!("{}\n", plain(&path.display().to_string())));
     Ok(())
 }
 
-fn json(case: &Case, left_out: &[String], packing: Option<String>) -> Result<String, Ending> {
+fn json(case: &Case, left_out: &[String], packing: Option<String>) -> Result<String, Exit> {
     let value = serde_json::json!({
         "n_base": case.n_base,
         "n_base_eq2": case.n_base_eq2,
@@ -104,7 +104,7 @@ fn json(case: &Case, left_out: &[String], packing: Option<String>) -> Result<Str
         "left_out": left_out,
         "warnings": case.warnings(),
     });
-    Ok(format!("{}\n", serde_json::to_string_pretty(&value).map_err(Ending::failed)?))
+    Ok(format!("{}\n", serde_json::to_string_pretty(&value).map_err(Exit::failed)?))
 }
 
 fn words(case: &Case, left_out: &[String], packing: Option<String>) -> String {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::Ending;
+use super::Exit;
 use super::args::ConstrictionsArgs;
 use super::print::{count, plain, to_stdout};
 use super::run::refused_or_failed;
@@ -11,20 +11,20 @@ use crate::packing::Packing;
 use crate::store::Folder;
 
 /// Measures a packing's constrictions and writes them into a folder.
-pub fn constrictions(args: &ConstrictionsArgs) -> Result<(), Ending> {
-    let packing = Packing::read(&args.packing).map_err(Ending::refused)?;
-    let found = Constrictions::measure(&packing, args.merge_overlap).map_err(Ending::refused)?;
-    let summary = found.summary().map_err(Ending::failed)?;
+pub fn constrictions(args: &ConstrictionsArgs) -> Result<(), Exit> {
+    let packing = Packing::read(&args.packing).map_err(Exit::refused)?;
+    let found = Constrictions::measure(&packing, args.merge_overlap).map_err(Exit::refused)?;
+    let summary = found.summary().map_err(Exit::failed)?;
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from("voidwalk-constrictions"));
     let folder = Folder::open(&out).map_err(refused_or_failed)?;
     if folder.has("constrictions.json") && !args.overwrite {
         let problem =
             format!("{}: holds constrictions already; name another folder or add --overwrite", out.display());
-        return Err(Ending::refused(plain(&problem)));
+        return Err(Exit::refused(plain(&problem)));
     }
-    folder.write("grains.vtp", packing.to_vtp().as_bytes()).map_err(Ending::failed)?;
-    for (name, text) in found.files().map_err(Ending::failed)? {
-        folder.write(name, text.as_bytes()).map_err(Ending::failed)?;
+    folder.write("grains.vtp", packing.to_vtp().as_bytes()).map_err(Exit::failed)?;
+    for (name, text) in found.files().map_err(Exit::failed)? {
+        folder.write(name, text.as_bytes()).map_err(Exit::failed)?;
         if args.json && name.ends_with(".json") {
             to_stdout(&text);
         }

@@ -21,12 +21,12 @@ use clap::Parser;
 use args::{Arguments, Command};
 
 /// Something that ends the program with a message and an exit code.
-pub(crate) struct Ending {
+pub(crate) struct Exit {
     code: u8,
     message: String,
 }
 
-impl Ending {
+impl Exit {
     /// The input is refused: before any work, nothing written.
     pub fn refused(error: impl std::fmt::Display) -> Self {
         Self { code: 2, message: error.to_string() }

@@ -8,16 +8,17 @@ use std::time::{Duration, Instant};
 
 use indicatif::ProgressBar;
 
-use super::Ending;
+use super::Exit;
 use super::args::PackArgs;
 use super::print::{count, plain, to_stderr, to_stdout};
 use super::run::{pool, refuse_other_kinds, refused_or_failed};
 use super::signals::stop_on_signals;
-use crate::campaign::packed::{Order, PackError, PackedError, PackedFilter, RECORD, STATES, Watch, make};
-use crate::campaign::scene::Scene;
+use crate::case::{PackedError, PackedFilter, PackingPlan, RECORD};
 use crate::outcome::packing::PackingRecord;
 use crate::packing::{PackingError, Progress, Stage};
 use crate::report;
+use crate::run::pack::{PackCallbacks, PackError, STATES, make};
+use crate::scene::Scene;
 use crate::store::checkpoint::Harmed;
 use crate::store::{Folder, StoreError};
 
@@ -28,11 +29,11 @@ const KEEP_EVERY: Duration = Duration::from_secs(60);
 const LOOK: Duration = Duration::from_millis(500);
 
 /// Packs a filter into a folder.
-pub fn pack(args: &PackArgs) -> Result<(), Ending> {
+pub fn pack(args: &PackArgs) -> Result<(), Exit> {
     let mut settings = args.settings.clone();
     settings.extend(args.seed.map(|seed| format!("packing.seed={seed}")));
-    let recipe = Scene::recipe(&args.filter, &settings).map_err(Ending::refused)?;
-    let order = Order::new(&recipe).map_err(Ending::refused)?;
+    let recipe = Scene::recipe(&args.filter, &settings).map_err(Exit::refused)?;
+    let order = PackingPlan::new(&recipe).map_err(Exit::refused)?;
     let stop = stop_on_signals()?;
     let out = args.out.clone().unwrap_or_else(|| Path::new("voidwalk-packings").join(order.folder_name()));
     let folder = Folder::open(&out).map_err(refused_or_failed)?;
@@ -42,7 +43,7 @@ pub fn pack(args: &PackArgs) -> Result<(), Ending> {
     if finished && !args.overwrite {
         let problem =
             format!("{}: holds a packing already; name another folder or add --overwrite", out.display());
-        return Err(Ending::refused(plain(&problem)));
+        return Err(Exit::refused(plain(&problem)));
     }
     if args.overwrite {
         for name in [
@@ -56,16 +57,16 @@ pub fn pack(args: &PackArgs) -> Result<(), Ending> {
             "constrictions.json",
             "constrictions.vtp",
         ] {
-            folder.remove(name).map_err(Ending::failed)?;
+            folder.remove(name).map_err(Exit::failed)?;
         }
     }
     pool(args.threads)?.install(|| packed(&folder, &order, args.quiet, &stop, args.checkpoint_every))?;
-    let text = folder.read(RECORD).map_err(Ending::failed)?.unwrap_or_default();
+    let text = folder.read(RECORD).map_err(Exit::failed)?.unwrap_or_default();
     if args.json {
         to_stdout(&String::from_utf8_lossy(&text));
     } else if !args.quiet {
-        let record: PackingRecord = serde_json::from_slice(&text).map_err(Ending::failed)?;
-        let filter = read(&out, &order)?.ok_or_else(|| Ending::failed("the packing is gone"))?;
+        let record: PackingRecord = serde_json::from_slice(&text).map_err(Exit::failed)?;
+        let filter = read(&out, &order)?.ok_or_else(|| Exit::failed("the packing is gone"))?;
         to_stdout(&summary(&record, &filter, &out));
     }
     Ok(())
@@ -73,11 +74,11 @@ pub fn pack(args: &PackArgs) -> Result<(), Ending> {
 
 /// The packing of a scene's filter: taken from where packings are kept, or made and kept there.
 pub fn provide(
-    order: &Order,
+    order: &PackingPlan,
     packings: &Path,
     quiet: bool,
     stop: &AtomicBool,
-) -> Result<PackedFilter, Ending> {
+) -> Result<PackedFilter, Exit> {
     let path = packings.join(order.folder_name());
     if let Some(filter) = read(&path, order)? {
         return Ok(filter);
@@ -88,7 +89,7 @@ pub fn provide(
             // Another process makes the same packing: it is taken from there.
             Err(StoreError::Held { holder, .. }) => {
                 if stop.load(Ordering::Relaxed) {
-                    return Err(Ending::stopped(
+                    return Err(Exit::stopped(
                         "while another process made the packing; the same command goes on",
                     ));
                 }
@@ -109,46 +110,46 @@ pub fn provide(
     if !folder.has(RECORD) {
         packed(&folder, order, quiet, stop, KEEP_EVERY)?;
     }
-    read(&path, order)?.ok_or_else(|| Ending::failed(format!("{}: the packing is gone", path.display())))
+    read(&path, order)?.ok_or_else(|| Exit::failed(format!("{}: the packing is gone", path.display())))
 }
 
 /// A finished packing, or none.
-pub fn read(path: &Path, order: &Order) -> Result<Option<PackedFilter>, Ending> {
+pub fn read(path: &Path, order: &PackingPlan) -> Result<Option<PackedFilter>, Exit> {
     PackedFilter::read(path, order).map_err(|error| match error {
         PackedError::Read(error) => refused_or_failed(error),
-        other => Ending::refused(plain(&other.to_string())),
+        other => Exit::refused(plain(&other.to_string())),
     })
 }
 
 fn packed(
     folder: &Folder,
-    order: &Order,
+    order: &PackingPlan,
     quiet: bool,
     stop: &AtomicBool,
     keep_every: Duration,
-) -> Result<(), Ending> {
+) -> Result<(), Exit> {
     let shown = Shown::new(quiet, order);
     let warn = |harmed: &Harmed| {
         to_stderr(&format!("warning: {}; the checkpoint before it was taken\n", plain(&harmed.to_string())));
     };
-    let watch = Watch { tell: &|progress| shown.tell(progress), warn: &warn, stop, keep_every };
+    let watch = PackCallbacks { tell: &|progress| shown.tell(progress), warn: &warn, stop, keep_every };
     let result = make(folder, order, &watch);
     shown.finish();
     let path = folder.path().display();
     result.map_err(|error| match error {
-        PackError::Stopped(steps) => Ending::stopped(plain(&format!(
+        PackError::Stopped(steps) => Exit::stopped(plain(&format!(
             "after {} steps of the packing; the same command goes on from {path}",
             count(steps)
         ))),
         PackError::State { .. } | PackError::Packing(PackingError::Setting { .. }) => {
-            Ending::refused(plain(&error.to_string()))
+            Exit::refused(plain(&error.to_string()))
         }
         PackError::Packing(problem @ (PackingError::NarrowCell { .. } | PackingError::Placement { .. })) => {
-            Ending::refused(problem)
+            Exit::refused(problem)
         }
-        other => Ending::failed(plain(&other.to_string())),
+        other => Exit::failed(plain(&other.to_string())),
     })?;
-    report::write_packing(folder.path()).map_err(Ending::failed)?;
+    report::write_packing(folder.path()).map_err(Exit::failed)?;
     Ok(())
 }
 
@@ -169,7 +170,7 @@ enum How {
 }
 
 impl Shown {
-    fn new(quiet: bool, order: &Order) -> Self {
+    fn new(quiet: bool, order: &PackingPlan) -> Self {
         let begun = Instant::now();
         let usual = match order.compression.friction {
             0.0 => 50_000,

@@ -2,19 +2,19 @@
 
 use std::path::PathBuf;
 
-use super::Ending;
+use super::Exit;
 use super::args::PercolationArgs;
 use super::print::{plain, to_stdout};
 use super::run::refused_or_failed;
-use crate::campaign::percolation::PercolationPlan;
 use crate::outcome::percolation::PercolationStudy;
 use crate::report;
 use crate::store::Folder;
+use crate::study::percolation::PercolationPlan;
 
 /// Finds the thresholds and writes them into a folder.
-pub fn percolation(args: &PercolationArgs) -> Result<(), Ending> {
+pub fn percolation(args: &PercolationArgs) -> Result<(), Exit> {
     let plan =
-        PercolationPlan::new(args.sizes.clone(), args.realisations, args.seed).map_err(Ending::refused)?;
+        PercolationPlan::new(args.sizes.clone(), args.realisations, args.seed).map_err(Exit::refused)?;
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from("voidwalk-percolation"));
     let folder = Folder::open(&out).map_err(refused_or_failed)?;
     if folder.has("percolation.json") && !args.overwrite {
@@ -22,16 +22,16 @@ pub fn percolation(args: &PercolationArgs) -> Result<(), Ending> {
             "{}: holds a percolation study already; name another folder or add --overwrite",
             out.display()
         );
-        return Err(Ending::refused(plain(&problem)));
+        return Err(Exit::refused(plain(&problem)));
     }
     let threads = args.threads.map_or(0, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(Ending::failed)?;
-    let run = pool.install(|| plan.run()).map_err(Ending::failed)?;
-    let json = serde_json::to_string_pretty(&run.study).map_err(Ending::failed)? + "\n";
-    folder.write("percolation.csv", run.csv().as_bytes()).map_err(Ending::failed)?;
-    let page = report::write_percolation(folder.path(), &run.study).map_err(Ending::failed)?.page;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(Exit::failed)?;
+    let run = pool.install(|| plan.run()).map_err(Exit::failed)?;
+    let json = serde_json::to_string_pretty(&run.study).map_err(Exit::failed)? + "\n";
+    folder.write("percolation.csv", run.csv().as_bytes()).map_err(Exit::failed)?;
+    let page = report::write_percolation(folder.path(), &run.study).map_err(Exit::failed)?.page;
     // Last, so that a folder with it is whole.
-    folder.write("percolation.json", json.as_bytes()).map_err(Ending::failed)?;
+    folder.write("percolation.json", json.as_bytes()).map_err(Exit::failed)?;
     if args.json {
         to_stdout(&json);
     } else {

@@ -3,32 +3,32 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::Ending;
+use super::Exit;
 use super::args::PrecisionArgs;
 use super::check::scene;
 use super::pack::provide;
 use super::print::{plain, to_stderr, to_stdout};
 use super::run::{pool, refuse_other_kinds, refused_or_failed};
 use super::signals::stop_on_signals;
-use crate::campaign::case::{Case, Room};
-use crate::campaign::machine::Machine;
-use crate::campaign::packed::{Order, PackedFilter};
-use crate::campaign::precision::{Study, Tier, tables};
+use crate::case::{Case, ResourceLimits};
+use crate::case::{PackedFilter, PackingPlan};
 use crate::outcome::precision::Precision;
 use crate::report;
+use crate::run::machine::Machine;
 use crate::store::Folder;
+use crate::study::precision::{Study, Tier, tables};
 
 /// Measures, and writes tables, figures and the page.
-pub fn precision(args: &PrecisionArgs) -> Result<(), Ending> {
+pub fn precision(args: &PrecisionArgs) -> Result<(), Exit> {
     let scene = scene(&args.scene)?;
     let stop = stop_on_signals()?;
     let pool = pool(args.threads)?;
-    let order = scene.recipe.as_ref().map(Order::new).transpose().map_err(Ending::refused)?;
-    let guess = order.as_ref().map(PackedFilter::stand_in).transpose().map_err(Ending::refused)?;
+    let order = scene.recipe.as_ref().map(PackingPlan::new).transpose().map_err(Exit::refused)?;
+    let guess = order.as_ref().map(PackedFilter::placeholder).transpose().map_err(Exit::refused)?;
     // Whatever is wrong is said before any work.
-    let mut case = Case::with_packed(scene.clone(), guess).map_err(Ending::refused)?;
-    let room = Room::new(args.scene.memory, Machine::here().available, Path::new("."));
-    case.place(&room, pool.current_num_threads() as u64, Path::new(".")).map_err(Ending::refused)?;
+    let mut case = Case::with_packed(scene.clone(), guess).map_err(Exit::refused)?;
+    let room = ResourceLimits::new(args.scene.memory, Machine::here().available, Path::new("."));
+    case.place(&room, pool.current_num_threads() as u64, Path::new(".")).map_err(Exit::refused)?;
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from("voidwalk-precision"));
     let folder = Folder::open(&out).map_err(refused_or_failed)?;
     refuse_other_kinds(&folder, "precision study")?;
@@ -37,11 +37,11 @@ pub fn precision(args: &PrecisionArgs) -> Result<(), Ending> {
             "{}: holds a precision study already; name another folder or add --overwrite",
             out.display()
         );
-        return Err(Ending::refused(plain(&problem)));
+        return Err(Exit::refused(plain(&problem)));
     }
     if let Some(order) = &order {
         let filter = pool.install(|| provide(order, &args.scene.packings, args.quiet, &stop))?;
-        case = Case::with_packed(scene, Some(filter)).map_err(Ending::refused)?;
+        case = Case::with_packed(scene, Some(filter)).map_err(Exit::refused)?;
     }
     let tiers: Vec<Tier> =
         Tier::ALL.into_iter().filter(|tier| args.tiers.is_empty() || args.tiers.contains(tier)).collect();
@@ -58,14 +58,14 @@ pub fn precision(args: &PrecisionArgs) -> Result<(), Ending> {
         },
         stop: &stop,
     };
-    let (precision, networks) = study.run().map_err(Ending::failed)?;
-    for (name, content) in tables(&precision, &networks).map_err(Ending::failed)? {
-        folder.write(name, &content).map_err(Ending::failed)?;
+    let (precision, networks) = study.run().map_err(Exit::failed)?;
+    for (name, content) in tables(&precision, &networks).map_err(Exit::failed)? {
+        folder.write(name, &content).map_err(Exit::failed)?;
     }
-    let json = serde_json::to_string_pretty(&precision).map_err(Ending::failed)? + "\n";
+    let json = serde_json::to_string_pretty(&precision).map_err(Exit::failed)? + "\n";
     // The page is made of it.
-    folder.write("precision.json", json.as_bytes()).map_err(Ending::failed)?;
-    let page = report::write_precision(folder.path()).map_err(Ending::failed)?.page;
+    folder.write("precision.json", json.as_bytes()).map_err(Exit::failed)?;
+    let page = report::write_precision(folder.path()).map_err(Exit::failed)?.page;
     if args.scene.json {
         to_stdout(&json);
     } else if !args.quiet {

@@ -5,71 +5,71 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::{Instant, SystemTime};
 
-use super::Ending;
+use super::Exit;
 use super::args::{ResumeArgs, RunArgs, SceneArgs};
 use super::check::scene;
 use super::pack::provide;
 use super::print::{count, percent, plain, to_stderr, to_stdout};
 use super::progress::Progress;
 use super::signals::stop_on_signals;
-use crate::campaign::case::{Case, Room};
-use crate::campaign::cluster::Allocation;
-use crate::campaign::keeper::{self, Keeper};
-use crate::campaign::machine::Machine;
-use crate::campaign::packed::{Order, PackedFilter};
-use crate::campaign::results;
-use crate::campaign::walks::{self, RunError, Watch, replicates, runs_to_walk, sensitivity};
+use crate::case::{Case, ResourceLimits};
+use crate::case::{PackedFilter, PackingPlan};
 use crate::outcome::record::{Outcome, RunSummary};
 use crate::report;
+use crate::run::allocation::Allocation;
+use crate::run::checkpoints::{self, Checkpoints};
+use crate::run::machine::Machine;
+use crate::run::replicates::{ReplicateResult, RunError, Watch, replicates, runs_to_walk, sensitivity};
+use crate::run::results;
 use crate::store::{Folder, StoreError};
 
 /// Walks a scene and writes its folder.
-pub fn run(args: &RunArgs) -> Result<(), Ending> {
+pub fn run(args: &RunArgs) -> Result<(), Exit> {
     let scene = scene(&args.scene)?;
     let stop = stop_on_signals()?;
     let machine = Machine::here();
     let pool = pool(args.threads)?;
     let threads = pool.current_num_threads() as u64;
     let wanted = args.out.as_deref().unwrap_or(Path::new("."));
-    let room = Room::new(args.scene.memory, machine.available, wanted);
-    let order = scene.recipe.as_ref().map(Order::new).transpose().map_err(Ending::refused)?;
-    let guess = order.as_ref().map(PackedFilter::stand_in).transpose().map_err(Ending::refused)?;
+    let room = ResourceLimits::new(args.scene.memory, machine.available, wanted);
+    let order = scene.recipe.as_ref().map(PackingPlan::new).transpose().map_err(Exit::refused)?;
+    let guess = order.as_ref().map(PackedFilter::placeholder).transpose().map_err(Exit::refused)?;
     // Whatever is wrong with the scene, the memory or the folder is said before hours of packing, not after.
-    let mut case = Case::with_packed(scene.clone(), guess).map_err(Ending::refused)?;
-    case.place(&room, threads, wanted).map_err(Ending::refused)?;
+    let mut case = Case::with_packed(scene.clone(), guess).map_err(Exit::refused)?;
+    case.place(&room, threads, wanted).map_err(Exit::refused)?;
     let folder = open_folder(args)?;
     if let Some(order) = &order {
         let filter = pool.install(|| provide(order, &args.scene.packings, args.quiet, &stop))?;
-        case = Case::with_packed(scene, Some(filter)).map_err(Ending::refused)?;
+        case = Case::with_packed(scene, Some(filter)).map_err(Exit::refused)?;
     }
-    case.place(&room, threads, folder.path()).map_err(Ending::refused)?;
+    case.place(&room, threads, folder.path()).map_err(Exit::refused)?;
     for warning in case.warnings() {
         to_stderr(&format!("warning: {}\n", plain(&warning)));
     }
     let started = SystemTime::now();
     if args.overwrite {
-        keeper::discard(folder.path()).map_err(Ending::failed)?;
+        checkpoints::discard(folder.path()).map_err(Exit::failed)?;
     }
     let fingerprint = results::fingerprint(&case);
-    let kept = Keeper::scene_in(folder.path()).map_err(Ending::failed)?;
+    let kept = Checkpoints::scene_in(folder.path()).map_err(Exit::failed)?;
     if kept.is_some_and(|scene| scene != fingerprint) {
-        return Err(Ending::refused(plain(&format!(
+        return Err(Exit::refused(plain(&format!(
             "{}: holds checkpoints of another scene; `voidwalk resume` goes on with that one, --overwrite begins anew",
             folder.path().display()
         ))));
     }
-    results::write_scene(&folder, &case).map_err(Ending::failed)?;
-    let keeper = Keeper::new(&folder, &fingerprint, args.checkpoint_every);
-    let keeper = keeper.map_err(Ending::failed)?;
+    results::write_scene(&folder, &case).map_err(Exit::failed)?;
+    let keeper = Checkpoints::new(&folder, &fingerprint, args.checkpoint_every);
+    let keeper = keeper.map_err(Exit::failed)?;
     let manifest = || results::manifest(&case, threads, started, command_line());
     let outcome = walk(&case, &pool, args.quiet, &stop, &keeper, folder.path(), |outcome, walked| {
-        results::write(&folder, &case, outcome, walked, &manifest()).map_err(Ending::failed)?;
-        report::write(folder.path()).map_err(Ending::failed)?;
+        results::write(&folder, &case, outcome, walked, &manifest()).map_err(Exit::failed)?;
+        report::write(folder.path()).map_err(Exit::failed)?;
         Ok(())
     })?;
-    keeper.clear().map_err(Ending::failed)?;
+    keeper.clear().map_err(Exit::failed)?;
     if args.scene.json {
-        to_stdout(&format!("{}\n", serde_json::to_string_pretty(&outcome).map_err(Ending::failed)?));
+        to_stdout(&format!("{}\n", serde_json::to_string_pretty(&outcome).map_err(Exit::failed)?));
     } else if !args.quiet {
         to_stdout(&summary(&outcome, folder.path()));
     }
@@ -77,17 +77,17 @@ pub fn run(args: &RunArgs) -> Result<(), Ending> {
 }
 
 /// Goes on with a run that was stopped or killed.
-pub fn resume(args: &ResumeArgs) -> Result<(), Ending> {
+pub fn resume(args: &ResumeArgs) -> Result<(), Exit> {
     let shown = plain(&args.folder.display().to_string());
     let scene = args.folder.join("scene.toml");
     if !scene.is_file() {
-        return Err(Ending::refused(format!(
+        return Err(Exit::refused(format!(
             "{shown}: holds no scene.toml; name the folder of a run that was stopped"
         )));
     }
-    let is_kept = Keeper::is_in(&args.folder).map_err(Ending::failed)?;
+    let is_kept = Checkpoints::is_in(&args.folder).map_err(Exit::failed)?;
     if args.folder.join("manifest.json").is_file() && !is_kept {
-        return Err(Ending::refused(format!(
+        return Err(Exit::refused(format!(
             "{shown}: this run is finished; voidwalk report writes its page again"
         )));
     }
@@ -111,9 +111,9 @@ pub fn resume(args: &ResumeArgs) -> Result<(), Ending> {
 }
 
 /// Writes the report of a finished run folder again.
-pub fn report(folder: &Path) -> Result<(), Ending> {
+pub fn report(folder: &Path) -> Result<(), Exit> {
     if report::is_paper(folder) {
-        let page = report::write_paper(folder).map_err(Ending::failed)?.page;
+        let page = report::write_paper(folder).map_err(Exit::failed)?.page;
         to_stdout(&format!("{}\n", plain(&page.display().to_string())));
         return Ok(());
     }
@@ -129,14 +129,14 @@ pub fn report(folder: &Path) -> Result<(), Ending> {
             "{}: holds no outcome.json, packing.json, campaign.json or precision.json; name the folder of a finished run, packing, campaign or precision study",
             folder.display()
         );
-        return Err(Ending::refused(plain(&problem)));
+        return Err(Exit::refused(plain(&problem)));
     };
     let folder = match *marker {
         "campaign.json" => Folder::open_shared(folder),
         _ => Folder::open(folder),
     };
     let folder = folder.map_err(refused_or_failed)?;
-    let page = write(folder.path()).map_err(Ending::failed)?.page;
+    let page = write(folder.path()).map_err(Exit::failed)?.page;
     to_stdout(&format!("{}\n", plain(&page.display().to_string())));
     Ok(())
 }
@@ -147,10 +147,10 @@ fn walk(
     pool: &rayon::ThreadPool,
     quiet: bool,
     stop: &AtomicBool,
-    keeper: &Keeper,
+    keeper: &Checkpoints,
     folder: &Path,
-    keep: impl Fn(&Outcome, &[walks::Walked]) -> Result<(), Ending>,
-) -> Result<Outcome, Ending> {
+    keep: impl Fn(&Outcome, &[ReplicateResult]) -> Result<(), Exit>,
+) -> Result<Outcome, Exit> {
     let begun = Instant::now();
     let progress = Progress::new(quiet, runs_to_walk(case));
     let watch = Watch { tell: &|event| progress.tell(event), stop, keeper: Some(keeper) };
@@ -161,15 +161,15 @@ fn walk(
         let flushed = keeper.flush();
         match (error, flushed) {
             (RunError::Walk(crate::walk::WalkError::Stopped { .. }), Ok(())) => {
-                Ending::stopped(format!("what is done is kept; `voidwalk resume {shown}` goes on"))
+                Exit::stopped(format!("what is done is kept; `voidwalk resume {shown}` goes on"))
             }
-            (RunError::Harmed(harmed), _) if harmed.unread => Ending::failed(plain(&harmed.to_string())),
-            (RunError::Harmed(harmed), _) => Ending::refused(format!(
+            (RunError::Harmed(harmed), _) if harmed.unread => Exit::failed(plain(&harmed.to_string())),
+            (RunError::Harmed(harmed), _) => Exit::refused(format!(
                 "{}; --overwrite begins anew, another --out leaves it alone",
                 plain(&harmed.to_string())
             )),
-            (RunError::Walk(crate::walk::WalkError::Stopped { .. }), Err(error)) => Ending::failed(error),
-            (other, _) => Ending::failed(other),
+            (RunError::Walk(crate::walk::WalkError::Stopped { .. }), Err(error)) => Exit::failed(error),
+            (other, _) => Exit::failed(other),
         }
     };
     let walked = pool.install(|| replicates(case, &watch)).map_err(&stopped)?;
@@ -179,7 +179,7 @@ fn walk(
     let outcome = results::outcome(case, &walked, Vec::new(), begun.elapsed().as_secs_f64());
     if !case.sensitivity_factors().is_empty() {
         // A folder with results counts as finished unless it holds checkpoints, and the study of the sensitivity is to come.
-        keeper.flush().map_err(Ending::failed)?;
+        keeper.flush().map_err(Exit::failed)?;
     }
     keep(&outcome, &walked)?;
     let sensitivity = pool.install(|| sensitivity(case, &watch)).map_err(&stopped)?;
@@ -193,10 +193,10 @@ fn walk(
 }
 
 /// The workers of a command: as many as are asked for, else as a cluster's job has, else one per core that it may run on.
-pub(super) fn pool(threads: Option<u16>) -> Result<rayon::ThreadPool, Ending> {
+pub(super) fn pool(threads: Option<u16>) -> Result<rayon::ThreadPool, Exit> {
     let allocated = || Allocation::here().and_then(|job| job.threads());
     let threads = threads.map(usize::from).or_else(allocated).unwrap_or(0);
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(Ending::failed)
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(Exit::failed)
 }
 
 /// The command line in words, whatever bytes it is made of.
@@ -205,8 +205,8 @@ pub(super) fn command_line() -> String {
     words.join(" ")
 }
 
-pub(super) fn refused_or_failed(error: StoreError) -> Ending {
-    if error.is_refusal() { Ending::refused(error) } else { Ending::failed(error) }
+pub(super) fn refused_or_failed(error: StoreError) -> Exit {
+    if error.is_refusal() { Exit::refused(error) } else { Exit::failed(error) }
 }
 
 /// What marks the folder of each kind of work.
@@ -220,42 +220,42 @@ const KINDS: [(&str, &[&str]); 6] = [
 ];
 
 /// Refuses a folder that holds the work of another kind: nothing of it is overwritten.
-pub(super) fn refuse_other_kinds(folder: &Folder, own: &str) -> Result<(), Ending> {
+pub(super) fn refuse_other_kinds(folder: &Folder, own: &str) -> Result<(), Exit> {
     for (kind, markers) in KINDS {
         // A packing holds constrictions of its own.
         let own = kind == own || (own == "packing" && kind == "set of constrictions");
         if !own && markers.iter().any(|marker| folder.has(marker)) {
             let problem = format!("{}: holds a {kind}; name another folder", folder.path().display());
-            return Err(Ending::refused(plain(&problem)));
+            return Err(Exit::refused(plain(&problem)));
         }
     }
     Ok(())
 }
 
 /// The folder to write to: the one that is named, or the first free one.
-fn open_folder(args: &RunArgs) -> Result<Folder, Ending> {
+fn open_folder(args: &RunArgs) -> Result<Folder, Exit> {
     let Some(path) = &args.out else { return first_free_folder() };
     let folder = Folder::open(path).map_err(refused_or_failed)?;
     refuse_other_kinds(&folder, "run")?;
-    let is_kept = Keeper::is_in(folder.path()).map_err(Ending::failed)?;
+    let is_kept = Checkpoints::is_in(folder.path()).map_err(Exit::failed)?;
     if folder.has("manifest.json") && !args.overwrite && !is_kept {
         let problem = format!(
             "{}: holds the results of an earlier run; name another folder or add --overwrite",
             path.display()
         );
-        return Err(Ending::refused(plain(&problem)));
+        return Err(Exit::refused(plain(&problem)));
     }
     Ok(folder)
 }
 
 /// The first of `voidwalk-run`, `voidwalk-run-2`, ... that is new, or that an earlier run left without results.
-fn first_free_folder() -> Result<Folder, Ending> {
+fn first_free_folder() -> Result<Folder, Exit> {
     let mut n = 1;
     loop {
         let name = if n == 1 { "voidwalk-run".to_string() } else { format!("voidwalk-run-{n}") };
         match Folder::open(Path::new(&name)) {
             Ok(folder) => {
-                let is_kept = Keeper::is_in(folder.path()).map_err(Ending::failed)?;
+                let is_kept = Checkpoints::is_in(folder.path()).map_err(Exit::failed)?;
                 if !folder.has("outcome.json") && !is_kept {
                     return Ok(folder);
                 }

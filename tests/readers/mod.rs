@@ -12,14 +12,14 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use bitvec::vec::BitVec;
-use voidwalk::campaign::case::Case;
 use voidwalk::campaign::plan::Plan as CampaignPlan;
-use voidwalk::campaign::results::resolved;
-use voidwalk::campaign::scene::{CurveSource, Scene};
+use voidwalk::case::Case;
 use voidwalk::constrictions::Curve;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
 use voidwalk::packing::Packing;
+use voidwalk::run::results::resolved;
+use voidwalk::scene::{CurveSource, Scene};
 use voidwalk::store::checkpoint::{Label, keep, newest};
 use voidwalk::walk::{Engine, Kept, Plan, Progress, SizeClasses, State, Supply, Walk};
 use xxhash_rust::xxh3::xxh3_64;

@@ -2,15 +2,11 @@
 //!
 //! - [`tasks`] bundles cases into tasks of some minutes, and keeps which is which in a file.
 //! - [`scripts`] writes the jobs' scripts: an array that packs filters, an array that walks, a job that collects.
-//! - [`Allocation`] is what the scheduler says of the job that the program runs in.
 //! - [`locks`] says what is known of locks on the file system of a folder.
 //!
 //! The scheduler only starts processes. What is done, and who is at what, is in the campaign's folder
-//! ([`conduct`](super::conduct)), so that a task which is lost, doubled or begun again changes no result.
+//! ([`run_cases`](super::run_cases)), so that a task which is lost, doubled or begun again changes no result.
 
-mod allocation;
 pub mod locks;
 pub mod scripts;
 pub mod tasks;
-
-pub use allocation::Allocation;

@@ -5,10 +5,10 @@ use std::path::Path;
 use super::{filters, keep, named, open, packings, summary, work_out};
 use crate::campaign::cluster::scripts::{FOLDER, Jobs, Need, TASK_S, duration};
 use crate::campaign::cluster::{locks, tasks};
-use crate::campaign::conduct::{Failed, Ready, State};
-use crate::campaign::packed::{Order, PackedFilter};
 use crate::campaign::plan::{Plan, PlannedCase};
-use crate::cli::Ending;
+use crate::campaign::run_cases::{Failed, PreparedCase, State};
+use crate::case::{PackedFilter, PackingPlan};
+use crate::cli::Exit;
 use crate::cli::args::CampaignArgs;
 use crate::cli::pack::read;
 use crate::cli::print::{plain, to_stderr, to_stdout};
@@ -28,8 +28,8 @@ const COLLECT_S: f64 = 0.05;
 const COLLECT_BYTES: (u64, u64) = (100_000_000, 100_000);
 
 /// The packings that a plan needs, each once, in the order of its cases.
-fn distinct<'a>(orders: &'a [(&str, Order)]) -> Vec<&'a Order> {
-    let mut all: Vec<&Order> = Vec::new();
+fn distinct<'a>(orders: &'a [(&str, PackingPlan)]) -> Vec<&'a PackingPlan> {
+    let mut all: Vec<&PackingPlan> = Vec::new();
     for (_, order) in orders {
         if !all.iter().any(|other| other.fingerprint() == order.fingerprint()) {
             all.push(order);
@@ -39,15 +39,14 @@ fn distinct<'a>(orders: &'a [(&str, Order)]) -> Vec<&'a Order> {
 }
 
 /// Packing `number` of a plan, counted from 1.
-pub fn packing<'a>(orders: &'a [(&str, Order)], number: u64) -> Result<&'a Order, Ending> {
+pub fn packing<'a>(orders: &'a [(&str, PackingPlan)], number: u64) -> Result<&'a PackingPlan, Exit> {
     let all = distinct(orders);
     let found = usize::try_from(number - 1).ok().and_then(|index| all.get(index).copied());
-    found
-        .ok_or_else(|| Ending::refused(format!("there is no packing {number}: the plan needs {}", all.len())))
+    found.ok_or_else(|| Exit::refused(format!("there is no packing {number}: the plan needs {}", all.len())))
 }
 
 /// Writes the job scripts for the cases that are not done.
-pub fn write_scripts(args: &CampaignArgs, plan: &Plan, orders: &[(&str, Order)]) -> Result<(), Ending> {
+pub fn write_scripts(args: &CampaignArgs, plan: &Plan, orders: &[(&str, PackingPlan)]) -> Result<(), Exit> {
     let out = open(&args.out)?;
     let processors = args.threads.map_or(PROCESSORS, u64::from);
     let places = packings(args);
@@ -61,7 +60,7 @@ pub fn write_scripts(args: &CampaignArgs, plan: &Plan, orders: &[(&str, Order)])
     }
     let (packed, failed) = filters(orders, |order| match read(&places.join(order.folder_name()), order)? {
         Some(filter) => Ok(filter),
-        None => PackedFilter::stand_in(order).map_err(Ending::refused),
+        None => PackedFilter::placeholder(order).map_err(Exit::refused),
     })?;
     let wanted: Vec<&PlannedCase> = plan.cases.iter().collect();
     let (mut cases, failed) = work_out(&wanted, &packed, failed, |case| {
@@ -69,7 +68,7 @@ pub fn write_scripts(args: &CampaignArgs, plan: &Plan, orders: &[(&str, Order)])
         Ok(())
     });
     if !failed.is_empty() {
-        return Err(Ending::refused(named(&failed)));
+        return Err(Exit::refused(named(&failed)));
     }
     cases.retain(|ready| ready.line(out.path()).is_none());
     if cases.is_empty() {
@@ -101,7 +100,7 @@ pub fn write_scripts(args: &CampaignArgs, plan: &Plan, orders: &[(&str, Order)])
     let collecting = options.clone();
     options.extend(["--checkpoint-every".to_owned(), args.checkpoint_every.to_string()]);
     options.extend(args.memory.iter().flat_map(|bytes| ["--memory".to_owned(), bytes.to_string()]));
-    let program = std::env::current_exe().map_err(Ending::failed)?;
+    let program = std::env::current_exe().map_err(Exit::failed)?;
     let jobs = Jobs {
         program: &program,
         plan: &args.plan,
@@ -117,11 +116,11 @@ pub fn write_scripts(args: &CampaignArgs, plan: &Plan, orders: &[(&str, Order)])
             bytes: largest.bytes.max(COLLECT_BYTES.0 + n as u64 * COLLECT_BYTES.1),
         },
     };
-    let files = jobs.files().map_err(|e| Ending::refused(plain(&e.to_string())))?;
+    let files = jobs.files().map_err(|e| Exit::refused(plain(&e.to_string())))?;
     let folder = out.path().join(FOLDER);
-    make_folder(&folder).map_err(Ending::failed)?;
+    make_folder(&folder).map_err(Exit::failed)?;
     for (name, text) in &files {
-        write_whole(&folder.join(name), text.as_bytes()).map_err(Ending::failed)?;
+        write_whole(&folder.join(name), text.as_bytes()).map_err(Exit::failed)?;
     }
     if let Some(warning) = locks::warning(out.path()) {
         to_stderr(&format!("warning: {}\n", plain(&warning)));
@@ -131,7 +130,7 @@ pub fn write_scripts(args: &CampaignArgs, plan: &Plan, orders: &[(&str, Order)])
 }
 
 /// Memory of a task that walks these cases.
-fn memory(cases: &[Ready], bundle: &[usize], processors: u64, asked: Option<u64>) -> u64 {
+fn memory(cases: &[PreparedCase], bundle: &[usize], processors: u64, asked: Option<u64>) -> u64 {
     let of_bundle = || bundle.iter().map(|case| &cases[*case].case);
     let fewest = of_bundle().map(|case| case.scene.replicates).min().unwrap_or(1).max(1);
     let side_by_side = processors.div_ceil(fewest).min(bundle.len() as u64);
@@ -175,10 +174,10 @@ fn quoted_if_needed(path: &str) -> String {
 }
 
 /// Writes ledger, table and page of a campaign that is whole.
-pub fn collect(args: &CampaignArgs, plan: &Plan, orders: &[(&str, Order)]) -> Result<(), Ending> {
+pub fn collect(args: &CampaignArgs, plan: &Plan, orders: &[(&str, PackingPlan)]) -> Result<(), Exit> {
     let shown = plain(&args.out.display().to_string());
     if !args.out.join("cases").is_dir() {
-        return Err(Ending::refused(format!(
+        return Err(Exit::refused(format!(
             "{shown}: holds no cases of a campaign; nothing of the plan has been walked here"
         )));
     }
@@ -186,7 +185,7 @@ pub fn collect(args: &CampaignArgs, plan: &Plan, orders: &[(&str, Order)]) -> Re
     let places = packings(args);
     let (packed, failed) = filters(orders, |order| {
         let there = read(&places.join(order.folder_name()), order)?;
-        there.ok_or_else(|| Ending::failed("not begun: its filter has not been packed"))
+        there.ok_or_else(|| Exit::failed("not begun: its filter has not been packed"))
     })?;
     let wanted: Vec<&PlannedCase> = plan.cases.iter().collect();
     let (cases, mut missing) = work_out(&wanted, &packed, failed, |_| Ok(()));
@@ -200,7 +199,7 @@ pub fn collect(args: &CampaignArgs, plan: &Plan, orders: &[(&str, Order)]) -> Re
         missing.push(Failed { case: ready.planned.name.clone(), problem });
     }
     if !missing.is_empty() {
-        return Err(Ending::refused(format!(
+        return Err(Exit::refused(format!(
             "{shown}: {} of {} cases are missing, nothing is written; submit the campaign again to go on\n{}",
             missing.len(),
             plan.cases.len(),

@@ -8,22 +8,23 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-use super::Ending;
+use super::Exit;
 use super::args::CampaignArgs;
 use super::pack::provide;
 use super::print::{percent, plain, to_stdout};
 use super::run::{command_line, pool, refuse_other_kinds, refused_or_failed};
 use super::signals::stop_on_signals;
-use crate::campaign::case::{Case, CaseError, Room};
-use crate::campaign::cluster::{Allocation, tasks};
-use crate::campaign::conduct::{ConductError, Failed, Overseer, Ready, conduct};
+use crate::campaign::cluster::tasks;
 use crate::campaign::ledger;
-use crate::campaign::machine::Machine;
-use crate::campaign::packed::{Order, PackedFilter};
 use crate::campaign::plan::{Plan, PlannedCase};
+use crate::campaign::run_cases::{CampaignCallbacks, CampaignError, Failed, PreparedCase, run_cases};
+use crate::case::{Case, CaseError, ResourceLimits};
+use crate::case::{PackedFilter, PackingPlan};
 use crate::outcome::ledger::{Campaign, LedgerLine};
 use crate::outcome::record::Verdict;
 use crate::report;
+use crate::run::allocation::Allocation;
+use crate::run::machine::Machine;
 use crate::store::{Folder, StoreError};
 use progress::Progress;
 
@@ -31,8 +32,8 @@ use progress::Progress;
 const NAMED: usize = 30;
 
 /// Walks a plan's cases and collects what came of them.
-pub fn campaign(args: &CampaignArgs) -> Result<(), Ending> {
-    let plan = Plan::read(&args.plan).map_err(Ending::refused)?;
+pub fn campaign(args: &CampaignArgs) -> Result<(), Exit> {
+    let plan = Plan::read(&args.plan).map_err(Exit::refused)?;
     let wanted = wanted(&plan, args)?;
     let orders = check(&wanted)?;
     if args.list {
@@ -54,15 +55,15 @@ pub fn campaign(args: &CampaignArgs) -> Result<(), Ending> {
         return pool.install(|| provide(order, &packings, args.quiet, &stop)).map(drop);
     }
     let (packed, unpacked) = pack(&orders, args, &pool, &stop)?;
-    let room = Room::new(args.memory, Machine::here().available, out.path());
+    let room = ResourceLimits::new(args.memory, Machine::here().available, out.path());
     let (cases, mut failed) =
         work_out(&wanted, &packed, unpacked, |case| case.place(&room, threads as u64, out.path()));
     if cases.is_empty() && orders.is_empty() {
-        return Err(Ending::refused(named(&failed)));
+        return Err(Exit::refused(named(&failed)));
     }
     let allocation = Allocation::here();
     let progress = Progress::new(args.quiet, &cases, out.path(), allocation.is_some());
-    let overseer = Overseer {
+    let overseer = CampaignCallbacks {
         tell: &|case, news| progress.tell(case, news),
         finish: &|folder| report::write(folder).map(drop).map_err(|e| e.to_string()),
         stop: &stop,
@@ -70,7 +71,7 @@ pub fn campaign(args: &CampaignArgs) -> Result<(), Ending> {
         job: allocation.map(|allocation| allocation.job),
         command: command_line(),
     };
-    let result = conduct(&cases, out.path(), threads, &overseer);
+    let result = run_cases(&cases, out.path(), threads, &overseer);
     progress.finish();
     let is_whole = args.case.is_none() && args.task.is_none();
     if is_whole {
@@ -81,11 +82,11 @@ pub fn campaign(args: &CampaignArgs) -> Result<(), Ending> {
         }
     }
     failed.extend(result.map_err(|error| match error {
-        ConductError::Stopped => Ending::stopped(format!(
+        CampaignError::Stopped => Exit::stopped(format!(
             "what is done is kept; the same command goes on from {}",
             plain(&out.path().display().to_string())
         )),
-        other => Ending::failed(plain(&other.to_string())),
+        other => Exit::failed(plain(&other.to_string())),
     })?);
     if failed.is_empty() {
         return Ok(());
@@ -94,13 +95,13 @@ pub fn campaign(args: &CampaignArgs) -> Result<(), Ending> {
     let counted =
         format!("{} of {of} {} could not be walked", failed.len(), if of == 1 { "case" } else { "cases" });
     let others = if failed.len() < of { "; the others are done" } else { "" };
-    Err(Ending::failed(format!("{counted}{others}\n{}", named(&failed))))
+    Err(Exit::failed(format!("{counted}{others}\n{}", named(&failed))))
 }
 
 /// The campaign's folder, with whoever else works in it.
-fn open(out: &Path) -> Result<Folder, Ending> {
+fn open(out: &Path) -> Result<Folder, Exit> {
     let folder = Folder::open_shared(out).map_err(|error| match &error {
-        StoreError::Io { action: "lock the folder", .. } => Ending::refused(plain(&format!(
+        StoreError::Io { action: "lock the folder", .. } => Exit::refused(plain(&format!(
             "{error}: this file system has no locks, by which cases are claimed; name a folder on another one"
         ))),
         _ => refused_or_failed(error),
@@ -115,17 +116,16 @@ fn packings(args: &CampaignArgs) -> PathBuf {
 }
 
 /// The cases that this process is to see to.
-fn wanted<'a>(plan: &'a Plan, args: &CampaignArgs) -> Result<Vec<&'a PlannedCase>, Ending> {
+fn wanted<'a>(plan: &'a Plan, args: &CampaignArgs) -> Result<Vec<&'a PlannedCase>, Exit> {
     if let Some((file, number)) = &args.task {
         let shown = file.display().to_string();
         let text =
-            std::fs::read_to_string(file).map_err(|e| Ending::refused(plain(&format!("{shown}: {e}"))))?;
-        let names =
-            tasks::read(&shown, &text, *number).map_err(|e| Ending::refused(plain(&e.to_string())))?;
+            std::fs::read_to_string(file).map_err(|e| Exit::refused(plain(&format!("{shown}: {e}"))))?;
+        let names = tasks::read(&shown, &text, *number).map_err(|e| Exit::refused(plain(&e.to_string())))?;
         let find = |name: &&str| {
             plan.case(name).ok_or_else(|| {
                 let problem = "the plan was changed; write the scripts again";
-                Ending::refused(plain(&format!("{shown}: {} has no case `{name}`: {problem}", plan.file)))
+                Exit::refused(plain(&format!("{shown}: {} has no case `{name}`: {problem}", plan.file)))
             })
         };
         return names.iter().map(find).collect();
@@ -139,7 +139,7 @@ fn wanted<'a>(plan: &'a Plan, args: &CampaignArgs) -> Result<Vec<&'a PlannedCase
                 .iter()
                 .min_by_key(|case| strsim::damerau_levenshtein(&case.name, name))
                 .map_or("", |case| &case.name);
-            Err(Ending::refused(plain(&format!(
+            Err(Exit::refused(plain(&format!(
                 "{}: there is no case `{name}`; did you mean `{nearest}`?",
                 plan.file
             ))))
@@ -147,8 +147,8 @@ fn wanted<'a>(plan: &'a Plan, args: &CampaignArgs) -> Result<Vec<&'a PlannedCase
     }
 }
 
-fn refuse(case: &PlannedCase, error: &CaseError) -> Ending {
-    Ending::refused(plain(&format!("case {}: {error}", case.name)))
+fn refuse(case: &PlannedCase, error: &CaseError) -> Exit {
+    Exit::refused(plain(&format!("case {}: {error}", case.name)))
 }
 
 /// Names the cases that are not done, one a line.
@@ -165,25 +165,25 @@ fn named(failed: &[Failed]) -> String {
 }
 
 /// Works out every case before any work is done, with guesses for filters that are to be packed; gives those filters.
-fn check<'a>(wanted: &[&'a PlannedCase]) -> Result<Vec<(&'a str, Order)>, Ending> {
+fn check<'a>(wanted: &[&'a PlannedCase]) -> Result<Vec<(&'a str, PackingPlan)>, Exit> {
     let mut orders = Vec::new();
     for case in wanted {
-        let mut stand_in = None;
+        let mut placeholder = None;
         if let Some(recipe) = &case.scene.recipe {
-            let order = Order::new(recipe).map_err(|e| refuse(case, &e))?;
-            stand_in = Some(PackedFilter::stand_in(&order).map_err(Ending::refused)?);
+            let order = PackingPlan::new(recipe).map_err(|e| refuse(case, &e))?;
+            placeholder = Some(PackedFilter::placeholder(&order).map_err(Exit::refused)?);
             orders.push((case.name.as_str(), order));
         }
-        Case::with_packed(case.scene.clone(), stand_in).map_err(|e| refuse(case, &e))?;
+        Case::with_packed(case.scene.clone(), placeholder).map_err(|e| refuse(case, &e))?;
     }
     Ok(orders)
 }
 
 /// The filters of cases, each worked out once; and the cases whose filter could not be had.
 fn filters(
-    orders: &[(&str, Order)],
-    mut of: impl FnMut(&Order) -> Result<PackedFilter, Ending>,
-) -> Result<(BTreeMap<String, PackedFilter>, Vec<Failed>), Ending> {
+    orders: &[(&str, PackingPlan)],
+    mut of: impl FnMut(&PackingPlan) -> Result<PackedFilter, Exit>,
+) -> Result<(BTreeMap<String, PackedFilter>, Vec<Failed>), Exit> {
     let mut made: BTreeMap<String, Result<PackedFilter, String>> = BTreeMap::new();
     let (mut by_case, mut failed) = (BTreeMap::new(), Vec::new());
     for (case, order) in orders {
@@ -205,11 +205,11 @@ fn filters(
 
 /// Packs every filter that is asked for.
 fn pack(
-    orders: &[(&str, Order)],
+    orders: &[(&str, PackingPlan)],
     args: &CampaignArgs,
     pool: &rayon::ThreadPool,
     stop: &AtomicBool,
-) -> Result<(BTreeMap<String, PackedFilter>, Vec<Failed>), Ending> {
+) -> Result<(BTreeMap<String, PackedFilter>, Vec<Failed>), Exit> {
     let packings = packings(args);
     filters(orders, |order| pool.install(|| provide(order, &packings, args.quiet, stop)))
 }
@@ -220,7 +220,7 @@ fn work_out<'a>(
     packed: &BTreeMap<String, PackedFilter>,
     mut failed: Vec<Failed>,
     mut place: impl FnMut(&mut Case) -> Result<(), CaseError>,
-) -> (Vec<Ready<'a>>, Vec<Failed>) {
+) -> (Vec<PreparedCase<'a>>, Vec<Failed>) {
     let mut cases = Vec::new();
     for planned in wanted {
         if failed.iter().any(|failed| failed.case == planned.name) {
@@ -228,7 +228,7 @@ fn work_out<'a>(
         }
         let case = Case::with_packed(planned.scene.clone(), packed.get(&planned.name).cloned());
         match case.and_then(|mut case| place(&mut case).map(|()| case)) {
-            Ok(case) => cases.push(Ready::new(planned, case)),
+            Ok(case) => cases.push(PreparedCase::new(planned, case)),
             Err(error) => failed.push(Failed { case: planned.name.clone(), problem: error.to_string() }),
         }
     }
@@ -236,8 +236,8 @@ fn work_out<'a>(
 }
 
 /// Collects what is done into the campaign's folder.
-fn keep(plan: &Plan, cases: &[Ready], out: &Path) -> Result<Vec<LedgerLine>, Ending> {
-    let lines = ledger::collect(cases, out).map_err(Ending::failed)?;
+fn keep(plan: &Plan, cases: &[PreparedCase], out: &Path) -> Result<Vec<LedgerLine>, Exit> {
+    let lines = ledger::collect(cases, out).map_err(Exit::failed)?;
     let there: BTreeSet<&str> = lines.iter().map(|line| line.case.as_str()).collect();
     let is_missing = |case: &&PlannedCase| !there.contains(case.name.as_str());
     let about = Campaign {
@@ -247,8 +247,8 @@ fn keep(plan: &Plan, cases: &[Ready], out: &Path) -> Result<Vec<LedgerLine>, End
         cases: plan.cases.len() as u64,
         missing: plan.cases.iter().filter(is_missing).map(|case| case.name.clone()).collect(),
     };
-    ledger::write(out, &about, &lines).map_err(Ending::failed)?;
-    report::write_campaign(out).map_err(Ending::failed)?;
+    ledger::write(out, &about, &lines).map_err(Exit::failed)?;
+    report::write_campaign(out).map_err(Exit::failed)?;
     Ok(lines)
 }
 

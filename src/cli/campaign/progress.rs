@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::campaign::conduct::{News, Ready};
+use crate::campaign::run_cases::{CaseEvent, PreparedCase};
 use crate::cli::print::{plain, to_stderr};
 
 /// Plain lines come at most this often, outside of a cluster's job.
@@ -22,7 +22,7 @@ pub enum Progress {
 
 impl Progress {
     /// `each`: a line for everything that happens to a case, as the log of a job should have it.
-    pub fn new(quiet: bool, cases: &[Ready], out: &Path, each: bool) -> Self {
+    pub fn new(quiet: bool, cases: &[PreparedCase], out: &Path, each: bool) -> Self {
         if quiet {
             return Self::Quiet;
         }
@@ -45,30 +45,30 @@ impl Progress {
         Self::Lines { total, begun: now, done: Mutex::new((done, done, now)), each }
     }
 
-    pub fn tell(&self, case: &str, news: News) {
+    pub fn tell(&self, case: &str, news: CaseEvent) {
         let case = plain(case);
         match (self, news) {
             (Self::Quiet, _) => {}
-            (Self::Bar(bar), News::Begun { .. }) => bar.set_message(case),
-            (Self::Bar(bar), News::Waiting) => bar.set_message(format!("waiting for {case}")),
-            (Self::Bar(bar), News::Done(_)) => bar.inc(1),
-            (Self::Bar(bar), News::Failed(problem)) => {
+            (Self::Bar(bar), CaseEvent::Begun { .. }) => bar.set_message(case),
+            (Self::Bar(bar), CaseEvent::Waiting) => bar.set_message(format!("waiting for {case}")),
+            (Self::Bar(bar), CaseEvent::Done(_)) => bar.inc(1),
+            (Self::Bar(bar), CaseEvent::Failed(problem)) => {
                 bar.suspend(|| to_stderr(&format!("failed: {case}: {}\n", plain(problem))));
             }
-            (Self::Lines { .. }, News::Failed(problem)) => {
+            (Self::Lines { .. }, CaseEvent::Failed(problem)) => {
                 to_stderr(&format!("failed: {case}: {}\n", plain(problem)));
             }
-            (Self::Lines { each, .. }, News::Begun { resumes }) => {
+            (Self::Lines { each, .. }, CaseEvent::Begun { resumes }) => {
                 if *each {
                     to_stderr(&format!("{}: {case}\n", if resumes { "goes on" } else { "begins" }));
                 }
             }
-            (Self::Lines { each, .. }, News::Waiting) => {
+            (Self::Lines { each, .. }, CaseEvent::Waiting) => {
                 if *each {
                     to_stderr(&format!("waits: {case}: another process is at it\n"));
                 }
             }
-            (Self::Lines { total, begun, done, each }, News::Done(line)) => {
+            (Self::Lines { total, begun, done, each }, CaseEvent::Done(line)) => {
                 let Ok(mut done) = done.lock() else { return };
                 done.1 += 1;
                 if !each && done.1 < *total && done.2.elapsed() < BETWEEN_LINES {

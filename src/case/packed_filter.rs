@@ -1,25 +1,20 @@
-//! A filter that is packed by the program itself, so that a scene needs a sieve curve and a density only.
+//! A filter that has been packed: what a walk needs of it, read from the folder that it was packed into.
 //!
-//! - [`Recipe`] is what the user states, [`Order`] the same with its files read.
-//! - [`make()`] packs it into a folder; [`PackedFilter::read`] takes the constrictions from there.
-//!
-//! The grains follow from the recipe alone, so a packing is made once and kept under the fingerprint of its recipe. Its
+//! The grains follow from the packing plan alone, so a packing is made once and kept under the fingerprint of its plan. Its
 //! constrictions are measured again for each use: that takes a second, and the overlap of voids may change.
-
-mod make;
-mod order;
-mod recipe;
 
 use std::path::{Path, PathBuf};
 
-pub use make::{PackError, RECORD, STATES, Watch, make};
-pub use order::Order;
-pub use recipe::{DENSITIES, Recipe};
-
-use crate::constrictions::{Constrictions, Curve, CurveUnit};
+use super::PackingPlan;
+use crate::constrictions::{Constrictions, ConstrictionsError, Curve, CurveError, CurveUnit};
 use crate::outcome::packing::PackingRecord;
 use crate::packing::{ImportError, Packing};
 use crate::store::{StoreError, read_whole};
+
+/// The packing's measures; a folder that holds it is whole.
+pub const RECORD: &str = "packing.json";
+/// The grains.
+pub const GRAINS: &str = "grains.csv";
 
 /// A filter that has been packed: what a walk needs of it.
 #[derive(Clone, Debug)]
@@ -57,7 +52,10 @@ pub enum PackedError {
     Read(#[from] StoreError),
     /// The constrictions.
     #[error(transparent)]
-    Pack(#[from] PackError),
+    Constrictions(#[from] ConstrictionsError),
+    /// The constriction curve.
+    #[error(transparent)]
+    Curve(#[from] CurveError),
 }
 
 impl PackedFilter {
@@ -65,7 +63,7 @@ impl PackedFilter {
     ///
     /// # Errors
     /// A folder that is damaged, or that holds another filter.
-    pub fn read(folder: &Path, order: &Order) -> Result<Option<Self>, PackedError> {
+    pub fn read(folder: &Path, order: &PackingPlan) -> Result<Option<Self>, PackedError> {
         let path = folder.join(RECORD);
         let problem = |problem: String| PackedError::Record { file: path.display().to_string(), problem };
         let record = match read_whole(&path) {
@@ -77,26 +75,23 @@ impl PackedFilter {
         if read.fingerprint != order.fingerprint() {
             return Err(problem("this is the packing of another recipe; name another folder".into()));
         }
-        let grains = folder.join(make::GRAINS);
+        let grains = folder.join(GRAINS);
         let bytes = match read_whole(&grains) {
             Ok(bytes) => bytes,
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
-                return Err(problem(format!("{} is missing", make::GRAINS)));
+                return Err(problem(format!("{} is missing", GRAINS)));
             }
             Err(source) => return Err(StoreError::Io { path: grains, action: "read", source }.into()),
         };
         if format!("{:016x}", xxhash_rust::xxh3::xxh3_64(&bytes)) != read.grains_xxh3 {
-            return Err(problem(format!(
-                "{} is not the file that this record was written with",
-                make::GRAINS
-            )));
+            return Err(problem(format!("{} is not the file that this record was written with", GRAINS)));
         }
         let packing = Packing::parse(&grains.display().to_string(), &bytes)?;
-        let found = Constrictions::measure(&packing, order.merge_overlap).map_err(PackError::from)?;
+        let found = Constrictions::measure(&packing, order.merge_overlap)?;
         Ok(Some(Self {
             folder: Some(folder.to_owned()),
-            curve: found.curve().map_err(PackError::from)?,
-            curve_csv: found.curve_csv().map_err(PackError::from)?,
+            curve: found.curve()?,
+            curve_csv: found.curve_csv()?,
             grains_per_void: found.grains_per_void(),
             record,
             void_ratio: read.after.void_ratio,
@@ -107,7 +102,7 @@ impl PackedFilter {
     ///
     /// # Errors
     /// None for a gradation that can be packed.
-    pub fn stand_in(order: &Order) -> Result<Self, PackError> {
+    pub fn placeholder(order: &PackingPlan) -> Result<Self, CurveError> {
         let d = |percent| order.gradation.d_by_number(percent).unwrap_or(order.gradation.smallest_mm());
         let points: Vec<(f64, f64)> = [(0.0, 0.155), (50.0, 0.27), (100.0, 0.7)]
             .into_iter()

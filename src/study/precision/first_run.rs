@@ -4,11 +4,11 @@ use bitvec::vec::BitVec;
 
 use super::work::timed;
 use super::{PrecisionError, Study};
-use crate::campaign::scene::NetworkSource;
-use crate::campaign::walks::replicate_seed;
+use crate::case::replicate_seed;
 use crate::gradation::SizeSampler;
 use crate::network::Network;
 use crate::outcome::eroded_mass_fraction;
+use crate::scene::NetworkSource;
 use crate::walk::{Engine, Plan, Progress, Sampling, SizeClasses, State, Walk};
 
 /// A first run, up to its network and seed.

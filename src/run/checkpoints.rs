@@ -2,7 +2,7 @@
 //!
 //! A replicate that is being walked keeps its state and what was recorded of it so far; one that is done keeps its figures
 //! and rows. Each is a checkpoint of its own in the folder `checkpoint` of the run ([`crate::store::checkpoint`]), written as
-//! often as [`Every`] says, and on a stop.
+//! often as [`CheckpointInterval`] says, and on a stop.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -40,14 +40,14 @@ pub struct Done {
 
 /// How often a walk is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Every {
+pub enum CheckpointInterval {
     /// When this much time has passed since the last time.
     Time(Duration),
     /// After every so many increments.
     Increments(u64),
 }
 
-impl FromStr for Every {
+impl FromStr for CheckpointInterval {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -63,7 +63,7 @@ impl FromStr for Every {
     }
 }
 
-impl fmt::Display for Every {
+impl fmt::Display for CheckpointInterval {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Time(time) => {
@@ -75,22 +75,22 @@ impl fmt::Display for Every {
 }
 
 /// Keeps the replicates of one case.
-pub struct Keeper {
+pub struct Checkpoints {
     folder: PathBuf,
     scene: String,
-    every: Every,
+    every: CheckpointInterval,
     /// Replicates that are done and not on the disk yet, and the next generation of each name.
     waiting: Mutex<BTreeMap<String, (Label, Vec<u8>)>>,
     generations: Mutex<BTreeMap<String, u64>>,
     harmed: Mutex<Vec<String>>,
 }
 
-impl Keeper {
+impl Checkpoints {
     /// A keeper of the case with this fingerprint, in a run's folder.
     ///
     /// # Errors
     /// The folder of the checkpoints cannot be made.
-    pub fn new(folder: &Folder, scene: &str, every: Every) -> Result<Self, StoreError> {
+    pub fn new(folder: &Folder, scene: &str, every: CheckpointInterval) -> Result<Self, StoreError> {
         let path = folder.path().join(FOLDER);
         make_folder(&path)?;
         Ok(Self {
@@ -131,8 +131,8 @@ impl Keeper {
     /// Whether it is time to keep a walk that was kept `last` and has done this increment.
     pub fn is_due(&self, last: Instant, increment: u64, stop: bool) -> bool {
         stop || match self.every {
-            Every::Time(time) => last.elapsed() >= time,
-            Every::Increments(number) => increment.is_multiple_of(number),
+            CheckpointInterval::Time(time) => last.elapsed() >= time,
+            CheckpointInterval::Increments(number) => increment.is_multiple_of(number),
         }
     }
 
@@ -169,7 +169,7 @@ impl Keeper {
     ///
     /// # Errors
     /// What the system says; the checkpoint before stays then.
-    pub fn keep_walk(
+    pub fn save_walk(
         &self,
         part: u64,
         replicate: u64,
@@ -187,7 +187,7 @@ impl Keeper {
     }
 
     /// Takes a replicate that is done; it goes to the disk with the next checkpoint of any.
-    pub fn keep_done(&self, part: u64, replicate: u64, seed: u64, done: &Done) {
+    pub fn save_finished(&self, part: u64, replicate: u64, seed: u64, done: &Done) {
         let text = serde_json::to_vec(done).expect("figures are numbers and words");
         let label = Label {
             scene: self.scene.clone(),
@@ -268,11 +268,11 @@ mod tests {
 
     #[test]
     fn how_often_is_a_time_or_a_number_of_increments() {
-        assert_eq!("10min".parse(), Ok(Every::Time(Duration::from_secs(600))));
-        assert_eq!("50increments".parse(), Ok(Every::Increments(50)));
-        assert_eq!("1 increment".parse(), Ok(Every::Increments(1)));
+        assert_eq!("10min".parse(), Ok(CheckpointInterval::Time(Duration::from_secs(600))));
+        assert_eq!("50increments".parse(), Ok(CheckpointInterval::Increments(50)));
+        assert_eq!("1 increment".parse(), Ok(CheckpointInterval::Increments(1)));
         for wrong in ["", "0increments", "increments", "-1increments", "ten", "1.5increments"] {
-            assert!(wrong.parse::<Every>().unwrap_err().contains("as 10min or 90s"), "{wrong}");
+            assert!(wrong.parse::<CheckpointInterval>().unwrap_err().contains("as 10min or 90s"), "{wrong}");
         }
     }
 }

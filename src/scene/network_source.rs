@@ -71,7 +71,7 @@ fn connectivity(s: &Settings) -> Result<Option<Connectivity>, SceneError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::scene::Scene;
+    use crate::scene::Scene;
 
     #[test]
     fn a_distribution_is_given_by_name_or_as_a_table() {

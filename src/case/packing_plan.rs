@@ -1,11 +1,9 @@
 //! A recipe worked out: its files read, its number of grains decided, before any work is done.
 
-use super::recipe::Recipe;
-use crate::campaign::case::{CaseError, Files, Input};
-use crate::campaign::scene::FilterGradation;
-use crate::campaign::settings::SceneError;
+use super::{CaseError, Files, Input};
 use crate::gradation::Gradation;
 use crate::packing::Settings as Compression;
+use crate::scene::{FilterGradation, PackingSpec, SceneError};
 
 /// A cell is made this many times as wide as the largest grain, where the user does not say how many grains ...
 const CELLS_WIDTH: f64 = 5.4;
@@ -19,7 +17,7 @@ const PROTOCOL: u32 = 2;
 
 /// What is to be packed.
 #[derive(Clone, Debug)]
-pub struct Order {
+pub struct PackingPlan {
     /// The filter's gradation.
     pub gradation: Gradation,
     /// The gradation in words.
@@ -34,12 +32,12 @@ pub struct Order {
     pub inputs: Vec<Input>,
 }
 
-impl Order {
+impl PackingPlan {
     /// Reads the recipe's files and works out its number of grains.
     ///
     /// # Errors
     /// A file that is refused, a gradation that cannot be packed, a cell narrower than two of the largest grain.
-    pub fn new(recipe: &Recipe) -> Result<Self, CaseError> {
+    pub fn new(recipe: &PackingSpec) -> Result<Self, CaseError> {
         let mut files = Files::default();
         let (gradation, linear) = match &recipe.gradation {
             FilterGradation::Linear { d0_mm, cu } => {

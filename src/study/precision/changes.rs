@@ -2,8 +2,8 @@
 
 use super::PrecisionError;
 use super::first_run::{FirstRun, Scene};
-use crate::campaign::scene::NetworkSource;
 use crate::network::Network;
+use crate::scene::NetworkSource;
 
 /// One setting changed.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -17,13 +17,13 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
-use super::case::Case;
-use super::keeper::{self, Every, Keeper};
-use super::machine::Machine;
 use super::plan::PlannedCase;
-use super::results::{self, ResultError};
-use super::walks::{self, RunError, Watch};
+use crate::case::Case;
 use crate::outcome::ledger::{LedgerLine, Made};
+use crate::run::checkpoints::{self, CheckpointInterval, Checkpoints};
+use crate::run::machine::Machine;
+use crate::run::replicates::{self, RunError, Watch};
+use crate::run::results::{self, ResultError};
 use crate::store::{Folder, StoreError, make_folder, read_whole};
 use crate::walk::WalkError;
 
@@ -43,7 +43,7 @@ const LOOK: (Duration, Duration) = (Duration::from_millis(300), Duration::from_s
 const TRIES: u32 = 3;
 
 /// A case of a plan, worked out.
-pub struct Ready<'a> {
+pub struct PreparedCase<'a> {
     /// The case as planned.
     pub planned: &'a PlannedCase,
     /// The same with its files read.
@@ -52,7 +52,7 @@ pub struct Ready<'a> {
     pub fingerprint: String,
 }
 
-impl<'a> Ready<'a> {
+impl<'a> PreparedCase<'a> {
     /// A case with its fingerprint.
     pub fn new(planned: &'a PlannedCase, case: Case) -> Self {
         let fingerprint = results::fingerprint(&case);
@@ -123,7 +123,7 @@ pub struct Failed {
 
 /// Why a campaign ended early.
 #[derive(Debug, thiserror::Error)]
-pub enum ConductError {
+pub enum CampaignError {
     /// The folder of the cases.
     #[error(transparent)]
     Store(#[from] StoreError),
@@ -137,7 +137,7 @@ pub enum ConductError {
 
 /// What a process says of a case.
 #[derive(Clone, Copy, Debug)]
-pub enum News<'a> {
+pub enum CaseEvent<'a> {
     /// It begins to walk it, or goes on from its checkpoints.
     Begun {
         /// Whether there are checkpoints.
@@ -152,15 +152,15 @@ pub enum News<'a> {
 }
 
 /// Watches a campaign, and can stop it.
-pub struct Overseer<'a> {
+pub struct CampaignCallbacks<'a> {
     /// Told of every case that this process begins, has finished or waits for.
-    pub tell: &'a (dyn Fn(&str, News) + Sync),
+    pub tell: &'a (dyn Fn(&str, CaseEvent) + Sync),
     /// Called with the folder of a case whose results are written, before it counts as done.
     pub finish: &'a (dyn Fn(&Path) -> Result<(), String> + Sync),
     /// Set to stop after the current increments.
     pub stop: &'a AtomicBool,
     /// How often a case that is being walked is kept.
-    pub keep_every: Every,
+    pub keep_every: CheckpointInterval,
     /// Job and task of a cluster.
     pub job: Option<String>,
     /// The command line.
@@ -171,18 +171,18 @@ pub struct Overseer<'a> {
 ///
 /// # Errors
 /// What concerns all cases; those that are done stay done.
-pub fn conduct(
-    cases: &[Ready],
+pub fn run_cases(
+    cases: &[PreparedCase],
     out: &Path,
     threads: usize,
-    overseer: &Overseer,
-) -> Result<Vec<Failed>, ConductError> {
+    overseer: &CampaignCallbacks,
+) -> Result<Vec<Failed>, CampaignError> {
     make_folder(&out.join(CASES))?;
-    let (done, mut open): (Vec<&Ready>, Vec<&Ready>) =
+    let (done, mut open): (Vec<&PreparedCase>, Vec<&PreparedCase>) =
         cases.iter().partition(|case| case.line(out).is_some());
     for case in done {
         // A process that was killed as soon as the case was done left them.
-        keeper::discard(&out.join(case.folder()))?;
+        checkpoints::discard(&out.join(case.folder()))?;
     }
     let tally = Tally::default();
     let mut look = LOOK.0;
@@ -196,7 +196,7 @@ pub fn conduct(
         lost.for_each(|case| tally.fail(overseer, &case.planned.name, &CaseProblem::Lost));
         open.retain(|case| !tally.has_failed(&case.planned.name));
         if overseer.stop.load(Ordering::Relaxed) && !open.is_empty() {
-            return Err(ConductError::Stopped);
+            return Err(CampaignError::Stopped);
         }
         if tally.waited() > told && open.len() == before {
             let until = Instant::now() + look;
@@ -234,9 +234,9 @@ impl Tally {
         self.waits.load(Ordering::Relaxed)
     }
 
-    fn fail(&self, overseer: &Overseer, name: &str, problem: &CaseProblem) {
+    fn fail(&self, overseer: &CampaignCallbacks, name: &str, problem: &CaseProblem) {
         let problem = problem.to_string();
-        (overseer.tell)(name, News::Failed(&problem));
+        (overseer.tell)(name, CaseEvent::Failed(&problem));
         if let Ok(mut failed) = self.failed.lock() {
             failed.push(Failed { case: name.to_owned(), problem });
         }
@@ -253,26 +253,26 @@ impl Tally {
     }
 
     /// Another process is at the case; said once.
-    fn wait(&self, overseer: &Overseer, name: &str) {
+    fn wait(&self, overseer: &CampaignCallbacks, name: &str) {
         self.waits.fetch_add(1, Ordering::Relaxed);
         if self.waiting.lock().is_ok_and(|mut names| names.insert(name.to_owned())) {
-            (overseer.tell)(name, News::Waiting);
+            (overseer.tell)(name, CaseEvent::Waiting);
         }
     }
 }
 
 /// Tries each case once.
 fn pass(
-    open: &[&Ready],
+    open: &[&PreparedCase],
     out: &Path,
     threads: usize,
-    overseer: &Overseer,
+    overseer: &CampaignCallbacks,
     tally: &Tally,
-) -> Result<(), ConductError> {
+) -> Result<(), CampaignError> {
     let next = AtomicUsize::new(0);
     let side_by_side = side_by_side(open, threads);
     let share = (threads / side_by_side).max(1);
-    let work = || -> Result<(), ConductError> {
+    let work = || -> Result<(), CampaignError> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(share).build()?;
         while !overseer.stop.load(Ordering::Relaxed) {
             let Some(case) = open.get(next.fetch_add(1, Ordering::Relaxed)) else { return Ok(()) };
@@ -303,7 +303,7 @@ fn message(panic: &(dyn std::any::Any + Send)) -> String {
 }
 
 /// Cases walked at the same time: as many as there are threads that one case's replicates would leave idle.
-fn side_by_side(open: &[&Ready], threads: usize) -> usize {
+fn side_by_side(open: &[&PreparedCase], threads: usize) -> usize {
     let fewest = open.iter().map(|ready| ready.case.scene.replicates).min().unwrap_or(1).max(1) as usize;
     let wanted = threads.div_ceil(fewest).clamp(1, open.len().max(1));
     let largest = open.iter().map(|ready| ready.case.peak_bytes(threads as u64)).max().unwrap_or(0);
@@ -313,7 +313,12 @@ fn side_by_side(open: &[&Ready], threads: usize) -> usize {
 }
 
 /// Claims one case and walks it into its folder; says whether it was this process that finished it.
-fn one(ready: &Ready, out: &Path, threads: usize, overseer: &Overseer) -> Result<bool, CaseProblem> {
+fn one(
+    ready: &PreparedCase,
+    out: &Path,
+    threads: usize,
+    overseer: &CampaignCallbacks,
+) -> Result<bool, CaseProblem> {
     let folder = Folder::open(&out.join(ready.folder()))?;
     // Opening the list of its files asks a server anew, which an open of one file that was missing before may not.
     drop(std::fs::read_dir(folder.path()));
@@ -325,7 +330,7 @@ fn one(ready: &Ready, out: &Path, threads: usize, overseer: &Overseer) -> Result
     match walk(ready, out, &folder, threads, overseer) {
         // Where locks reach one machine only, another may have finished it and taken the checkpoints away.
         Err(_) if ready.line(out).is_some() => {
-            keeper::discard(folder.path())?;
+            checkpoints::discard(folder.path())?;
             Ok(false)
         }
         Err(problem) => {
@@ -338,20 +343,20 @@ fn one(ready: &Ready, out: &Path, threads: usize, overseer: &Overseer) -> Result
 }
 
 fn walk(
-    ready: &Ready,
+    ready: &PreparedCase,
     out: &Path,
     folder: &Folder,
     threads: usize,
-    overseer: &Overseer,
+    overseer: &CampaignCallbacks,
 ) -> Result<bool, CaseProblem> {
     let name = &ready.planned.name;
-    let resumes = Keeper::is_in(folder.path())?;
-    (overseer.tell)(name, News::Begun { resumes });
+    let resumes = Checkpoints::is_in(folder.path())?;
+    (overseer.tell)(name, CaseEvent::Begun { resumes });
     let (begun, started) = (Instant::now(), SystemTime::now());
-    let keeper = Keeper::new(folder, &ready.fingerprint, overseer.keep_every)?;
+    let keeper = Checkpoints::new(folder, &ready.fingerprint, overseer.keep_every)?;
     let watch = Watch { tell: &|_| {}, stop: overseer.stop, keeper: Some(&keeper) };
-    let walked = walks::replicates(&ready.case, &watch)
-        .and_then(|walked| Ok((walks::sensitivity(&ready.case, &watch)?, walked)));
+    let walked = replicates::replicates(&ready.case, &watch)
+        .and_then(|walked| Ok((replicates::sensitivity(&ready.case, &watch)?, walked)));
     let (sensitivity, walked) = match walked {
         Err(RunError::Walk(WalkError::Stopped { .. })) => {
             keeper.flush()?;
@@ -386,7 +391,7 @@ fn walk(
     let text = results::json(LINE, &line)?;
     folder.write(LINE, &text)?;
     keeper.clear()?;
-    (overseer.tell)(name, News::Done(&line));
+    (overseer.tell)(name, CaseEvent::Done(&line));
     Ok(true)
 }
 
@@ -405,7 +410,7 @@ pub enum State {
 
 impl State {
     /// Looks into the case's folder.
-    pub fn of(ready: &Ready, out: &Path) -> Self {
+    pub fn of(ready: &PreparedCase, out: &Path) -> Self {
         let path = out.join(ready.folder());
         if path.symlink_metadata().is_err() {
             return Self::NotBegun;
@@ -415,7 +420,7 @@ impl State {
             Err(other) => Self::Failed(other.to_string()),
             Ok(folder) => match folder.read(PROBLEM) {
                 Ok(Some(text)) => Self::Failed(String::from_utf8_lossy(&text).trim_end().to_owned()),
-                _ => match Keeper::is_in(folder.path()) {
+                _ => match Checkpoints::is_in(folder.path()) {
                     Ok(true) => Self::Kept,
                     Ok(false) => Self::NotBegun,
                     Err(error) => Self::Failed(error.to_string()),

@@ -5,14 +5,14 @@ use std::time::SystemTime;
 
 use serde::Serialize;
 
-use super::case::Case;
 use super::machine::Machine;
-use super::scene::{Amount, BaseGradation, CurveSource, D85, FilterGradation, NetworkSource};
-use super::walks::{Walked, as_it_is, stopping, summarise};
+use super::replicates::{ReplicateResult, as_it_is, stopping, summarise};
+use crate::case::Case;
 use crate::network::Connectivity;
 use crate::outcome::record::{Manifest, Outcome, Sensitivity, Statistic};
 use crate::outcome::rules::RuleInputs;
 use crate::outcome::{MODEL_LEAVES_OUT, Recorded, infiltration, rules, verdict};
+use crate::scene::{Amount, BaseGradation, CurveSource, D85, FilterGradation, NetworkSource};
 use crate::store::{Folder, StoreError};
 
 /// Why results cannot be written.
@@ -32,7 +32,12 @@ pub enum ResultError {
 }
 
 /// The outcome of a case that has been walked.
-pub fn outcome(case: &Case, walked: &[Walked], mut sensitivity: Vec<Sensitivity>, seconds: f64) -> Outcome {
+pub fn outcome(
+    case: &Case,
+    walked: &[ReplicateResult],
+    mut sensitivity: Vec<Sensitivity>,
+    seconds: f64,
+) -> Outcome {
     let (verdict, summary) = summarise(walked);
     let stopping = stopping(case, walked);
     // A verdict that was to be certain is one at the level asked for.
@@ -112,8 +117,8 @@ pub fn manifest(case: &Case, threads: u64, started: SystemTime, command: String)
 }
 
 /// What the filter rules read of a case that has been walked.
-fn rule_inputs<'a>(case: &'a Case, walked: &[Walked]) -> RuleInputs<'a> {
-    let first = |w: &Walked| w.replicate.runs.first()?.largest_eroded_over_d15f;
+fn rule_inputs<'a>(case: &'a Case, walked: &[ReplicateResult]) -> RuleInputs<'a> {
+    let first = |w: &ReplicateResult| w.replicate.runs.first()?.largest_eroded_over_d15f;
     let largest: Vec<f64> = walked.iter().filter_map(first).collect();
     RuleInputs {
         ratios: case.ratios(),
@@ -127,7 +132,7 @@ fn rule_inputs<'a>(case: &'a Case, walked: &[Walked]) -> RuleInputs<'a> {
 }
 
 /// What the scene did not need, and what the first replicate's first run did not.
-fn left_out(case: &Case, walked: &[Walked]) -> Vec<String> {
+fn left_out(case: &Case, walked: &[ReplicateResult]) -> Vec<String> {
     let of_run = walked.first().map(|w| w.left_out.clone()).unwrap_or_default();
     [case.left_out(), of_run].concat()
 }
@@ -140,7 +145,7 @@ pub fn write(
     folder: &Folder,
     case: &Case,
     outcome: &Outcome,
-    walked: &[Walked],
+    walked: &[ReplicateResult],
     manifest: &Manifest,
 ) -> Result<(), ResultError> {
     // First, so that a folder is not taken for whole while its files are being replaced.

@@ -6,11 +6,10 @@ use std::time::Instant;
 
 use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
-use rand::Rng;
 use rayon::prelude::*;
 
-use super::case::{Case, CaseError};
-use super::keeper::{Done, Keeper, network_fingerprint};
+use super::checkpoints::{Checkpoints, Done, network_fingerprint};
+use crate::case::{Case, CaseError, replicate_seed};
 use crate::network::Network;
 use crate::outcome::record::{Replicate, RunSummary, Sensitivity, Statistic, Stopping, Verdict};
 use crate::outcome::stopping::{Look, StopRule};
@@ -18,7 +17,6 @@ use crate::outcome::verdict::{below_by_interval, classify};
 use crate::outcome::{Figures, Recorded, RunOf};
 use crate::store::StoreError;
 use crate::store::checkpoint::{Harmed, Saved};
-use crate::stream::{Key, Purpose};
 use crate::walk::{Engine, Plan, Progress, SizeClasses, State, Walk, WalkError};
 
 /// Why walking ended early.
@@ -76,11 +74,11 @@ pub struct Watch<'a> {
     /// Set to stop after the current increment.
     pub stop: &'a AtomicBool,
     /// Keeps what is done, so that the next start goes on from there.
-    pub keeper: Option<&'a Keeper>,
+    pub keeper: Option<&'a Checkpoints>,
 }
 
 /// One replicate: its figures, and its rows of the CSV files.
-pub struct Walked {
+pub struct ReplicateResult {
     /// What `outcome.json` keeps.
     pub replicate: Replicate,
     /// Rows of the CSV files.
@@ -98,16 +96,11 @@ pub fn runs_to_walk(case: &Case) -> u64 {
     case.scene.runs * (first_replicates(case) + factors * case.scene.sensitivity.1)
 }
 
-/// Seed of replicate `replicate`, counted from 1: a function of the user's seed and the replicate alone.
-pub fn replicate_seed(seed: u64, replicate: u64) -> u64 {
-    Key { seed, purpose: Purpose::Replicate, run: 0, increment: 0, chunk: replicate }.generator().next_u64()
-}
-
 /// Walks every replicate of the case: as many as the scene says, or until its rule stops.
 ///
 /// # Errors
 /// A walk that loses particles, or that was stopped.
-pub fn replicates(case: &Case, watch: &Watch) -> Result<Vec<Walked>, RunError> {
+pub fn replicates(case: &Case, watch: &Watch) -> Result<Vec<ReplicateResult>, RunError> {
     let mut walked = Vec::new();
     let mut wanted = first_replicates(case);
     loop {
@@ -124,7 +117,7 @@ pub fn replicates(case: &Case, watch: &Watch) -> Result<Vec<Walked>, RunError> {
 }
 
 /// What the scene's rule came to, where it has one.
-pub fn stopping(case: &Case, walked: &[Walked]) -> Option<Stopping> {
+pub fn stopping(case: &Case, walked: &[ReplicateResult]) -> Option<Stopping> {
     match look(case, walked)? {
         Look::Stop(stopping) => Some(stopping),
         Look::Until(_) => None,
@@ -137,7 +130,7 @@ fn first_replicates(case: &Case) -> u64 {
 }
 
 /// A look of the scene's rule at what is walked.
-fn look(case: &Case, walked: &[Walked]) -> Option<Look> {
+fn look(case: &Case, walked: &[ReplicateResult]) -> Option<Look> {
     let rule = Some(case.scene.stop).filter(StopRule::is_set)?;
     let of_run = |run: usize| {
         walked.iter().map(|w| (w.replicate.runs[run].eroded_mass_fraction, w.below[run])).collect()
@@ -153,7 +146,7 @@ fn some_replicates(
     which: RangeInclusive<u64>,
     n_base: u64,
     watch: &Watch,
-) -> Result<Vec<Walked>, RunError> {
+) -> Result<Vec<ReplicateResult>, RunError> {
     let one = |replicate| walk_replicate(case, part, replicate, n_base, watch);
     let threads = rayon::current_num_threads() as u64;
     if case.side_by_side(n_base, threads) > 1 {
@@ -169,7 +162,7 @@ fn walk_replicate(
     replicate: u64,
     n_base: u64,
     watch: &Watch,
-) -> Result<Walked, RunError> {
+) -> Result<ReplicateResult, RunError> {
     let seed = replicate_seed(case.scene.seed, replicate);
     let network = case.network(seed).map_err(CaseError::from)?;
     let mut blocked = BitVec::repeat(false, network.constrictions());
@@ -189,7 +182,7 @@ fn walk_replicate(
             tail_mass_fraction: case.base.tail_mass_fraction(),
         };
         let begun = Instant::now();
-        let walk = RunWalk { case, network: &network, part, seed, of, n_base };
+        let walk = RunContext { case, network: &network, part, seed, of, n_base };
         let state = walk.run(blocked, &mut done, saved.take(), watch)?;
         let figures = Figures::new(&network, &state, of, begun.elapsed().as_secs_f64());
         let recorder = std::mem::take(&mut done.recorder);
@@ -202,11 +195,11 @@ fn walk_replicate(
         blocked = state.blocked;
         (watch.tell)(Event::Run);
         if let (true, Some(keeper)) = (done.complete, watch.keeper) {
-            keeper.keep_done(part, replicate, seed, &done);
+            keeper.save_finished(part, replicate, seed, &done);
         }
     }
     let verdict = classify(done.below.first().copied(), done.below.get(1).copied());
-    Ok(Walked {
+    Ok(ReplicateResult {
         replicate: Replicate { seed, verdict, runs: done.runs },
         recorded: done.recorded,
         engine: first.engine(),
@@ -231,7 +224,7 @@ pub fn left_out_of_first_run(case: &Case) -> Result<Vec<String>, RunError> {
 }
 
 /// One run of one replicate.
-struct RunWalk<'a> {
+struct RunContext<'a> {
     case: &'a Case,
     network: &'a Network,
     part: u64,
@@ -240,7 +233,7 @@ struct RunWalk<'a> {
     n_base: u64,
 }
 
-impl RunWalk<'_> {
+impl RunContext<'_> {
     /// Walks from the start, or from where it was saved.
     fn run(
         &self,
@@ -279,7 +272,7 @@ impl RunWalk<'_> {
             (watch.tell)(Event::Increment { replicate: of.replicate, run: of.run, increment, moving });
             let stop = watch.stop.load(Ordering::Relaxed);
             if let Some(keeper) = watch.keeper.filter(|keeper| keeper.is_due(last, increment, stop)) {
-                if let Err(error) = keeper.keep_walk(part, of.replicate, network, state, done) {
+                if let Err(error) = keeper.save_walk(part, of.replicate, network, state, done) {
                     failed = Some(error);
                     return Progress::Stop;
                 }
@@ -312,7 +305,7 @@ fn blocked_at_start(network: &Network, saved: &mut Saved) -> Result<BitVec<u64>,
 }
 
 /// The verdict that the replicates support together, and their statistics by run.
-pub fn summarise(walked: &[Walked]) -> (Verdict, Vec<RunSummary>) {
+pub fn summarise(walked: &[ReplicateResult]) -> (Verdict, Vec<RunSummary>) {
     let runs = walked.first().map_or(0, |w| w.replicate.runs.len());
     let summaries: Vec<RunSummary> = (0..runs).map(|run| run_summary(walked, run)).collect();
     let below = |run: usize| {
@@ -323,7 +316,7 @@ pub fn summarise(walked: &[Walked]) -> (Verdict, Vec<RunSummary>) {
     (classify(below(0), below(1)), summaries)
 }
 
-fn run_summary(walked: &[Walked], run: usize) -> RunSummary {
+fn run_summary(walked: &[ReplicateResult], run: usize) -> RunSummary {
     let of = |figure: fn(&crate::outcome::record::Run) -> f64| {
         let values: Vec<f64> = walked.iter().map(|w| figure(&w.replicate.runs[run])).collect();
         Statistic::of_fraction(&values)
@@ -364,11 +357,11 @@ fn one_sensitivity(
 }
 
 /// The scene itself as one row of its sensitivity.
-pub fn as_it_is(case: &Case, walked: &[Walked]) -> Sensitivity {
+pub fn as_it_is(case: &Case, walked: &[ReplicateResult]) -> Sensitivity {
     of_walked(case, 1.0, case.n_base, walked)
 }
 
-fn of_walked(case: &Case, factor: f64, n_base: u64, walked: &[Walked]) -> Sensitivity {
+fn of_walked(case: &Case, factor: f64, n_base: u64, walked: &[ReplicateResult]) -> Sensitivity {
     let (verdict, summaries) = summarise(walked);
     Sensitivity {
         factor,

@@ -15,7 +15,7 @@
 //! number of threads. Only the times differ.
 //!
 //! # Time
-//! Every run is walked by one thread, as many runs side by side as there are threads, and its time is the processor time of that
+//! CheckpointInterval run is walked by one thread, as many runs side by side as there are threads, and its time is the processor time of that
 //! thread; only the scaling over threads walks one run with several.
 
 mod bias;
@@ -36,13 +36,13 @@ pub use tables::tables;
 use std::sync::atomic::AtomicBool;
 use std::time::{Instant, SystemTime};
 
-use super::case::{Case, CaseError};
-use super::machine::Machine;
+use crate::case::{Case, CaseError};
 use crate::constrictions::{ConstrictionsError, CurveError, TriangulationError};
 use crate::gradation::GradationError;
 use crate::network::NetworkError;
 use crate::outcome::precision::{NetworkRow, Precision};
 use crate::packing::PackingError;
+use crate::run::machine::Machine;
 use crate::walk::WalkError;
 
 /// Part of a precision study.
@@ -63,7 +63,7 @@ pub enum Tier {
 }
 
 impl Tier {
-    /// Every tier, in the order of the page.
+    /// CheckpointInterval tier, in the order of the page.
     pub const ALL: [Tier; 6] =
         [Tier::Exact, Tier::Sampling, Tier::Bias, Tier::Decision, Tier::Scaling, Tier::Packing];
 

@@ -4,13 +4,18 @@
 
 use std::path::{Path, PathBuf};
 
-use super::names::NAMES;
-pub use super::network_source::NetworkSource;
-use super::packed::Recipe;
-use super::settings::{Origin, SceneError, Settings};
+mod names;
+mod network_source;
+mod recipe;
+mod settings;
+
 use crate::outcome::Wanted;
 use crate::outcome::stopping::StopRule;
 use crate::walk::{Engine, Sampling};
+use names::NAMES;
+pub use network_source::NetworkSource;
+pub use recipe::{DENSITIES, PackingSpec};
+pub use settings::{Origin, SceneError, Settings};
 
 /// The built-in scene, commented.
 pub const BUILT_IN: &str = include_str!("../data/scene.toml");
@@ -99,7 +104,7 @@ pub struct Scene {
     /// The filter's constriction curve; missing where the filter is to be packed, or a network is read from a file.
     pub curve: Option<CurveSource>,
     /// How the filter is to be packed, where it is.
-    pub recipe: Option<Recipe>,
+    pub recipe: Option<PackingSpec>,
     /// Relative density at which circles inscribed between touching grains stand for its constrictions, where they do.
     pub estimate: Option<f64>,
     /// The filter's gradation.
@@ -189,7 +194,7 @@ impl Scene {
         let factors = s.numbers("record.sensitivity", |n| n > 0.0, "a list of numbers above 0")?;
         let filter = filter(s)?;
         Ok(Self {
-            recipe: Recipe::new(s, &filter)?,
+            recipe: PackingSpec::new(s, &filter)?,
             estimate: s.number(
                 "filter.estimate",
                 |n| (0.0..=1.0).contains(&n),
@@ -228,12 +233,12 @@ impl Scene {
     ///
     /// # Errors
     /// As [`Scene::read`], or neither density nor friction is given.
-    pub fn recipe(path: &Path, assignments: &[String]) -> Result<Recipe, SceneError> {
+    pub fn recipe(path: &Path, assignments: &[String]) -> Result<PackingSpec, SceneError> {
         let mut s = Settings::read(path, &NAMES)?;
         for assignment in assignments {
             s.set(assignment, &NAMES)?;
         }
-        let recipe = Recipe::new(&s, &filter(&s)?)?;
+        let recipe = PackingSpec::new(&s, &filter(&s)?)?;
         recipe.ok_or_else(|| {
             s.clash("filter.density is missing: \"dense\", \"intermediate\" or \"loose\"; or filter.friction")
         })

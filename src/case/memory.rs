@@ -15,14 +15,14 @@ const EVENT_BYTES: u64 = 16 << 10;
 
 /// What the walks of a case may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Room {
+pub struct ResourceLimits {
     /// Memory (bytes).
     pub memory: u64,
     /// Disk where the results go (bytes).
     pub disk: u64,
 }
 
-impl Room {
+impl ResourceLimits {
     /// As much memory as was asked for, else 80 % of what is available, and never more than that; the disk that is free where
     /// `folder` is or will be.
     pub fn new(asked: Option<u64>, available: u64, folder: &Path) -> Self {
@@ -93,7 +93,7 @@ impl Case {
     ///
     /// # Errors
     /// [`CaseError::Memory`]: they fit neither.
-    pub fn place(&mut self, room: &Room, threads: u64, folder: &Path) -> Result<(), CaseError> {
+    pub fn place(&mut self, room: &ResourceLimits, threads: u64, folder: &Path) -> Result<(), CaseError> {
         self.memory = room.memory;
         let (n_base, needed) = (self.most_particles(), self.peak_bytes(threads));
         if needed <= room.memory {

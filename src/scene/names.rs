@@ -1,4 +1,4 @@
-//! Every setting of a scene by name, and which of them are alternatives.
+//! CheckpointInterval setting of a scene by name, and which of them are alternatives.
 
 use super::settings::Names;
 

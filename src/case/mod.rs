@@ -2,23 +2,26 @@
 
 mod files;
 mod memory;
+mod packed_filter;
+mod packing_plan;
 mod record;
 mod sizes;
 mod warnings;
 
-pub(super) use files::Files;
+use files::Files;
 pub use files::Input;
-pub use memory::{Room, in_words};
+pub use memory::{ResourceLimits, in_words};
+pub use packed_filter::{GRAINS, PackedError, PackedFilter, RECORD};
+pub use packing_plan::PackingPlan;
 
-use super::packed::PackedFilter;
-use super::scene::{Amount, BaseGradation, D85, FilterGradation, NetworkSource, Scene};
-use super::settings::SceneError;
-use super::walks::replicate_seed;
 use crate::constrictions::{Curve, CurveError, CurveUnit, ShippedFilter, inscribed};
 use crate::gradation::{BaseSupply, Gradation, GradationError, NumberError, SizeSampler, base_particles};
 use crate::network::{Network, NetworkError};
 use crate::outcome::record::Ratios;
+use crate::scene::{Amount, BaseGradation, D85, FilterGradation, NetworkSource, Scene, SceneError};
 use crate::store::Placement;
+use crate::stream::{Key, Purpose};
+use rand::Rng;
 
 /// Why a scene cannot be walked.
 #[derive(Debug, thiserror::Error)]
@@ -61,6 +64,11 @@ pub enum CaseError {
         /// What there is to say of the disk.
         disk: String,
     },
+}
+
+/// Seed of replicate `replicate`, counted from 1: a function of the user's seed and the replicate alone.
+pub fn replicate_seed(seed: u64, replicate: u64) -> u64 {
+    Key { seed, purpose: Purpose::Replicate, run: 0, increment: 0, chunk: replicate }.generator().next_u64()
 }
 
 /// A scene, worked out.

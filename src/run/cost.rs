@@ -4,9 +4,8 @@
 //! The figures per particle, void and grain are those of one thread without vector kernels (`results/walk-speed-*.md`,
 //! `results/packing-*.md`), rounded up; `results/slurm-*.md` holds guesses against measured times.
 
-use super::case::Case;
-use super::packed::Order;
-use super::walks::runs_to_walk;
+use super::replicates::runs_to_walk;
+use crate::case::{Case, PackingPlan};
 
 /// Seconds of a thread for one move of a particle.
 const MOVE_S: f64 = 3e-9;
@@ -50,7 +49,7 @@ impl Case {
     }
 }
 
-impl Order {
+impl PackingPlan {
     /// Seconds that one thread takes for the packing: a rough guess.
     pub fn core_seconds(&self) -> f64 {
         // Stiffer grains move in shorter steps.

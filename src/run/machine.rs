@@ -1,6 +1,6 @@
 //! What machine a case runs on, and how much memory it may use.
 
-use super::cluster::Allocation;
+use super::allocation::Allocation;
 
 /// The machine, in words.
 pub struct Machine {
@@ -26,7 +26,7 @@ impl Machine {
         let model = cpuinfo.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
         let model = model.map_or("unknown processor", |(_, model)| model);
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
-        let total = kib("MemTotal:").map_or("unknown".into(), |k| super::case::in_words(k * 1024));
+        let total = kib("MemTotal:").map_or("unknown".into(), |k| crate::case::in_words(k * 1024));
         Self {
             host: name.nodename().to_string_lossy().into_owned(),
             description: format!(

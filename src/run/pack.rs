@@ -8,7 +8,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use super::Order;
+use crate::case::{GRAINS, PackingPlan, RECORD};
 use crate::constrictions::{Constrictions, ConstrictionsError, CurveError, inscribed};
 use crate::outcome::packing::PackingRecord;
 use crate::packing::{Cell, Compression, PackReport, Packing, PackingError, Progress, draw, random_start};
@@ -19,10 +19,6 @@ use crate::store::{Folder, StoreError};
 const STATE: &str = "compression";
 /// ... and its files.
 pub const STATES: [&str; 2] = ["compression.0", "compression.1"];
-/// The packing's figures; a folder that holds it is whole.
-pub const RECORD: &str = "packing.json";
-/// The grains.
-pub const GRAINS: &str = "grains.csv";
 
 /// Why a filter was not packed.
 #[derive(Debug, thiserror::Error)]
@@ -61,7 +57,7 @@ pub enum PackError {
 }
 
 /// Watches a compression, and can stop it.
-pub struct Watch<'a> {
+pub struct PackCallbacks<'a> {
     /// Told how far it is.
     pub tell: &'a dyn Fn(&Progress),
     /// Told of a harmed state that was passed over for the one before it.
@@ -76,7 +72,7 @@ pub struct Watch<'a> {
 ///
 /// # Errors
 /// [`PackError`]; after [`PackError::Stopped`] the next call goes on.
-pub fn make(folder: &Folder, order: &Order, watch: &Watch) -> Result<(), PackError> {
+pub fn make(folder: &Folder, order: &PackingPlan, watch: &PackCallbacks) -> Result<(), PackError> {
     let begun = Instant::now();
     let (compression, report, seconds_before) = compress(folder, order, watch)?;
     let packing = compression.packing();
@@ -97,8 +93,8 @@ pub fn make(folder: &Folder, order: &Order, watch: &Watch) -> Result<(), PackErr
 /// Compresses the grains; with the seconds that earlier starts spent.
 fn compress(
     folder: &Folder,
-    order: &Order,
-    watch: &Watch,
+    order: &PackingPlan,
+    watch: &PackCallbacks,
 ) -> Result<(Compression, PackReport, f64), PackError> {
     let settings = &order.compression;
     let (mut compression, seconds_before, mut generation) = match kept(folder, order, watch)? {
@@ -136,7 +132,11 @@ fn compress(
 }
 
 /// The compression that was kept, the seconds spent on it and its generation.
-fn kept(folder: &Folder, order: &Order, watch: &Watch) -> Result<Option<(Compression, f64, u64)>, PackError> {
+fn kept(
+    folder: &Folder,
+    order: &PackingPlan,
+    watch: &PackCallbacks,
+) -> Result<Option<(Compression, f64, u64)>, PackError> {
     let refused = |harmed: Harmed| match harmed.unread {
         true => PackError::Unread(harmed),
         false => PackError::State { folder: folder.path().display().to_string(), why: harmed.to_string() },
@@ -152,7 +152,7 @@ fn kept(folder: &Folder, order: &Order, watch: &Watch) -> Result<Option<(Compres
 }
 
 fn record(
-    order: &Order,
+    order: &PackingPlan,
     packing: &Packing,
     grains_csv: &str,
     report: &PackReport,

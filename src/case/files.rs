@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use super::CaseError;
-use crate::campaign::packed::{PackedFilter, RECORD};
-use crate::campaign::scene::CurveSource;
-use crate::campaign::settings::SceneError;
+use super::packed_filter::{PackedFilter, RECORD};
 use crate::constrictions::{Curve, ShippedFilter, find};
 use crate::gradation::Gradation;
 use crate::network::Network;
+use crate::scene::CurveSource;
+use crate::scene::SceneError;
 
 /// A file that was read, and the name under which a run folder keeps it.
 #[derive(Clone, Debug)]

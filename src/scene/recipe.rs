@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use crate::campaign::scene::FilterGradation;
-use crate::campaign::settings::{SceneError, Settings};
+use super::FilterGradation;
+use super::{SceneError, Settings};
 use crate::constrictions::DEFAULT_MERGE_OVERLAP;
 use crate::packing::{PackingError, Settings as Compression};
 
@@ -12,7 +12,7 @@ pub const DENSITIES: [(&str, f64); 3] = [("dense", 0.0), ("intermediate", 0.1), 
 
 /// A filter to be packed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Recipe {
+pub struct PackingSpec {
     /// Its gradation; `cu` is given where it is linear.
     pub gradation: FilterGradation,
     /// Grains, where the user says how many.
@@ -25,7 +25,7 @@ pub struct Recipe {
     pub file: String,
 }
 
-impl Recipe {
+impl PackingSpec {
     /// The recipe that the settings state; `None` where they name neither density nor friction.
     ///
     /// # Errors

@@ -1,9 +1,9 @@
 //! What went in, as a run folder records it.
 
 use super::{Case, Input};
-use crate::campaign::scene::{BaseGradation, CurveSource, D85, FilterGradation, NetworkSource};
 use crate::gradation::Gradation;
 use crate::outcome::record::{self, InputFile};
+use crate::scene::{BaseGradation, CurveSource, D85, FilterGradation, NetworkSource};
 
 impl Case {
     /// Files that were read, with their checksums.
