@@ -1,4 +1,4 @@
-//! CheckpointInterval table in `tests/bad` is refused with exactly the message in the `.txt` file beside it, and
+//! Every table in `tests/bad` is refused with exactly the message in the `.txt` file beside it, and
 //! tables that only look unusual are read.
 
 use std::path::Path;

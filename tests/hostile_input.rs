@@ -102,7 +102,7 @@ fn harmed(mut bytes: Vec<u8>, harms: &[Harm]) -> Vec<u8> {
     bytes
 }
 
-/// CheckpointInterval seed as it is, then `cases` harmed ones, from a fixed seed; with `VOIDWALK_FAULTS=all` thirty times as many.
+/// Every seed as it is, then `cases` harmed ones, from a fixed seed; with `VOIDWALK_FAULTS=all` thirty times as many.
 fn check(name: &str, more: &[&str], cases: u32, read: fn(&[u8])) {
     let all = std::env::var("VOIDWALK_FAULTS").is_ok_and(|value| value == "all");
     let cases = if all { 30 * cases } else { cases };

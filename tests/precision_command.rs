@@ -76,7 +76,7 @@ fn every_engine_meets_the_exact_answers() {
     assert!(closed.len() >= 8 && closed.iter().all(|row| row["holds"] == "true"), "{closed:?}");
 }
 
-/// CheckpointInterval table but for its times and what is worked out from them.
+/// Every table but for its times and what is worked out from them.
 fn without_times(folder: &Path) -> BTreeMap<String, Vec<BTreeMap<String, String>>> {
     let mut tables = BTreeMap::new();
     for entry in fs::read_dir(folder).unwrap() {

@@ -11,7 +11,7 @@ const SCENE: &str = "a scene";
 /// Bytes that have a checksum of their own.
 const PIECE: usize = 1 << 20;
 
-/// CheckpointInterval length up to the end of the header and around every edge of a piece, every bit of the header, and bits all over the rest,
+/// Every length up to the end of the header and around every edge of a piece, every bit of the header, and bits all over the rest,
 /// what lies between the sections included: all are detected, and the older slot is taken. A fixed part of all; with
 /// `VOIDWALK_FAULTS=all` all lengths up to 4,096, all header bits, and 10,000 bits of the rest.
 #[test]

@@ -128,7 +128,7 @@ proptest! {
     ) {
         let mut text = String::from("from,to,diameter_mm\nstart,0,\n");
         for void in 1..8 {
-            // CheckpointInterval void is named, so that ids have no gaps.
+            // Every void is named, so that ids have no gaps.
             text.push_str(&format!("{},{void},0\n", void - 1));
         }
         for (from, to, size) in edges {

@@ -1,4 +1,4 @@
-//! CheckpointInterval setting of a scene by name, and which of them are alternatives.
+//! Every setting of a scene by name, and which of them are alternatives.
 
 use super::settings::Names;
 

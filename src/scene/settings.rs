@@ -141,7 +141,7 @@ impl From<&DeValue<'_>> for Value {
 
 /// What is known of the names: which exist, and which replace each other.
 pub struct Names {
-    /// CheckpointInterval valid name.
+    /// Every valid name.
     pub known: &'static [&'static str],
     /// Setting the first of a pair on the command line removes the second.
     pub replaces: &'static [(&'static str, &'static str)],

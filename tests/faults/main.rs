@@ -203,7 +203,7 @@ impl Work {
     }
 }
 
-/// CheckpointInterval file of a finished folder without what a clock or a process number says.
+/// Every file of a finished folder without what a clock or a process number says.
 fn lasting(folder: &Path) -> BTreeMap<PathBuf, String> {
     fn strip(value: &mut Value) {
         match value {

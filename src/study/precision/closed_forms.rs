@@ -13,7 +13,7 @@ use crate::walk::{Engine, Plan, Progress, Sampling, SizeClasses, State, Walk};
 /// Rows of one kind, for this budget (s).
 type Kind = fn(&Study, f64) -> Result<Vec<ClosedRow>, PrecisionError>;
 
-/// CheckpointInterval row that the budget pays for.
+/// Every row that the budget pays for.
 pub(super) fn rows(study: &Study, budget_s: f64) -> Result<Vec<ClosedRow>, PrecisionError> {
     let kinds: [Kind; 5] = [moves, giant, blocked_sets, coarse_base, survival];
     let all = study.side_by_side(kinds.len(), |kind| kinds[kind](study, budget_s))?;

@@ -15,7 +15,7 @@
 //! number of threads. Only the times differ.
 //!
 //! # Time
-//! CheckpointInterval run is walked by one thread, as many runs side by side as there are threads, and its time is the processor time of that
+//! Every run is walked by one thread, as many runs side by side as there are threads, and its time is the processor time of that
 //! thread; only the scaling over threads walks one run with several.
 
 mod bias;
@@ -63,7 +63,7 @@ pub enum Tier {
 }
 
 impl Tier {
-    /// CheckpointInterval tier, in the order of the page.
+    /// Every tier, in the order of the page.
     pub const ALL: [Tier; 6] =
         [Tier::Exact, Tier::Sampling, Tier::Bias, Tier::Decision, Tier::Scaling, Tier::Packing];
 

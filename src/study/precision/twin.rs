@@ -1,7 +1,7 @@
 //! The walk once more, particle by particle, with what the fast one decided left open: 32 or 64 bits for every diameter and
 //! weight, blocking from the next increment or at once.
 //!
-//! CheckpointInterval base particle has one random stream of its own, for where it starts, its size and every exit it picks. So two twins
+//! Every base particle has one random stream of its own, for where it starts, its size and every exit it picks. So two twins
 //! differ only where a rounding or a blocked constriction makes them, and their difference is seen without the scatter of
 //! either.
 
