@@ -14,7 +14,7 @@ const CHECK: u64 = 100;
 /// Allowed departure of the pressure from its target.
 const PRESSURE: f64 = 0.005;
 
-/// Departure of the pressure from its target at which the brake is put on.
+/// Departure of the pressure from its target at which the settling_drag is put on.
 const BRAKE: f64 = 0.02;
 
 /// Allowed root mean square unbalanced force by mean contact force: a frictionless packing has more in an avalanche, less after it.
@@ -39,7 +39,7 @@ pub struct Watch {
     pub coordination: f64,
     /// Void ratio then.
     pub void_ratio: f64,
-    /// Whether the pressure has been near its target: the brake is on.
+    /// Whether the pressure has been near its target: the settling_drag is on.
     pub braking: bool,
     /// State before the friction was switched.
     pub before: Option<Measure>,
@@ -132,7 +132,7 @@ impl Compression {
         match self.stage {
             Stage::Done => {}
             Stage::Squeeze => {
-                let goal = self.settings.squeeze_to * self.expected_fraction();
+                let goal = self.settings.compression_target_fraction * self.expected_fraction();
                 if 1.0 / (1.0 + self.void_ratio()) >= goal || self.pressure > 0.5 {
                     self.enter(Stage::Compress);
                 }

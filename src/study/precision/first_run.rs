@@ -45,12 +45,12 @@ impl FirstRun {
     pub fn of(study: &Study) -> Self {
         let case = study.case;
         Self {
-            engine: case.scene.engine,
+            engine: case.scene.walk.engine,
             sampler: case.sampler.clone(),
             tail: case.base.tail_mass_fraction(),
             n_base: case.n_base,
             increments: case.increments(),
-            sampling: case.scene.sampling,
+            sampling: case.scene.walk.sampling,
         }
     }
 
@@ -102,13 +102,13 @@ impl FirstRun {
 impl Study<'_> {
     /// Seed of replicate `k`, counted from 1: of its network, and of its walk.
     pub(super) fn seed(&self, k: u64) -> u64 {
-        replicate_seed(self.case.scene.seed, k)
+        replicate_seed(self.case.scene.walk.seed, k)
     }
 
     /// The scene's network with another shape, where it is a lattice.
     pub(super) fn network(&self, shape: Option<[u32; 3]>, seed: u64) -> Result<Network, PrecisionError> {
         let case = self.case;
-        Ok(match (&case.scene.network, shape) {
+        Ok(match (&case.scene.network.source(), shape) {
             (NetworkSource::Cubic(_), Some(shape)) => Network::cubic(shape, &case.curve, case.unit_mm, seed)?,
             (NetworkSource::Connected(_, wanted), Some(shape)) => {
                 Network::connected(shape, &case.curve, case.unit_mm, seed, wanted)?
@@ -119,7 +119,7 @@ impl Study<'_> {
 
     /// The scene's shape, where its network is a lattice.
     pub(super) fn shape(&self) -> Option<[u32; 3]> {
-        self.case.scene.network.shape()
+        self.case.scene.network.source().shape()
     }
 }
 
