@@ -112,11 +112,6 @@ pub fn resume(args: &ResumeArgs) -> Result<(), Exit> {
 
 /// Writes the report of a finished run folder again.
 pub fn report(folder: &Path) -> Result<(), Exit> {
-    if report::is_paper(folder) {
-        let page = report::write_paper(folder).map_err(Exit::failed)?.page;
-        to_stdout(&format!("{}\n", plain(&page.display().to_string())));
-        return Ok(());
-    }
     type Writer = fn(&Path) -> Result<report::Written, report::ReportError>;
     let writers: [(&str, Writer); 4] = [
         ("outcome.json", report::write),
