@@ -2,7 +2,7 @@
 //!
 //! - [`record`] holds the names and shapes of everything in a run folder, [`packing`] of a packing's.
 //! - [`Recorder`] watches a run and keeps what was asked for.
-//! - [`Figures`] are the figures of one run at its end.
+//! - [`RunMetrics`] are the figures of one run at its end.
 //! - [`by_connectivity`] parts what a run retained by the connectivity of the voids (Table 3).
 //! - [`verdict`] classifies, by mass eroded, one replicate or many; [`stopping`] says how many are enough.
 //! - [`paper`] holds what the paper states.
@@ -12,9 +12,9 @@
 //! - [`precision`] is error against run time.
 
 pub mod by_connectivity;
-mod figures;
 mod infiltration;
 pub mod ledger;
+mod metrics;
 pub mod packing;
 pub mod paper;
 pub mod percolation;
@@ -27,9 +27,9 @@ pub mod stopping;
 pub(crate) mod student;
 pub mod verdict;
 
-pub(crate) use figures::eroded_mass_fraction;
-pub use figures::{Figures, Recorded, RunOf};
 pub use infiltration::infiltration;
+pub(crate) use metrics::eroded_mass_fraction;
+pub use metrics::{Recorded, RunId, RunMetrics};
 pub use recorder::{Recorder, Wanted};
 
 /// What the model does not contain, for any scene; shown next to every verdict.

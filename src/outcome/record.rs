@@ -51,7 +51,7 @@ pub struct Outcome {
     /// The ratios that filter rules use.
     pub ratios: Ratios,
     /// Empirical filter rules applied to the same two curves.
-    pub rules: Vec<Rule>,
+    pub rules: Vec<AppliedRule>,
     /// Eq. (1) for single particles; `None` where the network is no cubic lattice.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub infiltration: Option<Infiltration>,
@@ -231,11 +231,11 @@ pub struct Statistic {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
     /// The filter and its constrictions.
-    pub filter: Filter,
+    pub filter: FilterRecord,
     /// The base soil.
-    pub base: Base,
+    pub base: BaseRecord,
     /// The void network.
-    pub network: Network,
+    pub network: NetworkRecord,
     /// Mass of base over mass of filter, `F_base` of Eq. (2).
     pub mass_ratio: Option<f64>,
     /// Share of `n_base` inserted in each increment.
@@ -246,7 +246,7 @@ pub struct Inputs {
 
 /// The filter: its gradation by mass and its constrictions by number.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Filter {
+pub struct FilterRecord {
     /// As the user calls it.
     pub name: String,
     /// Whom to credit for the constriction curve; empty for the user's own.
@@ -277,7 +277,7 @@ pub struct Filter {
 
 /// The base soil.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Base {
+pub struct BaseRecord {
     /// As the user calls it.
     pub name: String,
     /// D60 / D10 by mass; `None` where D10 lies in a tail of unknown size.
@@ -302,7 +302,7 @@ pub struct Base {
 
 /// The void network.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Network {
+pub struct NetworkRecord {
     /// Where it comes from.
     pub kind: NetworkKind,
     /// As the user calls it.
@@ -351,7 +351,7 @@ pub struct Ratios {
 
 /// An empirical filter rule, applied.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Rule {
+pub struct AppliedRule {
     /// Whose rule it is.
     pub name: String,
     /// What it limits, as `D15F/D85B`.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::scatter::{Group, Plot, across, scatter};
 use super::study::Study;
-use crate::outcome::record::{Filter, SeriesRow, Statistic};
+use crate::outcome::record::{FilterRecord as Filter, SeriesRow, Statistic};
 use crate::report::figures::{
     Across, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Shape, VERMILLION,
     ramp,

@@ -3,7 +3,7 @@
 use super::measured::{Measured, Of};
 use super::study::{Case, Study, size_at, times};
 use crate::outcome::by_connectivity::of_replicates;
-use crate::outcome::record::{ByConnectivity, Filter, SizeRow, Statistic};
+use crate::outcome::record::{ByConnectivity, FilterRecord as Filter, SizeRow, Statistic};
 
 /// A filter of a plan; those that only Kenney's tests need are in the plan of that name.
 fn filter<'a>(study: &'a Study, plan: &str, name: &str) -> Option<&'a Filter> {

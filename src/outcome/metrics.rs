@@ -9,7 +9,7 @@ use crate::walk::{SizeClasses, SizeCounts, State, Tally};
 
 /// Which run of which replicate rows belong to, and what turns its units into a reader's.
 #[derive(Clone, Copy, Debug)]
-pub struct RunOf {
+pub struct RunId {
     /// Replicate, counted from 1.
     pub replicate: u64,
     /// Run, counted from 1.
@@ -22,7 +22,7 @@ pub struct RunOf {
 
 /// The figures of one run.
 #[derive(Clone, Debug)]
-pub struct Figures {
+pub struct RunMetrics {
     /// What `outcome.json` keeps of it.
     pub run: Run,
     /// Whether less than 7.5 % of the mass eroded.
@@ -62,9 +62,9 @@ pub(crate) fn eroded_mass_fraction(tally: &Tally, end: &Tally, tail: f64) -> f64
     (1.0 - tail) * sized + tail * of_tail
 }
 
-impl Figures {
+impl RunMetrics {
     /// The figures of a finished run.
-    pub fn new(network: &Network, state: &State, of: RunOf, seconds: f64) -> Self {
+    pub fn new(network: &Network, state: &State, of: RunId, seconds: f64) -> Self {
         let tally = &state.tally;
         let eroded_mass_fraction = eroded_mass_fraction(tally, tally, of.tail_mass_fraction);
         let one_size = state.classes.upper().len() == 1 && of.tail_mass_fraction == 0.0;
@@ -105,7 +105,7 @@ impl Figures {
 
 impl Recorded {
     /// The rows of a finished run.
-    pub fn new(network: &Network, state: &State, recorder: &Recorder, of: RunOf) -> Self {
+    pub fn new(network: &Network, state: &State, recorder: &Recorder, of: RunId) -> Self {
         let series = recorder.series.iter().map(|(increment, tally)| SeriesRow {
             replicate: of.replicate,
             run: of.run,
@@ -163,7 +163,7 @@ fn blocked_first_layers(network: &Network, state: &State, layers: u32) -> f64 {
     blocked as f64 / all.max(1) as f64
 }
 
-fn layers(network: &Network, state: &State, of: RunOf) -> Vec<LayerRow> {
+fn layers(network: &Network, state: &State, of: RunId) -> Vec<LayerRow> {
     let row = |layer| LayerRow {
         replicate: of.replicate,
         run: of.run,
@@ -194,7 +194,7 @@ fn size_curve(
     counts: &SizeCounts,
     classes: &SizeClasses,
     unit_mm: f64,
-    of: RunOf,
+    of: RunId,
     increment: u64,
 ) -> Vec<SizeRow> {
     let number: u64 = counts.number.iter().sum();
