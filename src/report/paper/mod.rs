@@ -18,7 +18,7 @@ use self::measured::Measured;
 use self::statements::{Judged, Judgement};
 use self::study::{Case, Study};
 use super::Written;
-use super::folder::ReportError;
+use super::error::ReportError;
 use super::numbers::{duration, significant, whole};
 use super::shell::{Drawn, clean, drawing, whole_page};
 use crate::outcome::MODEL_LEAVES_OUT;
@@ -70,7 +70,7 @@ pub fn write_paper(folder: &Path) -> Result<Written, ReportError> {
     let page = page(&study, &judged, &sections);
     let figures: Vec<Drawn> = sections.into_iter().flat_map(|(_, drawn)| drawn).collect();
     write_whole(&folder.join("statements.csv"), statements::table(&judged).as_bytes())?;
-    super::keep(folder, &figures, &page)
+    super::write_page(folder, &figures, &page)
 }
 
 fn page(study: &Study, judged: &[Judged], sections: &[(&Section, Vec<Drawn>)]) -> String {

@@ -9,11 +9,15 @@ use crate::report::figures::{
     Across, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Shape, VERMILLION,
     ramp,
 };
-use crate::report::percolation::spread;
+use crate::report::percolation_spread;
 use crate::report::shell::Drawn;
 
 pub(super) fn fig_6(study: &Study) -> Vec<Drawn> {
-    study.percolation.iter().map(|percolation| Drawn { name: "fig6", ..spread(percolation) }).collect()
+    study
+        .percolation
+        .iter()
+        .map(|percolation| Drawn { name: "fig6", ..percolation_spread(percolation) })
+        .collect()
 }
 
 /// The six filters of Table 2, and the published curve of each where there is one.

@@ -5,7 +5,8 @@ use std::path::Path;
 use crate::outcome::ledger::LedgerLine;
 use crate::outcome::percolation::PercolationStudy;
 use crate::outcome::record::{FilterRecord as Filter, Outcome, RunSummary, SeriesRow, SizeRow, Statistic};
-use crate::report::folder::{ReportError, json, lines, rows};
+use crate::report::ReportError;
+use crate::report::files::{json, lines, rows};
 
 /// A way to run the paper's campaign.
 pub(super) struct Variant {
