@@ -13,6 +13,7 @@
 
 pub mod by_connectivity;
 mod infiltration;
+mod least_squares;
 pub mod ledger;
 mod metrics;
 pub mod packing;
@@ -28,6 +29,7 @@ pub(crate) mod student;
 pub mod verdict;
 
 pub use infiltration::infiltration;
+pub(crate) use least_squares::log_log_slope;
 pub(crate) use metrics::eroded_mass_fraction;
 pub use metrics::{Recorded, RunId, RunMetrics};
 pub use recorder::{Recorder, Wanted};

@@ -15,6 +15,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::least_squares::{Straight, log_log_slope};
 use super::record::Statistic;
 
 /// Threshold of the infinite lattice: directed bond percolation on the simple cubic lattice.
@@ -106,7 +107,8 @@ impl PercolationStudy {
             realisations: thresholds.first().map_or(0, |(_, all)| all.len() as u64),
             one_length: enough.then(|| one_length(&points)),
             many_starts: if points.len() >= 4 { many_starts(&points) } else { None },
-            sd_exponent: enough.then(|| sd_exponent(&points)),
+            sd_exponent: enough
+                .then(|| log_log_slope(&points.iter().map(|p| (p.size, p.sd)).collect::<Vec<_>>())),
             sizes,
             infinite_lattice: INFINITE_LATTICE,
             seconds,
@@ -135,31 +137,6 @@ impl Point {
         let count = thresholds.iter().find(|(s, _)| *s == size.size)?.1.len() as f64;
         let sd = size.threshold.sd.filter(|sd| *sd > 0.0)?;
         Some(Self { size: size.size as f64, mean: size.threshold.mean, sd, error: sd / count.sqrt() })
-    }
-}
-
-/// A straight line by weighted least squares.
-struct Straight {
-    offset: f64,
-    slope: f64,
-    /// Standard error of the offset.
-    offset_error: f64,
-    chi_squared: f64,
-}
-
-impl Straight {
-    /// Through `(x, y, standard error of y)`.
-    fn through(rows: &[(f64, f64, f64)]) -> Self {
-        let sum = |term: &dyn Fn(f64, f64) -> f64| -> f64 {
-            rows.iter().map(|&(x, y, error)| term(x, y) / (error * error)).sum()
-        };
-        let w = sum(&|_, _| 1.0);
-        let (x, y) = (sum(&|x, _| x) / w, sum(&|_, y| y) / w);
-        let xx = sum(&|xi, _| (xi - x) * (xi - x));
-        let slope = sum(&|xi, yi| (xi - x) * (yi - y)) / xx;
-        let offset = y - slope * x;
-        let chi_squared = sum(&|xi, yi| (yi - offset - slope * xi) * (yi - offset - slope * xi));
-        Self { offset, slope, offset_error: (1.0 / w + x * x / xx).sqrt(), chi_squared }
     }
 }
 
@@ -210,15 +187,6 @@ fn many_starts(points: &[Point]) -> Option<ManyStarts> {
         chi_squared: line.chi_squared,
         degrees: points.len() as u64 - 3,
     })
-}
-
-/// Least squares of ln(sd) against ln(size).
-fn sd_exponent(points: &[Point]) -> f64 {
-    let n = points.len() as f64;
-    let logs = || points.iter().map(|p| (libm::log(p.size), libm::log(p.sd)));
-    let (x, y) = (logs().map(|(x, _)| x).sum::<f64>() / n, logs().map(|(_, y)| y).sum::<f64>() / n);
-    let xy: f64 = logs().map(|(xi, yi)| (xi - x) * (yi - y)).sum();
-    xy / logs().map(|(xi, _)| (xi - x) * (xi - x)).sum::<f64>()
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use super::record::Verdict;
 
 /// The whole of `precision.json`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Precision {
     /// Version of voidwalk.
     pub version: String,
@@ -40,13 +40,13 @@ pub struct Precision {
     /// Voids of its network.
     pub voids: u64,
     /// Each engine against exact answers.
-    pub exact: Option<Exact>,
+    pub exact: Option<ExactTier>,
     /// Error of the scene's eroded mass against time.
-    pub sampling: Option<Sampling>,
+    pub sampling: Option<SamplingTier>,
     /// What settings do to the scene's eroded mass.
     pub bias: Option<Vec<BiasRow>>,
     /// Wrong verdicts against time.
-    pub decision: Option<Decision>,
+    pub decision: Option<DecisionTier>,
     /// Time against the size of the problem.
     pub scaling: Option<Vec<ScalingRow>>,
     /// Packings and triangulations.
@@ -59,7 +59,7 @@ pub struct Precision {
 
 /// The tier of exact answers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Exact {
+pub struct ExactTier {
     /// Random networks of each line.
     pub networks: u64,
     /// What each quantity is.
@@ -169,7 +169,7 @@ pub struct ClosedRow {
 
 /// The tier of sampling.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Sampling {
+pub struct SamplingTier {
     /// The lattice that it was walked on.
     pub on: String,
     /// One row a variant, kind of replicate and group size.
@@ -263,7 +263,7 @@ pub struct BiasRow {
 
 /// The tier of verdicts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Decision {
+pub struct DecisionTier {
     /// The lattice that it was walked on.
     pub on: String,
     /// The cases.

@@ -29,6 +29,16 @@ pub(super) fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     (made, this_thread() - begun)
 }
 
+/// The sum of what `work` gives, piece after piece, and the processor time of this thread that all of it takes (s).
+pub(super) fn summed(
+    mut pieces: impl Iterator<Item = u64>,
+    work: impl Fn(u64) -> Result<u64, PrecisionError>,
+) -> Result<(u64, f64), PrecisionError> {
+    let (sum, seconds) =
+        timed(|| pieces.try_fold(0, |sum, piece| Ok::<_, PrecisionError>(sum + work(piece)?)));
+    Ok((sum?, seconds))
+}
+
 impl Study<'_> {
     /// `work(0 .. count)`, pieces side by side, each on one thread alone; in order.
     pub(super) fn side_by_side<T: Send>(
