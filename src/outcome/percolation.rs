@@ -2,7 +2,7 @@
 //! `percolation.json` holds, and how thresholds are put together.
 //!
 //! # Finite size
-//! Two laws are fitted to the mean threshold p(L) of an L x L x L lattice, by weighted least squares:
+//! Two finite-size relations are fitted to the mean threshold p(L) of an L x L x L lattice, by weighted least squares:
 //!
 //! - *One length*: `p(L) = p - a L^(-1/nu)`, with the exponent of the correlation length along the flow.
 //! - *Many starts*: the start layer holds of order `(L / xi_across)^2` independent starts, and each survives L layers with a
@@ -38,9 +38,9 @@ pub struct PercolationStudy {
     pub realisations: u64,
     /// One per size, ascending.
     pub sizes: Vec<SizeThreshold>,
-    /// The law of one length; `None` with fewer than two sizes or realisations.
+    /// The relation of one length; `None` with fewer than two sizes or realisations.
     pub one_length: Option<OneLength>,
-    /// The law of many starts; `None` with fewer than four sizes, or where no threshold fits.
+    /// The relation of many starts; `None` with fewer than four sizes, or where no threshold fits.
     pub many_starts: Option<ManyStarts>,
     /// Slope of ln(standard deviation) against ln(size); `None` as for `one_length`.
     pub sd_exponent: Option<f64>,
@@ -66,7 +66,7 @@ pub struct SizeThreshold {
 pub struct OneLength {
     /// Threshold of the infinite lattice.
     pub threshold: f64,
-    /// Its standard error, if the law holds.
+    /// Its standard error, if the relation holds.
     pub threshold_error: f64,
     /// Amplitude.
     pub amplitude: f64,
@@ -152,7 +152,7 @@ fn one_length(points: &[Point]) -> OneLength {
     }
 }
 
-/// The line of many starts for a given threshold above every mean.
+/// The straight line of many starts for a given threshold above every mean.
 fn starts_at(points: &[Point], threshold: f64) -> Straight {
     let row = |p: &Point| {
         let d = threshold - p.mean;

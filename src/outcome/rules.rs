@@ -24,8 +24,10 @@ pub struct RuleInputs<'a> {
     pub largest_eroded_over_d15f: Option<f64>,
 }
 
-/// The rules that the paper states, in its words and with its sources, and the filter's own stability.
-pub fn beside_the_verdict(inputs: &RuleInputs) -> Vec<AppliedRule> {
+/// The rules that the paper states, in its words and with its sources, and those of the filter's own stability.
+///
+/// A rule that lacks an input, or was not made for this base, has no result; its note says why.
+pub fn apply(inputs: &RuleInputs) -> Vec<AppliedRule> {
     let ratios = &inputs.ratios;
     let (d85, d95) = (Some(ratios.d15f_over_d85b), Some(ratios.d15f_over_d95b));
     vec![
@@ -185,12 +187,7 @@ mod tests {
     fn rules(filter: Option<&Gradation>, base: Option<&Gradation>) -> Vec<AppliedRule> {
         let ratios = Ratios { d15f_over_d85b: 5.5, d15f_over_d95b: 4.5 };
         let largest_eroded_over_d15f = Some(0.19);
-        beside_the_verdict(&RuleInputs {
-            ratios,
-            filter_sieve: filter,
-            base_mm: base,
-            largest_eroded_over_d15f,
-        })
+        apply(&RuleInputs { ratios, filter_sieve: filter, base_mm: base, largest_eroded_over_d15f })
     }
 
     fn find<'a>(rules: &'a [AppliedRule], name: &str) -> &'a AppliedRule {

@@ -179,7 +179,7 @@ fn walk_replicate(
             replicate,
             run: done.runs.len() as u64 + 1,
             d15f_mm: case.filter.d(15.0).unwrap_or(f64::NAN),
-            tail_mass_fraction: case.base.tail_mass_fraction(),
+            pan_fraction: case.base.tail_mass_fraction(),
         };
         let begun = Instant::now();
         let walk = RunContext { case, network: &network, part, seed, of, n_base };

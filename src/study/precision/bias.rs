@@ -3,9 +3,9 @@
 use super::changes::Change;
 use super::comparison::compared;
 use super::first_run::ScaledScene;
+use super::study::{PrecisionError, Study};
 use super::twin;
 use super::work::affordable;
-use super::{PrecisionError, Study};
 use crate::outcome::precision::BiasRow;
 
 /// Replicates of a row, at least and at most.

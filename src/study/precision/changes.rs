@@ -1,7 +1,7 @@
 //! Settings that are changed one at a time and compared with the scene as it is.
 
-use super::PrecisionError;
 use super::first_run::{FirstRun, ScaledScene};
+use super::study::PrecisionError;
 use crate::network::Network;
 use crate::scene::NetworkSource;
 

@@ -2,8 +2,8 @@
 
 use super::first_run::FirstRun;
 use super::networks::given;
+use super::study::{PrecisionError, Study};
 use super::work::{affordable, summed};
-use super::{PrecisionError, Study};
 use crate::network::Passage;
 use crate::outcome::precision::ClosedRow;
 use crate::walk::Engine;

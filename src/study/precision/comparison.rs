@@ -1,6 +1,6 @@
 //! Replicates of a setting, and their difference from those of the reference setting.
 
-use super::{PrecisionError, Study};
+use super::study::{PrecisionError, Study};
 use crate::outcome::precision::BiasRow;
 use crate::outcome::record::Statistic;
 use crate::outcome::student;

@@ -7,8 +7,8 @@
 use rand::Rng;
 
 use super::first_run::{FirstRun, ScaledScene, clean, nominal};
+use super::study::{PrecisionError, Study};
 use super::work::affordable;
-use super::{PrecisionError, Study};
 use crate::gradation::SizeSampler;
 use crate::outcome::precision::{DecisionCase, DecisionRow, DecisionTier, wilson};
 use crate::outcome::record::{Statistic, Verdict};

@@ -17,11 +17,11 @@ use rand::Rng;
 use super::closed_forms;
 use super::comparison::mean;
 use super::first_run::{FirstRun, clean};
+use super::study::{PrecisionError, Study};
 use super::work::summed;
-use super::{PrecisionError, Study};
 use crate::network::Network;
 use crate::outcome::log_log_slope;
-use crate::outcome::precision::{ExactRow, ExactTier, NetworkRow, Quantity, Slope, merit, spread};
+use crate::outcome::precision::{ExactRow, ExactTier, NetworkRow, Quantity, Slope, merit, sd_estimate};
 use crate::stream::{Key, Purpose, unit};
 use crate::walk::Engine;
 
@@ -213,7 +213,7 @@ impl Line<'_> {
         let off: Vec<f64> = networks.iter().map(|row| row.found - row.exact).collect();
         let variances: Vec<f64> = self.known.iter().map(|k| k.leaves * (1.0 - k.leaves) / n).collect();
         let z: Option<Vec<f64>> = networks.iter().map(|row| row.z).collect();
-        let (error, core_seconds) = (spread(&off, Some(0.0)), mean(&seconds));
+        let (error, core_seconds) = (sd_estimate(&off, Some(0.0)), mean(&seconds));
         let row = ExactRow {
             quantity,
             engine,

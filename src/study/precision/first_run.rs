@@ -2,8 +2,8 @@
 
 use bitvec::vec::BitVec;
 
+use super::study::{PrecisionError, Study};
 use super::work::timed;
-use super::{PrecisionError, Study};
 use crate::gradation::{Gradation, SizeSampler};
 use crate::network::Network;
 use crate::outcome::eroded_mass_fraction;

@@ -3,7 +3,7 @@
 //! Networks of the scene are made by [`Case`](crate::case::Case) alone, so whatever a scene says of its network holds here
 //! too. The others are plain cubic lattices on purpose: their answers are worked out for those.
 
-use super::{PrecisionError, Study};
+use super::study::{PrecisionError, Study};
 use crate::case::replicate_seed;
 use crate::network::Network;
 

@@ -2,8 +2,8 @@
 //! grains and time step.
 
 use super::comparison::{Replicates, compared, mean};
+use super::study::{PrecisionError, Study};
 use super::work::{affordable, timed};
-use super::{PrecisionError, Study};
 use crate::constrictions::{Constrictions, DEFAULT_MERGE_OVERLAP, Facets, Triangulation};
 use crate::gradation::Gradation;
 use crate::outcome::precision::{PackingRow, PackingTier, TriangulationRow};

@@ -6,9 +6,9 @@
 use super::changes::Change;
 use super::comparison::{Replicates, mean, paired_difference};
 use super::first_run::{FirstRun, ScaledScene, nominal};
+use super::study::{PrecisionError, Study};
 use super::work::affordable;
-use super::{PrecisionError, Study};
-use crate::outcome::precision::{SamplingLine, SamplingRow, SamplingTier, merit, spread};
+use crate::outcome::precision::{SamplingLine, SamplingRow, SamplingTier, merit, sd_estimate};
 use crate::walk::{Engine, Sampling};
 
 /// A way of drawing and moving base particles; under all of them the eroded mass has one expectation. The first that is walked
@@ -107,7 +107,7 @@ fn line(
     first: Option<&Replicates>,
     n_base: u64,
 ) -> SamplingLine {
-    let of = spread(&found.values, None);
+    let of = sd_estimate(&found.values, None);
     let (mean_eroded, core_seconds) = (mean(&found.values), mean(&found.core_seconds));
     let replicates = found.values.len();
     let difference = first.map(|first| paired_difference(found, first));
@@ -136,7 +136,7 @@ fn rows(variant: &str, networks: &str, found: &Replicates) -> Vec<SamplingRow> {
     let row = |group: u64| {
         let means: Vec<f64> = found.values.chunks_exact(group as usize).map(mean).collect();
         let seconds = found.core_seconds.chunks_exact(group as usize).map(|group| group.iter().sum());
-        let of = spread(&means, None);
+        let of = sd_estimate(&means, None);
         SamplingRow {
             variant: variant.into(),
             networks: networks.into(),

@@ -10,8 +10,8 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::comparison::compared;
 use super::networks::given;
+use super::study::{PrecisionError, Study};
 use super::work::{affordable, timed};
-use super::{PrecisionError, Study};
 use crate::network::{END, Network};
 use crate::outcome::precision::BiasRow;
 use crate::stream::{Key, Purpose, below, unit};

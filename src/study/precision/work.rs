@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rustix::time::{ClockId, clock_gettime};
 
-use super::{PrecisionError, Study};
+use super::study::{PrecisionError, Study};
 
 /// Processor time of this thread (s).
 pub(super) fn this_thread() -> f64 {
