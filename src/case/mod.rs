@@ -232,10 +232,19 @@ impl Case {
     /// # Errors
     /// None that [`Case::new`] has not found.
     pub fn network(&self, seed: u64) -> Result<Network, NetworkError> {
+        self.network_of_shape(self.scene.network.source().shape().unwrap_or_default(), seed)
+    }
+
+    /// The network of the replicate with this seed, with `shape` voids along x, y, z in place of the scene's; a network from a
+    /// file has the shape that it has.
+    ///
+    /// # Errors
+    /// A length of 0, or more constrictions than 32 bits can number.
+    pub fn network_of_shape(&self, shape: [u32; 3], seed: u64) -> Result<Network, NetworkError> {
         match (&self.network_file, &self.scene.network.source()) {
-            (None, NetworkSource::Cubic(shape)) => Network::cubic(*shape, &self.curve, self.unit_mm, seed),
-            (None, NetworkSource::Connected(shape, wanted)) => {
-                Network::connected(*shape, &self.curve, self.unit_mm, seed, wanted)
+            (None, NetworkSource::Cubic(_)) => Network::cubic(shape, &self.curve, self.unit_mm, seed),
+            (None, NetworkSource::Connected(_, wanted)) => {
+                Network::connected(shape, &self.curve, self.unit_mm, seed, wanted)
             }
             (file, _) => Ok(file.clone().expect("a network from a file was read")),
         }

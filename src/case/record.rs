@@ -49,7 +49,7 @@ impl Case {
             (None, Some(CurveSource::File(path))) => path.display().to_string(),
         };
         record::Inputs {
-            filter: record::Filter {
+            filter: record::FilterRecord {
                 name: match &self.scene.filter.gradation() {
                     FilterGradation::Sieve(path, _) => path.display().to_string(),
                     FilterGradation::Linear { .. } => {
@@ -75,7 +75,7 @@ impl Case {
                 cu_csd: self.curve.cu(),
                 curve_name,
             },
-            base: record::Base {
+            base: record::BaseRecord {
                 name: match &self.scene.base.gradation() {
                     BaseGradation::Sieve(path, _) => path.display().to_string(),
                     BaseGradation::Single(_) => "one size".into(),
@@ -91,7 +91,7 @@ impl Case {
                 tail_mass_fraction: self.base.tail_mass_fraction(),
                 gradation: pairs(self.base.points()),
             },
-            network: record::Network {
+            network: record::NetworkRecord {
                 kind,
                 name,
                 nx: shape[0],

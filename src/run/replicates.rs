@@ -14,7 +14,7 @@ use crate::network::Network;
 use crate::outcome::record::{Replicate, RunSummary, Sensitivity, Statistic, Stopping, Verdict};
 use crate::outcome::stopping::Look;
 use crate::outcome::verdict::{below_by_interval, classify};
-use crate::outcome::{Figures, Recorded, RunOf};
+use crate::outcome::{Recorded, RunId, RunMetrics};
 use crate::store::StoreError;
 use crate::store::checkpoint::{Harmed, Saved};
 use crate::walk::{Engine, Plan, Progress, SizeClasses, State, Walk, WalkError};
@@ -175,22 +175,22 @@ fn walk_replicate(
         done.runs.iter().for_each(|_| (watch.tell)(Event::Run));
     }
     while !done.complete {
-        let of = RunOf {
+        let of = RunId {
             replicate,
             run: done.runs.len() as u64 + 1,
             d15f_mm: case.filter.d(15.0).unwrap_or(f64::NAN),
-            tail_mass_fraction: case.base.tail_mass_fraction(),
+            pan_fraction: case.base.tail_mass_fraction(),
         };
         let begun = Instant::now();
         let walk = RunContext { case, network: &network, part, seed, of, n_base };
         let state = walk.run(blocked, &mut done, saved.take(), watch)?;
-        let figures = Figures::new(&network, &state, of, begun.elapsed().as_secs_f64());
+        let metrics = RunMetrics::new(&network, &state, of, begun.elapsed().as_secs_f64());
         let recorder = std::mem::take(&mut done.recorder);
         if part == 0 {
             done.recorded.append(Recorded::new(&network, &state, &recorder, of));
         }
-        done.below.push(figures.below_threshold);
-        done.runs.push(figures.run);
+        done.below.push(metrics.below_threshold);
+        done.runs.push(metrics.run);
         done.complete = done.runs.len() as u64 == case.scene.walk.runs;
         blocked = state.blocked;
         (watch.tell)(Event::Run);
@@ -229,7 +229,7 @@ struct RunContext<'a> {
     network: &'a Network,
     part: u64,
     seed: u64,
-    of: RunOf,
+    of: RunId,
     n_base: u64,
 }
 

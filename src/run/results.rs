@@ -62,7 +62,7 @@ pub fn outcome(
         model_leaves_out: MODEL_LEAVES_OUT.map(String::from).to_vec(),
         inputs: case.record(),
         ratios,
-        rules: rules::beside_the_verdict(&rule_inputs(case, walked)),
+        rules: rules::apply(&rule_inputs(case, walked)),
         infiltration: match case.scene.network.source() {
             NetworkSource::Cubic(_) => Some(infiltration(&case.curve, &case.base, case.counts[3])),
             _ => None,

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use voidwalk::outcome::ledger::LedgerLine;
 use voidwalk::outcome::percolation::PercolationStudy;
-use voidwalk::outcome::record::{Filter, Outcome, RunSummary, SeriesRow, SizeRow, Statistic};
+use voidwalk::outcome::record::{FilterRecord as Filter, Outcome, RunSummary, SeriesRow, SizeRow, Statistic};
 use voidwalk::report::ReportError;
 use voidwalk::report::files::{json, lines, rows};
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::scatter::{Group, Plot, across, scatter};
 use crate::study::Study;
-use voidwalk::outcome::record::{Filter, SeriesRow, Statistic};
+use voidwalk::outcome::record::{FilterRecord as Filter, SeriesRow, Statistic};
 use voidwalk::report::figures::{
     Across, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Shape, VERMILLION,
     ramp,

@@ -4,7 +4,7 @@
 use crate::measured::{Measured, Of};
 use crate::study::{Case, Study, size_at, times};
 use voidwalk::outcome::by_connectivity::of_replicates;
-use voidwalk::outcome::record::{ByConnectivity, Filter, SizeRow, Statistic};
+use voidwalk::outcome::record::{ByConnectivity, FilterRecord as Filter, SizeRow, Statistic};
 
 /// A filter of a plan; those that only Kenney's tests need are in the plan of that name.
 fn filter<'a>(study: &'a Study, plan: &str, name: &str) -> Option<&'a Filter> {
