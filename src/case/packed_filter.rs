@@ -1,7 +1,8 @@
 //! A filter that has been packed: what a walk needs of it, read from the folder that it was packed into.
 //!
-//! The grains follow from the packing plan alone, so a packing is made once and kept under the fingerprint of its plan. Its
-//! constrictions are measured again for each use: that takes a second, and the overlap of voids may change.
+//! The grains follow from the packing plan alone, so a packing is made once and kept under the fingerprint of
+//! its plan. Its constrictions are measured again for each use: that takes a second, and the overlap of voids
+//! may change.
 
 use std::path::{Path, PathBuf};
 
@@ -98,7 +99,8 @@ impl PackedFilter {
         }))
     }
 
-    /// A rough guess at a filter that has not been packed yet, for estimates and for finding faults of a scene early.
+    /// A rough guess at a filter that has not been packed yet, for estimates and for finding faults of a
+    /// scene early.
     ///
     /// # Errors
     /// None for a gradation that can be packed.
