@@ -10,7 +10,7 @@ mod sizes;
 mod warnings;
 
 use files::Files;
-pub use files::Input;
+pub use files::{INPUT_NAMES, Input};
 pub use memory::{ResourceLimits, in_words};
 pub use packed_filter::{GRAINS, PackedError, PackedFilter, RECORD};
 pub use packing_plan::PackingPlan;
@@ -42,6 +42,9 @@ pub enum CaseError {
     /// The network.
     #[error(transparent)]
     Network(#[from] NetworkError),
+    /// The packing.
+    #[error(transparent)]
+    Packed(#[from] PackedError),
     /// The filter has to be packed first.
     #[error("{file}: the filter has not been packed yet")]
     NotPacked {
@@ -129,6 +132,10 @@ impl Case {
     /// # Errors
     /// As [`Case::new`]; the scene's filter is to be packed and has not been.
     pub fn with_packed(scene: Scene, packed: Option<PackedFilter>) -> Result<Self, CaseError> {
+        let packed = match (&scene.filter.measured, scene.filter.grains_per_void) {
+            (Some(curve), Some(grains_per_void)) => Some(PackedFilter::kept(curve, grains_per_void)?),
+            _ => packed,
+        };
         let mut files = Files::default();
         let curve = match (&scene.filter.curve, &packed) {
             (_, Some(packed)) => Some((files.packed(packed), None)),
@@ -187,10 +194,10 @@ impl Case {
         };
         // The grains per void of a shipped packing say nothing of a network from elsewhere.
         let of_shipped = shipped.filter(|_| network_file.is_none()).map(|s| s.grains_per_void);
-        let of_packing = packed.as_ref().map(|p| p.grains_per_void).or(of_shipped);
+        let of_packing = packed.as_ref().map(|packed| packed.grains_per_void).or(of_shipped);
         let grains_per_void = scene.filter.grains_per_void.or(of_packing);
         let (supply, mass_ratio) = supply(&scene, grains_per_void, counts[0], &base, &filter)?;
-        let is_guess = packed.as_ref().is_some_and(|packed| packed.folder.is_none());
+        let is_guess = packed.as_ref().is_some_and(|packed| packed.files.is_none());
         if base.tail_mass_fraction() > 0.0 && base.smallest_mm() > curve.smallest() && !is_guess {
             let problem = format!(
                 "the base's finest sieve, {} mm, is coarser than the finest constriction, {:.4} mm: its \

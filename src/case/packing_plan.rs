@@ -34,12 +34,13 @@ pub struct PackingPlan {
 }
 
 impl PackingPlan {
-    /// What is to be packed for a scene, where its filter is to be packed.
+    /// What is to be packed for a scene, where its filter is to be packed and was not measured before.
     ///
     /// # Errors
     /// As [`PackingPlan::new`].
     pub fn of(scene: &Scene) -> Result<Option<Self>, CaseError> {
-        scene.packing_spec()?.as_ref().map(Self::new).transpose()
+        let spec = scene.packing_spec()?.filter(|_| scene.filter.measured.is_none());
+        spec.as_ref().map(Self::new).transpose()
     }
 
     /// Reads the specification's files and works out its number of grains.

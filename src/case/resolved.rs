@@ -23,9 +23,7 @@ impl Case {
             shipped => shipped,
         };
         if self.packed.is_some() {
-            // The measured curve stands for the packing.
-            scene.filter.curve = kept("filter.curve").map(CurveSource::File);
-            (scene.filter.density, scene.filter.friction, scene.packing) = (None, None, None);
+            scene.filter.measured = kept("filter.curve");
         }
         scene.filter.curve = kept_curve(scene.filter.curve, "filter.curve");
         scene.filter.sieve = kept("filter.sieve");

@@ -206,6 +206,11 @@ impl Scene {
                  or filter.density, for a filter to be packed",
             ));
         }
+        if filter.measured.is_some() && (self.packing.is_none() || filter.grains_per_void.is_none()) {
+            return Err(s.clash(
+                "filter.measured goes with filter.grains_per_void, and filter.density or filter.friction",
+            ));
+        }
         let base = &self.base;
         if base.cu.is_none() && base.sieve.is_none() && base.single_mm.is_none() {
             return Err(

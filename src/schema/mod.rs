@@ -1,4 +1,4 @@
-//! GivenSettings, each declared once: its name, type, default, what is allowed, and what a user is told of
+//! Settings, each declared once: its name, type, default, what is allowed, and what a user is told of
 //! it.
 //!
 //! A stage declares what it can be told with [`section!`]; from that one declaration follow the struct with

@@ -1,4 +1,4 @@
-//! GivenSettings with where they come from: a line of a TOML file, or the command line.
+//! Settings with where they come from: a line of a TOML file, or the command line.
 //!
 //! A setting has a dotted name (`base.cu`). Some exclude each other ([`Group`]): setting one on the command
 //! line replaces the others, and a file that gives both is refused.
@@ -54,7 +54,7 @@ pub enum SceneError {
         /// What is allowed.
         allowed: String,
     },
-    /// GivenSettings that clash, or one that is missing.
+    /// Settings that clash, or one that is missing.
     #[error("{file}: {problem}")]
     Clash {
         /// The scene.
@@ -85,7 +85,7 @@ impl fmt::Display for Origin {
     }
 }
 
-/// GivenSettings that say the same thing in different ways, of which a scene may use one.
+/// Settings that say the same thing in different ways, of which a scene may use one.
 #[derive(Clone, Copy, Debug)]
 pub struct Group {
     /// What they say, after their names: `give the base`.
@@ -97,13 +97,13 @@ pub struct Group {
 /// One way to say what a [`Group`] says.
 #[derive(Clone, Copy, Debug)]
 pub struct Alternative {
-    /// GivenSettings that say it, each by itself.
+    /// Settings that say it, each by itself.
     pub by: &'static [&'static str],
-    /// GivenSettings that go with these alone.
+    /// Settings that go with these alone.
     pub with: &'static [&'static str],
     /// Whether those choose this alternative too, on the command line.
     pub with_chooses: bool,
-    /// GivenSettings that mean something else under the other alternatives: choosing this one on the command
+    /// Settings that mean something else under the other alternatives: choosing this one on the command
     /// line removes them.
     pub resets: &'static [&'static str],
 }
@@ -120,7 +120,8 @@ impl Alternative {
     }
 
     fn is_chosen_by(&self, name: &str) -> bool {
-        self.by.contains(&name) || (self.with_chooses && self.with.contains(&name))
+        let is_by = |by: &&str| name == *by || (by.ends_with('.') && name.starts_with(*by));
+        self.by.iter().any(is_by) || (self.with_chooses && self.with.contains(&name))
     }
 }
 
@@ -128,11 +129,11 @@ impl Alternative {
 pub struct Names {
     /// Every valid name.
     pub known: Vec<String>,
-    /// GivenSettings that exclude each other.
+    /// Settings that exclude each other.
     pub groups: &'static [Group],
 }
 
-/// GivenSettings by name.
+/// Settings by name.
 #[derive(Debug)]
 pub struct GivenSettings {
     file: String,
