@@ -73,7 +73,18 @@ fn walk_and_report_know_what_they_may() {
         let text = text.split("#[cfg(test)]").next().unwrap();
         let forbidden: &[&str] = match module_of(&file).as_str() {
             "walk" => &["packing", "constrictions"],
-            _ => &["gradation", "packing", "constrictions", "network", "walk", "scene", "case", "run", "campaign", "study"],
+            _ => &[
+                "gradation",
+                "packing",
+                "constrictions",
+                "network",
+                "walk",
+                "scene",
+                "case",
+                "run",
+                "campaign",
+                "study",
+            ],
         };
         for name in forbidden {
             let arrow = format!("crate::{name}");

@@ -46,9 +46,7 @@ fn a_small_reproduction_gives_the_whole_page() {
     let output = call(at, &["report", "out"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let page = fs::read_to_string(at.join("out/report.html")).unwrap();
-    for heading in
-        ["Fig. 6", "Table 2", "Fig. 10", "Fig. 14", "Table 3", "Fig. 20", "Every combination"]
-    {
+    for heading in ["Fig. 6", "Table 2", "Fig. 10", "Fig. 14", "Table 3", "Fig. 20", "Every combination"] {
         assert!(page.contains(heading), "{heading}");
     }
     assert!(page.contains("cannot tell: not walked") && page.contains("Foster and Fell"));

@@ -8,7 +8,7 @@ use super::{PrecisionError, Study};
 use crate::gradation::{Gradation, SizeSampler};
 use crate::network::{Network, Passage};
 use crate::outcome::precision::ClosedRow;
-use crate::walk::{Engine, Plan, Progress, Sampling, SizeClasses, State, Walk};
+use crate::walk::{Engine, Plan, Sampling, SizeClasses, State, Walk, WalkControl};
 
 /// Rows of one kind, for this budget (s).
 type Kind = fn(&Study, f64) -> Result<Vec<ClosedRow>, PrecisionError>;
@@ -48,7 +48,7 @@ fn moves(study: &Study, _: f64) -> Result<Vec<ClosedRow>, PrecisionError> {
                 let off = state.increment as f64 - f64::from(3 * LAYERS);
                 squares += (state.tally.eroded - before) as f64 * off * off;
                 before = state.tally.eroded;
-                Progress::Continue
+                WalkControl::Continue
             })
         });
         walked?;

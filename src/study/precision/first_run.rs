@@ -9,7 +9,7 @@ use crate::gradation::SizeSampler;
 use crate::network::Network;
 use crate::outcome::eroded_mass_fraction;
 use crate::scene::NetworkSource;
-use crate::walk::{Engine, Plan, Progress, Sampling, SizeClasses, State, Walk};
+use crate::walk::{Engine, Plan, Sampling, SizeClasses, State, Walk, WalkControl};
 
 /// A first run, up to its network and seed.
 #[derive(Clone)]
@@ -94,7 +94,7 @@ impl FirstRun {
         let supply = plan.supply(self.sampler.clone(), self.n_base, self.increments, seed, run);
         let classes = SizeClasses::logarithmic(self.sampler.smallest(), self.sampler.largest(), 64);
         let mut state = State::new(network, &supply, classes, blocked, seed, run);
-        Walk::new(network, &supply, &state).run(&mut state, &mut |_| Progress::Continue)?;
+        Walk::new(network, &supply, &state).run(&mut state, &mut |_| WalkControl::Continue)?;
         Ok((state, supply.total()))
     }
 }
