@@ -40,7 +40,7 @@ impl Case {
     /// Base particles of a run of `n_base` that are walked one by one: all, or those that may be coarser than the
     /// finest constriction.
     pub fn one_by_one(&self, n_base: u64) -> u64 {
-        if self.scene.engine.takes_each(n_base / self.increments(), self.counts[2]) {
+        if self.scene.walk.engine.takes_each(n_base / self.increments(), self.counts[2]) {
             return n_base;
         }
         let finest = match &self.network_file {

@@ -3,7 +3,7 @@
 use super::{CaseError, Files, Input};
 use crate::gradation::Gradation;
 use crate::packing::Settings as Compression;
-use crate::scene::{FilterGradation, PackingSpec, SceneError};
+use crate::scene::{FilterGradation, PackingSpec, Scene, SceneError};
 
 /// A cell is made this many times as wide as the largest grain, where the user does not say how many grains ...
 const CELLS_WIDTH: f64 = 5.4;
@@ -33,7 +33,15 @@ pub struct PackingPlan {
 }
 
 impl PackingPlan {
-    /// Reads the recipe's files and works out its number of grains.
+    /// What is to be packed for a scene, where its filter is to be packed.
+    ///
+    /// # Errors
+    /// As [`PackingPlan::new`].
+    pub fn of(scene: &Scene) -> Result<Option<Self>, CaseError> {
+        scene.packing_spec()?.as_ref().map(Self::new).transpose()
+    }
+
+    /// Reads the specification's files and works out its number of grains.
     ///
     /// # Errors
     /// A file that is refused, a gradation that cannot be packed, a cell narrower than two of the largest grain.

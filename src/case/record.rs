@@ -22,7 +22,7 @@ impl Case {
         let [voids, constrictions, start_nodes, layers] = self.counts;
         let d50_by_number = self.filter.d_by_number(50.0).unwrap_or(f64::NAN);
         let cubic = |n: &[u32; 3]| format!("cubic {} x {} x {}", n[0], n[1], n[2]);
-        let (kind, name) = match &self.scene.network {
+        let (kind, name) = match &self.scene.network.source() {
             NetworkSource::Cubic(n) => (record::NetworkKind::Cubic, cubic(n)),
             NetworkSource::Connected(n, wanted) => {
                 let shares: Vec<String> =
@@ -32,16 +32,16 @@ impl Case {
             }
             NetworkSource::File(path) => (record::NetworkKind::File, path.display().to_string()),
         };
-        let shape = match self.scene.network.shape() {
+        let shape = match self.scene.network.source().shape() {
             Some(shape) => shape.map(|n| Some(u64::from(n))),
             None => [None; 3],
         };
-        let curve_name = match (&self.network_file, &self.scene.curve) {
+        let curve_name = match (&self.network_file, &self.scene.filter.curve) {
             (None, None) if self.packed.as_ref().is_some_and(|packed| packed.folder.is_none()) => {
                 "a guess, until the filter is packed".to_string()
             }
             (None, None) if self.packed.is_some() => "measured on its packing".to_string(),
-            (None, None) if self.scene.estimate.is_some() => {
+            (None, None) if self.scene.filter.estimate.is_some() => {
                 "guessed from the gradation by inscribed circles".to_string()
             }
             (Some(_), _) | (None, None) => "the network's own constrictions".to_string(),
@@ -49,8 +49,8 @@ impl Case {
             (None, Some(CurveSource::File(path))) => path.display().to_string(),
         };
         record::Inputs {
-            filter: record::Filter {
-                name: match &self.scene.filter {
+            filter: record::FilterRecord {
+                name: match &self.scene.filter.gradation() {
                     FilterGradation::Sieve(path, _) => path.display().to_string(),
                     FilterGradation::Linear { .. } => {
                         format!("linear, Cu {}", rounded(self.filter.cu()))
@@ -75,8 +75,8 @@ impl Case {
                 cu_csd: self.curve.cu(),
                 curve_name,
             },
-            base: record::Base {
-                name: match &self.scene.base {
+            base: record::BaseRecord {
+                name: match &self.scene.base.gradation() {
                     BaseGradation::Sieve(path, _) => path.display().to_string(),
                     BaseGradation::Single(_) => "one size".into(),
                     BaseGradation::Linear { cu, .. } => format!("linear, Cu {cu}"),
@@ -91,7 +91,7 @@ impl Case {
                 tail_mass_fraction: self.base.tail_mass_fraction(),
                 gradation: pairs(self.base.points()),
             },
-            network: record::Network {
+            network: record::NetworkRecord {
                 kind,
                 name,
                 nx: shape[0],
@@ -105,18 +105,18 @@ impl Case {
                 thickness_mm: self.network_file.is_none().then_some(layers as f64 * d50_by_number),
             },
             mass_ratio: self.mass_ratio,
-            inject_share: self.scene.inject_share,
+            inject_share: self.scene.walk.inject_share,
             scale_free: self.is_scale_free(),
         }
     }
 
     /// Whether lengths are in units of the smallest filter grain: a scale-free curve with d0_mm = 1.
     pub fn is_scale_free(&self) -> bool {
-        matches!(self.scene.filter, FilterGradation::Linear { d0_mm, .. } if d0_mm == 1.0)
-            && (self.shipped.is_some() || self.packed.is_some() || self.scene.estimate.is_some())
+        matches!(self.scene.filter.gradation(), FilterGradation::Linear { d0_mm, .. } if d0_mm == 1.0)
+            && (self.shipped.is_some() || self.packed.is_some() || self.scene.filter.estimate.is_some())
             && self.network_file.is_none()
             && matches!(
-                self.scene.base,
+                self.scene.base.gradation(),
                 BaseGradation::Linear { d85: D85::AtDc(..) | D85::Ratio(_), .. } | BaseGradation::Single(_)
             )
     }

@@ -39,7 +39,7 @@ impl Case {
                 shipped.name, shipped.cu
             ));
         }
-        if self.scene.estimate.is_some() {
+        if self.scene.filter.estimate.is_some() {
             warnings.push(
                 "the constriction curve is a guess from circles inscribed between three or four grains; the wider the \
                  filter's gradation, the more it is off. filter.density packs the grains and measures it"

@@ -32,7 +32,7 @@ const LOOK: Duration = Duration::from_millis(500);
 pub fn pack(args: &PackArgs) -> Result<(), Exit> {
     let mut settings = args.settings.clone();
     settings.extend(args.seed.map(|seed| format!("packing.seed={seed}")));
-    let recipe = Scene::recipe(&args.filter, &settings).map_err(Exit::refused)?;
+    let recipe = Scene::read_packing(&args.filter, &settings).map_err(Exit::refused)?;
     let order = PackingPlan::new(&recipe).map_err(Exit::refused)?;
     let stop = stop_on_signals()?;
     let out = args.out.clone().unwrap_or_else(|| Path::new("voidwalk-packings").join(order.folder_name()));

@@ -13,7 +13,7 @@ const PARTS: u32 = 400;
 
 /// Eq. (1) for this base on a cubic lattice of `layers` layers with this constriction curve (mm).
 ///
-/// A tail of unknown size is passive: all of it would leave.
+/// The pan fraction (finer than the finest sieve) is passive: all of it would leave.
 pub fn infiltration(curve: &Curve, base: &Gradation, layers: u64) -> Infiltration {
     let passage = Passage::new(curve);
     let of_size = |percent: &f64| {
@@ -27,17 +27,17 @@ pub fn infiltration(curve: &Curve, base: &Gradation, layers: u64) -> Infiltratio
             through: passage.through(diameter_mm, layers),
         })
     };
-    let tail = base.tail_mass_fraction();
+    let pan_fraction = base.tail_mass_fraction();
     let sized = (0..PARTS).filter_map(|part| {
         let share = (f64::from(part) + 0.5) / f64::from(PARTS);
-        Some(passage.through(base.d(100.0 * (tail + (1.0 - tail) * share))?, layers))
+        Some(passage.through(base.d(100.0 * (pan_fraction + (1.0 - pan_fraction) * share))?, layers))
     });
     let sized = sized.sum::<f64>() / f64::from(PARTS);
     Infiltration {
         layers,
         sizes: SIZES.iter().filter_map(of_size).collect(),
         coarsest_through_mm: passage.coarsest_through(layers, 0.95),
-        eroded_without_blocking: tail + (1.0 - tail) * sized,
+        eroded_without_blocking: pan_fraction + (1.0 - pan_fraction) * sized,
     }
 }
 
@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tail_of_unknown_size_would_leave() {
+    fn the_pan_fraction_would_leave() {
         let curve = Curve::from_points(&[(100.0, 0.2)], CurveUnit::Mm).unwrap();
         let base = Gradation::from_points(&[(0.3, 40.0), (0.6, 100.0)], None).unwrap();
         let found = infiltration(&curve, &base, 60);

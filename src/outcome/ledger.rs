@@ -1,4 +1,4 @@
-//! The ledger of a campaign, as types: one line of `ledger.jsonl` a finished case.
+//! The ledger of a campaign, as types: one line of `ledger.jsonl` for each finished case.
 
 use serde::{Deserialize, Serialize};
 
@@ -19,7 +19,7 @@ pub struct LedgerLine {
     pub seed: u64,
     /// Version of the program.
     pub version: String,
-    /// Its commit, where known.
+    /// Commit of the program, where known.
     pub commit: Option<String>,
     /// The class that the replicates together support.
     pub verdict: Verdict,
@@ -29,9 +29,9 @@ pub struct LedgerLine {
     pub replicates: u64,
     /// Base particles of each run.
     pub n_base: u64,
-    /// The same by Eq. (2).
+    /// Base particles by Eq. (2), before any cap.
     pub n_base_eq2: Option<u64>,
-    /// Whether a cap bit.
+    /// Whether a cap made `n_base` smaller than `n_base_eq2`.
     pub capped: bool,
     /// Filter grains per void.
     pub grains_per_void: Option<f64>,

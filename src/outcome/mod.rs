@@ -1,20 +1,21 @@
 //! What came of a walk: series, size curves, blocked by layer, and the verdict with its uncertainty.
 //!
 //! - [`record`] holds the names and shapes of everything in a run folder, [`packing`] of a packing's.
-//! - [`Recorder`] watches a run and keeps what was asked for.
-//! - [`Figures`] are the figures of one run at its end.
-//! - [`by_connectivity`] parts what a run retained by the connectivity of the voids (Table 3).
+//! - [`Recorder`] records of a running walk what was asked for.
+//! - [`RunMetrics`] are the numbers of one run at its end.
+//! - [`by_connectivity`] splits what a run retained by the connectivity of the voids (Table 3).
 //! - [`verdict`] classifies, by mass eroded, one replicate or many; [`stopping`] says how many are enough.
 //! - [`paper`] holds what the paper states.
 //! - [`rules`] applies the empirical filter rules to the same two curves.
 //! - [`infiltration()`] is Eq. (1) beside the walk.
-//! - [`percolation`] puts percolation thresholds of several sizes together.
+//! - [`percolation`] fits percolation thresholds of several lattice sizes.
 //! - [`precision`] is error against run time.
 
 pub mod by_connectivity;
-mod figures;
 mod infiltration;
+mod least_squares;
 pub mod ledger;
+mod metrics;
 pub mod packing;
 pub mod paper;
 pub mod percolation;
@@ -27,9 +28,10 @@ pub mod stopping;
 pub(crate) mod student;
 pub mod verdict;
 
-pub(crate) use figures::eroded_mass_fraction;
-pub use figures::{Figures, Recorded, RunOf};
 pub use infiltration::infiltration;
+pub(crate) use least_squares::log_log_slope;
+pub(crate) use metrics::eroded_mass_fraction;
+pub use metrics::{Recorded, RunId, RunMetrics};
 pub use recorder::{Recorder, Wanted};
 
 /// What the model does not contain, for any scene; shown next to every verdict.

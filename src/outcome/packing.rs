@@ -1,4 +1,4 @@
-//! What a packing's folder says of it, as types: `packing.json`.
+//! What a packing's folder holds, as types: `packing.json` and the rows of `constrictions.csv`.
 
 use serde::{Deserialize, Serialize};
 
@@ -41,9 +41,9 @@ pub struct PackingRecord {
     pub pressure_kpa: f64,
     /// Every other setting of the compression, by name.
     pub settings: serde_json::Map<String, serde_json::Value>,
-    /// Settled with the friction of the compression.
+    /// At rest with the friction of the compression.
     pub before: Measure,
-    /// Settled with the final friction: the state of the grains.
+    /// At rest with the final friction: the state of the grains.
     pub after: Measure,
     /// Steps of the compression.
     pub steps: u64,
@@ -53,8 +53,9 @@ pub struct PackingRecord {
     pub seconds: f64,
     /// Edge of the periodic cell (mm).
     pub cell_mm: f64,
-    /// Rows of diameter (mm) and percent smaller by number of the curves that inscribed circles guess: dense, loose.
+    /// Rows of diameter (mm) and percent smaller by number of the curves estimated by inscribed circles: dense, loose.
     pub inscribed: [Vec<[f64; 2]>; 2],
-    /// Grains cut by the plane through the middle of the cell: x, y of the centre, diameter of the cut, diameter of the grain (mm).
+    /// Grains cut by the plane through the middle of the cell: x, y of the centre, diameter of the cut, diameter of the
+    /// grain (mm).
     pub slice: Vec<[f64; 4]>,
 }

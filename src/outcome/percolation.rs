@@ -2,7 +2,7 @@
 //! `percolation.json` holds, and how thresholds are put together.
 //!
 //! # Finite size
-//! Two laws are fitted to the mean threshold p(L) of an L x L x L lattice, by weighted least squares:
+//! Two finite-size relations are fitted to the mean threshold p(L) of an L x L x L lattice, by weighted least squares:
 //!
 //! - *One length*: `p(L) = p - a L^(-1/nu)`, with the exponent of the correlation length along the flow.
 //! - *Many starts*: the start layer holds of order `(L / xi_across)^2` independent starts, and each survives L layers with a
@@ -15,6 +15,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::least_squares::{Straight, log_log_slope};
 use super::record::Statistic;
 
 /// Threshold of the infinite lattice: directed bond percolation on the simple cubic lattice.
@@ -37,9 +38,9 @@ pub struct PercolationStudy {
     pub realisations: u64,
     /// One per size, ascending.
     pub sizes: Vec<SizeThreshold>,
-    /// The law of one length; `None` with fewer than two sizes or realisations.
+    /// The relation of one length; `None` with fewer than two sizes or realisations.
     pub one_length: Option<OneLength>,
-    /// The law of many starts; `None` with fewer than four sizes, or where no threshold fits.
+    /// The relation of many starts; `None` with fewer than four sizes, or where no threshold fits.
     pub many_starts: Option<ManyStarts>,
     /// Slope of ln(standard deviation) against ln(size); `None` as for `one_length`.
     pub sd_exponent: Option<f64>,
@@ -65,7 +66,7 @@ pub struct SizeThreshold {
 pub struct OneLength {
     /// Threshold of the infinite lattice.
     pub threshold: f64,
-    /// Its standard error, if the law holds.
+    /// Its standard error, if the relation holds.
     pub threshold_error: f64,
     /// Amplitude.
     pub amplitude: f64,
@@ -106,7 +107,8 @@ impl PercolationStudy {
             realisations: thresholds.first().map_or(0, |(_, all)| all.len() as u64),
             one_length: enough.then(|| one_length(&points)),
             many_starts: if points.len() >= 4 { many_starts(&points) } else { None },
-            sd_exponent: enough.then(|| sd_exponent(&points)),
+            sd_exponent: enough
+                .then(|| log_log_slope(&points.iter().map(|p| (p.size, p.sd)).collect::<Vec<_>>())),
             sizes,
             infinite_lattice: INFINITE_LATTICE,
             seconds,
@@ -138,31 +140,6 @@ impl Point {
     }
 }
 
-/// A straight line by weighted least squares.
-struct Straight {
-    offset: f64,
-    slope: f64,
-    /// Standard error of the offset.
-    offset_error: f64,
-    chi_squared: f64,
-}
-
-impl Straight {
-    /// Through `(x, y, standard error of y)`.
-    fn through(rows: &[(f64, f64, f64)]) -> Self {
-        let sum = |term: &dyn Fn(f64, f64) -> f64| -> f64 {
-            rows.iter().map(|&(x, y, error)| term(x, y) / (error * error)).sum()
-        };
-        let w = sum(&|_, _| 1.0);
-        let (x, y) = (sum(&|x, _| x) / w, sum(&|_, y| y) / w);
-        let xx = sum(&|xi, _| (xi - x) * (xi - x));
-        let slope = sum(&|xi, yi| (xi - x) * (yi - y)) / xx;
-        let offset = y - slope * x;
-        let chi_squared = sum(&|xi, yi| (yi - offset - slope * xi) * (yi - offset - slope * xi));
-        Self { offset, slope, offset_error: (1.0 / w + x * x / xx).sqrt(), chi_squared }
-    }
-}
-
 fn one_length(points: &[Point]) -> OneLength {
     let row = |p: &Point| (libm::pow(p.size, -1.0 / NU_PARALLEL), p.mean, p.error);
     let line = Straight::through(&points.iter().map(row).collect::<Vec<_>>());
@@ -175,7 +152,7 @@ fn one_length(points: &[Point]) -> OneLength {
     }
 }
 
-/// The line of many starts for a given threshold above every mean.
+/// The straight line of many starts for a given threshold above every mean.
 fn starts_at(points: &[Point], threshold: f64) -> Straight {
     let row = |p: &Point| {
         let d = threshold - p.mean;
@@ -210,15 +187,6 @@ fn many_starts(points: &[Point]) -> Option<ManyStarts> {
         chi_squared: line.chi_squared,
         degrees: points.len() as u64 - 3,
     })
-}
-
-/// Least squares of ln(sd) against ln(size).
-fn sd_exponent(points: &[Point]) -> f64 {
-    let n = points.len() as f64;
-    let logs = || points.iter().map(|p| (libm::log(p.size), libm::log(p.sd)));
-    let (x, y) = (logs().map(|(x, _)| x).sum::<f64>() / n, logs().map(|(_, y)| y).sum::<f64>() / n);
-    let xy: f64 = logs().map(|(xi, yi)| (xi - x) * (yi - y)).sum();
-    xy / logs().map(|(xi, _)| (xi - x) * (xi - x)).sum::<f64>()
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@
 //! - A fraction is of 1, a percentage is of 100 and says `percent`. Fractions of base material are of what the run
 //!   inserts in all (`N_base` particles), not of what has been inserted so far.
 //! - Replicates and runs count from 1, increments from 1, layers from 0 (the layer of the start nodes).
-//! - What a run *blocked* is a state: the constrictions blocked at that moment, so the second run's figure contains
+//! - What a run *blocked* is a state: the constrictions blocked at that moment, so the second run's number contains
 //!   the first's. What a run *retained* is its own: particles of the first run are gone when the second begins.
 
 use serde::{Deserialize, Serialize};
@@ -35,7 +35,7 @@ pub struct Outcome {
     pub replicates: Vec<Replicate>,
     /// One per run, in order: statistics over the replicates.
     pub summary: Vec<RunSummary>,
-    /// How the number of replicates came about, where a rule made it.
+    /// Why there are so many replicates, where a rule added them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stopping: Option<Stopping>,
     /// Eroded mass fraction that divides the classes: 0.075.
@@ -51,7 +51,7 @@ pub struct Outcome {
     /// The ratios that filter rules use.
     pub ratios: Ratios,
     /// Empirical filter rules applied to the same two curves.
-    pub rules: Vec<Rule>,
+    pub rules: Vec<AppliedRule>,
     /// Eq. (1) for single particles; `None` where the network is no cubic lattice.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub infiltration: Option<Infiltration>,
@@ -61,7 +61,7 @@ pub struct Outcome {
     pub seconds: f64,
 }
 
-/// The paper's three classes, after Foster and Fell, and the honest fourth.
+/// The paper's three classes, after Foster and Fell, and a fourth for what these replicates leave open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Verdict {
     /// Less than the threshold eroded in the first run.
@@ -79,7 +79,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// The words that `outcome.json` uses.
+    /// Its name in `outcome.json` and in every table.
     pub fn words(self) -> &'static str {
         match self {
             Verdict::None => "no erosion",
@@ -90,24 +90,24 @@ impl Verdict {
     }
 }
 
-/// What a rule that adds replicates came to.
+/// What a rule that adds replicates until they are enough arrived at.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stopping {
-    /// Half width asked for of the 95 % interval of the eroded mass, in every run (percentage points of the base).
+    /// Target half width of the 95 % interval of the eroded mass, in every run (percentage points of the base).
     pub target_error_pp: Option<f64>,
-    /// Least probability asked for that the verdict is right (%).
+    /// Confidence level at which the verdict was to be decided (%), corrected for repeated looks.
     pub decide_percent: Option<f64>,
-    /// Replicates beyond which it gives up.
+    /// Replicates at which it stops in any case.
     pub most: u64,
-    /// How often it looked.
+    /// How often it looked at the replicates.
     pub looks: u64,
-    /// Whether it got what was asked for.
+    /// Whether what was asked for is reached.
     pub met: bool,
-    /// The verdict at the level asked for, where one was.
+    /// The verdict at that confidence level, where one was asked for.
     pub verdict: Option<Verdict>,
     /// Widest half of the 95 % intervals of the eroded mass (percentage points); `None` with one replicate.
     pub half_width_pp: Option<f64>,
-    /// Why it did not get it.
+    /// Why it is not reached.
     pub sentence: Option<String>,
 }
 
@@ -133,7 +133,7 @@ pub struct Run {
     pub eroded_number_fraction: f64,
     /// Largest particle that left the filter; `None` when none did.
     pub largest_eroded_mm: Option<f64>,
-    /// The same over D15F.
+    /// `largest_eroded_mm` over D15F.
     pub largest_eroded_over_d15f: Option<f64>,
     /// Constrictions blocked when the run ends.
     pub blocked: u64,
@@ -151,7 +151,7 @@ pub struct Run {
     pub retained_in_constrictions: u64,
     /// Particles in voids without an open exit.
     pub retained_in_voids: u64,
-    /// Particles that would circle for ever.
+    /// Particles trapped in closed loops.
     pub trapped: u64,
     /// Particles retained in any way, over voids.
     pub retained_per_void: f64,
@@ -165,7 +165,7 @@ pub struct Run {
     pub increments: u64,
     /// Moves completed, the one that leaves included.
     pub particle_moves: u64,
-    /// The same by connectivity of the void, rising; empty where all voids have the same.
+    /// Retained and blocked by connectivity of the void, rising; empty where all voids have one connectivity.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub by_connectivity: Vec<ByConnectivity>,
     /// Wall time, s.
@@ -231,11 +231,11 @@ pub struct Statistic {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
     /// The filter and its constrictions.
-    pub filter: Filter,
+    pub filter: FilterRecord,
     /// The base soil.
-    pub base: Base,
+    pub base: BaseRecord,
     /// The void network.
-    pub network: Network,
+    pub network: NetworkRecord,
     /// Mass of base over mass of filter, `F_base` of Eq. (2).
     pub mass_ratio: Option<f64>,
     /// Share of `n_base` inserted in each increment.
@@ -246,12 +246,12 @@ pub struct Inputs {
 
 /// The filter: its gradation by mass and its constrictions by number.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Filter {
+pub struct FilterRecord {
     /// As the user calls it.
     pub name: String,
     /// Whom to credit for the constriction curve; empty for the user's own.
     pub attribution: String,
-    /// D60 / D10 by mass; `None` where D10 lies in a tail of unknown size.
+    /// D60 / D10 by mass; `None` where D10 lies in the pan fraction (finer than the finest sieve).
     pub cu: Option<f64>,
     /// Smallest grain.
     pub d0_mm: f64,
@@ -277,10 +277,10 @@ pub struct Filter {
 
 /// The base soil.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Base {
+pub struct BaseRecord {
     /// As the user calls it.
     pub name: String,
-    /// D60 / D10 by mass; `None` where D10 lies in a tail of unknown size.
+    /// D60 / D10 by mass; `None` where D10 lies in the pan fraction (finer than the finest sieve).
     pub cu: Option<f64>,
     /// Smallest particle.
     pub d0_mm: f64,
@@ -294,7 +294,7 @@ pub struct Base {
     pub d95_mm: f64,
     /// Largest particle.
     pub d100_mm: f64,
-    /// Mass fraction below the finest sieve, of unknown size; counted as passive.
+    /// Pan fraction (finer than the finest sieve) by mass; counted as passive.
     pub tail_mass_fraction: f64,
     /// Rows of (size, percent finer by mass), sizes ascending.
     pub gradation: Vec<[f64; 2]>,
@@ -302,7 +302,7 @@ pub struct Base {
 
 /// The void network.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Network {
+pub struct NetworkRecord {
     /// Where it comes from.
     pub kind: NetworkKind,
     /// As the user calls it.
@@ -324,7 +324,7 @@ pub struct Network {
     /// Rows of (connectivity, percent of the voids), rising; empty where all voids have the same.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub connectivity: Vec<[f64; 2]>,
-    /// Thickness of filter that it stands for: layers times D50F by number; `None` where a layer has no thickness.
+    /// Modelled filter thickness: layers times D50F by number; `None` where a layer has no thickness.
     pub thickness_mm: Option<f64>,
 }
 
@@ -351,14 +351,14 @@ pub struct Ratios {
 
 /// An empirical filter rule, applied.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Rule {
+pub struct AppliedRule {
     /// Whose rule it is.
     pub name: String,
     /// What it limits, as `D15F/D85B`.
     pub quantity: String,
     /// Its value for these inputs; `None` where they do not give it.
     pub value: Option<f64>,
-    /// The most, or the least, that the rule allows; `None` where no figure is known.
+    /// The most, or the least, that the rule allows; `None` where no number is known.
     pub limit: Option<f64>,
     /// Whether `limit` is the least that the rule allows instead of the most.
     #[serde(default)]
@@ -382,7 +382,7 @@ pub struct Infiltration {
     pub layers: u64,
     /// Sizes of the base, ascending.
     pub sizes: Vec<InfiltrationSize>,
-    /// The coarsest size that comes through all layers with a chance of 5 %.
+    /// The coarsest size that passes all layers with a probability of 5 %.
     pub coarsest_through_mm: f64,
     /// Share of the base's mass that would leave if nothing were ever blocked.
     pub eroded_without_blocking: f64,
@@ -395,13 +395,13 @@ pub struct InfiltrationSize {
     pub name: String,
     /// Its size.
     pub diameter_mm: f64,
-    /// P(F): its chance to come one layer downstream.
+    /// P(F): probability that it moves one layer downstream.
     pub downstream: f64,
-    /// Layers that it does not pass with a confidence of 95 %; `None` where nothing stops it.
+    /// Layers that it does not pass, with a confidence of 95 %; `None` where nothing stops it.
     pub layers_95: Option<f64>,
-    /// The same with 99 %.
+    /// Layers that it does not pass, with a confidence of 99 %.
     pub layers_99: Option<f64>,
-    /// Its chance to come through all layers.
+    /// Probability that it passes all layers.
     pub through: f64,
 }
 
@@ -414,9 +414,9 @@ pub struct Sensitivity {
     pub factor: f64,
     /// Base particles inserted in each run.
     pub n_base: u64,
-    /// Grains per void that this factor stands for at the scene's mass ratio.
+    /// Grains per void to which this factor corresponds at the scene's mass ratio.
     pub grains_per_void: Option<f64>,
-    /// Mass ratio that this factor stands for at the scene's grains per void.
+    /// Mass ratio to which this factor corresponds at the scene's grains per void.
     pub mass_ratio: Option<f64>,
     /// How many replicates were walked.
     pub replicates: u64,
@@ -479,7 +479,7 @@ pub struct SeriesRow {
     pub retained_in_constrictions: u64,
     /// Particles retained in voids so far in this run.
     pub retained_in_voids: u64,
-    /// Particles that would circle for ever.
+    /// Particles trapped in closed loops.
     pub trapped: u64,
     /// Constrictions blocked.
     pub blocked: u64,

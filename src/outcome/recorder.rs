@@ -1,14 +1,14 @@
-//! Watches a run and keeps what was asked for.
+//! Records of a running walk what was asked for.
 
 use crate::walk::{SizeCounts, State, Tally};
 
-/// What to keep of a run.
+/// What to record of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wanted {
-    /// Keep the sums of every such increment, and of the last one; 0 keeps the last only. A run of more than
-    /// 20,000 such increments is thinned: every second of those kept goes, and so on.
+    /// Record the sums of every such increment, and of the last one; 0 records the last only. A run of more than
+    /// 20,000 such increments is thinned: every second of those recorded goes, and so on.
     pub series_every: u64,
-    /// Increments whose size curves are kept, besides the last one's.
+    /// Increments whose size curves are recorded, besides the last one's.
     pub size_curves: Vec<u64>,
     /// Number of size classes of those curves.
     pub size_classes: usize,
@@ -17,7 +17,7 @@ pub struct Wanted {
 /// Rows that a series may have before it is thinned.
 pub const LONGEST_SERIES: usize = 20_000;
 
-/// Sums and size curves of one run, as it went.
+/// Sums and size curves of one run, as recorded.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Recorder {
     /// Increment and sums.

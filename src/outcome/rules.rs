@@ -3,7 +3,7 @@
 //! Each rule stands with where it is published and what it was made for. A rule whose inputs the scene does not give
 //! is listed with what it needs; one that was not made for this base is listed without a result.
 
-use super::record::{Ratios, Rule};
+use super::record::{AppliedRule, Ratios};
 use crate::gradation::{Gradation, ShapeIndex};
 
 /// Largest size of fines (mm).
@@ -24,24 +24,26 @@ pub struct RuleInputs<'a> {
     pub largest_eroded_over_d15f: Option<f64>,
 }
 
-/// The rules that the paper states, in its words and with its sources, and the filter's own stability.
-pub fn beside_the_verdict(inputs: &RuleInputs) -> Vec<Rule> {
+/// The rules that the paper states, in its words and with its sources, and those of the filter's own stability.
+///
+/// A rule that lacks an input, or was not made for this base, has no result; its note says why.
+pub fn apply(inputs: &RuleInputs) -> Vec<AppliedRule> {
     let ratios = &inputs.ratios;
     let (d85, d95) = (Some(ratios.d15f_over_d85b), Some(ratios.d15f_over_d95b));
     vec![
-        Rule {
+        AppliedRule {
             name: "Terzaghi: the filter retains the base".into(),
             applies_to: "filters and bases in general".into(),
             ..at_most("D15F/D85B", d85, 4.0, "Terzaghi, as stated by Shire & O'Sullivan, section 2")
         },
         sherard_and_dunnigan(d85),
         foster_and_fell_some(d85, inputs.base_mm),
-        Rule {
+        AppliedRule {
             name: "Foster and Fell: some erosion rather than continuing".into(),
             applies_to: "existing dams whose filters are coarser than modern rules allow".into(),
             ..at_most("D15F/D95B", d95, 9.0, "Foster and Fell, as stated by Shire & O'Sullivan, section 2")
         },
-        Rule {
+        AppliedRule {
             name: "Kenney et al.: controlling constriction size Dc* ≤ D15F/5".into(),
             applies_to: "bases without cohesion; Dc* is the largest eroded particle, here that of the walk's first run".into(),
             note: match inputs.largest_eroded_over_d15f {
@@ -57,12 +59,12 @@ pub fn beside_the_verdict(inputs: &RuleInputs) -> Vec<Rule> {
         },
         kezdi(inputs.filter_sieve),
         kenney_lau(inputs.filter_sieve),
-        Rule {
+        AppliedRule {
             name: "Network model of the paper: no erosion rather than some".into(),
             applies_to: "loose filters of Cu 1.5 and 3".into(),
             ..at_most("D15F/D85B", d85, 5.0, "Shire & O'Sullivan, section 6, Fig. 14(a)")
         },
-        Rule {
+        AppliedRule {
             name: "Network model of the paper: some erosion rather than continuing".into(),
             applies_to: "filters of Cu 1.5 and 3".into(),
             ..at_most("D15F/D95B", d95, 4.7, "Shire & O'Sullivan, section 6, Fig. 15")
@@ -71,8 +73,8 @@ pub fn beside_the_verdict(inputs: &RuleInputs) -> Vec<Rule> {
 }
 
 /// A rule that a quantity is at most a limit; its name is the caller's.
-fn at_most(quantity: &str, value: Option<f64>, limit: f64, source: &str) -> Rule {
-    Rule {
+fn at_most(quantity: &str, value: Option<f64>, limit: f64, source: &str) -> AppliedRule {
+    AppliedRule {
         name: String::new(),
         quantity: quantity.into(),
         value,
@@ -85,8 +87,8 @@ fn at_most(quantity: &str, value: Option<f64>, limit: f64, source: &str) -> Rule
     }
 }
 
-fn sherard_and_dunnigan(d15f_over_d85b: Option<f64>) -> Rule {
-    Rule {
+fn sherard_and_dunnigan(d15f_over_d85b: Option<f64>) -> AppliedRule {
+    AppliedRule {
         name: "Sherard and Dunnigan: a limit of D15F/D85B that varies with the base".into(),
         quantity: "D15F/D85B".into(),
         value: d15f_over_d85b,
@@ -99,8 +101,8 @@ fn sherard_and_dunnigan(d15f_over_d85b: Option<f64>) -> Rule {
     }
 }
 
-fn foster_and_fell_some(d15f_over_d85b: Option<f64>, base_mm: Option<&Gradation>) -> Rule {
-    let rule = Rule {
+fn foster_and_fell_some(d15f_over_d85b: Option<f64>, base_mm: Option<&Gradation>) -> AppliedRule {
+    let rule = AppliedRule {
         name: "Foster and Fell: no erosion rather than some".into(),
         applies_to: "bases with less than 15 % cohesive fines".into(),
         ..at_most(
@@ -111,7 +113,7 @@ fn foster_and_fell_some(d15f_over_d85b: Option<f64>, base_mm: Option<&Gradation>
         )
     };
     let Some(base) = base_mm else {
-        return Rule {
+        return AppliedRule {
             note: "sizes are multiples of D0F: the fines of the base are not known".into(),
             ..rule
         };
@@ -121,14 +123,14 @@ fn foster_and_fell_some(d15f_over_d85b: Option<f64>, base_mm: Option<&Gradation>
             "whether the base has less than 15 % fines is not known: its finest sieve is {} mm",
             base.smallest_mm()
         );
-        return Rule { note, ..rule };
+        return AppliedRule { note, ..rule };
     }
     let fines = base.percent_finer_by_mass(FINES_MM);
     match fines < FEW_FINES {
         true => rule,
         false => {
             let note = format!("not made for this base: {fines:.0} % of it is finer than 0.075 mm");
-            Rule { meets: None, note, ..rule }
+            AppliedRule { meets: None, note, ..rule }
         }
     }
 }
@@ -136,9 +138,9 @@ fn foster_and_fell_some(d15f_over_d85b: Option<f64>, base_mm: Option<&Gradation>
 /// Where both stability rules are stated.
 const INTERNAL_STABILITY: &str = "U.S. Army Corps of Engineers, Internal Instability Toolbox manual (RMC-CPD-2023-10), after Li and Fannin (2008)";
 
-fn kezdi(filter: Option<&Gradation>) -> Rule {
+fn kezdi(filter: Option<&Gradation>) -> AppliedRule {
     let found = filter.map(|f| f.kezdi());
-    Rule {
+    AppliedRule {
         name: "Kézdi (1979): the filter holds its own fines".into(),
         applies_to: "the filter alone: internal stability".into(),
         note: note_of(found, "split"),
@@ -151,12 +153,12 @@ fn kezdi(filter: Option<&Gradation>) -> Rule {
     }
 }
 
-fn kenney_lau(filter: Option<&Gradation>) -> Rule {
+fn kenney_lau(filter: Option<&Gradation>) -> AppliedRule {
     let found = filter.map(|f| f.kenney_lau());
     let value = found.flatten().map(|i| i.value);
     let upto =
         filter.and_then(|f| f.loose_percent()).map_or("20 % (Cu > 3) or 30 %".into(), |p| format!("{p} %"));
-    Rule {
+    AppliedRule {
         name: "Kenney and Lau (1986): the filter holds its own fines".into(),
         quantity: "least H/F of the filter".into(),
         value,
@@ -182,18 +184,13 @@ fn note_of(found: Option<Option<ShapeIndex>>, what: &str) -> String {
 mod tests {
     use super::*;
 
-    fn rules(filter: Option<&Gradation>, base: Option<&Gradation>) -> Vec<Rule> {
+    fn rules(filter: Option<&Gradation>, base: Option<&Gradation>) -> Vec<AppliedRule> {
         let ratios = Ratios { d15f_over_d85b: 5.5, d15f_over_d95b: 4.5 };
         let largest_eroded_over_d15f = Some(0.19);
-        beside_the_verdict(&RuleInputs {
-            ratios,
-            filter_sieve: filter,
-            base_mm: base,
-            largest_eroded_over_d15f,
-        })
+        apply(&RuleInputs { ratios, filter_sieve: filter, base_mm: base, largest_eroded_over_d15f })
     }
 
-    fn find<'a>(rules: &'a [Rule], name: &str) -> &'a Rule {
+    fn find<'a>(rules: &'a [AppliedRule], name: &str) -> &'a AppliedRule {
         rules.iter().find(|r| r.name.starts_with(name)).unwrap()
     }
 

@@ -1,65 +1,89 @@
-//! How many replicates are enough: a run that goes on until its error is small, or its verdict certain.
+//! How many replicates are enough: until the error is small, or the verdict decided at a confidence level.
 //!
 //! # Looks
-//! The rule looks at the replicates when there are `n_1` of them (the scene's number, at least 8), then `n_2 = 1.5 n_1`, and so on, rounded up,
-//! until it is met or there are `most`.
+//! The rule looks at the replicates when there are `n_1` of them (the scene's number, at least 8), then `n_2 = 1.5 n_1`, and
+//! so on, rounded up, until it is met or there are `most_replicates`.
 //!
-//! # Certain
+//! # Confidence level of the verdict
 //! A fixed interval that is looked at again and again errs more often than it says. So look `k` takes intervals whose error
-//! is `1 / (k (k + 1))` of the whole, which sum to 1 over all looks; and the two runs share it. If each interval holds its level,
-//! the verdict is wrong with no more than the error asked for, however often one looks (Bonferroni), at the price of intervals
-//! that are somewhat wide. The intervals are Student's, for means of independent replicates.
+//! probability is `1 / (k (k + 1))` of the whole, which sums to 1 over all looks; and the two runs share it. If each interval
+//! has the coverage that it claims, the verdict is wrong with no more than the error probability asked for, however often one
+//! looks (Bonferroni), at the price of intervals that are somewhat wide. The intervals are Student's, for means of
+//! independent replicates.
 //!
 //! # Target error
-//! Met when the 95 % interval of the mean reaches no further than the target to either side, in every run (Chow and Robbins). Its
-//! coverage is measured in the tests.
+//! Met when the 95 % interval of the mean reaches no further than the target to either side, in every run (Chow and
+//! Robbins). Its coverage is measured in the tests.
 
 use super::record::{Statistic, Stopping, Verdict};
 use super::student;
 use super::verdict::{BelowThreshold, THRESHOLD, below_by_interval, classify};
+use crate::schema::{only, section, whole, within};
 
-/// Fewer replicates say too little of their own scatter.
+/// Least number of replicates: fewer say too little of their own scatter.
 const FEWEST: u64 = 8;
 
-/// When to stop adding replicates.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct StopRule {
-    /// Half width of the 95 % interval of the eroded mass, in every run (percentage points of the base).
-    pub target_error_pp: Option<f64>,
-    /// Least probability that the verdict is right (%).
-    pub decide_percent: Option<f64>,
-    /// Replicates beyond which it gives up.
-    pub most: u64,
+section! {
+    /// Replicates are added until the eroded mass is known closely enough, or the verdict is decided; then `replicates` is where it
+    /// first looks.
+    ///
+    /// ```
+    /// use voidwalk::outcome::stopping::{Look, StopRule};
+    /// let rule = StopRule { decide_percent: Some(99.0), most_replicates: 100, ..StopRule::default() };
+    /// // Eroded mass fractions far above 7.5 % in the first run and far below it in the second, each with its side.
+    /// let run = |mean: f64| (0..10).map(|k| (mean + 1e-3 * f64::from(k), mean < 0.075)).collect::<Vec<_>>();
+    /// let Look::Stop(stopping) = rule.look(10, &[run(0.3), run(0.01)]) else { panic!("ten are enough") };
+    /// assert!(stopping.met && stopping.looks == 1);
+    /// // Close to it, it asks for half as many replicates again.
+    /// assert_eq!(rule.look(10, &[run(0.071), run(0.071)]), Look::Until(15));
+    /// ```
+    pub struct StopRule in "stop" {
+        /// Half width of the 95 % interval of the eroded mass, in every run: percentage points of the base (or --target-error 0.1pp).
+        pub target_error_pp: Option<f64> = None, off "0.1",
+            only("percentage points of the base, above 0 and below 100", |n| *n > 0.0 && *n < 100.0);
+        /// Confidence level (%) at which the verdict is to be decided, corrected for repeated looks (or --decide 99.9%).
+        pub decide_percent: Option<f64> = None, off "99.9",
+            within(50.0..=99.999, "a probability from 50 to 99.999 (%)");
+        /// Where it gives up, and says what it would take.
+        pub most_replicates: u64 = 1000, off, whole(2..=100_000);
+    }
 }
 
-/// What a look says.
+/// What a look at the replicates says.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Look {
-    /// Go on until there are this many replicates.
+    /// Add replicates until there are this many.
     Until(u64),
-    /// Stop; what came of it.
+    /// Stop, with this result.
     Stop(Stopping),
 }
 
 /// The eroded mass fraction of each replicate, and whether it is below the threshold exactly.
-pub type Values = Vec<(f64, bool)>;
+pub type ReplicateValues = Vec<(f64, bool)>;
 
 impl StopRule {
-    /// Whether there is anything to look at.
+    /// Whether there is nothing to look at: the replicates are as many as the scene says.
+    pub fn is_unset(&self) -> bool {
+        self.target_error_pp.is_none() && self.decide_percent.is_none()
+    }
+
+    /// Whether there is something to look at.
     pub fn is_set(&self) -> bool {
-        self.target_error_pp.is_some() || self.decide_percent.is_some()
+        !self.is_unset()
     }
 
     /// Number of replicates at look `look`, counted from 1, where the first is at `first`.
     pub fn replicates_at(&self, first: u64, look: u64) -> u64 {
-        let grow = |n: u64| n.saturating_add(n.div_ceil(2)).min(self.most);
-        (1..look).fold(first.max(FEWEST).min(self.most), |n, _| grow(n))
+        let grow = |n: u64| n.saturating_add(n.div_ceil(2)).min(self.most_replicates);
+        (1..look).fold(first.max(FEWEST).min(self.most_replicates), |n, _| grow(n))
     }
 
     /// Looks at `runs[r][replicate]`, where the first look is at `first` replicates.
-    pub fn look(&self, first: u64, runs: &[Values]) -> Look {
+    pub fn look(&self, first: u64, runs: &[ReplicateValues]) -> Look {
         let replicates = runs.first().map_or(0, |values| values.len() as u64);
-        let look = (1..).find(|&k| self.replicates_at(first, k) >= replicates.min(self.most)).unwrap_or(1);
+        let look = (1..)
+            .find(|&k| self.replicates_at(first, k) >= replicates.min(self.most_replicates))
+            .unwrap_or(1);
         let (half_width, close) = self.closeness(runs);
         let error = self.error_of(look, runs.len());
         let below: Vec<BelowThreshold> =
@@ -68,13 +92,13 @@ impl StopRule {
             error.map(|_| classify(below.first().copied().flatten(), below.get(1).copied().flatten()));
         let met = close && verdict != Some(Verdict::Undecided);
         let next = self.replicates_at(first, look + 1);
-        if !met && next > replicates && replicates < self.most && !self.is_hopeless(runs) {
+        if !met && next > replicates && replicates < self.most_replicates && !self.is_hopeless(runs) {
             return Look::Until(next);
         }
         Look::Stop(Stopping {
             target_error_pp: self.target_error_pp,
             decide_percent: self.decide_percent,
-            most: self.most,
+            most: self.most_replicates,
             looks: look,
             met,
             verdict,
@@ -87,8 +111,8 @@ impl StopRule {
     }
 
     /// The widest half of the 95 % intervals, and whether it is narrow enough.
-    fn closeness(&self, runs: &[Values]) -> (Option<f64>, bool) {
-        let half = |values: &Values| {
+    fn closeness(&self, runs: &[ReplicateValues]) -> (Option<f64>, bool) {
+        let half = |values: &ReplicateValues| {
             let statistic = statistic(values, 0.05);
             Some(statistic.high? - statistic.mean)
         };
@@ -98,16 +122,16 @@ impl StopRule {
         (widest, close)
     }
 
-    /// What each interval of look `look` may err by, where a verdict is wanted.
+    /// Error probability of each interval of look `look`, where a verdict is wanted.
     fn error_of(&self, look: u64, runs: usize) -> Option<f64> {
         let percent = self.decide_percent?;
         Some((1.0 - 0.01 * percent) / (look * (look + 1)) as f64 / runs.max(1) as f64)
     }
 
     /// What to say where the verdict is open.
-    fn undecided(&self, error: f64, below: &[BelowThreshold], runs: &[Values]) -> String {
+    fn undecided(&self, error: f64, below: &[BelowThreshold], runs: &[ReplicateValues]) -> String {
         if below == [Some(false)] {
-            return "The first run alone cannot tell some erosion from continuing erosion: ask for two runs."
+            return "The first run alone does not separate some erosion from continuing erosion: ask for two runs."
                 .into();
         }
         let open = below.iter().position(Option::is_none).unwrap_or(0);
@@ -118,13 +142,13 @@ impl StopRule {
         let needed = student::two_sided(1000, error) * sd / distance;
         let needed = match needed * needed {
             n if n < 1e9 => {
-                format!("about {} replicates would tell, if the mean stayed where it is", two_digits(n))
+                format!("about {} replicates would decide, if the mean stayed where it is", two_digits(n))
             }
-            _ => "no number of replicates will tell".into(),
+            _ => "no number of replicates will decide".into(),
         };
         format!(
-            "Not certain at {} %: the mean of the {which} run, {:.3} %, lies {:.3} percentage points from 7.5 %, and replicates \
-             scatter by {:.3}; {needed}.",
+            "Inconclusive at the {} % confidence level: the mean of the {which} run, {:.3} %, lies {:.3} percentage points \
+             from 7.5 %, and the replicate SD is {:.3}; {needed}.",
             self.decide_percent.unwrap_or(0.0),
             100.0 * mean,
             100.0 * distance,
@@ -132,9 +156,9 @@ impl StopRule {
         )
     }
 
-    /// Whether no replicate can change what is missing: a first run that is clear, and no second.
-    fn is_hopeless(&self, runs: &[Values]) -> bool {
-        let clear = |values: &Values| {
+    /// Whether no replicate can decide what is open: a first run that is clear, and no second.
+    fn is_hopeless(&self, runs: &[ReplicateValues]) -> bool {
+        let clear = |values: &ReplicateValues| {
             values.len() > 1 && statistic(values, 1e-6).low.is_some_and(|low| low >= THRESHOLD)
         };
         self.decide_percent.is_some()
@@ -148,20 +172,20 @@ impl StopRule {
         let half_width = 100.0 * half_width?;
         let needed = replicates as f64 * (half_width / target) * (half_width / target);
         Some(format!(
-            "The error asked for, {target} percentage points, was not reached: the 95 % interval reaches {half_width:.4} to either \
-             side after {replicates} replicates; about {} would do.",
+            "The target error, {target} percentage points, was not reached: the 95 % interval reaches {half_width:.4} to \
+             either side after {replicates} replicates; about {} would do.",
             two_digits(needed)
         ))
     }
 }
 
-/// Where the mean of a run lies, by an interval that may err so often.
-fn lies(run: &Values, error: f64) -> BelowThreshold {
+/// Where the mean of a run lies, by an interval with this error probability.
+fn lies(run: &ReplicateValues, error: f64) -> BelowThreshold {
     let each: Vec<bool> = run.iter().map(|&(_, below)| below).collect();
     below_by_interval(&statistic(run, error), &each)
 }
 
-fn statistic(values: &Values, error: f64) -> Statistic {
+fn statistic(values: &ReplicateValues, error: f64) -> Statistic {
     let values: Vec<f64> = values.iter().map(|&(value, _)| value).collect();
     Statistic::with_error(&values, error)
 }
@@ -178,15 +202,15 @@ mod tests {
     use crate::stream::{Key, Purpose, unit};
     use rand::Rng;
 
-    fn certain(percent: f64, most: u64) -> StopRule {
-        StopRule { decide_percent: Some(percent), most, ..StopRule::default() }
+    fn decide(percent: f64, most: u64) -> StopRule {
+        StopRule { decide_percent: Some(percent), most_replicates: most, ..StopRule::default() }
     }
 
     fn close(pp: f64, most: u64) -> StopRule {
-        StopRule { target_error_pp: Some(pp), most, ..StopRule::default() }
+        StopRule { target_error_pp: Some(pp), most_replicates: most, ..StopRule::default() }
     }
 
-    fn values(values: impl IntoIterator<Item = f64>) -> Values {
+    fn values(values: impl IntoIterator<Item = f64>) -> ReplicateValues {
         values.into_iter().map(|v| (v, v < THRESHOLD)).collect()
     }
 
@@ -197,7 +221,7 @@ mod tests {
         sd: f64,
         skewed: bool,
         seed: u64,
-    ) -> (Stopping, Vec<Values>) {
+    ) -> (Stopping, Vec<ReplicateValues>) {
         let mut draws =
             Key { seed, purpose: Purpose::Resampling, run: 0, increment: 0, chunk: 0 }.generator();
         let mut draw = |mean: f64| {
@@ -205,7 +229,7 @@ mod tests {
             let normal = (-2.0 * libm::log(u)).sqrt() * libm::cos(std::f64::consts::TAU * v);
             mean + sd * if skewed { -libm::log(u) - 1.0 } else { normal }
         };
-        let mut runs = vec![Values::new(); means.len()];
+        let mut runs = vec![ReplicateValues::new(); means.len()];
         let mut wanted = rule.replicates_at(10, 1);
         loop {
             while (runs[0].len() as u64) < wanted {
@@ -220,16 +244,16 @@ mod tests {
 
     #[test]
     fn looks_come_at_half_as_many_again_and_end() {
-        let rule = certain(99.0, 100);
+        let rule = decide(99.0, 100);
         let looks: Vec<u64> = (1..9).map(|k| rule.replicates_at(10, k)).collect();
         assert_eq!(looks, [10, 15, 23, 35, 53, 80, 100, 100]);
         assert_eq!(rule.replicates_at(1, 1), 8);
-        assert_eq!(certain(99.0, 5).replicates_at(10, 1), 5);
+        assert_eq!(decide(99.0, 5).replicates_at(10, 1), 5);
     }
 
     #[test]
     fn what_is_clear_is_decided_at_once_and_what_is_not_is_said() {
-        let rule = certain(99.9, 60);
+        let rule = decide(99.9, 60);
         let far = [
             values((0..10).map(|k| 0.4 + 0.01 * f64::from(k))),
             values((0..10).map(|k| 0.01 + 0.001 * f64::from(k))),
@@ -238,10 +262,14 @@ mod tests {
         assert!(stopping.met && stopping.verdict == Some(Verdict::Some) && stopping.sentence.is_none());
         let near = values((0..10).map(|k| THRESHOLD + 0.01 * (f64::from(k) - 4.6)));
         assert_eq!(rule.look(10, &[near.clone(), near]), Look::Until(15));
-        let (stopping, runs) = until_stop(rule, &[0.0751, 0.01], 0.02, false, 3);
+        let (stopping, runs) = until_stop(rule.clone(), &[0.0751, 0.01], 0.02, false, 3);
         assert!(!stopping.met && stopping.verdict == Some(Verdict::Undecided) && runs[0].len() == 60);
         let sentence = stopping.sentence.unwrap();
-        assert!(sentence.contains("Not certain at 99.9 %") && sentence.contains("first run"), "{sentence}");
+        assert!(
+            sentence.contains("Inconclusive at the 99.9 % confidence level")
+                && sentence.contains("first run"),
+            "{sentence}"
+        );
         // A first run that is clearly above, and no second: more replicates cannot help.
         let Look::Stop(stopping) = rule.look(10, &far[..1]) else { panic!("hopeless") };
         assert!(!stopping.met && stopping.sentence.unwrap().contains("two runs"));
@@ -256,8 +284,8 @@ mod tests {
         assert!(stopping.sentence.unwrap().contains("about 1"));
     }
 
-    /// 1,500 runs with a first-run mean a fifth of the spread beside the threshold, 2 % allowed to be wrong: wrong ones are
-    /// binomial; a true rate of 4 % would be seen with a power of 0.97. Skewed replicates too.
+    /// 1,500 runs with a first-run mean a fifth of the standard deviation beside the threshold, 2 % allowed to be wrong: wrong
+    /// ones are binomial; a true rate of 4 % would be seen with a power of 0.97. Skewed replicates too.
     #[test]
     fn the_error_rate_is_kept_however_often_it_looks() {
         for (skewed, mean) in
@@ -265,7 +293,7 @@ mod tests {
         {
             let truth = if mean < THRESHOLD { Verdict::None } else { Verdict::Some };
             let wrong = (0..1500).filter(|&seed| {
-                let (stopping, _) = until_stop(certain(98.0, 200), &[mean, 0.02], 0.01, skewed, seed);
+                let (stopping, _) = until_stop(decide(98.0, 200), &[mean, 0.02], 0.01, skewed, seed);
                 let verdict = stopping.verdict.unwrap();
                 verdict != truth && verdict != Verdict::Undecided
             });
@@ -274,7 +302,8 @@ mod tests {
         }
     }
 
-    /// 3,000 runs until a 95 % interval is narrow enough: it still covers. A true coverage of 92 % would be seen in about half.
+    /// 3,000 runs until a 95 % interval is narrow enough: it still covers. A true coverage of 92 % would be seen in about half
+    /// of them.
     #[test]
     fn an_interval_that_was_waited_for_covers() {
         for sd in [0.005, 0.02] {

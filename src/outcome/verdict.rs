@@ -19,6 +19,15 @@ pub const THRESHOLD: f64 = 0.075;
 pub type BelowThreshold = Option<bool>;
 
 /// The class of two runs, the second of which may be missing.
+///
+/// ```
+/// use voidwalk::outcome::record::Verdict;
+/// use voidwalk::outcome::verdict::{below_by_mass, classify};
+/// // 9 % of the base eroded in the first run, 1 % in the second.
+/// let [first, second] = [0.09, 0.01].map(|eroded| Some(below_by_mass(eroded, 1.0)));
+/// assert_eq!(classify(first, second), Verdict::Some);
+/// assert_eq!(classify(first, None), Verdict::Undecided);
+/// ```
 pub fn classify(first: BelowThreshold, second: BelowThreshold) -> Verdict {
     match (first, second) {
         (Some(true), _) => Verdict::None,
@@ -33,16 +42,16 @@ pub fn below_by_mass(eroded: f64, inserted: f64) -> bool {
     eroded * 40.0 < inserted * 3.0
 }
 
-/// The same for particles of one size, on integers.
+/// Whether less than 7.5 % eroded, for particles of one size: exact, on integers.
 pub fn below_by_count(eroded: u64, inserted: u64) -> bool {
     u128::from(eroded) * 40 < u128::from(inserted) * 3
 }
 
-/// Where the mean over replicates lies. `each` says where every replicate lies, exactly; it decides where there is only
-/// one, or where they do not differ, so that the rounding of a mean decides nothing.
+/// Where the mean over replicates lies: where its whole interval is. `each` says where every replicate lies, exactly; it
+/// decides where there is only one, or where they do not differ, so that the rounding of a mean decides nothing.
 pub fn below_by_interval(statistic: &Statistic, each: &[bool]) -> BelowThreshold {
-    let no_spread = statistic.sd.is_none_or(|sd| sd < 1e-12);
-    if no_spread && each.iter().all(|&below| below == each[0]) {
+    let no_scatter = statistic.sd.is_none_or(|sd| sd < 1e-12);
+    if no_scatter && each.iter().all(|&below| below == each[0]) {
         return each.first().copied();
     }
     match (statistic.low, statistic.high) {

@@ -26,7 +26,7 @@ fn elastic(contact: Contact) -> Settings {
         final_friction: 0.0,
         restitution: 1.0,
         drag: 0.0,
-        brake: 0.0,
+        settling_drag: 0.0,
         clip_tension: false,
         stiffness_ratio: 1e-2,
         ..Settings::default()

@@ -346,7 +346,7 @@ impl Compression {
     fn kick_and_drift(&mut self, parallel: bool) {
         let n = self.position.len();
         let step = self.step;
-        let drag = step * if self.hold.braking { self.settings.brake } else { self.settings.drag };
+        let drag = step * if self.hold.braking { self.settings.settling_drag } else { self.settings.drag };
         let rule = Rule {
             step,
             per_cell: step / (self.cell * (1.0 + 0.5 * self.strain_rate * step)),

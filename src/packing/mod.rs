@@ -6,7 +6,7 @@
 //! 1. sizes stratified by number ([`draw`]), random places without overlap ([`random_start`]);
 //! 2. squeeze: the cell shrinks at a constant rate to a part of the expected packing fraction;
 //! 3. compress: the strain rate is proportional to the lack of pressure, up to a limit, with the friction that sets the density;
-//!    once the pressure has come within 2 % the drag on the grains is raised to `brake`;
+//!    once the pressure has come within 2 % the drag on the grains is raised to `settling_drag`;
 //! 4. settle: the same with the final friction, where that is another one.
 //!
 //! # When a stage ends

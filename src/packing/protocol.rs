@@ -117,7 +117,7 @@ impl Compression {
         match self.stage {
             Stage::Done => {}
             Stage::Squeeze => {
-                let goal = self.settings.squeeze_to * self.expected_fraction();
+                let goal = self.settings.compression_target_fraction * self.expected_fraction();
                 if 1.0 / (1.0 + self.void_ratio()) >= goal || self.pressure > 0.5 {
                     self.enter(Stage::Compress);
                 }

@@ -5,8 +5,9 @@ use std::path::Path;
 use maud::{Markup, html};
 
 use super::Written;
+use super::error::ReportError;
 use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, PURPLE, Point, Rule, Shape, Tick};
-use super::folder::{ReportError, json, lines};
+use super::files::{json, lines};
 use super::numbers::{duration, interval, percent, significant, whole};
 use super::run_figures::verdict_colour;
 use super::shell::{Drawn, clean, figure, whole_page};
@@ -39,7 +40,7 @@ pub fn write_campaign(folder: &Path) -> Result<Written, ReportError> {
         true => Vec::new(),
         false => vec![by_ratio(&ledger), both_runs(&ledger), largest(&ledger)],
     };
-    super::keep(folder, &figures, &page(&about, &ledger, &figures))
+    super::write_page(folder, &figures, &page(&about, &ledger, &figures))
 }
 
 fn eroded(line: &LedgerLine, run: usize) -> Option<&Statistic> {

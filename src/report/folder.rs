@@ -1,52 +1,12 @@
 //! Reads a finished run folder, and refuses what does not fit together.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use serde::de::DeserializeOwned;
-use thiserror::Error;
-
+use super::error::ReportError;
+use super::files::{json, rows, text};
 use crate::outcome::packing::PackingRecord;
 use crate::outcome::record::{LayerRow, Manifest, Outcome, Sensitivity, SeriesRow, SizeRow};
-use crate::store::{StoreError, read_whole};
-
-/// Why a report could not be written.
-#[derive(Debug, Error)]
-pub enum ReportError {
-    /// A file of the run folder is missing or cannot be read.
-    #[error("{path}: cannot be read: {source} (a finished run folder holds outcome.json, manifest.json, scene.toml, series.csv, layers.csv, retained.csv and eroded.csv)", path = path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
-    /// A file does not have the form that it must have.
-    #[error("{path}:{line}: {message}", path = path.display())]
-    Form {
-        /// The file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: u64,
-        /// What is wrong, with the field where it is known.
-        message: String,
-    },
-    /// A value that cannot be, or two files that contradict each other.
-    #[error("{path}: {field} is {value}, allowed: {allowed}", path = path.display())]
-    Value {
-        /// The file.
-        path: PathBuf,
-        /// The field.
-        field: String,
-        /// Its value.
-        value: String,
-        /// What would be right.
-        allowed: String,
-    },
-    /// The page or a figure cannot be written.
-    #[error(transparent)]
-    Write(#[from] StoreError),
-}
 
 /// Everything that a finished run folder says.
 pub(super) struct RunFolder {
@@ -153,62 +113,6 @@ fn stand_among_its_variations(outcome: &mut Outcome) {
     };
     outcome.sensitivity.push(itself);
     outcome.sensitivity.sort_by(|a, b| a.factor.total_cmp(&b.factor));
-}
-
-fn text(path: &Path) -> Result<String, ReportError> {
-    let not_text = |_| std::io::Error::new(std::io::ErrorKind::InvalidData, "is not UTF-8 text");
-    let read = read_whole(path).and_then(|bytes| String::from_utf8(bytes).map_err(not_text));
-    read.map_err(|source| ReportError::Read { path: path.to_owned(), source })
-}
-
-pub(super) fn json<T: DeserializeOwned>(path: &Path) -> Result<T, ReportError> {
-    serde_json::from_str(&text(path)?).map_err(|error| ReportError::Form {
-        path: path.to_owned(),
-        line: error.line() as u64,
-        message: error.to_string(),
-    })
-}
-
-/// The lines of a file of JSON lines.
-pub(super) fn lines<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, ReportError> {
-    let one = |(index, line): (usize, &str)| {
-        serde_json::from_str(line).map_err(|error| ReportError::Form {
-            path: path.to_owned(),
-            line: index as u64 + 1,
-            message: error.to_string(),
-        })
-    };
-    text(path)?.lines().enumerate().map(one).collect()
-}
-
-/// The rows of a CSV file with their lines.
-pub(super) fn rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<(u64, T)>, ReportError> {
-    let content = text(path)?;
-    let mut reader = csv::Reader::from_reader(content.as_bytes());
-    let form = |line, error: csv::Error| {
-        let message = match error.kind() {
-            csv::ErrorKind::Deserialize { err, .. } => match err.field() {
-                Some(field) => format!("column {}: {}", field + 1, err.kind()),
-                None => err.kind().to_string(),
-            },
-            _ => error.to_string(),
-        };
-        ReportError::Form { path: path.to_owned(), line, message }
-    };
-    let headers = reader.headers().map_err(|error| form(1, error))?.clone();
-    let mut found = Vec::new();
-    let mut record = csv::StringRecord::new();
-    loop {
-        let line = reader.position().line();
-        match reader.read_record(&mut record) {
-            Ok(false) => return Ok(found),
-            Ok(true) => {
-                let row = record.deserialize(Some(&headers)).map_err(|error| form(line, error))?;
-                found.push((line, row));
-            }
-            Err(error) => return Err(form(line, error)),
-        }
-    }
 }
 
 /// Refuses what is not between 0 and `most` (Rust reads "nan" and "inf" as numbers).

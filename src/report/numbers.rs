@@ -1,4 +1,11 @@
 //! Numbers as a reader wants them: sensible digits, grouped thousands, units.
+//!
+//! ```
+//! use voidwalk::report::numbers::{duration, significant, whole};
+//! assert_eq!([significant(0.16044), significant(2e9)], ["0.160", "2.00e9"]);
+//! assert_eq!([whole(9313), whole(96_000)], ["9313", "96\u{202f}000"]);
+//! assert_eq!([duration(12.34), duration(600.0)], ["12.3\u{202f}s", "10.0\u{202f}min"]);
+//! ```
 
 use crate::outcome::record::Statistic;
 
@@ -11,7 +18,7 @@ pub(super) fn known<T>(value: Option<T>, words: impl FnOnce(T) -> String) -> Str
 }
 
 /// Three significant digits, without an exponent between 0.0001 and a million.
-pub(super) fn significant(value: f64) -> String {
+pub fn significant(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
@@ -27,7 +34,7 @@ pub(super) fn significant(value: f64) -> String {
 }
 
 /// A whole number with its thousands apart.
-pub(super) fn whole(value: u64) -> String {
+pub fn whole(value: u64) -> String {
     let digits = value.to_string();
     if digits.len() < 5 {
         return digits;
@@ -42,8 +49,8 @@ pub(super) fn whole(value: u64) -> String {
     out
 }
 
-/// The digits of a percentage: one decimal, two below one percent and near the 7.5 % that divides the classes; what is
-/// there but rounds to nothing says so.
+/// The digits of a percentage: one decimal, two below one percent and near the 7.5 % that divides the
+/// classes; what is there but rounds to nothing says so.
 fn percent_digits(fraction: f64) -> String {
     let percent = fraction * 100.0;
     if percent > 0.0 && percent < 0.005 {
@@ -89,8 +96,8 @@ pub(super) fn size_unit(scale_free: bool) -> &'static str {
     if scale_free { "D0F" } else { "mm" }
 }
 
-/// A wall time.
-pub(super) fn duration(seconds: f64) -> String {
+/// A time in seconds, in the unit that fits.
+pub fn duration(seconds: f64) -> String {
     if seconds < 100.0 {
         format!("{}{THIN}s", significant(seconds))
     } else if seconds < 6000.0 {

@@ -5,8 +5,9 @@ use std::path::Path;
 use maud::{Markup, html};
 
 use super::Written;
+use super::error::ReportError;
 use super::figures::{Axis, BLUE, Dash, Disc, Figure, GREY, Line, Point, Shape, VERMILLION, ramp};
-use super::folder::{ReportError, json, rows};
+use super::files::{json, rows};
 use super::numbers::{duration, known, percent, significant, whole};
 use super::shell::{Drawn, clean, fact, figure, whole_page};
 use crate::outcome::packing::{CurveRow, Measure, PackingRecord, Summary};
@@ -34,7 +35,7 @@ pub fn write_packing(folder: &Path) -> Result<Written, ReportError> {
         curve: rows(&folder.join("constrictions.csv"))?.into_iter().map(|(_, row)| row).collect(),
     };
     let figures = [curves(&packed), slice(&packed.record), connectivity(&packed)];
-    super::keep(folder, &figures, &page(&packed, &figures))
+    super::write_page(folder, &figures, &page(&packed, &figures))
 }
 
 /// A diameter (mm) of the summary.

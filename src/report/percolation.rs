@@ -5,8 +5,8 @@ use std::path::Path;
 use maud::{Markup, html};
 
 use super::Written;
+use super::error::ReportError;
 use super::figures::{Across, Axis, BLUE, Dash, Figure, GREY, Line, PURPLE, Point, Rule, Shape, Tick};
-use super::folder::ReportError;
 use super::numbers::{duration, significant, whole};
 use super::shell::{Drawn, figure, whole_page};
 use crate::outcome::percolation::{NU_PARALLEL, PercolationStudy, Z};
@@ -16,7 +16,7 @@ use crate::outcome::percolation::{NU_PARALLEL, PercolationStudy, Z};
 /// # Errors
 /// What the folder says.
 pub fn write_percolation(folder: &Path, study: &PercolationStudy) -> Result<Written, ReportError> {
-    let figures = [spread(study), threshold(study)];
+    let figures = [percolation_spread(study), threshold(study)];
     let title = "Percolation threshold of the directed cubic lattice";
     let header = html! { h1 { (title) } };
     let main = html! {
@@ -30,7 +30,7 @@ pub fn write_percolation(folder: &Path, study: &PercolationStudy) -> Result<Writ
         @for (index, drawn) in figures.iter().enumerate() { (figure(index + 1, drawn)) }
     };
     let footer = html! { p.small { "voidwalk " (study.version) ", " (duration(study.seconds)) "." } };
-    super::keep(folder, &figures, &whole_page(title, &header, &main, &footer))
+    super::write_page(folder, &figures, &whole_page(title, &header, &main, &footer))
 }
 
 fn table(study: &PercolationStudy) -> Markup {
@@ -80,8 +80,8 @@ fn fits(study: &PercolationStudy) -> Markup {
     }
 }
 
-/// Fig. 6 of the paper: standard deviation against size.
-pub(super) fn spread(study: &PercolationStudy) -> Drawn {
+/// Standard deviation of the threshold against the size of the lattice: Fig. 6 of the paper.
+pub fn percolation_spread(study: &PercolationStudy) -> Drawn {
     let points: Vec<(f64, f64, f64)> = study
         .sizes
         .iter()

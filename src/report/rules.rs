@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::numbers::significant;
 use super::run_figures::trimmed;
 use super::shell::clean;
-use crate::outcome::record::{Outcome, Rule};
+use crate::outcome::record::{AppliedRule, Outcome};
 
 /// Every rule with its value, limit, result, source and what it was made for.
 pub(super) fn rules(outcome: &Outcome) -> Markup {
@@ -24,7 +24,7 @@ pub(super) fn rules(outcome: &Outcome) -> Markup {
     }
 }
 
-fn row(rule: &Rule) -> Markup {
+fn row(rule: &AppliedRule) -> Markup {
     let sign = if rule.at_least { "≥" } else { "≤" };
     html! {
         tr {

@@ -1,4 +1,26 @@
 //! What every page is made of: one HTML file that fetches nothing, its head, its figures.
+//!
+//! A page is put together from [`maud::Markup`], which escapes what it is given; texts from outside go
+//! through [`clean()`] too. [`super::write_page()`] writes it with its figures:
+//!
+//! ```
+//! use maud::html;
+//! use voidwalk::report::figures::{Axis, BLUE, Figure, Line};
+//! use voidwalk::report::shell::{Drawn, clean, drawing, whole_page};
+//! use voidwalk::report::write_page;
+//!
+//! let x = Axis::linear("Increment (–)", 0.0, 10.0);
+//! let mut figure = Figure::new("Eroded", "Base eroded by increment", "", x, Axis::percent("Eroded (%)"));
+//! figure.add(Line::new(vec![(0.0, 0.0), (10.0, 8.0)], BLUE));
+//! let drawn = Drawn { name: "eroded", caption: "One walk.".into(), figure };
+//!
+//! let main = html! { p { (clean("a name\u{202e} from outside")) } figure { (drawing(&drawn)) } };
+//! let page = whole_page("Erosion", &html! { h1 { "Erosion" } }, &main, &html! {});
+//! let folder = tempfile::tempdir()?;
+//! let written = write_page(folder.path(), &[drawn], &page)?;
+//! assert!(written.page.ends_with("report.html") && written.figures[0].ends_with("figures/eroded.svg"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
@@ -9,15 +31,18 @@ use super::figures::{Figure, Size, visible};
 
 const STYLE: &str = include_str!("page.css");
 
-/// A figure, the name of its file and what stands below it.
-pub(super) struct Drawn {
+/// A figure of a page, and what stands below it.
+pub struct Drawn {
+    /// Name of its file, without the ending; no other figure of the page has it.
     pub name: &'static str,
+    /// What stands below it.
     pub caption: String,
+    /// The figure.
     pub figure: Figure,
 }
 
-/// A page as text.
-pub(super) fn whole_page(title: &str, header: &Markup, main: &Markup, footer: &Markup) -> String {
+/// A page as text: `title` for the browser, and what stands in each part of its body.
+pub fn whole_page(title: &str, header: &Markup, main: &Markup, footer: &Markup) -> String {
     // the style is named by its hash: a style that a hostile name might bring along would not be obeyed
     let hash = BASE64_STANDARD.encode(Sha256::digest(STYLE.as_bytes()));
     let policy =
@@ -44,11 +69,12 @@ pub(super) fn whole_page(title: &str, header: &Markup, main: &Markup, footer: &M
 }
 
 /// A text from outside without characters that are no text; maud escapes the markup in it.
-pub(super) fn clean(text: &str) -> String {
+pub fn clean(text: &str) -> String {
     text.chars().map(visible).collect()
 }
 
-pub(super) fn drawing(drawn: &Drawn) -> Markup {
+/// A figure as an element of the page, in both its sizes: the style shows the one that there is room for.
+pub fn drawing(drawn: &Drawn) -> Markup {
     let wide = drawn.figure.inline(&format!("{}-wide", drawn.name), Size::Wide);
     let narrow = drawn.figure.inline(&format!("{}-narrow", drawn.name), Size::Narrow);
     html! { div.wide { (PreEscaped(wide)) } div.narrow { (PreEscaped(narrow)) } }

@@ -7,7 +7,8 @@ use crate::gradation::SizeSampler;
 use crate::network::Network;
 
 /// How passive base particles are moved; a run has the same distribution with the first three.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Engine {
     /// `Counts` where a particle can be passive and there are enough of them for that to be faster, else `Particles`.
     Auto,

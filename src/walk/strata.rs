@@ -17,7 +17,8 @@
 use crate::stream::{Key, Purpose, Words, below};
 
 /// How start nodes and sizes of the base particles are drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Sampling {
     /// Each by itself: the paper's way.
     #[default]

@@ -18,7 +18,6 @@ use voidwalk::constrictions::Curve;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
 use voidwalk::packing::Packing;
-use voidwalk::run::results::resolved;
 use voidwalk::scene::{CurveSource, Scene};
 use voidwalk::store::checkpoint::{Checkpoint, Identity, Label, Section, newest, save};
 use voidwalk::walk::{Engine, Plan, SavedState, SizeClasses, State, Supply, Walk, WalkControl};
@@ -70,18 +69,19 @@ fn shown<T, E: Display>(result: Result<T, E>) -> Option<T> {
 pub fn scene(bytes: &[u8]) {
     let Some(scene) = shown(Scene::parse(bytes, "scene.toml", &[])) else { return };
     // A lattice that is changed void by void is only built where that is quick; files are other readers' matter.
-    let voids = scene.network.shape().map(|lengths| lengths.iter().map(|&n| f64::from(n)).product::<f64>());
-    let given = matches!(scene.curve, Some(CurveSource::Shipped(_)));
+    let voids =
+        scene.network.source().shape().map(|lengths| lengths.iter().map(|&n| f64::from(n)).product::<f64>());
+    let given = matches!(scene.filter.curve, Some(CurveSource::Shipped(_)));
     if !given || voids.is_none_or(|voids| voids > 60.0) || String::from_utf8_lossy(bytes).contains("sieve") {
         return;
     }
     let Some(case) = shown(Case::new(scene)) else { return };
-    let text = resolved(&case);
+    let text = case.resolved().to_toml();
     if case.inputs.is_empty() {
         let again =
             Scene::parse(text.as_bytes(), "resolved.toml", &[]).unwrap_or_else(|e| panic!("{text}: {e}"));
         let again = Case::new(again).unwrap_or_else(|e| panic!("{text}: {e}"));
-        assert_eq!(resolved(&again), text);
+        assert_eq!(again.resolved().to_toml(), text);
     }
 }
 

@@ -139,7 +139,7 @@ pub fn outcome(replicates: u64) -> Outcome {
             "The class “excessive erosion” of Foster and Fell.".into(),
         ],
         inputs: Inputs {
-            filter: Filter {
+            filter: FilterRecord {
                 name: "Loose filter gravel".into(),
                 attribution:
                     "Shire & O'Sullivan (2016), Geotechnique 66(10), 826-839, doi:10.1680/jgeot.15.P.215, \
@@ -157,7 +157,7 @@ pub fn outcome(replicates: u64) -> Outcome {
                 cu_csd: 1.63,
                 curve_name: "shire2016-cu1.5-loose".into(),
             },
-            base: Base {
+            base: BaseRecord {
                 name: "Silty core fill".into(),
                 cu: Some(cu_b),
                 d0_mm: d0b,
@@ -169,7 +169,7 @@ pub fn outcome(replicates: u64) -> Outcome {
                 tail_mass_fraction: 0.0,
                 gradation: straight(d0b, cu_b),
             },
-            network: Network {
+            network: NetworkRecord {
                 kind: NetworkKind::Cubic,
                 name: "cubic".into(),
                 nx: Some(40),
@@ -205,7 +205,7 @@ pub fn outcome(replicates: u64) -> Outcome {
             let (name, quantity, source) = (name.into(), quantity.into(), source.into());
             let (applies_to, note) = ("bases in general".into(), String::new());
             let (meets, value, limit) = (Some(value <= limit), Some(value), Some(limit));
-            Rule { name, quantity, value, limit, at_least: false, meets, applies_to, note, source }
+            AppliedRule { name, quantity, value, limit, at_least: false, meets, applies_to, note, source }
         })
         .into(),
         infiltration: Some(Infiltration {

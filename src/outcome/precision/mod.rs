@@ -1,25 +1,25 @@
 //! How much accuracy a second buys: what `precision.json` holds, and the statistics of a work-precision diagram.
 //!
 //! # Error, time, figure of merit
-//! An error is a standard deviation over replicates (new walks, and where it says so new networks), never one worked out from
-//! the number of particles: all particles of a run share one network and what they block, so a binomial error is several
-//! times too small. Time is processor time, all cores together. The figure of merit is `1 / (error^2 time)`: it does not change with
-//! the number of replicates, and two settings compare by its ratio.
+//! An error is a standard deviation over replicates (new walks, and where it says so new networks), never one worked out
+//! from the number of particles: all particles of a run share one network and what they block, so a binomial error is several
+//! times too small. Time is processor time, all cores together. The figure of merit is `1 / (error^2 time)`: it does not
+//! change with the number of replicates, and two settings compare by its ratio.
 //!
 //! # Intervals
-//! 95 %. Of a mean: Student's t over replicates. Of a standard deviation: chi squared with as many degrees of freedom as there are
-//! independent groups less one. Of a share of wrong verdicts: Wilson's.
+//! 95 %. Of a mean: Student's t over replicates. Of a standard deviation: chi squared with as many degrees of freedom as there
+//! are independent groups less one. Of a share of wrong verdicts: Wilson's.
 
 mod statistics;
 
-pub use statistics::{Bounds, Spread, merit, spread, wilson};
+pub use statistics::{Interval, SdEstimate, merit, sd_estimate, wilson};
 
 use serde::{Deserialize, Serialize};
 
 use super::record::Verdict;
 
 /// The whole of `precision.json`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Precision {
     /// Version of voidwalk.
     pub version: String,
@@ -40,13 +40,13 @@ pub struct Precision {
     /// Voids of its network.
     pub voids: u64,
     /// Each engine against exact answers.
-    pub exact: Option<Exact>,
+    pub exact: Option<ExactTier>,
     /// Error of the scene's eroded mass against time.
-    pub sampling: Option<Sampling>,
+    pub sampling: Option<SamplingTier>,
     /// What settings do to the scene's eroded mass.
     pub bias: Option<Vec<BiasRow>>,
     /// Wrong verdicts against time.
-    pub decision: Option<Decision>,
+    pub decision: Option<DecisionTier>,
     /// Time against the size of the problem.
     pub scaling: Option<Vec<ScalingRow>>,
     /// Packings and triangulations.
@@ -59,7 +59,7 @@ pub struct Precision {
 
 /// The tier of exact answers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Exact {
+pub struct ExactTier {
     /// Random networks of each line.
     pub networks: u64,
     /// What each quantity is.
@@ -96,9 +96,9 @@ pub struct ExactRow {
     pub networks: u64,
     /// Root mean square of found less exact.
     pub error: f64,
-    /// Its 95 % interval.
+    /// Lower end of its 95 % interval.
     pub error_low: f64,
-    /// Its 95 % interval.
+    /// Upper end of its 95 % interval.
     pub error_high: f64,
     /// The error that independent particles have: root mean square of `sqrt(p (1 - p) / particles)`.
     pub expected_error: f64,
@@ -169,7 +169,7 @@ pub struct ClosedRow {
 
 /// The tier of sampling.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Sampling {
+pub struct SamplingTier {
     /// The lattice that it was walked on.
     pub on: String,
     /// One row a variant, kind of replicate and group size.
@@ -191,9 +191,9 @@ pub struct SamplingRow {
     pub groups: u64,
     /// Standard deviation of the groups' means of the eroded mass fraction.
     pub error: f64,
-    /// Its 95 % interval.
+    /// Lower end of the 95 % interval.
     pub error_low: f64,
-    /// Its 95 % interval.
+    /// Upper end of the 95 % interval.
     pub error_high: f64,
     /// Processor time of a group, mean, s.
     pub core_seconds: f64,
@@ -210,15 +210,15 @@ pub struct SamplingLine {
     pub replicates: u64,
     /// Mean of the eroded mass fraction.
     pub mean: f64,
-    /// Mean less that of the first variant, on the same networks: nothing, if both have one law.
+    /// Mean less that of the first variant, on the same networks: zero but for the scatter, if both have one expectation.
     pub difference: f64,
     /// Its standard error; `None` for the first variant.
     pub difference_error: Option<f64>,
     /// Standard deviation of one replicate.
     pub sd: f64,
-    /// Its 95 % interval.
+    /// Lower end of the 95 % interval.
     pub sd_low: f64,
-    /// Its 95 % interval.
+    /// Upper end of the 95 % interval.
     pub sd_high: f64,
     /// `sqrt(mean (1 - mean) / N_base)`, what a binomial of all particles would have; for comparison only.
     pub binomial: f64,
@@ -226,9 +226,9 @@ pub struct SamplingLine {
     pub core_seconds: f64,
     /// `1 / (sd^2 core_seconds)`; `None` without scatter.
     pub merit: Option<f64>,
-    /// Its 95 % interval, from that of `sd`.
+    /// Lower end of its 95 % interval, from that of `sd`.
     pub merit_low: Option<f64>,
-    /// Its 95 % interval.
+    /// Upper end of the 95 % interval.
     pub merit_high: Option<f64>,
 }
 
@@ -239,9 +239,9 @@ pub struct BiasRow {
     pub factor: String,
     /// To what, in words.
     pub level: String,
-    /// The same as a number, where it is one.
+    /// The changed setting as a number, where it is one.
     pub at: f64,
-    /// Whether this is the setting that the others are held against.
+    /// Whether this is the setting that the others are compared with.
     pub reference: bool,
     /// Base particles.
     pub n_base: u64,
@@ -251,11 +251,12 @@ pub struct BiasRow {
     pub value: f64,
     /// Mean less that of the reference.
     pub bias: f64,
-    /// Its 95 % interval; `None` for the reference.
+    /// Lower end of its 95 % interval; `None` for the reference.
     pub bias_low: Option<f64>,
-    /// Its 95 % interval.
+    /// Upper end of the 95 % interval.
     pub bias_high: Option<f64>,
-    /// Whether both were walked on the same networks with the same random numbers, so that the interval is that of a difference.
+    /// Whether both were walked on the same networks with the same random numbers, so that the interval is that of the
+    /// differences replicate by replicate.
     pub paired: bool,
     /// Processor time of a replicate, mean, s.
     pub core_seconds: f64,
@@ -263,7 +264,7 @@ pub struct BiasRow {
 
 /// The tier of verdicts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Decision {
+pub struct DecisionTier {
     /// The lattice that it was walked on.
     pub on: String,
     /// The cases.
@@ -285,15 +286,15 @@ pub struct DecisionCase {
     pub replicates: u64,
     /// Eroded mass fraction of the first run, mean over the reference.
     pub mean: f64,
-    /// 95 % interval.
+    /// Lower end of the 95 % interval.
     pub low: f64,
-    /// 95 % interval.
+    /// Upper end of the 95 % interval.
     pub high: f64,
     /// Standard deviation of a replicate.
     pub sd: f64,
     /// The class, by the means of all replicates.
     pub class: Verdict,
-    /// Whether the interval of the first run leaves its side of 7.5 % certain.
+    /// Whether the 95 % interval of the first run lies on one side of 7.5 %.
     pub certain: bool,
     /// Processor time of a replicate, mean, s.
     pub core_seconds: f64,
@@ -304,15 +305,15 @@ pub struct DecisionCase {
 pub struct DecisionRow {
     /// The case.
     pub case: String,
-    /// `fixed`, or the name of a stopping rule.
+    /// `fixed`, or `decided at` a confidence level.
     pub rule: String,
     /// Replicates, mean.
     pub replicates: f64,
     /// Share of wrong classes.
     pub wrong: f64,
-    /// Its 95 % interval.
+    /// Lower end of the 95 % interval.
     pub wrong_low: f64,
-    /// Its 95 % interval.
+    /// Upper end of the 95 % interval.
     pub wrong_high: f64,
     /// Share of trials that ended without a class.
     pub undecided: f64,
@@ -363,7 +364,7 @@ pub struct PackingRow {
     pub factor: String,
     /// To what, as a multiple of the default; grains as a number.
     pub at: f64,
-    /// Whether this is the setting that the others are held against.
+    /// Whether this is the setting that the others are compared with.
     pub reference: bool,
     /// Grains.
     pub grains: u64,
@@ -377,9 +378,9 @@ pub struct PackingRow {
     pub void_ratio_sd: Option<f64>,
     /// Void ratio less that of the reference.
     pub bias: f64,
-    /// Its 95 % interval.
+    /// Lower end of the 95 % interval.
     pub bias_low: Option<f64>,
-    /// Its 95 % interval.
+    /// Upper end of the 95 % interval.
     pub bias_high: Option<f64>,
     /// Dc5 over the smallest grain, mean.
     pub dc5: f64,

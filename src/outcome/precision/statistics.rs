@@ -1,8 +1,8 @@
 //! Intervals of standard deviations and of shares.
 
-/// An interval.
+/// A 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
+pub struct Interval {
     /// Lower end.
     pub low: f64,
     /// Upper end.
@@ -11,11 +11,11 @@ pub struct Bounds {
 
 /// A standard deviation and its interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spread {
+pub struct SdEstimate {
     /// Standard deviation.
     pub sd: f64,
     /// Its 95 % interval.
-    pub interval: Bounds,
+    pub interval: Interval,
 }
 
 /// The 97.5 % point of the normal distribution.
@@ -30,20 +30,20 @@ fn chi_squared_over(degrees: f64, z: f64) -> f64 {
     (root * root * root).max(1e-3)
 }
 
-/// The standard deviation of independent normal values, with the 95 % interval of chi squared; `known_mean` where it is not
-/// worked out from the values.
+/// The standard deviation of independent normal values, with the 95 % interval of chi squared; about `known_mean` where it is
+/// given, about the mean of the values otherwise.
 ///
 /// # Panics
 /// With fewer than two values, one where the mean is known.
-pub fn spread(values: &[f64], known_mean: Option<f64>) -> Spread {
+pub fn sd_estimate(values: &[f64], known_mean: Option<f64>) -> SdEstimate {
     let n = values.len() as f64;
     let degrees = if known_mean.is_some() { n } else { n - 1.0 };
-    assert!(degrees >= 1.0, "a spread of one value");
+    assert!(degrees >= 1.0, "a standard deviation of one value");
     let mean = known_mean.unwrap_or_else(|| values.iter().sum::<f64>() / n);
     let squares: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
     let sd = (squares / degrees).sqrt();
     let bound = |z: f64| sd / chi_squared_over(degrees, z).sqrt();
-    Spread { sd, interval: Bounds { low: bound(Z), high: bound(-Z) } }
+    SdEstimate { sd, interval: Interval { low: bound(Z), high: bound(-Z) } }
 }
 
 /// The figure of merit, `1 / (error^2 time)`; `None` without an error or a time.
@@ -53,11 +53,11 @@ pub fn merit(error: f64, core_seconds: f64) -> Option<f64> {
 }
 
 /// Wilson's 95 % interval of a share seen in `trials`.
-pub fn wilson(share: f64, trials: f64) -> Bounds {
+pub fn wilson(share: f64, trials: f64) -> Interval {
     let z2 = Z * Z / trials;
     let centre = (share + 0.5 * z2) / (1.0 + z2);
     let half = Z * (share * (1.0 - share) / trials + 0.25 * z2 / trials).sqrt() / (1.0 + z2);
-    Bounds { low: (centre - half).max(0.0), high: (centre + half).min(1.0) }
+    Interval { low: (centre - half).max(0.0), high: (centre + half).min(1.0) }
 }
 
 #[cfg(test)]
@@ -77,11 +77,11 @@ mod tests {
     }
 
     #[test]
-    fn a_spread_by_hand() {
-        let of = spread(&[1.0, 2.0, 3.0, 4.0, 5.0], None);
+    fn a_standard_deviation_by_hand() {
+        let of = sd_estimate(&[1.0, 2.0, 3.0, 4.0, 5.0], None);
         assert!((of.sd - 2.5f64.sqrt()).abs() < 1e-12);
         assert!((of.interval.low - of.sd / (11.143f64 / 4.0).sqrt()).abs() < 0.01);
-        assert!((spread(&[3.0, 4.0], Some(0.0)).sd - 12.5f64.sqrt()).abs() < 1e-12);
+        assert!((sd_estimate(&[3.0, 4.0], Some(0.0)).sd - 12.5f64.sqrt()).abs() < 1e-12);
     }
 
     /// Wilson's interval of 0 of 10 and of 5 of 10.

@@ -106,13 +106,13 @@ impl Axis {
         Axis { label: label.to_owned(), scale: Scale::Log, low, high, ticks, downward: false }
     }
 
-    /// The same axis with these labelled ticks alone.
+    /// With these labelled ticks alone.
     pub fn with_ticks(mut self, ticks: Vec<Tick>) -> Axis {
         self.ticks = ticks;
         self
     }
 
-    /// The same axis with values that grow downward.
+    /// With values that grow downward.
     pub fn downward(mut self) -> Axis {
         self.downward = true;
         self

@@ -1,9 +1,12 @@
 //! From a [`Figure`] to SVG: margins, grid, marks, names.
 
+use super::axis::{Axis, Tick};
+use super::colour::Colour;
+use super::figure::{Figure, Naming, Size};
+use super::marks::{Across, Dash, Line, Mark, Point, Shape};
 use super::path::{along, simplify};
 use super::place::{Canvas, GAP, Rect};
 use super::svg::{Anchor, FONT, Svg, escape, short, width_of, wrap};
-use super::{Across, Axis, Colour, Dash, Figure, Line, Mark, Naming, Point, Shape, Size, Tick};
 
 const TICK_TEXT: f64 = 13.0;
 const LABEL_TEXT: f64 = 14.0;
@@ -38,30 +41,50 @@ impl Frame<'_> {
         simplify(points.iter().filter_map(|point| self.at(*point)))
     }
 
-    /// The same path kept inside the frame, for finding room: what the clip hides needs none.
+    /// A path kept inside the frame, for finding room: what the clip hides needs none.
     fn seen(&self, path: &[(f64, f64)]) -> Vec<(f64, f64)> {
         let area = &self.area;
         path.iter().map(|(x, y)| (x.clamp(area.left, area.right), y.clamp(area.top, area.bottom))).collect()
     }
 }
 
-pub(super) fn draw(figure: &Figure, size: Size, id: &str, namespace: &str) -> String {
+impl Figure {
+    /// A file of its own.
+    pub fn file(&self) -> String {
+        let body = draw(self, Size::Wide, "figure", r#" xmlns="http://www.w3.org/2000/svg""#);
+        format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{body}")
+    }
+
+    /// An element of a page; `id` must be unlike that of any other element there.
+    pub fn inline(&self, id: &str, size: Size) -> String {
+        draw(self, size, id, "")
+    }
+}
+
+fn draw(figure: &Figure, size: Size, id: &str, namespace: &str) -> String {
     let (width, height) = match size {
         Size::Wide => figure.wide,
         Size::Narrow => figure.narrow,
     };
-    let names = match figure.naming {
+    let mut above = match figure.naming {
         Naming::Above => named(figure),
         Naming::Direct => Vec::new(),
     };
-    let (body, homeless) = body(figure, width, height, id, &names);
-    let body =
-        if homeless.is_empty() { body } else { body_with_names_above(figure, width, height, id, homeless) };
+    // Marks whose names find no room are named above the frame; that moves the frame, so all is drawn again.
+    let body = loop {
+        let (body, homeless) = body(figure, width, height, id, &above);
+        if homeless.is_empty() {
+            break body;
+        }
+        above.extend(homeless);
+        above.sort_unstable();
+    };
     let id = escape(id);
     let mut svg = Svg::default();
     svg.raw(&format!(
-        "<svg{namespace} id=\"{id}\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\" \
-         aria-labelledby=\"{id}-title {id}-desc\" font-family=\"{FONT}\" font-size=\"{TICK_TEXT}\" fill=\"#1a1a1a\">\n"
+        "<svg{namespace} id=\"{id}\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
+         role=\"img\" aria-labelledby=\"{id}-title {id}-desc\" font-family=\"{FONT}\" font-size=\"{TICK_TEXT}\" \
+         fill=\"#1a1a1a\">\n"
     ));
     svg.raw(&format!("<title id=\"{id}-title\">{}</title>\n", escape(&figure.title)));
     svg.raw(&format!("<desc id=\"{id}-desc\">{}</desc>\n", escape(&figure.description)));
@@ -69,24 +92,6 @@ pub(super) fn draw(figure: &Figure, size: Size, id: &str, namespace: &str) -> St
     svg.raw(&body);
     svg.raw("</svg>\n");
     svg.finish()
-}
-
-/// Lines whose names found no room are named above the frame; that moves the frame, so all is drawn again.
-fn body_with_names_above(
-    figure: &Figure,
-    width: f64,
-    height: f64,
-    id: &str,
-    mut homeless: Vec<usize>,
-) -> String {
-    loop {
-        let (body, more) = body(figure, width, height, id, &homeless);
-        if more.is_empty() {
-            return body;
-        }
-        homeless.extend(more);
-        homeless.sort_unstable();
-    }
 }
 
 /// Indices of the marks that have a name.
@@ -419,9 +424,7 @@ fn symbol(svg: &mut Svg, (x, y): (f64, f64), point: &Point) {
     let paint = format!("fill=\"{fill}\" stroke=\"{}\" stroke-width=\"1.8\"", point.colour.line);
     let r = SYMBOL;
     match point.shape {
-        Shape::Circle => {
-            svg.raw(&format!("<circle cx=\"{}\" cy=\"{}\" r=\"{r}\" {paint}/>\n", short(x), short(y)));
-        }
+        Shape::Circle => svg.circle((x, y), r, &paint),
         Shape::Square => svg.rect(x - r + 0.5, y - r + 0.5, 2.0 * r - 1.0, 2.0 * r - 1.0, &paint),
         Shape::Diamond => {
             svg.path(&[(x, y - r - 1.0), (x + r + 1.0, y), (x, y + r + 1.0), (x - r - 1.0, y)], true, &paint)

@@ -126,12 +126,12 @@ impl Svg {
         let _ = writeln!(self.text, r#"<rect x="{x}" y="{y}" width="{w}" height="{h}" {paint}/>"#);
     }
 
-    /// A path through the points, closed or not.
     pub(super) fn circle(&mut self, (x, y): (f64, f64), radius: f64, paint: &str) {
         let (x, y, radius) = (short(x), short(y), short(radius));
         self.raw(&format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" {paint}/>\n"));
     }
 
+    /// A path through the points, closed or not.
     pub(super) fn path(&mut self, points: &[(f64, f64)], closed: bool, paint: &str) {
         let Some((first, rest)) = points.split_first() else { return };
         let _ = write!(self.text, r#"<path d="M{} {}"#, short(first.0), short(first.1));

@@ -1,7 +1,7 @@
 //! The figures of a precision study: log-log, with a guide line of slope -1/2 where more time means more samples.
 
 use crate::outcome::precision::{
-    BiasRow, Decision, Exact, ExactRow, PackingTier, Sampling, SamplingLine, ScalingRow,
+    BiasRow, DecisionTier, ExactRow, ExactTier, PackingTier, SamplingLine, SamplingTier, ScalingRow,
 };
 use crate::report::figures::{
     Across, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Point, Rule, Shape,
@@ -53,7 +53,7 @@ fn distinct<'a, T>(rows: &'a [T], of: impl Fn(&'a T) -> &'a str) -> Vec<&'a str>
     all
 }
 
-pub(super) fn exact(exact: &Exact) -> Vec<Drawn> {
+pub(super) fn exact(exact: &ExactTier) -> Vec<Drawn> {
     let captions = [
         (
             "exact-particles",
@@ -119,7 +119,7 @@ pub(super) fn exact(exact: &Exact) -> Vec<Drawn> {
     figures
 }
 
-pub(super) fn sampling(sampling: &Sampling) -> Vec<Drawn> {
+pub(super) fn sampling(sampling: &SamplingTier) -> Vec<Drawn> {
     let captions = [
         (
             "sampling-new-networks",
@@ -140,7 +140,7 @@ pub(super) fn sampling(sampling: &Sampling) -> Vec<Drawn> {
     captions.into_iter().filter_map(drawn).collect()
 }
 
-fn scatter(sampling: &Sampling, name: &'static str, caption: &str, lines: &[&SamplingLine]) -> Drawn {
+fn scatter(sampling: &SamplingTier, name: &'static str, caption: &str, lines: &[&SamplingLine]) -> Drawn {
     const PP: f64 = 100.0;
     let kind = &lines[0].networks;
     let rows = || sampling.rows.iter().filter(|row| row.networks == *kind);
@@ -180,7 +180,7 @@ fn scatter(sampling: &Sampling, name: &'static str, caption: &str, lines: &[&Sam
 }
 
 /// The scatter between networks alone: what a line over new networks has beyond that over one.
-pub(super) fn between_networks(sampling: &Sampling, new: &SamplingLine) -> Option<f64> {
+pub(super) fn between_networks(sampling: &SamplingTier, new: &SamplingLine) -> Option<f64> {
     let one = sampling.lines.iter().find(|l| l.variant == new.variant && l.networks == "one network")?;
     let variance = new.sd * new.sd - one.sd * one.sd;
     (variance > 0.0).then(|| variance.sqrt())
@@ -286,7 +286,7 @@ fn amount(rows: &[BiasRow]) -> Option<Drawn> {
     Some(Drawn { name: "bias-base-particles", caption, figure })
 }
 
-pub(super) fn decision(decision: &Decision) -> Vec<Drawn> {
+pub(super) fn decision(decision: &DecisionTier) -> Vec<Drawn> {
     let (low, high) = range(decision.rows.iter().map(|row| row.core_seconds));
     let most = decision.rows.iter().map(|row| row.wrong_high).fold(0.1, f64::max);
     let mut figure = Figure::new(

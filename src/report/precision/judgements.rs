@@ -1,7 +1,9 @@
 //! A sentence of judgement for each tier, from its numbers.
 
 use super::figures::between_networks;
-use crate::outcome::precision::{BiasRow, Decision, Exact, PackingTier, Precision, Sampling, ScalingRow};
+use crate::outcome::precision::{
+    BiasRow, DecisionTier, ExactTier, PackingTier, Precision, SamplingTier, ScalingRow,
+};
 use crate::outcome::verdict::THRESHOLD;
 use crate::report::numbers::{duration, significant};
 
@@ -22,7 +24,7 @@ fn several(n: usize, thing: &str) -> String {
     format!("{n} {thing}{}", if n == 1 { "" } else { "s" })
 }
 
-fn exact(exact: &Exact) -> String {
+fn exact(exact: &ExactTier) -> String {
     let sampled: Vec<_> = exact.slopes.iter().filter(|slope| slope.engine != "expected").collect();
     let closed_broken = exact.closed.iter().filter(|row| !row.holds).count();
     let closed = match closed_broken {
@@ -53,7 +55,7 @@ fn minus(value: f64) -> String {
     format!("{value:.2}").replace('-', "−")
 }
 
-fn sampling(sampling: &Sampling) -> Option<String> {
+fn sampling(sampling: &SamplingTier) -> Option<String> {
     let new: Vec<_> = sampling.lines.iter().filter(|line| line.networks == "new networks").collect();
     let with_merit = new.iter().filter(|line| line.merit.is_some());
     let best = with_merit.max_by(|a, b| a.merit.unwrap_or(0.0).total_cmp(&b.merit.unwrap_or(0.0)));
@@ -128,7 +130,7 @@ fn bias(rows: &[BiasRow]) -> Option<String> {
     Some(text)
 }
 
-fn decision(decision: &Decision) -> String {
+fn decision(decision: &DecisionTier) -> String {
     let mut text = String::new();
     for case in decision.cases.iter().filter(|case| case.certain) {
         let rows = || decision.rows.iter().filter(|row| row.case == case.name && row.rule == "fixed");

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::figures::between_networks;
 use crate::outcome::precision::{
-    BiasRow, Decision, Exact, ExactRow, PackingTier, Precision, Sampling, ScalingRow,
+    BiasRow, DecisionTier, ExactRow, ExactTier, PackingTier, Precision, SamplingTier, ScalingRow,
 };
 use crate::report::numbers::{duration, percent, significant, whole};
 
@@ -69,14 +69,14 @@ pub(super) fn merits(study: &Precision) -> Markup {
     }
 }
 
-fn last_of_each_line(exact: &Exact) -> Vec<&ExactRow> {
+fn last_of_each_line(exact: &ExactTier) -> Vec<&ExactRow> {
     let of = |slope: &&crate::outcome::precision::Slope| {
         exact.rows.iter().rfind(|row| row.quantity == slope.quantity && row.engine == slope.engine)
     };
     exact.slopes.iter().filter_map(|slope| of(&slope)).collect()
 }
 
-pub(super) fn exact(exact: &Exact) -> Markup {
+pub(super) fn exact(exact: &ExactTier) -> Markup {
     let rows = exact.slopes.iter().zip(last_of_each_line(exact)).map(|(slope, row)| {
         vec![
             format!("{}, {}", slope.quantity, slope.engine),
@@ -112,7 +112,7 @@ pub(super) fn exact(exact: &Exact) -> Markup {
     }
 }
 
-pub(super) fn sampling(sampling: &Sampling) -> Markup {
+pub(super) fn sampling(sampling: &SamplingTier) -> Markup {
     let rows = sampling.lines.iter().map(|line| {
         let first = line.difference_error.is_none();
         vec![
@@ -174,7 +174,7 @@ pub(super) fn bias(rows: &[BiasRow]) -> Markup {
     }
 }
 
-pub(super) fn decision(decision: &Decision) -> Markup {
+pub(super) fn decision(decision: &DecisionTier) -> Markup {
     let cases = decision.cases.iter().map(|case| {
         vec![
             case.name.clone(),

@@ -1,7 +1,7 @@
-//! Settings that are changed one at a time, and what is held against what.
+//! Settings that are changed one at a time and compared with the scene as it is.
 
-use super::PrecisionError;
-use super::first_run::{FirstRun, Scene};
+use super::first_run::{FirstRun, ScaledScene};
+use super::study::PrecisionError;
 use crate::network::Network;
 use crate::scene::NetworkSource;
 
@@ -32,7 +32,7 @@ const INJECTED: [f64; 5] = [0.002, 0.01, 0.05, 0.1, 1.0];
 
 impl Change {
     /// All that make sense for the scene, the reference first.
-    pub fn all(scene: &Scene) -> Vec<Change> {
+    pub fn all(scene: &ScaledScene) -> Vec<Change> {
         let case = scene.study.case;
         let mut all = vec![Change::Nothing];
         all.extend(SHARES.map(Change::Share));
@@ -41,47 +41,24 @@ impl Change {
             all.extend(WIDTHS.into_iter().filter(|&w| [w, w] != [nx, ny]).map(Change::Width));
             all.extend(LENGTHS.into_iter().filter(|&l| l != nz).map(Change::Length));
         }
-        let set = case.scene.inject_share;
+        let set = case.scene.walk.inject_share;
         all.extend(INJECTED.into_iter().filter(|share| (share / set - 1.0).abs() > 1e-6).map(Change::Inject));
-        if matches!(case.scene.network, NetworkSource::Cubic(_)) {
+        if matches!(case.scene.network.source(), NetworkSource::Cubic(_)) {
             all.push(Change::Stratified);
         }
         all
     }
 
-    /// What is changed.
-    pub fn factor(self) -> &'static str {
+    /// What is changed, to what, and that as a number.
+    pub fn about(self) -> (&'static str, String, f64) {
         match self {
-            Change::Nothing => "reference",
-            Change::Share(_) => "base particles",
-            Change::Cap(_) => "cap",
-            Change::Width(_) => "cross-section",
-            Change::Length(_) => "length",
-            Change::Inject(_) => "injection",
-            Change::Stratified => "constriction sampling",
-        }
-    }
-
-    /// To what.
-    pub fn level(self) -> String {
-        match self {
-            Change::Nothing => "as the scene has it".into(),
-            Change::Share(share) => format!("{share} of Eq. (2)"),
-            Change::Cap(cap) => format!("{cap:e} particles"),
-            Change::Width(width) => format!("{width} x {width} voids"),
-            Change::Length(length) => format!("{length} layers"),
-            Change::Inject(share) => format!("{} % an increment", 100.0 * share),
-            Change::Stratified => "stratified".into(),
-        }
-    }
-
-    /// The same as a number.
-    pub fn at(self) -> f64 {
-        match self {
-            Change::Nothing | Change::Stratified => 1.0,
-            Change::Share(share) | Change::Inject(share) => share,
-            Change::Cap(cap) => cap as f64,
-            Change::Width(n) | Change::Length(n) => f64::from(n),
+            Change::Nothing => ("reference", "as the scene has it".into(), 1.0),
+            Change::Share(share) => ("base particles", format!("{share} of Eq. (2)"), share),
+            Change::Cap(cap) => ("cap", format!("{cap:e} particles"), cap as f64),
+            Change::Width(n) => ("cross-section", format!("{n} x {n} voids"), f64::from(n)),
+            Change::Length(n) => ("length", format!("{n} layers"), f64::from(n)),
+            Change::Inject(share) => ("injection", format!("{} % an increment", 100.0 * share), share),
+            Change::Stratified => ("constriction sampling", "stratified".into(), 1.0),
         }
     }
 
@@ -90,52 +67,46 @@ impl Change {
         matches!(self, Change::Nothing | Change::Share(_) | Change::Cap(_) | Change::Inject(_))
     }
 
-    /// The scene's shape, changed.
-    fn shape(self, scene: &Scene) -> Option<[u32; 3]> {
-        let [nx, ny, nz] = scene.shape?;
-        Some(match self {
+    /// The scene with its lattice changed.
+    fn of<'a>(self, scene: &ScaledScene<'a>) -> ScaledScene<'a> {
+        let shape = scene.shape.map(|[nx, ny, nz]| match self {
             Change::Width(width) => [width, width, nz],
             Change::Length(length) => [nx, ny, length],
             _ => [nx, ny, nz],
-        })
+        });
+        ScaledScene { shape, ..*scene }
     }
 
     /// Its network of this seed.
-    pub fn network(self, scene: &Scene, seed: u64) -> Result<Network, PrecisionError> {
-        let changed = Scene { shape: self.shape(scene), ..*scene };
+    pub fn network(self, scene: &ScaledScene, seed: u64) -> Result<Network, PrecisionError> {
+        let changed = self.of(scene);
         match (self, changed.shape) {
-            (Change::Stratified, Some(shape)) => {
-                let case = scene.study.case;
-                Ok(Network::cubic_stratified(shape, &case.curve, case.unit_mm, seed)?)
-            }
+            (Change::Stratified, Some(shape)) => scene.study.stratified(shape, seed),
             _ => changed.network(seed),
         }
     }
 
     /// The scene's run, changed; more voids take more base by Eq. (2).
-    pub fn run(self, scene: &Scene) -> FirstRun {
-        let run = Scene { shape: self.shape(scene), ..*scene }.run();
+    pub fn run(self, scene: &ScaledScene) -> FirstRun {
+        let run = self.of(scene).run();
         let of = |share: f64| ((run.n_base as f64 * share).round() as u64).max(1);
-        let n_base = match self {
-            Change::Share(share) => of(share),
+        match self {
+            Change::Share(share) => FirstRun { n_base: of(share), ..run },
             // A cap is one of the whole scene: a narrower lattice has the same share.
-            Change::Cap(cap) => of((cap as f64 / scene.study.case.n_base as f64).min(1.0)),
-            _ => run.n_base,
-        };
-        let increments = match self {
-            Change::Inject(share) => (1.0 / share).round() as u64,
-            _ => run.increments,
-        };
-        FirstRun { n_base, increments, ..run }
+            Change::Cap(cap) => {
+                FirstRun { n_base: of((cap as f64 / scene.study.case.n_base as f64).min(1.0)), ..run }
+            }
+            Change::Inject(share) => FirstRun { increments: (1.0 / share).round() as u64, ..run },
+            _ => run,
+        }
     }
 
     /// About what it costs, by what the reference costs: a run takes some 3.6 increments a layer beside those of insertion.
-    pub fn cost(self, scene: &Scene) -> f64 {
-        let last = |increments: f64, layers: f64| increments + 3.6 * layers;
-        let Some([_, _, nz]) = scene.shape else { return 1.0 };
-        let changed = Scene { shape: self.shape(scene), ..*scene };
-        let layers = changed.shape.map_or(nz, |[_, _, nz]| nz);
-        changed.by_voids() / scene.by_voids() * last(self.run(scene).increments as f64, f64::from(layers))
-            / last(scene.run().increments as f64, f64::from(nz))
+    pub fn cost(self, scene: &ScaledScene) -> f64 {
+        let last = |increments: u64, layers: u32| increments as f64 + 3.6 * f64::from(layers);
+        let changed = self.of(scene);
+        let (Some([_, _, nz]), Some([_, _, layers])) = (scene.shape, changed.shape) else { return 1.0 };
+        changed.by_voids() / scene.by_voids() * last(self.run(scene).increments, layers)
+            / last(scene.run().increments, nz)
     }
 }

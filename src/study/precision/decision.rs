@@ -1,17 +1,16 @@
 //! How often the class is wrong, against the time that is spent on it.
 //!
-//! Cases near the 7.5 % of the first run, which divide "no erosion" from the rest, are made of the scene by a factor on every size of
-//! its base (the number of particles follows by Eq. 2). Each replicate walks the scene's runs. The class of all replicates of a
-//! case is the reference; rules that stop earlier are tried on random subsets of them.
+//! Cases near the 7.5 % of the first run, which divide "no erosion" from the rest, are made of the scene by a factor on every
+//! size of its base (the number of particles follows by Eq. 2). Each replicate walks the scene's runs. The class of all
+//! replicates of a case is the reference; rules that stop earlier are tried on random subsets of them.
 
-use bitvec::vec::BitVec;
 use rand::Rng;
 
-use super::first_run::{FirstRun, Scene, nominal};
+use super::first_run::{FirstRun, ScaledScene, clean, nominal};
+use super::study::{PrecisionError, Study};
 use super::work::affordable;
-use super::{PrecisionError, Study};
 use crate::gradation::SizeSampler;
-use crate::outcome::precision::{Decision, DecisionCase, DecisionRow, wilson};
+use crate::outcome::precision::{DecisionCase, DecisionRow, DecisionTier, wilson};
 use crate::outcome::record::{Statistic, Verdict};
 use crate::outcome::stopping::{Look, StopRule};
 use crate::outcome::verdict::{THRESHOLD, classify};
@@ -34,24 +33,24 @@ const STEPS: u32 = 14;
 enum Rule {
     /// After so many replicates.
     Fixed(u64),
-    /// Where the verdict is certain to so many percent, or at the end of the reference.
-    Certain(f64),
+    /// Where the verdict is decided at this confidence level (%), or at the end of the reference.
+    Decided(f64),
 }
 
-/// Certainties asked for (%).
-const CERTAIN: [f64; 2] = [95.0, 99.9];
+/// Confidence levels (%).
+const LEVELS: [f64; 2] = [95.0, 99.9];
 
 impl Rule {
     fn all(replicates: u64) -> Vec<Rule> {
         let powers = (0..).map(|power| 1u64 << power);
         let fixed = powers.take_while(|&k| 4 * k <= replicates).map(Rule::Fixed);
-        fixed.chain(CERTAIN.map(Rule::Certain)).collect()
+        fixed.chain(LEVELS.map(Rule::Decided)).collect()
     }
 
     fn name(self) -> String {
         match self {
             Rule::Fixed(_) => "fixed".into(),
-            Rule::Certain(percent) => format!("certain to {percent} %"),
+            Rule::Decided(percent) => format!("decided at {percent} %"),
         }
     }
 
@@ -59,7 +58,7 @@ impl Rule {
     fn class(self, eroded: &[&[f64]]) -> (Verdict, u64) {
         match self {
             Rule::Fixed(k) => (class_of(&eroded[..k as usize]), k),
-            Rule::Certain(percent) => sequential(percent, eroded),
+            Rule::Decided(percent) => sequential(percent, eroded),
         }
     }
 }
@@ -67,7 +66,7 @@ impl Rule {
 /// The class of the rule that `--decide` follows, and the replicates that it takes of these.
 fn sequential(percent: f64, eroded: &[&[f64]]) -> (Verdict, u64) {
     let most = eroded.len() as u64;
-    let rule = StopRule { target_error_pp: None, decide_percent: Some(percent), most };
+    let rule = StopRule { target_error_pp: None, decide_percent: Some(percent), most_replicates: most };
     let runs = eroded[0].len();
     let mut wanted = rule.replicates_at(0, 1);
     loop {
@@ -91,7 +90,7 @@ fn class_of(eroded: &[&[f64]]) -> Verdict {
 }
 
 /// The scene with its base's sizes multiplied.
-struct Near<'a>(Scene<'a>);
+struct Near<'a>(ScaledScene<'a>);
 
 impl Near<'_> {
     fn run(&self, size_factor: f64) -> Result<FirstRun, PrecisionError> {
@@ -116,7 +115,7 @@ impl Near<'_> {
         self.0.study.side_by_side(count as usize, |i| {
             let seed = self.0.study.seed(1 + i as u64);
             let network = self.0.network(seed)?;
-            let mut blocked = BitVec::repeat(false, network.constrictions());
+            let mut blocked = clean(&network);
             let (mut eroded, mut core_seconds) = (Vec::new(), 0.0);
             for run in 1..=runs {
                 let ended = of_run.walk_from(&network, blocked, seed, run)?;
@@ -130,17 +129,17 @@ impl Near<'_> {
 }
 
 /// The tier; `None` where no factor on the base's sizes brings its erosion near 7.5 %.
-pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Option<Decision>, PrecisionError> {
+pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Option<DecisionTier>, PrecisionError> {
     let narrow = study.shape().map(|[nx, ny, nz]| [nx.min(10), ny.min(10), nz]);
-    let search = Near(Scene { study, shape: narrow });
+    let search = Near(ScaledScene { study, shape: narrow });
     let Some(factors) = factors(&search)? else {
         (study.tell)("decision: no factor on the base's sizes brings its erosion near 7.5 %");
         return Ok(None);
     };
-    let runs = study.case.scene.runs;
+    let runs = study.case.scene.walk.runs;
     // The cases erode less than the scene, and take about as long.
     let replicates = factors.len() as u64 * REPLICATES.0 * runs;
-    let near = Near(Scene::affordable(study, replicates, 0.9 * budget_s)?);
+    let near = Near(ScaledScene::affordable(study, replicates, 0.9 * budget_s)?);
     let (mut cases, mut rows) = (Vec::new(), Vec::new());
     let network = near.0.network(study.seed(1))?;
     let pilot = near.run(factors[2])?.walk(&network, study.seed(1))?;
@@ -172,7 +171,7 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Option<Decision>, Pre
         }
         cases.push(case);
     }
-    Ok(Some(Decision { on, cases, rows }))
+    Ok(Some(DecisionTier { on, cases, rows }))
 }
 
 /// Factors on the base's sizes at which the wanted fractions erode, about: coarser grains erode less.
@@ -207,7 +206,7 @@ fn factors(near: &Near) -> Result<Option<Vec<f64>>, PrecisionError> {
 /// A rule, tried on random subsets of the replicates.
 fn tried(study: &Study, case: &DecisionCase, rule: Rule, eroded: &[&[f64]]) -> DecisionRow {
     let key = Key {
-        seed: study.case.scene.seed,
+        seed: study.case.scene.walk.seed,
         purpose: Purpose::Resampling,
         run: 0,
         increment: 0,

@@ -1,12 +1,12 @@
 //! Each engine against exact answers.
 //!
-//! Two chances to leave are known by a linear solve ([`Network::first_passage`]), on random networks:
+//! Two probabilities to leave are known by a linear solve ([`Network::first_passage`]), on random networks:
 //!
-//! - *first particle*: a lone particle of size Dc35 on a clean lattice. It is walked alone, over and over, with the rule that
+//! - *first particle*: a single particle of size Dc35 on a clean lattice. It is walked alone, over and over, with the rule that
 //!   stops it; and, so that each of many million particles is a first one, as particles that fit everywhere on the network
 //!   in which finer exits lead into a void without exits ([`Network::as_first_particle_of`]).
-//! - *clogged lattice*: particles that fit everywhere, on a lattice of which 58 % of the constrictions are blocked from the start, as
-//!   a second run meets it. They end in voids without open exits, circle for ever, or leave.
+//! - *clogged lattice*: particles that fit everywhere, on a lattice of which 58 % of the constrictions are blocked from the
+//!   start, as a second run meets it. They end in voids without open exits, are trapped in closed loops, or leave.
 //!
 //! On one of these networks the particles are independent, so here, and only here, the error must be the binomial one; the
 //! engine `expected` draws nothing, and its error is the rounding of its whole numbers.
@@ -15,14 +15,15 @@ use bitvec::vec::BitVec;
 use rand::Rng;
 
 use super::closed_forms;
-use super::first_run::FirstRun;
-use super::work::timed;
-use super::{PrecisionError, Study};
-use crate::gradation::{Gradation, SizeSampler};
+use super::comparison::mean;
+use super::first_run::{FirstRun, clean};
+use super::study::{PrecisionError, Study};
+use super::work::summed;
 use crate::network::Network;
-use crate::outcome::precision::{Exact, ExactRow, NetworkRow, Quantity, Slope, merit, spread};
+use crate::outcome::log_log_slope;
+use crate::outcome::precision::{ExactRow, ExactTier, NetworkRow, Quantity, Slope, merit, sd_estimate};
 use crate::stream::{Key, Purpose, unit};
-use crate::walk::{Engine, Sampling};
+use crate::walk::Engine;
 
 /// Random networks: more than a hundred, as many as make a row of bits.
 const NETWORKS: usize = 128;
@@ -33,8 +34,8 @@ const SHAPE: [u32; 3] = [6, 6, 4];
 /// Networks tried for each that is taken.
 const TRIES: u64 = 32;
 
-/// Chances to leave that a network must have to be taken: beyond them hardly anything varies.
-const CHANCES: std::ops::Range<f64> = 0.02..0.98;
+/// Probabilities to leave that a network must have to be taken: beyond them hardly anything varies.
+const PROBABILITIES: std::ops::Range<f64> = 0.02..0.98;
 
 /// Share of constrictions that are blocked from the start.
 const CLOGGED: f64 = 0.58;
@@ -45,10 +46,10 @@ const FIRST_AT_DC: f64 = 35.0;
 /// Expected particles that leave, and that do not, from which a deviation is counted in standard errors.
 const NORMAL_FROM: f64 = 50.0;
 
-/// Processor time of a particle walked through such a network, on the lattice and on the general one, and of a lone one
-/// with all that a run takes.
+/// Processor time of a particle walked through such a network, on the lattice and on the general one, and of a single one with
+/// all that a run takes.
 const PARTICLE_S: [f64; 2] = [2.5e-8, 6.0e-8];
-const LONE_S: f64 = 2.0e-5;
+const SINGLE_S: f64 = 2.0e-5;
 
 /// A random network with its exact answer.
 struct Known {
@@ -67,10 +68,18 @@ enum Way {
     Alone,
 }
 
+impl Way {
+    fn name(self) -> &'static str {
+        match self {
+            Way::Together(engine) => engine.name(),
+            Way::Alone => "one at a time",
+        }
+    }
+}
+
 /// A line of the diagram.
 struct Line<'a> {
     quantity: &'static str,
-    engine: &'static str,
     known: &'a [Known],
     way: Way,
     /// The most particles.
@@ -78,62 +87,42 @@ struct Line<'a> {
 }
 
 /// The tier.
-pub(super) fn tier(study: &Study, budget_s: f64) -> Result<(Exact, Vec<NetworkRow>), PrecisionError> {
+pub(super) fn tier(study: &Study, budget_s: f64) -> Result<(ExactTier, Vec<NetworkRow>), PrecisionError> {
     let clogged = study.known(clogged)?;
     let d = study.case.curve.dc(FIRST_AT_DC).unwrap_or(study.case.curve.largest()) / study.case.unit_mm;
-    let lone = study.known(|network, _| first_particle(network, d))?;
-    let made: Vec<Known> = lone.iter().map(|known| known.as_many(d)).collect();
-    let mut quantities = Vec::new();
-    let mut lines = Vec::new();
+    let single = study.known(|network, _| first_particle(network, d))?;
+    let many: Vec<Known> = single.iter().map(|known| known.as_many(d)).collect();
     let most = |part: f64, each_s: f64| tidy(budget_s * part / (NETWORKS as f64 * each_s * 1.2));
+    let particles = most(0.65, PARTICLE_S[0]);
     // Counts and expectations cost the same for any number.
-    let counts = 1000 * most(0.65, PARTICLE_S[0]);
+    let counts = 1000 * particles;
+    let (mut quantities, mut lines) = (Vec::new(), Vec::new());
+    let engines = |quantity, known, particles| {
+        let all = [(Engine::Particles, particles), (Engine::Counts, counts), (Engine::Expected, counts)];
+        all.map(|(engine, most)| Line { quantity, known, way: Way::Together(engine), most })
+    };
     if !clogged.is_empty() {
-        let words = "chance of a particle that fits everywhere to leave a 6 x 6 x 4 lattice of which 58 % of the constrictions are blocked from the start";
-        quantities.push(quantity("clogged lattice", words, &clogged));
-        for (engine, most) in [
-            (Engine::Particles, most(0.65, PARTICLE_S[0])),
-            (Engine::Counts, counts),
-            (Engine::Expected, counts),
-        ] {
-            let way = Way::Together(engine);
-            lines.push(Line {
-                quantity: "clogged lattice",
-                engine: engine.name(),
-                known: &clogged,
-                way,
-                most,
-            });
-        }
+        let what = "probability that a particle that fits everywhere leaves a 6 x 6 x 4 lattice of which 58 % of the \
+                    constrictions are blocked from the start";
+        quantities.push(quantity("clogged lattice", what, &clogged));
+        lines.extend(engines("clogged lattice", &clogged, particles));
     }
-    if !lone.is_empty() {
-        let words = "chance of a lone particle of size Dc35 to leave a clean 6 x 6 x 4 lattice";
-        quantities.push(quantity("first particle", words, &lone));
-        let alone = most(0.1, LONE_S);
-        lines.push(Line {
-            quantity: "first particle",
-            engine: "one at a time",
-            known: &lone,
-            way: Way::Alone,
-            most: alone,
-        });
-        for (engine, most) in [
-            (Engine::Particles, most(0.1, PARTICLE_S[1])),
-            (Engine::Counts, counts),
-            (Engine::Expected, counts),
-        ] {
-            let way = Way::Together(engine);
-            lines.push(Line { quantity: "first particle", engine: engine.name(), known: &made, way, most });
-        }
+    if !single.is_empty() {
+        let what = "probability that a single particle of size Dc35 leaves a clean 6 x 6 x 4 lattice";
+        quantities.push(quantity("first particle", what, &single));
+        let most_alone = most(0.1, SINGLE_S);
+        lines.push(Line { quantity: "first particle", known: &single, way: Way::Alone, most: most_alone });
+        lines.extend(engines("first particle", &many, most(0.1, PARTICLE_S[1])));
     }
     let (mut rows, mut networks, mut slopes) = (Vec::new(), Vec::new(), Vec::new());
     for line in &lines {
-        (study.tell)(&format!("exact: {}, {}, up to {:e} particles", line.quantity, line.engine, line.most));
+        let Line { quantity, way, most, .. } = line;
+        (study.tell)(&format!("exact: {quantity}, {}, up to {most:e} particles", way.name()));
         let first = rows.len();
         for particles in line.numbers() {
             let (row, mut each) = line.row(study, particles)?;
             rows.push(row);
-            if particles == line.most {
+            if particles == *most {
                 networks.append(&mut each);
             }
         }
@@ -141,7 +130,7 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<(Exact, Vec<NetworkRo
     }
     (study.tell)("exact: integers and closed forms");
     let closed = closed_forms::rows(study, budget_s * 0.15)?;
-    Ok((Exact { networks: NETWORKS as u64, quantities, rows, slopes, closed }, networks))
+    Ok((ExactTier { networks: NETWORKS as u64, quantities, rows, slopes, closed }, networks))
 }
 
 /// One, two or five times a power of ten, from 1,000 to 1e8.
@@ -151,8 +140,8 @@ fn tidy(number: f64) -> u64 {
 }
 
 fn quantity(name: &str, words: &str, known: &[Known]) -> Quantity {
-    let mean = known.iter().map(|k| k.leaves).sum::<f64>() / known.len() as f64;
-    Quantity { name: name.into(), words: words.into(), mean }
+    let leaves: Vec<f64> = known.iter().map(|k| k.leaves).collect();
+    Quantity { name: name.into(), words: words.into(), mean: mean(&leaves) }
 }
 
 /// A lattice of which some constrictions are blocked; the particle is finer than every constriction.
@@ -167,7 +156,7 @@ fn clogged(network: Network, seed: u64) -> Known {
 
 fn first_particle(network: Network, diameter: f64) -> Known {
     let (leaves, _) = network.first_passage(diameter as f32, |_| false).from_start(&network);
-    Known { blocked: BitVec::repeat(false, network.constrictions()), network, diameter, leaves }
+    Known { blocked: clean(&network), network, diameter, leaves }
 }
 
 impl Known {
@@ -185,9 +174,8 @@ impl Study<'_> {
         let mut taken = Vec::new();
         for k in 1..=TRIES * NETWORKS as u64 {
             let seed = self.seed(k);
-            let case = self.case;
-            let known = of(Network::cubic(SHAPE, &case.curve, case.unit_mm, seed)?, seed);
-            if CHANCES.contains(&known.leaves) {
+            let known = of(self.lattice(SHAPE, seed)?, seed);
+            if PROBABILITIES.contains(&known.leaves) {
                 taken.push(known);
             }
             if taken.len() == NETWORKS {
@@ -210,35 +198,32 @@ impl Line<'_> {
         let walked = study.side_by_side(self.known.len(), |i| {
             self.found(&self.known[i], particles, study.seed(1 + i as u64) ^ particles)
         })?;
+        let (found, seconds): (Vec<f64>, Vec<f64>) = walked.into_iter().unzip();
+        let (quantity, engine) = (self.quantity.to_string(), self.way.name().to_string());
         let n = particles as f64;
-        let networks: Vec<NetworkRow> = (1..)
-            .zip(&walked)
-            .zip(self.known)
-            .map(|((network, (found, _)), known)| {
-                let p = known.leaves;
-                let draws = !matches!(self.way, Way::Together(Engine::Expected));
-                let normal = draws && n * p.min(1.0 - p) >= NORMAL_FROM;
-                let z = normal.then(|| (found - p) / (p * (1.0 - p) / n).sqrt());
-                let (quantity, engine) = (self.quantity.into(), self.engine.into());
-                NetworkRow { quantity, engine, particles, network, exact: p, found: *found, z }
-            })
-            .collect();
-        let count = networks.len() as f64;
+        let draws = !matches!(self.way, Way::Together(Engine::Expected));
+        let network = |((network, &found), known): ((u64, &f64), &Known)| {
+            let p = known.leaves;
+            let normal = draws && n * p.min(1.0 - p) >= NORMAL_FROM;
+            let z = normal.then(|| (found - p) / (p * (1.0 - p) / n).sqrt());
+            let (quantity, engine) = (quantity.clone(), engine.clone());
+            NetworkRow { quantity, engine, particles, network, exact: p, found, z }
+        };
+        let networks: Vec<NetworkRow> = (1..).zip(&found).zip(self.known).map(network).collect();
         let off: Vec<f64> = networks.iter().map(|row| row.found - row.exact).collect();
-        let error = spread(&off, Some(0.0));
-        let variance: f64 = self.known.iter().map(|k| k.leaves * (1.0 - k.leaves) / n).sum::<f64>() / count;
+        let variances: Vec<f64> = self.known.iter().map(|k| k.leaves * (1.0 - k.leaves) / n).collect();
         let z: Option<Vec<f64>> = networks.iter().map(|row| row.z).collect();
-        let core_seconds = walked.iter().map(|(_, seconds)| seconds).sum::<f64>() / count;
+        let (error, core_seconds) = (sd_estimate(&off, Some(0.0)), mean(&seconds));
         let row = ExactRow {
-            quantity: self.quantity.into(),
-            engine: self.engine.into(),
+            quantity,
+            engine,
             particles,
             networks: networks.len() as u64,
             error: error.sd,
             error_low: error.interval.low,
             error_high: error.interval.high,
-            expected_error: variance.sqrt(),
-            bias: off.iter().sum::<f64>() / count,
+            expected_error: mean(&variances).sqrt(),
+            bias: mean(&off),
             largest_z: z.as_ref().map(|z| z.iter().fold(0.0, |most: f64, z| most.max(z.abs()))),
             chi_squared: z.as_ref().map(|z| z.iter().map(|z| z * z).sum()),
             core_seconds,
@@ -249,52 +234,31 @@ impl Line<'_> {
 
     /// The share that leaves, and the processor time (s).
     fn found(&self, known: &Known, particles: u64, seed: u64) -> Result<(f64, f64), PrecisionError> {
-        let sampler = SizeSampler::new(&Gradation::single(known.diameter)?, 1.0)?;
-        let run = |engine, n_base| FirstRun {
-            engine,
-            sampler: sampler.clone(),
-            tail: 0.0,
-            n_base,
-            increments: 1,
-            sampling: Sampling::Independent,
-        };
-        match self.way {
+        let run = |engine, n_base| FirstRun::of_one_size(known.diameter, n_base, 1, engine);
+        let (eroded, seconds) = match self.way {
             Way::Together(engine) => {
-                let ended =
-                    run(engine, particles).walk_from(&known.network, known.blocked.clone(), seed, 1)?;
-                Ok((ended.eroded as f64 / particles as f64, ended.core_seconds))
+                let run = run(engine, particles)?;
+                let ended = run.walk_from(&known.network, known.blocked.clone(), seed, 1)?;
+                (ended.eroded, ended.core_seconds)
             }
             Way::Alone => {
-                let lone = run(Engine::Particles, 1);
-                let all = || -> Result<u64, PrecisionError> {
-                    let mut eroded = 0;
-                    for particle in 0..particles {
-                        eroded += lone.walk(&known.network, seed.wrapping_add(particle << 8))?.eroded;
-                    }
-                    Ok(eroded)
-                };
-                let (eroded, seconds) = timed(all);
-                Ok((eroded? as f64 / particles as f64, seconds))
+                let single = run(Engine::Particles, 1)?;
+                let one = |k: u64| Ok(single.walk(&known.network, seed.wrapping_add(k << 8))?.eroded);
+                summed(0..particles, one)?
             }
-        }
+        };
+        Ok((eroded as f64 / particles as f64, seconds))
     }
 }
 
-/// Least squares of ln(error) against ln(particles).
+/// How the error of a line falls with the number of particles.
 fn slope(rows: &[ExactRow]) -> Slope {
-    let points: Vec<(f64, f64)> = rows
-        .iter()
-        .filter(|row| row.error > 0.0)
-        .map(|row| (libm::log(row.particles as f64), libm::log(row.error)))
-        .collect();
-    let n = points.len() as f64;
-    let (x, y) = (points.iter().map(|p| p.0).sum::<f64>() / n, points.iter().map(|p| p.1).sum::<f64>() / n);
-    let xy: f64 = points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum();
-    let xx: f64 = points.iter().map(|p| (p.0 - x) * (p.0 - x)).sum();
+    let errors = rows.iter().filter(|row| row.error > 0.0);
+    let points: Vec<(f64, f64)> = errors.map(|row| (row.particles as f64, row.error)).collect();
     Slope {
         quantity: rows[0].quantity.clone(),
         engine: rows[0].engine.clone(),
-        slope: (points.len() > 1).then(|| xy / xx),
+        slope: (points.len() > 1).then(|| log_log_slope(&points)),
         smallest_error: rows.iter().map(|row| row.error).fold(f64::INFINITY, f64::min),
         largest_z: rows.iter().filter_map(|row| row.largest_z).reduce(f64::max),
     }

@@ -2,13 +2,11 @@
 
 use bitvec::vec::BitVec;
 
+use super::study::{PrecisionError, Study};
 use super::work::timed;
-use super::{PrecisionError, Study};
-use crate::case::replicate_seed;
-use crate::gradation::SizeSampler;
+use crate::gradation::{Gradation, SizeSampler};
 use crate::network::Network;
 use crate::outcome::eroded_mass_fraction;
-use crate::scene::NetworkSource;
 use crate::walk::{Engine, Plan, Sampling, SizeClasses, State, Walk, WalkControl};
 
 /// A first run, up to its network and seed.
@@ -16,8 +14,8 @@ use crate::walk::{Engine, Plan, Sampling, SizeClasses, State, Walk, WalkControl}
 pub(super) struct FirstRun {
     pub engine: Engine,
     pub sampler: SizeSampler,
-    /// Share of the base's mass in a tail of unknown size.
-    pub tail: f64,
+    /// Pan fraction of the base by mass: what is finer than the finest sieve.
+    pub pan_fraction: f64,
     pub n_base: u64,
     pub increments: u64,
     /// How start nodes and sizes are drawn.
@@ -45,18 +43,39 @@ impl FirstRun {
     pub fn of(study: &Study) -> Self {
         let case = study.case;
         Self {
-            engine: case.scene.engine,
+            engine: case.scene.walk.engine,
             sampler: case.sampler.clone(),
-            tail: case.base.tail_mass_fraction(),
+            pan_fraction: case.base.tail_mass_fraction(),
             n_base: case.n_base,
             increments: case.increments(),
-            sampling: case.scene.sampling,
+            sampling: case.scene.walk.sampling,
         }
+    }
+
+    /// Particles of one size, in the unit of the network.
+    pub fn of_one_size(
+        diameter: f64,
+        n_base: u64,
+        increments: u64,
+        engine: Engine,
+    ) -> Result<Self, PrecisionError> {
+        let sampler = SizeSampler::new(&Gradation::single(diameter)?, 1.0)?;
+        Ok(Self { engine, sampler, pan_fraction: 0.0, n_base, increments, sampling: Sampling::Independent })
     }
 
     /// On a clean network.
     pub fn walk(&self, network: &Network, seed: u64) -> Result<Ended, PrecisionError> {
-        self.walk_from(network, BitVec::repeat(false, network.constrictions()), seed, 1)
+        self.walk_from(network, clean(network), seed, 1)
+    }
+
+    /// On a clean network; `observe` sees the state after every increment.
+    pub fn walk_observed(
+        &self,
+        network: &Network,
+        seed: u64,
+        observe: &mut (dyn FnMut(&State) + Send),
+    ) -> Result<Ended, PrecisionError> {
+        self.walk_timed(network, clean(network), seed, 1, observe)
     }
 
     /// On the constrictions that `blocked` leaves open, with the streams of run `run`.
@@ -67,11 +86,34 @@ impl FirstRun {
         seed: u64,
         run: u64,
     ) -> Result<Ended, PrecisionError> {
-        let (walked, core_seconds) = timed(|| self.walk_untimed(network, blocked, seed, run));
+        self.walk_timed(network, blocked, seed, run, &mut |_| ())
+    }
+
+    fn walk_timed(
+        &self,
+        network: &Network,
+        blocked: BitVec<u64>,
+        seed: u64,
+        run: u64,
+        observe: &mut (dyn FnMut(&State) + Send),
+    ) -> Result<Ended, PrecisionError> {
+        let walk = || -> Result<(State, u64), PrecisionError> {
+            let share = self.n_base / self.increments;
+            let plan = Plan::new(self.engine, network, &self.sampler, &blocked, share).sampled(self.sampling);
+            let supply = plan.supply(self.sampler.clone(), self.n_base, self.increments, seed, run);
+            let classes = SizeClasses::logarithmic(self.sampler.smallest(), self.sampler.largest(), 64);
+            let mut state = State::new(network, &supply, classes, blocked, seed, run);
+            Walk::new(network, &supply, &state).run(&mut state, &mut |state| {
+                observe(state);
+                WalkControl::Continue
+            })?;
+            Ok((state, supply.total()))
+        };
+        let (walked, core_seconds) = timed(walk);
         let (state, one_by_one) = walked?;
         let tally = &state.tally;
         Ok(Ended {
-            eroded_mass_fraction: eroded_mass_fraction(tally, tally, self.tail),
+            eroded_mass_fraction: eroded_mass_fraction(tally, tally, self.pan_fraction),
             eroded: tally.eroded,
             increments: state.increment,
             particle_moves: tally.particle_moves,
@@ -81,51 +123,16 @@ impl FirstRun {
             core_seconds,
         })
     }
-
-    fn walk_untimed(
-        &self,
-        network: &Network,
-        blocked: BitVec<u64>,
-        seed: u64,
-        run: u64,
-    ) -> Result<(State, u64), PrecisionError> {
-        let share = self.n_base / self.increments;
-        let plan = Plan::new(self.engine, network, &self.sampler, &blocked, share).sampled(self.sampling);
-        let supply = plan.supply(self.sampler.clone(), self.n_base, self.increments, seed, run);
-        let classes = SizeClasses::logarithmic(self.sampler.smallest(), self.sampler.largest(), 64);
-        let mut state = State::new(network, &supply, classes, blocked, seed, run);
-        Walk::new(network, &supply, &state).run(&mut state, &mut |_| WalkControl::Continue)?;
-        Ok((state, supply.total()))
-    }
 }
 
-impl Study<'_> {
-    /// Seed of replicate `k`, counted from 1: of its network, and of its walk.
-    pub(super) fn seed(&self, k: u64) -> u64 {
-        replicate_seed(self.case.scene.seed, k)
-    }
-
-    /// The scene's network with another shape, where it is a lattice.
-    pub(super) fn network(&self, shape: Option<[u32; 3]>, seed: u64) -> Result<Network, PrecisionError> {
-        let case = self.case;
-        Ok(match (&case.scene.network, shape) {
-            (NetworkSource::Cubic(_), Some(shape)) => Network::cubic(shape, &case.curve, case.unit_mm, seed)?,
-            (NetworkSource::Connected(_, wanted), Some(shape)) => {
-                Network::connected(shape, &case.curve, case.unit_mm, seed, wanted)?
-            }
-            _ => case.network(seed)?,
-        })
-    }
-
-    /// The scene's shape, where its network is a lattice.
-    pub(super) fn shape(&self) -> Option<[u32; 3]> {
-        self.case.scene.network.shape()
-    }
+/// No constriction blocked.
+pub(super) fn clean(network: &Network) -> BitVec<u64> {
+    BitVec::repeat(false, network.constrictions())
 }
 
-/// The scene on a lattice that may be narrower than its own, with as much base a void.
+/// The scene on another lattice than its own, mostly a narrower one, with as much base a void.
 #[derive(Clone, Copy)]
-pub(super) struct Scene<'a> {
+pub(super) struct ScaledScene<'a> {
     pub study: &'a Study<'a>,
     /// Voids along x, y, z, where its network is a lattice.
     pub shape: Option<[u32; 3]>,
@@ -134,7 +141,7 @@ pub(super) struct Scene<'a> {
 /// Cross-sections tried, widest first.
 const WIDTHS: [u32; 6] = [u32::MAX, 40, 28, 20, 14, 10];
 
-impl<'a> Scene<'a> {
+impl<'a> ScaledScene<'a> {
     /// On the widest lattice on which so many first runs are paid for.
     pub fn affordable(study: &'a Study<'a>, runs: u64, budget_s: f64) -> Result<Self, PrecisionError> {
         let Some([nx, ny, nz]) = study.shape() else { return Ok(Self { study, shape: None }) };
@@ -189,7 +196,8 @@ const MOVE_S: f64 = 2.5e-9;
 /// Processor time of the insertion of one.
 const INSERTION_S: f64 = 1.5e-8;
 
-/// Processor time of a run counted from what it did, network included: the same on every machine, about right on one of 2024.
+/// Processor time of a run, counted from what it did, network included: the same number on every machine, about right on one
+/// of 2024.
 pub(super) fn nominal(ended: &Ended, network: &Network) -> f64 {
     let each = ended.one_by_one as f64;
     // Where the others are counts, the coarse ones are soon stopped.

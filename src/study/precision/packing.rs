@@ -1,16 +1,17 @@
 //! Error against run time of packings and triangulations: void ratio and constriction curve by stiffness, rate, number of
 //! grains and time step.
 
-use super::bias::{Walked, row};
-use super::work::timed;
-use super::{PrecisionError, Study};
+use super::comparison::{Replicates, compared, mean};
+use super::study::{PrecisionError, Study};
+use super::work::{affordable, timed};
 use crate::constrictions::{Constrictions, DEFAULT_MERGE_OVERLAP, Facets, Triangulation};
 use crate::gradation::Gradation;
 use crate::outcome::precision::{PackingRow, PackingTier, TriangulationRow};
+use crate::outcome::record::Statistic;
 use crate::packing::{Compression, Packing, PackingError, Settings, draw, random_start};
 
-/// Grains of the reference, fewest first; the most that the budget pays for, and no fewer than make the cell three of the largest
-/// grain wide.
+/// Grains of the reference, fewest first; the most that the budget pays for, and no fewer than make the cell three of the
+/// largest grain wide.
 const GRAINS: [usize; 5] = [300, 500, 1000, 2000, 4000];
 
 /// Packings of each setting, at least and at most.
@@ -42,8 +43,8 @@ const CHANGES: [(&str, f64); 10] = [
 /// What the changes cost together, by the cost of the reference.
 const ALL_COST: f64 = 12.5;
 
-/// Default settings at a tenth of the stiffness, but for what is changed. The hold is a number of steps: rows of another step hold
-/// for the same time.
+/// Default settings at a tenth of the stiffness, but for what is changed. The hold is a number of steps: rows of another step
+/// hold for the same time.
 fn settings(change: (&str, f64), friction: f64, grains: usize, seed: u64) -> Settings {
     let of = Settings { friction, grains, seed, max_steps: 400_000, ..Settings::default() };
     let (factor, at) = change;
@@ -92,7 +93,7 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<PackingTier, Precisio
                 continue;
             }
         };
-        let seeds = super::work::affordable(part * budget_s, setting_s(grains), SEEDS.0, SEEDS.1);
+        let seeds = affordable(part * budget_s, setting_s(grains), SEEDS.0, SEEDS.1);
         (study.tell)(&format!(
             "packing: friction {friction}, {grains} grains, {} settings, {seeds} seeds",
             CHANGES.len()
@@ -152,34 +153,34 @@ fn made(gradation: &Gradation, settings: &Settings) -> Result<Made, PrecisionErr
 }
 
 fn packing_row(friction: f64, change: (&str, f64), made: &[Made], reference: &[Made]) -> PackingRow {
-    let mean = |of: fn(&Made) -> f64, all: &[Made]| all.iter().map(of).sum::<f64>() / all.len() as f64;
-    let walked = |all: &[Made]| Walked {
-        eroded: all.iter().map(|m| m.void_ratio).collect(),
-        core_seconds: mean(|m| m.core_seconds, all),
+    let each = |of: fn(&Made) -> f64, all: &[Made]| all.iter().map(of).collect::<Vec<f64>>();
+    let replicates = |all: &[Made]| Replicates {
+        values: each(|m| m.void_ratio, all),
+        core_seconds: each(|m| m.core_seconds, all),
     };
-    let is_reference = change.0 == "reference";
+    let (factor, at) = change;
     // Another number of grains is another start; the same seeds start from the same grains otherwise.
-    let paired = change.0 != "grains";
-    let held_against = (!is_reference).then(|| walked(reference));
-    let of = row(change.0, String::new(), change.1, 0, &walked(made), held_against.as_ref(), paired);
-    let sd = crate::outcome::record::Statistic::of(&walked(made).eroded).sd;
+    let paired = factor != "grains";
+    let found = replicates(made);
+    let of = compared(&found, (factor != "reference").then(|| replicates(reference)).as_ref(), paired);
+    let dc50 = |all: &[Made]| mean(&each(|m| m.dc50, all));
     PackingRow {
         friction,
-        factor: change.0.into(),
-        at: change.1,
-        reference: is_reference,
+        factor: factor.into(),
+        at,
+        reference: of.reference,
         grains: made[0].packing.diameter.len() as u64,
         seeds: made.len() as u64,
         settled: made.iter().filter(|m| m.settled).count() as u64,
         void_ratio: of.value,
-        void_ratio_sd: sd,
+        void_ratio_sd: Statistic::of(&found.values).sd,
         bias: of.bias,
         bias_low: of.bias_low,
         bias_high: of.bias_high,
-        dc5: mean(|m| m.dc5, made),
-        dc50: mean(|m| m.dc50, made),
-        dc50_bias: mean(|m| m.dc50, made) / mean(|m| m.dc50, reference) - 1.0,
-        cu_csd: mean(|m| m.cu_csd, made),
+        dc5: mean(&each(|m| m.dc5, made)),
+        dc50: dc50(made),
+        dc50_bias: dc50(made) / dc50(reference) - 1.0,
+        cu_csd: mean(&each(|m| m.cu_csd, made)),
         core_seconds: of.core_seconds,
     }
 }

@@ -1,43 +1,44 @@
 //! The scatter of the scene's eroded mass over replicates: what another second buys.
 //!
-//! Two kinds of replicate: *new networks* (what a verdict is about), and *one network* walked anew (what a way of drawing base
-//! particles can change; what is left beside it is the scatter between networks, the floor of all that draws better).
+//! Two kinds of replicate: *new networks* (what a verdict is about), and *one network* walked anew (what a way of drawing
+//! base particles can change; the rest is the scatter between networks, which no way of drawing lowers).
 
 use super::changes::Change;
-use super::first_run::{FirstRun, Scene, nominal};
+use super::comparison::{Replicates, mean, paired_difference};
+use super::first_run::{FirstRun, ScaledScene, nominal};
+use super::study::{PrecisionError, Study};
 use super::work::affordable;
-use super::{PrecisionError, Study};
-use crate::outcome::precision::{Sampling, SamplingLine, SamplingRow, merit, spread};
-use crate::outcome::record::Statistic;
-use crate::walk::{Engine, Sampling as Drawn};
+use crate::outcome::precision::{SamplingLine, SamplingRow, SamplingTier, merit, sd_estimate};
+use crate::walk::{Engine, Sampling};
 
-/// A way of drawing and moving base particles, all of one law. The first that is walked is what the others are held against.
+/// A way of drawing and moving base particles; under all of them the eroded mass has one expectation. The first that is walked
+/// is what the others are compared with.
 struct Variant {
     name: &'static str,
     engine: Engine,
     /// How its start nodes and sizes are drawn.
-    base: Drawn,
+    base: Sampling,
     /// Its networks, where they are new.
     networks: Change,
 }
 
-const fn of(name: &'static str, engine: Engine, base: Drawn) -> Variant {
+const fn of(name: &'static str, engine: Engine, base: Sampling) -> Variant {
     Variant { name, engine, base, networks: Change::Nothing }
 }
 
 const VARIANTS: [Variant; 7] = [
-    of("counts", Engine::Counts, Drawn::Independent),
-    of("particles", Engine::Particles, Drawn::Independent),
-    of("expected", Engine::Expected, Drawn::Independent),
-    of("counts, stratified base", Engine::Counts, Drawn::Stratified),
-    of("expected, stratified base", Engine::Expected, Drawn::Stratified),
+    of("counts", Engine::Counts, Sampling::Independent),
+    of("particles", Engine::Particles, Sampling::Independent),
+    of("expected", Engine::Expected, Sampling::Independent),
+    of("counts, stratified base", Engine::Counts, Sampling::Stratified),
+    of("expected, stratified base", Engine::Expected, Sampling::Stratified),
     Variant {
         networks: Change::Stratified,
-        ..of("counts, stratified constrictions", Engine::Counts, Drawn::Independent)
+        ..of("counts, stratified constrictions", Engine::Counts, Sampling::Independent)
     },
     Variant {
         networks: Change::Stratified,
-        ..of("expected, both stratified", Engine::Expected, Drawn::Stratified)
+        ..of("expected, both stratified", Engine::Expected, Sampling::Stratified)
     },
 ];
 
@@ -53,15 +54,9 @@ const ENOUGH: u64 = 40;
 /// Groups of replicates of which a standard deviation is taken, at least.
 const GROUPS: u64 = 4;
 
-/// One replicate of one variant.
-struct One {
-    eroded: f64,
-    core_seconds: f64,
-}
-
 /// The tier.
-pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Sampling, PrecisionError> {
-    let scene = Scene::affordable(study, ENOUGH * (KINDS.len() * VARIANTS.len()) as u64, budget_s)?;
+pub(super) fn tier(study: &Study, budget_s: f64) -> Result<SamplingTier, PrecisionError> {
+    let scene = ScaledScene::affordable(study, ENOUGH * (KINDS.len() * VARIANTS.len()) as u64, budget_s)?;
     (study.tell)(&format!("sampling: on {}", scene.words()));
     let network = scene.network(study.seed(1))?;
     let n_base = scene.run().n_base;
@@ -84,49 +79,45 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Sampling, PrecisionEr
     let all: f64 = variants.iter().map(|(_, _, cost, _)| cost).sum();
     let replicates = affordable(budget_s, all * KINDS.len() as f64, REPLICATES.0, REPLICATES.1);
     (study.tell)(&format!("sampling: {replicates} replicates of {} lines", variants.len() * KINDS.len()));
-    let mut sampling = Sampling { on: scene.words(), rows: Vec::new(), lines: Vec::new() };
+    let mut sampling = SamplingTier { on: scene.words(), rows: Vec::new(), lines: Vec::new() };
     for (kind, networks) in KINDS.into_iter().enumerate() {
-        let mut first: Option<Vec<One>> = None;
+        let mut first = None;
         // On one given network there is nothing to stratify.
         let of_kind = |v: &&(&Variant, FirstRun, f64, u64)| kind == 0 || v.0.networks == Change::Nothing;
         for (variant, run, ..) in variants.iter().filter(of_kind) {
-            let walked = study.side_by_side(replicates as usize, |i| {
-                let seed = study.seed(1 + i as u64);
+            let found = study.replicates(replicates, |seed| {
                 let of_network = if kind == 0 { seed } else { study.seed(1) };
                 let network = variant.networks.network(&scene, of_network)?;
                 let ended = run.walk(&network, seed)?;
-                Ok(One { eroded: ended.eroded_mass_fraction, core_seconds: ended.core_seconds })
+                Ok((ended.eroded_mass_fraction, ended.core_seconds))
             })?;
-            sampling.lines.push(line(variant.name, networks, &walked, first.as_deref(), n_base));
-            sampling.rows.extend(rows(variant.name, networks, &walked));
-            first.get_or_insert(walked);
+            sampling.lines.push(line(variant.name, networks, &found, first.as_ref(), n_base));
+            sampling.rows.extend(rows(variant.name, networks, &found));
+            first.get_or_insert(found);
         }
     }
     Ok(sampling)
 }
 
-fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    let n = values.len() as f64;
-    values.sum::<f64>() / n
-}
-
-fn line(variant: &str, networks: &str, walked: &[One], first: Option<&[One]>, n_base: u64) -> SamplingLine {
-    let eroded: Vec<f64> = walked.iter().map(|one| one.eroded).collect();
-    let of = spread(&eroded, None);
-    let mean_eroded = mean(eroded.iter().copied());
-    let core_seconds = mean(walked.iter().map(|one| one.core_seconds));
-    let difference = first.map(|first| {
-        let each: Vec<f64> = walked.iter().zip(first).map(|(a, b)| a.eroded - b.eroded).collect();
-        let of = Statistic::of(&each);
-        (of.mean, of.sd.unwrap_or(0.0) / (each.len() as f64).sqrt())
-    });
+/// All replicates of a variant, compared with those of the first one.
+fn line(
+    variant: &str,
+    networks: &str,
+    found: &Replicates,
+    first: Option<&Replicates>,
+    n_base: u64,
+) -> SamplingLine {
+    let of = sd_estimate(&found.values, None);
+    let (mean_eroded, core_seconds) = (mean(&found.values), mean(&found.core_seconds));
+    let replicates = found.values.len();
+    let difference = first.map(|first| paired_difference(found, first));
     SamplingLine {
         variant: variant.into(),
         networks: networks.into(),
-        replicates: walked.len() as u64,
+        replicates: replicates as u64,
         mean: mean_eroded,
-        difference: difference.map_or(0.0, |d| d.0),
-        difference_error: difference.map(|d| d.1),
+        difference: difference.map_or(0.0, |d| d.mean),
+        difference_error: difference.map(|d| d.sd.unwrap_or(0.0) / (replicates as f64).sqrt()),
         sd: of.sd,
         sd_low: of.interval.low,
         sd_high: of.interval.high,
@@ -139,12 +130,13 @@ fn line(variant: &str, networks: &str, walked: &[One], first: Option<&[One]>, n_
 }
 
 /// Standard deviations of the means of groups of 1, 2, 4, ... replicates.
-fn rows(variant: &str, networks: &str, walked: &[One]) -> Vec<SamplingRow> {
-    let sizes = (0..).map(|power| 1u64 << power).take_while(|size| walked.len() as u64 / size >= GROUPS);
+fn rows(variant: &str, networks: &str, found: &Replicates) -> Vec<SamplingRow> {
+    let sizes =
+        (0..).map(|power| 1u64 << power).take_while(|size| found.values.len() as u64 / size >= GROUPS);
     let row = |group: u64| {
-        let groups = || walked.chunks_exact(group as usize);
-        let means: Vec<f64> = groups().map(|g| mean(g.iter().map(|one| one.eroded))).collect();
-        let of = spread(&means, None);
+        let means: Vec<f64> = found.values.chunks_exact(group as usize).map(mean).collect();
+        let seconds = found.core_seconds.chunks_exact(group as usize).map(|group| group.iter().sum());
+        let of = sd_estimate(&means, None);
         SamplingRow {
             variant: variant.into(),
             networks: networks.into(),
@@ -153,7 +145,7 @@ fn rows(variant: &str, networks: &str, walked: &[One]) -> Vec<SamplingRow> {
             error: of.sd,
             error_low: of.interval.low,
             error_high: of.interval.high,
-            core_seconds: mean(groups().map(|g| g.iter().map(|one| one.core_seconds).sum())),
+            core_seconds: mean(&seconds.collect::<Vec<f64>>()),
         }
     };
     sizes.map(row).collect()

@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use super::first_run::{FirstRun, nominal};
+use super::study::{PrecisionError, Study};
 use super::work::all_threads;
-use super::{PrecisionError, Study};
 use crate::network::Network;
 use crate::outcome::precision::ScalingRow;
 use crate::walk::{Engine, threads};

@@ -1,4 +1,4 @@
-//! The walk once more, particle by particle, with what the fast one decided left open: 32 or 64 bits for every diameter and
+//! A second, slow walk, particle by particle, with what the fast one decided left open: 32 or 64 bits for every diameter and
 //! weight, blocking from the next increment or at once.
 //!
 //! Every base particle has one random stream of its own, for where it starts, its size and every exit it picks. So two twins
@@ -8,9 +8,10 @@
 use rand::Rng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::bias::{Walked, row};
+use super::comparison::compared;
+use super::networks::given;
+use super::study::{PrecisionError, Study};
 use super::work::{affordable, timed};
-use super::{PrecisionError, Study};
 use crate::network::{END, Network};
 use crate::outcome::precision::BiasRow;
 use crate::stream::{Key, Purpose, below, unit};
@@ -66,17 +67,13 @@ pub(super) fn rows(study: &Study, budget_s: f64) -> Result<Vec<BiasRow>, Precisi
     let mut rows = Vec::new();
     let mut reference = None;
     for (factor, level, rules) in kinds {
-        let walked = study.side_by_side(replicates as usize, |i| {
-            let seed = study.seed(1 + i as u64);
+        let found = study.replicates(replicates, |seed| {
             let (eroded, core_seconds) = timed(|| eroded_mass_fraction(study, shape, n_base, rules, seed));
             Ok((eroded?, core_seconds))
         })?;
-        let walked = Walked {
-            core_seconds: walked.iter().map(|(_, seconds)| seconds).sum::<f64>() / replicates as f64,
-            eroded: walked.into_iter().map(|(eroded, _)| eroded).collect(),
-        };
-        rows.push(row(factor, level.into(), 1.0, n_base, &walked, reference.as_ref(), true));
-        reference.get_or_insert(walked);
+        let row = compared(&found, reference.as_ref(), true);
+        rows.push(BiasRow { factor: factor.into(), level: level.into(), n_base, ..row });
+        reference.get_or_insert(found);
     }
     Ok(rows)
 }
@@ -106,12 +103,12 @@ fn eroded_mass_fraction(
     let case = study.case;
     let count = Network::lattice_constrictions(shape)?;
     let diameter = sizes(study, count, rules, seed);
-    let network = Network::cubic_from_diameters(shape, vec![1.0; count], case.unit_mm)?;
+    let network = given(shape, vec![1.0; count])?;
     let increments = case.increments();
     let mut area: Vec<f64> = diameter.iter().map(|d| d * d).collect();
     let mut moving: Vec<Particle> = Vec::new();
     let (mut inserted_mass, mut eroded_mass, mut increment) = (0.0, 0.0, 0);
-    // A particle that circles for ever is retained; so many increments without an end are far beyond all others.
+    // A particle trapped in a closed loop is retained; so many increments without an end are far beyond all others.
     let last = increments + 400 * u64::from(shape[2]);
     while increment < last && (increment < increments || !moving.is_empty()) {
         let share = |t: u64| (u128::from(n_base) * u128::from(t) / u128::from(increments)) as u64;

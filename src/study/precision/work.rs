@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rustix::time::{ClockId, clock_gettime};
 
-use super::{PrecisionError, Study};
+use super::study::{PrecisionError, Study};
 
 /// Processor time of this thread (s).
 pub(super) fn this_thread() -> f64 {
@@ -27,6 +27,16 @@ pub(super) fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let begun = this_thread();
     let made = work();
     (made, this_thread() - begun)
+}
+
+/// The sum of what `work` gives, piece after piece, and the processor time of this thread that all of it takes (s).
+pub(super) fn summed(
+    mut pieces: impl Iterator<Item = u64>,
+    work: impl Fn(u64) -> Result<u64, PrecisionError>,
+) -> Result<(u64, f64), PrecisionError> {
+    let (sum, seconds) =
+        timed(|| pieces.try_fold(0, |sum, piece| Ok::<_, PrecisionError>(sum + work(piece)?)));
+    Ok((sum?, seconds))
 }
 
 impl Study<'_> {

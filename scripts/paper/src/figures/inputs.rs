@@ -3,17 +3,21 @@
 use std::collections::BTreeMap;
 
 use super::scatter::{Group, Plot, across, scatter};
-use super::study::Study;
-use crate::outcome::record::{Filter, SeriesRow, Statistic};
-use crate::report::figures::{
+use crate::study::Study;
+use voidwalk::outcome::record::{FilterRecord as Filter, SeriesRow, Statistic};
+use voidwalk::report::figures::{
     Across, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Shape, VERMILLION,
     ramp,
 };
-use crate::report::percolation::spread;
-use crate::report::shell::Drawn;
+use voidwalk::report::percolation_spread;
+use voidwalk::report::shell::Drawn;
 
-pub(super) fn fig_6(study: &Study) -> Vec<Drawn> {
-    study.percolation.iter().map(|percolation| Drawn { name: "fig6", ..spread(percolation) }).collect()
+pub fn fig_6(study: &Study) -> Vec<Drawn> {
+    study
+        .percolation
+        .iter()
+        .map(|percolation| Drawn { name: "fig6", ..percolation_spread(percolation) })
+        .collect()
 }
 
 /// The six filters of Table 2, and the published curve of each where there is one.
@@ -33,7 +37,7 @@ fn filters(study: &Study) -> Vec<(&Filter, Option<&Filter>, &'static str, Colour
     named.into_iter().filter_map(found).collect()
 }
 
-pub(super) fn fig_7(study: &Study) -> Vec<Drawn> {
+pub fn fig_7(study: &Study) -> Vec<Drawn> {
     let filters = filters(study);
     if filters.is_empty() {
         return Vec::new();
@@ -110,22 +114,23 @@ fn kenney(
     drawn.into_iter().flatten().collect()
 }
 
-pub(super) fn fig_8(study: &Study) -> Vec<Drawn> {
+pub fn fig_8(study: &Study) -> Vec<Drawn> {
     let names = [("fig8a", "Fig. 8(a): filter with Cu 1.2"), ("fig8b", "Fig. 8(b): filter with Cu 1.2")];
     kenney(study, "cu1.2-dense", names, 0.18, 0.18)
 }
 
-pub(super) fn fig_9(study: &Study) -> Vec<Drawn> {
+pub fn fig_9(study: &Study) -> Vec<Drawn> {
     let names = [("fig9a", "Fig. 9(a): filter with Cu 3"), ("fig9b", "Fig. 9(b): filter with Cu 3")];
     kenney(study, "cu3-loose", names, 0.30, 0.25)
 }
 
-pub(super) fn fig_10(study: &Study) -> Vec<Drawn> {
+pub fn fig_10(study: &Study) -> Vec<Drawn> {
     let names = [("fig10a", "Fig. 10(a): filter with Cu 6"), ("fig10b", "Fig. 10(b): filter with Cu 6")];
     kenney(study, "cu6-friction0.7", names, 0.34, 0.26)
 }
 
-/// Mean over the replicates of what has eroded by each increment, percent; a walk that has ended stays where it is.
+/// Mean over the replicates of what has eroded by each increment, percent; a walk that has ended stays where
+/// it is.
 fn mean_progress(rows: &[SeriesRow], run: u64) -> Vec<(f64, f64)> {
     let mut walks: BTreeMap<u64, Vec<(u64, f64)>> = BTreeMap::new();
     for row in rows.iter().filter(|row| row.run == run) {
@@ -141,7 +146,7 @@ fn mean_progress(rows: &[SeriesRow], run: u64) -> Vec<(f64, f64)> {
     (0..=last).map(|increment| (increment as f64, at(increment))).collect()
 }
 
-pub(super) fn fig_13(study: &Study) -> Vec<Drawn> {
+pub fn fig_13(study: &Study) -> Vec<Drawn> {
     if study.series.is_empty() {
         return Vec::new();
     }
@@ -167,7 +172,7 @@ pub(super) fn fig_13(study: &Study) -> Vec<Drawn> {
     vec![Drawn { name: "fig13", caption, figure }]
 }
 
-pub(super) fn fig_18(study: &Study) -> Vec<Drawn> {
+pub fn fig_18(study: &Study) -> Vec<Drawn> {
     let mut curves: BTreeMap<u64, Vec<(f64, f64)>> = BTreeMap::new();
     for row in study.retained.iter().filter(|row| row.replicate == 1 && row.run == 1) {
         curves.entry(row.increment).or_default().push((row.diameter_mm, row.percent_finer_by_mass));

@@ -2,9 +2,9 @@
 //!
 //! Rules that the paper states of "all" combinations are counted over the 66 (see [`Case::in_the_66`]).
 
-use super::measured::{Measured, Of};
-use super::study::{Case, Study, times};
-use crate::outcome::record::{Run, Statistic, Verdict};
+use crate::measured::{Measured, Of};
+use crate::study::{Case, Study, times};
+use voidwalk::outcome::record::{Run, Statistic, Verdict};
 
 /// The 66 of a variant that pass a test.
 fn those<'a>(study: &'a Study, plan: &str, fits: impl Fn(&Case) -> bool) -> Vec<&'a Case> {
@@ -21,28 +21,28 @@ fn median(values: &mut [f64]) -> Option<f64> {
     (n > 0).then(|| 0.5 * (values[(n - 1) / 2] + values[n / 2]))
 }
 
-pub(super) fn voids(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+pub fn voids(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     Some(Measured::exact(study.cases(plan).first()?.outcome.inputs.network.voids as f64))
 }
 
-pub(super) fn combinations(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+pub fn combinations(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     let (all, marked) = (study.cases(plan).len(), those(study, plan, |_| true).len());
     (all > 0).then(|| Measured::exact(marked as f64).saying(format!("of {all}: those without Dc15, a guess")))
 }
 
-pub(super) fn n_base(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
+pub fn n_base(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
     find(study, plan, of)?.line.n_base_eq2.map(|n| Measured::exact(n as f64))
 }
 
 /// Particles of both runs together, most of all combinations.
-pub(super) fn most_particles(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+pub fn most_particles(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     let most =
         study.cases(plan).into_iter().map(|case| case.line.n_base * case.line.runs.len() as u64).max()?;
     Some(Measured::exact(most as f64))
 }
 
 /// Constrictions that the second run blocks in percent of those of the first: median.
-pub(super) fn second_blocks(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+pub fn second_blocks(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     let share = |case: &Case| {
         let (first, both) = (case.run(1)?.blocked_fraction.mean, case.run(2)?.blocked_fraction.mean);
         (first > 0.0).then(|| 100.0 * (both - first) / first)
@@ -71,7 +71,7 @@ fn first_runs(case: &Case) -> impl Iterator<Item = &Run> {
 }
 
 /// Spread of the largest eroded particle over ten new networks, in percent of its mean.
-pub(super) fn reruns_largest(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+pub fn reruns_largest(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     let one = |case: &Case| {
         let sizes: Vec<f64> = first_runs(case).filter_map(|run| run.largest_eroded_over_d15f).collect();
         (sizes.len() > 1).then(|| 100.0 * spread(&sizes).unwrap_or(0.0) / Statistic::of(&sizes).mean)
@@ -80,7 +80,7 @@ pub(super) fn reruns_largest(study: &Study, plan: &str, _: &Of) -> Option<Measur
 }
 
 /// Spread of the eroded mass over ten new networks, in percent of the total.
-pub(super) fn reruns_eroded(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+pub fn reruns_eroded(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     let one = |case: &Case| {
         let eroded: Vec<f64> = first_runs(case).map(|run| 100.0 * run.eroded_mass_fraction).collect();
         (eroded.len() > 1).then(|| spread(&eroded)).flatten()
@@ -89,7 +89,7 @@ pub(super) fn reruns_eroded(study: &Study, plan: &str, _: &Of) -> Option<Measure
 }
 
 /// 1 where the case has this class, 0 where it has another.
-pub(super) fn class(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
+pub fn class(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
     let case = find(study, plan, of)?;
     let words = format!("{}: {:.1} % then {:.1} %", case.line.verdict.words(), case.mean(1), case.mean(2));
     let measured = Measured::exact(f64::from(u8::from(case.line.verdict.words() == of.class))).saying(words);
@@ -97,7 +97,7 @@ pub(super) fn class(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
 }
 
 /// Eroded mass of a case in a run, percent.
-pub(super) fn eroded(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
+pub fn eroded(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
     find(study, plan, of)?.eroded(of.run).as_ref().map(Measured::of)
 }
 
@@ -112,11 +112,11 @@ fn is_wide(case: &Case) -> bool {
     case.level("cu_b") != "1.5"
 }
 
-pub(super) fn loose_below_5_not_none(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+pub fn loose_below_5_not_none(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     outside(&those(study, plan, |case| case.is_loose() && case.d85_ratio() < 5.0), Verdict::None)
 }
 
-pub(super) fn uniform_above_5_not_continuing(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+pub fn uniform_above_5_not_continuing(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     let uniform = |case: &Case| case.is_loose() && !is_wide(case) && case.d85_ratio() > 5.0;
     outside(&those(study, plan, uniform), Verdict::Continuing)
 }
@@ -125,7 +125,7 @@ fn in_the_middle(case: &Case) -> bool {
     (5.0..6.0).contains(&case.d85_ratio())
 }
 
-pub(super) fn wide_5_to_6_not_some(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+pub fn wide_5_to_6_not_some(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     outside(
         &those(study, plan, |case| case.is_loose() && is_wide(case) && in_the_middle(case)),
         Verdict::Some,
@@ -133,7 +133,7 @@ pub(super) fn wide_5_to_6_not_some(study: &Study, plan: &str, _: &Of) -> Option<
 }
 
 /// Greatest fall from the first run to the second of uniform bases above 5, in percent of the first.
-pub(super) fn uniform_reduction(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+pub fn uniform_reduction(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     let uniform = |case: &Case| case.is_loose() && !is_wide(case) && case.d85_ratio() > 5.0;
     let fall = |case: &Case| 100.0 * (1.0 - case.mean(2) / case.mean(1));
     those(study, plan, uniform).into_iter().map(fall).max_by(f64::total_cmp).map(Measured::exact)
@@ -152,7 +152,7 @@ fn twins<'a>(study: &'a Study, plan: &str, fits: impl Fn(&Case) -> bool) -> Vec<
 }
 
 /// Combinations above 5 that erode no less on the dense filter.
-pub(super) fn dense_not_less(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+pub fn dense_not_less(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     let twins = twins(study, plan, |case| case.d85_ratio() > 5.0);
     Measured::exceptions(
         twins.iter().filter(|(dense, loose)| dense.mean(1) >= loose.mean(1)).count(),
@@ -162,7 +162,7 @@ pub(super) fn dense_not_less(study: &Study, plan: &str, _: &Of) -> Option<Measur
 }
 
 /// Combinations above 5 in which the base with Cu 4.5 erodes no less than that with Cu 1.5.
-pub(super) fn wide_not_less(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+pub fn wide_not_less(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     let widest = those(study, plan, |case| case.level("cu_b") == "4.5" && case.d85_ratio() > 5.0);
     let not_less = |case: &&&Case| {
         let levels = [("filter", case.level("filter")), ("cu_b", "1.5"), ("d85b", case.level("d85b"))];
@@ -181,7 +181,8 @@ struct Boundary {
 }
 
 impl Boundary {
-    /// The best of all boundaries: between which ratios it lies, and how many cases it leaves on the wrong side.
+    /// The best of all boundaries: between which ratios it lies, and how many cases it leaves on the wrong
+    /// side.
     fn best(cases: &[(f64, bool)]) -> Option<Self> {
         let mut sorted = cases.to_vec();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -201,7 +202,8 @@ impl Boundary {
     }
 }
 
-/// Loose combinations by a ratio and whether they lie above a boundary. By means: an interval cannot be on one side.
+/// Loose combinations by a ratio and whether they lie above a boundary. By means: an interval cannot be on
+/// one side.
 fn parted(study: &Study, plan: &str, ratio: fn(&Case) -> f64, above: fn(&Case) -> bool) -> Option<Boundary> {
     let cases: Vec<(f64, bool)> =
         those(study, plan, Case::is_loose).into_iter().map(|case| (ratio(case), above(case))).collect();
@@ -212,16 +214,17 @@ fn goes_on(case: &Case) -> bool {
     case.mean(1) >= 7.5 && case.mean(2) >= 7.5
 }
 
-pub(super) fn dividing_d95(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+pub fn dividing_d95(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     parted(study, plan, Case::d95_ratio, goes_on).map(|b| b.measured())
 }
 
-pub(super) fn dividing_d85(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+pub fn dividing_d85(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     parted(study, plan, Case::d85_ratio, |case| case.mean(1) >= 7.5).map(|b| b.measured())
 }
 
-/// By how many fewer cases the best boundary of D15F/D95B is wrong than that of D15F/D85B, for continuing erosion.
-pub(super) fn d95_better(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+/// By how many fewer cases the best boundary of D15F/D95B is wrong than that of D15F/D85B, for continuing
+/// erosion.
+pub fn d95_better(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     let d85 = parted(study, plan, Case::d85_ratio, goes_on)?;
     let d95 = parted(study, plan, Case::d95_ratio, goes_on)?;
     let words = format!("{} wrong by D85B, {} by D95B, of {}", d85.wrong, d95.wrong, d95.all);
@@ -229,7 +232,7 @@ pub(super) fn d95_better(study: &Study, plan: &str, _: &Of) -> Option<Measured> 
 }
 
 /// Largest eroded particle over D15F: mean over the cases with these levels.
-pub(super) fn largest_over_d15f(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
+pub fn largest_over_d15f(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
     let fits = |case: &Case| of.levels().iter().all(|(factor, level)| case.level(factor) == *level);
     let all: Vec<f64> =
         those(study, plan, fits).into_iter().filter_map(|case| case.largest(1).map(|l| l.mean)).collect();
@@ -245,7 +248,7 @@ fn uniform_pairs<'a>(study: &'a Study, plan: &str) -> Vec<(&'a Case, &'a Case)> 
 }
 
 /// By how many percent the largest particle eroded through the dense filter is finer: mean.
-pub(super) fn dense_largest_finer(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+pub fn dense_largest_finer(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     let finer = |(dense, loose): (&Case, &Case)| {
         Some(100.0 * (1.0 - dense.largest(1)?.mean / loose.largest(1)?.mean))
     };
@@ -255,7 +258,7 @@ pub(super) fn dense_largest_finer(study: &Study, plan: &str, _: &Of) -> Option<M
 }
 
 /// Combinations below 6.5 whose largest eroded particle is no finer with the dense filter.
-pub(super) fn dense_largest_not_less(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+pub fn dense_largest_not_less(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     let pairs = uniform_pairs(study, plan);
     let not_less = |(dense, loose): &&(&Case, &Case)| {
         dense.largest(1).zip(loose.largest(1)).is_some_and(|(dense, loose)| dense.mean >= loose.mean)
@@ -264,14 +267,15 @@ pub(super) fn dense_largest_not_less(study: &Study, plan: &str, _: &Of) -> Optio
 }
 
 /// Most that erodes in the first run of Cu 1.5 on a filter with Cu 1.5 below 5, percent.
-pub(super) fn most_eroded_below_5(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
+pub fn most_eroded_below_5(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
     let small = |case: &Case| case.level("filter") == of.filter && !is_wide(case) && case.d85_ratio() < 5.0;
     let all = those(study, plan, small).into_iter().filter_map(|case| case.eroded(1));
     all.max_by(|a, b| a.mean.total_cmp(&b.mean)).as_ref().map(Measured::of)
 }
 
-/// Loose less dense, first run of Cu 1.5 on filters with Cu 1.5 between 5 and 6: the largest difference, percent of the base.
-pub(super) fn density_effect(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+/// Loose less dense, first run of Cu 1.5 on filters with Cu 1.5 between 5 and 6: the largest difference,
+/// percent of the base.
+pub fn density_effect(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     let pairs = uniform_pairs(study, plan).into_iter().filter(|(dense, _)| in_the_middle(dense));
     pairs.map(|(dense, loose)| loose.mean(1) - dense.mean(1)).max_by(f64::total_cmp).map(Measured::exact)
 }
@@ -297,12 +301,12 @@ fn rank_correlation(pairs: &[(f64, f64)]) -> Option<f64> {
 }
 
 /// Eroded mass, mean of both runs, percent.
-pub(super) fn of_both_runs(case: &Case) -> f64 {
+pub fn of_both_runs(case: &Case) -> f64 {
     0.5 * (case.mean(1) + case.mean(2))
 }
 
 /// Percent of all constrictions, and of those of the first three layers, blocked after the second run.
-pub(super) fn blocked(case: &Case) -> Option<(f64, f64)> {
+pub fn blocked(case: &Case) -> Option<(f64, f64)> {
     let second = case.run(2)?;
     let percent = |s: &Statistic| times(s, 100.0).mean;
     Some((percent(&second.blocked_fraction), percent(&second.blocked_first_three_layers_fraction)))
@@ -316,16 +320,17 @@ fn ranked(study: &Study, plan: &str, of: fn((f64, f64)) -> f64) -> Option<Measur
     rank_correlation(&pairs).map(|r| Measured::exact(r).saying(words))
 }
 
-pub(super) fn rank_all_layers(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+pub fn rank_all_layers(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     ranked(study, plan, |(all, _)| all)
 }
 
-pub(super) fn rank_three_layers(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+pub fn rank_three_layers(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     ranked(study, plan, |(_, three)| three)
 }
 
-/// Of the loose combinations that erode less than 7.5 %, the share with less than 7.5 % of the constrictions blocked.
-pub(super) fn few_blocked(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+/// Of the loose combinations that erode less than 7.5 %, the share with less than 7.5 % of the constrictions
+/// blocked.
+pub fn few_blocked(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     let least = those(study, plan, |case| case.is_loose() && of_both_runs(case) < 7.5);
     let few = least.iter().filter(|case| blocked(case).is_some_and(|(all, _)| all < 7.5)).count();
     let words = format!("{few} of {}", least.len());

@@ -1,12 +1,11 @@
 //! The figures of the campaign: Figs. 14 to 17, 19 and 20.
 
-use super::of_campaign::{blocked, of_both_runs};
-use super::of_parts::twins;
 use super::scatter::{Group, Plot, across, colour_of, scatter};
-use super::study::{Case, Study};
-use crate::outcome::record::Statistic;
-use crate::report::figures::{Across, BLUE, PURPLE, Rule, Shape, VERMILLION};
-use crate::report::shell::Drawn;
+use crate::measures::{blocked, of_both_runs, twins};
+use crate::study::{Case, Study};
+use voidwalk::outcome::record::Statistic;
+use voidwalk::report::figures::{Across, BLUE, PURPLE, Rule, Shape, VERMILLION};
+use voidwalk::report::shell::Drawn;
 
 const MAIN: &str = "paper";
 const D85: &str = "D15F / D85B (–)";
@@ -64,15 +63,16 @@ fn titled(name: &'static str, title: &'static str, caption: &str) -> Plot {
     Plot { name, title, caption: caption.into(), x: D85, y: ERODED, percent: true, reach: (2.5, 7.2) }
 }
 
-pub(super) fn fig_14(study: &Study) -> Vec<Drawn> {
-    let caption = "Sherard and Dunnigan vary the limit with the base; the paper states none of their numbers, so none is drawn.";
+pub fn fig_14(study: &Study) -> Vec<Drawn> {
+    let caption = "Sherard and Dunnigan vary the limit with the base; the paper states none of their \
+                   numbers, so none is drawn.";
     let a = titled("fig14a", "Fig. 14(a): loose filters", caption);
     let b = titled("fig14b", "Fig. 14(b): dense filters", caption);
     let drawn = [("loose", a), ("dense", b)];
     drawn.into_iter().filter_map(|(d, plot)| erosion(study, d, plot, d85_rules(), Case::d85_ratio)).collect()
 }
 
-pub(super) fn fig_15(study: &Study) -> Vec<Drawn> {
+pub fn fig_15(study: &Study) -> Vec<Drawn> {
     let plot = |name, title| Plot { x: D95, reach: (2.0, 9.2), ..titled(name, title, "") };
     let (a, b) = (plot("fig15a", "Fig. 15(a): loose filters"), plot("fig15b", "Fig. 15(b): dense filters"));
     let drawn = [("loose", a), ("dense", b)];
@@ -95,7 +95,7 @@ fn kenney() -> Vec<Rule> {
     vec![across(Across::Y, 0.2, "0.2: Kenney et al., Dc* ≤ D15F/5")]
 }
 
-pub(super) fn fig_16(study: &Study) -> Vec<Drawn> {
+pub fn fig_16(study: &Study) -> Vec<Drawn> {
     let filters = ["cu1.5-loose", "cu3-loose"];
     let a = Plot {
         y: "Largest eroded / D0F (–)",
@@ -126,7 +126,7 @@ pub(super) fn fig_16(study: &Study) -> Vec<Drawn> {
     .collect()
 }
 
-pub(super) fn fig_17(study: &Study) -> Vec<Drawn> {
+pub fn fig_17(study: &Study) -> Vec<Drawn> {
     let filters = ["cu1.5-loose", "cu1.5-dense"];
     let caption = "Filter and base with Cu 1.5, first run.";
     let a = Plot {
@@ -144,7 +144,7 @@ pub(super) fn fig_17(study: &Study) -> Vec<Drawn> {
     .collect()
 }
 
-pub(super) fn fig_19(study: &Study) -> Vec<Drawn> {
+pub fn fig_19(study: &Study) -> Vec<Drawn> {
     let cases = study.cases(MAIN);
     let groups = |of: fn((f64, f64)) -> f64| {
         let group = |cu_b: &str| {
@@ -173,7 +173,7 @@ pub(super) fn fig_19(study: &Study) -> Vec<Drawn> {
     drawn.into_iter().flatten().collect()
 }
 
-pub(super) fn fig_20(study: &Study) -> Vec<Drawn> {
+pub fn fig_20(study: &Study) -> Vec<Drawn> {
     let twins = twins(study);
     let mut groups = Vec::new();
     for (cu_b, shape) in [("1.5", Shape::Circle), ("3", Shape::Diamond), ("4.5", Shape::Square)] {

@@ -1,13 +1,13 @@
 //! A figure of points in groups, with rules across it: most figures of the paper are such.
 
-use crate::outcome::record::Statistic;
-use crate::report::figures::{
+use voidwalk::outcome::record::Statistic;
+use voidwalk::report::figures::{
     Across, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, Point, Rule, Shape, VERMILLION,
 };
-use crate::report::shell::Drawn;
+use voidwalk::report::shell::Drawn;
 
 /// Points of one kind.
-pub(super) struct Group {
+pub struct Group {
     pub label: String,
     pub colour: Colour,
     pub shape: Shape,
@@ -19,7 +19,7 @@ pub(super) struct Group {
 }
 
 /// Colour of a base by its Cu.
-pub(super) fn colour_of(cu_b: &str) -> Colour {
+pub fn colour_of(cu_b: &str) -> Colour {
     match cu_b {
         "1.5" => BLUE,
         "3" => GREEN,
@@ -28,7 +28,7 @@ pub(super) fn colour_of(cu_b: &str) -> Colour {
 }
 
 /// What a plot is called, and its axes.
-pub(super) struct Plot {
+pub struct Plot {
     pub name: &'static str,
     pub title: &'static str,
     pub caption: String,
@@ -41,13 +41,13 @@ pub(super) struct Plot {
 }
 
 /// A line across a plot.
-pub(super) fn across(axis: Across, at: f64, label: &str) -> Rule {
+pub fn across(axis: Across, at: f64, label: &str) -> Rule {
     let colour = if axis == Across::Y { BLACK } else { GREY };
     Rule::new(axis, at, colour).dash(Dash::Dashed).label(label)
 }
 
 /// `None` where there is no point.
-pub(super) fn scatter(plot: Plot, rules: Vec<Rule>, groups: Vec<Group>) -> Option<Drawn> {
+pub fn scatter(plot: Plot, rules: Vec<Rule>, groups: Vec<Group>) -> Option<Drawn> {
     let points = || groups.iter().flat_map(|group| &group.points);
     points().next()?;
     let (low, high) = points().fold(plot.reach, |(low, high), (x, _)| (low.min(*x), high.max(*x)));

@@ -1,9 +1,10 @@
-//! Measures of the parts: filters, percolation, the checks with one size and with Kenney's bases, Table 3, progress.
+//! Measures of the parts: filters, percolation, the checks with one size and with Kenney's bases, Table 3,
+//! progress.
 
-use super::measured::{Measured, Of};
-use super::study::{Case, Study, size_at, times};
-use crate::outcome::by_connectivity::of_replicates;
-use crate::outcome::record::{ByConnectivity, Filter, SizeRow, Statistic};
+use crate::measured::{Measured, Of};
+use crate::study::{Case, Study, size_at, times};
+use voidwalk::outcome::by_connectivity::of_replicates;
+use voidwalk::outcome::record::{ByConnectivity, FilterRecord as Filter, SizeRow, Statistic};
 
 /// A filter of a plan; those that only Kenney's tests need are in the plan of that name.
 fn filter<'a>(study: &'a Study, plan: &str, name: &str) -> Option<&'a Filter> {
@@ -11,17 +12,17 @@ fn filter<'a>(study: &'a Study, plan: &str, name: &str) -> Option<&'a Filter> {
     study.filter(plan, name).or_else(elsewhere)
 }
 
-pub(super) fn void_ratio(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
+pub fn void_ratio(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
     // The published curves come with the paper's own void ratios.
     (plan != "paper-published").then_some(())?;
     filter(study, plan, &of.filter)?.void_ratio.map(Measured::exact)
 }
 
-pub(super) fn cu_csd(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
+pub fn cu_csd(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
     Some(Measured::exact(filter(study, plan, &of.filter)?.cu_csd))
 }
 
-pub(super) fn dc0_over_d0f(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
+pub fn dc0_over_d0f(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
     let filter = filter(study, plan, &of.filter)?;
     Some(Measured::exact(size_at(&filter.constrictions, 0.0)? / filter.d0_mm))
 }
@@ -40,7 +41,7 @@ fn range(values: &[f64]) -> (f64, f64) {
 }
 
 /// By how many percent the dense curve of `of.filter` (`cu1.5`) is finer than the loose one.
-pub(super) fn dense_finer(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
+pub fn dense_finer(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
     let named = |density: &str| study.filter(plan, &format!("{}-{density}", of.filter));
     let finer: Vec<f64> = curve_ratios(named("dense")?, named("loose")?, |f| f.d0_mm)?
         .into_iter()
@@ -52,7 +53,7 @@ pub(super) fn dense_finer(study: &Study, plan: &str, of: &Of) -> Option<Measured
 }
 
 /// Loose Cu 3 over loose Cu 1.5 curve, each in units of its D15F.
-pub(super) fn csd_over_d15f(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+pub fn csd_over_d15f(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     let named = |name| study.filter(plan, name);
     let ratios = curve_ratios(named("cu3-loose")?, named("cu1.5-loose")?, |f| f.d15_mm)?;
     let (low, high) = range(&ratios);
@@ -63,7 +64,7 @@ pub(super) fn csd_over_d15f(study: &Study, plan: &str, _: &Of) -> Option<Measure
 }
 
 /// Fall of the standard deviation of the threshold per void of side from 40 to 80, over that from 10 to 40.
-pub(super) fn spread_slows(study: &Study, _: &str, _: &Of) -> Option<Measured> {
+pub fn spread_slows(study: &Study, _: &str, _: &Of) -> Option<Measured> {
     let percolation = study.percolation.as_ref()?;
     let sd = |size| percolation.sizes.iter().find(|s| s.size == size).and_then(|s| s.threshold.sd);
     let (ten, forty, eighty) = (sd(10)?, sd(40)?, sd(80)?);
@@ -73,7 +74,7 @@ pub(super) fn spread_slows(study: &Study, _: &str, _: &Of) -> Option<Measured> {
     Some(Measured::exact(((forty - eighty) / 40.0) / ((ten - forty) / 30.0)).saying(words))
 }
 
-pub(super) fn blocked_by_one_size(study: &Study, _: &str, of: &Of) -> Option<Measured> {
+pub fn blocked_by_one_size(study: &Study, _: &str, of: &Of) -> Option<Measured> {
     let run = study.named("one-size", &of.case)?.run(1)?;
     Some(Measured::of(&times(&run.blocked_fraction, 100.0)))
 }
@@ -84,7 +85,7 @@ fn kenney<'a>(study: &'a Study, filter: &str) -> Vec<&'a Case> {
 }
 
 /// Largest eroded particle over D0F: the largest of the means of all base sizes.
-pub(super) fn kenney_largest(study: &Study, _: &str, of: &Of) -> Option<Measured> {
+pub fn kenney_largest(study: &Study, _: &str, of: &Of) -> Option<Measured> {
     let all =
         kenney(study, &of.filter).into_iter().filter_map(|case| Some((case.largest_over_d0f(1)?, case)));
     let (largest, case) = all.max_by(|a, b| a.0.mean.total_cmp(&b.0.mean))?;
@@ -96,13 +97,13 @@ fn kenney_at<'a>(study: &'a Study, of: &Of, at: &str) -> Option<&'a Case> {
 }
 
 /// Eroded at one base size in percent of what is eroded at a finer one.
-pub(super) fn kenney_drop(study: &Study, _: &str, of: &Of) -> Option<Measured> {
+pub fn kenney_drop(study: &Study, _: &str, of: &Of) -> Option<Measured> {
     let (fine, coarse) = (kenney_at(study, of, &of.at)?, kenney_at(study, of, &of.to)?);
     let words = format!("{:.1} % against {:.1} %", coarse.mean(1), fine.mean(1));
     (fine.mean(1) > 0.0).then(|| Measured::exact(100.0 * coarse.mean(1) / fine.mean(1)).saying(words))
 }
 
-pub(super) fn kenney_eroded(study: &Study, _: &str, of: &Of) -> Option<Measured> {
+pub fn kenney_eroded(study: &Study, _: &str, of: &Of) -> Option<Measured> {
     kenney_at(study, of, &of.at)?.eroded(1).as_ref().map(Measured::of)
 }
 
@@ -123,20 +124,20 @@ fn rows(study: &Study, plan: &str) -> Option<Vec<ByConnectivity>> {
 }
 
 /// Share of the retained particles that the voids of a connectivity hold.
-pub(super) fn table3_share(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
+pub fn table3_share(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
     let rows = rows(study, plan)?;
     let row = rows.iter().find(|row| row.connectivity == of.connectivity)?;
     Some(Measured::exact(100.0 * row.retained_fraction))
 }
 
 /// The same for all voids with fewer than six.
-pub(super) fn table3_few(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+pub fn table3_few(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     let rows = rows(study, plan)?;
     let few = rows.iter().filter(|row| row.connectivity < 6);
     Some(Measured::exact(100.0 * few.map(|row| row.retained_fraction).sum::<f64>()))
 }
 
-pub(super) fn table3_per_void(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
+pub fn table3_per_void(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
     let rows = rows(study, plan)?;
     Some(Measured::exact(rows.iter().find(|row| row.connectivity == of.connectivity)?.retained_per_void))
 }
@@ -146,27 +147,27 @@ fn per_void(case: &Case) -> Statistic {
     Statistic::of(&first.map(|run| run.retained_per_void).collect::<Vec<_>>())
 }
 
-pub(super) fn table3_all(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+pub fn table3_all(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     Some(Measured::of(&per_void(modified(study, plan)?)))
 }
 
-pub(super) fn cubic_per_void(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+pub fn cubic_per_void(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     Some(Measured::of(&per_void(study.case(plan, &TABLE_3)?)))
 }
 
-pub(super) fn table3_over_cubic(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
+pub fn table3_over_cubic(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
     let (over, under) = (table3_all(study, plan, of)?, cubic_per_void(study, plan, of)?);
     Some(Measured::exact(over.value / under.value))
 }
 
 /// Cases on the modified network, each with its twin on the cubic one.
-pub(super) fn twins(study: &Study) -> Vec<(&Case, &Case)> {
+pub fn twins(study: &Study) -> Vec<(&Case, &Case)> {
     let crossed = study.cases("table3").into_iter().filter(|case| !case.line.levels.is_empty());
     crossed.filter_map(|case| Some((case, study.named("paper", &case.line.case)?))).collect()
 }
 
 /// Greatest difference of the largest eroded particle, in percent.
-pub(super) fn table3_largest_shift(study: &Study, _: &str, _: &Of) -> Option<Measured> {
+pub fn table3_largest_shift(study: &Study, _: &str, _: &Of) -> Option<Measured> {
     let shift = |(modified, cubic): (&Case, &Case)| {
         let (modified, cubic) = (modified.largest(1)?.mean, cubic.largest(1)?.mean);
         Some(100.0 * (modified / cubic - 1.0).abs())
@@ -175,7 +176,7 @@ pub(super) fn table3_largest_shift(study: &Study, _: &str, _: &Of) -> Option<Mea
 }
 
 /// Cases that erode no less on the modified network.
-pub(super) fn table3_not_less(study: &Study, _: &str, _: &Of) -> Option<Measured> {
+pub fn table3_not_less(study: &Study, _: &str, _: &Of) -> Option<Measured> {
     let twins = twins(study);
     let not_less = twins.iter().filter(|(modified, cubic)| modified.mean(1) >= cubic.mean(1)).count();
     let falls: Vec<f64> = twins
@@ -210,7 +211,7 @@ fn medians(study: &Study, increment: u64) -> Vec<f64> {
 }
 
 /// Finest particle retained in the first increment over the finest constriction.
-pub(super) fn first_retained_over_dc0(study: &Study, _: &str, _: &Of) -> Option<Measured> {
+pub fn first_retained_over_dc0(study: &Study, _: &str, _: &Of) -> Option<Measured> {
     let filter = &study.named("progress", "fig18")?.outcome.inputs.filter;
     let dc0 = size_at(&filter.constrictions, 0.0)?;
     // The first row above 0 % is the upper edge of the first size class that holds anything.
@@ -220,7 +221,7 @@ pub(super) fn first_retained_over_dc0(study: &Study, _: &str, _: &Of) -> Option<
 }
 
 /// Median size retained when the run ends over that after the first increment.
-pub(super) fn retained_finer(study: &Study, _: &str, _: &Of) -> Option<Measured> {
+pub fn retained_finer(study: &Study, _: &str, _: &Of) -> Option<Measured> {
     let last = study.retained.iter().filter(|row| row.run == 1).map(|row| row.increment).max()?;
     let (first, last) = (medians(study, 1), medians(study, last));
     let (first, last) = (first.iter().copied().reduce(f64::min)?, last.iter().copied().reduce(f64::max)?);

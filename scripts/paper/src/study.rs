@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
-use crate::outcome::ledger::LedgerLine;
-use crate::outcome::percolation::PercolationStudy;
-use crate::outcome::record::{Filter, Outcome, RunSummary, SeriesRow, SizeRow, Statistic};
-use crate::report::folder::{ReportError, json, lines, rows};
+use voidwalk::outcome::ledger::LedgerLine;
+use voidwalk::outcome::percolation::PercolationStudy;
+use voidwalk::outcome::record::{FilterRecord as Filter, Outcome, RunSummary, SeriesRow, SizeRow, Statistic};
+use voidwalk::report::ReportError;
+use voidwalk::report::files::{json, lines, rows};
 
 /// A way to run the paper's campaign.
-pub(super) struct Variant {
+pub struct Variant {
     /// Name of the plan and of its folder.
     pub name: &'static str,
     /// What a reader calls it.
@@ -22,7 +23,7 @@ const fn variant(name: &'static str, title: &'static str, over: Option<&'static 
 }
 
 /// The first is the one that the page is about; each other one changes what its title says, and nothing else.
-pub(super) const VARIANTS: [Variant; 7] = [
+pub const VARIANTS: [Variant; 7] = [
     variant("paper", "own curves, grains per void as packed", None),
     variant("paper-2.5", "2.5 grains per void", None),
     variant("paper-capped", "cap 2e8", Some("paper")),
@@ -36,21 +37,22 @@ pub(super) const VARIANTS: [Variant; 7] = [
 const OTHERS: [&str; 4] = ["kenney", "table3", "one-size", "progress"];
 
 /// A case: its line of the ledger and its outcome.
-pub(super) struct Case {
+pub struct Case {
     pub line: LedgerLine,
     pub outcome: Outcome,
 }
 
 /// The cases of a campaign.
-pub(super) struct Walked {
+pub struct Walked {
     /// Name of the plan.
     pub name: &'static str,
     /// In the order of the plan.
     pub cases: Vec<Case>,
 }
 
-/// All that the folder of a reproduction holds. What has not been walked is missing here, and its rows say so.
-pub(super) struct Study {
+/// All that the folder of a reproduction holds. What has not been walked is missing here, and its rows say
+/// so.
+pub struct Study {
     campaigns: Vec<Walked>,
     pub percolation: Option<PercolationStudy>,
     /// Of the cases of Fig. 13, by name.
@@ -63,7 +65,7 @@ pub(super) struct Study {
 const SERIES: [&str; 3] = ["fig13-continuing", "fig13-some", "fig13-none"];
 
 impl Study {
-    pub(super) fn read(folder: &Path) -> Result<Self, ReportError> {
+    pub fn read(folder: &Path) -> Result<Self, ReportError> {
         let mut campaigns = Vec::new();
         for name in VARIANTS.iter().map(|variant| variant.name).chain(OTHERS) {
             let place = folder.join(name);
@@ -90,22 +92,22 @@ impl Study {
     }
 
     /// Whether there is nothing at all.
-    pub(super) fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.percolation.is_none() && self.campaigns.iter().all(|walked| walked.cases.is_empty())
     }
 
     /// The campaigns that were walked.
-    pub(super) fn walked(&self) -> &[Walked] {
+    pub fn walked(&self) -> &[Walked] {
         &self.campaigns
     }
 
     /// The variants that were walked.
-    pub(super) fn variants(&self) -> impl Iterator<Item = &'static Variant> {
+    pub fn variants(&self) -> impl Iterator<Item = &'static Variant> {
         VARIANTS.iter().filter(|variant| self.campaigns.iter().any(|walked| walked.name == variant.name))
     }
 
     /// The cases of a plan; for a variant that walks only what it changes, those of the one below it too.
-    pub(super) fn cases(&self, plan: &str) -> Vec<&Case> {
+    pub fn cases(&self, plan: &str) -> Vec<&Case> {
         let own = |name: &str| self.campaigns.iter().find(|walked| walked.name == name).map(|w| &w.cases);
         let Some(cases) = own(plan) else { return Vec::new() };
         let below = VARIANTS.iter().find(|variant| variant.name == plan).and_then(|variant| variant.over);
@@ -120,18 +122,18 @@ impl Study {
     }
 
     /// The case of these levels.
-    pub(super) fn case(&self, plan: &str, levels: &[(&str, &str)]) -> Option<&Case> {
+    pub fn case(&self, plan: &str, levels: &[(&str, &str)]) -> Option<&Case> {
         let fits = |case: &&Case| levels.iter().all(|(factor, level)| case.level(factor) == *level);
         self.cases(plan).into_iter().find(fits)
     }
 
     /// The case of this name.
-    pub(super) fn named(&self, plan: &str, name: &str) -> Option<&Case> {
+    pub fn named(&self, plan: &str, name: &str) -> Option<&Case> {
         self.cases(plan).into_iter().find(|case| case.line.case == name)
     }
 
     /// A filter of a plan by the name of its level.
-    pub(super) fn filter(&self, plan: &str, name: &str) -> Option<&Filter> {
+    pub fn filter(&self, plan: &str, name: &str) -> Option<&Filter> {
         self.case(plan, &[("filter", name)]).map(|case| &case.outcome.inputs.filter)
     }
 }
@@ -170,64 +172,64 @@ fn cases(place: &Path) -> Result<Vec<Case>, ReportError> {
 
 impl Case {
     /// Level of a factor; empty where the case has none.
-    pub(super) fn level(&self, factor: &str) -> &str {
-        self.line.levels.get(factor).and_then(serde_json::Value::as_str).unwrap_or("")
+    pub fn level(&self, factor: &str) -> &str {
+        self.line.levels.get(factor).and_then(|level| level.as_str()).unwrap_or("")
     }
 
     /// Whether the filter is a loose one.
-    pub(super) fn is_loose(&self) -> bool {
+    pub fn is_loose(&self) -> bool {
         self.level("filter").ends_with("loose")
     }
 
     /// A guess: the paper walked 66 of the 78 combinations, and there are 66 without Dc15.
-    pub(super) fn in_the_66(&self) -> bool {
+    pub fn in_the_66(&self) -> bool {
         self.level("d85b") != "dc15"
     }
 
     /// Statistics of run 1 or 2.
-    pub(super) fn run(&self, run: usize) -> Option<&RunSummary> {
+    pub fn run(&self, run: usize) -> Option<&RunSummary> {
         self.line.runs.get(run - 1)
     }
 
     /// Percent of the base mass eroded in run 1 or 2.
-    pub(super) fn eroded(&self, run: usize) -> Option<Statistic> {
+    pub fn eroded(&self, run: usize) -> Option<Statistic> {
         self.run(run).map(|summary| times(&summary.eroded_mass_fraction, 100.0))
     }
 
     /// Mean of the same; 0 where there is no such run.
-    pub(super) fn mean(&self, run: usize) -> f64 {
+    pub fn mean(&self, run: usize) -> f64 {
         self.eroded(run).map_or(0.0, |eroded| eroded.mean)
     }
 
     /// Largest particle eroded in run 1 or 2, over D15F.
-    pub(super) fn largest(&self, run: usize) -> Option<Statistic> {
+    pub fn largest(&self, run: usize) -> Option<Statistic> {
         self.run(run).and_then(|summary| summary.largest_eroded_over_d15f)
     }
 
     /// The same over D0F.
-    pub(super) fn largest_over_d0f(&self, run: usize) -> Option<Statistic> {
+    pub fn largest_over_d0f(&self, run: usize) -> Option<Statistic> {
         let filter = &self.outcome.inputs.filter;
         self.largest(run).map(|largest| times(&largest, filter.d15_mm / filter.d0_mm))
     }
 
     /// D15F / D85B.
-    pub(super) fn d85_ratio(&self) -> f64 {
+    pub fn d85_ratio(&self) -> f64 {
         self.line.ratios.d15f_over_d85b
     }
 
     /// D15F / D95B.
-    pub(super) fn d95_ratio(&self) -> f64 {
+    pub fn d95_ratio(&self) -> f64 {
         self.line.ratios.d15f_over_d95b
     }
 
     /// D50B / D0F.
-    pub(super) fn d50b_over_d0f(&self) -> Option<f64> {
+    pub fn d50b_over_d0f(&self) -> Option<f64> {
         Some(self.outcome.inputs.base.d50_mm? / self.outcome.inputs.filter.d0_mm)
     }
 }
 
 /// A statistic in other units.
-pub(super) fn times(statistic: &Statistic, factor: f64) -> Statistic {
+pub fn times(statistic: &Statistic, factor: f64) -> Statistic {
     Statistic {
         mean: statistic.mean * factor,
         sd: statistic.sd.map(|sd| sd * factor),
@@ -237,7 +239,7 @@ pub(super) fn times(statistic: &Statistic, factor: f64) -> Statistic {
 }
 
 /// Diameter (as the curve gives it) below which `percent` of a curve of (size, percent) rows lies.
-pub(super) fn size_at(rows: &[[f64; 2]], percent: f64) -> Option<f64> {
+pub fn size_at(rows: &[[f64; 2]], percent: f64) -> Option<f64> {
     if let Some(first) = rows.first().filter(|row| row[1] >= percent) {
         return Some(first[0]);
     }

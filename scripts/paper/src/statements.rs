@@ -2,16 +2,17 @@
 
 use serde::Deserialize;
 
-use super::measured::{Measured, Of, measure};
-use super::study::{Study, VARIANTS, Variant};
-use crate::report::numbers::{significant, whole};
+use crate::measured::{Measured, Of};
+use crate::measures::measure;
+use crate::study::{Study, VARIANTS, Variant};
+use voidwalk::report::numbers::{significant, whole};
 
-const STATEMENTS: &str = include_str!("../../data/paper/statements.toml");
+const STATEMENTS: &str = include_str!("../data/statements.toml");
 
 /// A number that the paper states, or a word for one.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Statement {
+pub struct Statement {
     /// Name, unlike that of any other.
     pub id: String,
     /// Figure or table that it stands under.
@@ -39,7 +40,7 @@ pub(super) struct Statement {
 
 /// How ours compares.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Judgement {
+pub enum Judgement {
     /// Within what is stated, or the interval covers it.
     Agrees,
     /// Outside, by so much, above or below.
@@ -57,10 +58,10 @@ impl Statement {
         (low.unwrap_or(f64::NEG_INFINITY), high.unwrap_or(f64::INFINITY))
     }
 
-    /// The rule: agrees when our value lies within what is stated, or our 95 % interval covers the stated value; cannot tell
-    /// when nothing was walked, or when the interval lies on both sides of what decides; differs otherwise, by the distance
-    /// to the nearest end.
-    pub(super) fn judge(&self, ours: Option<&Measured>) -> Judgement {
+    /// The rule: agrees when our value lies within what is stated, or our 95 % interval covers the stated
+    /// value; cannot tell when nothing was walked, or when the interval lies on both sides of what decides;
+    /// differs otherwise, by the distance to the nearest end.
+    pub fn judge(&self, ours: Option<&Measured>) -> Judgement {
         let Some(ours) = ours.filter(|ours| !ours.open && !ours.value.is_nan()) else {
             return Judgement::CannotTell;
         };
@@ -96,29 +97,30 @@ impl Statement {
     }
 
     /// A value as this statement shows it.
-    pub(super) fn show(&self, value: f64) -> String {
+    pub fn show(&self, value: f64) -> String {
         let number = Self::number(value);
         if self.unit.is_empty() { number } else { format!("{number}\u{202f}{}", self.unit) }
     }
 }
 
 /// A statement with ours, for every variant that was walked.
-pub(super) struct Judged {
+pub struct Judged {
     pub statement: Statement,
-    /// Ours and its judgement, the variant that the page is about first; `None` where a measure says nothing about a variant.
+    /// Ours and its judgement, the variant that the page is about first; `None` where a measure says nothing
+    /// about a variant.
     pub variants: Vec<(&'static Variant, Option<Measured>, Judgement)>,
 }
 
 impl Judged {
     /// The variant that the page is about.
-    pub(super) fn ours(&self) -> (Option<&Measured>, Judgement) {
+    pub fn ours(&self) -> (Option<&Measured>, Judgement) {
         self.variants
             .first()
             .map_or((None, Judgement::CannotTell), |(_, ours, judgement)| (ours.as_ref(), *judgement))
     }
 
     /// A sentence of judgement, with the experiments that explain a difference.
-    pub(super) fn sentence(&self) -> String {
+    pub fn sentence(&self) -> String {
         match self.ours() {
             (_, Judgement::Agrees) => "agrees".into(),
             (None, _) => "cannot tell: not walked".into(),
@@ -151,7 +153,7 @@ impl Judged {
 ///
 /// # Panics
 /// If the embedded file cannot be read; it is read in a test.
-pub(super) fn statements() -> Vec<Statement> {
+pub fn statements() -> Vec<Statement> {
     #[derive(Deserialize)]
     #[serde(deny_unknown_fields)]
     struct File {
@@ -161,7 +163,7 @@ pub(super) fn statements() -> Vec<Statement> {
 }
 
 /// Every statement with ours beside it.
-pub(super) fn judged(study: &Study) -> Vec<Judged> {
+pub fn judged(study: &Study) -> Vec<Judged> {
     let one = |statement: Statement| {
         let found = measure(&statement.measure);
         let variants = VARIANTS.iter().filter_map(|variant| {
@@ -180,7 +182,7 @@ pub(super) fn judged(study: &Study) -> Vec<Judged> {
 }
 
 /// The statements as a CSV table, one line a statement and variant.
-pub(super) fn table(all: &[Judged]) -> String {
+pub fn table(all: &[Judged]) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let header = [
         "id",
@@ -252,7 +254,7 @@ mod tests {
             assert!(known.iter().any(|kind| s.why.starts_with(kind)), "{}: {}", s.id, s.why);
         }
         let used: BTreeSet<&str> = all.iter().map(|s| s.measure.as_str()).collect();
-        for (name, ..) in super::super::measured::MEASURES {
+        for (name, ..) in crate::measures::MEASURES {
             assert!(used.contains(name), "no statement uses `{name}`");
         }
     }

@@ -1,61 +1,46 @@
-//! The page of a reproduction of the paper: each of its figures with our result, and every number that it states in
-//! its text beside ours, judged by one rule. From the folder alone that `scripts/paper.sh` fills; nothing is run here.
-
-mod measured;
-mod of_campaign;
-mod of_inputs;
-mod of_parts;
-mod of_walks;
-mod scatter;
-mod statements;
-mod study;
+//! The page: each figure of the paper with ours, every statement beside ours, every combination.
 
 use std::path::Path;
 
 use maud::{Markup, html};
+use voidwalk::outcome::MODEL_LEAVES_OUT;
+use voidwalk::outcome::record::Verdict;
+use voidwalk::report::numbers::{duration, significant, whole};
+use voidwalk::report::shell::{Drawn, clean, drawing, whole_page};
+use voidwalk::report::{ReportError, Written, write_page};
+use voidwalk::store::write_whole;
 
-use self::measured::Measured;
-use self::statements::{Judged, Judgement};
-use self::study::{Case, Study};
-use super::Written;
-use super::folder::ReportError;
-use super::numbers::{duration, significant, whole};
-use super::shell::{Drawn, clean, drawing, whole_page};
-use crate::outcome::MODEL_LEAVES_OUT;
-use crate::outcome::record::Verdict;
-use crate::store::write_whole;
+use crate::figures;
+use crate::measured::Measured;
+use crate::statements::{self, Judged, Judgement};
+use crate::study::{Case, Study};
 
 /// A figure or table of the paper: its key in the statements, its heading, what is drawn for it.
 type Section = (&'static str, &'static str, fn(&Study) -> Vec<Drawn>);
 
 const SECTIONS: [Section; 15] = [
-    ("6", "Fig. 6 and the first checks: percolation, one size", of_inputs::fig_6),
+    ("6", "Fig. 6 and the first checks: percolation, one size", figures::fig_6),
     ("table2", "Table 2: the filters", |_| Vec::new()),
-    ("7", "Fig. 7: gradations and constriction curves", of_inputs::fig_7),
-    ("8", "Fig. 8: Kenney’s tests, filter with Cu 1.2", of_inputs::fig_8),
-    ("9", "Fig. 9: Kenney’s tests, filter with Cu 3", of_inputs::fig_9),
-    ("10", "Fig. 10: Kenney’s tests, filter with Cu 6", of_inputs::fig_10),
-    ("13", "Fig. 13: one case of each class", of_inputs::fig_13),
-    ("14", "Fig. 14: erosion against D15F/D85B, and reruns", of_walks::fig_14),
-    ("15", "Fig. 15: erosion against D15F/D95B", of_walks::fig_15),
-    ("16", "Fig. 16: influence of the filter’s Cu", of_walks::fig_16),
-    ("17", "Fig. 17: influence of the filter’s density", of_walks::fig_17),
-    ("18", "Fig. 18: what is retained", of_inputs::fig_18),
-    ("19", "Fig. 19: erosion against blocked constrictions", of_walks::fig_19),
+    ("7", "Fig. 7: gradations and constriction curves", figures::fig_7),
+    ("8", "Fig. 8: Kenney’s tests, filter with Cu 1.2", figures::fig_8),
+    ("9", "Fig. 9: Kenney’s tests, filter with Cu 3", figures::fig_9),
+    ("10", "Fig. 10: Kenney’s tests, filter with Cu 6", figures::fig_10),
+    ("13", "Fig. 13: one case of each class", figures::fig_13),
+    ("14", "Fig. 14: erosion against D15F/D85B, and reruns", figures::fig_14),
+    ("15", "Fig. 15: erosion against D15F/D95B", figures::fig_15),
+    ("16", "Fig. 16: influence of the filter’s Cu", figures::fig_16),
+    ("17", "Fig. 17: influence of the filter’s density", figures::fig_17),
+    ("18", "Fig. 18: what is retained", figures::fig_18),
+    ("19", "Fig. 19: erosion against blocked constrictions", figures::fig_19),
     ("table3", "Table 3: connectivity", |_| Vec::new()),
-    ("20", "Fig. 20: erosion on the modified network", of_walks::fig_20),
+    ("20", "Fig. 20: erosion on the modified network", figures::fig_20),
 ];
-
-/// Whether this folder holds a reproduction: the campaign of the plan `paper`.
-pub fn is_paper(folder: &Path) -> bool {
-    folder.join("paper/ledger.jsonl").is_file()
-}
 
 /// Writes `report.html`, `figures/*.svg` and `statements.csv` into the folder of a reproduction.
 ///
 /// # Errors
 /// A file that is missing or malformed; nothing is written then.
-pub fn write_paper(folder: &Path) -> Result<Written, ReportError> {
+pub fn write(folder: &Path) -> Result<Written, ReportError> {
     let study = Study::read(folder)?;
     if study.is_empty() {
         return Err(ReportError::Value {
@@ -70,7 +55,7 @@ pub fn write_paper(folder: &Path) -> Result<Written, ReportError> {
     let page = page(&study, &judged, &sections);
     let figures: Vec<Drawn> = sections.into_iter().flat_map(|(_, drawn)| drawn).collect();
     write_whole(&folder.join("statements.csv"), statements::table(&judged).as_bytes())?;
-    super::keep(folder, &figures, &page)
+    write_page(folder, &figures, &page)
 }
 
 fn page(study: &Study, judged: &[Judged], sections: &[(&Section, Vec<Drawn>)]) -> String {
@@ -86,14 +71,17 @@ fn page(study: &Study, judged: &[Judged], sections: &[(&Section, Vec<Drawn>)]) -
         div.first {
             section {
                 p.lead {
-                    "Of " (judged.len()) " statements, " b { (agree) " agree" } ", " b { (differ) " differ" } ", and "
+                    "Of " (judged.len()) " statements, " b { (agree) " agree" } ", "
+                    b { (differ) " differ" } ", and "
                     b { (judged.len() - agree - differ) } " cannot be told."
                 }
                 p {
-                    "A statement agrees when our value lies within what the paper states and its tolerance, or when our 95 % interval "
-                    "covers the stated value; it cannot be told when nothing was walked or when the interval lies on both sides of what "
-                    "decides; it differs otherwise. No judgement is typed in, and nothing is tuned to the paper case by case. Where a number differs, the same "
-                    "is measured in campaigns that change one thing each: grains per void, cap, constriction curves, overlap rule."
+                    "A statement agrees when our value lies within what the paper states and its tolerance, \
+                     or when our 95 % interval covers the stated value; it cannot be told when nothing was \
+                     walked or when the interval lies on both sides of what decides; it differs otherwise. \
+                     No judgement is typed in, and nothing is tuned to the paper case by case. Where a \
+                     number differs, the same is measured in campaigns that change one thing each: grains \
+                     per void, cap, constriction curves, overlap rule."
                 }
             }
             aside.leaves {
@@ -113,12 +101,16 @@ fn page(study: &Study, judged: &[Judged], sections: &[(&Section, Vec<Drawn>)]) -
             (statements_of(judged, key))
         }
         h2 { "Every statement in every campaign" }
-        p.small { "The first column of ours is the one judged above. Empty: the campaign cannot say, or nothing changes for it. ✗ differs, ? cannot tell." }
+        p.small {
+            "The first column of ours is the one judged above. Empty: the campaign cannot say, or nothing \
+             changes for it. ✗ differs, ? cannot tell."
+        }
         (matrix(study, judged))
         h2 { "Every combination" }
         p.small {
-            "Percent of the base eroded in the first and the second run, and the class: N no, S some, C continuing erosion, "
-            "? undecided. ● marks the combinations without Dc15: the paper walked 66 of the 78 and does not say which, so that is a guess."
+            "Percent of the base eroded in the first and the second run, and the class: N no, S some, \
+             C continuing erosion, ? undecided. ● marks the combinations without Dc15: the paper walked 66 \
+             of the 78 and does not say which, so that is a guess."
         }
         (combinations(study))
         (provenance(study))
@@ -194,7 +186,10 @@ fn matrix(study: &Study, judged: &[Judged]) -> Markup {
     };
     html! {
         div.scroll { table.replicates {
-            thead { tr { th { "Statement" } th { "Paper" } @for variant in &variants { th.n { (variant.title) } } } }
+            thead { tr {
+                th { "Statement" } th { "Paper" }
+                @for variant in &variants { th.n { (variant.title) } }
+            } }
             tbody { @for judged in judged { tr {
                 th { (judged.statement.id) }
                 td { (judged.statement.states) }
@@ -222,13 +217,18 @@ fn combinations(study: &Study) -> Markup {
     html! {
         div.scroll { table.replicates {
             thead { tr {
-                th { "filter" } th.n { "base Cu" } th { "D85B" } th { "66" } th.n { "D15F/D85B" } th.n { "D15F/D95B" } th.n { "N_base" }
+                th { "filter" } th.n { "base Cu" } th { "D85B" } th { "66" }
+                th.n { "D15F/D85B" } th.n { "D15F/D95B" } th.n { "N_base" }
                 @for variant in &variants { th.n { (variant.title) } }
             } }
             tbody { @for case in study.cases(first.name) { tr {
-                td { (clean(case.level("filter"))) } td.n { (clean(case.level("cu_b"))) } td { (clean(case.level("d85b"))) }
+                td { (clean(case.level("filter"))) }
+                td.n { (clean(case.level("cu_b"))) }
+                td { (clean(case.level("d85b"))) }
                 td { @if case.in_the_66() { "●" } }
-                td.n { (significant(case.d85_ratio())) } td.n { (significant(case.d95_ratio())) } td.n { (whole(case.line.n_base)) }
+                td.n { (significant(case.d85_ratio())) }
+                td.n { (significant(case.d95_ratio())) }
+                td.n { (whole(case.line.n_base)) }
                 @for variant in &variants { td.n { (cell(variant.name, case)) } }
             } } }
         } }

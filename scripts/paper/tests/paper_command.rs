@@ -1,8 +1,35 @@
-//! `voidwalk report` on the folder of a reproduction: a small one gives the whole page, and what is missing is said.
+//! `voidwalk-paper` on the folder of a reproduction: a small one gives the whole page, what is missing is
+//! said, and what is no reproduction is refused.
+//!
+//! This program has a `main` of its own because it starts itself again: with the variable [`AS_VOIDWALK`] it
+//! is voidwalk, which walks what the page is about.
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, ExitCode, Output};
+
+/// Set where this program is to be voidwalk.
+const AS_VOIDWALK: &str = "VOIDWALK_PAPER_TEST_AS_VOIDWALK";
+
+fn main() -> ExitCode {
+    if std::env::var_os(AS_VOIDWALK).is_some() {
+        return voidwalk::cli::main();
+    }
+    let tests: [(&str, fn()); 3] = [
+        ("a_small_reproduction_gives_the_whole_page", a_small_reproduction_gives_the_whole_page),
+        ("a_ledger_that_is_not_of_its_cases_is_refused", a_ledger_that_is_not_of_its_cases_is_refused),
+        ("a_folder_without_the_campaign_is_refused", a_folder_without_the_campaign_is_refused),
+    ];
+    let wanted: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
+    for (name, test) in tests {
+        if wanted.is_empty() || wanted.iter().any(|word| name.contains(word.as_str())) {
+            println!("test {name} ...");
+            test();
+            println!("test {name} ... ok");
+        }
+    }
+    ExitCode::SUCCESS
+}
 
 const SMALL: &str = "[set]\nreplicates = 2\nnetwork = { nx = 6, ny = 6, nz = 8 }\n\
     record = { sensitivity = [], series_every = 1, size_curves = [1, 10] }\n";
@@ -11,17 +38,22 @@ const CROSS: &str = "[[factor]]\nname = \"filter\"\n[factor.levels]\n\
     \"cu1.5-loose\" = { \"filter.curve\" = \"cu1.5-loose\" }\n\
     \"cu1.5-dense\" = { \"filter.curve\" = \"cu1.5-dense\", \"base.dc_curve\" = \"cu1.5-loose\" }\n\
     [[factor]]\nname = \"cu_b\"\nsetting = \"base.cu\"\nvalues = [1.5, 4.5]\n\
-    [[factor]]\nname = \"d85b\"\n[factor.levels]\ndc5 = { \"base.d85_at_dc\" = 5 }\ndc15 = { \"base.d85_at_dc\" = 15 }\n\
+    [[factor]]\nname = \"d85b\"\n[factor.levels]\n\
+    dc5 = { \"base.d85_at_dc\" = 5 }\ndc15 = { \"base.d85_at_dc\" = 15 }\n\
     dc50 = { \"base.d85_at_dc\" = 50 }\n";
 
-fn call(folder: &Path, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_voidwalk")).current_dir(folder).args(args).output().unwrap()
+fn page(folder: &Path, args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_voidwalk-paper")).current_dir(folder).args(args).output().unwrap()
 }
 
 fn walk(folder: &Path, name: &str, cases: &str) {
     fs::write(folder.join(format!("{name}.toml")), format!("{SMALL}{cases}")).unwrap();
-    let output =
-        call(folder, &["campaign", &format!("{name}.toml"), "--out", &format!("out/{name}"), "--quiet"]);
+    let output = Command::new(std::env::current_exe().unwrap())
+        .env(AS_VOIDWALK, "")
+        .current_dir(folder)
+        .args(["campaign", &format!("{name}.toml"), "--out", &format!("out/{name}"), "--quiet"])
+        .output()
+        .unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
@@ -31,7 +63,6 @@ fn statements(folder: &Path) -> Vec<csv::StringRecord> {
     reader.records().map(Result::unwrap).collect()
 }
 
-#[test]
 fn a_small_reproduction_gives_the_whole_page() {
     let root = tempfile::tempdir().unwrap();
     let at = root.path();
@@ -43,8 +74,9 @@ fn a_small_reproduction_gives_the_whole_page() {
         "progress",
         "[[case]]\nname = \"fig18\"\n[[case]]\nname = \"fig13-some\"\nset = { \"base.cu\" = 3 }\n",
     );
-    let output = call(at, &["report", "out"]);
+    let output = page(at, &["out"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(String::from_utf8_lossy(&output.stdout), "out/report.html\n");
     let page = fs::read_to_string(at.join("out/report.html")).unwrap();
     for heading in ["Fig. 6", "Table 2", "Fig. 10", "Fig. 14", "Table 3", "Fig. 20", "Every combination"] {
         assert!(page.contains(heading), "{heading}");
@@ -65,7 +97,6 @@ fn a_small_reproduction_gives_the_whole_page() {
     assert_eq!((e - 0.658).abs() <= 0.02, &of("e-cu1.5-loose", "paper").unwrap()[13] == "agrees");
 }
 
-#[test]
 fn a_ledger_that_is_not_of_its_cases_is_refused() {
     let root = tempfile::tempdir().unwrap();
     let at = root.path();
@@ -74,9 +105,24 @@ fn a_ledger_that_is_not_of_its_cases_is_refused() {
     let path = at.join("out/paper/cases/one/outcome.json");
     let text = fs::read_to_string(&path).unwrap();
     fs::write(&path, text.replacen("\"seed\": 1,", "\"seed\": 2,", 1)).unwrap();
-    let output = call(at, &["report", "out"]);
+    let output = page(at, &["out"]);
     let error = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{error}");
     assert!(error.contains("not what ledger.jsonl says"), "{error}");
     assert!(!at.join("out/report.html").exists());
+}
+
+fn a_folder_without_the_campaign_is_refused() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    fs::create_dir(at.join("empty")).unwrap();
+    for (args, told) in
+        [(["empty"].as_slice(), "holds no paper/ledger.jsonl"), (&["a", "b"], "Usage"), (&[], "Usage")]
+    {
+        let output = page(at, args);
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{args:?}: {error}");
+        assert!(error.contains(told), "{args:?}: {error}");
+    }
+    assert_eq!(fs::read_dir(at.join("empty")).unwrap().count(), 0);
 }

@@ -1,4 +1,4 @@
-//! The figures of one run at its end, and its rows of the CSV files.
+//! The numbers of one run at its end, and its rows of the CSV files.
 
 use super::by_connectivity;
 use super::record::{LayerRow, Run, SeriesRow, SizeRow};
@@ -7,23 +7,23 @@ use super::verdict::{below_by_count, below_by_mass};
 use crate::network::{NO_LAYER, Network};
 use crate::walk::{SizeClasses, SizeCounts, State, Tally};
 
-/// Which run of which replicate rows belong to, and what turns its units into a reader's.
+/// A run of a replicate, and what its numbers are given by.
 #[derive(Clone, Copy, Debug)]
-pub struct RunOf {
+pub struct RunId {
     /// Replicate, counted from 1.
     pub replicate: u64,
     /// Run, counted from 1.
     pub run: u64,
     /// D15F (mm).
     pub d15f_mm: f64,
-    /// Share of the base's mass in a tail of unknown size.
-    pub tail_mass_fraction: f64,
+    /// Pan fraction of the base by mass: what is finer than the finest sieve.
+    pub pan_fraction: f64,
 }
 
-/// The figures of one run.
+/// The numbers of one run at its end.
 #[derive(Clone, Debug)]
-pub struct Figures {
-    /// What `outcome.json` keeps of it.
+pub struct RunMetrics {
+    /// Its entry of `outcome.json`.
     pub run: Run,
     /// Whether less than 7.5 % of the mass eroded.
     pub below_threshold: bool,
@@ -44,33 +44,32 @@ pub struct Recorded {
 
 /// Mass eroded over the mass that the run inserts in all.
 ///
-/// A tail of unknown size is passive: as much of it erodes as of the passive particles, and all of it
-/// where the base has none.
-pub(crate) fn eroded_mass_fraction(tally: &Tally, end: &Tally, tail: f64) -> f64 {
+/// The pan fraction is passive: as much of it erodes as of the passive particles, and all of it where the base has none.
+pub(crate) fn eroded_mass_fraction(tally: &Tally, end: &Tally, pan_fraction: f64) -> f64 {
     let sized = match end.inserted_mass > 0.0 {
         // The same masses added in two orders may differ in their last bits.
         true => (tally.eroded_mass / end.inserted_mass).min(1.0),
         false => 0.0,
     };
-    if tail == 0.0 {
+    if pan_fraction == 0.0 {
         return sized;
     }
-    let of_tail = match end.passive_inserted {
+    let of_pan = match end.passive_inserted {
         0 => tally.inserted as f64 / end.inserted.max(1) as f64,
         n => tally.passive_eroded as f64 / n as f64,
     };
-    (1.0 - tail) * sized + tail * of_tail
+    (1.0 - pan_fraction) * sized + pan_fraction * of_pan
 }
 
-impl Figures {
-    /// The figures of a finished run.
-    pub fn new(network: &Network, state: &State, of: RunOf, seconds: f64) -> Self {
+impl RunMetrics {
+    /// The numbers of a finished run, which took `seconds` of wall time.
+    pub fn new(network: &Network, state: &State, of: RunId, seconds: f64) -> Self {
         let tally = &state.tally;
-        let eroded_mass_fraction = eroded_mass_fraction(tally, tally, of.tail_mass_fraction);
-        let one_size = state.classes.upper().len() == 1 && of.tail_mass_fraction == 0.0;
+        let eroded_mass_fraction = eroded_mass_fraction(tally, tally, of.pan_fraction);
+        let one_size = state.classes.upper().len() == 1 && of.pan_fraction == 0.0;
         let below_threshold = match one_size {
             true => below_by_count(tally.eroded, tally.inserted),
-            false if of.tail_mass_fraction == 0.0 => below_by_mass(tally.eroded_mass, tally.inserted_mass),
+            false if of.pan_fraction == 0.0 => below_by_mass(tally.eroded_mass, tally.inserted_mass),
             false => below_by_mass(eroded_mass_fraction, 1.0),
         };
         let largest_mm = (tally.eroded > 0).then(|| f64::from(tally.largest_eroded) * network.unit_mm());
@@ -105,7 +104,7 @@ impl Figures {
 
 impl Recorded {
     /// The rows of a finished run.
-    pub fn new(network: &Network, state: &State, recorder: &Recorder, of: RunOf) -> Self {
+    pub fn new(network: &Network, state: &State, recorder: &Recorder, of: RunId) -> Self {
         let series = recorder.series.iter().map(|(increment, tally)| SeriesRow {
             replicate: of.replicate,
             run: of.run,
@@ -117,7 +116,7 @@ impl Recorded {
             retained_in_voids: tally.retained_in_voids,
             trapped: tally.trapped,
             blocked: tally.blocked,
-            eroded_mass_fraction: eroded_mass_fraction(tally, &state.tally, of.tail_mass_fraction),
+            eroded_mass_fraction: eroded_mass_fraction(tally, &state.tally, of.pan_fraction),
         });
         let mut recorded =
             Self { series: series.collect(), layers: layers(network, state, of), ..Self::default() };
@@ -163,7 +162,7 @@ fn blocked_first_layers(network: &Network, state: &State, layers: u32) -> f64 {
     blocked as f64 / all.max(1) as f64
 }
 
-fn layers(network: &Network, state: &State, of: RunOf) -> Vec<LayerRow> {
+fn layers(network: &Network, state: &State, of: RunId) -> Vec<LayerRow> {
     let row = |layer| LayerRow {
         replicate: of.replicate,
         run: of.run,
@@ -194,7 +193,7 @@ fn size_curve(
     counts: &SizeCounts,
     classes: &SizeClasses,
     unit_mm: f64,
-    of: RunOf,
+    of: RunId,
     increment: u64,
 ) -> Vec<SizeRow> {
     let number: u64 = counts.number.iter().sum();

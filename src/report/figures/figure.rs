@@ -1,0 +1,91 @@
+//! A figure: axes, and what stands between them.
+
+use super::axis::Axis;
+use super::marks::{Mark, Point};
+
+/// Room for a figure. Text has the same size in both.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Size {
+    /// For a page or a file: 720 pixels wide unless the figure says otherwise.
+    Wide,
+    /// For a telephone: 358 pixels wide unless the figure says otherwise.
+    Narrow,
+}
+
+/// How curves get their names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Naming {
+    /// Each beside its curve; names that find no room go above the frame.
+    Direct,
+    /// All above the frame.
+    Above,
+}
+
+/// Axes and what stands between them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    pub(super) title: String,
+    pub(super) description: String,
+    pub(super) heading: String,
+    pub(super) x: Axis,
+    pub(super) y: Axis,
+    pub(super) marks: Vec<Mark>,
+    pub(super) naming: Naming,
+    pub(super) square: bool,
+    pub(super) wide: (f64, f64),
+    pub(super) narrow: (f64, f64),
+}
+
+impl Figure {
+    /// An empty figure. `title` and `description` are for readers who do not see it, `heading` (may be empty) is drawn
+    /// above the frame.
+    pub fn new(title: &str, description: &str, heading: &str, x: Axis, y: Axis) -> Figure {
+        Figure {
+            title: title.to_owned(),
+            description: description.to_owned(),
+            heading: heading.to_owned(),
+            x,
+            y,
+            marks: Vec::new(),
+            naming: Naming::Direct,
+            square: false,
+            wide: (720.0, 440.0),
+            narrow: (358.0, 380.0),
+        }
+    }
+
+    /// Other widths and heights in pixels.
+    pub fn sizes(mut self, wide: (f64, f64), narrow: (f64, f64)) -> Figure {
+        (self.wide, self.narrow) = (wide, narrow);
+        self
+    }
+
+    /// A square frame, as large as there is room for: equal axes then have equal scales.
+    pub fn square(mut self) -> Figure {
+        self.square = true;
+        self
+    }
+
+    /// All names above the frame.
+    pub fn names_above(mut self) -> Figure {
+        self.naming = Naming::Above;
+        self
+    }
+
+    /// Draws something over what is there.
+    pub fn add(&mut self, mark: impl Into<Mark>) {
+        self.marks.push(mark.into());
+    }
+
+    /// Draws symbols of one kind; the first of them carries the name of all.
+    pub fn add_points(&mut self, name: &str, points: impl IntoIterator<Item = Point>) {
+        for (index, point) in points.into_iter().enumerate() {
+            self.add(if index == 0 { point.label(name) } else { point });
+        }
+    }
+
+    /// Its title.
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+}
