@@ -362,8 +362,8 @@ fn walk(
             keeper.flush()?;
             return Ok(false);
         }
-        // Checkpoints of what the case was before the plan was changed, or harmed ones: it is walked from its start.
-        Err(RunError::Harmed(harmed)) if !harmed.unread => {
+        // Checkpoints of what the case was before the plan was changed, or corrupt ones: it is walked from its start.
+        Err(RunError::Checkpoint(error)) if !error.is_unreadable() => {
             keeper.clear()?;
             return Ok(false);
         }

@@ -158,10 +158,12 @@ fn walk(
             (RunError::Walk(crate::walk::WalkError::Stopped { .. }), Ok(())) => {
                 Exit::stopped(format!("what is done is kept; `voidwalk resume {shown}` goes on"))
             }
-            (RunError::Harmed(harmed), _) if harmed.unread => Exit::failed(plain(&harmed.to_string())),
-            (RunError::Harmed(harmed), _) => Exit::refused(format!(
+            (RunError::Checkpoint(error), _) if error.is_unreadable() => {
+                Exit::failed(plain(&error.to_string()))
+            }
+            (RunError::Checkpoint(error), _) => Exit::refused(format!(
                 "{}; --overwrite begins anew, another --out leaves it alone",
-                plain(&harmed.to_string())
+                plain(&error.to_string())
             )),
             (RunError::Walk(crate::walk::WalkError::Stopped { .. }), Err(error)) => Exit::failed(error),
             (other, _) => Exit::failed(other),

@@ -8,7 +8,7 @@ use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
 use rayon::prelude::*;
 
-use super::checkpoints::{Checkpoints, Done, network_fingerprint};
+use super::checkpoints::{Checkpoints, Done, WalkId, network_fingerprint};
 use crate::case::{Case, CaseError, replicate_seed};
 use crate::network::Network;
 use crate::outcome::record::{Replicate, RunSummary, Sensitivity, Statistic, Stopping, Verdict};
@@ -16,8 +16,8 @@ use crate::outcome::stopping::Look;
 use crate::outcome::verdict::{below_by_interval, classify};
 use crate::outcome::{Recorded, RunId, RunMetrics};
 use crate::store::StoreError;
-use crate::store::checkpoint::{Harmed, Saved};
-use crate::walk::{Engine, Plan, Progress, SizeClasses, State, Walk, WalkError};
+use crate::store::checkpoint::{Checkpoint, CheckpointError};
+use crate::walk::{Engine, Plan, SizeClasses, State, Walk, WalkControl, WalkError};
 
 /// Why walking ended early.
 #[derive(Debug, thiserror::Error)]
@@ -27,7 +27,7 @@ pub enum RunError {
     Case(#[from] CaseError),
     /// A checkpoint that cannot be gone on from.
     #[error(transparent)]
-    Harmed(#[from] Harmed),
+    Checkpoint(#[from] CheckpointError),
     /// A checkpoint that cannot be kept.
     #[error(transparent)]
     Keep(#[from] StoreError),
@@ -164,10 +164,11 @@ fn walk_replicate(
     watch: &Watch,
 ) -> Result<ReplicateResult, RunError> {
     let seed = replicate_seed(case.scene.walk.seed, replicate);
+    let id = WalkId { part, replicate, seed, n_base };
     let network = case.network(seed).map_err(CaseError::from)?;
     let mut blocked = BitVec::repeat(false, network.constrictions());
     let first = plan(case, &network, &blocked, n_base);
-    let (mut done, mut saved) = match watch.keeper.map(|keeper| keeper.load(part, replicate)).transpose()? {
+    let (mut done, mut saved) = match watch.keeper.map(|keeper| keeper.load(id)).transpose()? {
         Some(Some((done, saved))) => (done, Some(saved)),
         _ => (Done::default(), None),
     };
@@ -182,7 +183,7 @@ fn walk_replicate(
             pan_fraction: case.base.tail_mass_fraction(),
         };
         let begun = Instant::now();
-        let walk = RunContext { case, network: &network, part, seed, of, n_base };
+        let walk = RunContext { case, network: &network, id, of };
         let state = walk.run(blocked, &mut done, saved.take(), watch)?;
         let metrics = RunMetrics::new(&network, &state, of, begun.elapsed().as_secs_f64());
         let recorder = std::mem::take(&mut done.recorder);
@@ -195,7 +196,7 @@ fn walk_replicate(
         blocked = state.blocked;
         (watch.tell)(Event::Run);
         if let (true, Some(keeper)) = (done.complete, watch.keeper) {
-            keeper.save_finished(part, replicate, seed, &done);
+            keeper.save_finished(id, &done);
         }
     }
     let verdict = classify(done.below.first().copied(), done.below.get(1).copied());
@@ -227,10 +228,8 @@ pub fn left_out_of_first_run(case: &Case) -> Result<Vec<String>, RunError> {
 struct RunContext<'a> {
     case: &'a Case,
     network: &'a Network,
-    part: u64,
-    seed: u64,
+    id: WalkId,
     of: RunId,
-    n_base: u64,
 }
 
 impl RunContext<'_> {
@@ -239,11 +238,12 @@ impl RunContext<'_> {
         &self,
         blocked: BitVec<u64>,
         done: &mut Done,
-        mut saved: Option<Saved>,
+        saved: Option<Checkpoint>,
         watch: &Watch,
     ) -> Result<State, RunError> {
-        let Self { case, network, part, seed, of, n_base } = *self;
-        let blocked = match &mut saved {
+        let Self { case, network, id, of } = *self;
+        let WalkId { part, seed, n_base, .. } = id;
+        let blocked = match &saved {
             Some(saved) if of.run > 1 => blocked_at_start(network, saved)?,
             _ => blocked,
         };
@@ -253,12 +253,11 @@ impl RunContext<'_> {
         let classes = SizeClasses::logarithmic(smallest, largest, case.scene.record.wanted().size_classes);
         let state = State::placed(&case.placement, network, &supply, classes, blocked, seed, of.run);
         let mut state = state.map_err(|source| RunError::Room { particles: supply.total(), source })?;
-        if let Some(mut saved) = saved {
+        if let Some(saved) = saved {
             if saved.label.network != network_fingerprint(network) {
-                let file = format!("checkpoint of replicate {}", of.replicate);
-                return Err(Harmed::new(file, "is of another network").into());
+                return Err(CheckpointError::OtherNetwork { file: saved.path().to_owned() }.into());
             }
-            state.restore(network, &mut saved)?;
+            state.restore(network, &saved)?;
         }
         if state.finished {
             return Ok(state);
@@ -272,15 +271,15 @@ impl RunContext<'_> {
             (watch.tell)(Event::Increment { replicate: of.replicate, run: of.run, increment, moving });
             let stop = watch.stop.load(Ordering::Relaxed);
             if let Some(keeper) = watch.keeper.filter(|keeper| keeper.is_due(last, increment, stop)) {
-                if let Err(error) = keeper.save_walk(part, of.replicate, network, state, done) {
+                if let Err(error) = keeper.save_walk(id, network, state, done) {
                     failed = Some(error);
-                    return Progress::Stop;
+                    return WalkControl::Stop;
                 }
                 last = Instant::now();
             }
             match stop {
-                true => Progress::Stop,
-                false => Progress::Continue,
+                true => WalkControl::Stop,
+                false => WalkControl::Continue,
             }
         });
         if let Some(error) = failed {
@@ -292,7 +291,7 @@ impl RunContext<'_> {
 }
 
 /// Constrictions that were blocked when the saved run began: those blocked now, less those that it blocked itself.
-fn blocked_at_start(network: &Network, saved: &mut Saved) -> Result<BitVec<u64>, RunError> {
+fn blocked_at_start(network: &Network, saved: &Checkpoint) -> Result<BitVec<u64>, RunError> {
     let mut blocked = BitVec::from_vec(saved.read::<u64>("blocked")?);
     blocked.truncate(network.constrictions());
     for constriction in saved.read::<u32>("history_constriction")? {

@@ -7,7 +7,7 @@ use super::work::timed;
 use crate::gradation::{Gradation, SizeSampler};
 use crate::network::Network;
 use crate::outcome::eroded_mass_fraction;
-use crate::walk::{Engine, Plan, Progress, Sampling, SizeClasses, State, Walk};
+use crate::walk::{Engine, Plan, Sampling, SizeClasses, State, Walk, WalkControl};
 
 /// A first run, up to its network and seed.
 #[derive(Clone)]
@@ -105,7 +105,7 @@ impl FirstRun {
             let mut state = State::new(network, &supply, classes, blocked, seed, run);
             Walk::new(network, &supply, &state).run(&mut state, &mut |state| {
                 observe(state);
-                Progress::Continue
+                WalkControl::Continue
             })?;
             Ok((state, supply.total()))
         };

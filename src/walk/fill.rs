@@ -3,7 +3,7 @@
 use super::{Isa, Supply};
 
 /// [`Supply::fill`] with the instructions of `isa`, to the same bits.
-pub(in crate::walk) fn fill_diameters(isa: Isa, supply: &Supply, words: &mut [u64], out: &mut [f32]) {
+pub(super) fn fill_diameters(isa: Isa, supply: &Supply, words: &mut [u64], out: &mut [f32]) {
     assert!(isa.is_available());
     match isa {
         // SAFETY: the machine has the instructions.
