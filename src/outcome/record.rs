@@ -79,6 +79,9 @@ pub enum Verdict {
 }
 
 impl Verdict {
+    /// Every class, in the order of `replicate_verdicts`.
+    pub const ALL: [Verdict; 4] = [Verdict::None, Verdict::Some, Verdict::Continuing, Verdict::Undecided];
+
     /// Its name in `outcome.json` and in every table.
     pub fn words(self) -> &'static str {
         match self {

@@ -24,7 +24,7 @@ mod path;
 mod place;
 mod svg;
 
-pub use axis::{Axis, Scale, Tick};
+pub use axis::{Axis, Scale, Tick, positive_range};
 pub use colour::{BLACK, BLUE, Colour, GREEN, GREY, ORANGE, PURPLE, VERMILLION, ramp};
 pub use figure::{Figure, Naming, Size};
 pub use marks::{Across, Area, Dash, Disc, Line, Mark, Point, Rule, Shape};

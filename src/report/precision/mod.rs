@@ -8,11 +8,11 @@ use std::path::Path;
 
 use maud::{Markup, html};
 
-use super::Written;
 use super::error::ReportError;
 use super::files::json;
 use super::numbers::{duration, whole};
 use super::shell::{Drawn, clean, fact, figure, whole_page};
+use super::written::{Written, write_page_as};
 use crate::outcome::precision::Precision;
 
 pub use judgements::precision_judgements;
@@ -60,7 +60,7 @@ pub fn write_precision(folder: &Path) -> Result<Written, ReportError> {
         p.small { "voidwalk " (study.version) ", " (duration(study.seconds)) "." }
     };
     let drawn: Vec<Drawn> = sections.into_iter().flat_map(|section| section.figures).collect();
-    super::write_page_as("precision.html", folder, &drawn, &whole_page(title, &header, &main, &footer))
+    write_page_as("precision.html", folder, &drawn, &whole_page(title, &header, &main, &footer))
 }
 
 fn sections(study: &Precision) -> Vec<Section> {
