@@ -88,8 +88,8 @@ fn by_ratio(ledger: &[LedgerLine]) -> Drawn {
     let figure = against_ratio("Erosion against the filter ratio", what, y, rules, ledger, |line| {
         eroded(line, 0).map(|first| (100.0 * first.mean, interval_in_percent(first)))
     });
-    let caption = "Base eroded in the first run against D15F/D85B: one symbol a case, with the 95 % interval over its \
-                   replicates. The class also takes the second run.";
+    let caption = "Base eroded in the first run against D15F/D85B: one symbol a case, with the 95 % interval \
+                   over its replicates. The class also takes the second run.";
     Drawn::new("by-ratio", figure, caption)
 }
 

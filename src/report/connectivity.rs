@@ -20,8 +20,10 @@ pub(super) fn by_connectivity(outcome: &Outcome) -> Markup {
         @if !runs.is_empty() {
             h2 { "By connectivity of the void" }
             p {
-                "A void’s connectivity is the number of its entrances and exits. The network is not uniform: voids with few "
-                "connections close early and then retain whatever enters (Table 3 of the paper). All replicates together."
+                "A void’s connectivity is the number of its entrances and exits. The network is not \
+                 uniform: voids with few "
+                "connections close early and then retain whatever enters (Table 3 of the paper). All \
+                 replicates together."
             }
             @for (run, rows) in &runs { (of_run(*run, rows)) }
         }

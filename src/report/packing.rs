@@ -72,10 +72,10 @@ fn curves(packed: &Packed) -> Drawn {
         }
     }
     let caption = format!(
-        "The filter’s gradation (percent finer by mass) and its constrictions (percent smaller by number). Voids whose \
-         inscribed spheres overlap by at least {} of the smaller one’s radius count as one void. Dotted: what circles inscribed \
-         between three (dense) and four (loose) touching grains would give without a packing; the wider the gradation, the \
-         worse that guess.",
+        "The filter’s gradation (percent finer by mass) and its constrictions (percent smaller by number). \
+         Voids whose inscribed spheres overlap by at least {} of the smaller one’s radius count as one \
+         void. Dotted: what circles inscribed between three (dense) and four (loose) touching grains would \
+         give without a packing; the wider the gradation, the worse that guess.",
         significant(packed.summary.merge_overlap)
     );
     Drawn::new("curves", figure, caption)
@@ -98,8 +98,8 @@ pub(super) fn slice(record: &PackingRecord) -> Drawn {
         figure.add(Disc::new((x, y), cut, ramp(shade, SHADES)));
     }
     let caption = format!(
-        "The plane z = {} mm through the middle of the periodic cell. A circle is the cut of a grain, not its diameter; \
-         the darker, the larger the grain.",
+        "The plane z = {} mm through the middle of the periodic cell. A circle is the cut of a grain, not \
+         its diameter; the darker, the larger the grain.",
         significant(0.5 * edge)
     );
     Drawn::new("slice", figure, caption)
@@ -134,14 +134,18 @@ fn page(packed: &Packed, drawn: &[Drawn]) -> String {
     let (record, summary) = (&packed.record, &packed.summary);
     let header = html! {
         h1 { "A filter, packed" }
-        p.names { b { bdi { (clean(&record.name)) } } ", friction " (significant(record.friction)) " during compression" }
+        p.names {
+            b { bdi { (clean(&record.name)) } }
+            ", friction " (significant(record.friction)) " during compression"
+        }
     };
     let at = |percent: f64| known(dc(summary, percent), |d| format!("{} mm", significant(d)));
     let main = html! {
         p.lead {
-            "Void ratio " b { (format!("{:.4}", record.after.void_ratio)) } ", " (whole(record.grains)) " grains, "
-            (whole(summary.constrictions as u64)) " constrictions with Cu " b { (format!("{:.3}", summary.cu_csd)) }
-            ", " b { (format!("{:.3}", summary.grains_per_void)) } " grains per void."
+            "Void ratio " b { (format!("{:.4}", record.after.void_ratio)) } ", "
+            (whole(record.grains)) " grains, " (whole(summary.constrictions as u64)) " constrictions with Cu "
+            b { (format!("{:.3}", summary.cu_csd)) } ", "
+            b { (format!("{:.3}", summary.grains_per_void)) } " grains per void."
         }
         (figures(drawn))
         (beside_the_paper(packed))
@@ -154,7 +158,8 @@ fn page(packed: &Packed, drawn: &[Drawn]) -> String {
             (fact("Voids", whole(summary.voids as u64)))
             (fact("Grains per void, N_p/N_voids of Eq. (2)", significant(summary.grains_per_void)))
             (fact("Mean number of constrictions of a void", significant(summary.mean_connectivity)))
-            (fact("Overlap from which tetrahedra are merged into one void", significant(summary.merge_overlap)))
+            (fact("Overlap from which tetrahedra are merged into one \
+                   void", significant(summary.merge_overlap)))
         } }
         h2 { "Compression" }
         (states(record))
@@ -162,13 +167,15 @@ fn page(packed: &Packed, drawn: &[Drawn]) -> String {
             (fact("Mean pressure", format!("{} kPa", significant(record.pressure_kpa))))
             (fact("Edge of the periodic cell", format!("{} mm", significant(record.cell_mm))))
             (fact("Steps", whole(record.steps)))
-            (fact("Simulated time", format!("{} s, with masses scaled so that small grains do not set the step alone",
+            (fact("Simulated time", format!("{} s, with masses scaled so that small grains do not set the \
+                                             step alone",
                 significant(record.simulated_s))))
             (fact("Seed", record.seed.to_string()))
             (fact("Wall time", duration(record.seconds)))
             @for (name, value) in &record.settings { (fact(name, value.to_string())) }
         } }
-        p.small { "Spheres, Hertz-Mindlin contacts with Coulomb friction, no gravity, no cohesion, no breakage." }
+        p.small { "Spheres, Hertz-Mindlin contacts with Coulomb friction, no gravity, no cohesion, no \
+                   breakage." }
     };
     whole_page(&format!("Packing: {}", clean(&record.name)), &header, &main, &citation())
 }

@@ -69,14 +69,17 @@ fn page(folder: &RunFolder, verdict: &Drawn, figures: &[Drawn]) -> String {
     );
     let header = html! {
         h1 { "Will this filter hold this soil?" }
-        p.names { "Base " b { bdi { (clean(&base.name)) } } " against filter " b { bdi { (clean(&filter.name)) } } }
+        p.names {
+            "Base " b { bdi { (clean(&base.name)) } } " against filter " b { bdi { (clean(&filter.name)) } }
+        }
     };
     let main = html! {
         div.first {
             (verdict_box(outcome, verdict))
             (leaves_out(&outcome.model_leaves_out, &html! {
                 @if outcome.model_leaves_out.is_empty() { p { "outcome.json does not say." } }
-                p { "The verdict is the model’s. It does not replace a filter test or a designer’s judgement." }
+                p { "The verdict is the model’s. It does not replace a filter test or a designer’s \
+                     judgement." }
             }))
         }
         (warnings(outcome))
@@ -118,7 +121,10 @@ fn verdict_box(outcome: &Outcome, verdict: &Drawn) -> Markup {
             @if let Some(stopping) = &outcome.stopping { p { (stopped(stopping)) } }
             p { (tally(outcome)) " Threshold between the classes: " (threshold(outcome.threshold)) "." }
             @if count == 1 {
-                p { b { "One replicate: the scatter is unknown." } " Walk more replicates before relying on this." }
+                p {
+                    b { "One replicate: the scatter is unknown." }
+                    " Walk more replicates before relying on this."
+                }
             }
         }
     }
@@ -134,7 +140,8 @@ fn stopped(stopping: &Stopping) -> String {
     let mut text = String::new();
     if let Some(percent) = stopping.decide_percent {
         text += &format!(
-            "Replicates were added to decide the verdict at the {percent} % confidence level, corrected for repeated looks. "
+            "Replicates were added to decide the verdict at the {percent} % confidence level, corrected for \
+             repeated looks. "
         );
     }
     if let Some(pp) = stopping.target_error_pp {
@@ -156,12 +163,12 @@ fn in_words(outcome: &Outcome) -> String {
             "In the model the filter holds this base: less than {limit} of its mass passes in the first run."
         ),
         Verdict::Some => format!(
-            "In the model the filter seals after some erosion: {limit} or more of the base passes in the first run, less \
-             in the second, on the constrictions that the first left blocked."
+            "In the model the filter seals after some erosion: {limit} or more of the base passes in the \
+             first run, less in the second, on the constrictions that the first left blocked."
         ),
         Verdict::Continuing => format!(
-            "In the model the filter does not hold this base: {limit} or more of its mass passes in the first run and \
-             again in the second."
+            "In the model the filter does not hold this base: {limit} or more of its mass passes in the \
+             first run and again in the second."
         ),
         Verdict::Undecided => {
             let straddles = |run: &&RunSummary| {
@@ -174,7 +181,8 @@ fn in_words(outcome: &Outcome) -> String {
                 let plural = if runs.len() > 1 { "intervals of the " } else { "interval of the " };
                 format!("Inconclusive: the {plural}{} includes {limit}.", runs.join(" and the "))
             } else if outcome.summary.len() == 1 {
-                "Inconclusive: some and continuing erosion differ by the second run, and only a first was asked for."
+                "Inconclusive: some and continuing erosion differ by the second run, and only a first was \
+                 asked for."
                     .to_owned()
             } else {
                 "Inconclusive: these replicates do not separate the classes.".to_owned()
@@ -206,8 +214,8 @@ fn warnings(outcome: &Outcome) -> Markup {
                 ul {
                     @if outcome.capped {
                         li {
-                            "Capped: " (whole(outcome.n_base)) " base particles were walked; Eq. (2) requires "
-                            (known(outcome.n_base_eq2, whole)) "."
+                            "Capped: " (whole(outcome.n_base)) " base particles were walked; "
+                            "Eq. (2) requires " (known(outcome.n_base_eq2, whole)) "."
                         }
                     }
                     @for warning in &outcome.warnings { li { (clean(warning)) } }
@@ -231,8 +239,11 @@ fn missing(folder: &RunFolder, figures: &[Drawn]) -> Markup {
     ];
     html! {
         @for (name, reason) in reasons { @if !has(name) { p.small { (reason) } } }
-        @if folder.series.len() != folder.outcome.replicates.len() * folder.outcome.summary.len() && has("eroded") {
-            p.small { "series.csv does not hold every replicate and run: the mean is over those that it holds." }
+        @if has("eroded")
+            && folder.series.len() != folder.outcome.replicates.len() * folder.outcome.summary.len()
+        {
+            p.small { "series.csv does not hold every replicate and run: the mean is over those that it \
+                       holds." }
         }
     }
 }
@@ -324,7 +335,8 @@ fn replicates(outcome: &Outcome) -> Markup {
             }
             (table)
             p.small {
-                "Inserted, eroded, in constrictions, in voids and trapped count particles; per void is all retained "
+                "Inserted, eroded, in constrictions, in voids and trapped count particles; per void is all \
+                 retained "
                 "particles over voids; trapped particles are trapped in closed loops."
             }
         }
@@ -360,8 +372,8 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
         }
         (NetworkKind::Connected, Some(nx), Some(ny), Some(nz)) => {
             format!(
-                "directed lattice, {nx} × {ny} × {nz} voids ({nz} along the flow), diagonals added and constrictions \
-                 deleted"
+                "directed lattice, {nx} × {ny} × {nz} voids ({nz} along the flow), diagonals added and \
+                 constrictions deleted"
             )
         }
         (NetworkKind::Cubic | NetworkKind::Connected, ..) => "directed lattice".to_owned(),
@@ -371,10 +383,11 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
         h2 { "Filter thickness and inputs" }
         @match network.thickness_mm {
             Some(thickness) => p {
-                "Modelled filter thickness: " b { (mm(thickness)) } " along the flow, " (whole(network.layers))
-                " layers, each D50F by number, " (mm(filter.d50_by_number_mm)) "."
+                "Modelled filter thickness: " b { (mm(thickness)) } " along the flow, "
+                (whole(network.layers)) " layers, each D50F by number, " (mm(filter.d50_by_number_mm)) "."
             },
-            None => p { "Modelled filter thickness: none in particular, the layers of this network have none." },
+            None => p { "Modelled filter thickness: none in particular, the layers of this network have \
+                         none." },
         }
         h3 { "Filter" }
         table.facts { tbody {
@@ -404,8 +417,8 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
                 [Some(base.d0_mm), base.d15_mm, base.d50_mm].map(|d| known(d, mm)).join(", ")))
             (fact("D85, D95, D100 (by mass)", [base.d85_mm, base.d95_mm, base.d100_mm].map(mm).join(", ")))
             @if base.tail_mass_fraction > 0.0 {
-                (fact("Pan fraction (finer than the finest sieve)", format!("{} by mass; taken as passive, counted by mass only",
-                    percent(base.tail_mass_fraction))))
+                (fact("Pan fraction (finer than the finest sieve)",
+                    format!("{} by mass; passive, counted by mass only", percent(base.tail_mass_fraction))))
             }
             (fact("D15F/D85B, D15F/D95B", format!("{}, {}", significant(outcome.ratios.d15f_over_d85b),
                 significant(outcome.ratios.d15f_over_d95b))))
@@ -419,8 +432,8 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
         table.facts { tbody {
             (fact("Kind", &kind))
             @if !network.name.is_empty() { (fact("Name", &network.name)) }
-            (fact("Voids, constrictions", format!("{}, {}", whole(network.voids), whole(network.constrictions))))
-            (fact("Start nodes, layers", format!("{}, {}", whole(network.start_nodes), whole(network.layers))))
+            (fact("Voids, constrictions", [network.voids, network.constrictions].map(whole).join(", ")))
+            (fact("Start nodes, layers", [network.start_nodes, network.layers].map(whole).join(", ")))
         } }
     }
 }
@@ -439,8 +452,11 @@ fn provenance(folder: &RunFolder) -> Markup {
             (fact("Command", &manifest.command))
             (fact("Started, finished", format!("{}, {}", manifest.started, manifest.finished)))
             (fact("Wall time", duration(outcome.seconds)))
-            (fact("Machine", format!("{}, {}, {} threads", manifest.host, manifest.machine, manifest.threads)))
-            @for input in &manifest.inputs { (fact("Input file", format!("{} (XXH3 {})", input.name, input.xxh3))) }
+            (fact("Machine",
+                format!("{}, {}, {} threads", manifest.host, manifest.machine, manifest.threads)))
+            @for input in &manifest.inputs {
+                (fact("Input file", format!("{} (XXH3 {})", input.name, input.xxh3)))
+            }
             @if !outcome.left_out.is_empty() {
                 (fact("Not needed for this scene", outcome.left_out.join("; ")))
             }
@@ -449,7 +465,8 @@ fn provenance(folder: &RunFolder) -> Markup {
             summary { "scene.toml" }
             pre { (scene) }
             @if cut { p.small { "Cut here; the whole is in scene.toml." } }
-            p.small { "Running this scene again gives the same results, bit for bit, on any number of threads." }
+            p.small { "Running this scene again gives the same results, bit for bit, on any number of \
+                       threads." }
         }
     }
 }

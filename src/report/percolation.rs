@@ -22,7 +22,8 @@ pub fn write_percolation(folder: &Path, study: &PercolationStudy) -> Result<Writ
     let header = html! { h1 { (title) } };
     let main = html! {
         p {
-            "Constrictions of an L × L × L lattice, periodic sideways, opened one by one at random until a path leads from "
+            "Constrictions of an L × L × L lattice, periodic sideways, opened one by one at random until a \
+             path leads from "
             "the start layer out of the last: the share that is then open. " (whole(study.realisations))
             " realisations of each size, seed " (study.seed) ", each threshold exact."
         }
@@ -57,11 +58,13 @@ fn fits(study: &PercolationStudy) -> Markup {
             ul {
                 li {
                     "One length, p(L) = p − a L" sup { "−1/ν" } " with ν = " (NU_PARALLEL) ": "
-                    (format!("{:.5} ± {:.5}", fit.threshold, fit.threshold_error)) (quality(fit.chi_squared, fit.degrees))
+                    (format!("{:.5} ± {:.5}", fit.threshold, fit.threshold_error))
+                    (quality(fit.chi_squared, fit.degrees))
                 }
                 @if let Some(fit) = &study.many_starts { li {
-                    "Many starts, L d" sup { "ν" } " = b + c ln(L d" sup { "ν/z" } ") with d = p − p(L), z = " (Z) ": "
-                    (format!("{:.5} ({:.5} to {:.5}, 68 %)", fit.threshold, fit.threshold_low, fit.threshold_high))
+                    "Many starts, L d" sup { "ν" } " = b + c ln(L d" sup { "ν/z" }
+                    ") with d = p − p(L), z = " (Z) ": " (format!("{:.5}", fit.threshold))
+                    (format!(" ({:.5} to {:.5}, 68 %)", fit.threshold_low, fit.threshold_high))
                     (quality(fit.chi_squared, fit.degrees))
                 } }
                 @if let Some(slope) = study.sd_exponent { li {
@@ -69,7 +72,8 @@ fn fits(study: &PercolationStudy) -> Markup {
                 } }
             }
             p.small {
-                "A χ² far above the degrees of freedom says that the relation does not describe these sizes; its error then "
+                "A χ² far above the degrees of freedom says that the relation does not describe these \
+                 sizes; its error then "
                 "says nothing."
             }
         }
@@ -94,8 +98,8 @@ pub fn percolation_spread(study: &PercolationStudy) -> Drawn {
         let bar = Some((sd - 1.96 * error, sd + 1.96 * error));
         figure.add(Point::new(x, sd, BLUE, Shape::Circle).y_interval(bar));
     }
-    let caption = "Standard deviation of the percolation threshold over the realisations, as in Fig. 6 of the paper. Bars: \
-                   95 % intervals, for normal thresholds.";
+    let caption = "Standard deviation of the percolation threshold over the realisations, as in Fig. 6 of \
+                   the paper. Bars: 95 % intervals, for normal thresholds.";
     Drawn::new("percolation-sd", figure, caption)
 }
 
@@ -124,7 +128,8 @@ fn threshold(study: &PercolationStudy) -> Drawn {
         figure.add(Line::new(ends.to_vec(), BLUE).label("one length"));
     }
     if let Some(fit) = &study.many_starts {
-        // By d, from which L follows: y = b + c ln(L d^(nu / z)) with y = L d^nu, by repetition, which contracts.
+        // By d, from which L follows: y = b + c ln(L d^(nu / z)) with y = L d^nu, by repetition, which
+        // contracts.
         let least = means().map(|mean| fit.threshold - mean).fold(f64::MAX, f64::min);
         let most = means().map(|mean| fit.threshold - mean).fold(0.0, f64::max);
         let size = |d: f64| {
@@ -145,6 +150,7 @@ fn threshold(study: &PercolationStudy) -> Drawn {
         figure
             .add(Point::new(at(size.size as f64), size.threshold.mean, BLUE, Shape::Circle).y_interval(bar));
     }
-    let caption = "Mean threshold of each size, and the two relations fitted to them. Bars: 95 % intervals of the mean.";
+    let caption = "Mean threshold of each size, and the two relations fitted to them. Bars: 95 % intervals \
+                   of the mean.";
     Drawn::new("percolation-threshold", figure, caption)
 }

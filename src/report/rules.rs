@@ -37,7 +37,8 @@ pub(super) fn rules(outcome: &Outcome) -> Markup {
         h2 { "Filter rules beside the verdict" }
         @if outcome.rules.is_empty() { p { "No rule was applied." } } @else {
             p {
-                "Empirical rules on the same two curves. They draw their lines by experience with tests; the verdict above "
+                "Empirical rules on the same two curves. They draw their lines by experience with tests; the \
+                 verdict above "
                 "is “" (outcome.verdict.words()) "”. Where they differ, neither is proof."
             }
             (table)

@@ -91,8 +91,8 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     let x = size_axis(folder, rows.map(|row| row[0]));
     let y = Axis::percent("Percent finer (%)");
     let what = format!(
-        "Percent finer against size for the filter (by mass), its constrictions (by number) and the base (by mass). \
-         D15F is {}, D85B is {}.",
+        "Percent finer against size for the filter (by mass), its constrictions (by number) and the base (by \
+         mass). D15F is {}, D85B is {}.",
         size(filter.d15_mm, inputs.scale_free),
         size(base.d85_mm, inputs.scale_free),
     );
@@ -112,9 +112,9 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     figure.add(mark(filter.d15_mm, 15.0, BLACK, Shape::Circle, "D15F"));
     figure.add(mark(base.d85_mm, 85.0, VERMILLION, Shape::Square, "D85B"));
     let caption = format!(
-        "Gradations of filter and base (percent finer by mass) and the filter’s constrictions (percent smaller by \
-         number, curve “{}”). Base particles pass a constriction that is no smaller than they are. \
-         D15F/D85B = {}, D15F/D95B = {}.{}",
+        "Gradations of filter and base (percent finer by mass) and the filter’s constrictions (percent \
+         smaller by number, curve “{}”). Base particles pass a constriction that is no smaller than they \
+         are. D15F/D85B = {}, D15F/D95B = {}.{}",
         shorten(&filter.curve_name, 80),
         significant(folder.outcome.ratios.d15f_over_d85b),
         significant(folder.outcome.ratios.d15f_over_d95b),
@@ -123,7 +123,8 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     Drawn::new("gradations", figure, caption)
 }
 
-/// Eroded mass in percent after an increment, by straight lines between recorded increments, level after the last.
+/// Eroded mass in percent after an increment, by straight lines between recorded increments, level after the
+/// last.
 fn eroded_at(rows: &[SeriesRow], increment: f64) -> f64 {
     let value = |row: &SeriesRow| row.eroded_mass_fraction * 100.0;
     let after = rows.partition_point(|row| (row.increment as f64) < increment);
@@ -184,9 +185,9 @@ pub(super) fn eroded(folder: &RunFolder) -> Option<Drawn> {
         bold.push(Line::new(mean, colour).width(3.0).dash(dash).label(run_name(run)));
     }
     bold.into_iter().for_each(|line| figure.add(line));
-    let mut caption = "Base eroded, in percent of the mass that a run inserts, against increment (an increment is not a \
-                       length of time). The second run brings fresh base onto the constrictions that the first left \
-                       blocked."
+    let mut caption = "Base eroded, in percent of the mass that a run inserts, against increment (an \
+                       increment is not a length of time). The second run brings fresh base onto the \
+                       constrictions that the first left blocked."
         .to_owned();
     if replicates > 1 {
         let thin = replicates.min(DRAWN);
@@ -256,7 +257,8 @@ pub(super) fn layers(folder: &RunFolder) -> Option<Drawn> {
     Some(Drawn::new("layers", figure, caption))
 }
 
-/// Size curves of what the first run of the first replicate retained, after chosen increments, beside base and eroded.
+/// Size curves of what the first run of the first replicate retained, after chosen increments, beside base
+/// and eroded.
 pub(super) fn retained(folder: &RunFolder) -> Option<Drawn> {
     const CURVES: usize = 6;
     let (run, replicate) = (1, 1);
@@ -295,9 +297,9 @@ pub(super) fn retained(folder: &RunFolder) -> Option<Drawn> {
     }
     let of = if folder.outcome.replicates.len() > 1 { " of the first replicate" } else { "" };
     let mut caption = format!(
-        "What the filter has retained after chosen increments of the first run{of}, what has left it, and the base as \
-         inserted. Retained curves that move to the left show self-filtering: what coarse particles blocked holds \
-         finer ones."
+        "What the filter has retained after chosen increments of the first run{of}, what has left it, and \
+         the base as inserted. Retained curves that move to the left show self-filtering: what coarse \
+         particles blocked holds finer ones."
     );
     if gone.is_none() {
         caption.push_str(" Nothing left the filter.");
@@ -326,8 +328,8 @@ pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
         .within(least / 1.25, most * 1.25);
     let highest = 100.0 * cases.iter().flat_map(|case| &case.runs).map(upper).fold(0.0, f64::max);
     let y = eroded_axis("Base eroded, by mass (%)", folder, (highest * 1.3).min(100.0));
-    let what = "Percent of the base mass eroded in each run against multiples of the number of base particles; the \
-                colour behind is the verdict";
+    let what = "Percent of the base mass eroded in each run against multiples of the number of base \
+                particles; the colour behind is the verdict";
     let mut figure = Figure::new("How the verdict moves with the number of base particles", what, "", x, y);
     let edge = |left: f64, right: f64| libm::sqrt(left * right);
     let mut left = least / 1.25;
@@ -355,9 +357,10 @@ pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
         }
     }
     let caption = format!(
-        "How the verdict moves with the number of base particles, N_base. Grains per void and mass ratio enter N_base \
-         only as a product (Eq. 2), so this one axis answers for both: ×2 is twice the grains per void or twice the \
-         mass ratio. ×1 is this scene: {} grains per void, mass ratio {}. Bars: 95 % intervals.",
+        "How the verdict moves with the number of base particles, N_base. Grains per void and mass ratio \
+         enter N_base only as a product (Eq. 2), so this one axis answers for both: ×2 is twice the grains \
+         per void or twice the mass ratio. ×1 is this scene: {} grains per void, mass ratio {}. Bars: 95 % \
+         intervals.",
         known(folder.outcome.grains_per_void, significant),
         known(folder.outcome.inputs.mass_ratio, percent),
     );

@@ -118,7 +118,8 @@ pub(super) fn citation() -> Markup {
     html! {
         h2 { "How to cite" }
         p {
-            "The model: Shire and O’Sullivan, " cite { "A network model to assess base-filter combinations" }
+            "The model: Shire and O’Sullivan, " cite { "A network model to assess base-filter \
+                                                        combinations" }
             ", Computers and Geotechnics."
         }
     }

@@ -97,8 +97,9 @@ mod tests {
             .class("study")
             .name("Name", |row| row.0)
             .number("Value", |row| format!("{:.2}", row.1));
-        let expected = "<div class=\"scroll\"><table class=\"study\"><thead><tr><th>Name</th><th class=\"n\">Value</th></tr>\
-                        </thead><tbody><tr><th>&lt;b&gt;</th><td class=\"n\">0.25</td></tr></tbody></table></div>";
+        let expected = "<div class=\"scroll\"><table class=\"study\"><thead><tr><th>Name</th><th \
+                        class=\"n\">Value</th></tr></thead><tbody><tr><th>&lt;b&gt;</th><td \
+                        class=\"n\">0.25</td></tr></tbody></table></div>";
         assert_eq!(table.render().into_string(), expected);
     }
 }

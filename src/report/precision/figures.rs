@@ -1,4 +1,5 @@
-//! The figures of a precision study: log-log, with a guide line of slope -1/2 where more time means more samples.
+//! The figures of a precision study: log-log, with a guide line of slope -1/2 where more time means more
+//! samples.
 
 use crate::outcome::precision::{
     BiasRow, DecisionTier, ExactRow, ExactTier, PackingTier, SamplingLine, SamplingTier, ScalingRow,
@@ -69,17 +70,18 @@ pub(super) fn exact(exact: &ExactTier) -> Vec<Drawn> {
             "exact-particles",
             "Particles of a network",
             |row| row.particles as f64,
-            "Root mean square error of the probability to leave over the random networks, against the number of particles. \
-             Dashed: the error of independent particles, slope −1/2; particles, counts and single particles must lie on it. \
-             \"Expected\" draws nothing: its error is the rounding of its whole numbers. Filled: clogged lattice; hollow, \
-             dotted: first particle.",
+            "Root mean square error of the probability to leave over the random networks, against the number \
+             of particles. Dashed: the error of independent particles, slope −1/2; particles, counts and \
+             single particles must lie on it. \"Expected\" draws nothing: its error is the rounding of its \
+             whole numbers. Filled: clogged lattice; hollow, dotted: first particle.",
         ),
         (
             "exact-time",
             "Processor time of a network (s)",
             |row| row.core_seconds,
-            "Root mean square error of the probability to leave, against the processor time of one network. Counts cost the \
-             same for any number of particles, so their line falls without more time. Dashed: slope −1/2.",
+            "Root mean square error of the probability to leave, against the processor time of one network. \
+             Counts cost the same for any number of particles, so their line falls without more time. \
+             Dashed: slope −1/2.",
         ),
     ];
     let drawn = |(name, label, x, caption): (&'static str, &str, Of, &str)| {
@@ -118,15 +120,16 @@ pub(super) fn sampling(sampling: &SamplingTier) -> Vec<Drawn> {
         (
             "sampling-new-networks",
             "new networks",
-            "Over new networks and new walks: standard deviation of the mean of 1, 2, 4, ... replicates against the \
-             processor time that they take together. Bars: 95 % intervals from the independent groups of replicates. The \
-             floor is the scatter between networks, which no other way of drawing base particles lowers.",
+            "Over new networks and new walks: standard deviation of the mean of 1, 2, 4, ... replicates \
+             against the processor time that they take together. Bars: 95 % intervals from the independent \
+             groups of replicates. The floor is the scatter between networks, which no other way of drawing \
+             base particles lowers.",
         ),
         (
             "sampling-one-network",
             "one network",
-            "Over new walks on one network: standard deviation of the mean of 1, 2, 4, ... replicates against their \
-             processor time, which a way of drawing base particles can change.",
+            "Over new walks on one network: standard deviation of the mean of 1, 2, 4, ... replicates \
+             against their processor time, which a way of drawing base particles can change.",
         ),
     ];
     let drawn = |(name, kind, caption): (&'static str, &str, &str)| {
@@ -191,7 +194,8 @@ fn factor_look(factor: &str) -> (Colour, Shape) {
     }
 }
 
-/// A changed setting: the processor time of a replicate (s), and a difference from the reference with its interval.
+/// A changed setting: the processor time of a replicate (s), and a difference from the reference with its
+/// interval.
 struct Changed<'a> {
     factor: &'a str,
     core_seconds: f64,
@@ -200,7 +204,8 @@ struct Changed<'a> {
 }
 
 impl Changed<'_> {
-    /// The size of the difference on a logarithmic axis from `least` on: hollow where the interval holds zero.
+    /// The size of the difference on a logarithmic axis from `least` on: hollow where the interval holds
+    /// zero.
     fn sized(&self, least: f64) -> Point {
         let (colour, shape) = factor_look(self.factor);
         let point = Point::new(self.core_seconds, self.bias.abs().max(least), colour, shape);
@@ -213,7 +218,8 @@ impl Changed<'_> {
     }
 }
 
-/// Sizes of differences from the reference setting against time, a symbol a setting; `decades` below the largest.
+/// Sizes of differences from the reference setting against time, a symbol a setting; `decades` below the
+/// largest.
 fn differences(
     [title, what, y]: [&str; 3],
     x: Axis,
@@ -245,20 +251,22 @@ pub(super) fn bias(rows: &[BiasRow]) -> Vec<Drawn> {
             interval: row.bias_low.zip(row.bias_high).map(|(low, high)| (PP * low, PP * high)),
         })
         .collect();
-    // Half of the width of the narrowest interval without pairs: what is smaller was not to be seen without them.
+    // Half of the width of the narrowest interval without pairs: what is smaller was not to be seen without
+    // them.
     let unpaired = changed.iter().zip(others()).filter(|(_, row)| !row.paired);
     let widths = unpaired.filter_map(|(changed, _)| changed.interval).map(|(low, high)| (high - low) / 2.0);
     let floor = widths.reduce(f64::min).filter(|_| rows.len() > 1);
     let words = [
         "Bias of settings against time",
-        "Size of the difference of the eroded mass from the reference setting, against processor time of a replicate",
+        "Size of the difference of the eroded mass from the reference setting, against processor time of a \
+         replicate",
         "Size of the difference from the reference (percentage points)",
     ];
     let x = log("Processor time of a replicate (s)", changed.iter().map(|row| row.core_seconds));
     let floor = floor.map(|floor| (floor, "sampling floor without common networks"));
-    let caption = "Size of the difference of the mean eroded mass from the reference setting, against the processor time of a \
-                   replicate. Hollow: the 95 % interval holds zero. Bars: 95 % intervals, replicate by replicate where both \
-                   were walked on the same networks.";
+    let caption = "Size of the difference of the mean eroded mass from the reference setting, against the \
+                   processor time of a replicate. Hollow: the 95 % interval holds zero. Bars: 95 % \
+                   intervals, replicate by replicate where both were walked on the same networks.";
     let figure = differences(words, x, &changed, 4.0, floor);
     std::iter::once(Drawn::new("bias", figure, caption)).chain(amount(rows)).collect()
 }
@@ -285,8 +293,8 @@ fn amount(rows: &[BiasRow]) -> Option<Drawn> {
     }
     figure.add(Rule::new(Across::Y, 0.0, GREY).dash(Dash::Dashed));
     let caption = format!(
-        "Difference of the eroded mass when only a part of the base particles that Eq. (2) requires is walked: a bias that no \
-         replicate takes away. With all of them {:.1} % erode. Bars: 95 % intervals.",
+        "Difference of the eroded mass when only a part of the base particles that Eq. (2) requires is \
+         walked: a bias that no replicate takes away. With all of them {:.1} % erode. Bars: 95 % intervals.",
         PP * reference.value
     );
     Some(Drawn::new("bias-base-particles", figure, caption))
@@ -314,9 +322,9 @@ pub(super) fn decision(decision: &DecisionTier) -> Vec<Drawn> {
             }
         }
     }
-    let caption = "Share of trials whose class is not that of all replicates together, against their processor time; a line a \
-                   case, named by its eroded mass. Circles: the mean of 1, 2, 4, ... replicates. Diamonds: sequential \
-                   stopping. Bars: 95 % intervals.";
+    let caption = "Share of trials whose class is not that of all replicates together, against their \
+                   processor time; a line a case, named by its eroded mass. Circles: the mean of 1, 2, 4, \
+                   ... replicates. Diamonds: sequential stopping. Bars: 95 % intervals.";
     vec![Drawn::new("decision", figure, caption)]
 }
 
@@ -328,15 +336,16 @@ pub(super) fn scaling(rows: &[ScalingRow]) -> Vec<Drawn> {
             "scaling-base-particles",
             "Base particles",
             |row| row.n_base as f64,
-            "Processor time of a first run of this scene's base against the number of its particles. Dashed: in proportion.",
+            "Processor time of a first run of this scene's base against the number of its particles. Dashed: \
+             in proportion.",
         ),
         (
             "voids",
             "scaling-voids",
             "Voids",
             |row| row.voids as f64,
-            "Processor time of a first run on cubes, with as many base particles a void as this scene has. Dashed: in \
-             proportion.",
+            "Processor time of a first run on cubes, with as many base particles a void as this scene has. \
+             Dashed: in proportion.",
         ),
     ];
     let drawn = |(against, name, label, x, caption): (&str, &'static str, &str, Of, &str)| {
@@ -383,12 +392,14 @@ fn void_ratios(tier: &PackingTier) -> Option<Drawn> {
         sd.map(|(sd, seeds)| (sd * (2.0 / seeds).sqrt(), "sampling floor: standard error of a difference"));
     let words = [
         "Void ratio of packings against time",
-        "Size of the difference of the void ratio from the default settings, against processor time of a packing",
+        "Size of the difference of the void ratio from the default settings, against processor time of a \
+         packing",
         "Size of the difference of the void ratio (–)",
     ];
     let x = log("Processor time of a packing (s)", tier.packings.iter().map(|row| row.core_seconds));
-    let caption = "Size of the difference of the mean void ratio from the default settings against the processor time of a \
-                   packing. Hollow: the 95 % interval holds zero. The floor is the scatter of as many seeds.";
+    let caption = "Size of the difference of the mean void ratio from the default settings against the \
+                   processor time of a packing. Hollow: the 95 % interval holds zero. The floor is the \
+                   scatter of as many seeds.";
     Some(Drawn::new("packing", differences(words, x, &changed, 3.0, floor), caption))
 }
 
@@ -415,7 +426,7 @@ fn triangulations(tier: &PackingTier) -> Option<Drawn> {
     add("triangulation", |row| row.triangulate_seconds, BLUE, Shape::Circle);
     add("voids, discs and curve", |row| row.measure_seconds, VERMILLION, Shape::Square);
     figure.add(power((last.grains as f64, last.triangulate_seconds), 1.0, grains(), GREY).label("slope 1"));
-    let caption = "Processor time of the regular triangulation and of the constrictions measured on it. Filled: compressed \
-                   packings; hollow: grains at random before compression.";
+    let caption = "Processor time of the regular triangulation and of the constrictions measured on it. \
+                   Filled: compressed packings; hollow: grains at random before compression.";
     Some(Drawn::new("triangulation", figure, caption))
 }

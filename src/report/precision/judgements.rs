@@ -47,8 +47,9 @@ fn exact(exact: &ExactTier) -> String {
         false => "FAILED: an engine disagrees with the exact value",
     };
     format!(
-        "{verdict}: the error falls with slopes of {} to {} down to {by_particles:.0e} (particles) and {smallest:.0e} \
-         (counts), and none of {} networks deviates by more than {z:.1} standard errors; {closed}.",
+        "{verdict}: the error falls with slopes of {} to {} down to {by_particles:.0e} (particles) and \
+         {smallest:.0e} (counts), and none of {} networks deviates by more than {z:.1} standard errors; \
+         {closed}.",
         minus(flat),
         minus(steep),
         exact.networks
@@ -81,7 +82,8 @@ fn sampling(sampling: &SamplingTier) -> Option<String> {
         (gain("counts, stratified base", "one network"), gain("counts, stratified base", "new networks"))
     {
         gains += &format!(
-            " Stratified start nodes and sizes divide the variance by {one} on one network and by {new} over new ones."
+            " Stratified start nodes and sizes divide the variance by {one} on one network and by {new} over \
+             new ones."
         );
     }
     if let Some(new) = gain("counts, stratified constrictions", "new networks") {
@@ -90,8 +92,8 @@ fn sampling(sampling: &SamplingTier) -> Option<String> {
     // For half a percentage point at 95 %: 1.96 standard errors.
     let needed = (1.96 * best.sd / 0.005).powi(2).max(1.0).ceil();
     Some(format!(
-        "The replicate SD is {} percentage points{floor}, {} times the binomial one of its particles. {} buys most: ± 0.5 \
-         points (95 %) take {needed:.0} replicates, {} of processor time.{gains}",
+        "The replicate SD is {} percentage points{floor}, {} times the binomial one of its particles. {} \
+         buys most: ± 0.5 points (95 %) take {needed:.0} replicates, {} of processor time.{gains}",
         significant(100.0 * best.sd),
         significant(best.sd / best.binomial),
         best.variant,
@@ -156,8 +158,8 @@ fn decision(decision: &DecisionTier) -> String {
     if let Some(worst) = stopped().map(|row| row.wrong).reduce(f64::max) {
         let undecided = stopped().map(|row| row.undecided).fold(0.0, f64::max);
         text += &format!(
-            "stopping where the verdict is decided at the 99.9 % confidence level is wrong in at most {:.1} % of trials of a \
-             case (and leaves up to {:.0} % undecided); ",
+            "stopping where the verdict is decided at the 99.9 % confidence level is wrong in at most {:.1} \
+             % of trials of a case (and leaves up to {:.0} % undecided); ",
             100.0 * worst,
             100.0 * undecided
         );
@@ -199,8 +201,8 @@ fn packing(tier: &PackingTier) -> Option<String> {
         n => format!("FAILED: the identities of {} do not hold", several(n, "triangulation")),
     };
     Some(format!(
-        "{} grains come to rest in {} (friction {}); no setting moves the void ratio by more than {:.4} ({} x {}, friction \
-         {}), nor Dc50 by more than {:.1} %; {identities}.",
+        "{} grains come to rest in {} (friction {}); no setting moves the void ratio by more than {:.4} ({} \
+         x {}, friction {}), nor Dc50 by more than {:.1} %; {identities}.",
         reference.grains,
         duration(reference.core_seconds),
         reference.friction,

@@ -42,9 +42,12 @@ pub fn write_precision(folder: &Path) -> Result<Written, ReportError> {
     let mut number = 0;
     let main = html! {
         p {
-            "How much accuracy a second of processor time buys. Errors are standard deviations over replicates, never worked "
-            "out from the number of particles; bars are 95 % intervals. The figure of merit is 1 / (error² × time): it does not "
-            "depend on how many replicates were walked, and of two settings the one with the larger figure of merit gives "
+            "How much accuracy a second of processor time buys. Errors are standard deviations over \
+             replicates, never worked "
+            "out from the number of particles; bars are 95 % intervals. The figure of merit is 1 / (error² \
+             × time): it does not "
+            "depend on how many replicates were walked, and of two settings the one with the larger figure \
+             of merit gives "
             "the same accuracy in less time."
         }
         (tables::merits(&study))
@@ -70,8 +73,9 @@ fn sections(study: &Precision) -> Vec<Section> {
     let exact = study.exact.as_ref().map(|exact| Section {
         name: "exact",
         heading: "Against exact answers",
-        question: "On a given network the probability that a first particle leaves is known by a linear solve. Does every \
-                   engine find it, and does its error fall as that of independent particles must?"
+        question: "On a given network the probability that a first particle leaves is known by a linear \
+                   solve. Does every engine find it, and does its error fall as that of independent \
+                   particles must?"
             .into(),
         figures: figures::exact(exact),
         tables: tables::exact(exact),
@@ -80,8 +84,9 @@ fn sections(study: &Precision) -> Vec<Section> {
         name: "sampling",
         heading: "Scatter of this scene",
         question: format!(
-            "Eroded mass of the first run, walked on {}. Replicates differ by their network and their walk, or by their \
-             walk alone; the scatter between networks is the floor of every better way of drawing base particles.",
+            "Eroded mass of the first run, walked on {}. Replicates differ by their network and their walk, \
+             or by their walk alone; the scatter between networks is the floor of every better way of \
+             drawing base particles.",
             sampling.on
         ),
         figures: figures::sampling(sampling),
@@ -90,9 +95,10 @@ fn sections(study: &Precision) -> Vec<Section> {
     let bias = study.bias.as_ref().map(|bias| Section {
         name: "bias",
         heading: "What settings do to the answer",
-        question: "One setting is changed at a time. A difference whose interval excludes zero is a bias: no number of \
-                   replicates takes it away."
-            .into(),
+        question:
+            "One setting is changed at a time. A difference whose interval excludes zero is a bias: no \
+                   number of replicates takes it away."
+                .into(),
         figures: figures::bias(bias),
         tables: tables::bias(bias),
     });
@@ -100,8 +106,8 @@ fn sections(study: &Precision) -> Vec<Section> {
         name: "decision",
         heading: "Wrong verdicts",
         question: format!(
-            "Cases near the 7.5 % that divide \"no erosion\" from the rest, made of this scene by other sizes of its base \
-             and walked on {}: how often is the class wrong, by the time spent?",
+            "Cases near the 7.5 % that divide \"no erosion\" from the rest, made of this scene by other \
+             sizes of its base and walked on {}: how often is the class wrong, by the time spent?",
             decision.on
         ),
         figures: figures::decision(decision),
@@ -117,8 +123,8 @@ fn sections(study: &Precision) -> Vec<Section> {
     let packing = study.packing.as_ref().map(|packing| Section {
         name: "packing",
         heading: "Packing and triangulation",
-        question: "Void ratio and constriction curve of small packings of this scene's filter, one setting changed at a \
-                   time; and the time and the identities of triangulations."
+        question: "Void ratio and constriction curve of small packings of this scene's filter, one setting \
+                   changed at a time; and the time and the identities of triangulations."
             .into(),
         figures: figures::packing(packing),
         tables: tables::packing(packing),
@@ -142,8 +148,10 @@ fn made(study: &Precision) -> Markup {
             (fact("Voids", whole(study.voids)))
         } } }
         p.small {
-            "The same seed and budget give the same numbers on every machine; only times differ. Each run is walked by one "
-            "thread and its time is that thread's processor time. The numbers of every figure are in the CSV files beside "
+            "The same seed and budget give the same numbers on every machine; only times differ. Each run is \
+             walked by one "
+            "thread and its time is that thread's processor time. The numbers of every figure are in the CSV \
+             files beside "
             "this page."
         }
     }

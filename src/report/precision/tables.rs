@@ -113,7 +113,8 @@ pub(super) fn exact(exact: &ExactTier) -> Markup {
         } }
         (lines)
         p.small {
-            "Largest |z|: of all networks, at every number of particles from which each network expects at least 50 to "
+            "Largest |z|: of all networks, at every number of particles from which each network expects at \
+             least 50 to "
             "leave and 50 to stay."
         }
         h3 { "Integers and closed forms" }
@@ -127,7 +128,8 @@ pub(super) fn sampling(sampling: &SamplingTier) -> Markup {
         .number("Number", |line| line.replicates)
         .number("Eroded mass (%)", |line| points(line.mean))
         .number("less the first line (points ± standard error)", |line| {
-            or_dash(line.difference_error, |error| format!("{} ± {}", signed(line.difference), points(error)))
+            let difference = signed(line.difference);
+            or_dash(line.difference_error, |error| format!("{difference} ± {}", points(error)))
         })
         .number("Replicate SD (points)", |line| {
             format!("{} ({} to {})", points(line.sd), points(line.sd_low), points(line.sd_high))
@@ -155,8 +157,10 @@ pub(super) fn bias(rows: &[BiasRow]) -> Markup {
             })
             .number("Processor time of a replicate (s)", |row| significant(row.core_seconds)))
         p.small {
-            "The twins are a slow walk of their own, on a small part of the network with few base particles, in which each "
-            "particle keeps its random numbers; precision and blocking are compared with the twin that decides as the walk "
+            "The twins are a slow walk of their own, on a small part of the network with few base particles, \
+             in which each "
+            "particle keeps its random numbers; precision and blocking are compared with the twin that \
+             decides as the walk "
             "does."
         }
     }
@@ -206,7 +210,8 @@ pub(super) fn scaling(rows: &[ScalingRow]) -> Markup {
             })
             .number("Eroded mass (%)", |row| format!("{:.6}", 100.0 * row.eroded_mass_fraction)))
         p.small {
-            "Counts use several threads only where particles walked one by one are many; replicates side by side use them "
+            "Counts use several threads only where particles walked one by one are many; replicates side by \
+             side use them "
             "all."
         }
     }
