@@ -106,7 +106,7 @@ pub struct PlannedCase {
 
 /// A plan, its cases worked out.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct CampaignPlan {
     /// What errors call it.
     pub file: String,
     /// What it is about, in a line.
@@ -120,7 +120,7 @@ pub struct Plan {
 /// A level of a factor: its name and settings.
 type Level = (String, Vec<String>);
 
-impl Plan {
+impl CampaignPlan {
     /// Reads a plan and every scene in it.
     ///
     /// # Errors
@@ -345,11 +345,11 @@ fn check_left_out(
 mod tests {
     use super::*;
 
-    fn plan(text: &str) -> Result<Plan, SceneError> {
+    fn plan(text: &str) -> Result<CampaignPlan, SceneError> {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("plan.toml");
         std::fs::write(&path, text).unwrap();
-        Plan::read(&path)
+        CampaignPlan::read(&path)
     }
 
     const TWO_BY_TWO: &str = "[[factor]]\nname = \"cu_b\"\nsetting = \"base.cu\"\nvalues = [1.5, 3]\n\

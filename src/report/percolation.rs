@@ -6,16 +6,17 @@ use maud::{Markup, html};
 
 use super::Written;
 use super::figures::{Across, Axis, BLUE, Dash, Figure, GREY, Line, PURPLE, Point, Rule, Shape, Tick};
-use super::folder::ReportError;
+use super::folder::{ReportError, json};
 use super::numbers::{duration, significant, whole};
 use super::shell::{Drawn, figure, whole_page};
 use crate::outcome::percolation::{NU_PARALLEL, PercolationStudy, Z};
 
-/// Writes `report.html` and its figures into the folder of a percolation study.
+/// Writes `report.html` and its figures into the folder of a percolation study, from `percolation.json` there.
 ///
 /// # Errors
 /// What the folder says.
-pub fn write_percolation(folder: &Path, study: &PercolationStudy) -> Result<Written, ReportError> {
+pub fn write_percolation(folder: &Path) -> Result<Written, ReportError> {
+    let study: &PercolationStudy = &json(&folder.join("percolation.json"))?;
     let figures = [spread(study), threshold(study)];
     let title = "Percolation threshold of the directed cubic lattice";
     let header = html! { h1 { (title) } };

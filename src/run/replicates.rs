@@ -1,80 +1,37 @@
 //! Walks the replicates of a case: a new network and a new walk each.
 
 use std::ops::RangeInclusive;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
 use rayon::prelude::*;
 
+use super::callbacks::{Callbacks, Event};
 use super::checkpoints::{Checkpoints, Done, network_fingerprint};
-use crate::case::{Case, CaseError, replicate_seed};
+use super::error::RunError;
+use crate::case::{Case, replicate_seed};
 use crate::network::Network;
 use crate::outcome::record::{Replicate, RunSummary, Sensitivity, Statistic, Stopping, Verdict};
 use crate::outcome::stopping::{Look, StopRule};
 use crate::outcome::verdict::{below_by_interval, classify};
 use crate::outcome::{Figures, Recorded, RunOf};
-use crate::store::StoreError;
 use crate::store::checkpoint::{Harmed, Saved};
-use crate::walk::{Engine, Plan, Progress, SizeClasses, State, Walk, WalkError};
+use crate::walk::{Engine, Plan, Progress, SizeClasses, State, Walk};
 
-/// Why walking ended early.
-#[derive(Debug, thiserror::Error)]
-pub enum RunError {
-    /// The case cannot be walked.
-    #[error(transparent)]
-    Case(#[from] CaseError),
-    /// A checkpoint that cannot be gone on from.
-    #[error(transparent)]
-    Harmed(#[from] Harmed),
-    /// A checkpoint that cannot be kept.
-    #[error(transparent)]
-    Keep(#[from] StoreError),
-    /// The walk went wrong, or was stopped.
-    #[error(transparent)]
-    Walk(#[from] WalkError),
-    /// There is no room for the particles.
-    #[error("cannot keep {particles} base particles: {source}")]
-    Room {
-        /// Base particles walked one by one.
-        particles: u64,
-        /// What the system says.
-        source: std::io::Error,
-    },
-}
-
-/// What happens while a case is walked.
-#[derive(Clone, Copy, Debug)]
-pub enum Event {
-    /// An increment of some run is done: share of the run's base that is inserted, and that has come to rest.
-    Increment {
-        /// Replicate, counted from 1.
-        replicate: u64,
-        /// Run, counted from 1.
-        run: u64,
-        /// The increment.
-        increment: u64,
-        /// Base particles still moving.
-        moving: u64,
-    },
-    /// A run is done.
-    Run,
-    /// More runs are needed than was known.
-    More {
-        /// How many.
-        runs: u64,
-    },
-}
-
-/// Watches the work, from any thread, and can stop it.
+/// How replicates are walked: who follows them, and what saves them.
+#[derive(Clone, Copy)]
 pub struct Watch<'a> {
-    /// Told of every event.
-    pub tell: &'a (dyn Fn(Event) + Sync),
-    /// Set to stop after the current increment.
-    pub stop: &'a AtomicBool,
-    /// Keeps what is done, so that the next start goes on from there.
-    pub keeper: Option<&'a Checkpoints>,
+    /// Who follows the walks and stops them.
+    pub callbacks: &'a Callbacks<'a>,
+    /// Saves what is done, so that the next start continues from there; nothing is saved without it.
+    pub checkpoints: Option<&'a Checkpoints>,
+}
+
+impl Watch<'_> {
+    fn tell(&self, event: Event) {
+        (self.callbacks.on_event)(event);
+    }
 }
 
 /// One replicate: its figures, and its rows of the CSV files.
@@ -108,7 +65,7 @@ pub fn replicates(case: &Case, watch: &Watch) -> Result<Vec<ReplicateResult>, Ru
         walked.extend(some_replicates(case, 0, more, case.n_base, watch)?);
         match look(case, &walked) {
             Some(Look::Until(next)) => {
-                (watch.tell)(Event::More { runs: (next - wanted) * case.scene.runs });
+                watch.tell(Event::MoreRuns { runs: (next - wanted) * case.scene.runs });
                 wanted = next;
             }
             _ => return Ok(walked),
@@ -164,15 +121,16 @@ fn walk_replicate(
     watch: &Watch,
 ) -> Result<ReplicateResult, RunError> {
     let seed = replicate_seed(case.scene.seed, replicate);
-    let network = case.network(seed).map_err(CaseError::from)?;
+    let network = case.network(seed)?;
     let mut blocked = BitVec::repeat(false, network.constrictions());
     let first = plan(case, &network, &blocked, n_base);
-    let (mut done, mut saved) = match watch.keeper.map(|keeper| keeper.load(part, replicate)).transpose()? {
+    let loaded = watch.checkpoints.map(|checkpoints| checkpoints.load(part, replicate));
+    let (mut done, mut saved) = match loaded.transpose().map_err(RunError::Checkpoint)? {
         Some(Some((done, saved))) => (done, Some(saved)),
         _ => (Done::default(), None),
     };
     if done.complete {
-        done.runs.iter().for_each(|_| (watch.tell)(Event::Run));
+        done.runs.iter().for_each(|_| watch.tell(Event::RunDone));
     }
     while !done.complete {
         let of = RunOf {
@@ -193,9 +151,9 @@ fn walk_replicate(
         done.runs.push(figures.run);
         done.complete = done.runs.len() as u64 == case.scene.runs;
         blocked = state.blocked;
-        (watch.tell)(Event::Run);
-        if let (true, Some(keeper)) = (done.complete, watch.keeper) {
-            keeper.save_finished(part, replicate, seed, &done);
+        watch.tell(Event::RunDone);
+        if let (true, Some(checkpoints)) = (done.complete, watch.checkpoints) {
+            checkpoints.save_finished(part, replicate, seed, &done);
         }
     }
     let verdict = classify(done.below.first().copied(), done.below.get(1).copied());
@@ -218,7 +176,7 @@ fn plan(case: &Case, network: &Network, blocked: &BitSlice<u64>, n_base: u64) ->
 /// # Errors
 /// As [`Case::network`].
 pub fn left_out_of_first_run(case: &Case) -> Result<Vec<String>, RunError> {
-    let network = case.network(replicate_seed(case.scene.seed, 1)).map_err(CaseError::from)?;
+    let network = case.network(replicate_seed(case.scene.seed, 1))?;
     let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
     Ok(plan(case, &network, &open, case.n_base).left_out().to_vec())
 }
@@ -256,9 +214,9 @@ impl RunContext<'_> {
         if let Some(mut saved) = saved {
             if saved.label.network != network_fingerprint(network) {
                 let file = format!("checkpoint of replicate {}", of.replicate);
-                return Err(Harmed::new(file, "is of another network").into());
+                return Err(RunError::Checkpoint(Harmed::new(file, "is of another network")));
             }
-            state.restore(network, &mut saved)?;
+            state.restore(network, &mut saved).map_err(RunError::Checkpoint)?;
         }
         if state.finished {
             return Ok(state);
@@ -269,10 +227,11 @@ impl RunContext<'_> {
                 done.recorder.observe(&case.scene.wanted, state);
             }
             let (increment, moving) = (state.increment, state.tally.moving);
-            (watch.tell)(Event::Increment { replicate: of.replicate, run: of.run, increment, moving });
-            let stop = watch.stop.load(Ordering::Relaxed);
-            if let Some(keeper) = watch.keeper.filter(|keeper| keeper.is_due(last, increment, stop)) {
-                if let Err(error) = keeper.save_walk(part, of.replicate, network, state, done) {
+            watch.tell(Event::Increment { replicate: of.replicate, run: of.run, increment, moving });
+            let stop = watch.callbacks.is_stopped();
+            let due = |checkpoints: &&Checkpoints| checkpoints.is_due(last, increment, stop);
+            if let Some(checkpoints) = watch.checkpoints.filter(due) {
+                if let Err(error) = checkpoints.save_walk(part, of.replicate, network, state, done) {
                     failed = Some(error);
                     return Progress::Stop;
                 }
@@ -284,7 +243,7 @@ impl RunContext<'_> {
             }
         });
         if let Some(error) = failed {
-            return Err(error.into());
+            return Err(RunError::Save(error));
         }
         walked?;
         Ok(state)
@@ -293,9 +252,9 @@ impl RunContext<'_> {
 
 /// Constrictions that were blocked when the saved run began: those blocked now, less those that it blocked itself.
 fn blocked_at_start(network: &Network, saved: &mut Saved) -> Result<BitVec<u64>, RunError> {
-    let mut blocked = BitVec::from_vec(saved.read::<u64>("blocked")?);
+    let mut blocked = BitVec::from_vec(saved.read::<u64>("blocked").map_err(RunError::Checkpoint)?);
     blocked.truncate(network.constrictions());
-    for constriction in saved.read::<u32>("history_constriction")? {
+    for constriction in saved.read::<u32>("history_constriction").map_err(RunError::Checkpoint)? {
         if let Some(mut bit) = blocked.get_mut(constriction as usize) {
             *bit = false;
         }

@@ -4,7 +4,7 @@ use super::changes::Change;
 use super::first_run::Scene;
 use super::twin;
 use super::work::affordable;
-use super::{PrecisionError, Study};
+use super::{PrecisionStudy, RunError};
 use crate::outcome::precision::BiasRow;
 use crate::outcome::record::Statistic;
 use crate::outcome::student;
@@ -25,9 +25,9 @@ pub(super) struct Walked {
 }
 
 /// The tier.
-pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Vec<BiasRow>, PrecisionError> {
+pub(super) fn tier(study: &PrecisionStudy, budget_s: f64) -> Result<Vec<BiasRow>, RunError> {
     let scene = Scene::affordable(study, 25 * ENOUGH, budget_s * (1.0 - TWINS))?;
-    (study.tell)(&format!("bias: on {}", scene.words()));
+    study.tell(&format!("bias: on {}", scene.words()));
     let each_s = scene.cost_s()?;
     let all = Change::all(&scene);
     // Each row has the same time, the reference three times as much: all others lean on it.
@@ -38,7 +38,7 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Vec<BiasRow>, Precisi
         let row_s = if change == Change::Nothing { 3.0 * row_s } else { row_s };
         let cost_s = each_s * change.cost(&scene);
         if cost_s * REPLICATES.0 as f64 > 3.0 * row_s.max(0.1 * budget_s) {
-            (study.tell)(&format!(
+            study.tell(&format!(
                 "bias: {}, {} left out: {cost_s:.0} s a replicate",
                 change.factor(),
                 change.level()
@@ -46,7 +46,7 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Vec<BiasRow>, Precisi
             continue;
         }
         let count = affordable(row_s, cost_s, REPLICATES.0, REPLICATES.1);
-        (study.tell)(&format!("bias: {}, {}: {count} replicates", change.factor(), change.level()));
+        study.tell(&format!("bias: {}, {}: {count} replicates", change.factor(), change.level()));
         let run = change.run(&scene);
         let walked = study.side_by_side(count as usize, |i| {
             let seed = study.seed(1 + i as u64);

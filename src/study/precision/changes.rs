@@ -1,6 +1,6 @@
 //! Settings that are changed one at a time, and what is held against what.
 
-use super::PrecisionError;
+use super::RunError;
 use super::first_run::{FirstRun, Scene};
 use crate::network::Network;
 use crate::scene::NetworkSource;
@@ -101,7 +101,7 @@ impl Change {
     }
 
     /// Its network of this seed.
-    pub fn network(self, scene: &Scene, seed: u64) -> Result<Network, PrecisionError> {
+    pub fn network(self, scene: &Scene, seed: u64) -> Result<Network, RunError> {
         let changed = Scene { shape: self.shape(scene), ..*scene };
         match (self, changed.shape) {
             (Change::Stratified, Some(shape)) => {

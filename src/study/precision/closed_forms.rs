@@ -4,23 +4,23 @@ use bitvec::vec::BitVec;
 
 use super::first_run::FirstRun;
 use super::work::{affordable, timed};
-use super::{PrecisionError, Study};
+use super::{PrecisionStudy, RunError};
 use crate::gradation::{Gradation, SizeSampler};
 use crate::network::{Network, Passage};
 use crate::outcome::precision::ClosedRow;
 use crate::walk::{Engine, Plan, Progress, Sampling, SizeClasses, State, Walk};
 
 /// Rows of one kind, for this budget (s).
-type Kind = fn(&Study, f64) -> Result<Vec<ClosedRow>, PrecisionError>;
+type Kind = fn(&PrecisionStudy, f64) -> Result<Vec<ClosedRow>, RunError>;
 
 /// Every row that the budget pays for.
-pub(super) fn rows(study: &Study, budget_s: f64) -> Result<Vec<ClosedRow>, PrecisionError> {
+pub(super) fn rows(study: &PrecisionStudy, budget_s: f64) -> Result<Vec<ClosedRow>, RunError> {
     let kinds: [Kind; 5] = [moves, giant, blocked_sets, coarse_base, survival];
     let all = study.side_by_side(kinds.len(), |kind| kinds[kind](study, budget_s))?;
     Ok(all.into_iter().flatten().collect())
 }
 
-fn one_size(diameter: f64, n_base: u64, increments: u64, engine: Engine) -> Result<FirstRun, PrecisionError> {
+fn one_size(diameter: f64, n_base: u64, increments: u64, engine: Engine) -> Result<FirstRun, RunError> {
     let sampler = SizeSampler::new(&Gradation::single(diameter)?, 1.0)?;
     Ok(FirstRun { engine, sampler, tail: 0.0, n_base, increments, sampling: Sampling::Independent })
 }
@@ -31,7 +31,7 @@ fn drawn(what: String, exact: f64, found: f64, error: f64, samples: u64, core_se
 }
 
 /// Moves to leave 60 layers of equal constrictions: a sum of 60 geometric numbers, mean 180 and variance 360.
-fn moves(study: &Study, _: f64) -> Result<Vec<ClosedRow>, PrecisionError> {
+fn moves(study: &PrecisionStudy, _: f64) -> Result<Vec<ClosedRow>, RunError> {
     const LAYERS: u32 = 60;
     let network = Network::cubic_from_diameters([8, 8, LAYERS], vec![1.0; 3 * 64 * LAYERS as usize], 1.0)?;
     let mut rows = Vec::new();
@@ -66,7 +66,7 @@ fn moves(study: &Study, _: f64) -> Result<Vec<ClosedRow>, PrecisionError> {
 }
 
 /// One exit with 1e12 times the area of each of the two others, which lead round: a billionth of a thousandth of the moves.
-fn giant(study: &Study, _: f64) -> Result<Vec<ClosedRow>, PrecisionError> {
+fn giant(study: &PrecisionStudy, _: f64) -> Result<Vec<ClosedRow>, RunError> {
     let network = Network::cubic_from_diameters([1, 1, 1], vec![1.0, 1.0, 1e6], 1.0)?;
     let n = 1_000_000_000_000_000u64;
     let ended = one_size(0.5, n, 1, Engine::Counts)?.walk(&network, study.seed(2))?;
@@ -77,7 +77,7 @@ fn giant(study: &Study, _: f64) -> Result<Vec<ClosedRow>, PrecisionError> {
 }
 
 /// One size without limit blocks what a breadth-first search finds: an integer, and the same constrictions.
-fn blocked_sets(study: &Study, budget_s: f64) -> Result<Vec<ClosedRow>, PrecisionError> {
+fn blocked_sets(study: &PrecisionStudy, budget_s: f64) -> Result<Vec<ClosedRow>, RunError> {
     let case = study.case;
     let mut rows = Vec::new();
     let walks = affordable(budget_s * 0.3, 0.4, 2, 12);
@@ -109,7 +109,7 @@ fn blocked_sets(study: &Study, budget_s: f64) -> Result<Vec<ClosedRow>, Precisio
 }
 
 /// A base coarser than every constriction blocks every exit of the first layer and nothing else.
-fn coarse_base(study: &Study, _: f64) -> Result<Vec<ClosedRow>, PrecisionError> {
+fn coarse_base(study: &PrecisionStudy, _: f64) -> Result<Vec<ClosedRow>, RunError> {
     let case = study.case;
     let network = Network::cubic([20, 20, 5], &case.curve, case.unit_mm, study.seed(1))?;
     let d = 2.0 * case.curve.largest() / case.unit_mm;
@@ -127,7 +127,7 @@ fn coarse_base(study: &Study, _: f64) -> Result<Vec<ClosedRow>, PrecisionError> 
 }
 
 /// A lone particle passes a layer with s = (1 - q) / (1 + 2 q), averaged over networks.
-fn survival(study: &Study, budget_s: f64) -> Result<Vec<ClosedRow>, PrecisionError> {
+fn survival(study: &PrecisionStudy, budget_s: f64) -> Result<Vec<ClosedRow>, RunError> {
     let case = study.case;
     let d_mm = case.curve.dc(15.0).unwrap_or(case.curve.largest());
     let p = Passage::new(&case.curve).through(d_mm, 6);
@@ -136,7 +136,7 @@ fn survival(study: &Study, budget_s: f64) -> Result<Vec<ClosedRow>, PrecisionErr
     }
     let n = affordable(budget_s * 0.35, 2.5e-4, 500, 100_000);
     let lone = one_size(d_mm / case.unit_mm, 1, 1, Engine::Particles)?;
-    let all = || -> Result<u64, PrecisionError> {
+    let all = || -> Result<u64, RunError> {
         let mut eroded = 0;
         for k in 1..=n {
             // Wide enough that few particles meet a void twice.

@@ -17,7 +17,7 @@ use rand::Rng;
 use super::closed_forms;
 use super::first_run::FirstRun;
 use super::work::timed;
-use super::{PrecisionError, Study};
+use super::{PrecisionStudy, RunError};
 use crate::gradation::{Gradation, SizeSampler};
 use crate::network::Network;
 use crate::outcome::precision::{Exact, ExactRow, NetworkRow, Quantity, Slope, merit, spread};
@@ -78,7 +78,7 @@ struct Line<'a> {
 }
 
 /// The tier.
-pub(super) fn tier(study: &Study, budget_s: f64) -> Result<(Exact, Vec<NetworkRow>), PrecisionError> {
+pub(super) fn tier(study: &PrecisionStudy, budget_s: f64) -> Result<(Exact, Vec<NetworkRow>), RunError> {
     let clogged = study.known(clogged)?;
     let d = study.case.curve.dc(FIRST_AT_DC).unwrap_or(study.case.curve.largest()) / study.case.unit_mm;
     let lone = study.known(|network, _| first_particle(network, d))?;
@@ -128,7 +128,7 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<(Exact, Vec<NetworkRo
     }
     let (mut rows, mut networks, mut slopes) = (Vec::new(), Vec::new(), Vec::new());
     for line in &lines {
-        (study.tell)(&format!("exact: {}, {}, up to {:e} particles", line.quantity, line.engine, line.most));
+        study.tell(&format!("exact: {}, {}, up to {:e} particles", line.quantity, line.engine, line.most));
         let first = rows.len();
         for particles in line.numbers() {
             let (row, mut each) = line.row(study, particles)?;
@@ -139,7 +139,7 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<(Exact, Vec<NetworkRo
         }
         slopes.push(slope(&rows[first..]));
     }
-    (study.tell)("exact: integers and closed forms");
+    study.tell("exact: integers and closed forms");
     let closed = closed_forms::rows(study, budget_s * 0.15)?;
     Ok((Exact { networks: NETWORKS as u64, quantities, rows, slopes, closed }, networks))
 }
@@ -179,9 +179,9 @@ impl Known {
     }
 }
 
-impl Study<'_> {
+impl PrecisionStudy<'_> {
     /// Random networks of the scene's curve with an answer that is neither sure nor hopeless; none where there are not enough.
-    fn known(&self, of: impl Fn(Network, u64) -> Known) -> Result<Vec<Known>, PrecisionError> {
+    fn known(&self, of: impl Fn(Network, u64) -> Known) -> Result<Vec<Known>, RunError> {
         let mut taken = Vec::new();
         for k in 1..=TRIES * NETWORKS as u64 {
             let seed = self.seed(k);
@@ -206,7 +206,7 @@ impl Line<'_> {
     }
 
     /// All networks with so many particles each.
-    fn row(&self, study: &Study, particles: u64) -> Result<(ExactRow, Vec<NetworkRow>), PrecisionError> {
+    fn row(&self, study: &PrecisionStudy, particles: u64) -> Result<(ExactRow, Vec<NetworkRow>), RunError> {
         let walked = study.side_by_side(self.known.len(), |i| {
             self.found(&self.known[i], particles, study.seed(1 + i as u64) ^ particles)
         })?;
@@ -248,7 +248,7 @@ impl Line<'_> {
     }
 
     /// The share that leaves, and the processor time (s).
-    fn found(&self, known: &Known, particles: u64, seed: u64) -> Result<(f64, f64), PrecisionError> {
+    fn found(&self, known: &Known, particles: u64, seed: u64) -> Result<(f64, f64), RunError> {
         let sampler = SizeSampler::new(&Gradation::single(known.diameter)?, 1.0)?;
         let run = |engine, n_base| FirstRun {
             engine,
@@ -266,7 +266,7 @@ impl Line<'_> {
             }
             Way::Alone => {
                 let lone = run(Engine::Particles, 1);
-                let all = || -> Result<u64, PrecisionError> {
+                let all = || -> Result<u64, RunError> {
                     let mut eroded = 0;
                     for particle in 0..particles {
                         eroded += lone.walk(&known.network, seed.wrapping_add(particle << 8))?.eroded;

@@ -3,11 +3,12 @@
 use bitvec::vec::BitVec;
 
 use super::work::timed;
-use super::{PrecisionError, Study};
+use super::{PrecisionStudy, RunError};
 use crate::case::replicate_seed;
 use crate::gradation::SizeSampler;
 use crate::network::Network;
 use crate::outcome::eroded_mass_fraction;
+use crate::run::cost::CountedWork;
 use crate::scene::NetworkSource;
 use crate::walk::{Engine, Plan, Progress, Sampling, SizeClasses, State, Walk};
 
@@ -42,7 +43,7 @@ pub(super) struct Ended {
 
 impl FirstRun {
     /// The scene's.
-    pub fn of(study: &Study) -> Self {
+    pub fn of(study: &PrecisionStudy) -> Self {
         let case = study.case;
         Self {
             engine: case.scene.engine,
@@ -55,7 +56,7 @@ impl FirstRun {
     }
 
     /// On a clean network.
-    pub fn walk(&self, network: &Network, seed: u64) -> Result<Ended, PrecisionError> {
+    pub fn walk(&self, network: &Network, seed: u64) -> Result<Ended, RunError> {
         self.walk_from(network, BitVec::repeat(false, network.constrictions()), seed, 1)
     }
 
@@ -66,7 +67,7 @@ impl FirstRun {
         blocked: BitVec<u64>,
         seed: u64,
         run: u64,
-    ) -> Result<Ended, PrecisionError> {
+    ) -> Result<Ended, RunError> {
         let (walked, core_seconds) = timed(|| self.walk_untimed(network, blocked, seed, run));
         let (state, one_by_one) = walked?;
         let tally = &state.tally;
@@ -88,7 +89,7 @@ impl FirstRun {
         blocked: BitVec<u64>,
         seed: u64,
         run: u64,
-    ) -> Result<(State, u64), PrecisionError> {
+    ) -> Result<(State, u64), RunError> {
         let share = self.n_base / self.increments;
         let plan = Plan::new(self.engine, network, &self.sampler, &blocked, share).sampled(self.sampling);
         let supply = plan.supply(self.sampler.clone(), self.n_base, self.increments, seed, run);
@@ -99,14 +100,14 @@ impl FirstRun {
     }
 }
 
-impl Study<'_> {
+impl PrecisionStudy<'_> {
     /// Seed of replicate `k`, counted from 1: of its network, and of its walk.
     pub(super) fn seed(&self, k: u64) -> u64 {
         replicate_seed(self.case.scene.seed, k)
     }
 
     /// The scene's network with another shape, where it is a lattice.
-    pub(super) fn network(&self, shape: Option<[u32; 3]>, seed: u64) -> Result<Network, PrecisionError> {
+    pub(super) fn network(&self, shape: Option<[u32; 3]>, seed: u64) -> Result<Network, RunError> {
         let case = self.case;
         Ok(match (&case.scene.network, shape) {
             (NetworkSource::Cubic(_), Some(shape)) => Network::cubic(shape, &case.curve, case.unit_mm, seed)?,
@@ -126,7 +127,7 @@ impl Study<'_> {
 /// The scene on a lattice that may be narrower than its own, with as much base a void.
 #[derive(Clone, Copy)]
 pub(super) struct Scene<'a> {
-    pub study: &'a Study<'a>,
+    pub study: &'a PrecisionStudy<'a>,
     /// Voids along x, y, z, where its network is a lattice.
     pub shape: Option<[u32; 3]>,
 }
@@ -136,7 +137,7 @@ const WIDTHS: [u32; 6] = [u32::MAX, 40, 28, 20, 14, 10];
 
 impl<'a> Scene<'a> {
     /// On the widest lattice on which so many first runs are paid for.
-    pub fn affordable(study: &'a Study<'a>, runs: u64, budget_s: f64) -> Result<Self, PrecisionError> {
+    pub fn affordable(study: &'a PrecisionStudy<'a>, runs: u64, budget_s: f64) -> Result<Self, RunError> {
         let Some([nx, ny, nz]) = study.shape() else { return Ok(Self { study, shape: None }) };
         let of = |width: u32| Self { study, shape: Some([nx.min(width), ny.min(width), nz]) };
         let narrow = of(WIDTHS[WIDTHS.len() - 1]);
@@ -158,12 +159,12 @@ impl<'a> Scene<'a> {
     }
 
     /// The network of this seed.
-    pub fn network(&self, seed: u64) -> Result<Network, PrecisionError> {
+    pub fn network(&self, seed: u64) -> Result<Network, RunError> {
         self.study.network(self.shape, seed)
     }
 
     /// Counted processor time of a first run (s).
-    pub fn cost_s(&self) -> Result<f64, PrecisionError> {
+    pub fn cost_s(&self) -> Result<f64, RunError> {
         let network = self.network(self.study.seed(1))?;
         Ok(nominal(&self.run().walk(&network, self.study.seed(1))?, &network))
     }
@@ -177,28 +178,15 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// Processor time of a constriction drawn, and of a void of a table.
-const CONSTRICTION_S: f64 = 3.5e-8;
-
-/// Processor time of a void in an increment, as a count.
-const COUNT_S: f64 = 1.3e-8;
-
-/// Processor time of a move of a particle walked one by one.
-const MOVE_S: f64 = 2.5e-9;
-
-/// Processor time of the insertion of one.
-const INSERTION_S: f64 = 1.5e-8;
-
-/// Processor time of a run counted from what it did, network included: the same on every machine, about right on one of 2024.
+/// Processor time of a run counted from what it did, network included.
 pub(super) fn nominal(ended: &Ended, network: &Network) -> f64 {
-    let each = ended.one_by_one as f64;
-    // Where the others are counts, the coarse ones are soon stopped.
-    let (moves, voids) = match ended.all_one_by_one {
-        true => (ended.particle_moves as f64, 0.0),
-        false => (each * 4.0, network.voids() as f64),
+    let counted = CountedWork {
+        increments: ended.increments,
+        particle_moves: ended.particle_moves,
+        one_by_one: ended.one_by_one,
+        all_one_by_one: ended.all_one_by_one,
+        voids: network.voids(),
+        constrictions: network.constrictions(),
     };
-    CONSTRICTION_S * network.constrictions() as f64
-        + COUNT_S * ended.increments as f64 * voids
-        + INSERTION_S * each
-        + MOVE_S * moves
+    counted.core_seconds()
 }

@@ -31,19 +31,89 @@ mod tables;
 mod twin;
 mod work;
 
-pub use tables::tables;
+use tables::tables;
 
-use std::sync::atomic::AtomicBool;
-use std::time::{Instant, SystemTime};
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::time::{Duration, Instant, SystemTime};
 
-use crate::case::{Case, CaseError};
-use crate::constrictions::{ConstrictionsError, CurveError, TriangulationError};
-use crate::gradation::GradationError;
-use crate::network::NetworkError;
+use crate::case::Case;
 use crate::outcome::precision::{NetworkRow, Precision};
-use crate::packing::PackingError;
-use crate::run::machine::Machine;
-use crate::walk::WalkError;
+use crate::run::callbacks::{Callbacks, Event};
+use crate::run::error::RunError;
+use crate::run::folder::{FolderKind, claim};
+use crate::run::machine::{Machine, threads};
+use crate::run::prepare::{PrepareOptions, prepare_into};
+use crate::run::results::json;
+use crate::scene::Scene;
+
+/// Processor time that may be asked for (s).
+const BUDGET_S: RangeInclusive<f64> = 0.1..=604_800.0;
+
+/// How a precision study is made.
+#[derive(Clone, Debug)]
+pub struct PrecisionOptions {
+    /// Folder for the results.
+    pub out: PathBuf,
+    /// Whether earlier results there are replaced.
+    pub overwrite: bool,
+    /// Tiers to measure; all without any.
+    pub tiers: Vec<Tier>,
+    /// Processor time to spend, all cores together.
+    pub budget: Duration,
+    /// Threads, memory and the folder of packings.
+    pub prepare: PrepareOptions,
+}
+
+impl Default for PrecisionOptions {
+    fn default() -> Self {
+        Self {
+            out: "voidwalk-precision".into(),
+            overwrite: false,
+            tiers: Vec::new(),
+            budget: Duration::from_secs(240),
+            prepare: PrepareOptions::default(),
+        }
+    }
+}
+
+/// Measures error against run time for a scene, and writes the tables and, last, `precision.json`.
+///
+/// # Errors
+/// A scene that is wrong and a folder that cannot be claimed are refused before any work; then what a packing, a network or a
+/// walk brings. A study that is stopped begins anew.
+pub fn run(scene: Scene, options: &PrecisionOptions, callbacks: &Callbacks) -> Result<Precision, RunError> {
+    if !BUDGET_S.contains(&options.budget.as_secs_f64()) {
+        return Err(RunError::refused("budget: allowed: from 100ms to 7days"));
+    }
+    let here = Path::new(".");
+    let pool = threads(options.prepare.threads)?;
+    let claim = || claim(&options.out, FolderKind::Precision, options.overwrite);
+    let (case, folder) = pool.install(|| prepare_into(scene, &options.prepare, here, claim, callbacks))?;
+    let is_wanted = |tier: &Tier| options.tiers.is_empty() || options.tiers.contains(tier);
+    let tiers: Vec<Tier> = Tier::ALL.into_iter().filter(is_wanted).collect();
+    let study = PrecisionStudy {
+        case: &case,
+        tiers: &tiers,
+        budget_s: options.budget.as_secs_f64(),
+        threads: pool.current_num_threads(),
+        callbacks,
+    };
+    let (precision, networks) = study.run()?;
+    for (name, content) in tables(&precision, &networks)? {
+        folder.write(name, &content)?;
+    }
+    // The page is made of it.
+    folder.write(FolderKind::Precision.record(), &json(FolderKind::Precision.record(), &precision)?)?;
+    callbacks.results(FolderKind::Precision, folder.path())?;
+    Ok(precision)
+}
+
+/// It was asked to stop.
+fn stopped() -> RunError {
+    RunError::failed("stopped on request; a precision study begins anew")
+}
 
 /// Part of a precision study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,43 +162,8 @@ impl Tier {
     }
 }
 
-/// Why a study ended early.
-#[derive(Debug, thiserror::Error)]
-pub enum PrecisionError {
-    /// The scene.
-    #[error(transparent)]
-    Case(#[from] CaseError),
-    /// A gradation.
-    #[error(transparent)]
-    Gradation(#[from] GradationError),
-    /// A network.
-    #[error(transparent)]
-    Network(#[from] NetworkError),
-    /// A walk.
-    #[error(transparent)]
-    Walk(#[from] WalkError),
-    /// A packing.
-    #[error(transparent)]
-    Packing(#[from] PackingError),
-    /// A triangulation.
-    #[error(transparent)]
-    Triangulation(#[from] TriangulationError),
-    /// A packing's constrictions.
-    #[error(transparent)]
-    Constrictions(#[from] ConstrictionsError),
-    /// A constriction curve.
-    #[error(transparent)]
-    Curve(#[from] CurveError),
-    /// Threads cannot be had.
-    #[error("cannot start a thread: {0}")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
-    /// It was asked to stop.
-    #[error("stopped on request; a precision study begins anew")]
-    Stopped,
-}
-
 /// What is studied.
-pub struct Study<'a> {
+struct PrecisionStudy<'a> {
     /// The scene.
     pub case: &'a Case,
     /// Tiers, each once.
@@ -137,19 +172,22 @@ pub struct Study<'a> {
     pub budget_s: f64,
     /// Runs side by side.
     pub threads: usize,
-    /// Is told what it is at.
-    pub tell: &'a (dyn Fn(&str) + Sync),
-    /// Set to stop.
-    pub stop: &'a AtomicBool,
+    /// Who follows it, and stops it.
+    pub callbacks: &'a Callbacks<'a>,
 }
 
-impl Study<'_> {
+impl PrecisionStudy<'_> {
+    /// Says what it is at.
+    fn tell(&self, what: &str) {
+        (self.callbacks.on_event)(Event::Studying(what));
+    }
+
     /// Does it all: what `precision.json` holds, and the networks of the tier of exact answers, at the most particles of each
     /// line.
     ///
     /// # Errors
     /// What a network, a walk or a packing says, or that it was stopped.
-    pub fn run(&self) -> Result<(Precision, Vec<NetworkRow>), PrecisionError> {
+    fn run(&self) -> Result<(Precision, Vec<NetworkRow>), RunError> {
         let (begun, started) = (Instant::now(), SystemTime::now());
         let record = self.case.record();
         let mut precision = Precision {
@@ -177,7 +215,7 @@ impl Study<'_> {
         let whole: f64 = self.tiers.iter().map(|tier| tier.part()).sum();
         let mut networks = Vec::new();
         for &tier in self.tiers {
-            (self.tell)(&format!("{}: {}", tier.name(), tier.at()));
+            self.tell(&format!("{}: {}", tier.name(), tier.at()));
             let before = work::all_threads();
             let budget_s = self.budget_s * tier.part() / whole;
             match tier {
@@ -195,6 +233,16 @@ impl Study<'_> {
         }
         precision.seconds = begun.elapsed().as_secs_f64();
         Ok((precision, networks))
+    }
+}
+
+impl FromStr for Tier {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let named = Self::ALL.into_iter().find(|tier| tier.name() == text);
+        let allowed = || Self::ALL.map(Self::name).join(", ");
+        named.ok_or_else(|| format!("there is no such tier; allowed: {}", allowed()))
     }
 }
 

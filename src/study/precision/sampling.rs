@@ -6,7 +6,7 @@
 use super::changes::Change;
 use super::first_run::{FirstRun, Scene, nominal};
 use super::work::affordable;
-use super::{PrecisionError, Study};
+use super::{PrecisionStudy, RunError};
 use crate::outcome::precision::{Sampling, SamplingLine, SamplingRow, merit, spread};
 use crate::outcome::record::Statistic;
 use crate::walk::{Engine, Sampling as Drawn};
@@ -60,9 +60,9 @@ struct One {
 }
 
 /// The tier.
-pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Sampling, PrecisionError> {
+pub(super) fn tier(study: &PrecisionStudy, budget_s: f64) -> Result<Sampling, RunError> {
     let scene = Scene::affordable(study, ENOUGH * (KINDS.len() * VARIANTS.len()) as u64, budget_s)?;
-    (study.tell)(&format!("sampling: on {}", scene.words()));
+    study.tell(&format!("sampling: on {}", scene.words()));
     let network = scene.network(study.seed(1))?;
     let n_base = scene.run().n_base;
     let mut variants = Vec::new();
@@ -75,7 +75,7 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Sampling, PrecisionEr
             _ => 0.0,
         };
         if costs * (2 * REPLICATES.0) as f64 > 0.7 * budget_s {
-            (study.tell)(&format!("sampling: {} left out: {costs:.0} s a replicate", variant.name));
+            study.tell(&format!("sampling: {} left out: {costs:.0} s a replicate", variant.name));
             continue;
         }
         let pilot = run.walk(&network, study.seed(1))?;
@@ -83,7 +83,7 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Sampling, PrecisionEr
     }
     let all: f64 = variants.iter().map(|(_, _, cost, _)| cost).sum();
     let replicates = affordable(budget_s, all * KINDS.len() as f64, REPLICATES.0, REPLICATES.1);
-    (study.tell)(&format!("sampling: {replicates} replicates of {} lines", variants.len() * KINDS.len()));
+    study.tell(&format!("sampling: {replicates} replicates of {} lines", variants.len() * KINDS.len()));
     let mut sampling = Sampling { on: scene.words(), rows: Vec::new(), lines: Vec::new() };
     for (kind, networks) in KINDS.into_iter().enumerate() {
         let mut first: Option<Vec<One>> = None;

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rustix::time::{ClockId, clock_gettime};
 
-use super::{PrecisionError, Study};
+use super::{PrecisionStudy, RunError, stopped};
 
 /// Processor time of this thread (s).
 pub(super) fn this_thread() -> f64 {
@@ -29,24 +29,24 @@ pub(super) fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     (made, this_thread() - begun)
 }
 
-impl Study<'_> {
+impl PrecisionStudy<'_> {
     /// `work(0 .. count)`, pieces side by side, each on one thread alone; in order.
     pub(super) fn side_by_side<T: Send>(
         &self,
         count: usize,
-        work: impl Fn(usize) -> Result<T, PrecisionError> + Sync,
-    ) -> Result<Vec<T>, PrecisionError> {
+        work: impl Fn(usize) -> Result<T, RunError> + Sync,
+    ) -> Result<Vec<T>, RunError> {
         let next = AtomicUsize::new(0);
-        let done: Mutex<Vec<(usize, Result<T, PrecisionError>)>> = Mutex::new(Vec::new());
-        let worker = || -> Result<(), PrecisionError> {
+        let done: Mutex<Vec<(usize, Result<T, RunError>)>> = Mutex::new(Vec::new());
+        let worker = || -> Result<(), RunError> {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
             loop {
                 let piece = next.fetch_add(1, Ordering::Relaxed);
                 if piece >= count {
                     return Ok(());
                 }
-                if self.stop.load(Ordering::Relaxed) {
-                    return Err(PrecisionError::Stopped);
+                if self.callbacks.is_stopped() {
+                    return Err(stopped());
                 }
                 let made = pool.install(|| work(piece));
                 done.lock().unwrap_or_else(|e| e.into_inner()).push((piece, made));
