@@ -1,6 +1,7 @@
 //! The cases of a plan, worked out: which are wanted, which packings they need, and what is known of each.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -35,7 +36,8 @@ pub enum CasePart {
     All,
     /// The one of this name.
     Named(String),
-    /// Those of a task of a list that [`write_job_scripts`](super::write_job_scripts) wrote: the file, and the task's number.
+    /// Those of a task of a list that [`write_job_scripts`](super::write_job_scripts) wrote: the file, and
+    /// the task's number.
     Task(PathBuf, u64),
 }
 
@@ -137,13 +139,12 @@ impl<'a> Drafts<'a> {
     ) -> Result<(Vec<PreparedCase<'a>>, Vec<FailedCase>), RunError> {
         let mut filters: BTreeMap<String, Result<PackedFilter, String>> = BTreeMap::new();
         for plan in self.0.iter().filter_map(|(_, draft)| draft.packing.as_ref()) {
-            let key = key(plan);
-            if !filters.contains_key(&key) {
+            if let Entry::Vacant(entry) = filters.entry(key(plan)) {
                 let made = match filter(plan) {
                     Err(error) if error.exit() == Exit::Stopped => return Err(error),
                     other => other.map_err(|error| error.to_string()),
                 };
-                filters.insert(key, made);
+                entry.insert(made);
             }
         }
         let (mut cases, mut failed) = (Vec::new(), Vec::new());

@@ -1,4 +1,5 @@
-//! Collects the finished cases of a plan: `ledger.jsonl`, one JSON line a case in the order of the plan, and `cases.csv`.
+//! Collects the finished cases of a plan: `ledger.jsonl`, one JSON line a case in the order of the plan, and
+//! `cases.csv`.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -11,8 +12,8 @@ use crate::run::error::RunError;
 use crate::run::results::json;
 use crate::store::write_whole;
 
-/// Collects the finished cases of a plan, in its order, and writes `ledger.jsonl`, `campaign.json` and `cases.csv` into the
-/// campaign's folder.
+/// Collects the finished cases of a plan, in its order, and writes `ledger.jsonl`, `campaign.json` and
+/// `cases.csv` into the campaign's folder.
 ///
 /// # Errors
 /// A finished case that cannot be read, for a ledger without it would be wrong; what the system says.

@@ -1,8 +1,11 @@
 //! Campaigns: many scenes, walked by as many processes as are started on one folder.
 //!
-//! - [`plan`] crosses factors into cases, each with a name and a seed of its own; [`cases`] are worked out from it.
-//! - [`run()`] walks those that are not done, by [`run_cases`]; [`collect`] writes what came of them, the [`ledger`].
-//! - [`cluster`] hands a plan to a cluster's scheduler, by what [`crate::run::cost`] says that its cases take.
+//! - [`plan`] crosses factors into cases, each with a name and a seed of its own; [`cases`] are worked out
+//!   from it.
+//! - [`run()`] walks those that are not done, by [`run_cases`]; [`collect`] writes what came of them, the
+//!   [`ledger`].
+//! - [`cluster`] hands a plan to a cluster's scheduler, by what [`crate::run::cost`] says that its cases
+//!   take.
 
 pub mod cases;
 pub mod cluster;

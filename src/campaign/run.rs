@@ -96,12 +96,13 @@ pub fn names(plan: &CampaignPlan, part: &CasePart) -> Result<Vec<String>, RunErr
     Drafts::new(wanted).map(|_| names)
 }
 
-/// Walks the cases of a plan that are not done, packing their filters first, and collects the whole plan. Several processes
-/// may be at it; each waits for what others have begun.
+/// Walks the cases of a plan that are not done, packing their filters first, and collects the whole plan.
+/// Several processes may be at it; each waits for what others have begun.
 ///
 /// # Errors
-/// A plan or case that is wrong and a folder that cannot be claimed are refused before any work; then what concerns all
-/// cases. What concerns one is in [`FinishedCampaign::failed`]. After a stop, the same call continues.
+/// A plan or case that is wrong and a folder that cannot be claimed are refused before any work; then what
+/// concerns all cases. What concerns one is in [`FinishedCampaign::failed`]. After a stop, the same call
+/// continues.
 pub fn run(
     plan: &CampaignPlan,
     options: &CampaignOptions,
@@ -184,7 +185,8 @@ pub fn collect(
     }
     if !missing.is_empty() {
         return Err(RunError::Refused(format!(
-            "{name}: {} of {} cases are missing, nothing is written; submit the campaign again to continue\n{}",
+            "{name}: {} of {} cases are missing, nothing is written; submit the campaign again to continue\n\
+             {}",
             missing.len(),
             plan.cases.len(),
             named(&missing)

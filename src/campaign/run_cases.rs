@@ -1,13 +1,15 @@
-//! Walks the cases of a plan that are not done, each in a folder of its own, by as many processes as are at it.
+//! Walks the cases of a plan that are not done, each in a folder of its own, by as many processes as are at
+//! it.
 //!
-//! A case is claimed by the lock of its folder, which dies with its owner, and is done when the folder holds `case.json` with
-//! the case's fingerprint. Nothing else is shared: what a process that is killed has not saved in checkpoints is lost, and
-//! whoever comes next continues from those.
+//! A case is claimed by the lock of its folder, which dies with its owner, and is done when the folder holds
+//! `case.json` with the case's fingerprint. Nothing else is shared: what a process that is killed has not
+//! saved in checkpoints is lost, and whoever comes next continues from those.
 //!
-//! A case that cannot be walked stops no other: its folder says why in `problem.txt`, and the caller is told at the end.
+//! A case that cannot be walked stops no other: its folder says why in `problem.txt`, and the caller is told
+//! at the end.
 //!
-//! Where the locks of a shared folder reach one machine only, two processes may walk one case at the same time. Both write
-//! the same bits, file by file under their final names, so that costs time and nothing else.
+//! Where the locks of a shared folder reach one machine only, two processes may walk one case at the same
+//! time. Both write the same bits, file by file under their final names, so that costs time and nothing else.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -23,12 +25,13 @@ use crate::run::checkpoints::{self, CheckpointInterval, Checkpoints};
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, shown};
 use crate::run::machine::Machine;
-use crate::run::replicates::{self, Watch};
+use crate::run::replicates::{self, ReplicateContext};
 use crate::run::results;
 use crate::store::{Folder, StoreError, make_folder};
 
 /// What is said of a case whose results are gone.
-const LOST: &str = "its results were overwritten by another process; is another plan, or this one changed, at work on the folder?";
+const LOST: &str = "its results were overwritten by another process; is another plan, or this one changed, \
+    at work on the folder?";
 
 /// How often a process looks whether others are done: at first, and after some waiting.
 const LOOK: (Duration, Duration) = (Duration::from_millis(300), Duration::from_secs(10));
@@ -55,7 +58,8 @@ pub enum CaseEvent<'a> {
 /// How a caller follows a campaign, and stops it.
 #[derive(Clone, Copy)]
 pub struct CampaignCallbacks<'a> {
-    /// How the caller follows packings, stops the campaign and takes finished results; walks of single cases are not followed.
+    /// How the caller follows packings, stops the campaign and takes finished results; walks of single cases
+    /// are not followed.
     pub run: Callbacks<'a>,
     /// Told how many cases there are before the first is walked, and how many of them are done already.
     pub on_cases: &'a (dyn Fn(usize, usize) + Sync),
@@ -86,7 +90,8 @@ pub(super) struct CaseRunner<'a> {
 }
 
 impl CaseRunner<'_> {
-    /// Walks every case that is not done, and waits for those that other processes are at; gives those that cannot be walked.
+    /// Walks every case that is not done, and waits for those that other processes are at; gives those that
+    /// cannot be walked.
     ///
     /// # Errors
     /// What concerns all cases; those that are done stay done.
@@ -103,8 +108,8 @@ impl CaseRunner<'_> {
         while !open.is_empty() {
             let (before, told) = (open.len(), tally.waited());
             self.pass(&open, &tally)?;
-            // A case that this process has finished and that is not there any more was overwritten: by another plan, or by a
-            // plan that was changed meanwhile.
+            // A case that this process has finished and that is not there any more was overwritten: by
+            // another plan, or by a plan that was changed meanwhile.
             open.retain(|case| !self.is_done(case));
             let lost = open.iter().filter(|case| tally.has_finished(&case.planned.name));
             lost.for_each(|case| tally.fail(self.callbacks, &case.planned.name, LOST.into()));
@@ -167,7 +172,8 @@ impl CaseRunner<'_> {
     /// Claims one case and walks it into its folder; says whether it was this process that finished it.
     fn one(&self, case: &PreparedCase) -> Result<bool, RunError> {
         let folder = Folder::open(&self.out.join(case.folder()))?;
-        // Opening the list of its files asks a server anew, which an open of one file that was missing before may not.
+        // Opening the list of its files asks a server anew, which an open of one file that was missing before
+        // may not.
         drop(std::fs::read_dir(folder.path()));
         folder.remove(PROBLEM)?;
         // Another process may have finished it since the list was made.
@@ -175,7 +181,8 @@ impl CaseRunner<'_> {
             return Ok(false);
         }
         match self.walk(case, &folder) {
-            // Where locks reach one machine only, another may have finished it and taken the checkpoints away.
+            // Where locks reach one machine only, another may have finished it and taken the checkpoints
+            // away.
             Err(_) if self.is_done(case) => {
                 checkpoints::discard(folder.path())?;
                 Ok(false)
@@ -197,9 +204,9 @@ impl CaseRunner<'_> {
         let (begun, started) = (Instant::now(), SystemTime::now());
         let checkpoints = Checkpoints::new(folder, &prepared.fingerprint, self.checkpoint_interval)?;
         let silent = Callbacks { stop: self.callbacks.run.stop, ..Callbacks::default() };
-        let watch = Watch { callbacks: &silent, checkpoints: Some(&checkpoints) };
-        let walked = replicates::replicates(case, &watch)
-            .and_then(|walked| Ok((replicates::sensitivity(case, &watch)?, walked)));
+        let context = ReplicateContext { callbacks: &silent, checkpoints: Some(&checkpoints) };
+        let walked = replicates::replicates(case, &context)
+            .and_then(|walked| Ok((replicates::sensitivity(case, &context)?, walked)));
         let (sensitivity, walked) = match walked {
             Err(error) if error.exit() == Exit::Stopped => {
                 checkpoints.flush()?;
@@ -283,8 +290,8 @@ impl Tally {
         }
     }
 
-    /// Whether results that could not be written may be tried again: where locks reach one machine only, another process may
-    /// have been replacing the same files. What was walked is not walked again.
+    /// Whether results that could not be written may be tried again: where locks reach one machine only,
+    /// another process may have been replacing the same files. What was walked is not walked again.
     fn may_try_again(&self, name: &str) -> bool {
         self.waits.fetch_add(1, Ordering::Relaxed);
         let Ok(mut tries) = self.tries.lock() else { return false };

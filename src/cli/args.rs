@@ -42,9 +42,11 @@ pub enum Command {
     Constrictions(ConstrictionsArgs),
     /// Find the percolation threshold of cubic lattices of several sizes
     Percolation(PercolationArgs),
-    /// Measure error against run time for a scene: exact answers, scatter, bias of settings, wrong verdicts, scaling, packings
+    /// Measure error against run time for a scene: exact answers, scatter, bias of settings, wrong verdicts,
+    /// scaling, packings
     Precision(PrecisionArgs),
-    /// Write report.html and the figures of a finished run folder again, or of a folder that scripts/paper.sh filled
+    /// Write report.html and the figures of a finished run folder again, or of a folder that scripts/paper.sh
+    /// filled
     Report {
         /// The folder
         folder: PathBuf,
@@ -57,8 +59,8 @@ pub struct WalkArgs {
     /// Worker threads [default: one per core]; they change no bit of the result
     #[arg(long, value_name = "N", value_parser = threads)]
     pub threads: Option<usize>,
-    /// Save the walks this often, as 10min or 50increments, so that a run that is killed continues from there; a stop (Ctrl-C,
-    /// SIGTERM) always saves them
+    /// Save the walks this often, as 10min or 50increments, so that a run that is killed continues from
+    /// there; a stop (Ctrl-C, SIGTERM) always saves them
     #[arg(long, value_name = "TIME", default_value = "10min")]
     pub checkpoint_every: CheckpointInterval,
     /// No progress and no summary
@@ -77,8 +79,8 @@ pub struct SceneArgs {
     /// Seed; the same seed gives the same bits
     #[arg(long, value_name = "S")]
     pub seed: Option<u64>,
-    /// Add replicates until the 95 % interval of the eroded mass reaches no further than this to either side, as 0.1pp
-    /// (percentage points)
+    /// Add replicates until the 95 % interval of the eroded mass reaches no further than this to either side,
+    /// as 0.1pp (percentage points)
     #[arg(long, value_name = "ERROR", value_parser = |text: &str| number_with(text, "pp"))]
     pub target_error: Option<f64>,
     /// Add replicates until the verdict is right with this probability, as 99.9%
@@ -87,8 +89,8 @@ pub struct SceneArgs {
     /// Folder in which packings that scenes ask for are kept, so that each is made once
     #[arg(long, value_name = "DIR", default_value = "voidwalk-packings")]
     pub packings: PathBuf,
-    /// Memory that the walks may take, as 4GB: base particles that do not fit live in files in the run folder, mapped into memory
-    /// [default: 80 % of what is available]; it changes no bit of the result
+    /// Memory that the walks may take, as 4GB: base particles that do not fit live in files in the run
+    /// folder, mapped into memory [default: 80 % of what is available]; it changes no bit of the result
     #[arg(long, value_name = "SIZE", value_parser = bytes_from_words)]
     pub memory: Option<u64>,
     /// Print JSON
@@ -119,8 +121,8 @@ pub struct RunArgs {
 pub struct ResumeArgs {
     /// The run's folder
     pub folder: PathBuf,
-    /// Memory that the walks may take, as 4GB: base particles that do not fit live in files in the run folder, mapped into memory
-    /// [default: 80 % of what is available]; it changes no bit of the result
+    /// Memory that the walks may take, as 4GB: base particles that do not fit live in files in the run
+    /// folder, mapped into memory [default: 80 % of what is available]; it changes no bit of the result
     #[arg(long, value_name = "SIZE", value_parser = bytes_from_words)]
     pub memory: Option<u64>,
     /// How it is walked.
@@ -136,8 +138,8 @@ pub struct ResumeArgs {
 pub struct CampaignArgs {
     /// Plan (TOML): factors that are crossed, and single cases
     pub plan: PathBuf,
-    /// Folder for the results: new, empty, or with cases of this plan, which are not walked again. Several processes may work
-    /// on one folder
+    /// Folder for the results: new, empty, or with cases of this plan, which are not walked again. Several
+    /// processes may work on one folder
     #[arg(long, value_name = "DIR", default_value = "voidwalk-campaign")]
     pub out: PathBuf,
     /// Walk this case only; the ledger is left to a call without it
@@ -146,14 +148,16 @@ pub struct CampaignArgs {
     /// Print the names of the cases and do nothing
     #[arg(long, group = "part")]
     pub list: bool,
-    /// Walk nothing: write job scripts for Slurm into --out, for the cases that are not done. Processors of a task: --threads
-    /// [default: 4]; its memory and time are estimated
+    /// Walk nothing: write job scripts for Slurm into --out, for the cases that are not done. Processors of a
+    /// task: --threads [default: 4]; its memory and time are estimated
     #[arg(long, group = "part")]
     pub slurm: bool,
     /// With --slurm: bundle the cases into this many tasks [default: so that a task takes some ten minutes]
-    #[arg(long, value_name = "N", requires = "slurm", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(long, value_name = "N", requires = "slurm",
+          value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub tasks: Option<u16>,
-    /// Walk nothing: write the ledger, the table and the page of a campaign whose cases are all done; refused while one is missing
+    /// Walk nothing: write the ledger, the table and the page of a campaign whose cases are all done; refused
+    /// while one is missing
     #[arg(long, group = "part")]
     pub collect: bool,
     /// Walk the cases of task N of a list that --slurm wrote
@@ -165,8 +169,8 @@ pub struct CampaignArgs {
     /// Folder in which the packings of filters are kept [default: packings in --out]
     #[arg(long, value_name = "DIR")]
     pub packings: Option<PathBuf>,
-    /// Memory that the walks may take, as 4GB: base particles that do not fit live in files in the run folder, mapped into memory
-    /// [default: 80 % of what is available]; it changes no bit of the result
+    /// Memory that the walks may take, as 4GB: base particles that do not fit live in files in the run
+    /// folder, mapped into memory [default: 80 % of what is available]; it changes no bit of the result
     #[arg(long, value_name = "SIZE", value_parser = bytes_from_words)]
     pub memory: Option<u64>,
     /// How it is walked.
@@ -177,8 +181,8 @@ pub struct CampaignArgs {
 /// Which filter, and where its packing goes.
 #[derive(Debug, Args)]
 pub struct PackArgs {
-    /// The filter (TOML): [filter] with cu or sieve, d0_mm, and density or friction; settings of [packing] as wanted. A
-    /// scene will do
+    /// The filter (TOML): [filter] with cu or sieve, d0_mm, and density or friction; settings of [packing] as
+    /// wanted. A scene will do
     pub filter: PathBuf,
     /// Replace a setting, as in --set packing.grains=20000; can be given again
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -186,8 +190,8 @@ pub struct PackArgs {
     /// Seed of the grains' sizes and places
     #[arg(long, value_name = "S")]
     pub seed: Option<u64>,
-    /// Folder for the packing: new, empty, or with a packing that was stopped, which continues [default: one of its own in
-    /// voidwalk-packings]
+    /// Folder for the packing: new, empty, or with a packing that was stopped, which continues [default: one
+    /// of its own in voidwalk-packings]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Begin anew where --out holds a packing
@@ -210,7 +214,8 @@ pub struct PackArgs {
 /// Which packing, and how its voids are told apart.
 #[derive(Debug, Args)]
 pub struct ConstrictionsArgs {
-    /// Grains: CSV (x_mm,y_mm,z_mm,diameter_mm after `# cell_mm = Lx, Ly, Lz` or `# cell = none`), or a LAMMPS text dump
+    /// Grains: CSV (x_mm,y_mm,z_mm,diameter_mm after `# cell_mm = Lx, Ly, Lz` or `# cell = none`), or a
+    /// LAMMPS text dump
     pub packing: PathBuf,
     /// Overlap of two inscribed spheres from which their tetrahedra are one void
     #[arg(long, value_name = "F", default_value_t = DEFAULT_MERGE_OVERLAP)]
@@ -234,7 +239,8 @@ pub struct PercolationArgs {
           value_parser = clap::value_parser!(u32).range(1..))]
     pub sizes: Vec<u32>,
     /// Realisations of each size
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 100,
+          value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub realisations: u64,
     /// Seed; the same seed gives the same bits
     #[arg(long, value_name = "S", default_value_t = 1)]
@@ -268,8 +274,8 @@ pub struct PrecisionArgs {
     /// Tiers to measure: exact, sampling, bias, decision, scaling, packing [default: all]
     #[arg(long = "tier", value_name = "NAME", num_args = 1..)]
     pub tiers: Vec<Tier>,
-    /// Processor time to spend, all cores together. It decides how many replicates are walked, by counted work and not by the
-    /// clock: the same seed and budget give the same errors everywhere
+    /// Processor time to spend, all cores together. It decides how many replicates are walked, by counted
+    /// work and not by the clock: the same seed and budget give the same errors everywhere
     #[arg(long, value_name = "TIME", default_value = "4min", value_parser = time)]
     pub budget: Duration,
     /// Runs side by side [default: one per core]; they change no bit of the result

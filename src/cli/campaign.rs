@@ -139,7 +139,8 @@ fn jobs_in_words(jobs: &WrittenJobs) -> String {
         lines.push(format!("{packings} packings first, the longest about {longest}"));
     }
     lines.push(format!(
-        "{} cases in {} tasks, the longest about {}; asked for a task: processors {}, memory {} MB, time {} min",
+        "{} cases in {} tasks, the longest about {}; asked for a task: processors {}, memory {} MB, \
+         time {} min",
         jobs.cases,
         jobs.tasks,
         duration(jobs.walk.seconds),

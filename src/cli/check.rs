@@ -101,7 +101,8 @@ fn packing_words(packing: &PackingCheck) -> String {
     match packing.is_made {
         true => format!("{grains} grains, made already: {folder}"),
         false => format!(
-            "{grains} grains, still to be made, in {folder}; until then constrictions and grains per void are guesses"
+            "{grains} grains, still to be made, in {folder}; until then constrictions and grains per void \
+             are guesses"
         ),
     }
 }

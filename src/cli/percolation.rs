@@ -43,7 +43,8 @@ fn words(study: &PercolationStudy) -> String {
     }
     let line = |law: &str, threshold: f64, error: String, chi_squared: f64, degrees: u64| {
         format!(
-            "{law}: infinite lattice {threshold:.5} {error}, chi squared {chi_squared:.1} on {degrees} degrees of freedom\n"
+            "{law}: infinite lattice {threshold:.5} {error}, chi squared {chi_squared:.1} on {degrees} \
+             degrees of freedom\n"
         )
     };
     if let Some(fit) = &study.one_length {

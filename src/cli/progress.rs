@@ -1,4 +1,5 @@
-//! Follows packings and walks on stderr: a bar on a terminal, plain lines otherwise; and stops them on a signal.
+//! Follows packings and walks on stderr: a bar on a terminal, plain lines otherwise; and stops them on a
+//! signal.
 
 use std::io::IsTerminal;
 use std::sync::atomic::AtomicBool;
@@ -32,8 +33,8 @@ pub fn followed<T>(quiet: bool, work: impl FnOnce(&Callbacks) -> Result<T, RunEr
 
 /// A flag that the first SIGINT or SIGTERM sets; a SIGINT after that ends the program at once.
 ///
-/// SIGTERM may come several times: a cluster's scheduler sends it to a job's script, which hands it on, and to all of the
-/// job's processes.
+/// SIGTERM may come several times: a cluster's scheduler sends it to a job's script, which hands it on, and
+/// to all of the job's processes.
 fn stop_on_signals() -> Result<Arc<AtomicBool>, RunError> {
     use signal_hook::consts::{SIGINT, SIGTERM};
     let stop = Arc::new(AtomicBool::new(false));
@@ -205,8 +206,8 @@ fn packing_line(progress: &Progress, usual: u64, here: u64, seconds: f64) -> Str
         None => "longer than most".to_string(),
     };
     format!(
-        "{stage}: {} steps, void ratio {:.4}, pressure {:.3} of the target, coordination {:.2}, unbalanced {:.3}, \
-         {seconds:.0} s gone, {left}",
+        "{stage}: {} steps, void ratio {:.4}, pressure {:.3} of the target, coordination {:.2}, \
+         unbalanced {:.3}, {seconds:.0} s gone, {left}",
         count(progress.steps),
         progress.void_ratio,
         progress.pressure,

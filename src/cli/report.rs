@@ -7,24 +7,14 @@ use crate::report;
 use crate::run::folder::claim;
 use crate::run::{FolderKind, RunError};
 
-/// Whose results have a page.
-const WITH_PAGE: [FolderKind; 5] = [
-    FolderKind::Run,
-    FolderKind::Packing,
-    FolderKind::Campaign,
-    FolderKind::Percolation,
-    FolderKind::Precision,
-];
-
 /// Writes the report of a finished folder again.
 pub fn report(folder: &Path) -> Result<(), RunError> {
     let page = if report::is_paper(folder) {
         report::write_paper(folder).map_err(RunError::failed)?.page
     } else {
-        let Some(kind) = FolderKind::of(folder).filter(|kind| WITH_PAGE.contains(kind)) else {
-            let records = WITH_PAGE.map(FolderKind::record).join(", ");
-            let names = WITH_PAGE.map(FolderKind::name).join(", ");
-            let problem = format!("holds no {records}; name the folder of a finished {names}");
+        let Some(kind) = FolderKind::of(folder).filter(|kind| *kind != FolderKind::Constrictions) else {
+            let problem = "holds no outcome.json, packing.json, campaign.json, percolation.json or \
+                precision.json; name the folder of a finished run, packing, campaign or study";
             return Err(RunError::Refused(format!("{}: {problem}", shown(folder))));
         };
         let claimed = claim(folder, kind, true)?;

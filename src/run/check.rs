@@ -99,7 +99,7 @@ pub fn check(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError> 
     let refusal = case.place(&options.limits(here), threads, here).err();
     let mut left_out = case.left_out();
     if refusal.is_none() {
-        left_out.extend(left_out_of_first_run(&case).map_err(|e| RunError::refused(e))?);
+        left_out.extend(left_out_of_first_run(&case).map_err(RunError::refused)?);
     }
     Ok(Check {
         n_base: case.n_base,

@@ -1,8 +1,9 @@
-//! Saves the replicates of a case in checkpoints, so that a run which is stopped or killed continues where it was.
+//! Saves the replicates of a case in checkpoints, so that a run which is stopped or killed continues where it
+//! was.
 //!
-//! Of a replicate that is being walked its state is saved, and what was recorded of it so far; of one that is done its
-//! figures and rows. Each is a checkpoint of its own in the folder `checkpoint` of the run ([`crate::store::checkpoint`]),
-//! written as often as [`CheckpointInterval`] says, and on a stop.
+//! Of a replicate that is being walked its state is saved, and what was recorded of it so far; of one that is
+//! done its figures and rows. Each is a checkpoint of its own in the folder `checkpoint` of the run
+//! ([`crate::store::checkpoint`]), written as often as [`CheckpointInterval`] says, and on a stop.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -109,7 +110,8 @@ impl Checkpoints {
         })
     }
 
-    /// What the checkpoints in a run's folder are of, by fingerprint; `None` where there are none that are whole.
+    /// What the checkpoints in a run's folder are of, by fingerprint; `None` where there are none that are
+    /// whole.
     ///
     /// # Errors
     /// The system fails to read one.
@@ -142,7 +144,8 @@ impl Checkpoints {
         }
     }
 
-    /// What was saved of a replicate: what is done, and the checkpoint of the state of the run that is under way.
+    /// What was saved of a replicate: what is done, and the checkpoint of the state of the run that is under
+    /// way.
     ///
     /// # Errors
     /// There are checkpoints of it, but none is whole and of this case.

@@ -24,8 +24,8 @@ impl Default for ConstrictionsOptions {
     }
 }
 
-/// Measures the constrictions of the grains in a file and writes `grains.vtp`, `constrictions.csv`, `constrictions.vtp` and,
-/// last, `constrictions.json`; gives what that file says.
+/// Measures the constrictions of the grains in a file and writes `grains.vtp`, `constrictions.csv`,
+/// `constrictions.vtp` and, last, `constrictions.json`; gives what that file says.
 ///
 /// # Errors
 /// Grains that are refused, a folder that cannot be claimed or written.

@@ -1,8 +1,9 @@
 //! The one cost model: seconds, steps and memory of walks and packings.
 //!
-//! It is asked before any work, to tell a user minutes from hours and a cluster what to give, and after a first run, whose
-//! counted work says what more of them will take. Its figures are those of one thread of a processor of 2024, rounded up
-//! (`results/walk-speed-*.md`, `results/filters-*.md`); `results/slurm-*.md` holds estimates against measured times.
+//! It is asked before any work, to tell a user minutes from hours and a cluster what to give, and after a
+//! first run, whose counted work says what more of them will take. Its figures are those of one thread of a
+//! processor of 2024, rounded up (`results/walk-speed-*.md`, `results/filters-*.md`); `results/slurm-*.md`
+//! holds estimates against measured times.
 
 use super::replicates::runs_to_walk;
 use crate::case::{Case, PackingPlan};
@@ -15,7 +16,8 @@ const INSERTION_S: f64 = 1.5e-8;
 const VOID_S: f64 = 1.3e-8;
 /// Seconds to draw a constriction of a cubic lattice, its place in the tables included.
 const CONSTRICTION_S: f64 = 3.5e-8;
-/// Seconds to build a network of any kind, by its voids and constrictions: those of given connectivity take longest.
+/// Seconds to build a network of any kind, by its voids and constrictions: those of given connectivity take
+/// longest.
 const NETWORK_S: f64 = 3e-7;
 /// Seconds to write a case's files and page.
 const FILES_S: f64 = 0.1;
@@ -23,8 +25,8 @@ const FILES_S: f64 = 0.1;
 const BUSY: f64 = 0.7;
 /// Seconds for one grain in one step of a compression.
 const GRAIN_STEP_S: f64 = 1e-7;
-/// Steps that packings took, by the friction up to which it holds (`results/filters-2026-11-21.md`: 38,700 to 52,500 without
-/// friction, 11,500 to 31,500 with 0.3, 92,500 with 0.7).
+/// Steps that packings took, by the friction up to which it holds (`results/filters-2026-11-21.md`: 38,700 to
+/// 52,500 without friction, 11,500 to 31,500 with 0.3, 92,500 with 0.7).
 const STEPS: [(f64, u64); 3] = [(0.0, 55_000), (0.5, 32_000), (f64::INFINITY, 95_000)];
 /// Seconds to compress a grain of a small packing of a precision study, with friction and without.
 const SMALL_PACKING_GRAIN_S: [f64; 2] = [6.5e-4, 2.4e-3];
@@ -40,8 +42,8 @@ const GRAIN_BYTES: u64 = 20_000;
 const PROGRAM_BYTES: u64 = 100_000_000;
 
 impl Case {
-    /// Seconds that one thread of a machine of today takes for the whole case, its packing apart: a rough guess. What a rule
-    /// that adds replicates may ask for besides is not foreseen.
+    /// Seconds that one thread of a machine of today takes for the whole case, its packing apart: a rough
+    /// guess. What a rule that adds replicates may ask for besides is not foreseen.
     pub fn core_seconds(&self) -> f64 {
         let [voids, constrictions, start_nodes, layers] = self.counts.map(|n| n as f64);
         let one_run = |n_base: u64| {
@@ -67,8 +69,8 @@ impl Case {
     }
 }
 
-/// Seconds of a walk, those of its network included: its increments, voids that hold counts, particles walked by themselves,
-/// and moves of those.
+/// Seconds of a walk, those of its network included: its increments, voids that hold counts, particles walked
+/// by themselves, and moves of those.
 fn walk_seconds(network_s: f64, increments: f64, voids: f64, one_by_one: f64, moves: f64) -> f64 {
     network_s + VOID_S * increments * voids + INSERTION_S * one_by_one + MOVE_S * moves
 }
@@ -91,7 +93,8 @@ pub struct CountedWork {
 }
 
 impl CountedWork {
-    /// Seconds of one thread that this work takes, the network included: the same on every machine, about right on one of 2024.
+    /// Seconds of one thread that this work takes, the network included: the same on every machine, about
+    /// right on one of 2024.
     pub fn core_seconds(&self) -> f64 {
         let each = self.one_by_one as f64;
         // Where the others are counts, the coarse ones are soon stopped.

@@ -35,7 +35,8 @@ impl Exit {
 /// An error of any kind, on its way to a user.
 pub type AnyError = Box<dyn std::error::Error + Send + Sync>;
 
-/// Why a command of the program ended early; [`RunError::exit`] says whether it was refused, stopped or failed.
+/// Why a command of the program ended early; [`RunError::exit`] says whether it was refused, stopped or
+/// failed.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// A scene or plan that is refused.

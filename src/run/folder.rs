@@ -82,11 +82,12 @@ impl FolderKind {
     }
 }
 
-/// Claims a folder for work of this kind: makes it where it is missing, and locks it. That of a campaign may be shared.
+/// Claims a folder for work of this kind: makes it where it is missing, and locks it. That of a campaign may
+/// be shared.
 ///
 /// # Errors
-/// A folder that is not the program's own, that another process holds, that holds work of another kind or, without
-/// `overwrite`, finished work of this kind. Nothing in it was changed then.
+/// A folder that is not the program's own, that another process holds, that holds work of another kind or,
+/// without `overwrite`, finished work of this kind. Nothing in it was changed then.
 pub fn claim(path: &Path, kind: FolderKind, overwrite: bool) -> Result<Folder, RunError> {
     let folder = match kind {
         FolderKind::Campaign => Folder::open_shared(path).map_err(no_locks)?,
@@ -106,7 +107,8 @@ pub fn claim(path: &Path, kind: FolderKind, overwrite: bool) -> Result<Folder, R
     Ok(folder)
 }
 
-/// Claims the first of `NAME`, `NAME-2`, ... for a run that is new, or that an earlier run left without results.
+/// Claims the first of `NAME`, `NAME-2`, ... for a run that is new, or that an earlier run left without
+/// results.
 ///
 /// # Errors
 /// What the system says.

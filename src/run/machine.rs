@@ -43,7 +43,8 @@ impl Machine {
     }
 }
 
-/// Worker threads: as many as are asked for, else as a cluster's job has, else one per core that this process may run on.
+/// Worker threads: as many as are asked for, else as a cluster's job has, else one per core that this process
+/// may run on.
 ///
 /// # Errors
 /// The system gives no threads.

@@ -3,10 +3,11 @@
 //! - [`walk_scene`] and [`resume`] walk a scene into a folder, [`walk_case`] walks a case in memory.
 //! - [`pack`](pack::pack) packs a filter, [`measure_constrictions`] measures a packing from elsewhere.
 //! - [`check`](check::check) says what a run would do, by the one model of [`cost`].
-//! - [`Callbacks`] follow the work and stop it, [`RunError`] says how it ended, [`folder::claim`] guards every folder.
+//! - [`Callbacks`] follow the work and stop it, [`RunError`] says how it ended, [`folder::claim`] guards
+//!   every folder.
 //!
-//! A case is [prepared](prepare::prepare), its [`replicates`] are walked under [`checkpoints`], and [`results`] are written.
-//! Pages are no part of it: they are made from the files that are written here.
+//! A case is [prepared](prepare::prepare), its [`replicates`] are walked under [`checkpoints`], and
+//! [`results`] are written. Pages are no part of it: they are made from the files that are written here.
 
 pub mod allocation;
 pub mod callbacks;

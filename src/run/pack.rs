@@ -1,9 +1,10 @@
 //! Packs a filter into a folder, in as many starts of the program as it takes.
 //!
 //! The folder holds, once whole: `grains.csv`, `grains.vtp`, `constrictions.csv`, `constrictions.json`,
-//! `constrictions.vtp` and, written last, `packing.json`. While the grains are compressed it holds the checkpoint
-//! `compression` instead ([`crate::store::checkpoint`]), from which the next start continues with the same bits: sections
-//! `state` ([`Compression::to_bytes`]) and `seconds` (one number), under the fingerprint of the plan.
+//! `constrictions.vtp` and, written last, `packing.json`. While the grains are compressed it holds the
+//! checkpoint `compression` instead ([`crate::store::checkpoint`]), from which the next start continues with
+//! the same bits: sections `state` ([`Compression::to_bytes`]) and `seconds` (one number), under the
+//! fingerprint of the plan.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -87,8 +88,8 @@ pub struct FinishedPacking {
 /// Packs a filter into a folder, continuing a packing there that was stopped.
 ///
 /// # Errors
-/// A filter that cannot be packed and a folder that cannot be claimed are refused before any work; after a stop the next call
-/// continues.
+/// A filter that cannot be packed and a folder that cannot be claimed are refused before any work; after a
+/// stop the next call continues.
 pub fn pack(
     spec: &PackingSpec,
     options: &PackOptions,
@@ -107,8 +108,8 @@ pub fn pack(
     Ok(FinishedPacking { folder: out, json: String::from_utf8_lossy(&json).into_owned(), record, filter })
 }
 
-/// The packing of a scene's filter: taken from where packings are kept, or made and kept there; one that another process
-/// makes is waited for.
+/// The packing of a scene's filter: taken from where packings are kept, or made and kept there; one that
+/// another process makes is waited for.
 ///
 /// # Errors
 /// As [`pack`].
@@ -209,9 +210,10 @@ fn compress(
             Err(PackingError::Stopped(steps)) => {
                 save(&compression)?;
                 if callbacks.is_stopped() {
+                    let saved = shown(folder.path());
                     return Err(RunError::Stopped(format!(
-                        "after {steps} steps of the packing; progress saved in {}; continue with the same command",
-                        shown(folder.path())
+                        "after {steps} steps of the packing; progress saved in {saved}; continue with the \
+                         same command"
                     )));
                 }
             }
@@ -229,7 +231,8 @@ fn saved(
     let refused = |harmed: Harmed| match harmed.unread {
         true => RunError::Checkpoint(harmed),
         false => RunError::Refused(format!(
-            "{}: the unfinished compression there cannot go on: {harmed}; name another folder or add --overwrite",
+            "{}: the unfinished compression there cannot go on: {harmed}; name another folder or add \
+             --overwrite",
             shown(folder.path())
         )),
     };

@@ -70,7 +70,8 @@ pub(super) fn record(
     })
 }
 
-/// The grains that the plane through the middle of the cell cuts, with those that reach over its sides on both.
+/// The grains that the plane through the middle of the cell cuts, with those that reach over its sides on
+/// both.
 fn slice(packing: &Packing, cell_mm: f64) -> Vec<[f64; 4]> {
     let mut cuts = Vec::new();
     for i in 0..packing.x.len() {

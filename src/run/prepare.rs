@@ -1,8 +1,8 @@
 //! From a scene to a case that can be walked: the one sequence for every command.
 //!
-//! A scene is drafted first, with a guess at a filter that is still to be packed: whatever is wrong with it, and memory that
-//! does not suffice, is refused then. The caller claims the folder for the results next. Only then is the draft finished,
-//! and its filter packed where nobody has packed it yet, which may take hours.
+//! A scene is drafted first, with a guess at a filter that is still to be packed: whatever is wrong with it,
+//! and memory that does not suffice, is refused then. The caller claims the folder for the results next. Only
+//! then is the draft finished, and its filter packed where nobody has packed it yet, which may take hours.
 
 use std::path::{Path, PathBuf};
 
@@ -68,8 +68,9 @@ impl Draft {
     }
 }
 
-/// Prepares a scene: it is found sound, its memory found sufficient, its filter packed or taken from where packings are
-/// kept, its numbers worked out, and its particles placed in memory or, where they do not fit, in files in the current folder.
+/// Prepares a scene: it is found sound, its memory found sufficient, its filter packed or taken from where
+/// packings are kept, its numbers worked out, and its particles placed in memory or, where they do not fit,
+/// in files in the current folder.
 ///
 /// # Errors
 /// What is wrong with the scene, before any work; later what happens to the packing.
@@ -79,8 +80,9 @@ pub fn prepare(scene: Scene, options: &PrepareOptions, callbacks: &Callbacks) ->
     on_threads(options.threads, || Ok(in_order(scene, options, here, claim, callbacks)?.0))
 }
 
-/// Prepares a scene for a folder that is claimed as soon as the scene is found sound, before any work: `claim` does it, and
-/// `wanted` is where the folder is going to be. To be called on the threads that are to walk.
+/// Prepares a scene for a folder that is claimed as soon as the scene is found sound, before any work:
+/// `claim` does it, and `wanted` is where the folder is going to be. To be called on the threads that are to
+/// walk.
 pub(crate) fn prepare_into(
     scene: Scene,
     options: &PrepareOptions,

@@ -21,14 +21,14 @@ use crate::walk::{Engine, Plan, Progress, SizeClasses, State, Walk};
 
 /// How replicates are walked: who follows them, and what saves them.
 #[derive(Clone, Copy)]
-pub struct Watch<'a> {
+pub struct ReplicateContext<'a> {
     /// Who follows the walks and stops them.
     pub callbacks: &'a Callbacks<'a>,
     /// Saves what is done, so that the next start continues from there; nothing is saved without it.
     pub checkpoints: Option<&'a Checkpoints>,
 }
 
-impl Watch<'_> {
+impl ReplicateContext<'_> {
     fn tell(&self, event: Event) {
         (self.callbacks.on_event)(event);
     }
@@ -57,15 +57,15 @@ pub fn runs_to_walk(case: &Case) -> u64 {
 ///
 /// # Errors
 /// A walk that loses particles, or that was stopped.
-pub fn replicates(case: &Case, watch: &Watch) -> Result<Vec<ReplicateResult>, RunError> {
+pub fn replicates(case: &Case, context: &ReplicateContext) -> Result<Vec<ReplicateResult>, RunError> {
     let mut walked = Vec::new();
     let mut wanted = first_replicates(case);
     loop {
         let more = walked.len() as u64 + 1..=wanted;
-        walked.extend(some_replicates(case, 0, more, case.n_base, watch)?);
+        walked.extend(some_replicates(case, 0, more, case.n_base, context)?);
         match look(case, &walked) {
             Some(Look::Until(next)) => {
-                watch.tell(Event::MoreRuns { runs: (next - wanted) * case.scene.runs });
+                context.tell(Event::MoreRuns { runs: (next - wanted) * case.scene.runs });
                 wanted = next;
             }
             _ => return Ok(walked),
@@ -96,15 +96,16 @@ fn look(case: &Case, walked: &[ReplicateResult]) -> Option<Look> {
     Some(rule.look(case.scene.replicates, &runs))
 }
 
-/// Replicates with `n_base` particles each; part 0 are those of the case itself, the only ones that are recorded.
+/// Replicates with `n_base` particles each; part 0 are those of the case itself, the only ones that are
+/// recorded.
 fn some_replicates(
     case: &Case,
     part: u64,
     which: RangeInclusive<u64>,
     n_base: u64,
-    watch: &Watch,
+    context: &ReplicateContext,
 ) -> Result<Vec<ReplicateResult>, RunError> {
-    let one = |replicate| walk_replicate(case, part, replicate, n_base, watch);
+    let one = |replicate| walk_replicate(case, part, replicate, n_base, context);
     let threads = rayon::current_num_threads() as u64;
     if case.side_by_side(n_base, threads) > 1 {
         which.into_par_iter().map(one).collect()
@@ -118,19 +119,19 @@ fn walk_replicate(
     part: u64,
     replicate: u64,
     n_base: u64,
-    watch: &Watch,
+    context: &ReplicateContext,
 ) -> Result<ReplicateResult, RunError> {
     let seed = replicate_seed(case.scene.seed, replicate);
     let network = case.network(seed)?;
     let mut blocked = BitVec::repeat(false, network.constrictions());
     let first = plan(case, &network, &blocked, n_base);
-    let loaded = watch.checkpoints.map(|checkpoints| checkpoints.load(part, replicate));
+    let loaded = context.checkpoints.map(|checkpoints| checkpoints.load(part, replicate));
     let (mut done, mut saved) = match loaded.transpose().map_err(RunError::Checkpoint)? {
         Some(Some((done, saved))) => (done, Some(saved)),
         _ => (Done::default(), None),
     };
     if done.complete {
-        done.runs.iter().for_each(|_| watch.tell(Event::RunDone));
+        done.runs.iter().for_each(|_| context.tell(Event::RunDone));
     }
     while !done.complete {
         let of = RunOf {
@@ -141,7 +142,7 @@ fn walk_replicate(
         };
         let begun = Instant::now();
         let walk = RunContext { case, network: &network, part, seed, of, n_base };
-        let state = walk.run(blocked, &mut done, saved.take(), watch)?;
+        let state = walk.run(blocked, &mut done, saved.take(), context)?;
         let figures = Figures::new(&network, &state, of, begun.elapsed().as_secs_f64());
         let recorder = std::mem::take(&mut done.recorder);
         if part == 0 {
@@ -151,8 +152,8 @@ fn walk_replicate(
         done.runs.push(figures.run);
         done.complete = done.runs.len() as u64 == case.scene.runs;
         blocked = state.blocked;
-        watch.tell(Event::RunDone);
-        if let (true, Some(checkpoints)) = (done.complete, watch.checkpoints) {
+        context.tell(Event::RunDone);
+        if let (true, Some(checkpoints)) = (done.complete, context.checkpoints) {
             checkpoints.save_finished(part, replicate, seed, &done);
         }
     }
@@ -198,7 +199,7 @@ impl RunContext<'_> {
         blocked: BitVec<u64>,
         done: &mut Done,
         mut saved: Option<Saved>,
-        watch: &Watch,
+        context: &ReplicateContext,
     ) -> Result<State, RunError> {
         let Self { case, network, part, seed, of, n_base } = *self;
         let blocked = match &mut saved {
@@ -227,10 +228,10 @@ impl RunContext<'_> {
                 done.recorder.observe(&case.scene.wanted, state);
             }
             let (increment, moving) = (state.increment, state.tally.moving);
-            watch.tell(Event::Increment { replicate: of.replicate, run: of.run, increment, moving });
-            let stop = watch.callbacks.is_stopped();
+            context.tell(Event::Increment { replicate: of.replicate, run: of.run, increment, moving });
+            let stop = context.callbacks.is_stopped();
             let due = |checkpoints: &&Checkpoints| checkpoints.is_due(last, increment, stop);
-            if let Some(checkpoints) = watch.checkpoints.filter(due) {
+            if let Some(checkpoints) = context.checkpoints.filter(due) {
                 if let Err(error) = checkpoints.save_walk(part, of.replicate, network, state, done) {
                     failed = Some(error);
                     return Progress::Stop;
@@ -250,7 +251,8 @@ impl RunContext<'_> {
     }
 }
 
-/// Constrictions that were blocked when the saved run began: those blocked now, less those that it blocked itself.
+/// Constrictions that were blocked when the saved run began: those blocked now, less those that it blocked
+/// itself.
 fn blocked_at_start(network: &Network, saved: &mut Saved) -> Result<BitVec<u64>, RunError> {
     let mut blocked = BitVec::from_vec(saved.read::<u64>("blocked").map_err(RunError::Checkpoint)?);
     blocked.truncate(network.constrictions());
@@ -297,10 +299,10 @@ fn run_summary(walked: &[ReplicateResult], run: usize) -> RunSummary {
 ///
 /// # Errors
 /// As [`replicates`].
-pub fn sensitivity(case: &Case, watch: &Watch) -> Result<Vec<Sensitivity>, RunError> {
+pub fn sensitivity(case: &Case, context: &ReplicateContext) -> Result<Vec<Sensitivity>, RunError> {
     let each = case.scene.sensitivity.1;
     let factors = case.sensitivity_factors().into_iter().zip(1..);
-    factors.map(|(factor, part)| one_sensitivity(case, part, factor, each, watch)).collect()
+    factors.map(|(factor, part)| one_sensitivity(case, part, factor, each, context)).collect()
 }
 
 fn one_sensitivity(
@@ -308,10 +310,10 @@ fn one_sensitivity(
     part: u64,
     factor: f64,
     replicates: u64,
-    watch: &Watch,
+    context: &ReplicateContext,
 ) -> Result<Sensitivity, RunError> {
     let n_base = ((case.n_base as f64 * factor).round() as u64).max(1);
-    let walked = some_replicates(case, part, 1..=replicates, n_base, watch)?;
+    let walked = some_replicates(case, part, 1..=replicates, n_base, context)?;
     Ok(of_walked(case, factor, n_base, &walked))
 }
 

@@ -152,7 +152,8 @@ pub fn write(
     Ok(())
 }
 
-const SERIES: &str = "replicate,run,increment,inserted,moving,eroded,retained_in_constrictions,retained_in_voids,trapped,blocked,eroded_mass_fraction";
+const SERIES: &str = "replicate,run,increment,inserted,moving,eroded,retained_in_constrictions,\
+    retained_in_voids,trapped,blocked,eroded_mass_fraction";
 const LAYERS: &str = "replicate,run,layer,constrictions,blocked,retained_in_constrictions,retained_in_voids";
 const SIZES: &str = "replicate,run,increment,diameter_mm,percent_finer_by_mass,percent_finer_by_number";
 

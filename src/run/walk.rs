@@ -9,7 +9,7 @@ use super::error::{Exit, RunError};
 use super::folder::{FolderKind, claim, claim_first_free, shown};
 use super::machine::on_threads;
 use super::prepare::{PrepareOptions, prepare_into};
-use super::replicates::{ReplicateResult, Watch, replicates, runs_to_walk, sensitivity};
+use super::replicates::{ReplicateContext, ReplicateResult, replicates, runs_to_walk, sensitivity};
 use super::results;
 use crate::case::Case;
 use crate::outcome::record::{Outcome, Sensitivity};
@@ -42,8 +42,8 @@ pub struct FinishedRun {
 /// Walks a scene and writes its folder; what a stopped run of this very scene has saved there is continued.
 ///
 /// # Errors
-/// A scene that is wrong, memory that does not suffice and a folder that cannot be claimed are refused before any work; then
-/// whatever the packing, the walk or the folder brings. After a stop, [`resume`] continues.
+/// A scene that is wrong, memory that does not suffice and a folder that cannot be claimed are refused before
+/// any work; then whatever the packing, the walk or the folder brings. After a stop, [`resume`] continues.
 ///
 /// # Example
 /// ```
@@ -66,8 +66,8 @@ pub fn walk_scene(
     on_threads(options.prepare.threads, || walk_here(scene, options, callbacks))
 }
 
-/// Continues a run that was stopped or killed, with the same bits: its scene is the one that its folder holds, and
-/// [`RunOptions::out`] and [`RunOptions::overwrite`] say nothing.
+/// Continues a run that was stopped or killed, with the same bits: its scene is the one that its folder
+/// holds, and [`RunOptions::out`] and [`RunOptions::overwrite`] say nothing.
 ///
 /// # Errors
 /// A folder that holds no run, or a finished one, is refused; then as [`walk_scene`].
@@ -85,7 +85,8 @@ pub fn resume(folder: &Path, options: &RunOptions, callbacks: &Callbacks) -> Res
     walk_scene(Scene::read(&scene, &[])?, &options, callbacks)
 }
 
-/// Walks a case in memory and writes nothing, on the threads of the pool that it is called in, else on one per core.
+/// Walks a case in memory and writes nothing, on the threads of the pool that it is called in, else on one
+/// per core.
 ///
 /// # Errors
 /// A walk that goes wrong, or that was stopped.
@@ -105,10 +106,10 @@ pub fn resume(folder: &Path, options: &RunOptions, callbacks: &Callbacks) -> Res
 pub fn walk_case(case: &Case, callbacks: &Callbacks) -> Result<Outcome, RunError> {
     let walk = || {
         let begun = Instant::now();
-        let watch = Watch { callbacks, checkpoints: None };
+        let context = ReplicateContext { callbacks, checkpoints: None };
         (callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(case) });
-        let walked = replicates(case, &watch)?;
-        let sensitivity = sensitivity(case, &watch)?;
+        let walked = replicates(case, &context)?;
+        let sensitivity = sensitivity(case, &context)?;
         Ok(results::outcome(case, &walked, sensitivity, begun.elapsed().as_secs_f64()))
     };
     match rayon::current_thread_index() {
@@ -136,14 +137,15 @@ fn walk_here(scene: Scene, options: &RunOptions, callbacks: &Callbacks) -> Resul
     let saved = Checkpoints::scene_in(folder.path()).map_err(RunError::Checkpoint)?;
     if saved.is_some_and(|scene| scene != fingerprint) {
         return Err(RunError::Refused(format!(
-            "{}: holds checkpoints of another scene; continue with that one by `voidwalk resume`, or add --overwrite",
+            "{}: holds checkpoints of another scene; continue with that one by `voidwalk resume`, or add \
+             --overwrite",
             shown(folder.path())
         )));
     }
     results::write_scene(&folder, &case)?;
     let checkpoints = Checkpoints::new(&folder, &fingerprint, options.checkpoint_interval)?;
     let run = CaseRun { case: &case, folder: &folder, checkpoints: &checkpoints, callbacks };
-    let outcome = run.walk(&|outcome, walked| {
+    let outcome = run.walk(|outcome, walked| {
         let threads = rayon::current_num_threads() as u64;
         let manifest = results::manifest(&case, threads, started, options.command.clone());
         results::write(&folder, &case, outcome, walked, &manifest)?;
@@ -162,28 +164,30 @@ struct CaseRun<'a> {
 }
 
 impl CaseRun<'_> {
-    /// Walks the replicates, writes what came of them, then adds the study of the sensitivity and writes the whole.
+    /// Walks the replicates, writes what came of them, then adds the study of the sensitivity and writes the
+    /// whole.
     fn walk(
         &self,
-        write: &dyn Fn(&Outcome, &[ReplicateResult]) -> Result<(), RunError>,
+        write: impl Fn(&Outcome, &[ReplicateResult]) -> Result<(), RunError>,
     ) -> Result<Outcome, RunError> {
         let begun = Instant::now();
-        let watch = Watch { callbacks: self.callbacks, checkpoints: Some(self.checkpoints) };
+        let context = ReplicateContext { callbacks: self.callbacks, checkpoints: Some(self.checkpoints) };
         let outcome = |walked: &[ReplicateResult], sensitivity: Vec<Sensitivity>| {
             results::outcome(self.case, walked, sensitivity, begun.elapsed().as_secs_f64())
         };
         (self.callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(self.case) });
-        let walked = replicates(self.case, &watch).map_err(|error| self.ended(error))?;
+        let walked = replicates(self.case, &context).map_err(|error| self.ended(error))?;
         for problem in self.checkpoints.passed_over() {
             (self.callbacks.warn)(&format!("{problem}; the checkpoint before it was taken"));
         }
         let first = outcome(&walked, Vec::new());
         if !self.case.sensitivity_factors().is_empty() {
-            // A folder with results counts as finished unless it holds checkpoints, and the study of the sensitivity is to come.
+            // A folder with results counts as finished unless it holds checkpoints, and the study of the
+            // sensitivity is to come.
             self.checkpoints.flush()?;
         }
         write(&first, &walked)?;
-        let sensitivity = sensitivity(self.case, &watch).map_err(|error| self.ended(error))?;
+        let sensitivity = sensitivity(self.case, &context).map_err(|error| self.ended(error))?;
         if sensitivity.is_empty() {
             return Ok(first);
         }

@@ -47,7 +47,8 @@ impl Default for PercolationOptions {
 /// Finds the thresholds and writes `percolation.csv` and, last, `percolation.json`.
 ///
 /// # Errors
-/// Sizes that no lattice can have and a folder that cannot be claimed are refused before any work; what the folder says.
+/// Sizes that no lattice can have and a folder that cannot be claimed are refused before any work; what the
+/// folder says.
 pub fn run(options: &PercolationOptions, callbacks: &Callbacks) -> Result<PercolationStudy, RunError> {
     let plan = PercolationPlan::new(options.sizes.clone(), options.realisations, options.seed);
     let plan = plan.map_err(RunError::refused)?;

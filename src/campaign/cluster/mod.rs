@@ -1,7 +1,9 @@
-//! A plan on a cluster whose scheduler is Slurm: job scripts, which cases each task walks, and what the scheduler has given.
+//! A plan on a cluster whose scheduler is Slurm: job scripts, which cases each task walks, and what the
+//! scheduler has given.
 //!
 //! - [`tasks`] bundles cases into tasks of some minutes, and keeps which is which in a file.
-//! - [`scripts`] writes the jobs' scripts: an array that packs filters, an array that walks, a job that collects.
+//! - [`scripts`] writes the jobs' scripts: an array that packs filters, an array that walks, a job that
+//!   collects.
 //! - [`jobs`] writes them, by what [`crate::run::cost`] says that the cases take.
 //! - [`locks`] says what is known of locks on the file system of a folder.
 //!

@@ -1,7 +1,7 @@
 //! The scripts of a campaign's jobs, filled into the templates of `src/data/slurm`.
 //!
-//! Paths and other words of the user's stand in single quotes, names of cases in none of them: a task's number is all that a
-//! script hands on.
+//! Paths and other words of the user's stand in single quotes, names of cases in none of them: a task's
+//! number is all that a script hands on.
 
 use std::path::{Path, PathBuf};
 
@@ -14,7 +14,8 @@ pub const FOLDER: &str = "slurm";
 /// Asked for by this factor more than estimated: memory, time.
 const MARGIN: (f64, f64) = (1.5, 4.0);
 
-/// No more time is asked for: a task that is not done by then is stopped, and goes on in another attempt (minutes).
+/// No more time is asked for: a task that is not done by then is stopped, and goes on in another attempt
+/// (minutes).
 const LONGEST_MIN: u64 = 24 * 60;
 
 /// Time for what no estimate holds: a busy file system, the start of the program (minutes).
@@ -49,7 +50,8 @@ impl TaskNeeds {
 
     fn in_words(&self) -> String {
         format!(
-            "{} of a task and {:.0} MB; {} times the time and {SLACK_MIN} minutes, and {} times the memory, are asked for",
+            "{} of a task and {:.0} MB; {} times the time and {SLACK_MIN} minutes, and {} times the memory, \
+             are asked for",
             duration(self.seconds),
             self.bytes as f64 / f64::from(1 << 20),
             MARGIN.1,

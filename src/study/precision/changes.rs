@@ -129,7 +129,8 @@ impl Change {
         FirstRun { n_base, increments, ..run }
     }
 
-    /// About what it costs, by what the reference costs: a run takes some 3.6 increments a layer beside those of insertion.
+    /// About what it costs, by what the reference costs: a run takes some 3.6 increments a layer beside those
+    /// of insertion.
     pub fn cost(self, scene: &Scene) -> f64 {
         let last = |increments: f64, layers: f64| increments + 3.6 * layers;
         let Some([_, _, nz]) = scene.shape else { return 1.0 };

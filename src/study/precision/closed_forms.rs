@@ -65,7 +65,8 @@ fn moves(study: &PrecisionStudy, _: f64) -> Result<Vec<ClosedRow>, RunError> {
     Ok(rows)
 }
 
-/// One exit with 1e12 times the area of each of the two others, which lead round: a billionth of a thousandth of the moves.
+/// One exit with 1e12 times the area of each of the two others, which lead round: a billionth of a thousandth
+/// of the moves.
 fn giant(study: &PrecisionStudy, _: f64) -> Result<Vec<ClosedRow>, RunError> {
     let network = Network::cubic_from_diameters([1, 1, 1], vec![1.0, 1.0, 1e6], 1.0)?;
     let n = 1_000_000_000_000_000u64;

@@ -10,13 +10,13 @@
 //! | `packing` | the same for packings and triangulations | difference from the reference setting |
 //!
 //! # Budget and determinism
-//! The budget is processor time. It decides how many replicates are walked, by the work that a run is counted to be (moves,
-//! increments, voids) and never by the clock; so a seed and a budget give the same numbers on every machine and for any
-//! number of threads. Only the times differ.
+//! The budget is processor time. It decides how many replicates are walked, by the work that a run is counted
+//! to be (moves, increments, voids) and never by the clock; so a seed and a budget give the same numbers on
+//! every machine and for any number of threads. Only the times differ.
 //!
 //! # Time
-//! Every run is walked by one thread, as many runs side by side as there are threads, and its time is the processor time of that
-//! thread; only the scaling over threads walks one run with several.
+//! Every run is walked by one thread, as many runs side by side as there are threads, and its time is the
+//! processor time of that thread; only the scaling over threads walks one run with several.
 
 mod bias;
 mod changes;
@@ -81,8 +81,8 @@ impl Default for PrecisionOptions {
 /// Measures error against run time for a scene, and writes the tables and, last, `precision.json`.
 ///
 /// # Errors
-/// A scene that is wrong and a folder that cannot be claimed are refused before any work; then what a packing, a network or a
-/// walk brings. A study that is stopped begins anew.
+/// A scene that is wrong and a folder that cannot be claimed are refused before any work; then what a
+/// packing, a network or a walk brings. A study that is stopped begins anew.
 pub fn run(scene: Scene, options: &PrecisionOptions, callbacks: &Callbacks) -> Result<Precision, RunError> {
     if !BUDGET_S.contains(&options.budget.as_secs_f64()) {
         return Err(RunError::refused("budget: allowed: from 100ms to 7days"));
@@ -182,8 +182,8 @@ impl PrecisionStudy<'_> {
         (self.callbacks.on_event)(Event::Studying(what));
     }
 
-    /// Does it all: what `precision.json` holds, and the networks of the tier of exact answers, at the most particles of each
-    /// line.
+    /// Does it all: what `precision.json` holds, and the networks of the tier of exact answers, at the most
+    /// particles of each line.
     ///
     /// # Errors
     /// What a network, a walk or a packing says, or that it was stopped.

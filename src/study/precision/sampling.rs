@@ -1,7 +1,8 @@
 //! The scatter of the scene's eroded mass over replicates: what another second buys.
 //!
-//! Two kinds of replicate: *new networks* (what a verdict is about), and *one network* walked anew (what a way of drawing base
-//! particles can change; what is left beside it is the scatter between networks, the floor of all that draws better).
+//! Two kinds of replicate: *new networks* (what a verdict is about), and *one network* walked anew (what a
+//! way of drawing base particles can change; what is left beside it is the scatter between networks, the
+//! floor of all that draws better).
 
 use super::changes::Change;
 use super::first_run::{FirstRun, Scene, nominal};
@@ -11,7 +12,8 @@ use crate::outcome::precision::{Sampling, SamplingLine, SamplingRow, merit, spre
 use crate::outcome::record::Statistic;
 use crate::walk::{Engine, Sampling as Drawn};
 
-/// A way of drawing and moving base particles, all of one law. The first that is walked is what the others are held against.
+/// A way of drawing and moving base particles, all of one law. The first that is walked is what the others
+/// are held against.
 struct Variant {
     name: &'static str,
     engine: Engine,
