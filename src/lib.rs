@@ -37,6 +37,8 @@ pub mod campaign;
 
 pub mod study;
 
+#[cfg(feature = "report")]
 pub mod report;
 
+#[cfg(feature = "cli")]
 pub mod cli;

@@ -621,3 +621,83 @@ fn filter_rules_and_equation_one_stand_in_the_outcome() {
     let text = fs::read_to_string(linear.join("outcome.json")).unwrap();
     assert_eq!(text.matches("needs the filter's sieve curve").count(), 2);
 }
+
+/// Each command that writes a folder leaves those of the others alone, finished or not, with --overwrite and without.
+#[test]
+fn no_command_writes_into_a_folder_of_another_kind() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    let write = |name: &str, text: &str| fs::write(at.join(name), text).unwrap();
+    write("filter.toml", "[filter]\ncu = 1.5\ndensity = \"loose\"\n[packing]\ngrains = 600\n");
+    write("plan.toml", "[[case]]\nname = \"one\"\n");
+    let mut grains = String::from("# cell_mm = 3, 3, 3\nx_mm,y_mm,z_mm,diameter_mm\n");
+    for i in 0..27 {
+        // Not quite a lattice.
+        grains += &format!("{}.5{},{}.5{},{}.5,0.9\n", i % 3, 37 * i % 11, i / 3 % 3, 17 * i % 7, i / 9);
+    }
+    write("grains.csv", &grains);
+    let commands: [(&str, &[&str]); 6] = [
+        ("run", &["run"]),
+        ("packing", &["pack", "filter.toml"]),
+        ("campaign", &["campaign", "plan.toml"]),
+        ("percolation study", &["percolation", "--sizes", "4", "--realisations", "2"]),
+        ("precision study", &["precision"]),
+        ("set of constrictions", &["constrictions", "grains.csv"]),
+    ];
+    let marks = [
+        ("run", "outcome.json"),
+        ("run", "checkpoint"),
+        ("packing", "packing.json"),
+        ("packing", "compression.0"),
+        ("campaign", "cases"),
+        ("percolation study", "percolation.json"),
+        ("precision study", "precision.json"),
+        ("set of constrictions", "constrictions.json"),
+    ];
+    for (held, mark) in marks {
+        let folder = at.join(format!("with {mark}"));
+        fs::create_dir(&folder).unwrap();
+        fs::write(folder.join(".voidwalk.lock"), "").unwrap();
+        fs::write(folder.join(mark), "theirs").unwrap();
+        for (kind, command) in commands {
+            if kind == held || (kind == "packing" && held == "set of constrictions") {
+                continue;
+            }
+            for overwrite in [false, true].iter().filter(|overwrite| kind != "campaign" || !**overwrite) {
+                let mut args = command.to_vec();
+                args.extend(["--out", folder.to_str().unwrap()]);
+                args.extend(overwrite.then_some("--overwrite"));
+                let output = Command::new(env!("CARGO_BIN_EXE_voidwalk"))
+                    .current_dir(at)
+                    .args(&args)
+                    .output()
+                    .unwrap();
+                refused(&output, &[&format!("holds a {held}; name another folder")]);
+            }
+        }
+        assert_eq!(fs::read_to_string(folder.join(mark)).unwrap(), "theirs");
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 2, "something was written beside {mark}");
+    }
+}
+
+/// The packing's time stands beside that of the walks, and both by the same model as the packing itself.
+#[test]
+fn check_says_what_packing_and_walks_take() {
+    let root = tempfile::tempdir().unwrap();
+    let scene = root.path().join("scene.toml");
+    fs::write(&scene, "[filter]\ncu = 1.5\nfriction = 0.7\n[base]\ncu = 1.5\nd85_at_dc = 5\n").unwrap();
+    let packings = root.path().join("none");
+    let args = ["check", scene.to_str().unwrap(), "--packings", packings.to_str().unwrap()];
+    let words = String::from_utf8(voidwalk(&args).stdout).unwrap();
+    let line = |name: &str| words.lines().find(|line| line.starts_with(name)).unwrap().to_owned();
+    assert!(line("time to pack").contains("some 95 000 steps"), "{words}");
+    assert!(line("time to walk").contains("of one core"), "{words}");
+    let output = voidwalk(&[&args[..], &["--json"]].concat());
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let packing = &json["packing"];
+    assert_eq!((&packing["steps"], &packing["is_made"]), (&95_000.into(), &false.into()));
+    let seconds = packing["core_seconds"].as_f64().unwrap();
+    let expected = packing["grains"].as_f64().unwrap() * 95_000.0 * 1e-7;
+    assert!((seconds / expected - 1.0).abs() < 1e-9, "{seconds} for {expected}");
+    assert!(json["core_seconds"].as_f64().unwrap() > 0.0);
+}

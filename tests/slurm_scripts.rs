@@ -221,7 +221,7 @@ fn a_task_that_is_stopped_goes_back_into_the_queue_and_goes_on() {
     signal(&child, "-TERM");
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(3), "{}", text(&output));
-    assert!(text(&output).contains("goes on: long"), "{}", text(&output));
+    assert!(text(&output).contains("continues: long"), "{}", text(&output));
     assert_eq!(place.notes().matches("requeue").count(), 1, "{}", text(&output));
     let missing = place.voidwalk(&["campaign", "plan.toml", "--out", "out", "--collect"]);
     assert_eq!(missing.status.code(), Some(2));
@@ -238,7 +238,7 @@ fn a_task_that_is_stopped_goes_back_into_the_queue_and_goes_on() {
     assert_eq!(child.wait_with_output().unwrap().status.code(), Some(3));
     assert_eq!(place.notes().matches("requeue").count(), 1);
     let last = done(place.script("array.sh", "1", "2").output().unwrap());
-    assert!(last.contains("attempt 3") && last.contains("goes on: long"), "{last}");
+    assert!(last.contains("attempt 3") && last.contains("continues: long"), "{last}");
     done(place.script("collect.sh", "", "0").output().unwrap());
     place.assert_same("local", "out");
 }

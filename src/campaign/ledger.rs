@@ -1,36 +1,48 @@
-//! Collects the finished cases of a plan: `ledger.jsonl`, one JSON line a case in the order of the plan, and `cases.csv`.
+//! Collects the finished cases of a plan: `ledger.jsonl`, one JSON line a case in the order of the plan, and
+//! `cases.csv`.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
-use super::run_cases::PreparedCase;
+use super::cases::PreparedCase;
+use super::plan::{CampaignPlan, PlannedCase};
 use crate::outcome::ledger::{Campaign, LedgerLine};
 use crate::outcome::record::Statistic;
-use crate::run::results::{ResultError, json};
-use crate::store::{StoreError, write_whole};
+use crate::run::error::RunError;
+use crate::run::results::json;
+use crate::store::write_whole;
 
-/// The finished cases, in the order of the plan.
+/// Collects the finished cases of a plan, in its order, and writes `ledger.jsonl`, `campaign.json` and
+/// `cases.csv` into the campaign's folder.
 ///
 /// # Errors
-/// One that is there and cannot be read: a ledger without it would be wrong.
-pub fn collect(cases: &[PreparedCase], out: &Path) -> Result<Vec<LedgerLine>, StoreError> {
-    cases.iter().filter_map(|case| case.read_line(out).transpose()).collect()
-}
-
-/// Writes `ledger.jsonl`, `cases.csv` and `campaign.json` into the campaign's folder.
-///
-/// # Errors
-/// What the system says.
-pub fn write(out: &Path, about: &Campaign, lines: &[LedgerLine]) -> Result<(), ResultError> {
+/// A finished case that cannot be read, for a ledger without it would be wrong; what the system says.
+pub(super) fn collect(
+    plan: &CampaignPlan,
+    cases: &[PreparedCase],
+    out: &Path,
+) -> Result<Vec<LedgerLine>, RunError> {
+    let lines: Vec<LedgerLine> =
+        cases.iter().filter_map(|case| case.read_line(out).transpose()).collect::<Result<_, _>>()?;
+    let there: BTreeSet<&str> = lines.iter().map(|line| line.case.as_str()).collect();
+    let is_missing = |case: &&PlannedCase| !there.contains(case.name.as_str());
+    let about = Campaign {
+        title: plan.title.clone(),
+        plan: plan.file_name(),
+        factors: plan.factors.clone(),
+        cases: plan.cases.len() as u64,
+        missing: plan.cases.iter().filter(is_missing).map(|case| case.name.clone()).collect(),
+    };
     let mut ledger = Vec::new();
-    for line in lines {
+    for line in &lines {
         serde_json::to_writer(&mut ledger, line)
-            .map_err(|e| ResultError::Format { file: "ledger.jsonl", source: e.into() })?;
+            .map_err(|e| RunError::Format { file: "ledger.jsonl", source: e.into() })?;
         ledger.push(b'\n');
     }
     write_whole(&out.join("ledger.jsonl"), &ledger)?;
-    write_whole(&out.join("campaign.json"), &json("campaign.json", about)?)?;
-    write_whole(&out.join("cases.csv"), &table(&about.factors, lines)?)?;
-    Ok(())
+    write_whole(&out.join("campaign.json"), &json("campaign.json", &about)?)?;
+    write_whole(&out.join("cases.csv"), &table(&about.factors, &lines)?)?;
+    Ok(lines)
 }
 
 /// Columns of `cases.csv` after the case and its levels.
@@ -59,8 +71,8 @@ const COLUMNS: [&str; 22] = [
     "folder",
 ];
 
-fn table(factors: &[String], lines: &[LedgerLine]) -> Result<Vec<u8>, ResultError> {
-    let failed = |e: csv::Error| ResultError::Format { file: "cases.csv", source: e.into() };
+fn table(factors: &[String], lines: &[LedgerLine]) -> Result<Vec<u8>, RunError> {
+    let failed = |e: csv::Error| RunError::Format { file: "cases.csv", source: e.into() };
     let mut writer = csv::Writer::from_writer(Vec::new());
     let header = std::iter::once("case").chain(factors.iter().map(String::as_str)).chain(COLUMNS);
     writer.write_record(header.map(inert)).map_err(failed)?;
@@ -99,7 +111,7 @@ fn table(factors: &[String], lines: &[LedgerLine]) -> Result<Vec<u8>, ResultErro
         row.extend([line.seed.to_string(), line.folder.clone()]);
         writer.write_record(row.iter().map(|cell| inert(cell))).map_err(failed)?;
     }
-    writer.into_inner().map_err(|e| ResultError::Format { file: "cases.csv", source: e.into_error().into() })
+    writer.into_inner().map_err(|e| RunError::Format { file: "cases.csv", source: e.into_error().into() })
 }
 
 /// A cell that no spreadsheet takes for a formula.

@@ -1,10 +1,21 @@
 //! Campaigns: many scenes, walked by as many processes as are started on one folder.
 //!
-//! - [`plan`] crosses factors into cases, each with a name and a seed of its own.
-//! - [`run_cases`] walks those that are not done, [`ledger`] collects what came of them.
-//! - [`cluster`] hands a plan to a cluster's scheduler, by what [`crate::run::cost`] says that its cases take.
+//! - [`plan`] crosses factors into cases, each with a name and a seed of its own; [`cases`] are worked out
+//!   from it.
+//! - [`run()`] walks those that are not done, by [`run_cases`]; [`collect`] writes what came of them, the
+//!   [`ledger`].
+//! - [`cluster`] hands a plan to a cluster's scheduler, by what [`crate::run::cost`] says that its cases
+//!   take.
 
+pub mod cases;
 pub mod cluster;
 pub mod ledger;
 pub mod plan;
+pub mod run;
 pub mod run_cases;
+
+pub use cases::{CasePart, FailedCase};
+pub use cluster::jobs::{JobOptions, WrittenJobs, write_job_scripts};
+pub use plan::CampaignPlan;
+pub use run::{CampaignOptions, FinishedCampaign, collect, make_packing, names, run};
+pub use run_cases::{CampaignCallbacks, CaseEvent};

@@ -22,10 +22,11 @@
 //! set = { "base.sieve" = "site.csv" }
 //! ```
 //!
-//! A case is called after its levels (`filter=loose,cu_b=3`), and its seed follows from the plan's seed and that name alone:
-//! a case that is added, left out or changed changes no other.
+//! A case is called after its levels (`filter=loose,cu_b=3`), and its seed follows from the plan's seed and
+//! that name alone: a case that is added, left out or changed changes no other.
 
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
@@ -70,7 +71,8 @@ pub enum Seeds {
     /// Each its own.
     #[default]
     Own,
-    /// All the plan's: cases that differ in one factor then share their random numbers, and so differ less by chance.
+    /// All the plan's: cases that differ in one factor then share their random numbers, and so differ less by
+    /// chance.
     Common,
 }
 
@@ -106,7 +108,7 @@ pub struct PlannedCase {
 
 /// A plan, its cases worked out.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct CampaignPlan {
     /// What errors call it.
     pub file: String,
     /// What it is about, in a line.
@@ -120,7 +122,7 @@ pub struct Plan {
 /// A level of a factor: its name and settings.
 type Level = (String, Vec<String>);
 
-impl Plan {
+impl CampaignPlan {
     /// Reads a plan and every scene in it.
     ///
     /// # Errors
@@ -269,11 +271,14 @@ fn folder_name(name: &str) -> String {
 /// A name that can stand in a file name, a table and a page.
 fn check_name(what: &str, name: &str) -> Result<(), String> {
     // Characters without a width, of other line ends, and those that turn the direction of writing.
-    let hidden = |c: char| matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{2069}' | '\u{feff}');
+    const HIDDEN: [RangeInclusive<char>; 4] =
+        ['\u{200b}'..='\u{200f}', '\u{2028}'..='\u{202e}', '\u{2060}'..='\u{2069}', '\u{feff}'..='\u{feff}'];
+    let hidden = |c: char| HIDDEN.iter().any(|range| range.contains(&c));
     let bad = |c: char| c.is_control() || hidden(c) || "=,/\\\"'".contains(c);
     if name.is_empty() || name.len() > 100 || name.starts_with('.') || name.chars().any(bad) {
         return Err(format!(
-            "{what} name `{}` is not allowed; 1 to 100 characters, none of = , / \\ and quotes, no dot in front",
+            "{what} name `{}` is not allowed; 1 to 100 characters, none of = , / \\ and quotes, no dot in \
+             front",
             name.chars().filter(|c| !c.is_control()).take(100).collect::<String>()
         ));
     }
@@ -345,16 +350,17 @@ fn check_left_out(
 mod tests {
     use super::*;
 
-    fn plan(text: &str) -> Result<Plan, SceneError> {
+    fn plan(text: &str) -> Result<CampaignPlan, SceneError> {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("plan.toml");
         std::fs::write(&path, text).unwrap();
-        Plan::read(&path)
+        CampaignPlan::read(&path)
     }
 
     const TWO_BY_TWO: &str = "[[factor]]\nname = \"cu_b\"\nsetting = \"base.cu\"\nvalues = [1.5, 3]\n\
         [[factor]]\nname = \"filter\"\n[factor.levels]\n\
-        a = { \"filter.curve\" = \"shire2016-cu1.5-loose\" }\nb = { filter = { curve = \"shire2016-cu1.5-dense\" } }\n";
+        a = { \"filter.curve\" = \"shire2016-cu1.5-loose\" }\n\
+        b = { filter = { curve = \"shire2016-cu1.5-dense\" } }\n";
 
     #[test]
     fn factors_are_crossed_with_the_last_running_fastest() {
@@ -397,7 +403,8 @@ mod tests {
             ("[[case]]\nname = \"../x\"\n", "is not allowed"),
             ("[[case]]\nname = \"x\"\n[[case]]\nname = \"x\"\n", "two cases are called `x`"),
             (
-                "[[case]]\nname = \"x\"\nset = { filter = { curve = \"a.csv\", density = \"loose\", cu = 2 } }\n",
+                "[[case]]\nname = \"x\"\nset = { filter = { \
+                 curve = \"a.csv\", density = \"loose\", cu = 2 } }\n",
                 "both say what the filter's constrictions are",
             ),
             ("[[case]]\nname = \"x\"\n[[leave_out]]\nfilter = \"x\"\n", "there is no factor `filter`"),

@@ -1,11 +1,14 @@
 //! Arguments and what they mean to a user.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 
+use crate::campaign::CasePart;
 use crate::constrictions::DEFAULT_MERGE_OVERLAP;
-use crate::run::checkpoints::CheckpointInterval;
+use crate::run::CheckpointInterval;
+use crate::run::machine::bytes_from_words;
 use crate::study::precision::Tier;
 
 /// Will this filter hold this soil? A random-walk network model of base-filter combinations.
@@ -22,7 +25,7 @@ pub struct Arguments {
 pub enum Command {
     /// Walk a scene's base through its filter, and judge
     Run(RunArgs),
-    /// Go on with a run that was stopped or killed, with the same bits
+    /// Continue a run that was stopped or killed, with the same bits
     Resume(ResumeArgs),
     /// Say what a run would do: number of base particles, memory, parts that are needed
     Check(SceneArgs),
@@ -39,13 +42,29 @@ pub enum Command {
     Constrictions(ConstrictionsArgs),
     /// Find the percolation threshold of cubic lattices of several sizes
     Percolation(PercolationArgs),
-    /// Measure error against run time for a scene: exact answers, scatter, bias of settings, wrong verdicts, scaling, packings
+    /// Measure error against run time for a scene: exact answers, scatter, bias of settings, wrong verdicts,
+    /// scaling, packings
     Precision(PrecisionArgs),
     /// Write report.html and the figures of a finished run folder again
     Report {
         /// The folder
         folder: PathBuf,
     },
+}
+
+/// How a walk is done.
+#[derive(Debug, Args)]
+pub struct WalkArgs {
+    /// Worker threads [default: one per core]; they change no bit of the result
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub threads: Option<usize>,
+    /// Save the walks this often, as 10min or 50increments, so that a run that is killed continues from
+    /// there; a stop (Ctrl-C, SIGTERM) always saves them
+    #[arg(long, value_name = "TIME", default_value = "10min")]
+    pub checkpoint_every: CheckpointInterval,
+    /// No progress and no summary
+    #[arg(long, short)]
+    pub quiet: bool,
 }
 
 /// Which scene.
@@ -59,8 +78,8 @@ pub struct SceneArgs {
     /// Seed; the same seed gives the same bits
     #[arg(long, value_name = "S")]
     pub seed: Option<u64>,
-    /// Add replicates until the 95 % interval of the eroded mass reaches no further than this to either side, as 0.1pp
-    /// (percentage points)
+    /// Add replicates until the 95 % interval of the eroded mass reaches no further than this to either side,
+    /// as 0.1pp (percentage points)
     #[arg(long, value_name = "ERROR", value_parser = |text: &str| number_with(text, "pp"))]
     pub target_error: Option<f64>,
     /// Add replicates until the verdict is right with this probability, as 99.9%
@@ -69,9 +88,9 @@ pub struct SceneArgs {
     /// Folder in which packings that scenes ask for are kept, so that each is made once
     #[arg(long, value_name = "DIR", default_value = "voidwalk-packings")]
     pub packings: PathBuf,
-    /// Memory that the walks may take, as 4GB: base particles that do not fit live in files in the run folder, mapped into memory
-    /// [default: 80 % of what is available]; it changes no bit of the result
-    #[arg(long, value_name = "SIZE", value_parser = bytes)]
+    /// Memory that the walks may take, as 4GB: base particles that do not fit live in files in the run
+    /// folder, mapped into memory [default: 80 % of what is available]; it changes no bit of the result
+    #[arg(long, value_name = "SIZE", value_parser = bytes_from_words)]
     pub memory: Option<u64>,
     /// Print JSON
     #[arg(long)]
@@ -91,39 +110,26 @@ pub struct RunArgs {
     /// Replace the results of an earlier run in --out
     #[arg(long)]
     pub overwrite: bool,
-    /// Worker threads [default: one per core]; they change no bit of the result
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
-    /// Keep the walks this often, as 10min or 50increments, so that a run that is killed goes on from there; a stop (Ctrl-C,
-    /// SIGTERM) always keeps them
-    #[arg(long, value_name = "TIME", default_value = "10min")]
-    pub checkpoint_every: CheckpointInterval,
-    /// No progress and no summary
-    #[arg(long, short)]
-    pub quiet: bool,
+    /// How it is walked.
+    #[command(flatten)]
+    pub walk: WalkArgs,
 }
 
-/// Which run, and how it goes on.
+/// Which run, and how it continues.
 #[derive(Debug, Args)]
 pub struct ResumeArgs {
     /// The run's folder
     pub folder: PathBuf,
-    /// Worker threads [default: one per core]; they change no bit of the result
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
-    /// Memory that the walks may take, as 4GB [default: 80 % of what is available]; it changes no bit of the result
-    #[arg(long, value_name = "SIZE", value_parser = bytes)]
+    /// Memory that the walks may take, as 4GB: base particles that do not fit live in files in the run
+    /// folder, mapped into memory [default: 80 % of what is available]; it changes no bit of the result
+    #[arg(long, value_name = "SIZE", value_parser = bytes_from_words)]
     pub memory: Option<u64>,
-    /// Keep the walks this often, as 10min or 50increments, so that a run that is killed goes on from there; a stop (Ctrl-C,
-    /// SIGTERM) always keeps them
-    #[arg(long, value_name = "TIME", default_value = "10min")]
-    pub checkpoint_every: CheckpointInterval,
+    /// How it is walked.
+    #[command(flatten)]
+    pub walk: WalkArgs,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
-    /// No progress and no summary
-    #[arg(long, short)]
-    pub quiet: bool,
 }
 
 /// Which plan, and where its results go.
@@ -131,8 +137,8 @@ pub struct ResumeArgs {
 pub struct CampaignArgs {
     /// Plan (TOML): factors that are crossed, and single cases
     pub plan: PathBuf,
-    /// Folder for the results: new, empty, or with cases of this plan, which are not walked again. Several processes may work
-    /// on one folder
+    /// Folder for the results: new, empty, or with cases of this plan, which are not walked again. Several
+    /// processes may work on one folder
     #[arg(long, value_name = "DIR", default_value = "voidwalk-campaign")]
     pub out: PathBuf,
     /// Walk this case only; the ledger is left to a call without it
@@ -141,46 +147,41 @@ pub struct CampaignArgs {
     /// Print the names of the cases and do nothing
     #[arg(long, group = "part")]
     pub list: bool,
-    /// Walk nothing: write job scripts for Slurm into --out, for the cases that are not done. Processors of a task: --threads
-    /// [default: 4]; its memory and time are estimated
+    /// Walk nothing: write job scripts for Slurm into --out, for the cases that are not done. Processors of a
+    /// task: --threads [default: 4]; its memory and time are estimated
     #[arg(long, group = "part")]
     pub slurm: bool,
     /// With --slurm: bundle the cases into this many tasks [default: so that a task takes some ten minutes]
-    #[arg(long, value_name = "N", requires = "slurm", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(long, value_name = "N", requires = "slurm",
+          value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub tasks: Option<u16>,
-    /// Walk nothing: write the ledger, the table and the page of a campaign whose cases are all done; refused while one is missing
+    /// Walk nothing: write the ledger, the table and the page of a campaign whose cases are all done; refused
+    /// while one is missing
     #[arg(long, group = "part")]
     pub collect: bool,
     /// Walk the cases of task N of a list that --slurm wrote
-    #[arg(long, value_name = "FILE:N", group = "part", value_parser = numbered)]
-    pub task: Option<(PathBuf, u64)>,
+    #[arg(long, value_name = "FILE:N", group = "part", value_parser = CasePart::task)]
+    pub task: Option<CasePart>,
     /// Walk nothing: make the N-th packing that the plan needs
     #[arg(long, value_name = "N", group = "part", value_parser = clap::value_parser!(u64).range(1..))]
     pub make_packing: Option<u64>,
     /// Folder in which the packings of filters are kept [default: packings in --out]
     #[arg(long, value_name = "DIR")]
     pub packings: Option<PathBuf>,
-    /// Memory that the walks may take, as 4GB: base particles that do not fit live in files in the run folder, mapped into memory
-    /// [default: 80 % of what is available]; it changes no bit of the result
-    #[arg(long, value_name = "SIZE", value_parser = bytes)]
+    /// Memory that the walks may take, as 4GB: base particles that do not fit live in files in the run
+    /// folder, mapped into memory [default: 80 % of what is available]; it changes no bit of the result
+    #[arg(long, value_name = "SIZE", value_parser = bytes_from_words)]
     pub memory: Option<u64>,
-    /// Worker threads [default: one per core]; they change no bit of the result
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
-    /// Keep the walks this often, as 10min or 50increments, so that a campaign that is killed goes on from there; a stop
-    /// (Ctrl-C, SIGTERM) always keeps them
-    #[arg(long, value_name = "TIME", default_value = "10min")]
-    pub checkpoint_every: CheckpointInterval,
-    /// No progress and no summary
-    #[arg(long, short)]
-    pub quiet: bool,
+    /// How it is walked.
+    #[command(flatten)]
+    pub walk: WalkArgs,
 }
 
 /// Which filter, and where its packing goes.
 #[derive(Debug, Args)]
 pub struct PackArgs {
-    /// The filter (TOML): [filter] with cu or sieve, d0_mm, and density or friction; settings of [packing] as wanted. A
-    /// scene will do
+    /// The filter (TOML): [filter] with cu or sieve, d0_mm, and density or friction; settings of [packing] as
+    /// wanted. A scene will do
     pub filter: PathBuf,
     /// Replace a setting, as in --set packing.grains=20000; can be given again
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -188,19 +189,19 @@ pub struct PackArgs {
     /// Seed of the grains' sizes and places
     #[arg(long, value_name = "S")]
     pub seed: Option<u64>,
-    /// Folder for the packing: new, empty, or with a packing that was stopped, which goes on [default: one of its own in
-    /// voidwalk-packings]
+    /// Folder for the packing: new, empty, or with a packing that was stopped, which continues [default: one
+    /// of its own in voidwalk-packings]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Begin anew where --out holds a packing
     #[arg(long)]
     pub overwrite: bool,
     /// Worker threads [default: one per core]; they change no bit of the result
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
-    /// Keep the state this often, so that a packing that is killed goes on from there
-    #[arg(long, value_name = "TIME", default_value = "1min", value_parser = humantime::parse_duration)]
-    pub checkpoint_every: std::time::Duration,
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub threads: Option<usize>,
+    /// Save the state this often, so that a packing that is killed continues from there
+    #[arg(long, value_name = "TIME", default_value = "1min", value_parser = time)]
+    pub checkpoint_every: Duration,
     /// Print packing.json
     #[arg(long)]
     pub json: bool,
@@ -212,14 +213,15 @@ pub struct PackArgs {
 /// Which packing, and how its voids are told apart.
 #[derive(Debug, Args)]
 pub struct ConstrictionsArgs {
-    /// Grains: CSV (x_mm,y_mm,z_mm,diameter_mm after `# cell_mm = Lx, Ly, Lz` or `# cell = none`), or a LAMMPS text dump
+    /// Grains: CSV (x_mm,y_mm,z_mm,diameter_mm after `# cell_mm = Lx, Ly, Lz` or `# cell = none`), or a
+    /// LAMMPS text dump
     pub packing: PathBuf,
     /// Overlap of two inscribed spheres from which their tetrahedra are one void
     #[arg(long, value_name = "F", default_value_t = DEFAULT_MERGE_OVERLAP)]
     pub merge_overlap: f64,
-    /// Folder for the results [default: voidwalk-constrictions]
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
+    /// Folder for the results
+    #[arg(long, value_name = "DIR", default_value = "voidwalk-constrictions")]
+    pub out: PathBuf,
     /// Replace the results of an earlier call in --out
     #[arg(long)]
     pub overwrite: bool,
@@ -236,30 +238,24 @@ pub struct PercolationArgs {
           value_parser = clap::value_parser!(u32).range(1..))]
     pub sizes: Vec<u32>,
     /// Realisations of each size
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 100,
+          value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub realisations: u64,
     /// Seed; the same seed gives the same bits
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub seed: u64,
-    /// Folder for the results [default: voidwalk-percolation]
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
+    /// Folder for the results
+    #[arg(long, value_name = "DIR", default_value = "voidwalk-percolation")]
+    pub out: PathBuf,
     /// Replace the results of an earlier call in --out
     #[arg(long)]
     pub overwrite: bool,
     /// Worker threads [default: one per core]; they change no bit of the result
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub threads: Option<usize>,
     /// Print percolation.json
     #[arg(long)]
     pub json: bool,
-}
-
-/// A file and a number: `tasks.tsv:3`.
-fn numbered(text: &str) -> Result<(PathBuf, u64), String> {
-    let parts = text.rsplit_once(':').filter(|(file, _)| !file.is_empty());
-    let read = parts.and_then(|(file, number)| Some((PathBuf::from(file), number.parse().ok()?)));
-    read.ok_or_else(|| "write a file and a task's number as slurm/tasks.tsv:3".into())
 }
 
 /// Which scene, and how long.
@@ -268,62 +264,36 @@ pub struct PrecisionArgs {
     /// Which scene.
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// Folder for the results [default: voidwalk-precision]
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
+    /// Folder for the results
+    #[arg(long, value_name = "DIR", default_value = "voidwalk-precision")]
+    pub out: PathBuf,
     /// Replace the results of an earlier call in --out
     #[arg(long)]
     pub overwrite: bool,
     /// Tiers to measure: exact, sampling, bias, decision, scaling, packing [default: all]
-    #[arg(long = "tier", value_name = "NAME", num_args = 1.., value_parser = tier)]
+    #[arg(long = "tier", value_name = "NAME", num_args = 1..)]
     pub tiers: Vec<Tier>,
-    /// Processor time to spend, all cores together. It decides how many replicates are walked, by counted work and not by the
-    /// clock: the same seed and budget give the same errors everywhere
-    #[arg(long, value_name = "TIME", default_value = "4min", value_parser = budget)]
-    pub budget: std::time::Duration,
+    /// Processor time to spend, all cores together. It decides how many replicates are walked, by counted
+    /// work and not by the clock: the same seed and budget give the same errors everywhere
+    #[arg(long, value_name = "TIME", default_value = "4min", value_parser = time)]
+    pub budget: Duration,
     /// Runs side by side [default: one per core]; they change no bit of the result
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub threads: Option<usize>,
     /// No progress and no summary
     #[arg(long, short)]
     pub quiet: bool,
 }
 
-/// A tier by its name.
-fn tier(text: &str) -> Result<Tier, String> {
-    let named = Tier::ALL.into_iter().find(|tier| tier.name() == text);
-    named.ok_or_else(|| format!("there is no such tier; allowed: {}", Tier::ALL.map(Tier::name).join(", ")))
+/// A number of threads.
+fn threads(text: &str) -> Result<usize, String> {
+    let number = text.parse().ok().filter(|number| (1..=1024).contains(number));
+    number.ok_or_else(|| format!("{text} is not in 1..=1024"))
 }
 
-/// Processor time from a tenth of a second to a week.
-fn budget(text: &str) -> Result<std::time::Duration, String> {
-    let time =
-        humantime::parse_duration(text).map_err(|e| format!("{e}; write a time as 30s, 4min or 1h"))?;
-    match (0.1..=604_800.0).contains(&time.as_secs_f64()) {
-        true => Ok(time),
-        false => Err("allowed: from 100ms to 7days".into()),
-    }
-}
-
-/// A size in bytes: `4GB`, `500 MB`, `1.5GiB`.
-fn bytes(text: &str) -> Result<u64, String> {
-    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
-    let unit = match text[digits.len()..].to_lowercase().as_str() {
-        "" | "b" => 1.0,
-        "kb" => 1e3,
-        "mb" => 1e6,
-        "gb" => 1e9,
-        "tb" => 1e12,
-        "kib" => 1024.0,
-        "mib" => 1_048_576.0,
-        "gib" => 1_073_741_824.0,
-        "tib" => 1_099_511_627_776.0,
-        _ => return Err("write a size as 4GB, 500MB or 2GiB".into()),
-    };
-    match digits.trim().parse::<f64>() {
-        Ok(number) if number > 0.0 && number * unit < 1e18 => Ok((number * unit) as u64),
-        _ => Err("write a size above 0 as 4GB, 500MB or 2GiB".into()),
-    }
+/// A span of time.
+fn time(text: &str) -> Result<Duration, String> {
+    humantime::parse_duration(text).map_err(|e| format!("{e}; write a time as 30s, 4min or 1h"))
 }
 
 /// A number with its unit.
@@ -336,7 +306,7 @@ fn number_with(text: &str, unit: &str) -> Result<f64, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{bytes, number_with, numbered};
+    use super::number_with;
 
     #[test]
     fn numbers_carry_their_unit() {
@@ -344,26 +314,6 @@ mod tests {
         assert_eq!(number_with(" 99.9 %", "%"), Ok(99.9));
         for text in ["0.1", "pp", "nanpp", "0.1%", "1e400pp"] {
             assert!(number_with(text, "pp").is_err(), "{text}");
-        }
-    }
-
-    #[test]
-    fn a_task_is_a_file_and_a_number() {
-        assert_eq!(numbered("a:b/tasks.tsv:12"), Ok(("a:b/tasks.tsv".into(), 12)));
-        for text in ["tasks.tsv", ":3", "tasks.tsv:", "tasks.tsv:-1", "tasks.tsv:x"] {
-            assert!(numbered(text).is_err(), "{text}");
-        }
-    }
-
-    #[test]
-    fn sizes_are_read_with_their_units() {
-        for (text, size) in
-            [("4GB", 4_000_000_000), ("500 mb", 500_000_000), ("1.5GiB", 1_610_612_736), ("77", 77)]
-        {
-            assert_eq!(bytes(text), Ok(size));
-        }
-        for text in ["", "GB", "-1GB", "0", "4 apples", "nan", "inf", "1e30TB"] {
-            assert!(bytes(text).is_err(), "{text}");
         }
     }
 }

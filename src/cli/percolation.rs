@@ -1,41 +1,28 @@
 //! `voidwalk percolation`: the percolation threshold against the size of the lattice.
 
-use std::path::PathBuf;
-
-use super::Exit;
 use super::args::PercolationArgs;
-use super::print::{plain, to_stdout};
-use super::run::refused_or_failed;
+use super::print::{json, shown, to_stdout};
+use super::report::page;
 use crate::outcome::percolation::PercolationStudy;
-use crate::report;
-use crate::store::Folder;
-use crate::study::percolation::PercolationPlan;
+use crate::run::{Callbacks, RunError};
+use crate::study::percolation::{self, PercolationOptions};
 
 /// Finds the thresholds and writes them into a folder.
-pub fn percolation(args: &PercolationArgs) -> Result<(), Exit> {
-    let plan =
-        PercolationPlan::new(args.sizes.clone(), args.realisations, args.seed).map_err(Exit::refused)?;
-    let out = args.out.clone().unwrap_or_else(|| PathBuf::from("voidwalk-percolation"));
-    let folder = Folder::open(&out).map_err(refused_or_failed)?;
-    if folder.has("percolation.json") && !args.overwrite {
-        let problem = format!(
-            "{}: holds a percolation study already; name another folder or add --overwrite",
-            out.display()
-        );
-        return Err(Exit::refused(plain(&problem)));
-    }
-    let threads = args.threads.map_or(0, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(Exit::failed)?;
-    let run = pool.install(|| plan.run()).map_err(Exit::failed)?;
-    let json = serde_json::to_string_pretty(&run.study).map_err(Exit::failed)? + "\n";
-    folder.write("percolation.csv", run.csv().as_bytes()).map_err(Exit::failed)?;
-    let page = report::write_percolation(folder.path(), &run.study).map_err(Exit::failed)?.page;
-    // Last, so that a folder with it is whole.
-    folder.write("percolation.json", json.as_bytes()).map_err(Exit::failed)?;
-    if args.json {
-        to_stdout(&json);
-    } else {
-        to_stdout(&format!("{}{}\n", words(&run.study), plain(&page.display().to_string())));
+pub fn percolation(args: &PercolationArgs) -> Result<(), RunError> {
+    let options = PercolationOptions {
+        sizes: args.sizes.clone(),
+        realisations: args.realisations,
+        seed: args.seed,
+        out: args.out.clone(),
+        overwrite: args.overwrite,
+        threads: args.threads,
+    };
+    let callbacks =
+        Callbacks { on_results: &|kind, folder| Ok(page(kind, folder).map(drop)?), ..Callbacks::default() };
+    let study = percolation::run(&options, &callbacks)?;
+    match args.json {
+        true => to_stdout(&json(&study)?),
+        false => to_stdout(&format!("{}{}\n", words(&study), shown(&args.out.join("report.html")))),
     }
     Ok(())
 }
@@ -56,7 +43,8 @@ fn words(study: &PercolationStudy) -> String {
     }
     let line = |law: &str, threshold: f64, error: String, chi_squared: f64, degrees: u64| {
         format!(
-            "{law}: infinite lattice {threshold:.5} {error}, chi squared {chi_squared:.1} on {degrees} degrees of freedom\n"
+            "{law}: infinite lattice {threshold:.5} {error}, chi squared {chi_squared:.1} on {degrees} \
+             degrees of freedom\n"
         )
     };
     if let Some(fit) = &study.one_length {

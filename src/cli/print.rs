@@ -1,8 +1,12 @@
 //! Printing that outlives a closed pipe.
 
 use std::io::Write;
+use std::path::Path;
+
+use serde::Serialize;
 
 use crate::report::figures::visible;
+use crate::run::RunError;
 
 /// Prints to stdout; a reader that has left is no fault of ours.
 pub fn to_stdout(text: &str) {
@@ -18,6 +22,16 @@ pub fn to_stderr(text: &str) {
 /// A name made safe for a terminal: characters that control it or turn the direction of writing are replaced.
 pub fn plain(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { '?' } else { visible(c) }).collect()
+}
+
+/// A path made safe for a terminal.
+pub fn shown(path: &Path) -> String {
+    plain(&path.display().to_string())
+}
+
+/// A value as indented JSON with a newline at its end.
+pub fn json(value: &impl Serialize) -> Result<String, RunError> {
+    Ok(serde_json::to_string_pretty(value)? + "\n")
 }
 
 /// A count with thin groups: `2 620 000`.

@@ -1,89 +1,217 @@
-//! Progress on stderr: a bar on a terminal, plain lines otherwise.
+//! Follows packings and walks on stderr: a bar on a terminal, plain lines otherwise; and stops them on a
+//! signal.
 
 use std::io::IsTerminal;
-use std::sync::Mutex;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::print::{count, to_stderr};
-use crate::run::replicates::Event;
+use super::print::{count, plain, shown, to_stderr};
+use super::report::page;
+use crate::case::PackingPlan;
+use crate::packing::{CompressionProgress, Stage};
+use crate::run::{Callbacks, Event, RunError};
 
 /// Plain lines come at most this often.
 const BETWEEN_LINES: Duration = Duration::from_secs(5);
 
-/// Shows how far the work is.
-pub enum Progress {
-    /// Says nothing.
-    Quiet,
-    /// A bar.
-    Bar(ProgressBar),
-    /// Lines.
-    Lines {
-        /// Runs done, runs to walk, and when the last line was printed.
-        done: Mutex<(u64, u64, Instant)>,
-        /// When the work began.
-        begun: Instant,
-    },
+/// Does some work that is followed on stderr, stopped by signals, and whose results get their pages.
+pub fn followed<T>(quiet: bool, work: impl FnOnce(&Callbacks) -> Result<T, RunError>) -> Result<T, RunError> {
+    let stop = stop_on_signals()?;
+    let display = Display::new(quiet);
+    let done = work(&Callbacks {
+        on_event: &|event| display.tell(event),
+        stop: &stop,
+        warn: &|warning| display.warn(warning),
+        on_results: &|kind, folder| Ok(page(kind, folder).map(drop)?),
+    });
+    display.end();
+    done
 }
 
-impl Progress {
-    /// Progress over `runs` runs.
-    pub fn new(quiet: bool, runs: u64) -> Self {
-        if quiet {
-            return Self::Quiet;
+/// A flag that the first SIGINT or SIGTERM sets; a SIGINT after that ends the program at once.
+///
+/// SIGTERM may come several times: a cluster's scheduler sends it to a job's script, which hands it on, and
+/// to all of the job's processes.
+fn stop_on_signals() -> Result<Arc<AtomicBool>, RunError> {
+    use signal_hook::consts::{SIGINT, SIGTERM};
+    let stop = Arc::new(AtomicBool::new(false));
+    signal_hook::flag::register_conditional_shutdown(SIGINT, 1, Arc::clone(&stop))
+        .map_err(RunError::failed)?;
+    for signal in [SIGINT, SIGTERM] {
+        signal_hook::flag::register(signal, Arc::clone(&stop)).map_err(RunError::failed)?;
+    }
+    Ok(stop)
+}
+
+/// A bar of this length on a terminal; none elsewhere.
+pub fn bar_on_terminal(length: u64, style: &str) -> Option<ProgressBar> {
+    if !std::io::stderr().is_terminal() {
+        return None;
+    }
+    let bar = if length > 0 { ProgressBar::new(length) } else { ProgressBar::new_spinner() };
+    if let Ok(style) = ProgressStyle::with_template(style) {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_millis(200));
+    Some(bar)
+}
+
+/// What is shown of the work.
+struct Display {
+    quiet: bool,
+    begun: Instant,
+    shown: Mutex<Option<Shown>>,
+}
+
+/// A packing or walk that is under way.
+struct Shown {
+    bar: Option<ProgressBar>,
+    begun: Instant,
+    last: Instant,
+    of: Work,
+}
+
+enum Work {
+    /// Steps that it usually takes, and that were done when this start of the program began.
+    Packing { usual: u64, first: Option<u64> },
+    /// Runs done, of how many.
+    Walk { done: u64, runs: u64 },
+}
+
+impl Display {
+    fn new(quiet: bool) -> Self {
+        Self { quiet, begun: Instant::now(), shown: Mutex::new(None) }
+    }
+
+    fn tell(&self, event: Event) {
+        if self.quiet {
+            return;
         }
-        if std::io::stderr().is_terminal() {
-            let bar = ProgressBar::new(runs);
-            let style = "{bar:30} {pos}/{len} runs, {elapsed} gone, about {eta} to go  {msg}";
-            bar.set_style(
-                ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()),
-            );
-            bar.enable_steady_tick(Duration::from_millis(200));
-            return Self::Bar(bar);
+        match event {
+            Event::PackingElsewhere { folder, holder } => {
+                to_stderr(&format!("waiting for the packing in {} ({})\n", shown(folder), plain(holder)));
+            }
+            Event::PackingBegun(plan) => {
+                to_stderr(&packing_begun(plan));
+                self.begin(0, "{spinner} {msg}", Work::Packing { usual: plan.usual_steps(), first: None });
+            }
+            Event::PackingEnded => self.end(),
+            Event::WalkBegun { runs } => {
+                let style = "{bar:30} {pos}/{len} runs, {elapsed} gone, about {eta} to go  {msg}";
+                self.begin(runs, style, Work::Walk { done: 0, runs });
+            }
+            Event::Studying(what) => {
+                to_stderr(&format!("{:6.1} s  {}\n", self.begun.elapsed().as_secs_f64(), plain(what)));
+            }
+            Event::Packing(_) | Event::Increment { .. } | Event::RunDone | Event::MoreRuns { .. } => {
+                if let Some(shown) = self.shown.lock().ok().as_mut().and_then(|shown| shown.as_mut()) {
+                    shown.tell(event);
+                }
+            }
         }
+    }
+
+    fn warn(&self, warning: &str) {
+        let text = format!("warning: {}\n", plain(warning));
+        let shown = self.shown.lock().ok();
+        match shown.as_ref().and_then(|shown| shown.as_ref()?.bar.as_ref()) {
+            Some(bar) => bar.suspend(|| to_stderr(&text)),
+            None => to_stderr(&text),
+        }
+    }
+
+    fn begin(&self, length: u64, style: &str, of: Work) {
         let now = Instant::now();
-        Self::Lines { done: Mutex::new((0, runs, now)), begun: now }
-    }
-
-    /// Takes an event of the walk.
-    pub fn tell(&self, event: Event) {
-        match (self, event) {
-            (Self::Quiet, _) => {}
-            (Self::Bar(bar), Event::Run) => bar.inc(1),
-            (Self::Bar(bar), Event::Increment { replicate, run, increment, moving }) => {
-                bar.set_message(format!(
-                    "replicate {replicate}, run {run}, increment {increment}: {} moving",
-                    count(moving)
-                ));
-            }
-            (Self::Bar(bar), Event::More { runs }) => bar.inc_length(runs),
-            (Self::Lines { .. }, Event::Increment { .. }) => {}
-            (Self::Lines { done, .. }, Event::More { runs }) => {
-                if let Ok(mut done) = done.lock() {
-                    done.1 += runs;
-                }
-            }
-            (Self::Lines { done, begun }, Event::Run) => {
-                let Ok(mut done) = done.lock() else { return };
-                done.0 += 1;
-                let (walked, runs, last) = *done;
-                if walked == runs || last.elapsed() >= BETWEEN_LINES {
-                    done.2 = Instant::now();
-                    let gone = begun.elapsed().as_secs_f64();
-                    let left = gone / walked as f64 * runs.saturating_sub(walked) as f64;
-                    to_stderr(&format!(
-                        "{walked} of {runs} runs, {gone:.0} s gone, about {left:.0} s to go\n"
-                    ));
-                }
-            }
+        if let Ok(mut shown) = self.shown.lock() {
+            *shown = Some(Shown { bar: bar_on_terminal(length, style), begun: now, last: now, of });
         }
     }
 
-    /// Clears the bar.
-    pub fn finish(&self) {
-        if let Self::Bar(bar) = self {
+    fn end(&self) {
+        let shown = self.shown.lock().ok().and_then(|mut shown| shown.take());
+        if let Some(bar) = shown.and_then(|shown| shown.bar) {
             bar.finish_and_clear();
         }
     }
+}
+
+impl Shown {
+    fn tell(&mut self, event: Event) {
+        let seconds = self.begun.elapsed().as_secs_f64();
+        match (&mut self.of, event) {
+            (Work::Packing { usual, first }, Event::Packing(progress)) => {
+                let here = progress.steps - *first.get_or_insert(progress.steps);
+                if let Some(bar) = &self.bar {
+                    bar.set_message(packing_line(progress, *usual, here, seconds));
+                } else if self.last.elapsed() >= BETWEEN_LINES {
+                    self.last = Instant::now();
+                    to_stderr(&(packing_line(progress, *usual, here, seconds) + "\n"));
+                }
+            }
+            (Work::Walk { .. }, Event::Increment { replicate, run, increment, moving }) => {
+                if let Some(bar) = &self.bar {
+                    bar.set_message(format!(
+                        "replicate {replicate}, run {run}, increment {increment}: {} moving",
+                        count(moving)
+                    ));
+                }
+            }
+            (Work::Walk { runs, .. }, Event::MoreRuns { runs: more }) => {
+                *runs += more;
+                self.bar.iter().for_each(|bar| bar.inc_length(more));
+            }
+            (Work::Walk { done, runs }, Event::RunDone) => {
+                *done += 1;
+                if let Some(bar) = &self.bar {
+                    bar.inc(1);
+                } else if done == runs || self.last.elapsed() >= BETWEEN_LINES {
+                    self.last = Instant::now();
+                    let left = seconds / *done as f64 * runs.saturating_sub(*done) as f64;
+                    to_stderr(&format!(
+                        "{done} of {runs} runs, {seconds:.0} s gone, about {left:.0} s to go\n"
+                    ));
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+fn packing_begun(plan: &PackingPlan) -> String {
+    format!(
+        "packing {} grains ({}), friction {}: about {} steps\n",
+        count(plan.compression.grains as u64),
+        plain(&plan.name),
+        plan.compression.friction,
+        count(plan.usual_steps())
+    )
+}
+
+/// How far a packing is, `here` of its steps done by this start of the program.
+fn packing_line(progress: &CompressionProgress, usual: u64, here: u64, seconds: f64) -> String {
+    let stage = match progress.stage {
+        Stage::Squeeze => "squeeze",
+        Stage::Compress => "compress",
+        Stage::Settle => "settle with the final friction",
+        Stage::Done => "done",
+    };
+    let left = match usual.checked_sub(progress.steps) {
+        Some(steps) if here > 0 => {
+            format!("about {:.0} s to go if it is like others", steps as f64 * seconds / here as f64)
+        }
+        Some(_) => "time to go not known yet".to_string(),
+        None => "longer than most".to_string(),
+    };
+    format!(
+        "{stage}: {} steps, void ratio {:.4}, pressure {:.3} of the target, coordination {:.2}, \
+         unbalanced {:.3}, {seconds:.0} s gone, {left}",
+        count(progress.steps),
+        progress.void_ratio,
+        progress.pressure,
+        progress.coordination,
+        progress.unbalanced,
+    )
 }

@@ -6,17 +6,19 @@ use maud::{Markup, Render, html};
 
 use super::error::ReportError;
 use super::figures::{Across, Axis, BLUE, Dash, Figure, GREY, Line, PURPLE, Point, Rule, Shape, Tick};
+use super::files::json;
 use super::numbers::{duration, significant, whole};
 use super::shell::{Drawn, figures, whole_page};
 use super::table::Table;
 use super::written::{Written, write_page};
 use crate::outcome::percolation::{NU_PARALLEL, PercolationStudy, Z};
 
-/// Writes `report.html` and its figures into the folder of a percolation study.
+/// Writes `report.html` and its figures into the folder of a percolation study, from `percolation.json` there.
 ///
 /// # Errors
-/// [`ReportError::Write`] names the file that cannot be written.
-pub fn write_percolation(folder: &Path, study: &PercolationStudy) -> Result<Written, ReportError> {
+/// What the folder says.
+pub fn write_percolation(folder: &Path) -> Result<Written, ReportError> {
+    let study: &PercolationStudy = &json(&folder.join("percolation.json"))?;
     let drawn = [percolation_spread(study), threshold(study)];
     let title = "Percolation threshold of the directed cubic lattice";
     let header = html! { h1 { (title) } };

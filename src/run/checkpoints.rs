@@ -1,8 +1,9 @@
-//! Keeps the replicates of a case in checkpoints, so that a run which is stopped or killed goes on where it was.
+//! Saves the replicates of a case in checkpoints, so that a run which is stopped or killed continues where it
+//! was.
 //!
-//! A replicate that is being walked keeps its state and what was recorded of it so far; one that is done keeps its figures
-//! and rows. Each is a checkpoint of its own in the folder `checkpoint` of the run ([`crate::store::checkpoint`]), written as
-//! often as [`CheckpointInterval`] says, and on a stop.
+//! Of a replicate that is being walked its state is saved, and what was recorded of it so far; of one that is
+//! done its figures and rows. Each is a checkpoint of its own in the folder `checkpoint` of the run
+//! ([`crate::store::checkpoint`]), written as often as [`CheckpointInterval`] says, and on a stop.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -58,13 +59,19 @@ impl WalkId {
     }
 }
 
-/// How often a walk is kept.
+/// How often a walk is saved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckpointInterval {
     /// When this much time has passed since the last time.
     Time(Duration),
     /// After every so many increments.
     Increments(u64),
+}
+
+impl Default for CheckpointInterval {
+    fn default() -> Self {
+        Self::Time(Duration::from_secs(600))
+    }
 }
 
 impl FromStr for CheckpointInterval {
@@ -94,7 +101,7 @@ impl fmt::Display for CheckpointInterval {
     }
 }
 
-/// Keeps the replicates of one case.
+/// Saves the replicates of one case.
 pub struct Checkpoints {
     folder: PathBuf,
     scene: String,
@@ -106,7 +113,7 @@ pub struct Checkpoints {
 }
 
 impl Checkpoints {
-    /// A keeper of the case with this fingerprint, in a run's folder.
+    /// The checkpoints of the case with this fingerprint, in a run's folder.
     ///
     /// # Errors
     /// The folder of the checkpoints cannot be made.
@@ -123,7 +130,8 @@ impl Checkpoints {
         })
     }
 
-    /// What the checkpoints in a run's folder are of, by fingerprint; `None` where there are none that are whole.
+    /// What the checkpoints in a run's folder are of, by fingerprint; `None` where there are none that are
+    /// whole.
     ///
     /// # Errors
     /// The system fails to read one.
@@ -149,7 +157,7 @@ impl Checkpoints {
         Ok(!files_in(&folder.join(FOLDER))?.is_empty())
     }
 
-    /// Whether it is time to keep a walk that was kept `last` and has done this increment.
+    /// Whether it is time to save a walk that was saved `last` and has done this increment.
     pub fn is_due(&self, last: Instant, increment: u64, stop: bool) -> bool {
         stop || match self.every {
             CheckpointInterval::Time(time) => last.elapsed() >= time,
@@ -157,7 +165,8 @@ impl Checkpoints {
         }
     }
 
-    /// What was kept of a replicate: what is done, and the checkpoint of the state of the run that is under way.
+    /// What was saved of a replicate: what is done, and the checkpoint of the state of the run that is under
+    /// way.
     ///
     /// # Errors
     /// There are checkpoints of it, but none is whole and of this very walk.
@@ -179,7 +188,7 @@ impl Checkpoints {
         self.passed_over.lock().map(|all| all.clone()).unwrap_or_default()
     }
 
-    /// Keeps a walk after a whole increment.
+    /// Saves a walk after a whole increment.
     ///
     /// # Errors
     /// What the system says; the checkpoint before stays then.

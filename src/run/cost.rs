@@ -1,37 +1,57 @@
-//! What a case or a packing takes, guessed before any of it is done: for what is asked of a cluster, and to tell a user minutes
-//! from hours.
+//! The one cost model: seconds, steps and memory of walks and packings.
 //!
-//! The figures per particle, void and grain are those of one thread without vector kernels (`results/walk-speed-*.md`,
-//! `results/packing-*.md`), rounded up; `results/slurm-*.md` holds guesses against measured times.
+//! It is asked before any work, to tell a user minutes from hours and a cluster what to give, and after a
+//! first run, whose counted work says what more of them will take. Its figures are those of one thread of a
+//! processor of 2024, rounded up (`results/walk-speed-*.md`, `results/filters-*.md`); `results/slurm-*.md`
+//! holds estimates against measured times.
 
 use super::replicates::runs_to_walk;
 use crate::case::{Case, PackingPlan};
 
-/// Seconds of a thread for one move of a particle.
-const MOVE_S: f64 = 3e-9;
-/// Seconds to part the counts of a void in an increment; not all voids hold particles all the time.
-const VOID_S: f64 = 1e-8;
-/// Seconds to build a network, by its voids and constrictions.
+/// Seconds for one move of a particle that is walked by itself.
+const MOVE_S: f64 = 2.5e-9;
+/// Seconds to insert such a particle.
+const INSERTION_S: f64 = 1.5e-8;
+/// Seconds to part the counts of a void in an increment.
+const VOID_S: f64 = 1.3e-8;
+/// Seconds to draw a constriction of a cubic lattice, its place in the tables included.
+const CONSTRICTION_S: f64 = 3.5e-8;
+/// Seconds to build a network of any kind, by its voids and constrictions: those of given connectivity take
+/// longest.
 const NETWORK_S: f64 = 3e-7;
 /// Seconds to write a case's files and page.
 const FILES_S: f64 = 0.1;
+/// Share of a case's threads that walks keep busy.
+const BUSY: f64 = 0.7;
 /// Seconds for one grain in one step of a compression.
-const GRAIN_S: f64 = 1e-7;
+const GRAIN_STEP_S: f64 = 1e-7;
+/// Steps that packings took, by the friction up to which it holds (`results/filters-2026-11-21.md`: 38,700 to
+/// 52,500 without friction, 11,500 to 31,500 with 0.3, 92,500 with 0.7).
+const STEPS: [(f64, u64); 3] = [(0.0, 55_000), (0.5, 32_000), (f64::INFINITY, 95_000)];
+/// Seconds to compress a grain of a small packing of a precision study, with friction and without.
+const SMALL_PACKING_GRAIN_S: [f64; 2] = [6.5e-4, 2.4e-3];
+/// Seconds to read a packing and measure its constrictions.
+pub const MEASURING_S: f64 = 5.0;
+/// Seconds to collect a case into a campaign's ledger.
+const COLLECTING_S: f64 = 0.05;
+/// Bytes that collecting takes: at the least, and for a case.
+const COLLECTING_BYTES: (u64, u64) = (100_000_000, 100_000);
 /// Bytes that packing a grain takes, its constrictions included.
 const GRAIN_BYTES: u64 = 20_000;
 /// Bytes of the program itself and of a page that is being written.
 const PROGRAM_BYTES: u64 = 100_000_000;
 
 impl Case {
-    /// Seconds that one thread of a machine of today takes for the whole case: a rough guess. What a rule that adds replicates
-    /// may ask for besides is not foreseen.
+    /// Seconds that one thread of a machine of today takes for the whole case, its packing apart: a rough
+    /// guess. What a rule that adds replicates may ask for besides is not foreseen.
     pub fn core_seconds(&self) -> f64 {
         let [voids, constrictions, start_nodes, layers] = self.counts.map(|n| n as f64);
         let one_run = |n_base: u64| {
-            let moves = self.one_by_one(n_base) as f64 * layers.max(1.0);
             let each = self.scene.walk.engine.takes_each(n_base / self.increments(), start_nodes as u64);
+            let one_by_one = self.one_by_one(n_base) as f64;
             let increments = self.increments() as f64 + 3.0 * layers;
-            moves * MOVE_S + if each { 0.0 } else { voids * increments * VOID_S }
+            let counted = if each { 0.0 } else { voids };
+            walk_seconds(0.0, increments, counted, one_by_one, one_by_one * layers.max(1.0))
         };
         let (runs, replicates) = (self.scene.walk.runs as f64, self.scene.walk.replicates as f64);
         let own = replicates * one_run(self.n_base);
@@ -49,24 +69,94 @@ impl Case {
     }
 }
 
+/// Seconds of a walk, those of its network included: its increments, voids that hold counts, particles walked
+/// by themselves, and moves of those.
+fn walk_seconds(network_s: f64, increments: f64, voids: f64, one_by_one: f64, moves: f64) -> f64 {
+    network_s + VOID_S * increments * voids + INSERTION_S * one_by_one + MOVE_S * moves
+}
+
+/// What a first run did, counted: the same on every machine.
+#[derive(Clone, Copy, Debug)]
+pub struct CountedWork {
+    /// Increments.
+    pub increments: u64,
+    /// Moves of particles.
+    pub particle_moves: u64,
+    /// Base particles that were walked by themselves.
+    pub one_by_one: u64,
+    /// Whether that is all of them.
+    pub all_one_by_one: bool,
+    /// Voids of the network.
+    pub voids: usize,
+    /// Constrictions of the network.
+    pub constrictions: usize,
+}
+
+impl CountedWork {
+    /// Seconds of one thread that this work takes, the network included: the same on every machine, about
+    /// right on one of 2024.
+    pub fn core_seconds(&self) -> f64 {
+        let each = self.one_by_one as f64;
+        // Where the others are counts, the coarse ones are soon stopped.
+        let (moves, voids) = match self.all_one_by_one {
+            true => (self.particle_moves as f64, 0.0),
+            false => (each * 4.0, self.voids as f64),
+        };
+        let network_s = CONSTRICTION_S * self.constrictions as f64;
+        walk_seconds(network_s, self.increments as f64, voids, each, moves)
+    }
+}
+
 impl PackingPlan {
     /// Seconds that one thread takes for the packing: a rough guess.
     pub fn core_seconds(&self) -> f64 {
         // Stiffer grains move in shorter steps.
         let stiffness = libm::sqrt((self.compression.stiffness_ratio / 0.1).max(0.1));
-        self.compression.grains as f64 * self.usual_steps() as f64 * stiffness * GRAIN_S
+        self.compression.grains as f64 * self.usual_steps() as f64 * stiffness * GRAIN_STEP_S
     }
 
-    /// Steps that packings of this friction took (`results/filters-2026-11-21.md`).
-    fn usual_steps(&self) -> u64 {
-        match self.compression.friction {
-            friction if friction <= 0.5 => 50_000,
-            _ => 95_000,
-        }
+    /// Steps that packings of this friction took.
+    pub fn usual_steps(&self) -> u64 {
+        let friction = self.compression.friction;
+        STEPS.into_iter().find(|(most, _)| friction <= *most).map_or(0, |(_, steps)| steps)
     }
 
     /// The most bytes that packing it takes.
     pub fn program_bytes(&self) -> u64 {
         PROGRAM_BYTES + self.compression.grains as u64 * GRAIN_BYTES
+    }
+}
+
+/// Seconds to compress a grain of a small packing (some thousands of grains) at default stiffness.
+pub fn small_packing_grain_seconds(friction: f64) -> f64 {
+    SMALL_PACKING_GRAIN_S[usize::from(friction == 0.0)]
+}
+
+/// Seconds that a case takes on so many threads of its own.
+pub fn seconds_on(case: &Case, threads: u64) -> f64 {
+    case.core_seconds() / (threads as f64 * BUSY)
+}
+
+/// Bytes that a process takes which walks these cases on so many threads, its walks no more than `allowed`.
+pub fn bytes_of_cases(cases: &[&Case], threads: u64, allowed: Option<u64>) -> u64 {
+    let fewest = cases.iter().map(|case| case.scene.walk.replicates).min().unwrap_or(1).max(1);
+    let side_by_side = threads.div_ceil(fewest).min(cases.len() as u64);
+    let largest = cases.iter().map(|case| case.peak_bytes(threads)).max().unwrap_or(0);
+    let walks = largest.saturating_mul(side_by_side).min(allowed.unwrap_or(u64::MAX));
+    cases.iter().map(|case| case.program_bytes(walks)).max().unwrap_or(walks)
+}
+
+/// Seconds and bytes that collecting so many cases takes, `measuring_s` for the packing of each.
+pub fn collecting(cases: usize, measuring_s: f64) -> (f64, u64) {
+    let bytes = COLLECTING_BYTES.0 + cases as u64 * COLLECTING_BYTES.1;
+    (cases as f64 * (COLLECTING_S + measuring_s), bytes)
+}
+
+/// Seconds in words: `40 s`, `12 min`, `3.5 h`.
+pub fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 90.0 => format!("{:.0} s", s.ceil()),
+        s if s < 5400.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
     }
 }

@@ -1,6 +1,7 @@
-//! What machine a case runs on, and how much memory it may use.
+//! What machine a case runs on, on how many threads, and how much memory it may use.
 
 use super::allocation::Allocation;
+use super::error::RunError;
 
 /// The machine, in words.
 pub struct Machine {
@@ -38,6 +39,66 @@ impl Machine {
             available: kib("MemAvailable:")
                 .map_or(u64::MAX, |k| k * 1024)
                 .min(Allocation::here().and_then(|job| job.memory).unwrap_or(u64::MAX)),
+        }
+    }
+}
+
+/// Worker threads: as many as are asked for, else as a cluster's job has, else one per core that this process
+/// may run on.
+///
+/// # Errors
+/// The system gives no threads.
+pub fn threads(asked: Option<usize>) -> Result<rayon::ThreadPool, RunError> {
+    let allocated = || Allocation::here().and_then(|job| job.threads());
+    let number = asked.or_else(allocated).unwrap_or(0);
+    Ok(rayon::ThreadPoolBuilder::new().num_threads(number).build()?)
+}
+
+/// Does some work on such threads.
+pub(crate) fn on_threads<T: Send>(
+    asked: Option<usize>,
+    work: impl FnOnce() -> Result<T, RunError> + Send,
+) -> Result<T, RunError> {
+    threads(asked)?.install(work)
+}
+
+/// A size in bytes as a user writes it: `4GB`, `500 MB`, `1.5GiB`.
+///
+/// # Errors
+/// What is to be written instead.
+pub fn bytes_from_words(text: &str) -> Result<u64, String> {
+    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let unit = match text[digits.len()..].to_lowercase().as_str() {
+        "" | "b" => 1.0,
+        "kb" => 1e3,
+        "mb" => 1e6,
+        "gb" => 1e9,
+        "tb" => 1e12,
+        "kib" => 1024.0,
+        "mib" => 1_048_576.0,
+        "gib" => 1_073_741_824.0,
+        "tib" => 1_099_511_627_776.0,
+        _ => return Err("write a size as 4GB, 500MB or 2GiB".into()),
+    };
+    match digits.trim().parse::<f64>() {
+        Ok(number) if number > 0.0 && number * unit < 1e18 => Ok((number * unit) as u64),
+        _ => Err("write a size above 0 as 4GB, 500MB or 2GiB".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::bytes_from_words;
+
+    #[test]
+    fn sizes_are_read_with_their_units() {
+        for (text, size) in
+            [("4GB", 4_000_000_000), ("500 mb", 500_000_000), ("1.5GiB", 1_610_612_736), ("77", 77)]
+        {
+            assert_eq!(bytes_from_words(text), Ok(size));
+        }
+        for text in ["", "GB", "-1GB", "0", "4 apples", "nan", "inf", "1e30TB"] {
+            assert!(bytes_from_words(text).is_err(), "{text}");
         }
     }
 }

@@ -1,9 +1,36 @@
-//! Runs a scene: packs its filter, walks its replicates, keeps checkpoints, writes what came of it.
+//! The application: what every face of the program calls, the command line as much as any other.
+//!
+//! - [`walk_scene`] and [`resume`] walk a scene into a folder, [`walk_case`] walks a case in memory.
+//! - [`pack`](pack::pack) packs a filter, [`measure_constrictions`] measures a packing from elsewhere.
+//! - [`check`](check::check) says what a run would do, by the one model of [`cost`].
+//! - [`Callbacks`] follow the work and stop it, [`RunError`] says how it ended, [`folder::claim`] guards
+//!   every folder.
+//!
+//! A case is [prepared](prepare::prepare), its [`replicates`] are walked under [`checkpoints`], and
+//! [`results`] are written. Pages are no part of it: they are made from the files that are written here.
 
 pub mod allocation;
+pub mod callbacks;
+pub mod check;
 pub mod checkpoints;
+pub mod constrictions;
 pub mod cost;
+pub mod error;
+pub mod folder;
 pub mod machine;
 pub mod pack;
+mod packing_record;
+pub mod prepare;
 pub mod replicates;
 pub mod results;
+pub mod walk;
+
+pub use callbacks::{Callbacks, Event};
+pub use check::{Check, PackingCheck, check};
+pub use checkpoints::CheckpointInterval;
+pub use constrictions::{ConstrictionsOptions, measure_constrictions};
+pub use error::{Exit, RunError};
+pub use folder::FolderKind;
+pub use pack::{FinishedPacking, PackOptions, pack};
+pub use prepare::{PrepareOptions, prepare, write_built_in};
+pub use walk::{FinishedRun, RunOptions, resume, walk_case, walk_scene};

@@ -1,19 +1,24 @@
 //! Packs a filter into a folder, in as many starts of the program as it takes.
 //!
 //! The folder holds, once whole: `grains.csv`, `grains.vtp`, `constrictions.csv`, `constrictions.json`,
-//! `constrictions.vtp` and, written last, `packing.json`. While the grains are compressed it holds the checkpoint
-//! `compression` instead ([`crate::store::checkpoint`]), from which the next start goes on with the same bits: sections
-//! `state` ([`Compression::to_bytes`]) and `seconds` (one number), under the fingerprint of the order.
+//! `constrictions.vtp` and, written last, `packing.json`. While the grains are compressed it holds the
+//! checkpoint `compression` instead ([`crate::store::checkpoint`]), from which the next start continues with
+//! the same bits: sections `state` ([`Compression::to_bytes`]) and `seconds` (one number), under the
+//! fingerprint of the plan.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use crate::case::{GRAINS, PackingPlan, RECORD};
-use crate::constrictions::{Constrictions, ConstrictionsError, CurveError, inscribed};
+use super::callbacks::{Callbacks, Event};
+use super::error::RunError;
+use super::folder::{FolderKind, claim, shown};
+use super::machine::on_threads;
+use super::packing_record::record;
+use crate::case::{GRAINS, PackedFilter, PackingPlan, RECORD};
+use crate::constrictions::Constrictions;
 use crate::outcome::packing::PackingRecord;
-use crate::packing::{
-    Cell, Compression, CompressionProgress, PackReport, Packing, PackingError, draw, random_start,
-};
+use crate::packing::{Compression, PackReport, PackingError, draw, random_start};
+use crate::scene::PackingSpec;
 use crate::store::checkpoint::{CheckpointError, Identity, Label, Section, newest, save};
 use crate::store::{Folder, StoreError};
 
@@ -22,63 +27,142 @@ const STATE: &str = "compression";
 /// ... and its files.
 pub const STATES: [&str; 2] = ["compression.0", "compression.1"];
 
-/// Why a filter was not packed.
-#[derive(Debug, thiserror::Error)]
-pub enum PackError {
-    /// The compression.
-    #[error(transparent)]
-    Packing(#[from] PackingError),
-    /// The constrictions.
-    #[error(transparent)]
-    Constrictions(#[from] ConstrictionsError),
-    /// The constriction curve.
-    #[error(transparent)]
-    Curve(#[from] CurveError),
-    /// The folder.
-    #[error(transparent)]
-    Store(#[from] StoreError),
-    /// An unfinished compression that this recipe cannot go on with.
-    #[error(
-        "{folder}: the unfinished compression there cannot go on: {why}; name another folder or add --overwrite"
-    )]
-    State {
-        /// The folder.
-        folder: String,
-        /// What is wrong with it.
-        why: String,
-    },
-    /// An unfinished compression that the system fails to read.
-    #[error(transparent)]
-    Checkpoint(CheckpointError),
-    /// Figures that cannot be put into words.
-    #[error("cannot write {RECORD}: {0}")]
-    Format(#[from] serde_json::Error),
-    /// Stopped on request; the state is kept.
-    #[error("stopped after {0} steps")]
-    Stopped(u64),
+/// What is removed where a packing is begun anew, its record first.
+const ALL_FILES: [&str; 9] = [
+    RECORD,
+    STATES[0],
+    STATES[1],
+    "report.html",
+    GRAINS,
+    "grains.vtp",
+    "constrictions.csv",
+    "constrictions.json",
+    "constrictions.vtp",
+];
+
+/// How often a compression is saved, where the user does not say.
+const SAVE_EVERY: Duration = Duration::from_secs(60);
+
+/// How often a packing that another process makes is looked for.
+const LOOK: Duration = Duration::from_millis(500);
+
+/// How a filter is packed; only `overwrite` changes what is there afterwards.
+#[derive(Clone, Debug)]
+pub struct PackOptions {
+    /// Folder for the packing; without one, one of its own in `packings`.
+    pub out: Option<PathBuf>,
+    /// Folder in which packings are kept.
+    pub packings: PathBuf,
+    /// Whether a packing that is there is made anew.
+    pub overwrite: bool,
+    /// Worker threads; without a number as many as a cluster's job has, else one per core.
+    pub threads: Option<usize>,
+    /// How often the compression is saved.
+    pub checkpoint_interval: Duration,
 }
 
-/// Watches a compression, and can stop it.
-pub struct PackCallbacks<'a> {
-    /// Told how far it is.
-    pub tell: &'a dyn Fn(&CompressionProgress),
-    /// Told of a corrupt state that was passed over for the one before it.
-    pub warn: &'a dyn Fn(&CheckpointError),
-    /// Set to stop.
-    pub stop: &'a AtomicBool,
-    /// How often the state is kept.
-    pub keep_every: Duration,
+impl Default for PackOptions {
+    fn default() -> Self {
+        Self {
+            out: None,
+            packings: "voidwalk-packings".into(),
+            overwrite: false,
+            threads: None,
+            checkpoint_interval: SAVE_EVERY,
+        }
+    }
 }
 
-/// Makes the packing, going on where an earlier start stopped.
+/// A packing that is whole.
+pub struct FinishedPacking {
+    /// Its folder.
+    pub folder: PathBuf,
+    /// What `packing.json` says, as it is.
+    pub json: String,
+    /// The same, read.
+    pub record: PackingRecord,
+    /// What a walk needs of it.
+    pub filter: PackedFilter,
+}
+
+/// Packs a filter into a folder, continuing a packing there that was stopped.
 ///
 /// # Errors
-/// [`PackError`]; after [`PackError::Stopped`] the next call goes on.
-pub fn make(folder: &Folder, order: &PackingPlan, watch: &PackCallbacks) -> Result<(), PackError> {
+/// A filter that cannot be packed and a folder that cannot be claimed are refused before any work; after a
+/// stop the next call continues.
+pub fn pack(
+    spec: &PackingSpec,
+    options: &PackOptions,
+    callbacks: &Callbacks,
+) -> Result<FinishedPacking, RunError> {
+    let plan = PackingPlan::new(spec)?;
+    let out = options.out.clone().unwrap_or_else(|| options.packings.join(plan.folder_name()));
+    let folder = claim(&out, FolderKind::Packing, options.overwrite)?;
+    if options.overwrite {
+        ALL_FILES.iter().try_for_each(|name| folder.remove(name))?;
+    }
+    on_threads(options.threads, || make(&folder, &plan, options.checkpoint_interval, callbacks))?;
+    let json = folder.read(RECORD)?.unwrap_or_default();
+    let record = serde_json::from_slice(&json)?;
+    let filter = PackedFilter::read(&out, &plan)?.ok_or_else(|| gone(&out))?;
+    Ok(FinishedPacking { folder: out, json: String::from_utf8_lossy(&json).into_owned(), record, filter })
+}
+
+/// The packing of a scene's filter: taken from where packings are kept, or made and kept there; one that
+/// another process makes is waited for.
+///
+/// # Errors
+/// As [`pack`].
+pub fn provide(plan: &PackingPlan, packings: &Path, callbacks: &Callbacks) -> Result<PackedFilter, RunError> {
+    let path = packings.join(plan.folder_name());
+    if let Some(filter) = PackedFilter::read(&path, plan)? {
+        return Ok(filter);
+    }
+    let folder = wait_for(&path, callbacks)?;
+    if !folder.has(RECORD) {
+        make(&folder, plan, SAVE_EVERY, callbacks)?;
+    }
+    PackedFilter::read(&path, plan)?.ok_or_else(|| gone(&path))
+}
+
+fn gone(folder: &Path) -> RunError {
+    RunError::failed(format!("{}: the packing is gone", shown(folder)))
+}
+
+/// The folder of a packing, as soon as no other process is at it.
+fn wait_for(path: &Path, callbacks: &Callbacks) -> Result<Folder, RunError> {
+    let mut told = false;
+    loop {
+        let holder = match Folder::open(path) {
+            Err(StoreError::Held { holder, .. }) => holder,
+            other => return other.map_err(RunError::Claim),
+        };
+        if callbacks.is_stopped() {
+            let problem = "while another process made the packing; continue with the same command";
+            return Err(RunError::Stopped(problem.into()));
+        }
+        if !told {
+            (callbacks.on_event)(Event::PackingElsewhere { folder: path, holder: &holder });
+            told = true;
+        }
+        std::thread::sleep(LOOK);
+    }
+}
+
+/// Makes the packing in a folder that was claimed, continuing where an earlier start stopped.
+fn make(
+    folder: &Folder,
+    plan: &PackingPlan,
+    save_every: Duration,
+    callbacks: &Callbacks,
+) -> Result<(), RunError> {
     let begun = Instant::now();
-    let (compression, report, seconds_before) = compress(folder, order, watch)?;
+    (callbacks.on_event)(Event::PackingBegun(plan));
+    let compressed = compress(folder, plan, save_every, callbacks);
+    (callbacks.on_event)(Event::PackingEnded);
+    let (compression, report, seconds_before) = compressed?;
     let packing = compression.packing();
-    let found = Constrictions::measure(&packing, order.merge_overlap)?;
+    let found = Constrictions::measure(&packing, plan.merge_overlap)?;
     let grains = packing.to_csv();
     folder.write(GRAINS, grains.as_bytes())?;
     folder.write("grains.vtp", packing.to_vtp().as_bytes())?;
@@ -86,30 +170,31 @@ pub fn make(folder: &Folder, order: &PackingPlan, watch: &PackCallbacks) -> Resu
         folder.write(name, text.as_bytes())?;
     }
     let seconds = seconds_before + begun.elapsed().as_secs_f64();
-    let record = serde_json::to_string_pretty(&record(order, &packing, &grains, &report, seconds)?)? + "\n";
-    folder.write(RECORD, record.as_bytes())?;
+    let record = record(plan, &packing, &grains, &report, seconds)?;
+    folder.write(RECORD, &super::results::json(RECORD, &record)?)?;
     STATES.iter().try_for_each(|state| folder.remove(state))?;
-    Ok(())
+    callbacks.results(FolderKind::Packing, folder.path())
 }
 
 /// Compresses the grains; with the seconds that earlier starts spent.
 fn compress(
     folder: &Folder,
-    order: &PackingPlan,
-    watch: &PackCallbacks,
-) -> Result<(Compression, PackReport, f64), PackError> {
-    let settings = &order.compression;
-    let (mut compression, seconds_before, mut generation) = match kept(folder, order, watch)? {
-        Some(kept) => kept,
+    plan: &PackingPlan,
+    save_every: Duration,
+    callbacks: &Callbacks,
+) -> Result<(Compression, PackReport, f64), RunError> {
+    let settings = &plan.compression;
+    let (mut compression, seconds_before, mut generation) = match saved(folder, plan, callbacks)? {
+        Some(saved) => saved,
         None => {
-            let start = random_start(&draw(&order.gradation, settings.grains, settings.seed), settings)?;
+            let start = random_start(&draw(&plan.gradation, settings.grains, settings.seed), settings)?;
             (Compression::new(&start, settings)?, 0.0, 0)
         }
     };
     let begun = Instant::now();
-    let mut keep_state = |compression: &Compression| {
+    let mut save_state = |compression: &Compression| {
         generation += 1;
-        let label = Label { identity: identity(order), generation, ..Label::default() };
+        let label = Label { identity: identity(plan), generation, ..Label::default() };
         let (seconds, state) = ([seconds_before + begun.elapsed().as_secs_f64()], compression.to_bytes());
         let sections = [Section::new("seconds", &seconds), Section::new("state", &state)];
         save(folder.path(), STATE, &label, &sections)
@@ -117,15 +202,19 @@ fn compress(
     loop {
         let since = Instant::now();
         let run = compression.run(|progress| {
-            (watch.tell)(progress);
-            !watch.stop.load(Ordering::Relaxed) && since.elapsed() < watch.keep_every
+            (callbacks.on_event)(Event::Packing(progress));
+            !callbacks.is_stopped() && since.elapsed() < save_every
         });
         match run {
             Ok(report) => return Ok((compression, report, seconds_before)),
             Err(PackingError::Stopped(steps)) => {
-                keep_state(&compression)?;
-                if watch.stop.load(Ordering::Relaxed) {
-                    return Err(PackError::Stopped(steps));
+                save_state(&compression)?;
+                if callbacks.is_stopped() {
+                    let saved = shown(folder.path());
+                    return Err(RunError::Stopped(format!(
+                        "after {steps} steps of the packing; progress saved in {saved}; continue with the \
+                         same command"
+                    )));
                 }
             }
             Err(other) => return Err(other.into()),
@@ -133,114 +222,33 @@ fn compress(
     }
 }
 
-/// The compression that was kept, the seconds spent on it and its generation.
-fn kept(
+/// The compression that was saved, the seconds spent on it and its generation.
+fn saved(
     folder: &Folder,
-    order: &PackingPlan,
-    watch: &PackCallbacks,
-) -> Result<Option<(Compression, f64, u64)>, PackError> {
+    plan: &PackingPlan,
+    callbacks: &Callbacks,
+) -> Result<Option<(Compression, f64, u64)>, RunError> {
     let refused = |error: CheckpointError| match error.is_unreadable() {
-        true => PackError::Checkpoint(error),
-        false => PackError::State { folder: folder.path().display().to_string(), why: error.to_string() },
+        true => RunError::Checkpoint(error),
+        false => RunError::Refused(format!(
+            "{}: the unfinished compression there cannot be continued: {error}; name another folder or add \
+             --overwrite",
+            shown(folder.path())
+        )),
     };
-    let (saved, passed_over) = newest(folder.path(), STATE, &identity(order)).map_err(refused)?;
-    passed_over.iter().for_each(watch.warn);
+    let (saved, passed_over) = newest(folder.path(), STATE, &identity(plan)).map_err(refused)?;
+    for error in passed_over {
+        (callbacks.warn)(&format!("{error}; the checkpoint before it was taken"));
+    }
     let Some(saved) = saved else { return Ok(None) };
     let seconds = saved.read::<f64>("seconds").map_err(refused)?;
     let state = saved.read::<u8>("state").map_err(refused)?;
-    let compression = Compression::from_bytes(&order.compression, &state);
+    let compression = Compression::from_bytes(&plan.compression, &state);
     let compression = compression.map_err(|e| refused(saved.corrupt(e.to_string())))?;
     Ok(Some((compression, seconds.first().copied().unwrap_or(0.0), saved.label.generation)))
 }
 
-fn identity(order: &PackingPlan) -> Identity {
-    Identity { scene: order.fingerprint(), seed: order.compression.seed, ..Identity::default() }
-}
-
-fn record(
-    order: &PackingPlan,
-    packing: &Packing,
-    grains_csv: &str,
-    report: &PackReport,
-    seconds: f64,
-) -> Result<PackingRecord, CurveError> {
-    let s = &order.compression;
-    let cell_mm = match packing.cell {
-        Cell::Periodic([x, ..]) => x,
-        Cell::Free => f64::NAN,
-    };
-    let mut settings = serde_json::Map::new();
-    for (name, value) in [
-        ("shear_modulus_gpa", s.shear_modulus_gpa),
-        ("poisson_ratio", s.poisson_ratio),
-        ("stiffness_ratio", s.stiffness_ratio),
-        ("density_kg_m3", s.density_kg_m3),
-        ("restitution", s.restitution),
-        ("drag", s.drag),
-        ("settling_drag", s.settling_drag),
-        ("local_damping", s.local_damping),
-        ("start_fraction", s.start_fraction),
-        ("compression_target_fraction", s.compression_target_fraction),
-        ("squeeze_rate", s.squeeze_rate),
-        ("servo_rate", s.servo_rate),
-        ("servo_gain", s.servo_gain),
-        ("mass_exponent", s.mass_exponent),
-        ("step_fraction", s.step_fraction),
-        ("hold_steps", s.hold_steps as f64),
-    ] {
-        settings.insert(name.into(), value.into());
-    }
-    let guess = |density| -> Result<Vec<[f64; 2]>, CurveError> {
-        Ok(inscribed(&order.gradation, density)?
-            .points()
-            .into_iter()
-            .map(|(percent, d)| [d, percent])
-            .collect())
-    };
-    Ok(PackingRecord {
-        inscribed: [guess(1.0)?, guess(0.0)?],
-        fingerprint: order.fingerprint(),
-        grains_xxh3: format!("{:016x}", xxhash_rust::xxh3::xxh3_64(grains_csv.as_bytes())),
-        name: order.name.clone(),
-        linear: order.linear,
-        cu: order.gradation.cu(),
-        gradation: order.gradation.points().into_iter().map(|(d, percent)| [d, percent]).collect(),
-        grains: packing.x.len() as u64,
-        seed: s.seed,
-        friction: s.friction,
-        final_friction: s.final_friction,
-        pressure_kpa: s.pressure_kpa,
-        settings,
-        before: report.before,
-        after: report.after,
-        steps: report.steps,
-        simulated_s: report.simulated_s,
-        seconds,
-        cell_mm,
-        slice: slice(packing, cell_mm),
-    })
-}
-
-/// The grains that the plane through the middle of the cell cuts, with those that reach over its sides on both.
-fn slice(packing: &Packing, cell_mm: f64) -> Vec<[f64; 4]> {
-    let mut cuts = Vec::new();
-    for i in 0..packing.x.len() {
-        let height = packing.z[i] - 0.5 * cell_mm;
-        let radius = 0.5 * packing.diameter[i];
-        let cut = radius * radius - height * height;
-        if cut <= 0.0 {
-            continue;
-        }
-        let cut = cut.sqrt();
-        for dx in [-cell_mm, 0.0, cell_mm] {
-            for dy in [-cell_mm, 0.0, cell_mm] {
-                let (x, y) = (packing.x[i] + dx, packing.y[i] + dy);
-                let inside = |v: f64| v + cut > 0.0 && v - cut < cell_mm;
-                if inside(x) && inside(y) {
-                    cuts.push([x, y, 2.0 * cut, packing.diameter[i]]);
-                }
-            }
-        }
-    }
-    cuts
+/// What its checkpoints are of.
+fn identity(plan: &PackingPlan) -> Identity {
+    Identity { scene: plan.fingerprint(), seed: plan.compression.seed, ..Identity::default() }
 }

@@ -1,80 +1,37 @@
 //! Walks the replicates of a case: a new network and a new walk each.
 
 use std::ops::RangeInclusive;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
 use rayon::prelude::*;
 
+use super::callbacks::{Callbacks, Event};
 use super::checkpoints::{Checkpoints, Done, WalkId, network_fingerprint};
-use crate::case::{Case, CaseError, replicate_seed};
+use super::error::RunError;
+use crate::case::{Case, replicate_seed};
 use crate::network::Network;
 use crate::outcome::record::{Replicate, RunSummary, Sensitivity, Statistic, Stopping, Verdict};
 use crate::outcome::stopping::Look;
 use crate::outcome::verdict::{below_by_interval, classify};
 use crate::outcome::{Recorded, RunId, RunMetrics};
-use crate::store::StoreError;
 use crate::store::checkpoint::{Checkpoint, CheckpointError};
-use crate::walk::{Engine, Plan, SizeClasses, State, Walk, WalkControl, WalkError};
+use crate::walk::{Engine, Plan, SizeClasses, State, Walk, WalkControl};
 
-/// Why walking ended early.
-#[derive(Debug, thiserror::Error)]
-pub enum RunError {
-    /// The case cannot be walked.
-    #[error(transparent)]
-    Case(#[from] CaseError),
-    /// A checkpoint that cannot be gone on from.
-    #[error(transparent)]
-    Checkpoint(#[from] CheckpointError),
-    /// A checkpoint that cannot be kept.
-    #[error(transparent)]
-    Keep(#[from] StoreError),
-    /// The walk went wrong, or was stopped.
-    #[error(transparent)]
-    Walk(#[from] WalkError),
-    /// There is no room for the particles.
-    #[error("cannot keep {particles} base particles: {source}")]
-    Room {
-        /// Base particles walked one by one.
-        particles: u64,
-        /// What the system says.
-        source: std::io::Error,
-    },
+/// How replicates are walked: who follows them, and what saves them.
+#[derive(Clone, Copy)]
+pub struct ReplicateContext<'a> {
+    /// Who follows the walks and stops them.
+    pub callbacks: &'a Callbacks<'a>,
+    /// Saves what is done, so that the next start continues from there; nothing is saved without it.
+    pub checkpoints: Option<&'a Checkpoints>,
 }
 
-/// What happens while a case is walked.
-#[derive(Clone, Copy, Debug)]
-pub enum Event {
-    /// An increment of some run is done: share of the run's base that is inserted, and that has come to rest.
-    Increment {
-        /// Replicate, counted from 1.
-        replicate: u64,
-        /// Run, counted from 1.
-        run: u64,
-        /// The increment.
-        increment: u64,
-        /// Base particles still moving.
-        moving: u64,
-    },
-    /// A run is done.
-    Run,
-    /// More runs are needed than was known.
-    More {
-        /// How many.
-        runs: u64,
-    },
-}
-
-/// Watches the work, from any thread, and can stop it.
-pub struct Watch<'a> {
-    /// Told of every event.
-    pub tell: &'a (dyn Fn(Event) + Sync),
-    /// Set to stop after the current increment.
-    pub stop: &'a AtomicBool,
-    /// Keeps what is done, so that the next start goes on from there.
-    pub keeper: Option<&'a Checkpoints>,
+impl ReplicateContext<'_> {
+    fn tell(&self, event: Event) {
+        (self.callbacks.on_event)(event);
+    }
 }
 
 /// One replicate: its figures, and its rows of the CSV files.
@@ -100,15 +57,15 @@ pub fn runs_to_walk(case: &Case) -> u64 {
 ///
 /// # Errors
 /// A walk that loses particles, or that was stopped.
-pub fn replicates(case: &Case, watch: &Watch) -> Result<Vec<ReplicateResult>, RunError> {
+pub fn replicates(case: &Case, context: &ReplicateContext) -> Result<Vec<ReplicateResult>, RunError> {
     let mut walked = Vec::new();
     let mut wanted = first_replicates(case);
     loop {
         let more = walked.len() as u64 + 1..=wanted;
-        walked.extend(some_replicates(case, 0, more, case.n_base, watch)?);
+        walked.extend(some_replicates(case, 0, more, case.n_base, context)?);
         match look(case, &walked) {
             Some(Look::Until(next)) => {
-                (watch.tell)(Event::More { runs: (next - wanted) * case.scene.walk.runs });
+                context.tell(Event::MoreRuns { runs: (next - wanted) * case.scene.walk.runs });
                 wanted = next;
             }
             _ => return Ok(walked),
@@ -139,15 +96,16 @@ fn look(case: &Case, walked: &[ReplicateResult]) -> Option<Look> {
     Some(rule.look(case.scene.walk.replicates, &runs))
 }
 
-/// Replicates with `n_base` particles each; part 0 are those of the case itself, the only ones that are recorded.
+/// Replicates with `n_base` particles each; part 0 are those of the case itself, the only ones that are
+/// recorded.
 fn some_replicates(
     case: &Case,
     part: u64,
     which: RangeInclusive<u64>,
     n_base: u64,
-    watch: &Watch,
+    context: &ReplicateContext,
 ) -> Result<Vec<ReplicateResult>, RunError> {
-    let one = |replicate| walk_replicate(case, part, replicate, n_base, watch);
+    let one = |replicate| walk_replicate(case, part, replicate, n_base, context);
     let threads = rayon::current_num_threads() as u64;
     if case.side_by_side(n_base, threads) > 1 {
         which.into_par_iter().map(one).collect()
@@ -161,19 +119,20 @@ fn walk_replicate(
     part: u64,
     replicate: u64,
     n_base: u64,
-    watch: &Watch,
+    context: &ReplicateContext,
 ) -> Result<ReplicateResult, RunError> {
     let seed = replicate_seed(case.scene.walk.seed, replicate);
     let id = WalkId { part, replicate, seed, n_base };
-    let network = case.network(seed).map_err(CaseError::from)?;
+    let network = case.network(seed)?;
     let mut blocked = BitVec::repeat(false, network.constrictions());
     let first = plan(case, &network, &blocked, n_base);
-    let (mut done, mut saved) = match watch.keeper.map(|keeper| keeper.load(id)).transpose()? {
+    let loaded = context.checkpoints.map(|checkpoints| checkpoints.load(id));
+    let (mut done, mut saved) = match loaded.transpose().map_err(RunError::Checkpoint)? {
         Some(Some((done, saved))) => (done, Some(saved)),
         _ => (Done::default(), None),
     };
     if done.complete {
-        done.runs.iter().for_each(|_| (watch.tell)(Event::Run));
+        done.runs.iter().for_each(|_| context.tell(Event::RunDone));
     }
     while !done.complete {
         let of = RunId {
@@ -184,7 +143,7 @@ fn walk_replicate(
         };
         let begun = Instant::now();
         let walk = RunContext { case, network: &network, id, of };
-        let state = walk.run(blocked, &mut done, saved.take(), watch)?;
+        let state = walk.run(blocked, &mut done, saved.take(), context)?;
         let metrics = RunMetrics::new(&network, &state, of, begun.elapsed().as_secs_f64());
         let recorder = std::mem::take(&mut done.recorder);
         if part == 0 {
@@ -194,9 +153,9 @@ fn walk_replicate(
         done.runs.push(metrics.run);
         done.complete = done.runs.len() as u64 == case.scene.walk.runs;
         blocked = state.blocked;
-        (watch.tell)(Event::Run);
-        if let (true, Some(keeper)) = (done.complete, watch.keeper) {
-            keeper.save_finished(id, &done);
+        context.tell(Event::RunDone);
+        if let (true, Some(checkpoints)) = (done.complete, context.checkpoints) {
+            checkpoints.save_finished(id, &done);
         }
     }
     let verdict = classify(done.below.first().copied(), done.below.get(1).copied());
@@ -219,7 +178,7 @@ fn plan(case: &Case, network: &Network, blocked: &BitSlice<u64>, n_base: u64) ->
 /// # Errors
 /// As [`Case::network`].
 pub fn left_out_of_first_run(case: &Case) -> Result<Vec<String>, RunError> {
-    let network = case.network(replicate_seed(case.scene.walk.seed, 1)).map_err(CaseError::from)?;
+    let network = case.network(replicate_seed(case.scene.walk.seed, 1))?;
     let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
     Ok(plan(case, &network, &open, case.n_base).left_out().to_vec())
 }
@@ -239,7 +198,7 @@ impl RunContext<'_> {
         blocked: BitVec<u64>,
         done: &mut Done,
         saved: Option<Checkpoint>,
-        watch: &Watch,
+        context: &ReplicateContext,
     ) -> Result<State, RunError> {
         let Self { case, network, id, of } = *self;
         let WalkId { part, seed, n_base, .. } = id;
@@ -255,9 +214,11 @@ impl RunContext<'_> {
         let mut state = state.map_err(|source| RunError::Room { particles: supply.total(), source })?;
         if let Some(saved) = saved {
             if saved.label.network != network_fingerprint(network) {
-                return Err(CheckpointError::OtherNetwork { file: saved.path().to_owned() }.into());
+                return Err(RunError::Checkpoint(CheckpointError::OtherNetwork {
+                    file: saved.path().to_owned(),
+                }));
             }
-            state.restore(network, &saved)?;
+            state.restore(network, &saved).map_err(RunError::Checkpoint)?;
         }
         if state.finished {
             return Ok(state);
@@ -268,10 +229,11 @@ impl RunContext<'_> {
                 done.recorder.observe(&case.scene.record.wanted(), state);
             }
             let (increment, moving) = (state.increment, state.tally.moving);
-            (watch.tell)(Event::Increment { replicate: of.replicate, run: of.run, increment, moving });
-            let stop = watch.stop.load(Ordering::Relaxed);
-            if let Some(keeper) = watch.keeper.filter(|keeper| keeper.is_due(last, increment, stop)) {
-                if let Err(error) = keeper.save_walk(id, network, state, done) {
+            context.tell(Event::Increment { replicate: of.replicate, run: of.run, increment, moving });
+            let stop = context.callbacks.is_stopped();
+            let due = |checkpoints: &&Checkpoints| checkpoints.is_due(last, increment, stop);
+            if let Some(checkpoints) = context.checkpoints.filter(due) {
+                if let Err(error) = checkpoints.save_walk(id, network, state, done) {
                     failed = Some(error);
                     return WalkControl::Stop;
                 }
@@ -283,14 +245,15 @@ impl RunContext<'_> {
             }
         });
         if let Some(error) = failed {
-            return Err(error.into());
+            return Err(RunError::Save(error));
         }
         walked?;
         Ok(state)
     }
 }
 
-/// Constrictions that were blocked when the saved run began: those blocked now, less those that it blocked itself.
+/// Constrictions that were blocked when the saved run began: those blocked now, less those that it blocked
+/// itself.
 fn blocked_at_start(network: &Network, saved: &Checkpoint) -> Result<BitVec<u64>, RunError> {
     let mut blocked = BitVec::from_vec(saved.read::<u64>("blocked")?);
     blocked.truncate(network.constrictions());
@@ -337,10 +300,10 @@ fn run_summary(walked: &[ReplicateResult], run: usize) -> RunSummary {
 ///
 /// # Errors
 /// As [`replicates`].
-pub fn sensitivity(case: &Case, watch: &Watch) -> Result<Vec<Sensitivity>, RunError> {
+pub fn sensitivity(case: &Case, context: &ReplicateContext) -> Result<Vec<Sensitivity>, RunError> {
     let each = case.scene.record.sensitivity_replicates;
     let factors = case.sensitivity_factors().into_iter().zip(1..);
-    factors.map(|(factor, part)| one_sensitivity(case, part, factor, each, watch)).collect()
+    factors.map(|(factor, part)| one_sensitivity(case, part, factor, each, context)).collect()
 }
 
 fn one_sensitivity(
@@ -348,10 +311,10 @@ fn one_sensitivity(
     part: u64,
     factor: f64,
     replicates: u64,
-    watch: &Watch,
+    context: &ReplicateContext,
 ) -> Result<Sensitivity, RunError> {
     let n_base = ((case.n_base as f64 * factor).round() as u64).max(1);
-    let walked = some_replicates(case, part, 1..=replicates, n_base, watch)?;
+    let walked = some_replicates(case, part, 1..=replicates, n_base, context)?;
     Ok(of_walked(case, factor, n_base, &walked))
 }
 

@@ -4,6 +4,7 @@ use std::time::SystemTime;
 
 use serde::Serialize;
 
+use super::error::RunError;
 use super::machine::Machine;
 use super::replicates::{ReplicateResult, as_it_is, stopping, summarise};
 use crate::case::{Case, INPUT_NAMES};
@@ -12,22 +13,6 @@ use crate::outcome::rules::RuleInputs;
 use crate::outcome::{MODEL_LEAVES_OUT, Recorded, infiltration, rules, verdict};
 use crate::scene::{FilterGradation, NetworkSource};
 use crate::store::{Folder, StoreError};
-
-/// Why results cannot be written.
-#[derive(Debug, thiserror::Error)]
-pub enum ResultError {
-    /// The folder.
-    #[error(transparent)]
-    Store(#[from] StoreError),
-    /// Results that cannot be put into words.
-    #[error("cannot write {file}: {source}")]
-    Format {
-        /// The file.
-        file: &'static str,
-        /// What is wrong.
-        source: Box<dyn std::error::Error + Send + Sync>,
-    },
-}
 
 /// The outcome of a case that has been walked.
 pub fn outcome(
@@ -135,7 +120,7 @@ pub fn write(
     outcome: &Outcome,
     walked: &[ReplicateResult],
     manifest: &Manifest,
-) -> Result<(), ResultError> {
+) -> Result<(), RunError> {
     // First, so that a folder is not taken for whole while its files are being replaced.
     for name in ["manifest.json", "outcome.json"] {
         folder.remove(name)?;
@@ -155,7 +140,8 @@ pub fn write(
     Ok(())
 }
 
-const SERIES: &str = "replicate,run,increment,inserted,moving,eroded,retained_in_constrictions,retained_in_voids,trapped,blocked,eroded_mass_fraction";
+const SERIES: &str = "replicate,run,increment,inserted,moving,eroded,retained_in_constrictions,\
+    retained_in_voids,trapped,blocked,eroded_mass_fraction";
 const LAYERS: &str = "replicate,run,layer,constrictions,blocked,retained_in_constrictions,retained_in_voids";
 const SIZES: &str = "replicate,run,increment,diameter_mm,percent_finer_by_mass,percent_finer_by_number";
 
@@ -163,21 +149,21 @@ const SIZES: &str = "replicate,run,increment,diameter_mm,percent_finer_by_mass,p
 ///
 /// # Errors
 /// What cannot be put into words.
-pub fn json(file: &'static str, value: &impl Serialize) -> Result<Vec<u8>, ResultError> {
+pub fn json(file: &'static str, value: &impl Serialize) -> Result<Vec<u8>, RunError> {
     let mut bytes =
-        serde_json::to_vec_pretty(value).map_err(|e| ResultError::Format { file, source: e.into() })?;
+        serde_json::to_vec_pretty(value).map_err(|e| RunError::Format { file, source: e.into() })?;
     bytes.push(b'\n');
     Ok(bytes)
 }
 
 /// The rows under their header, which is there even without rows.
-fn csv(file: &'static str, header: &str, rows: &[impl Serialize]) -> Result<Vec<u8>, ResultError> {
+fn csv(file: &'static str, header: &str, rows: &[impl Serialize]) -> Result<Vec<u8>, RunError> {
     let mut bytes = format!("{header}\n").into_bytes();
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(&mut bytes);
     for row in rows {
-        writer.serialize(row).map_err(|e| ResultError::Format { file, source: e.into() })?;
+        writer.serialize(row).map_err(|e| RunError::Format { file, source: e.into() })?;
     }
-    writer.flush().map_err(|e| ResultError::Format { file, source: e.into() })?;
+    writer.flush().map_err(|e| RunError::Format { file, source: e.into() })?;
     drop(writer);
     Ok(bytes)
 }

@@ -1,12 +1,65 @@
 //! Runs a study of the percolation threshold and writes it into a folder.
 
 use std::fmt::Write;
+use std::path::PathBuf;
 use std::time::Instant;
 
 use rayon::prelude::*;
 
 use crate::network::{Network, NetworkError, percolation_threshold};
 use crate::outcome::percolation::PercolationStudy;
+use crate::run::callbacks::Callbacks;
+use crate::run::error::RunError;
+use crate::run::folder::{FolderKind, claim};
+use crate::run::machine::on_threads;
+use crate::run::results::json;
+
+/// What a percolation study is asked for, and where it goes.
+#[derive(Clone, Debug)]
+pub struct PercolationOptions {
+    /// Voids along each side, one lattice size after another.
+    pub sizes: Vec<u32>,
+    /// Realisations of each size.
+    pub realisations: u64,
+    /// Seed; the same seed gives the same bits.
+    pub seed: u64,
+    /// Folder for the results.
+    pub out: PathBuf,
+    /// Whether earlier results there are replaced.
+    pub overwrite: bool,
+    /// Worker threads; without a number as many as a cluster's job has, else one per core.
+    pub threads: Option<usize>,
+}
+
+impl Default for PercolationOptions {
+    fn default() -> Self {
+        Self {
+            sizes: vec![10, 20, 40, 80, 160],
+            realisations: 100,
+            seed: 1,
+            out: "voidwalk-percolation".into(),
+            overwrite: false,
+            threads: None,
+        }
+    }
+}
+
+/// Finds the thresholds and writes `percolation.csv` and, last, `percolation.json`.
+///
+/// # Errors
+/// Sizes that no lattice can have and a folder that cannot be claimed are refused before any work; what the
+/// folder says.
+pub fn run(options: &PercolationOptions, callbacks: &Callbacks) -> Result<PercolationStudy, RunError> {
+    let plan = PercolationPlan::new(options.sizes.clone(), options.realisations, options.seed);
+    let plan = plan.map_err(RunError::refused)?;
+    let folder = claim(&options.out, FolderKind::Percolation, options.overwrite)?;
+    let run = on_threads(options.threads, || Ok(plan.run()?))?;
+    let name = FolderKind::Percolation.record();
+    folder.write("percolation.csv", run.csv().as_bytes())?;
+    folder.write(name, &json(name, &run.study)?)?;
+    callbacks.results(FolderKind::Percolation, folder.path())?;
+    Ok(run.study)
+}
 
 /// Thresholds of several sizes of lattice.
 #[derive(Debug)]

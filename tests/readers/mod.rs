@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use bitvec::vec::BitVec;
-use voidwalk::campaign::plan::Plan as CampaignPlan;
+use voidwalk::campaign::CampaignPlan;
 use voidwalk::case::Case;
 use voidwalk::constrictions::Curve;
 use voidwalk::gradation::{Gradation, SizeSampler};

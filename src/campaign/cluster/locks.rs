@@ -1,8 +1,9 @@
 //! What is known of the locks of the file system that a folder lies on.
 //!
-//! Cases are claimed by locks. On most file systems that clusters share, a lock that one node holds keeps the others out;
-//! on some, or mounted in some ways, every node sees its own locks only, and nothing tells. Then several tasks may walk one
-//! case: the same results, at more cost. This reads how the folder is mounted and says where that may be so.
+//! Cases are claimed by locks. On most file systems that clusters share, a lock that one node holds keeps the
+//! others out; on some, or mounted in some ways, every node sees its own locks only, and nothing tells. Then
+//! several tasks may walk one case: the same results, at more cost. This reads how the folder is mounted and
+//! says where that may be so.
 
 use std::path::{Path, PathBuf};
 

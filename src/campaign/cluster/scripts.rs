@@ -1,11 +1,12 @@
 //! The scripts of a campaign's jobs, filled into the templates of `src/data/slurm`.
 //!
-//! Paths and other words of the user's stand in single quotes, names of cases in none of them: a task's number is all that a
-//! script hands on.
+//! Paths and other words of the user's stand in single quotes, names of cases in none of them: a task's
+//! number is all that a script hands on.
 
 use std::path::{Path, PathBuf};
 
 use super::tasks;
+use crate::run::cost::duration;
 
 /// Folder of the scripts and logs, inside the campaign's.
 pub const FOLDER: &str = "slurm";
@@ -13,10 +14,8 @@ pub const FOLDER: &str = "slurm";
 /// Asked for by this factor more than estimated: memory, time.
 const MARGIN: (f64, f64) = (1.5, 4.0);
 
-/// A task is estimated to take this long, where the user does not say how many there are (s).
-pub const TASK_S: f64 = 600.0;
-
-/// No more time is asked for: a task that is not done by then is stopped, and goes on in another attempt (minutes).
+/// No more time is asked for: a task that is not done by then is stopped, and goes on in another attempt
+/// (minutes).
 const LONGEST_MIN: u64 = 24 * 60;
 
 /// Time for what no estimate holds: a busy file system, the start of the program (minutes).
@@ -24,14 +23,19 @@ const SLACK_MIN: u64 = 10;
 
 /// What one task of a job takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Need {
+pub struct TaskNeeds {
     /// Seconds of the longest task, on its threads.
     pub seconds: f64,
     /// Memory (bytes).
     pub bytes: u64,
 }
 
-impl Need {
+impl TaskNeeds {
+    /// The larger of each of two needs.
+    pub(super) fn or_more(self, other: Self) -> Self {
+        Self { seconds: self.seconds.max(other.seconds), bytes: self.bytes.max(other.bytes) }
+    }
+
     /// Minutes to ask for.
     pub fn minutes(&self) -> u64 {
         let minutes = (MARGIN.1 * self.seconds / 60.0).ceil() as u64 + SLACK_MIN;
@@ -46,21 +50,13 @@ impl Need {
 
     fn in_words(&self) -> String {
         format!(
-            "{} of a task and {:.0} MB; {} times the time and {SLACK_MIN} minutes, and {} times the memory, are asked for",
+            "{} of a task and {:.0} MB; {} times the time and {SLACK_MIN} minutes, and {} times the memory, \
+             are asked for",
             duration(self.seconds),
             self.bytes as f64 / f64::from(1 << 20),
             MARGIN.1,
             MARGIN.0
         )
-    }
-}
-
-/// Seconds in words: `40 s`, `12 min`, `3.5 h`.
-pub fn duration(seconds: f64) -> String {
-    match seconds {
-        s if s < 90.0 => format!("{:.0} s", s.ceil()),
-        s if s < 5400.0 => format!("{:.0} min", s / 60.0),
-        s => format!("{:.1} h", s / 3600.0),
     }
 }
 
@@ -79,13 +75,13 @@ pub struct Jobs<'a> {
     /// Processors of a task.
     pub processors: u64,
     /// Filters to pack, and what the largest takes.
-    pub packings: (usize, Need),
+    pub packings: (usize, TaskNeeds),
     /// Names of the cases of each task.
     pub tasks: Vec<Vec<&'a str>>,
     /// What the largest task takes.
-    pub walk: Need,
+    pub walk: TaskNeeds,
     /// What collecting takes.
-    pub collect: Need,
+    pub collect: TaskNeeds,
 }
 
 /// Why there are no scripts.
@@ -117,7 +113,7 @@ impl Jobs<'_> {
             ("CASES", cases.to_string()),
         ];
         let words = |all: &[String]| all.iter().map(|word| format!(" {}", quoted(word))).collect();
-        let job = |template: &str, options: &[String], tasks: usize, need: &Need| {
+        let job = |template: &str, options: &[String], tasks: usize, need: &TaskNeeds| {
             let own = [
                 ("OPTIONS", words(options)),
                 ("TASKS", tasks.to_string()),
@@ -187,6 +183,15 @@ fn quoted(word: &str) -> String {
     format!("'{}'", word.replace('\'', "'\\''"))
 }
 
+/// A path that can be pasted into a shell.
+pub fn quoted_if_needed(path: &Path) -> String {
+    let path = path.display().to_string();
+    match path.chars().all(|c| c.is_ascii_alphanumeric() || "/._-+=,:@".contains(c)) {
+        true => path,
+        false => quoted(&path),
+    }
+}
+
 fn path(path: &Path) -> Result<String, ScriptError> {
     let absolute: PathBuf = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     match absolute.to_str().filter(|text| !text.chars().any(char::is_control)) {
@@ -201,7 +206,7 @@ mod tests {
 
     #[test]
     fn more_is_asked_for_than_is_estimated_and_never_for_ever() {
-        let need = |seconds, bytes| Need { seconds, bytes };
+        let need = |seconds, bytes| TaskNeeds { seconds, bytes };
         assert_eq!(need(1.0, 100 << 20).minutes(), 15);
         assert_eq!(need(600.0, 100 << 20).minutes(), 50);
         assert_eq!(need(1e7, 0).minutes(), LONGEST_MIN);

@@ -1,7 +1,7 @@
 //! Which cases each task of a job array walks.
 //!
-//! The file has one line a case: the task's number, a tab, the case's name. Names hold neither tabs nor line ends (the plan
-//! refuses them) and are read by the program alone, never by a shell.
+//! The file has one line a case: the task's number, a tab, the case's name. Names hold neither tabs nor line
+//! ends (the plan refuses them) and are read by the program alone, never by a shell.
 
 use std::fmt::Write;
 
@@ -31,8 +31,8 @@ pub enum TaskError {
     },
 }
 
-/// Bundles cases into `tasks` tasks of about the same seconds each; every task has a case, and its cases are in the order
-/// of the plan. Cases are given by their seconds, tasks by the places of their cases.
+/// Bundles cases into `tasks` tasks of about the same seconds each; every task has a case, and its cases are
+/// in the order of the plan. Cases are given by their seconds, tasks by the places of their cases.
 pub fn bundle(seconds: &[f64], tasks: usize) -> Vec<Vec<usize>> {
     let tasks = tasks.clamp(1, MOST_TASKS).min(seconds.len());
     let mut longest_first: Vec<usize> = (0..seconds.len()).collect();

@@ -3,10 +3,11 @@
 use super::changes::Change;
 use super::comparison::compared;
 use super::first_run::ScaledScene;
-use super::study::{PrecisionError, Study};
+use super::study::PrecisionStudy;
 use super::twin;
 use super::work::affordable;
 use crate::outcome::precision::BiasRow;
+use crate::run::error::RunError;
 
 /// Replicates of a row, at least and at most.
 const REPLICATES: (u64, u64) = (4, 256);
@@ -18,9 +19,9 @@ const ENOUGH: u64 = 16;
 const TWINS: f64 = 0.1;
 
 /// The tier.
-pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Vec<BiasRow>, PrecisionError> {
+pub(super) fn tier(study: &PrecisionStudy, budget_s: f64) -> Result<Vec<BiasRow>, RunError> {
     let scene = ScaledScene::affordable(study, 25 * ENOUGH, budget_s * (1.0 - TWINS))?;
-    (study.tell)(&format!("bias: on {}", scene.words()));
+    study.tell(&format!("bias: on {}", scene.words()));
     let each_s = scene.cost_s()?;
     let all = Change::all(&scene);
     // Each row has the same time, the reference three times as much: all others are compared with it.
@@ -32,11 +33,11 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Vec<BiasRow>, Precisi
         let row_s = if change == Change::Nothing { 3.0 * row_s } else { row_s };
         let cost_s = each_s * change.cost(&scene);
         if cost_s * REPLICATES.0 as f64 > 3.0 * row_s.max(0.1 * budget_s) {
-            (study.tell)(&format!("bias: {factor}, {level} left out: {cost_s:.0} s a replicate"));
+            study.tell(&format!("bias: {factor}, {level} left out: {cost_s:.0} s a replicate"));
             continue;
         }
         let count = affordable(row_s, cost_s, REPLICATES.0, REPLICATES.1);
-        (study.tell)(&format!("bias: {factor}, {level}: {count} replicates"));
+        study.tell(&format!("bias: {factor}, {level}: {count} replicates"));
         let run = change.run(&scene);
         let found = study.replicates(count, |seed| {
             let ended = run.walk(&change.network(&scene, seed)?, seed)?;

@@ -1,8 +1,8 @@
 //! Settings that are changed one at a time and compared with the scene as it is.
 
 use super::first_run::{FirstRun, ScaledScene};
-use super::study::PrecisionError;
 use crate::network::Network;
+use crate::run::error::RunError;
 use crate::scene::NetworkSource;
 
 /// One setting changed.
@@ -78,7 +78,7 @@ impl Change {
     }
 
     /// Its network of this seed.
-    pub fn network(self, scene: &ScaledScene, seed: u64) -> Result<Network, PrecisionError> {
+    pub fn network(self, scene: &ScaledScene, seed: u64) -> Result<Network, RunError> {
         let changed = self.of(scene);
         match (self, changed.shape) {
             (Change::Stratified, Some(shape)) => scene.study.stratified(shape, seed),

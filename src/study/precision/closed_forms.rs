@@ -2,17 +2,18 @@
 
 use super::first_run::FirstRun;
 use super::networks::given;
-use super::study::{PrecisionError, Study};
+use super::study::PrecisionStudy;
 use super::work::{affordable, summed};
 use crate::network::Passage;
 use crate::outcome::precision::ClosedRow;
+use crate::run::error::RunError;
 use crate::walk::Engine;
 
 /// Rows of one kind, for this budget (s).
-type Kind = fn(&Study, f64) -> Result<Vec<ClosedRow>, PrecisionError>;
+type Kind = fn(&PrecisionStudy, f64) -> Result<Vec<ClosedRow>, RunError>;
 
 /// Every row that the budget pays for.
-pub(super) fn rows(study: &Study, budget_s: f64) -> Result<Vec<ClosedRow>, PrecisionError> {
+pub(super) fn rows(study: &PrecisionStudy, budget_s: f64) -> Result<Vec<ClosedRow>, RunError> {
     let kinds: [Kind; 5] = [moves, giant, blocked_sets, coarse_base, survival];
     let all = study.side_by_side(kinds.len(), |kind| kinds[kind](study, budget_s))?;
     Ok(all.into_iter().flatten().collect())
@@ -25,7 +26,7 @@ fn drawn(what: String, exact: f64, found: f64, error: f64, samples: u64, core_se
 }
 
 /// Moves to leave 60 layers of equal constrictions: a sum of 60 geometric numbers, mean 180 and variance 360.
-fn moves(study: &Study, _: f64) -> Result<Vec<ClosedRow>, PrecisionError> {
+fn moves(study: &PrecisionStudy, _: f64) -> Result<Vec<ClosedRow>, RunError> {
     const LAYERS: u32 = 60;
     let network = given([8, 8, LAYERS], vec![1.0; 3 * 64 * LAYERS as usize])?;
     let (mean, variance) = (f64::from(3 * LAYERS), f64::from(6 * LAYERS));
@@ -53,7 +54,7 @@ fn moves(study: &Study, _: f64) -> Result<Vec<ClosedRow>, PrecisionError> {
 
 /// One exit with 1e12 times the area of each of the two others, which lead round: a billionth of a thousandth
 /// of the moves.
-fn giant(study: &Study, _: f64) -> Result<Vec<ClosedRow>, PrecisionError> {
+fn giant(study: &PrecisionStudy, _: f64) -> Result<Vec<ClosedRow>, RunError> {
     let network = given([1, 1, 1], vec![1.0, 1.0, 1e6])?;
     let n = 1_000_000_000_000_000u64;
     let ended = FirstRun::of_one_size(0.5, n, 1, Engine::Counts)?.walk(&network, study.seed(2))?;
@@ -64,7 +65,7 @@ fn giant(study: &Study, _: f64) -> Result<Vec<ClosedRow>, PrecisionError> {
 }
 
 /// One size without limit blocks what a breadth-first search finds: an integer, and the same constrictions.
-fn blocked_sets(study: &Study, budget_s: f64) -> Result<Vec<ClosedRow>, PrecisionError> {
+fn blocked_sets(study: &PrecisionStudy, budget_s: f64) -> Result<Vec<ClosedRow>, RunError> {
     let case = study.case;
     let mut rows = Vec::new();
     let walks = affordable(budget_s * 0.3, 0.4, 2, 12);
@@ -97,7 +98,7 @@ fn blocked_sets(study: &Study, budget_s: f64) -> Result<Vec<ClosedRow>, Precisio
 }
 
 /// A base coarser than every constriction blocks every exit of the first layer and nothing else.
-fn coarse_base(study: &Study, _: f64) -> Result<Vec<ClosedRow>, PrecisionError> {
+fn coarse_base(study: &PrecisionStudy, _: f64) -> Result<Vec<ClosedRow>, RunError> {
     let network = study.lattice([20, 20, 5], study.seed(1))?;
     let d = 2.0 * study.case.curve.largest() / study.case.unit_mm;
     let ended = FirstRun::of_one_size(d, 200_000, 100, Engine::Auto)?.walk(&network, study.seed(1))?;
@@ -114,7 +115,7 @@ fn coarse_base(study: &Study, _: f64) -> Result<Vec<ClosedRow>, PrecisionError> 
 }
 
 /// A single particle passes a layer with probability s = (1 - q) / (1 + 2 q), averaged over networks.
-fn survival(study: &Study, budget_s: f64) -> Result<Vec<ClosedRow>, PrecisionError> {
+fn survival(study: &PrecisionStudy, budget_s: f64) -> Result<Vec<ClosedRow>, RunError> {
     let case = study.case;
     let d_mm = case.curve.dc(15.0).unwrap_or(case.curve.largest());
     let p = Passage::new(&case.curve).through(d_mm, 6);

@@ -1,9 +1,10 @@
 //! Replicates of a setting, and their difference from those of the reference setting.
 
-use super::study::{PrecisionError, Study};
+use super::study::PrecisionStudy;
 use crate::outcome::precision::BiasRow;
 use crate::outcome::record::Statistic;
 use crate::outcome::student;
+use crate::run::error::RunError;
 
 /// One value of each replicate, in order.
 pub(super) struct Replicates {
@@ -13,13 +14,13 @@ pub(super) struct Replicates {
     pub core_seconds: Vec<f64>,
 }
 
-impl Study<'_> {
+impl PrecisionStudy<'_> {
     /// Replicates side by side, each walked with its seed; `walk` gives its value and its processor time (s).
     pub(super) fn replicates(
         &self,
         count: u64,
-        walk: impl Fn(u64) -> Result<(f64, f64), PrecisionError> + Sync,
-    ) -> Result<Replicates, PrecisionError> {
+        walk: impl Fn(u64) -> Result<(f64, f64), RunError> + Sync,
+    ) -> Result<Replicates, RunError> {
         let walked = self.side_by_side(count as usize, |i| walk(self.seed(1 + i as u64)))?;
         let (values, core_seconds) = walked.into_iter().unzip();
         Ok(Replicates { values, core_seconds })

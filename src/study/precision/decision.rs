@@ -8,13 +8,14 @@
 use rand::Rng;
 
 use super::first_run::{FirstRun, ScaledScene, clean, nominal};
-use super::study::{PrecisionError, Study};
+use super::study::PrecisionStudy;
 use super::work::affordable;
 use crate::gradation::SizeSampler;
 use crate::outcome::precision::{DecisionCase, DecisionRow, DecisionTier, wilson};
 use crate::outcome::record::{Statistic, Verdict};
 use crate::outcome::stopping::{Look, StopRule};
 use crate::outcome::verdict::{THRESHOLD, classify};
+use crate::run::error::RunError;
 use crate::stream::{Key, Purpose, below};
 
 /// Eroded mass fractions that the cases aim at.
@@ -94,7 +95,7 @@ fn class_of(eroded: &[&[f64]]) -> Verdict {
 struct Near<'a>(ScaledScene<'a>);
 
 impl Near<'_> {
-    fn run(&self, size_factor: f64) -> Result<FirstRun, PrecisionError> {
+    fn run(&self, size_factor: f64) -> Result<FirstRun, RunError> {
         let case = self.0.study.case;
         // By Eq. (2) a base of grains half as large is eight times as many.
         let whole = case.n_base_eq2.filter(|_| case.capped).unwrap_or(case.n_base) as f64;
@@ -106,12 +107,7 @@ impl Near<'_> {
     }
 
     /// Eroded mass fraction of each of `runs` runs and processor time, of so many replicates.
-    fn replicates(
-        &self,
-        size_factor: f64,
-        runs: u64,
-        count: u64,
-    ) -> Result<Vec<(Vec<f64>, f64)>, PrecisionError> {
+    fn replicates(&self, size_factor: f64, runs: u64, count: u64) -> Result<Vec<(Vec<f64>, f64)>, RunError> {
         let of_run = self.run(size_factor)?;
         self.0.study.side_by_side(count as usize, |i| {
             let seed = self.0.study.seed(1 + i as u64);
@@ -130,11 +126,11 @@ impl Near<'_> {
 }
 
 /// The tier; `None` where no factor on the base's sizes brings its erosion near 7.5 %.
-pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Option<DecisionTier>, PrecisionError> {
+pub(super) fn tier(study: &PrecisionStudy, budget_s: f64) -> Result<Option<DecisionTier>, RunError> {
     let narrow = study.shape().map(|[nx, ny, nz]| [nx.min(10), ny.min(10), nz]);
     let search = Near(ScaledScene { study, shape: narrow });
     let Some(factors) = factors(&search)? else {
-        (study.tell)("decision: no factor on the base's sizes brings its erosion near 7.5 %");
+        study.tell("decision: no factor on the base's sizes brings its erosion near 7.5 %");
         return Ok(None);
     };
     let runs = study.case.scene.walk.runs;
@@ -148,7 +144,7 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Option<DecisionTier>,
     let replicates = affordable(case_s, runs as f64 * nominal(&pilot, &network), REPLICATES.0, REPLICATES.1);
     let on = near.0.words();
     for factor in factors {
-        (study.tell)(&format!("decision: sizes x {factor:.3}, {replicates} replicates on {on}"));
+        study.tell(&format!("decision: sizes x {factor:.3}, {replicates} replicates on {on}"));
         let walked = near.replicates(factor, runs, replicates)?;
         let first: Vec<f64> = walked.iter().map(|w| w.0[0]).collect();
         let of = Statistic::of_fraction(&first);
@@ -176,8 +172,8 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Option<DecisionTier>,
 }
 
 /// Factors on the base's sizes at which the wanted fractions erode, about: coarser grains erode less.
-fn factors(near: &Near) -> Result<Option<Vec<f64>>, PrecisionError> {
-    let eroded = |factor: f64| -> Result<f64, PrecisionError> {
+fn factors(near: &Near) -> Result<Option<Vec<f64>>, RunError> {
+    let eroded = |factor: f64| -> Result<f64, RunError> {
         let walked = near.replicates(factor, 1, 4)?;
         Ok(walked.iter().map(|w| w.0[0]).sum::<f64>() / walked.len() as f64)
     };
@@ -205,7 +201,7 @@ fn factors(near: &Near) -> Result<Option<Vec<f64>>, PrecisionError> {
 }
 
 /// A rule, tried on random subsets of the replicates.
-fn tried(study: &Study, case: &DecisionCase, rule: Rule, eroded: &[&[f64]]) -> DecisionRow {
+fn tried(study: &PrecisionStudy, case: &DecisionCase, rule: Rule, eroded: &[&[f64]]) -> DecisionRow {
     let key = Key {
         seed: study.case.scene.walk.seed,
         purpose: Purpose::Resampling,

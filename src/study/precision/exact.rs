@@ -19,11 +19,12 @@ use rand::Rng;
 use super::closed_forms;
 use super::comparison::mean;
 use super::first_run::{FirstRun, clean};
-use super::study::{PrecisionError, Study};
+use super::study::PrecisionStudy;
 use super::work::summed;
 use crate::network::Network;
 use crate::outcome::log_log_slope;
 use crate::outcome::precision::{ExactRow, ExactTier, NetworkRow, Quantity, Slope, merit, sd_estimate};
+use crate::run::error::RunError;
 use crate::stream::{Key, Purpose, unit};
 use crate::walk::Engine;
 
@@ -89,7 +90,7 @@ struct Line<'a> {
 }
 
 /// The tier.
-pub(super) fn tier(study: &Study, budget_s: f64) -> Result<(ExactTier, Vec<NetworkRow>), PrecisionError> {
+pub(super) fn tier(study: &PrecisionStudy, budget_s: f64) -> Result<(ExactTier, Vec<NetworkRow>), RunError> {
     let clogged = study.known(clogged)?;
     let d = study.case.curve.dc(FIRST_AT_DC).unwrap_or(study.case.curve.largest()) / study.case.unit_mm;
     let single = study.known(|network, _| first_particle(network, d))?;
@@ -119,7 +120,7 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<(ExactTier, Vec<Netwo
     let (mut rows, mut networks, mut slopes) = (Vec::new(), Vec::new(), Vec::new());
     for line in &lines {
         let Line { quantity, way, most, .. } = line;
-        (study.tell)(&format!("exact: {quantity}, {}, up to {most:e} particles", way.name()));
+        study.tell(&format!("exact: {quantity}, {}, up to {most:e} particles", way.name()));
         let first = rows.len();
         for particles in line.numbers() {
             let (row, mut each) = line.row(study, particles)?;
@@ -130,7 +131,7 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<(ExactTier, Vec<Netwo
         }
         slopes.push(slope(&rows[first..]));
     }
-    (study.tell)("exact: integers and closed forms");
+    study.tell("exact: integers and closed forms");
     let closed = closed_forms::rows(study, budget_s * 0.15)?;
     Ok((ExactTier { networks: NETWORKS as u64, quantities, rows, slopes, closed }, networks))
 }
@@ -170,10 +171,10 @@ impl Known {
     }
 }
 
-impl Study<'_> {
+impl PrecisionStudy<'_> {
     /// Random networks of the scene's curve with an answer that is neither sure nor hopeless; none where
     /// there are not enough.
-    fn known(&self, of: impl Fn(Network, u64) -> Known) -> Result<Vec<Known>, PrecisionError> {
+    fn known(&self, of: impl Fn(Network, u64) -> Known) -> Result<Vec<Known>, RunError> {
         let mut taken = Vec::new();
         for k in 1..=TRIES * NETWORKS as u64 {
             let seed = self.seed(k);
@@ -197,7 +198,7 @@ impl Line<'_> {
     }
 
     /// All networks with so many particles each.
-    fn row(&self, study: &Study, particles: u64) -> Result<(ExactRow, Vec<NetworkRow>), PrecisionError> {
+    fn row(&self, study: &PrecisionStudy, particles: u64) -> Result<(ExactRow, Vec<NetworkRow>), RunError> {
         let walked = study.side_by_side(self.known.len(), |i| {
             self.found(&self.known[i], particles, study.seed(1 + i as u64) ^ particles)
         })?;
@@ -236,7 +237,7 @@ impl Line<'_> {
     }
 
     /// The share that leaves, and the processor time (s).
-    fn found(&self, known: &Known, particles: u64, seed: u64) -> Result<(f64, f64), PrecisionError> {
+    fn found(&self, known: &Known, particles: u64, seed: u64) -> Result<(f64, f64), RunError> {
         let run = |engine, n_base| FirstRun::of_one_size(known.diameter, n_base, 1, engine);
         let (eroded, seconds) = match self.way {
             Way::Together(engine) => {

@@ -2,11 +2,13 @@
 
 use bitvec::vec::BitVec;
 
-use super::study::{PrecisionError, Study};
+use super::study::PrecisionStudy;
 use super::work::timed;
 use crate::gradation::{Gradation, SizeSampler};
 use crate::network::Network;
 use crate::outcome::eroded_mass_fraction;
+use crate::run::cost::CountedWork;
+use crate::run::error::RunError;
 use crate::walk::{Engine, Plan, Sampling, SizeClasses, State, Walk, WalkControl};
 
 /// A first run, up to its network and seed.
@@ -40,7 +42,7 @@ pub(super) struct Ended {
 
 impl FirstRun {
     /// The scene's.
-    pub fn of(study: &Study) -> Self {
+    pub fn of(study: &PrecisionStudy) -> Self {
         let case = study.case;
         Self {
             engine: case.scene.walk.engine,
@@ -58,13 +60,13 @@ impl FirstRun {
         n_base: u64,
         increments: u64,
         engine: Engine,
-    ) -> Result<Self, PrecisionError> {
+    ) -> Result<Self, RunError> {
         let sampler = SizeSampler::new(&Gradation::single(diameter)?, 1.0)?;
         Ok(Self { engine, sampler, pan_fraction: 0.0, n_base, increments, sampling: Sampling::Independent })
     }
 
     /// On a clean network.
-    pub fn walk(&self, network: &Network, seed: u64) -> Result<Ended, PrecisionError> {
+    pub fn walk(&self, network: &Network, seed: u64) -> Result<Ended, RunError> {
         self.walk_from(network, clean(network), seed, 1)
     }
 
@@ -74,7 +76,7 @@ impl FirstRun {
         network: &Network,
         seed: u64,
         observe: &mut (dyn FnMut(&State) + Send),
-    ) -> Result<Ended, PrecisionError> {
+    ) -> Result<Ended, RunError> {
         self.walk_timed(network, clean(network), seed, 1, observe)
     }
 
@@ -85,7 +87,7 @@ impl FirstRun {
         blocked: BitVec<u64>,
         seed: u64,
         run: u64,
-    ) -> Result<Ended, PrecisionError> {
+    ) -> Result<Ended, RunError> {
         self.walk_timed(network, blocked, seed, run, &mut |_| ())
     }
 
@@ -96,8 +98,8 @@ impl FirstRun {
         seed: u64,
         run: u64,
         observe: &mut (dyn FnMut(&State) + Send),
-    ) -> Result<Ended, PrecisionError> {
-        let walk = || -> Result<(State, u64), PrecisionError> {
+    ) -> Result<Ended, RunError> {
+        let walk = || -> Result<(State, u64), RunError> {
             let share = self.n_base / self.increments;
             let plan = Plan::new(self.engine, network, &self.sampler, &blocked, share).sampled(self.sampling);
             let supply = plan.supply(self.sampler.clone(), self.n_base, self.increments, seed, run);
@@ -133,7 +135,7 @@ pub(super) fn clean(network: &Network) -> BitVec<u64> {
 /// The scene on another lattice than its own, mostly a narrower one, with as much base a void.
 #[derive(Clone, Copy)]
 pub(super) struct ScaledScene<'a> {
-    pub study: &'a Study<'a>,
+    pub study: &'a PrecisionStudy<'a>,
     /// Voids along x, y, z, where its network is a lattice.
     pub shape: Option<[u32; 3]>,
 }
@@ -143,7 +145,7 @@ const WIDTHS: [u32; 6] = [u32::MAX, 40, 28, 20, 14, 10];
 
 impl<'a> ScaledScene<'a> {
     /// On the widest lattice on which so many first runs are paid for.
-    pub fn affordable(study: &'a Study<'a>, runs: u64, budget_s: f64) -> Result<Self, PrecisionError> {
+    pub fn affordable(study: &'a PrecisionStudy<'a>, runs: u64, budget_s: f64) -> Result<Self, RunError> {
         let Some([nx, ny, nz]) = study.shape() else { return Ok(Self { study, shape: None }) };
         let of = |width: u32| Self { study, shape: Some([nx.min(width), ny.min(width), nz]) };
         let narrow = of(WIDTHS[WIDTHS.len() - 1]);
@@ -165,12 +167,12 @@ impl<'a> ScaledScene<'a> {
     }
 
     /// The network of this seed.
-    pub fn network(&self, seed: u64) -> Result<Network, PrecisionError> {
+    pub fn network(&self, seed: u64) -> Result<Network, RunError> {
         self.study.network(self.shape, seed)
     }
 
     /// Counted processor time of a first run (s).
-    pub fn cost_s(&self) -> Result<f64, PrecisionError> {
+    pub fn cost_s(&self) -> Result<f64, RunError> {
         let network = self.network(self.study.seed(1))?;
         Ok(nominal(&self.run().walk(&network, self.study.seed(1))?, &network))
     }
@@ -184,29 +186,15 @@ impl<'a> ScaledScene<'a> {
     }
 }
 
-/// Processor time of a constriction drawn, and of a void of a table.
-const CONSTRICTION_S: f64 = 3.5e-8;
-
-/// Processor time of a void in an increment, as a count.
-const COUNT_S: f64 = 1.3e-8;
-
-/// Processor time of a move of a particle walked one by one.
-const MOVE_S: f64 = 2.5e-9;
-
-/// Processor time of the insertion of one.
-const INSERTION_S: f64 = 1.5e-8;
-
-/// Processor time of a run, counted from what it did, network included: the same number on every machine,
-/// about right on one of 2024.
+/// Processor time of a run counted from what it did, network included.
 pub(super) fn nominal(ended: &Ended, network: &Network) -> f64 {
-    let each = ended.one_by_one as f64;
-    // Where the others are counts, the coarse ones are soon stopped.
-    let (moves, voids) = match ended.all_one_by_one {
-        true => (ended.particle_moves as f64, 0.0),
-        false => (each * 4.0, network.voids() as f64),
+    let counted = CountedWork {
+        increments: ended.increments,
+        particle_moves: ended.particle_moves,
+        one_by_one: ended.one_by_one,
+        all_one_by_one: ended.all_one_by_one,
+        voids: network.voids(),
+        constrictions: network.constrictions(),
     };
-    CONSTRICTION_S * network.constrictions() as f64
-        + COUNT_S * ended.increments as f64 * voids
-        + INSERTION_S * each
-        + MOVE_S * moves
+    counted.core_seconds()
 }

@@ -34,21 +34,91 @@ mod tables;
 mod twin;
 mod work;
 
-pub use study::{PrecisionError, Study, Tier};
-pub use tables::tables;
+pub use study::{PrecisionStudy, Tier};
+use tables::tables;
 
-use std::time::{Instant, SystemTime};
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant, SystemTime};
 
 use crate::outcome::precision::{NetworkRow, Precision};
-use crate::run::machine::Machine;
+use crate::run::callbacks::Callbacks;
+use crate::run::error::RunError;
+use crate::run::folder::{FolderKind, claim};
+use crate::run::machine::{Machine, threads};
+use crate::run::prepare::{PrepareOptions, prepare_into};
+use crate::run::results::json;
+use crate::scene::Scene;
 
-impl Study<'_> {
+/// Processor time that may be asked for (s).
+const BUDGET_S: RangeInclusive<f64> = 0.1..=604_800.0;
+
+/// How a precision study is made.
+#[derive(Clone, Debug)]
+pub struct PrecisionOptions {
+    /// Folder for the results.
+    pub out: PathBuf,
+    /// Whether earlier results there are replaced.
+    pub overwrite: bool,
+    /// Tiers to measure; all without any.
+    pub tiers: Vec<Tier>,
+    /// Processor time to spend, all cores together.
+    pub budget: Duration,
+    /// Threads, memory and the folder of packings.
+    pub prepare: PrepareOptions,
+}
+
+impl Default for PrecisionOptions {
+    fn default() -> Self {
+        Self {
+            out: "voidwalk-precision".into(),
+            overwrite: false,
+            tiers: Vec::new(),
+            budget: Duration::from_secs(240),
+            prepare: PrepareOptions::default(),
+        }
+    }
+}
+
+/// Measures error against run time for a scene, and writes the tables and, last, `precision.json`.
+///
+/// # Errors
+/// A scene that is wrong and a folder that cannot be claimed are refused before any work; then what a
+/// packing, a network or a walk brings. A study that is stopped begins anew.
+pub fn run(scene: Scene, options: &PrecisionOptions, callbacks: &Callbacks) -> Result<Precision, RunError> {
+    if !BUDGET_S.contains(&options.budget.as_secs_f64()) {
+        return Err(RunError::refused("budget: allowed: from 100ms to 7days"));
+    }
+    let here = Path::new(".");
+    let pool = threads(options.prepare.threads)?;
+    let claim = || claim(&options.out, FolderKind::Precision, options.overwrite);
+    let (case, folder) = pool.install(|| prepare_into(scene, &options.prepare, here, claim, callbacks))?;
+    let is_wanted = |tier: &Tier| options.tiers.is_empty() || options.tiers.contains(tier);
+    let tiers: Vec<Tier> = Tier::ALL.into_iter().filter(is_wanted).collect();
+    let study = PrecisionStudy {
+        case: &case,
+        tiers: &tiers,
+        budget_s: options.budget.as_secs_f64(),
+        threads: pool.current_num_threads(),
+        callbacks,
+    };
+    let (precision, networks) = study.run()?;
+    for (name, content) in tables(&precision, &networks)? {
+        folder.write(name, &content)?;
+    }
+    // The page is made of it.
+    folder.write(FolderKind::Precision.record(), &json(FolderKind::Precision.record(), &precision)?)?;
+    callbacks.results(FolderKind::Precision, folder.path())?;
+    Ok(precision)
+}
+
+impl PrecisionStudy<'_> {
     /// Runs every tier: what `precision.json` holds, and the networks of the tier of exact answers, at the
     /// most particles of each line.
     ///
     /// # Errors
-    /// A network, a walk or a packing that fails, or [`PrecisionError::Stopped`].
-    pub fn run(&self) -> Result<(Precision, Vec<NetworkRow>), PrecisionError> {
+    /// A network, a walk or a packing that fails, or that it was stopped.
+    fn run(&self) -> Result<(Precision, Vec<NetworkRow>), RunError> {
         let (begun, started) = (Instant::now(), SystemTime::now());
         let record = self.case.record();
         let mut precision = Precision {
@@ -70,7 +140,7 @@ impl Study<'_> {
         let mut networks = Vec::new();
         for &tier in self.tiers {
             let (name, measures, part) = tier.about();
-            (self.tell)(&format!("{name}: {measures}"));
+            self.tell(&format!("{name}: {measures}"));
             let before = work::all_threads();
             let budget_s = self.budget_s * part / whole;
             match tier {

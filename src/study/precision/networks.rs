@@ -4,11 +4,12 @@
 //! network holds here too. The others are plain cubic lattices on purpose: their answers are worked out for
 //! those.
 
-use super::study::{PrecisionError, Study};
+use super::study::PrecisionStudy;
 use crate::case::replicate_seed;
 use crate::network::Network;
+use crate::run::error::RunError;
 
-impl Study<'_> {
+impl PrecisionStudy<'_> {
     /// Seed of replicate `k`, counted from 1: of its network, and of its walk.
     pub(super) fn seed(&self, k: u64) -> u64 {
         replicate_seed(self.case.scene.walk.seed, k)
@@ -20,23 +21,23 @@ impl Study<'_> {
     }
 
     /// The scene's network of this seed, with `shape` voids where it is a lattice.
-    pub(super) fn network(&self, shape: Option<[u32; 3]>, seed: u64) -> Result<Network, PrecisionError> {
+    pub(super) fn network(&self, shape: Option<[u32; 3]>, seed: u64) -> Result<Network, RunError> {
         Ok(self.case.network_of_shape(shape.unwrap_or_default(), seed)?)
     }
 
     /// A plain cubic lattice with the scene's constriction curve.
-    pub(super) fn lattice(&self, shape: [u32; 3], seed: u64) -> Result<Network, PrecisionError> {
+    pub(super) fn lattice(&self, shape: [u32; 3], seed: u64) -> Result<Network, RunError> {
         Ok(Network::cubic(shape, &self.case.curve, self.case.unit_mm, seed)?)
     }
 
-    /// [`Study::lattice`] with its constriction sizes stratified.
-    pub(super) fn stratified(&self, shape: [u32; 3], seed: u64) -> Result<Network, PrecisionError> {
+    /// [`PrecisionStudy::lattice`] with its constriction sizes stratified.
+    pub(super) fn stratified(&self, shape: [u32; 3], seed: u64) -> Result<Network, RunError> {
         Ok(Network::cubic_stratified(shape, &self.case.curve, self.case.unit_mm, seed)?)
     }
 }
 
 /// A cubic lattice with these constriction diameters, in the order of [`Network::cubic_from_diameters`]; the
 /// unit is theirs.
-pub(super) fn given(shape: [u32; 3], diameters: Vec<f32>) -> Result<Network, PrecisionError> {
+pub(super) fn given(shape: [u32; 3], diameters: Vec<f32>) -> Result<Network, RunError> {
     Ok(Network::cubic_from_diameters(shape, diameters, 1.0)?)
 }

@@ -2,13 +2,15 @@
 //! rate, number of grains and time step.
 
 use super::comparison::{Replicates, compared, mean};
-use super::study::{PrecisionError, Study};
+use super::study::PrecisionStudy;
 use super::work::{affordable, timed};
 use crate::constrictions::{Constrictions, DEFAULT_MERGE_OVERLAP, Facets, Triangulation};
 use crate::gradation::Gradation;
 use crate::outcome::precision::{PackingRow, PackingTier, TriangulationRow};
 use crate::outcome::record::Statistic;
 use crate::packing::{Compression, Packing, PackingError, Settings, draw, random_start};
+use crate::run::cost::small_packing_grain_seconds;
+use crate::run::error::RunError;
 
 /// Grains of the reference, fewest first; the most that the budget pays for, and no fewer than make the cell
 /// three of the largest grain wide.
@@ -20,8 +22,8 @@ const SEEDS: (u64, u64) = (2, 10);
 /// Packings of each setting before more grains are taken.
 const ENOUGH_SEEDS: f64 = 4.0;
 
-/// Processor time to compress a grain with friction and without, at a tenth of the stiffness.
-const GRAIN_S: [(f64, f64); 2] = [(0.3, 6.5e-4), (0.0, 2.4e-3)];
+/// Friction of the packings.
+const FRICTIONS: [f64; 2] = [0.3, 0.0];
 
 /// Part of the budget for packings with friction; the rest goes to those without, if that pays for them.
 const WITH_FRICTION: f64 = 0.85;
@@ -72,11 +74,12 @@ struct Made {
 }
 
 /// The tier.
-pub(super) fn tier(study: &Study, budget_s: f64) -> Result<PackingTier, PrecisionError> {
+pub(super) fn tier(study: &PrecisionStudy, budget_s: f64) -> Result<PackingTier, RunError> {
     let gradation = &study.case.filter;
     let mut packings = Vec::new();
     let mut shapes: Vec<(&str, Packing)> = Vec::new();
-    for (friction, grain_s) in GRAIN_S {
+    for friction in FRICTIONS {
+        let grain_s = small_packing_grain_seconds(friction);
         let part = if friction > 0.0 { WITH_FRICTION } else { 1.0 - WITH_FRICTION };
         let setting_s = |grains: usize| grain_s * grains as f64 * ALL_COST;
         let wide = |grains: &&usize| width_by_largest(gradation, **grains) >= 3.0;
@@ -87,14 +90,12 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<PackingTier, Precisio
             // With friction something is always shown; without, only where it is paid for.
             (None, Some(&grains)) if friction > 0.0 => grains,
             _ => {
-                (study.tell)(&format!(
-                    "packing: friction {friction} left out: too many grains for the budget"
-                ));
+                study.tell(&format!("packing: friction {friction} left out: too many grains for the budget"));
                 continue;
             }
         };
         let seeds = affordable(part * budget_s, setting_s(grains), SEEDS.0, SEEDS.1);
-        (study.tell)(&format!(
+        study.tell(&format!(
             "packing: friction {friction}, {grains} grains, {} settings, {seeds} seeds",
             CHANGES.len()
         ));
@@ -129,7 +130,7 @@ fn width_by_largest(gradation: &Gradation, grains: usize) -> f64 {
     libm::cbrt(grains as f64 * grain_mm3 / 0.6) / gradation.largest_mm()
 }
 
-fn made(gradation: &Gradation, settings: &Settings) -> Result<Made, PrecisionError> {
+fn made(gradation: &Gradation, settings: &Settings) -> Result<Made, RunError> {
     let start = random_start(&draw(gradation, settings.grains, settings.seed), settings)?;
     let mut compression = Compression::new(&start, settings)?;
     let (outcome, core_seconds) = timed(|| compression.run(|_| true));
@@ -186,7 +187,7 @@ fn packing_row(friction: f64, change: (&str, f64), made: &[Made], reference: &[M
 }
 
 /// The quickest of three triangulations and measurements.
-fn triangulated(name: &str, packing: &Packing) -> Result<TriangulationRow, PrecisionError> {
+fn triangulated(name: &str, packing: &Packing) -> Result<TriangulationRow, RunError> {
     let (mut triangulate, mut measure) = (f64::INFINITY, f64::INFINITY);
     let mut last = None;
     for _ in 0..3 {

@@ -7,9 +7,10 @@
 use super::changes::Change;
 use super::comparison::{Replicates, mean, paired_difference};
 use super::first_run::{FirstRun, ScaledScene, nominal};
-use super::study::{PrecisionError, Study};
+use super::study::PrecisionStudy;
 use super::work::affordable;
 use crate::outcome::precision::{SamplingLine, SamplingRow, SamplingTier, merit, sd_estimate};
+use crate::run::error::RunError;
 use crate::walk::{Engine, Sampling};
 
 /// A way of drawing and moving base particles; under all of them the eroded mass has one expectation. The
@@ -56,9 +57,9 @@ const ENOUGH: u64 = 40;
 const GROUPS: u64 = 4;
 
 /// The tier.
-pub(super) fn tier(study: &Study, budget_s: f64) -> Result<SamplingTier, PrecisionError> {
+pub(super) fn tier(study: &PrecisionStudy, budget_s: f64) -> Result<SamplingTier, RunError> {
     let scene = ScaledScene::affordable(study, ENOUGH * (KINDS.len() * VARIANTS.len()) as u64, budget_s)?;
-    (study.tell)(&format!("sampling: on {}", scene.words()));
+    study.tell(&format!("sampling: on {}", scene.words()));
     let network = scene.network(study.seed(1))?;
     let n_base = scene.run().n_base;
     let mut variants = Vec::new();
@@ -71,7 +72,7 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<SamplingTier, Precisi
             _ => 0.0,
         };
         if costs * (2 * REPLICATES.0) as f64 > 0.7 * budget_s {
-            (study.tell)(&format!("sampling: {} left out: {costs:.0} s a replicate", variant.name));
+            study.tell(&format!("sampling: {} left out: {costs:.0} s a replicate", variant.name));
             continue;
         }
         let pilot = run.walk(&network, study.seed(1))?;
@@ -79,7 +80,7 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<SamplingTier, Precisi
     }
     let all: f64 = variants.iter().map(|(_, _, cost, _)| cost).sum();
     let replicates = affordable(budget_s, all * KINDS.len() as f64, REPLICATES.0, REPLICATES.1);
-    (study.tell)(&format!("sampling: {replicates} replicates of {} lines", variants.len() * KINDS.len()));
+    study.tell(&format!("sampling: {replicates} replicates of {} lines", variants.len() * KINDS.len()));
     let mut sampling = SamplingTier { on: scene.words(), rows: Vec::new(), lines: Vec::new() };
     for (kind, networks) in KINDS.into_iter().enumerate() {
         let mut first = None;

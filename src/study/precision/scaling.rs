@@ -3,10 +3,11 @@
 use std::time::Instant;
 
 use super::first_run::{FirstRun, nominal};
-use super::study::{PrecisionError, Study};
+use super::study::{PrecisionStudy, stopped};
 use super::work::all_threads;
 use crate::network::Network;
 use crate::outcome::precision::ScalingRow;
+use crate::run::error::RunError;
 use crate::walk::{Engine, threads};
 
 const ENGINES: [Engine; 3] = [Engine::Particles, Engine::Counts, Engine::Expected];
@@ -18,7 +19,7 @@ const SIDES: [u32; 6] = [10, 14, 20, 28, 40, 56];
 const MOST: u64 = 1_000_000_000_000;
 
 /// The tier.
-pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Vec<ScalingRow>, PrecisionError> {
+pub(super) fn tier(study: &PrecisionStudy, budget_s: f64) -> Result<Vec<ScalingRow>, RunError> {
     let scene = FirstRun::of(study);
     let network = study.network(study.shape(), study.seed(1))?;
     let mut rows = Vec::new();
@@ -66,20 +67,20 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Vec<ScalingRow>, Prec
 
 /// A run on so many threads, and its counted cost (s).
 fn one(
-    study: &Study,
+    study: &PrecisionStudy,
     against: &str,
     run: &FirstRun,
     network: &Network,
     count: usize,
-) -> Result<(ScalingRow, f64), PrecisionError> {
-    (study.tell)(&format!(
+) -> Result<(ScalingRow, f64), RunError> {
+    study.tell(&format!(
         "scaling: {}, {:e} base particles, {} voids, {count} threads",
         run.engine.name(),
         run.n_base,
         network.voids()
     ));
-    if study.stop.load(std::sync::atomic::Ordering::Relaxed) {
-        return Err(PrecisionError::Stopped);
+    if study.callbacks.is_stopped() {
+        return Err(stopped());
     }
     let pool = threads(count, false)?;
     let (begun, before) = (Instant::now(), all_threads());

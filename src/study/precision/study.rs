@@ -1,13 +1,10 @@
-//! What a precision study is given: a scene, its parts, a budget; and why it can end early.
+//! What a precision study is given: a scene, its tiers, a budget.
 
-use std::sync::atomic::AtomicBool;
+use std::str::FromStr;
 
-use crate::case::{Case, CaseError};
-use crate::constrictions::{ConstrictionsError, CurveError, TriangulationError};
-use crate::gradation::GradationError;
-use crate::network::NetworkError;
-use crate::packing::PackingError;
-use crate::walk::WalkError;
+use crate::case::Case;
+use crate::run::callbacks::{Callbacks, Event};
+use crate::run::error::RunError;
 
 /// A part of a precision study, as the table of [the module](super) lists them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,43 +46,18 @@ impl Tier {
     }
 }
 
-/// Why a study ended early.
-#[derive(Debug, thiserror::Error)]
-pub enum PrecisionError {
-    /// The scene.
-    #[error(transparent)]
-    Case(#[from] CaseError),
-    /// A gradation.
-    #[error(transparent)]
-    Gradation(#[from] GradationError),
-    /// A network.
-    #[error(transparent)]
-    Network(#[from] NetworkError),
-    /// A walk.
-    #[error(transparent)]
-    Walk(#[from] WalkError),
-    /// A packing.
-    #[error(transparent)]
-    Packing(#[from] PackingError),
-    /// A triangulation.
-    #[error(transparent)]
-    Triangulation(#[from] TriangulationError),
-    /// A packing's constrictions.
-    #[error(transparent)]
-    Constrictions(#[from] ConstrictionsError),
-    /// A constriction curve.
-    #[error(transparent)]
-    Curve(#[from] CurveError),
-    /// Threads cannot be had.
-    #[error("cannot start a thread: {0}")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
-    /// It was asked to stop.
-    #[error("stopped on request; a precision study begins anew")]
-    Stopped,
+impl FromStr for Tier {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let named = Self::ALL.into_iter().find(|tier| tier.name() == text);
+        let allowed = || Self::ALL.map(Self::name).join(", ");
+        named.ok_or_else(|| format!("there is no such tier; allowed: {}", allowed()))
+    }
 }
 
 /// What is studied, and how much of it.
-pub struct Study<'a> {
+pub struct PrecisionStudy<'a> {
     /// The scene.
     pub case: &'a Case,
     /// Tiers, each once.
@@ -94,8 +66,18 @@ pub struct Study<'a> {
     pub budget_s: f64,
     /// Runs side by side.
     pub threads: usize,
-    /// Called with a line of text where a piece of work begins.
-    pub tell: &'a (dyn Fn(&str) + Sync),
-    /// Set to stop.
-    pub stop: &'a AtomicBool,
+    /// Who follows it, and stops it.
+    pub callbacks: &'a Callbacks<'a>,
+}
+
+impl PrecisionStudy<'_> {
+    /// Says what it is at.
+    pub(super) fn tell(&self, what: &str) {
+        (self.callbacks.on_event)(Event::Studying(what));
+    }
+}
+
+/// It was asked to stop.
+pub(super) fn stopped() -> RunError {
+    RunError::failed("stopped on request; a precision study begins anew")
 }

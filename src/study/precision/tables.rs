@@ -8,7 +8,10 @@ use crate::outcome::precision::{NetworkRow, Precision};
 ///
 /// # Errors
 /// None that numbers and names could cause.
-pub fn tables(of: &Precision, networks: &[NetworkRow]) -> Result<Vec<(&'static str, Vec<u8>)>, csv::Error> {
+pub(super) fn tables(
+    of: &Precision,
+    networks: &[NetworkRow],
+) -> Result<Vec<(&'static str, Vec<u8>)>, csv::Error> {
     let mut files = Vec::new();
     if let Some(exact) = &of.exact {
         files.push(("exact.csv", table(&exact.rows)?));

@@ -10,10 +10,11 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::comparison::compared;
 use super::networks::given;
-use super::study::{PrecisionError, Study};
+use super::study::PrecisionStudy;
 use super::work::{affordable, timed};
 use crate::network::{END, Network};
 use crate::outcome::precision::BiasRow;
+use crate::run::error::RunError;
 use crate::stream::{Key, Purpose, below, unit};
 
 /// The lattice of the twins, at most.
@@ -45,7 +46,7 @@ struct Particle {
 }
 
 /// The twins as rows of the tier of biases.
-pub(super) fn rows(study: &Study, budget_s: f64) -> Result<Vec<BiasRow>, PrecisionError> {
+pub(super) fn rows(study: &PrecisionStudy, budget_s: f64) -> Result<Vec<BiasRow>, RunError> {
     let Some(shape) = study.shape().map(|n| std::array::from_fn(|axis| n[axis].min(LARGEST[axis]))) else {
         return Ok(Vec::new());
     };
@@ -60,7 +61,7 @@ pub(super) fn rows(study: &Study, budget_s: f64) -> Result<Vec<BiasRow>, Precisi
     ];
     let each_s = PARTICLE_S * n_base as f64 * kinds.len() as f64;
     let replicates = affordable(budget_s, each_s, REPLICATES.0, REPLICATES.1);
-    (study.tell)(&format!(
+    study.tell(&format!(
         "bias: twins of {n_base} particles on {} x {} x {} voids, {replicates} replicates",
         shape[0], shape[1], shape[2]
     ));
@@ -79,7 +80,7 @@ pub(super) fn rows(study: &Study, budget_s: f64) -> Result<Vec<BiasRow>, Precisi
 }
 
 /// Constriction sizes in 64 bits, from the draws that [`Network::cubic`] makes them of.
-fn sizes(study: &Study, count: usize, rules: Rules, seed: u64) -> Vec<f64> {
+fn sizes(study: &PrecisionStudy, count: usize, rules: Rules, seed: u64) -> Vec<f64> {
     let case = study.case;
     let mut draws = Key { seed, purpose: Purpose::Network, run: 0, increment: 0, chunk: 0 }.generator();
     let mut one = || case.curve.quantile(unit(draws.next_u64())) / case.unit_mm;
@@ -94,12 +95,12 @@ impl Rules {
 
 /// One run on a clean lattice, with the scene's curve, base and injection.
 fn eroded_mass_fraction(
-    study: &Study,
+    study: &PrecisionStudy,
     shape: [u32; 3],
     n_base: u64,
     rules: Rules,
     seed: u64,
-) -> Result<f64, PrecisionError> {
+) -> Result<f64, RunError> {
     let case = study.case;
     let count = Network::lattice_constrictions(shape)?;
     let diameter = sizes(study, count, rules, seed);

@@ -1,11 +1,11 @@
 //! Work side by side, each piece on one thread, and the processor time it takes.
 
+use super::study::{PrecisionStudy, stopped};
+use crate::run::error::RunError;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rustix::time::{ClockId, clock_gettime};
-
-use super::study::{PrecisionError, Study};
 
 /// Processor time of this thread (s).
 pub(super) fn this_thread() -> f64 {
@@ -33,31 +33,30 @@ pub(super) fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
 /// takes (s).
 pub(super) fn summed(
     mut pieces: impl Iterator<Item = u64>,
-    work: impl Fn(u64) -> Result<u64, PrecisionError>,
-) -> Result<(u64, f64), PrecisionError> {
-    let (sum, seconds) =
-        timed(|| pieces.try_fold(0, |sum, piece| Ok::<_, PrecisionError>(sum + work(piece)?)));
+    work: impl Fn(u64) -> Result<u64, RunError>,
+) -> Result<(u64, f64), RunError> {
+    let (sum, seconds) = timed(|| pieces.try_fold(0, |sum, piece| Ok::<_, RunError>(sum + work(piece)?)));
     Ok((sum?, seconds))
 }
 
-impl Study<'_> {
+impl PrecisionStudy<'_> {
     /// `work(0 .. count)`, pieces side by side, each on one thread alone; in order.
     pub(super) fn side_by_side<T: Send>(
         &self,
         count: usize,
-        work: impl Fn(usize) -> Result<T, PrecisionError> + Sync,
-    ) -> Result<Vec<T>, PrecisionError> {
+        work: impl Fn(usize) -> Result<T, RunError> + Sync,
+    ) -> Result<Vec<T>, RunError> {
         let next = AtomicUsize::new(0);
-        let done: Mutex<Vec<(usize, Result<T, PrecisionError>)>> = Mutex::new(Vec::new());
-        let worker = || -> Result<(), PrecisionError> {
+        let done: Mutex<Vec<(usize, Result<T, RunError>)>> = Mutex::new(Vec::new());
+        let worker = || -> Result<(), RunError> {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
             loop {
                 let piece = next.fetch_add(1, Ordering::Relaxed);
                 if piece >= count {
                     return Ok(());
                 }
-                if self.stop.load(Ordering::Relaxed) {
-                    return Err(PrecisionError::Stopped);
+                if self.callbacks.is_stopped() {
+                    return Err(stopped());
                 }
                 let made = pool.install(|| work(piece));
                 done.lock().unwrap_or_else(|e| e.into_inner()).push((piece, made));

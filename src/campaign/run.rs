@@ -1,0 +1,216 @@
+//! Walks a plan, collects it, and makes one of its packings.
+
+use std::path::{Path, PathBuf};
+
+use super::cases::{CASES, CasePart, CaseState, Drafts, FailedCase, PreparedCase, named, wanted};
+use super::ledger;
+use super::plan::CampaignPlan;
+use super::run_cases::{CampaignCallbacks, CaseRunner};
+use crate::case::{PackedFilter, PackingPlan};
+use crate::outcome::ledger::LedgerLine;
+use crate::run::allocation::Allocation;
+use crate::run::callbacks::Callbacks;
+use crate::run::checkpoints::CheckpointInterval;
+use crate::run::error::RunError;
+use crate::run::folder::{FolderKind, claim, shown};
+use crate::run::machine::{on_threads, threads};
+use crate::run::pack::provide;
+use crate::run::prepare::PrepareOptions;
+
+/// How a campaign is walked; no setting changes a result.
+#[derive(Clone, Debug)]
+pub struct CampaignOptions {
+    /// Folder for the results, which several processes may share.
+    pub out: PathBuf,
+    /// Which cases this process sees to.
+    pub part: CasePart,
+    /// Folder in which the packings of filters are kept; `packings` in `out` without one.
+    pub packings: Option<PathBuf>,
+    /// Memory that the walks may take (bytes); 80 % of what is available without it.
+    pub memory: Option<u64>,
+    /// Worker threads; without a number as many as a cluster's job has, else one per core.
+    pub threads: Option<usize>,
+    /// How often a case that is being walked is saved.
+    pub checkpoint_interval: CheckpointInterval,
+    /// What a case's `manifest.json` says that it was started with.
+    pub command: String,
+}
+
+impl Default for CampaignOptions {
+    fn default() -> Self {
+        Self {
+            out: "voidwalk-campaign".into(),
+            part: CasePart::All,
+            packings: None,
+            memory: None,
+            threads: None,
+            checkpoint_interval: CheckpointInterval::default(),
+            command: String::new(),
+        }
+    }
+}
+
+impl CampaignOptions {
+    /// Folder of the packings.
+    pub(super) fn packings(&self) -> PathBuf {
+        self.packings.clone().unwrap_or_else(|| self.out.join("packings"))
+    }
+
+    /// The filter of a packing that is there.
+    pub(super) fn packed(&self, plan: &PackingPlan) -> Result<Option<PackedFilter>, RunError> {
+        Ok(PackedFilter::read(&self.packings().join(plan.folder_name()), plan)?)
+    }
+}
+
+/// A campaign of which this process has done what it can.
+pub struct FinishedCampaign {
+    /// Finished cases in the order of the plan; none where only a part of it was seen to.
+    pub lines: Option<Vec<LedgerLine>>,
+    /// Cases that could not be walked.
+    pub failed: Vec<FailedCase>,
+    /// How many cases were seen to.
+    pub cases: usize,
+}
+
+impl FinishedCampaign {
+    /// What a user must know if cases could not be walked.
+    pub fn problem(&self) -> Option<RunError> {
+        let (failed, of) = (self.failed.len(), self.cases);
+        if failed == 0 {
+            return None;
+        }
+        let counted =
+            format!("{failed} of {of} {} could not be walked", if of == 1 { "case" } else { "cases" });
+        let others = if failed < of { "; the others are done" } else { "" };
+        Some(RunError::failed(format!("{counted}{others}\n{}", named(&self.failed))))
+    }
+}
+
+/// The names of the cases that a process would see to, each found sound.
+///
+/// # Errors
+/// There is no such part of the plan; a case that is wrong.
+pub fn names(plan: &CampaignPlan, part: &CasePart) -> Result<Vec<String>, RunError> {
+    let wanted = wanted(plan, part)?;
+    let names = wanted.iter().map(|case| case.name.clone()).collect();
+    Drafts::new(wanted).map(|_| names)
+}
+
+/// Walks the cases of a plan that are not done, packing their filters first, and collects the whole plan.
+/// Several processes may be at it; each waits for what others have begun.
+///
+/// # Errors
+/// A plan or case that is wrong and a folder that cannot be claimed are refused before any work; then what
+/// concerns all cases. What concerns one is in [`FinishedCampaign::failed`]. After a stop, the same call
+/// continues.
+pub fn run(
+    plan: &CampaignPlan,
+    options: &CampaignOptions,
+    callbacks: &CampaignCallbacks,
+) -> Result<FinishedCampaign, RunError> {
+    let wanted = wanted(plan, &options.part)?;
+    let count = wanted.len();
+    let drafts = Drafts::new(wanted)?;
+    let pool = threads(options.threads)?;
+    let threads = pool.current_num_threads();
+    let folder = claim(&options.out, FolderKind::Campaign, false)?;
+    let (out, packings) = (folder.path(), options.packings());
+    let prepare = PrepareOptions { packings, memory: options.memory, threads: options.threads };
+    let limits = prepare.limits(out);
+    let (cases, mut failed) = drafts.finish(
+        |packing| pool.install(|| provide(packing, &prepare.packings, &callbacks.run)),
+        |case| Ok(case.place(&limits, threads as u64, out)?),
+    )?;
+    if cases.is_empty() && drafts.packings().is_empty() {
+        return Err(RunError::Refused(named(&failed)));
+    }
+    (callbacks.on_cases)(cases.len(), cases.iter().filter(|case| case.line(out).is_some()).count());
+    let runner = CaseRunner {
+        out,
+        threads,
+        callbacks,
+        checkpoint_interval: options.checkpoint_interval,
+        job: Allocation::here().map(|allocation| allocation.job),
+        command: options.command.clone(),
+    };
+    let result = runner.run(&cases);
+    let mut lines = None;
+    if options.part == CasePart::All {
+        // The whole plan is collected, whichever of its cases this process was at, and whatever has ended it.
+        lines = Some(write_ledger(plan, &cases, out, &callbacks.run)?);
+    }
+    failed.extend(result?);
+    Ok(FinishedCampaign { lines, failed, cases: count })
+}
+
+/// Collects finished cases into the campaign's folder.
+fn write_ledger(
+    plan: &CampaignPlan,
+    cases: &[PreparedCase],
+    out: &Path,
+    callbacks: &Callbacks,
+) -> Result<Vec<LedgerLine>, RunError> {
+    let lines = ledger::collect(plan, cases, out)?;
+    callbacks.results(FolderKind::Campaign, out)?;
+    Ok(lines)
+}
+
+/// Collects a campaign whose cases are all done.
+///
+/// # Errors
+/// A folder without cases; cases that are missing, each with what is known of it. Nothing is written then.
+pub fn collect(
+    plan: &CampaignPlan,
+    options: &CampaignOptions,
+    callbacks: &Callbacks,
+) -> Result<Vec<LedgerLine>, RunError> {
+    let drafts = Drafts::new(wanted(plan, &CasePart::All)?)?;
+    let name = shown(&options.out);
+    if !options.out.join(CASES).is_dir() {
+        let problem = "holds no cases of a campaign; nothing of the plan has been walked here";
+        return Err(RunError::Refused(format!("{name}: {problem}")));
+    }
+    let folder = claim(&options.out, FolderKind::Campaign, false)?;
+    let not_packed = || RunError::failed("not begun: its filter has not been packed");
+    let (cases, mut missing) =
+        drafts.finish(|packing| options.packed(packing)?.ok_or_else(not_packed), |_| Ok(()))?;
+    for case in cases.iter().filter(|case| case.line(folder.path()).is_none()) {
+        let problem = match CaseState::of(case, folder.path()) {
+            CaseState::NotBegun => "not begun".to_owned(),
+            CaseState::Walking(holder) => format!("being walked ({holder})"),
+            CaseState::Saved => "stopped or killed; its checkpoints are kept".to_owned(),
+            CaseState::Failed(problem) => format!("could not be walked: {problem}"),
+        };
+        missing.push(FailedCase { case: case.planned.name.clone(), problem });
+    }
+    if !missing.is_empty() {
+        return Err(RunError::Refused(format!(
+            "{name}: {} of {} cases are missing, nothing is written; submit the campaign again to continue\n\
+             {}",
+            missing.len(),
+            plan.cases.len(),
+            named(&missing)
+        )));
+    }
+    write_ledger(plan, &cases, folder.path(), callbacks)
+}
+
+/// Makes one of the packings that a plan needs, counted from 1 in the order of its cases.
+///
+/// # Errors
+/// There is no such packing; then as [`provide`].
+pub fn make_packing(
+    plan: &CampaignPlan,
+    number: u64,
+    options: &CampaignOptions,
+    callbacks: &Callbacks,
+) -> Result<(), RunError> {
+    let drafts = Drafts::new(wanted(plan, &CasePart::All)?)?;
+    let _folder = claim(&options.out, FolderKind::Campaign, false)?;
+    let all = drafts.packings();
+    let found = usize::try_from(number).ok().and_then(|number| all.get(number.checked_sub(1)?).copied());
+    let packing = found.ok_or_else(|| {
+        RunError::refused(format!("there is no packing {number}: the plan needs {}", all.len()))
+    })?;
+    on_threads(options.threads, || provide(packing, &options.packings(), callbacks)).map(drop)
+}

@@ -1,0 +1,154 @@
+//! `voidwalk campaign`: the cases of a plan, by as many processes as are started on its folder.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use super::args::CampaignArgs;
+use super::case_progress::CaseProgress;
+use super::print::{percent, plain, shown, to_stdout};
+use super::progress::followed;
+use super::run::command_line;
+use crate::campaign::cluster::scripts::quoted_if_needed;
+use crate::campaign::{
+    self, CampaignCallbacks, CampaignOptions, CampaignPlan, CasePart, FinishedCampaign, JobOptions,
+    WrittenJobs,
+};
+use crate::outcome::ledger::LedgerLine;
+use crate::outcome::record::Verdict;
+use crate::run::RunError;
+use crate::run::allocation::Allocation;
+use crate::run::cost::duration;
+
+/// A summary names no more cases than this.
+const SHOWN: usize = 20;
+
+impl CampaignArgs {
+    fn options(&self) -> CampaignOptions {
+        CampaignOptions {
+            out: self.out.clone(),
+            part: match (&self.case, &self.task) {
+                (Some(name), _) => CasePart::Named(name.clone()),
+                (None, task) => task.clone().unwrap_or_default(),
+            },
+            packings: self.packings.clone(),
+            memory: self.memory,
+            threads: self.walk.threads,
+            checkpoint_interval: self.walk.checkpoint_every,
+            command: command_line(),
+        }
+    }
+}
+
+/// Walks a plan's cases and collects what came of them, or does the part of it that is asked for.
+pub fn campaign(args: &CampaignArgs) -> Result<(), RunError> {
+    let (plan, options, quiet) = (CampaignPlan::read(&args.plan)?, args.options(), args.walk.quiet);
+    if args.list {
+        let names = campaign::names(&plan, &options.part)?;
+        to_stdout(&names.iter().map(|name| plain(name) + "\n").collect::<String>());
+        return Ok(());
+    }
+    if args.slurm {
+        return write_scripts(args, &plan, &options);
+    }
+    if let Some(number) = args.make_packing {
+        return followed(quiet, |run| campaign::make_packing(&plan, number, &options, run));
+    }
+    let (lines, problem) = if args.collect {
+        (Some(followed(quiet, |run| campaign::collect(&plan, &options, run))?), None)
+    } else {
+        let finished = walk(args, &plan, &options)?;
+        let problem = finished.problem();
+        (finished.lines, problem)
+    };
+    if let Some(lines) = lines.filter(|_| !quiet) {
+        to_stdout(&words(&lines, &args.out));
+    }
+    problem.map_or(Ok(()), Err)
+}
+
+fn walk(
+    args: &CampaignArgs,
+    plan: &CampaignPlan,
+    options: &CampaignOptions,
+) -> Result<FinishedCampaign, RunError> {
+    let progress = CaseProgress::new(args.walk.quiet, Allocation::here().is_some());
+    followed(args.walk.quiet, |run| {
+        let callbacks = CampaignCallbacks {
+            run: *run,
+            on_cases: &|total, done| progress.begin(total, done),
+            on_case: &|case, event| progress.tell(case, event),
+        };
+        let finished = campaign::run(plan, options, &callbacks);
+        progress.end();
+        finished
+    })
+}
+
+fn words(lines: &[LedgerLine], out: &Path) -> String {
+    let mut text = String::new();
+    for verdict in [Verdict::None, Verdict::Some, Verdict::Continuing, Verdict::Undecided] {
+        let count = lines.iter().filter(|line| line.verdict == verdict).count();
+        if count > 0 {
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "{count:>5}  {}", verdict.words());
+        }
+    }
+    for line in lines.iter().filter(|_| lines.len() <= SHOWN) {
+        let eroded: Vec<String> =
+            line.runs.iter().map(|run| percent(run.eroded_mass_fraction.mean)).collect();
+        let eroded = eroded.join(" then ");
+        let _ =
+            writeln!(text, "{}: {}, {eroded} of the mass eroded", plain(&line.case), line.verdict.words());
+    }
+    let seconds: f64 = lines.iter().map(|line| line.made.seconds).sum();
+    let page = shown(&out.join("report.html"));
+    let _ = writeln!(text, "{} cases, {seconds:.1} s of walks; report: {page}", lines.len());
+    text
+}
+
+/// Writes the job scripts for the cases that are not done.
+fn write_scripts(
+    args: &CampaignArgs,
+    plan: &CampaignPlan,
+    options: &CampaignOptions,
+) -> Result<(), RunError> {
+    let jobs = JobOptions {
+        program: std::env::current_exe().map_err(RunError::failed)?,
+        plan: args.plan.clone(),
+        tasks: args.tasks.map(usize::from),
+    };
+    let written = followed(args.walk.quiet, |run| campaign::write_job_scripts(plan, options, &jobs, run))?;
+    to_stdout(&jobs_in_words(&written));
+    Ok(())
+}
+
+fn jobs_in_words(jobs: &WrittenJobs) -> String {
+    if jobs.cases == 0 {
+        return format!(
+            "All {} cases are done: --collect instead of --slurm writes the ledger and the page\n",
+            jobs.done
+        );
+    }
+    let mut lines = Vec::new();
+    if jobs.done > 0 {
+        lines.push(format!("{} cases are done already", jobs.done));
+    }
+    let (packings, largest) = jobs.packings;
+    if packings > 0 {
+        let longest = duration(largest.seconds);
+        lines.push(format!("{packings} packings first, the longest about {longest}"));
+    }
+    lines.push(format!(
+        "{} cases in {} tasks, the longest about {}; asked for a task: processors {}, memory {} MB, \
+         time {} min",
+        jobs.cases,
+        jobs.tasks,
+        duration(jobs.walk.seconds),
+        jobs.processors,
+        jobs.walk.megabytes(),
+        jobs.walk.minutes()
+    ));
+    lines.push("Submit them (options of sbatch may follow, as --partition=NAME):".into());
+    lines.push(format!("  sh {}", quoted_if_needed(&jobs.submit)));
+    lines.iter().map(|line| plain(line) + "\n").collect()
+}

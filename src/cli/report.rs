@@ -1,0 +1,34 @@
+//! `voidwalk report`, and the pages of all commands.
+
+use std::path::{Path, PathBuf};
+
+use super::print::{shown, to_stdout};
+use crate::report;
+use crate::run::folder::claim;
+use crate::run::{FolderKind, RunError};
+
+/// Writes the report of a finished folder again.
+pub fn report(folder: &Path) -> Result<(), RunError> {
+    let Some(kind) = FolderKind::of(folder).filter(|kind| *kind != FolderKind::Constrictions) else {
+        let problem = "holds no outcome.json, packing.json, campaign.json, percolation.json or \
+            precision.json; name the folder of a finished run, packing, campaign or study";
+        return Err(RunError::Refused(format!("{}: {problem}", shown(folder))));
+    };
+    let claimed = claim(folder, kind, true)?;
+    let page = page(kind, claimed.path()).map_err(RunError::failed)?;
+    to_stdout(&format!("{}\n", shown(&page)));
+    Ok(())
+}
+
+/// Writes the page of results that are whole; a set of constrictions has none.
+pub fn page(kind: FolderKind, folder: &Path) -> Result<PathBuf, report::ReportError> {
+    let written = match kind {
+        FolderKind::Run => report::write(folder),
+        FolderKind::Packing => report::write_packing(folder),
+        FolderKind::Campaign => report::write_campaign(folder),
+        FolderKind::Percolation => report::write_percolation(folder),
+        FolderKind::Precision => report::write_precision(folder),
+        FolderKind::Constrictions => return Ok(folder.to_owned()),
+    };
+    written.map(|written| written.page)
+}

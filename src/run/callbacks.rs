@@ -1,0 +1,86 @@
+//! How a caller follows the work, and stops it.
+
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::error::{AnyError, RunError};
+use super::folder::FolderKind;
+use crate::case::PackingPlan;
+use crate::packing::CompressionProgress;
+
+/// What happens while a filter is packed and a case is walked.
+#[derive(Clone, Copy, Debug)]
+pub enum Event<'a> {
+    /// Another process makes the packing that is needed; it is waited for.
+    PackingElsewhere {
+        /// The packing's folder.
+        folder: &'a Path,
+        /// Who makes it.
+        holder: &'a str,
+    },
+    /// A filter is packed, from the start or from where it was stopped.
+    PackingBegun(&'a PackingPlan),
+    /// How far the packing is.
+    Packing(&'a CompressionProgress),
+    /// The packing has ended, well or not.
+    PackingEnded,
+    /// Replicates are walked: so many runs, as far as is known.
+    WalkBegun {
+        /// How many.
+        runs: u64,
+    },
+    /// An increment of some run is done.
+    Increment {
+        /// Replicate, counted from 1.
+        replicate: u64,
+        /// Run, counted from 1.
+        run: u64,
+        /// The increment.
+        increment: u64,
+        /// Base particles still moving.
+        moving: u64,
+    },
+    /// A run is done.
+    RunDone,
+    /// More runs are needed than was known.
+    MoreRuns {
+        /// How many.
+        runs: u64,
+    },
+    /// What a study is at, in words.
+    Studying(&'a str),
+}
+
+/// How a caller follows the work, from any thread, and stops it; the default follows nothing and never stops.
+#[derive(Clone, Copy)]
+pub struct Callbacks<'a> {
+    /// Told of every event.
+    pub on_event: &'a (dyn Fn(Event) + Sync),
+    /// Set to stop: the work ends after the current increment or step, with its progress saved.
+    pub stop: &'a AtomicBool,
+    /// Told what a user must know.
+    pub warn: &'a (dyn Fn(&str) + Sync),
+    /// Called when results of this kind are whole in this folder, before the work counts as done.
+    pub on_results: &'a (dyn Fn(FolderKind, &Path) -> Result<(), AnyError> + Sync),
+}
+
+/// The stop flag of who never stops.
+static NEVER: AtomicBool = AtomicBool::new(false);
+
+impl Default for Callbacks<'_> {
+    fn default() -> Self {
+        Self { on_event: &|_| {}, stop: &NEVER, warn: &|_| {}, on_results: &|_, _| Ok(()) }
+    }
+}
+
+impl Callbacks<'_> {
+    /// Whether the work is to stop.
+    pub fn is_stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    /// Says that results are written.
+    pub(crate) fn results(&self, kind: FolderKind, folder: &Path) -> Result<(), RunError> {
+        (self.on_results)(kind, folder).map_err(RunError::Results)
+    }
+}

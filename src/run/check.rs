@@ -1,0 +1,125 @@
+//! What a run would do, before any of it is done.
+
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::error::RunError;
+use super::prepare::{Draft, PrepareOptions};
+use super::replicates::{left_out_of_first_run, runs_to_walk};
+use crate::case::{CaseError, PackedFilter, PackingPlan};
+use crate::outcome::record::{Inputs, Ratios};
+use crate::scene::Scene;
+use crate::store::Placement;
+
+/// What a run of a scene would do; sizes and times are estimates.
+#[derive(Debug, Serialize)]
+pub struct Check {
+    /// Base particles of a run.
+    pub n_base: u64,
+    /// Base particles by Eq. (2), where the grains per void are known.
+    pub n_base_eq2: Option<u64>,
+    /// Whether a cap made `n_base` smaller than Eq. (2).
+    pub capped: bool,
+    /// Filter grains per void, where known.
+    pub grains_per_void: Option<f64>,
+    /// Mass of base over mass of filter, where known.
+    pub mass_ratio: Option<f64>,
+    /// Base particles that are walked by themselves, at most.
+    pub one_by_one: u64,
+    /// Runs to walk.
+    pub runs_to_walk: u64,
+    /// Increments of insertion of a run, at most.
+    pub increments: u64,
+    /// Memory of a walk (bytes).
+    pub bytes: u64,
+    /// Memory that the walks may take (bytes).
+    pub bytes_allowed: u64,
+    /// Memory in words.
+    pub memory: String,
+    /// Seconds of one core for the walks, the packing apart.
+    pub core_seconds: f64,
+    /// Whether the particles are in files, mapped into memory.
+    pub particles_on_disk: bool,
+    /// Sizes of filter over base.
+    pub ratios: Ratios,
+    /// The packing that is needed.
+    pub packing: Option<PackingCheck>,
+    /// What goes in.
+    pub inputs: Inputs,
+    /// Parts of the program that are not needed.
+    pub left_out: Vec<String>,
+    /// What a user must know.
+    pub warnings: Vec<String>,
+    /// Why a run would be refused all the same: memory does not suffice.
+    #[serde(skip)]
+    pub refusal: Option<CaseError>,
+}
+
+/// The packing that a scene needs.
+#[derive(Clone, Debug, Serialize)]
+pub struct PackingCheck {
+    /// Grains.
+    pub grains: u64,
+    /// Its folder.
+    pub folder: PathBuf,
+    /// Whether it is there; until then the filter's constrictions and grains per void are guesses.
+    pub is_made: bool,
+    /// Steps that it takes.
+    pub steps: u64,
+    /// Seconds of one core that it takes.
+    pub core_seconds: f64,
+}
+
+impl PackingCheck {
+    fn new(plan: &PackingPlan, folder: PathBuf, is_made: bool) -> Self {
+        let grains = plan.compression.grains as u64;
+        Self { grains, folder, is_made, steps: plan.usual_steps(), core_seconds: plan.core_seconds() }
+    }
+}
+
+/// Says what a run of a scene would do, here and with these options; makes no packing and writes nothing.
+///
+/// # Errors
+/// Everything that is wrong with the scene, memory apart: see [`Check::refusal`].
+pub fn check(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError> {
+    let (draft, mut case) = Draft::new(scene)?;
+    let mut packing = None;
+    if let Some(plan) = &draft.packing {
+        let folder = options.packings.join(plan.folder_name());
+        let made = PackedFilter::read(&folder, plan)?;
+        packing = Some(PackingCheck::new(plan, folder, made.is_some()));
+        if made.is_some() {
+            case = draft.case(made)?;
+        }
+    }
+    let here = Path::new(".");
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = options.threads.unwrap_or_else(cores) as u64;
+    let refusal = case.place(&options.limits(here), threads, here).err();
+    let mut left_out = case.left_out();
+    if refusal.is_none() {
+        left_out.extend(left_out_of_first_run(&case).map_err(RunError::refused)?);
+    }
+    Ok(Check {
+        n_base: case.n_base,
+        n_base_eq2: case.n_base_eq2,
+        capped: case.capped,
+        grains_per_void: case.grains_per_void,
+        mass_ratio: case.mass_ratio,
+        one_by_one: case.one_by_one(case.n_base),
+        runs_to_walk: runs_to_walk(&case),
+        increments: case.increments(),
+        bytes: case.bytes(case.n_base),
+        bytes_allowed: case.memory,
+        memory: case.memory_in_words(),
+        core_seconds: case.core_seconds(),
+        particles_on_disk: case.placement != Placement::Memory,
+        ratios: case.ratios(),
+        packing,
+        inputs: case.record(),
+        left_out,
+        warnings: case.warnings(),
+        refusal,
+    })
+}

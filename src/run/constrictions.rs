@@ -1,0 +1,42 @@
+//! Measures the constrictions of a packing from elsewhere and writes them into a folder.
+
+use std::path::{Path, PathBuf};
+
+use super::error::RunError;
+use super::folder::{FolderKind, claim};
+use crate::constrictions::{Constrictions, DEFAULT_MERGE_OVERLAP, Summary};
+use crate::packing::Packing;
+
+/// How constrictions are measured.
+#[derive(Clone, Debug)]
+pub struct ConstrictionsOptions {
+    /// Overlap of two inscribed spheres from which their tetrahedra are one void.
+    pub merge_overlap: f64,
+    /// Folder for the results.
+    pub out: PathBuf,
+    /// Whether earlier results there are replaced.
+    pub overwrite: bool,
+}
+
+impl Default for ConstrictionsOptions {
+    fn default() -> Self {
+        Self { merge_overlap: DEFAULT_MERGE_OVERLAP, out: "voidwalk-constrictions".into(), overwrite: false }
+    }
+}
+
+/// Measures the constrictions of the grains in a file and writes `grains.vtp`, `constrictions.csv`,
+/// `constrictions.vtp` and, last, `constrictions.json`; gives what that file says.
+///
+/// # Errors
+/// Grains that are refused, a folder that cannot be claimed or written.
+pub fn measure_constrictions(packing: &Path, options: &ConstrictionsOptions) -> Result<Summary, RunError> {
+    let packing = Packing::read(packing)?;
+    let found = Constrictions::measure(&packing, options.merge_overlap).map_err(RunError::refused)?;
+    let summary = found.summary()?;
+    let folder = claim(&options.out, FolderKind::Constrictions, options.overwrite)?;
+    folder.write("grains.vtp", packing.to_vtp().as_bytes())?;
+    for (name, text) in found.files()? {
+        folder.write(name, text.as_bytes())?;
+    }
+    Ok(summary)
+}

@@ -1,0 +1,192 @@
+//! Why a command of the program ended early.
+
+use crate::case::{CaseError, PackedError};
+use crate::constrictions::{ConstrictionsError, CurveError, TriangulationError};
+use crate::gradation::GradationError;
+use crate::network::NetworkError;
+use crate::packing::{ImportError, PackingError};
+use crate::scene::SceneError;
+use crate::store::StoreError;
+use crate::store::checkpoint::CheckpointError;
+use crate::walk::WalkError;
+
+/// What ends a command that does not succeed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exit {
+    /// The input is refused before any work, and nothing was written.
+    Refused,
+    /// Stopped on request; progress is saved and the work can be continued.
+    Stopped,
+    /// The work failed.
+    Failed,
+}
+
+impl Exit {
+    /// Exit code of the program.
+    pub fn code(self) -> u8 {
+        match self {
+            Self::Refused => 2,
+            Self::Stopped => 3,
+            Self::Failed => 1,
+        }
+    }
+}
+
+/// An error of any kind, on its way to a user.
+pub type AnyError = Box<dyn std::error::Error + Send + Sync>;
+
+/// Why a command of the program ended early; [`RunError::exit`] says whether it was refused, stopped or
+/// failed.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// A scene or plan that is refused.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A scene that cannot be walked.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// Input that is refused for another reason.
+    #[error("{0}")]
+    Refused(String),
+    /// A folder that cannot be claimed.
+    #[error(transparent)]
+    Claim(StoreError),
+    /// A checkpoint from which the work cannot be continued.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    /// A checkpoint that cannot be written.
+    #[error(transparent)]
+    Save(StoreError),
+    /// A file that cannot be written or read while the work is done.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// Stopped on request.
+    #[error("{0}")]
+    Stopped(String),
+    /// The walk went wrong, or was stopped.
+    #[error(transparent)]
+    Walk(#[from] WalkError),
+    /// Grains that cannot be packed.
+    #[error(transparent)]
+    Packing(#[from] PackingError),
+    /// There is no room for the base particles.
+    #[error("cannot keep {particles} base particles: {source}")]
+    Room {
+        /// Base particles that are walked one by one.
+        particles: u64,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// Results that cannot be put into words.
+    #[error("cannot write {file}: {source}")]
+    Format {
+        /// The file.
+        file: &'static str,
+        /// What is wrong.
+        source: AnyError,
+    },
+    /// What the caller does with results that are written failed.
+    #[error("{0}")]
+    Results(AnyError),
+    /// Anything else that failed.
+    #[error("{0}")]
+    Failed(AnyError),
+}
+
+impl RunError {
+    /// A refusal with this message.
+    pub fn refused(problem: impl std::fmt::Display) -> Self {
+        Self::Refused(problem.to_string())
+    }
+
+    /// A failure with this message.
+    pub fn failed(problem: impl Into<AnyError>) -> Self {
+        Self::Failed(problem.into())
+    }
+
+    /// Whether it was refused, stopped or failed.
+    pub fn exit(&self) -> Exit {
+        let refused_if = |refused| if refused { Exit::Refused } else { Exit::Failed };
+        match self {
+            Self::Scene(_) | Self::Case(_) | Self::Refused(_) => Exit::Refused,
+            Self::Claim(error) => refused_if(error.is_refusal()),
+            Self::Checkpoint(error) => refused_if(!error.is_unreadable()),
+            Self::Stopped(_) | Self::Walk(WalkError::Stopped { .. }) => Exit::Stopped,
+            // What a packing is asked for is checked before its first step.
+            Self::Packing(error) => refused_if(matches!(
+                error,
+                PackingError::Setting { .. }
+                    | PackingError::NarrowCell { .. }
+                    | PackingError::Placement { .. }
+            )),
+            _ => Exit::Failed,
+        }
+    }
+
+    /// Whether the same work may succeed a little later: another process was replacing the same files.
+    pub(crate) fn is_of_files(&self) -> bool {
+        matches!(self, Self::Store(_) | Self::Claim(_) | Self::Format { .. } | Self::Results(_))
+    }
+}
+
+impl From<PackedError> for RunError {
+    fn from(error: PackedError) -> Self {
+        match error {
+            PackedError::Read(error) => Self::Claim(error),
+            other => Self::refused(other),
+        }
+    }
+}
+
+impl From<ImportError> for RunError {
+    fn from(error: ImportError) -> Self {
+        Self::refused(error)
+    }
+}
+
+/// Errors that no input which was accepted causes.
+macro_rules! failures {
+    ($($error:ty),*) => {
+        $(impl From<$error> for RunError {
+            fn from(error: $error) -> Self {
+                Self::failed(error)
+            }
+        })*
+    };
+}
+
+failures!(
+    ConstrictionsError,
+    CurveError,
+    GradationError,
+    NetworkError,
+    TriangulationError,
+    csv::Error,
+    serde_json::Error,
+    rayon::ThreadPoolBuildError
+);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_end_of_a_command_has_its_code() {
+        let codes = [
+            (RunError::refused("no"), 2),
+            (RunError::Stopped("later".into()), 3),
+            (RunError::Walk(WalkError::Stopped { increment: 3 }), 3),
+            (RunError::failed("broken"), 1),
+            (RunError::Store(held()), 1),
+            (RunError::Claim(held()), 2),
+            (RunError::Packing(PackingError::Stopped(1)), 1),
+        ];
+        for (error, code) in codes {
+            assert_eq!(error.exit().code(), code, "{error:?}");
+        }
+    }
+
+    fn held() -> StoreError {
+        StoreError::Held { path: "x".into(), holder: "process 1".into() }
+    }
+}

@@ -1,0 +1,214 @@
+//! Walks a scene into a folder, continues a run that was stopped, and walks a case in memory.
+
+use std::path::{Path, PathBuf};
+use std::time::{Instant, SystemTime};
+
+use super::callbacks::{Callbacks, Event};
+use super::checkpoints::{self, CheckpointInterval, Checkpoints};
+use super::error::{Exit, RunError};
+use super::folder::{FolderKind, claim, claim_first_free, shown};
+use super::machine::on_threads;
+use super::prepare::{PrepareOptions, prepare_into};
+use super::replicates::{ReplicateContext, ReplicateResult, replicates, runs_to_walk, sensitivity};
+use super::results;
+use crate::case::Case;
+use crate::outcome::record::{Outcome, Sensitivity};
+use crate::scene::Scene;
+use crate::store::Folder;
+
+/// How a scene is walked; no setting changes a result.
+#[derive(Clone, Debug, Default)]
+pub struct RunOptions {
+    /// Folder for the results; the first free of `voidwalk-run`, `voidwalk-run-2`, ... without one.
+    pub out: Option<PathBuf>,
+    /// Whether the results of an earlier run in `out` are replaced.
+    pub overwrite: bool,
+    /// Threads, memory and the folder of packings.
+    pub prepare: PrepareOptions,
+    /// How often the walks are saved, so that a run which is killed can be continued.
+    pub checkpoint_interval: CheckpointInterval,
+    /// What `manifest.json` says that the run was started with.
+    pub command: String,
+}
+
+/// A run that is whole.
+pub struct FinishedRun {
+    /// Its folder.
+    pub folder: PathBuf,
+    /// What came of it, as `outcome.json` says.
+    pub outcome: Outcome,
+}
+
+/// Walks a scene and writes its folder; what a stopped run of this very scene has saved there is continued.
+///
+/// # Errors
+/// A scene that is wrong, memory that does not suffice and a folder that cannot be claimed are refused before
+/// any work; then whatever the packing, the walk or the folder brings. After a stop, [`resume`] continues.
+///
+/// # Example
+/// ```
+/// use voidwalk::run::{Callbacks, RunOptions, walk_scene};
+/// use voidwalk::scene::Scene;
+///
+/// let settings = ["replicates=2", "runs=1", "base.n_base=20000", "record.sensitivity=[]"].map(String::from);
+/// let folder = tempfile::tempdir()?;
+/// let options = RunOptions { out: Some(folder.path().join("run")), ..RunOptions::default() };
+/// let run = walk_scene(Scene::built_in(&settings)?, &options, &Callbacks::default())?;
+/// println!("{}: {}", run.folder.display(), run.outcome.verdict.words());
+/// assert!(run.folder.join("outcome.json").is_file());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn walk_scene(
+    scene: Scene,
+    options: &RunOptions,
+    callbacks: &Callbacks,
+) -> Result<FinishedRun, RunError> {
+    on_threads(options.prepare.threads, || walk_here(scene, options, callbacks))
+}
+
+/// Continues a run that was stopped or killed, with the same bits: its scene is the one that its folder
+/// holds, and [`RunOptions::out`] and [`RunOptions::overwrite`] say nothing.
+///
+/// # Errors
+/// A folder that holds no run, or a finished one, is refused; then as [`walk_scene`].
+pub fn resume(folder: &Path, options: &RunOptions, callbacks: &Callbacks) -> Result<FinishedRun, RunError> {
+    let (scene, name) = (folder.join("scene.toml"), shown(folder));
+    if !scene.is_file() {
+        let problem = "holds no scene.toml; name the folder of a run that was stopped";
+        return Err(RunError::Refused(format!("{name}: {problem}")));
+    }
+    if folder.join("manifest.json").is_file() && !Checkpoints::is_in(folder)? {
+        let problem = "this run is finished; voidwalk report writes its page again";
+        return Err(RunError::Refused(format!("{name}: {problem}")));
+    }
+    let options = RunOptions { out: Some(folder.to_owned()), overwrite: false, ..options.clone() };
+    walk_scene(Scene::read(&scene, &[])?, &options, callbacks)
+}
+
+/// Walks a case in memory and writes nothing, on the threads of the pool that it is called in, else on one
+/// per core.
+///
+/// # Errors
+/// A walk that goes wrong, or that was stopped.
+///
+/// # Example
+/// ```
+/// use voidwalk::case::Case;
+/// use voidwalk::run::{Callbacks, walk_case};
+/// use voidwalk::scene::Scene;
+///
+/// let settings = ["replicates=2", "base.n_base=20000", "record.sensitivity=[]"].map(String::from);
+/// let case = Case::new(Scene::built_in(&settings)?)?;
+/// let outcome = walk_case(&case, &Callbacks::default())?;
+/// assert_eq!(outcome.replicates.len(), 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn walk_case(case: &Case, callbacks: &Callbacks) -> Result<Outcome, RunError> {
+    let walk = || {
+        let begun = Instant::now();
+        let context = ReplicateContext { callbacks, checkpoints: None };
+        (callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(case) });
+        let walked = replicates(case, &context)?;
+        let sensitivity = sensitivity(case, &context)?;
+        Ok(results::outcome(case, &walked, sensitivity, begun.elapsed().as_secs_f64()))
+    };
+    match rayon::current_thread_index() {
+        Some(_) => walk(),
+        None => on_threads(None, walk),
+    }
+}
+
+fn walk_here(scene: Scene, options: &RunOptions, callbacks: &Callbacks) -> Result<FinishedRun, RunError> {
+    let wanted = options.out.as_deref();
+    let claim = || match wanted {
+        Some(path) => claim(path, FolderKind::Run, options.overwrite),
+        None => claim_first_free("voidwalk-run"),
+    };
+    let at = wanted.unwrap_or(Path::new("."));
+    let (case, folder) = prepare_into(scene, &options.prepare, at, claim, callbacks)?;
+    for warning in case.warnings() {
+        (callbacks.warn)(&warning);
+    }
+    let started = SystemTime::now();
+    if options.overwrite {
+        checkpoints::discard(folder.path())?;
+    }
+    let fingerprint = case.fingerprint();
+    let saved = Checkpoints::scene_in(folder.path()).map_err(RunError::Checkpoint)?;
+    if saved.is_some_and(|scene| scene != fingerprint) {
+        return Err(RunError::Refused(format!(
+            "{}: holds checkpoints of another scene; continue with that one by `voidwalk resume`, or add \
+             --overwrite",
+            shown(folder.path())
+        )));
+    }
+    results::write_scene(&folder, &case)?;
+    let checkpoints = Checkpoints::new(&folder, &fingerprint, options.checkpoint_interval)?;
+    let run = CaseRun { case: &case, folder: &folder, checkpoints: &checkpoints, callbacks };
+    let outcome = run.walk(|outcome, walked| {
+        let threads = rayon::current_num_threads() as u64;
+        let manifest = results::manifest(&case, threads, started, options.command.clone());
+        results::write(&folder, &case, outcome, walked, &manifest)?;
+        callbacks.results(FolderKind::Run, folder.path())
+    })?;
+    checkpoints.clear()?;
+    Ok(FinishedRun { folder: folder.path().to_owned(), outcome })
+}
+
+/// A case that is walked into a folder.
+struct CaseRun<'a> {
+    case: &'a Case,
+    folder: &'a Folder,
+    checkpoints: &'a Checkpoints,
+    callbacks: &'a Callbacks<'a>,
+}
+
+impl CaseRun<'_> {
+    /// Walks the replicates, writes what came of them, then adds the study of the sensitivity and writes the
+    /// whole.
+    fn walk(
+        &self,
+        write: impl Fn(&Outcome, &[ReplicateResult]) -> Result<(), RunError>,
+    ) -> Result<Outcome, RunError> {
+        let begun = Instant::now();
+        let context = ReplicateContext { callbacks: self.callbacks, checkpoints: Some(self.checkpoints) };
+        let outcome = |walked: &[ReplicateResult], sensitivity: Vec<Sensitivity>| {
+            results::outcome(self.case, walked, sensitivity, begun.elapsed().as_secs_f64())
+        };
+        (self.callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(self.case) });
+        let walked = replicates(self.case, &context).map_err(|error| self.ended(error))?;
+        for problem in self.checkpoints.passed_over() {
+            (self.callbacks.warn)(&format!("{problem}; the checkpoint before it was taken"));
+        }
+        let first = outcome(&walked, Vec::new());
+        if !self.case.sensitivity_factors().is_empty() {
+            // A folder with results counts as finished unless it holds checkpoints, and the study of the
+            // sensitivity is to come.
+            self.checkpoints.flush()?;
+        }
+        write(&first, &walked)?;
+        let sensitivity = sensitivity(self.case, &context).map_err(|error| self.ended(error))?;
+        if sensitivity.is_empty() {
+            return Ok(first);
+        }
+        let whole = outcome(&walked, sensitivity);
+        write(&whole, &walked)?;
+        Ok(whole)
+    }
+
+    /// Saves what is done and not on the disk yet, whatever ended the walk, and says how to continue.
+    fn ended(&self, error: RunError) -> RunError {
+        let flushed = self.checkpoints.flush();
+        match (error.exit(), flushed) {
+            (Exit::Stopped, Ok(())) => RunError::Stopped(format!(
+                "progress saved; continue with `voidwalk resume {}`",
+                shown(self.folder.path())
+            )),
+            (Exit::Stopped, Err(error)) => error.into(),
+            (Exit::Refused, _) => {
+                RunError::Refused(format!("{error}; --overwrite begins anew, another --out leaves it alone"))
+            }
+            _ => error,
+        }
+    }
+}
