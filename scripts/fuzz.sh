@@ -1,16 +1,16 @@
 #!/bin/sh
 # Fuzzes every reader for so many seconds each, one after another, from the seeds in tests/seeds; what was found grows in
-# fuzz/corpus. Ends at the first find and names it: a panic, a hang of 10 s, or more than 256 MB of memory.
+# tests/fuzz/corpus. Ends at the first find and names it: a panic, a hang of 10 s, or more than 256 MB of memory.
 # Needs a nightly toolchain; installs cargo-fuzz where it is missing.
 # Usage: scripts/fuzz.sh [SECONDS] [TARGET...]
 set -eu
-cd "$(dirname "$0")/../fuzz"
+cd "$(dirname "$0")/../tests/fuzz"
 seconds=600
 case ${1:-} in [0-9]*) seconds=$1 && shift ;; esac
 [ $# -gt 0 ] || set -- scene sieve curve network packing checkpoint ledger
 cargo fuzz --version >/dev/null 2>&1 || cargo install --locked cargo-fuzz
 for target in "$@"; do
     mkdir -p "corpus/$target"
-    nice cargo +nightly fuzz run "$target" "corpus/$target" "../tests/seeds/$target" -- \
+    nice cargo +nightly fuzz run "$target" "corpus/$target" "../seeds/$target" -- \
         -max_total_time="$seconds" -timeout=10 -malloc_limit_mb=256 -rss_limit_mb=2048 -print_final_stats=1
 done

@@ -23,14 +23,14 @@ BUGS = {
         "the first exit of every void is 1 % too likely",
         [("src/walk/exits.rs", "sum += area(c);", "sum += area(c) * if c == exits.start { 1.01 } else { 1.0 };")],
         [
-            ("exact_answers", "passive_particles_take_three_moves_a_layer"),
-            ("walk_against_reference", "kernel_and_reference_agree_particle_by_particle"),
+            ("model", "exact_answers::passive_particles_take_three_moves_a_layer"),
+            ("model", "walk_against_reference::kernel_and_reference_agree_particle_by_particle"),
         ],
     ),
     "reused-stream": (
         "the second run steps with the numbers of the first",
         [("src/walk/kernel/mod.rs", "purpose: Purpose::Step,\n        run: state.run,", "purpose: Purpose::Step,\n        run: 1,")],
-        [("walk_against_reference", "kernel_and_reference_agree_particle_by_particle")],
+        [("model", "walk_against_reference::kernel_and_reference_agree_particle_by_particle")],
     ),
     "reused-increment": (
         "streams do not depend on the increment",
@@ -48,7 +48,7 @@ BUGS = {
             ("src/walk/kernel/avx2.rs", "(d, _mm256_set1_ps(chunk.exits.passive_limit)", "(_mm256_set1_ps(-1.0), _mm256_set1_ps(-2.0)"),
             ("src/walk/kernel/avx2.rs", "_mm256_cmp_ps::<_CMP_GT_OQ>(d, width)", "_mm256_cmp_ps::<_CMP_GE_OQ>(d, width)"),
         ],
-        [("exact_answers", "a_particle_as_coarse_as_the_constriction_passes")],
+        [("model", "exact_answers::a_particle_as_coarse_as_the_constriction_passes")],
     ),
     "lost-particle": (
         "one particle in 1.2 million vanishes",
@@ -59,7 +59,7 @@ BUGS = {
                 "*live = kept as u32 - u32::from(kept > 0 && key.chunk == 61 && key.increment == 84);",
             )
         ],
-        [("exact_answers", "a_million_particles_are_all_accounted_for")],
+        [("model", "exact_answers::a_million_particles_are_all_accounted_for")],
     ),
     "binomial-switch": (
         "a binomial draw at the switch between its methods makes one trial too few",

@@ -1,7 +1,7 @@
 //! Arbitrary bytes for the reader `sieve`.
 #![no_main]
 
-#[path = "../../tests/readers/mod.rs"]
+#[path = "../../readers/mod.rs"]
 mod readers;
 
 #[global_allocator]

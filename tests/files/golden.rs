@@ -1,7 +1,7 @@
 //! Checkpoints of every version of the format: those of this version are read and continued to the same answer, older ones are
 //! refused with a sentence that says so.
 //!
-//! A new version of the format adds files and never changes one: `cargo test --release --test golden -- --ignored` writes those
+//! A new version of the format adds files and never changes one: `cargo test --release --test files -- golden --ignored` writes those
 //! of the version at hand.
 
 use std::fs;
@@ -10,9 +10,8 @@ use std::path::{Path, PathBuf};
 use voidwalk::store::checkpoint::{CheckpointError, newest};
 use voidwalk::walk::{Engine, State};
 
-mod readers;
 
-use readers::SmallRun;
+use crate::readers::SmallRun;
 
 /// The version that is read.
 const VERSION: u32 = 2;

@@ -1,0 +1,11 @@
+//! The model itself: gradations, packings, engines and walks against exact answers, slow twins and each other.
+
+mod counts;
+mod counts_distribution;
+mod coverage;
+mod exact_answers;
+mod gradation;
+mod packing;
+mod sampling;
+mod walk_against_reference;
+mod walk_paths;
