@@ -14,8 +14,8 @@ use std::time::Instant;
 use voidwalk::constrictions;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
-use voidwalk::store::checkpoint::{Label, keep, newest};
-use voidwalk::walk::{Engine, Kept, Plan, Progress, SizeClasses, State, Walk};
+use voidwalk::store::checkpoint::{Identity, Label, newest, save};
+use voidwalk::walk::{Engine, Plan, SavedState, SizeClasses, State, Walk, WalkControl};
 
 const SEED: u64 = 1;
 /// With two that do not count.
@@ -49,7 +49,7 @@ fn main() {
         let (round, moving) = (state.increment, state.tally.moving);
         let ratio = checkpoint / plain;
         println!("{round},{moving},{bytes},{checkpoint:.3},{cpu:.3},{plain:.3},{plain_cpu:.3},{ratio:.3}");
-        if round < ROUNDS { Progress::Continue } else { Progress::Stop }
+        if round < ROUNDS { WalkControl::Continue } else { WalkControl::Stop }
     });
     assert!(result.is_err(), "it was stopped");
     let (moving, increment) = (state.tally.moving, state.increment);
@@ -61,9 +61,9 @@ fn main() {
         let ([read, _], bytes) = timed(|| read(&path));
         forget(&path);
         let ([resume, cpu], state) = timed(|| {
-            let mut saved = newest(folder.path(), "x", "").unwrap().0.unwrap();
+            let saved = newest(folder.path(), "x", &Identity::default()).unwrap().0.unwrap();
             let mut state = fresh();
-            state.restore(&network, &mut saved).unwrap();
+            state.restore(&network, &saved).unwrap();
             state
         });
         assert_eq!((state.tally.moving, state.increment), (moving, increment));
@@ -84,8 +84,8 @@ fn timed<T>(work: impl FnOnce() -> T) -> ([f64; 2], T) {
 
 /// Keeps the walk; gives the length of the file.
 fn kept(folder: &Path, state: &State) -> u64 {
-    let label = Label { generation: state.increment, seed: SEED, run: 1, ..Label::default() };
-    keep(folder, "x", &label, &Kept::new(state).sections(state)).unwrap();
+    let label = Label { generation: state.increment, run: 1, ..Label::default() };
+    save(folder, "x", &label, &SavedState::new(state).sections()).unwrap();
     folder.join(format!("x.{}", state.increment % 2)).metadata().unwrap().len()
 }
 

@@ -10,7 +10,7 @@ use std::time::Instant;
 use voidwalk::constrictions;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
-use voidwalk::walk::{Isa, Progress, SizeClasses, State, Supply, Walk};
+use voidwalk::walk::{Isa, SizeClasses, State, Supply, Walk, WalkControl};
 
 const INCREMENTS: u64 = 100;
 
@@ -65,7 +65,7 @@ fn run(n: u64, scene: &str, seed: u64, until: u64, isa: Isa) {
         } else if t == INCREMENTS {
             inserted = now();
         }
-        if t == until { Progress::Stop } else { Progress::Continue }
+        if t == until { WalkControl::Stop } else { WalkControl::Continue }
     });
     let end = now();
     assert!(outcome.is_ok() || state.increment == until);

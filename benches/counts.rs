@@ -12,7 +12,7 @@ use criterion::{Criterion, Throughput};
 use voidwalk::constrictions::find;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
-use voidwalk::walk::{Engine, Plan, Progress, SizeClasses, State, Walk};
+use voidwalk::walk::{Engine, Plan, SizeClasses, State, Walk, WalkControl};
 
 struct Scene {
     network: Network,
@@ -34,7 +34,7 @@ impl Scene {
         let supply = plan.supply(self.sampler.clone(), n, 100, 1, 1);
         let classes = SizeClasses::logarithmic(self.sampler.smallest(), self.sampler.largest(), 64);
         let mut state = State::new(&self.network, &supply, classes, open, 1, 1);
-        Walk::new(&self.network, &supply, &state).run(&mut state, &mut |_| Progress::Continue).unwrap();
+        Walk::new(&self.network, &supply, &state).run(&mut state, &mut |_| WalkControl::Continue).unwrap();
         (state, supply.total())
     }
 }

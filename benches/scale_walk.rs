@@ -12,7 +12,7 @@ use voidwalk::constrictions;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
 use voidwalk::report::figures::{Axis, BLUE, Colour, Dash, Figure, GREEN, Line, Point, Shape, VERMILLION};
-use voidwalk::walk::{Engine, Isa, Plan, Progress, SizeClasses, State, Walk};
+use voidwalk::walk::{Engine, Isa, Plan, SizeClasses, State, Walk, WalkControl};
 
 const SEED: u64 = 1;
 
@@ -61,7 +61,7 @@ fn run(engine: Engine, n: u64, shape: [u32; 3], cu: f64, isa: Isa) {
     let supply = plan.supply(sampler, n, 100, SEED, 1);
     let mut state = State::new(&network, &supply, classes, open, SEED, 1);
     let mut walk = Walk::new(&network, &supply, &state).with_isa(isa);
-    walk.run(&mut state, &mut |_| Progress::Continue).expect("a whole run");
+    walk.run(&mut state, &mut |_| WalkControl::Continue).expect("a whole run");
     let end = now();
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:")?.trim().strip_suffix(" kB"));

@@ -8,7 +8,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 out="${1:-target/paper}"
 plans="paper kenney table3 progress one-size paper-2.5 paper-capped paper-2.5-capped paper-published paper-published-2.5 overlap-0.5"
-cargo build --release --quiet
+cargo build --release --workspace --bins --quiet
 voidwalk=target/release/voidwalk
 mkdir -p "$out"
 if [ -z "${PAGE_ONLY:-}" ]; then
@@ -21,7 +21,7 @@ if [ -z "${PAGE_ONLY:-}" ]; then
         "$voidwalk" percolation --sizes 10,20,30,40,50,60,70,80 --realisations 100 --seed 1 --out "$out/percolation" >/dev/null
     fi
 fi
-"$voidwalk" report "$out"
+target/release/voidwalk-paper "$out"
 [ -n "${NO_COPY:-}" ] && exit 0
 
 results=results/paper

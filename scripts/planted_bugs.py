@@ -106,7 +106,7 @@ def plant(edits):
 def main():
     wanted = sys.argv[1:] or list(BUGS)
     shutil.rmtree(COPY, ignore_errors=True)
-    for part in ["src", "tests", "benches", "results/readme"]:
+    for part in ["src", "tests", "benches", "results/readme", "scripts/paper"]:
         if (ROOT / part).exists():
             shutil.copytree(ROOT / part, COPY / part)
     for file in ["Cargo.toml", "Cargo.lock", "build.rs", "rustfmt.toml", "README.md"]:

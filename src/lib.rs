@@ -13,6 +13,8 @@ pub mod stream;
 
 pub mod store;
 
+pub mod schema;
+
 pub mod gradation;
 
 pub mod packing;

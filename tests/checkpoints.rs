@@ -1,4 +1,4 @@
-//! Runs that are stopped, killed and resumed: at every increment, on other threads, with harmed checkpoints.
+//! Runs that are stopped, killed and resumed: at every increment, on other threads, with corrupt checkpoints.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,8 +9,8 @@ use bitvec::vec::BitVec;
 use serde_json::Value;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
-use voidwalk::store::checkpoint::{Label, keep, newest};
-use voidwalk::walk::{Engine, Kept, Plan, Progress, SizeClasses, State, Supply, Walk};
+use voidwalk::store::checkpoint::{Identity, Label, newest, save};
+use voidwalk::walk::{Engine, Plan, SavedState, SizeClasses, State, Supply, Walk, WalkControl};
 
 /// A lattice on which a graded base blocks and passes.
 fn network(seed: u64) -> Network {
@@ -51,7 +51,7 @@ fn a_walk_goes_on_from_every_increment_with_every_engine_on_any_threads() {
         };
         let first_supply = supply_of(&open, 1);
         let mut first = fresh(&network, &first_supply, &open, seed, 1);
-        Walk::new(&network, &first_supply, &first).run(&mut first, &mut |_| Progress::Continue).unwrap();
+        Walk::new(&network, &first_supply, &first).run(&mut first, &mut |_| WalkControl::Continue).unwrap();
         // The second run, which begins on what the first left blocked, is the one that is broken off.
         let supply = supply_of(&first.blocked, 2);
         let mut whole = fresh(&network, &supply, &first.blocked, seed, 2);
@@ -64,10 +64,10 @@ fn a_walk_goes_on_from_every_increment_with_every_engine_on_any_threads() {
                     let label = Label { generation: state.increment, ..Label::default() };
                     let folder = root.path().join(format!("{name}-{}", state.increment));
                     fs::create_dir(&folder).unwrap();
-                    keep(&folder, "x", &label, &Kept::new(state).sections(state)).unwrap();
+                    save(&folder, "x", &label, &SavedState::new(state).sections()).unwrap();
                     splits += 1;
                 }
-                Progress::Continue
+                WalkControl::Continue
             })
             .unwrap();
         assert!(splits > 100 && whole.tally.blocked > first.tally.blocked, "{engine:?}: {splits} splits");
@@ -76,15 +76,15 @@ fn a_walk_goes_on_from_every_increment_with_every_engine_on_any_threads() {
             if !folder.exists() {
                 continue;
             }
-            let mut saved = newest(&folder, "x", "").unwrap().0.unwrap();
+            let saved = newest(&folder, "x", &Identity::default()).unwrap().0.unwrap();
             let mut state = fresh(&network, &supply, &first.blocked, seed, 2);
-            state.restore(&network, &mut saved).unwrap();
+            state.restore(&network, &saved).unwrap();
             let threads = [1, 2, 3, 8][increment as usize % 4];
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
                 let mut walk = Walk::new(&network, &supply, &state);
                 if !state.finished {
-                    walk.run(&mut state, &mut |_| Progress::Continue).unwrap();
+                    walk.run(&mut state, &mut |_| WalkControl::Continue).unwrap();
                 }
             });
             assert_eq!(shown(&state), shown(&whole), "{engine:?}, from increment {increment}");
@@ -103,7 +103,7 @@ fn a_state_of_another_run_is_refused() {
     };
     let particles = supply(Engine::Particles, 40_000);
     let state = fresh(&network, &particles, &open, 1, 1);
-    keep(root.path(), "x", &Label::default(), &Kept::new(&state).sections(&state)).unwrap();
+    save(root.path(), "x", &Label::default(), &SavedState::new(&state).sections()).unwrap();
     let counts = supply(Engine::Counts, 40_000);
     for mut other in [
         fresh(&network, &particles, &open, 2, 1),
@@ -111,8 +111,8 @@ fn a_state_of_another_run_is_refused() {
         fresh(&network, &counts, &open, 1, 1),
         fresh(&network, &supply(Engine::Particles, 20_000), &open, 1, 1),
     ] {
-        let mut saved = newest(root.path(), "x", "").unwrap().0.unwrap();
-        assert!(other.restore(&network, &mut saved).is_err());
+        let saved = newest(root.path(), "x", &Identity::default()).unwrap().0.unwrap();
+        assert!(other.restore(&network, &saved).is_err());
     }
 }
 
@@ -223,7 +223,7 @@ fn stopped(at: &Path) -> PathBuf {
 }
 
 #[test]
-fn a_harmed_checkpoint_is_passed_over_or_refused_and_never_lost() {
+fn a_corrupt_checkpoint_is_passed_over_or_refused_and_never_lost() {
     let (_root, at) = with_scene();
     assert!(call(&at, &["run", "scene.toml", "--out", "whole"]).status.success());
     let run = stopped(&at);
@@ -231,11 +231,11 @@ fn a_harmed_checkpoint_is_passed_over_or_refused_and_never_lost() {
     let other = call(&at, &["run", "scene.toml", "--out", "run", "--seed", "9"]);
     assert_eq!(other.status.code(), Some(2), "{}", String::from_utf8_lossy(&other.stderr));
     assert!(String::from_utf8_lossy(&other.stderr).contains("another scene"));
-    // Harm the newest slot of the first replicate: the one before is taken, and said so.
+    // Change a bit of the newest slot of the first replicate: the one before is taken, and said so.
     let slots = ["0-1.0", "0-1.1"].map(|name| run.join("checkpoint").join(name));
     let both = slots.iter().all(|slot| slot.exists());
     let generation = |slot: &PathBuf| {
-        fs::read(slot).ok().map_or(0, |bytes| u64::from_le_bytes(bytes[104..112].try_into().unwrap()))
+        fs::read(slot).ok().map_or(0, |bytes| u64::from_le_bytes(bytes[120..128].try_into().unwrap()))
     };
     let newest = slots.iter().max_by_key(|slot| generation(slot)).unwrap();
     let mut bytes = fs::read(newest).unwrap();

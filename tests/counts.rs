@@ -3,7 +3,7 @@
 use bitvec::vec::BitVec;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
-use voidwalk::walk::{Engine, Isa, Passive, Plan, Progress, SizeClasses, State, Supply, Tally, Walk};
+use voidwalk::walk::{Engine, Isa, Passive, Plan, SizeClasses, State, Supply, Tally, Walk, WalkControl};
 
 fn sampler(d0: f64, cu: f64) -> SizeSampler {
     let base = if cu == 1.0 { Gradation::single(d0) } else { Gradation::linear_from_d0(d0, cu) };
@@ -55,7 +55,7 @@ fn walk(
                 assert_eq!(tally.moving + tally.trapped, sum(moving) + coarse);
             }
             series.push(*tally);
-            Progress::Continue
+            WalkControl::Continue
         })
         .unwrap();
     assert!(state.finished && state.tally.moving == 0);
@@ -215,7 +215,7 @@ fn instructions_change_no_bit() {
         let classes = SizeClasses::logarithmic(base.smallest(), base.largest(), 20);
         let mut state = State::new(&network, &supply, classes, open(&network), 12, 1);
         let mut walk = Walk::new(&network, &supply, &state).with_isa(isa);
-        walk.run(&mut state, &mut |_| Progress::Continue).unwrap();
+        walk.run(&mut state, &mut |_| WalkControl::Continue).unwrap();
         state
     };
     let portable = with(Isa::Portable);

@@ -4,7 +4,7 @@ use bitvec::vec::BitVec;
 use voidwalk::constrictions::find;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
-use voidwalk::walk::{Engine, Plan, Progress, SizeClasses, State, Walk};
+use voidwalk::walk::{Engine, Plan, SizeClasses, State, Walk, WalkControl};
 
 const REPLICATES: u64 = 28;
 const N_BASE: u64 = 120_000;
@@ -65,7 +65,7 @@ fn replicates_of_both_engines_have_the_same_means() {
                 let supply = plan.supply(sampler.clone(), N_BASE, 100, seed, run);
                 let classes = SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), 16);
                 let mut state = State::new(&network, &supply, classes, blocked, seed, run);
-                Walk::new(&network, &supply, &state).run(&mut state, &mut |_| Progress::Continue).unwrap();
+                Walk::new(&network, &supply, &state).run(&mut state, &mut |_| WalkControl::Continue).unwrap();
                 for (f, value) in figures(&network, &state, N_BASE).into_iter().enumerate() {
                     difference[replicate as usize][run as usize - 1][f] += sign * value;
                     mean[run as usize - 1][f] += value / (2 * REPLICATES) as f64;

@@ -6,7 +6,7 @@ use voidwalk::constrictions::find;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
 use voidwalk::outcome::record::Statistic;
-use voidwalk::walk::{Engine, Plan, Progress, SizeClasses, State, Walk};
+use voidwalk::walk::{Engine, Plan, SizeClasses, State, Walk, WalkControl};
 
 /// Replicates of a cell, as many as a scene has by default.
 const REPLICATES: u64 = 10;
@@ -30,7 +30,7 @@ fn eroded(
     let supply = plan.supply(sampler.clone(), n, increments, seed, 1);
     let classes = SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), 4);
     let mut state = State::new(network, &supply, classes, open, seed, 1);
-    Walk::new(network, &supply, &state).run(&mut state, &mut |_| Progress::Continue).unwrap();
+    Walk::new(network, &supply, &state).run(&mut state, &mut |_| WalkControl::Continue).unwrap();
     state.tally.eroded_mass / state.tally.inserted_mass
 }
 

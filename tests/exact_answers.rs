@@ -4,7 +4,7 @@ use bitvec::vec::BitVec;
 use voidwalk::constrictions::{Curve, CurveUnit, find};
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::{Network, Passage};
-use voidwalk::walk::{Progress, SizeClasses, State, Supply, Walk};
+use voidwalk::walk::{SizeClasses, State, Supply, Walk, WalkControl};
 
 fn shipped(name: &str) -> Curve {
     find(name).unwrap().curve().unwrap().in_mm(1.0).unwrap()
@@ -23,7 +23,7 @@ fn walk(network: &Network, supply: &Supply, seed: u64) -> (State, Vec<u64>) {
     Walk::new(network, supply, &state)
         .run(&mut state, &mut |s| {
             eroded.push(s.tally.eroded);
-            Progress::Continue
+            WalkControl::Continue
         })
         .unwrap();
     (state, eroded.windows(2).map(|w| w[1] - w[0]).collect())
@@ -222,7 +222,7 @@ fn closed_and_blocked_networks_retain_everything_where_it_starts() {
     let classes = SizeClasses::logarithmic(0.5, 0.5, 1);
     let all = BitVec::repeat(true, 54);
     let mut state = State::new(&network, &supply, classes, all, 1, 2);
-    Walk::new(&network, &supply, &state).run(&mut state, &mut |_| Progress::Continue).unwrap();
+    Walk::new(&network, &supply, &state).run(&mut state, &mut |_| WalkControl::Continue).unwrap();
     assert_eq!((state.tally.eroded, state.tally.retained_in_voids, state.tally.blocked), (0, 100, 54));
     assert!(state.retained_in_voids[9..].iter().all(|&n| n == 0));
 }

@@ -1,19 +1,21 @@
-//! Checkpoints of every version of the format, which must be read and gone on from to the same answer for ever.
+//! Checkpoints of every version of the format: those of this version are read and continued to the same answer, older ones are
+//! refused with a sentence that says so.
 //!
-//! A new version of the format adds a file and never changes one: `cargo test --release --test golden -- --ignored` writes that of
-//! the version at hand.
+//! A new version of the format adds files and never changes one: `cargo test --release --test golden -- --ignored` writes those
+//! of the version at hand.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use voidwalk::store::checkpoint::newest;
+use voidwalk::store::checkpoint::{CheckpointError, newest};
 use voidwalk::walk::{Engine, State};
 
 mod readers;
 
 use readers::SmallRun;
 
-const VERSION: u32 = 1;
+/// The version that is read.
+const VERSION: u32 = 2;
 const ENGINES: [(Engine, &str); 3] =
     [(Engine::Particles, "particles"), (Engine::Counts, "counts"), (Engine::Expected, "expected")];
 
@@ -38,29 +40,44 @@ fn shown(state: &State) -> String {
 }
 
 #[test]
-fn old_checkpoints_are_gone_on_from_to_the_same_answer() {
-    let mut tried = 0;
-    for version in 1..=VERSION {
-        for (engine, name) in ENGINES {
+fn saved_walks_are_continued_to_the_same_answer() {
+    for (engine, name) in ENGINES {
+        let folder = tempfile::tempdir().unwrap();
+        fs::copy(golden(VERSION, name), folder.path().join("x.0")).unwrap();
+        let (saved, passed_over) = newest(folder.path(), "x", &SmallRun::identity()).unwrap();
+        assert!(passed_over.is_empty(), "{passed_over:?}");
+        let saved = saved.unwrap();
+        assert_eq!(saved.label.increment, 50);
+        assert_eq!(saved.read::<u8>("done").unwrap(), b"{\"complete\":false}");
+        let run = SmallRun::new(engine);
+        let mut state = run.fresh();
+        state.restore(&run.network, &saved).unwrap();
+        assert_eq!(state.increment, 50);
+        run.walk(&mut state, None);
+        let answer =
+            |version| fs::read_to_string(golden(version, name).with_extension(format!("{name}.txt")));
+        assert_eq!(shown(&state), answer(VERSION).unwrap(), "{name}");
+        // The format changed, the walk did not.
+        assert_eq!(answer(VERSION).unwrap(), answer(1).unwrap(), "{name}");
+    }
+}
+
+#[test]
+fn checkpoints_of_earlier_versions_are_refused_by_name() {
+    for version in 1..VERSION {
+        for (_, name) in ENGINES {
             let folder = tempfile::tempdir().unwrap();
             fs::copy(golden(version, name), folder.path().join("x.0")).unwrap();
-            let (saved, harmed) = newest(folder.path(), "x", "small").unwrap();
-            assert!(harmed.is_empty(), "{harmed:?}");
-            let mut saved = saved.unwrap();
-            assert_eq!(saved.label.increment, 50);
-            assert_eq!(saved.read::<u8>("done").unwrap(), b"{\"complete\":false}");
-            let run = SmallRun::new(engine);
-            let mut state = run.fresh();
-            state.restore(&run.network, &mut saved).unwrap();
-            assert_eq!(state.increment, 50);
-            run.walk(&mut state, None);
-            let answer =
-                fs::read_to_string(golden(version, name).with_extension(format!("{name}.txt"))).unwrap();
-            assert_eq!(shown(&state), answer, "version {version}, {name}");
-            tried += 1;
+            let error = newest(folder.path(), "x", &SmallRun::identity()).unwrap_err();
+            assert!(matches!(error, CheckpointError::OtherVersion { .. }), "{error}");
+            let said = format!(
+                "{}: was written by an earlier version of voidwalk (checkpoint format {version}; this one reads \
+                 {VERSION}), which can finish it",
+                folder.path().join("x.0").display()
+            );
+            assert_eq!(error.to_string(), said);
         }
     }
-    assert_eq!(tried, 3);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use voidwalk::constrictions::find;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
-use voidwalk::walk::{Engine, Plan, Progress, Sampling, SizeClasses, State, Walk};
+use voidwalk::walk::{Engine, Plan, Sampling, SizeClasses, State, Walk, WalkControl};
 
 const N_BASE: u64 = 30_000;
 
@@ -24,7 +24,7 @@ fn figures(
         let supply = plan.supply(sampler.clone(), N_BASE, 100, seed, run);
         let classes = SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), 16);
         let mut state = State::new(network, &supply, classes, blocked, seed, run);
-        Walk::new(network, &supply, &state).run(&mut state, &mut |_| Progress::Continue).unwrap();
+        Walk::new(network, &supply, &state).run(&mut state, &mut |_| WalkControl::Continue).unwrap();
         let t = &state.tally;
         assert_eq!(t.inserted, N_BASE);
         let at = 3 * (run as usize - 1);

@@ -4,9 +4,7 @@ use std::fs::{self, File};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::Path;
 
-use voidwalk::store::checkpoint::{Label, Section, keep, newest};
-
-const SCENE: &str = "a scene";
+use voidwalk::store::checkpoint::{Identity, Label, Section, newest, save};
 
 /// Bytes that have a checksum of their own.
 const PIECE: usize = 1 << 20;
@@ -15,25 +13,31 @@ const PIECE: usize = 1 << 20;
 /// what lies between the sections included: all are detected, and the older slot is taken. A fixed part of all; with
 /// `VOIDWALK_FAULTS=all` all lengths up to 4,096, all header bits, and 10,000 bits of the rest.
 #[test]
-fn no_harm_goes_unnoticed() {
+fn no_corruption_goes_unnoticed() {
     let all = std::env::var("VOIDWALK_FAULTS").is_ok_and(|value| value == "all");
     let memory = Path::new("/dev/shm");
     let root = if memory.is_dir() { tempfile::tempdir_in(memory) } else { tempfile::tempdir() }.unwrap();
     let numbers: Vec<u32> = (0..2 * (PIECE as u32 / 4) + 12_345).collect();
+    let identity = Identity { scene: "a scene".into(), ..Identity::default() };
     for generation in [1, 2] {
         let words = [generation; 3];
         let sections = [Section::new("words", &words), Section::new("numbers", &numbers)];
-        keep(root.path(), "x", &Label { scene: SCENE.into(), generation, ..Label::default() }, &sections)
-            .unwrap();
+        save(
+            root.path(),
+            "x",
+            &Label { identity: identity.clone(), generation, ..Label::default() },
+            &sections,
+        )
+        .unwrap();
     }
     let path = root.path().join("x.0");
     let whole = fs::read(&path).unwrap();
     let header = u64::from_le_bytes(whole[16..24].try_into().unwrap()) as usize;
     let older = |what: &str| {
-        let (saved, harmed) = newest(root.path(), "x", SCENE).unwrap();
+        let (saved, passed_over) = newest(root.path(), "x", &identity).unwrap();
         assert_eq!(saved.unwrap().label.generation, 1, "{what}");
-        assert_eq!(harmed.len(), 1, "{what}");
-        assert!(harmed[0].to_string().contains("x.0: "), "{what}: {}", harmed[0]);
+        assert_eq!(passed_over.len(), 1, "{what}");
+        assert!(passed_over[0].to_string().contains("x.0: "), "{what}: {}", passed_over[0]);
     };
     let mut file = File::options().write(true).open(&path).unwrap();
     let mut write = |at: usize, bytes: &[u8]| {
@@ -62,7 +66,7 @@ fn no_harm_goes_unnoticed() {
         older(&format!("bit {bit}"));
         write(bit / 8, &whole[bit / 8..][..1]);
     }
-    assert_eq!(newest(root.path(), "x", SCENE).unwrap().0.unwrap().label.generation, 2);
+    assert_eq!(newest(root.path(), "x", &identity).unwrap().0.unwrap().label.generation, 2);
     println!(
         "{} lengths, {} bits of the header, {} of the rest",
         lengths.len(),
@@ -70,7 +74,7 @@ fn no_harm_goes_unnoticed() {
         payload_bits.len()
     );
     let mut newer = whole.clone();
-    newer[8] = 2;
+    newer[8] = 3;
     for (bytes, what) in [(&newer[..], "a newer format"), (b"something else altogether", "another file")] {
         fs::write(&path, bytes).unwrap();
         older(what);

@@ -5,7 +5,7 @@ use voidwalk::constrictions;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
 use voidwalk::store::{Column, Placement};
-use voidwalk::walk::{CHUNK, Isa, Progress, Sampling, SizeClasses, State, Supply, Walk, threads};
+use voidwalk::walk::{CHUNK, Isa, Sampling, SizeClasses, State, Supply, Walk, WalkControl, threads};
 
 /// Two runs of `n` particles of a base with D85 = Dc`percent`: every column after increments 7 and 60, and at
 /// the end.
@@ -47,7 +47,7 @@ fn sampled(
             if [7, 60].contains(&state.increment) {
                 note(state);
             }
-            Progress::Continue
+            WalkControl::Continue
         })
         .unwrap();
         note(&state);
@@ -115,7 +115,7 @@ fn one_size_needs_no_column_of_diameters() {
                 let chunks = 0..state.particles.live.len();
                 let columns: Vec<_> = chunks.map(|chunk| state.particles.chunk(chunk)).collect();
                 seen.push(xxhash_rust::xxh3::xxh3_64(format!("{columns:?} {:?}", state.tally).as_bytes()));
-                Progress::Continue
+                WalkControl::Continue
             })
             .unwrap();
         assert!(state.tally.blocked > 0 && state.tally.inserted == n);

@@ -229,7 +229,7 @@ impl Plan {
         let mut scene = Scene::planned(base, settings, &origin)?;
         let names_seed = |s: &String| s.split_once('=').is_some_and(|(name, _)| name.trim() == "seed");
         if !settings.iter().flatten().any(names_seed) {
-            scene.seed = match written.seeds {
+            scene.walk.seed = match written.seeds {
                 Seeds::Common => written.seed,
                 Seeds::Own => xxhash_rust::xxh3::xxh3_64_with_seed(name.as_bytes(), written.seed),
             };
@@ -361,7 +361,7 @@ mod tests {
         let plan = plan(TWO_BY_TWO).unwrap();
         let names: Vec<&str> = plan.cases.iter().map(|c| c.name.as_str()).collect();
         assert_eq!(names, ["cu_b=1.5,filter=a", "cu_b=1.5,filter=b", "cu_b=3,filter=a", "cu_b=3,filter=b"]);
-        let seeds: std::collections::BTreeSet<u64> = plan.cases.iter().map(|c| c.scene.seed).collect();
+        let seeds: std::collections::BTreeSet<u64> = plan.cases.iter().map(|c| c.scene.walk.seed).collect();
         assert_eq!(seeds.len(), 4);
     }
 
@@ -372,10 +372,10 @@ mod tests {
             plan(&format!("{TWO_BY_TWO}[[leave_out]]\ncu_b = \"1.5\"\n[[case]]\nname = \"x\"\n")).unwrap();
         assert_eq!(fewer.cases.len(), 3);
         for case in &fewer.cases[..2] {
-            assert_eq!(all.case(&case.name).unwrap().scene.seed, case.scene.seed);
+            assert_eq!(all.case(&case.name).unwrap().scene.walk.seed, case.scene.walk.seed);
         }
         let common = plan(&format!("seeds = \"common\"\nseed = 7\n{TWO_BY_TWO}")).unwrap();
-        assert!(common.cases.iter().all(|c| c.scene.seed == 7));
+        assert!(common.cases.iter().all(|c| c.scene.walk.seed == 7));
     }
 
     #[test]

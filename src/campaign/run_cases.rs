@@ -55,7 +55,7 @@ pub struct PreparedCase<'a> {
 impl<'a> PreparedCase<'a> {
     /// A case with its fingerprint.
     pub fn new(planned: &'a PlannedCase, case: Case) -> Self {
-        let fingerprint = results::fingerprint(&case);
+        let fingerprint = case.fingerprint();
         Self { planned, case, fingerprint }
     }
 
@@ -304,7 +304,7 @@ fn message(panic: &(dyn std::any::Any + Send)) -> String {
 
 /// Cases walked at the same time: as many as there are threads that one case's replicates would leave idle.
 fn side_by_side(open: &[&PreparedCase], threads: usize) -> usize {
-    let fewest = open.iter().map(|ready| ready.case.scene.replicates).min().unwrap_or(1).max(1) as usize;
+    let fewest = open.iter().map(|ready| ready.case.scene.walk.replicates).min().unwrap_or(1).max(1) as usize;
     let wanted = threads.div_ceil(fewest).clamp(1, open.len().max(1));
     let largest = open.iter().map(|ready| ready.case.peak_bytes(threads as u64)).max().unwrap_or(0);
     let allowed = open.iter().map(|ready| ready.case.memory).min().unwrap_or(u64::MAX);
@@ -362,8 +362,8 @@ fn walk(
             keeper.flush()?;
             return Ok(false);
         }
-        // Checkpoints of what the case was before the plan was changed, or harmed ones: it is walked from its start.
-        Err(RunError::Harmed(harmed)) if !harmed.unread => {
+        // Checkpoints of what the case was before the plan was changed, or corrupt ones: it is walked from its start.
+        Err(RunError::Checkpoint(error)) if !error.is_unreadable() => {
             keeper.clear()?;
             return Ok(false);
         }

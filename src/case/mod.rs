@@ -5,11 +5,12 @@ mod memory;
 mod packed_filter;
 mod packing_plan;
 mod record;
+mod resolved;
 mod sizes;
 mod warnings;
 
 use files::Files;
-pub use files::Input;
+pub use files::{INPUT_NAMES, Input};
 pub use memory::{ResourceLimits, in_words};
 pub use packed_filter::{GRAINS, PackedError, PackedFilter, RECORD};
 pub use packing_plan::PackingPlan;
@@ -41,6 +42,9 @@ pub enum CaseError {
     /// The network.
     #[error(transparent)]
     Network(#[from] NetworkError),
+    /// The packing.
+    #[error(transparent)]
+    Packed(#[from] PackedError),
     /// The filter has to be packed first.
     #[error("{file}: the filter has not been packed yet")]
     NotPacked {
@@ -49,8 +53,8 @@ pub enum CaseError {
     },
     /// More memory, or more disk, than there is.
     #[error(
-        "{n_base} base particles walked one by one on {voids} voids need {needed} of memory, but {available} are \
-         available{disk}; set base.cap or base.n_base lower, or a smaller network"
+        "{n_base} base particles walked one by one on {voids} voids need {needed} of memory, but \
+         {available} are available{disk}; set base.cap or base.n_base lower, or a smaller network"
     )]
     Memory {
         /// Base particles.
@@ -95,7 +99,8 @@ pub struct Case {
     pub capped: bool,
     /// Filter grains per void, where given.
     pub grains_per_void: Option<f64>,
-    /// Mass of base over mass of filter that `n_base` stands for; `None` where the grains per void are not given.
+    /// Mass of base over mass of filter that `n_base` stands for; `None` where the grains per void are not
+    /// given.
     pub mass_ratio: Option<f64>,
     /// The reference length: the smallest filter grain (mm).
     pub unit_mm: f64,
@@ -127,20 +132,27 @@ impl Case {
     /// # Errors
     /// As [`Case::new`]; the scene's filter is to be packed and has not been.
     pub fn with_packed(scene: Scene, packed: Option<PackedFilter>) -> Result<Self, CaseError> {
+        let packed = match (&scene.filter.measured, scene.filter.grains_per_void) {
+            (Some(curve), Some(grains_per_void)) => Some(PackedFilter::kept(curve, grains_per_void)?),
+            _ => packed,
+        };
         let mut files = Files::default();
-        let curve = match (&scene.curve, &packed) {
+        let curve = match (&scene.filter.curve, &packed) {
             (_, Some(packed)) => Some((files.packed(packed), None)),
             (Some(source), None) => Some(files.curve(source, "filter.curve", "filter-curve.csv")?),
-            (None, None) if scene.recipe.is_some() => {
+            (None, None) if scene.packing.is_some() => {
                 return Err(CaseError::NotPacked { file: scene.name.clone() });
             }
             (None, None) => None,
         };
         let shipped = curve.as_ref().and_then(|(_, shipped)| *shipped);
-        let filter = match &scene.filter {
+        let filter = match &scene.filter.gradation() {
             FilterGradation::Linear { d0_mm, cu } => {
                 let cu = cu.or(shipped.map(|s| s.cu)).ok_or_else(|| {
-                    scene.clash("filter.cu or filter.sieve is missing: this constriction curve does not say its filter's gradation")
+                    scene.clash(
+                        "filter.cu or filter.sieve is missing: this constriction curve does not say \
+                     its filter's gradation",
+                    )
                 })?;
                 Gradation::linear_from_d0(*d0_mm, cu)?
             }
@@ -148,12 +160,12 @@ impl Case {
                 files.sieve(path, *d0_mm, "filter.sieve", "filter-sieve.csv")?
             }
         };
-        let curve = match scene.estimate {
+        let curve = match scene.filter.estimate {
             Some(density) => Some((inscribed(&filter, density)?, None)),
             None => curve,
         };
         let unit_mm = filter.smallest_mm();
-        let network_file = match &scene.network {
+        let network_file = match &scene.network.source() {
             NetworkSource::File(path) => Some(files.network(path, unit_mm)?),
             _ => None,
         };
@@ -161,7 +173,8 @@ impl Case {
             (Some(network), _) => curve_of(network)?,
             (None, Some((curve, _))) => {
                 if curve.unit() == CurveUnit::D0f && filter.tail_mass_fraction() > 0.0 {
-                    let problem = "this constriction curve is in units of D0F, but the filter's finest sieve leaves a tail of unknown size: give filter.d0_mm";
+                    let problem = "this constriction curve is in units of D0F, but the filter's finest \
+                     sieve leaves a tail of unknown size: give filter.d0_mm";
                     return Err(scene.clash(problem).into());
                 }
                 curve.in_mm(unit_mm)?
@@ -169,10 +182,10 @@ impl Case {
             (None, None) => return Err(scene.clash("filter.curve is missing").into()),
         };
         let base = base_gradation(&scene, &filter, &curve, unit_mm, &mut files)?;
-        let (counts, connectivity) = match (&network_file, &scene.network) {
+        let (counts, connectivity) = match (&network_file, &scene.network.source()) {
             (Some(n), _) => (sizes::of_network(n), sizes::connectivity_of(n)),
             (None, NetworkSource::Connected(shape, wanted)) => {
-                sizes::of_connected(*shape, wanted, &curve, unit_mm, replicate_seed(scene.seed, 1))?
+                sizes::of_connected(*shape, wanted, &curve, unit_mm, replicate_seed(scene.walk.seed, 1))?
             }
             (None, source) => {
                 let shape = source.shape().expect("a network file was read above");
@@ -181,14 +194,14 @@ impl Case {
         };
         // The grains per void of a shipped packing say nothing of a network from elsewhere.
         let of_shipped = shipped.filter(|_| network_file.is_none()).map(|s| s.grains_per_void);
-        let of_packing = packed.as_ref().map(|p| p.grains_per_void).or(of_shipped);
-        let grains_per_void = scene.grains_per_void.or(of_packing);
+        let of_packing = packed.as_ref().map(|packed| packed.grains_per_void).or(of_shipped);
+        let grains_per_void = scene.filter.grains_per_void.or(of_packing);
         let (supply, mass_ratio) = supply(&scene, grains_per_void, counts[0], &base, &filter)?;
-        let is_guess = packed.as_ref().is_some_and(|packed| packed.folder.is_none());
+        let is_guess = packed.as_ref().is_some_and(|packed| packed.files.is_none());
         if base.tail_mass_fraction() > 0.0 && base.smallest_mm() > curve.smallest() && !is_guess {
             let problem = format!(
-                "the base's finest sieve, {} mm, is coarser than the finest constriction, {:.4} mm: its tail of unknown size \
-                 may not be passive; give base.d0_mm or a finer sieve",
+                "the base's finest sieve, {} mm, is coarser than the finest constriction, {:.4} mm: its \
+                 tail of unknown size may not be passive; give base.d0_mm or a finer sieve",
                 base.smallest_mm(),
                 curve.smallest()
             );
@@ -198,7 +211,8 @@ impl Case {
         for (name, gradation, percent) in [("filter", &filter, 15.0), ("base", &base, 85.0)] {
             if gradation.d(percent).is_none() {
                 let problem = format!(
-                    "the {name}'s D{percent} lies in a finest tail of unknown size: add finer sieves, or {name}.d0_mm"
+                    "the {name}'s D{percent} lies in a finest tail of unknown size: add finer sieves, or \
+                     {name}.d0_mm"
                 );
                 return Err(scene.clash(problem).into());
             }
@@ -231,16 +245,16 @@ impl Case {
     /// # Errors
     /// None that [`Case::new`] has not found.
     pub fn network(&self, seed: u64) -> Result<Network, NetworkError> {
-        self.network_of_shape(self.scene.network.shape().unwrap_or_default(), seed)
+        self.network_of_shape(self.scene.network.source().shape().unwrap_or_default(), seed)
     }
 
-    /// The network of the replicate with this seed, with `shape` voids along x, y, z in place of the scene's; a network from a
-    /// file has the shape that it has.
+    /// The network of the replicate with this seed, with `shape` voids along x, y, z in place of the scene's;
+    /// a network from a file has the shape that it has.
     ///
     /// # Errors
     /// A length of 0, or more constrictions than 32 bits can number.
     pub fn network_of_shape(&self, shape: [u32; 3], seed: u64) -> Result<Network, NetworkError> {
-        match (&self.network_file, &self.scene.network) {
+        match (&self.network_file, &self.scene.network.source()) {
             (None, NetworkSource::Cubic(_)) => Network::cubic(shape, &self.curve, self.unit_mm, seed),
             (None, NetworkSource::Connected(_, wanted)) => {
                 Network::connected(shape, &self.curve, self.unit_mm, seed, wanted)
@@ -251,16 +265,17 @@ impl Case {
 
     /// Increments over which the base is inserted: a whole number, so that every part is equal.
     pub fn increments(&self) -> u64 {
-        (1.0 / self.scene.inject_share).round().max(1.0) as u64
+        (1.0 / self.scene.walk.inject_share).round().max(1.0) as u64
     }
 
-    /// Multiples of N_base that the sensitivity study walks: those asked for, none above a cap that the user set.
+    /// Multiples of N_base that the sensitivity study walks: those asked for, none above a cap that the user
+    /// set.
     pub fn sensitivity_factors(&self) -> Vec<f64> {
-        let cap = match self.scene.amount {
+        let cap = match self.scene.base.amount() {
             Amount::MassRatio(_, Some(cap)) => cap as f64,
             _ => f64::INFINITY,
         };
-        self.scene.sensitivity.0.iter().copied().filter(|f| f * self.n_base as f64 <= cap).collect()
+        self.scene.record.sensitivity.iter().copied().filter(|f| f * self.n_base as f64 <= cap).collect()
     }
 
     /// D15F over D85B and D95B.
@@ -277,15 +292,15 @@ impl Case {
             None if self.packed.is_some() => {
                 "a given constriction curve: it is measured on the packing".to_string()
             }
-            None if self.scene.estimate.is_some() => {
+            None if self.scene.filter.estimate.is_some() => {
                 "packing and triangulation: the constriction curve is guessed from the gradation".to_string()
             }
             None => "packing and triangulation: the constriction curve is given".to_string(),
         }];
-        if self.scene.runs == 1 {
+        if self.scene.walk.runs == 1 {
             left_out.push("the second run: it was not asked for".into());
         }
-        if self.scene.sensitivity.0.is_empty() {
+        if self.scene.record.sensitivity.is_empty() {
             left_out.push("sensitivity to the number of base particles: it was not asked for".into());
         }
         left_out
@@ -312,7 +327,7 @@ fn base_gradation(
     unit_mm: f64,
     files: &mut Files,
 ) -> Result<Gradation, CaseError> {
-    let (cu, d85_mm) = match &scene.base {
+    let (cu, d85_mm) = match &scene.base.gradation() {
         BaseGradation::Sieve(path, d0_mm) => {
             return files.sieve(path, *d0_mm, "base.sieve", "base-sieve.csv");
         }
@@ -348,7 +363,7 @@ fn supply(
     base: &Gradation,
     filter: &Gradation,
 ) -> Result<((u64, Option<u64>, bool), Option<f64>), CaseError> {
-    let (ratio, cap) = match scene.amount {
+    let (ratio, cap) = match scene.base.amount() {
         Amount::MassRatio(ratio, cap) => (ratio, cap),
         Amount::Number(n) => {
             let Some(grains) = grains_per_void else { return Ok(((n, None, false), None)) };
@@ -364,7 +379,8 @@ fn supply(
     };
     let BaseSupply { n_base, n_base_eq2, capped } = base_particles(ratio, grains, voids, base, filter, cap)?;
     if n_base == 0 {
-        let problem = "Eq. (2) gives less than half a base particle: a larger network, mass ratio or grains per void is needed";
+        let problem = "Eq. (2) gives less than half a base particle: a larger network, mass ratio or grains \
+         per void is needed";
         return Err(scene.clash(problem).into());
     }
     Ok(((n_base, Some(n_base_eq2), capped), Some(ratio)))

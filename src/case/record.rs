@@ -9,10 +9,24 @@ impl Case {
     /// Files that were read, with their checksums.
     pub fn input_files(&self) -> Vec<InputFile> {
         let one = |i: &Input| InputFile {
-            name: i.path.display().to_string(),
+            name: i.name.clone(),
             xxh3: format!("{:016x}", xxhash_rust::xxh3::xxh3_64(&i.bytes)),
         };
         self.inputs.iter().map(one).collect()
+    }
+
+    /// What the user called the file of a setting.
+    fn name_of(&self, setting: &str) -> String {
+        self.inputs
+            .iter()
+            .find(|input| input.setting == setting)
+            .map_or(String::new(), |input| input.name.clone())
+    }
+
+    /// What the user called each file, by its name in the folder of inputs.
+    pub fn input_names(&self) -> std::collections::BTreeMap<&str, &str> {
+        let in_folder = |input| Some((input.kept_as.rsplit('/').next()?, input.name.as_str()));
+        self.inputs.iter().filter_map(in_folder).collect()
     }
 
     /// What went in, as a run folder records it.
@@ -22,7 +36,7 @@ impl Case {
         let [voids, constrictions, start_nodes, layers] = self.counts;
         let d50_by_number = self.filter.d_by_number(50.0).unwrap_or(f64::NAN);
         let cubic = |n: &[u32; 3]| format!("cubic {} x {} x {}", n[0], n[1], n[2]);
-        let (kind, name) = match &self.scene.network {
+        let (kind, name) = match &self.scene.network.source() {
             NetworkSource::Cubic(n) => (record::NetworkKind::Cubic, cubic(n)),
             NetworkSource::Connected(n, wanted) => {
                 let shares: Vec<String> =
@@ -30,28 +44,28 @@ impl Case {
                 let name = format!("{} with connectivity {}", cubic(n), shares.join(", "));
                 (record::NetworkKind::Connected, name)
             }
-            NetworkSource::File(path) => (record::NetworkKind::File, path.display().to_string()),
+            NetworkSource::File(_) => (record::NetworkKind::File, self.name_of("network.file")),
         };
-        let shape = match self.scene.network.shape() {
+        let shape = match self.scene.network.source().shape() {
             Some(shape) => shape.map(|n| Some(u64::from(n))),
             None => [None; 3],
         };
-        let curve_name = match (&self.network_file, &self.scene.curve) {
-            (None, None) if self.packed.as_ref().is_some_and(|packed| packed.folder.is_none()) => {
+        let curve_name = match (&self.network_file, &self.scene.filter.curve) {
+            (None, None) if self.packed.as_ref().is_some_and(|packed| packed.files.is_none()) => {
                 "a guess, until the filter is packed".to_string()
             }
             (None, None) if self.packed.is_some() => "measured on its packing".to_string(),
-            (None, None) if self.scene.estimate.is_some() => {
+            (None, None) if self.scene.filter.estimate.is_some() => {
                 "guessed from the gradation by inscribed circles".to_string()
             }
             (Some(_), _) | (None, None) => "the network's own constrictions".to_string(),
             (None, Some(CurveSource::Shipped(name))) => name.clone(),
-            (None, Some(CurveSource::File(path))) => path.display().to_string(),
+            (None, Some(CurveSource::File(_))) => self.name_of("filter.curve"),
         };
         record::Inputs {
             filter: record::FilterRecord {
-                name: match &self.scene.filter {
-                    FilterGradation::Sieve(path, _) => path.display().to_string(),
+                name: match &self.scene.filter.gradation() {
+                    FilterGradation::Sieve(..) => self.name_of("filter.sieve"),
                     FilterGradation::Linear { .. } => {
                         format!("linear, Cu {}", rounded(self.filter.cu()))
                     }
@@ -76,8 +90,8 @@ impl Case {
                 curve_name,
             },
             base: record::BaseRecord {
-                name: match &self.scene.base {
-                    BaseGradation::Sieve(path, _) => path.display().to_string(),
+                name: match &self.scene.base.gradation() {
+                    BaseGradation::Sieve(..) => self.name_of("base.sieve"),
                     BaseGradation::Single(_) => "one size".into(),
                     BaseGradation::Linear { cu, .. } => format!("linear, Cu {cu}"),
                 },
@@ -105,18 +119,18 @@ impl Case {
                 thickness_mm: self.network_file.is_none().then_some(layers as f64 * d50_by_number),
             },
             mass_ratio: self.mass_ratio,
-            inject_share: self.scene.inject_share,
+            inject_share: self.scene.walk.inject_share,
             scale_free: self.is_scale_free(),
         }
     }
 
     /// Whether lengths are in units of the smallest filter grain: a scale-free curve with d0_mm = 1.
     pub fn is_scale_free(&self) -> bool {
-        matches!(self.scene.filter, FilterGradation::Linear { d0_mm, .. } if d0_mm == 1.0)
-            && (self.shipped.is_some() || self.packed.is_some() || self.scene.estimate.is_some())
+        matches!(self.scene.filter.gradation(), FilterGradation::Linear { d0_mm, .. } if d0_mm == 1.0)
+            && (self.shipped.is_some() || self.packed.is_some() || self.scene.filter.estimate.is_some())
             && self.network_file.is_none()
             && matches!(
-                self.scene.base,
+                self.scene.base.gradation(),
                 BaseGradation::Linear { d85: D85::AtDc(..) | D85::Ratio(_), .. } | BaseGradation::Single(_)
             )
     }

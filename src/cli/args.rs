@@ -41,7 +41,7 @@ pub enum Command {
     Percolation(PercolationArgs),
     /// Measure error against run time for a scene: exact answers, scatter, bias of settings, wrong verdicts, scaling, packings
     Precision(PrecisionArgs),
-    /// Write report.html and the figures of a finished run folder again, or of a folder that scripts/paper.sh filled
+    /// Write report.html and the figures of a finished run folder again
     Report {
         /// The folder
         folder: PathBuf,

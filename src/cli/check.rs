@@ -12,7 +12,7 @@ use crate::case::{PackedFilter, PackingPlan};
 use crate::constrictions::shipped;
 use crate::run::machine::Machine;
 use crate::run::replicates::{left_out_of_first_run, runs_to_walk};
-use crate::scene::{BUILT_IN, Scene};
+use crate::scene::Scene;
 use crate::store::Placement;
 
 /// The scene that the arguments name, with their settings applied.
@@ -31,10 +31,9 @@ pub fn scene(args: &SceneArgs) -> Result<Scene, Exit> {
 /// Says what a run would do.
 pub fn check(args: &SceneArgs) -> Result<(), Exit> {
     let scene = scene(args)?;
-    let (packed, packing) = match &scene.recipe {
+    let (packed, packing) = match PackingPlan::of(&scene).map_err(Exit::refused)? {
         None => (None, None),
-        Some(recipe) => {
-            let order = PackingPlan::new(recipe).map_err(Exit::refused)?;
+        Some(order) => {
             let (filter, sentence) = look_for_packing(&order, &args.packings)?;
             (Some(filter), Some(sentence))
         }
@@ -73,14 +72,14 @@ fn cores() -> u64 {
 /// Writes the built-in scene.
 pub fn init(path: Option<&Path>) -> Result<(), Exit> {
     let Some(path) = path else {
-        to_stdout(BUILT_IN);
+        to_stdout(&Scene::init_text());
         return Ok(());
     };
     if path.symlink_metadata().is_ok() {
         let problem = format!("{}: is there already; name a file that is not", path.display());
         return Err(Exit::refused(plain(&problem)));
     }
-    crate::store::write_whole(path, BUILT_IN.as_bytes()).map_err(super::run::refused_or_failed)?;
+    crate::store::write_whole(path, Scene::init_text().as_bytes()).map_err(super::run::refused_or_failed)?;
     to_stdout(&format!("{}\n", plain(&path.display().to_string())));
     Ok(())
 }

@@ -15,11 +15,11 @@ use super::run::{pool, refuse_other_kinds, refused_or_failed};
 use super::signals::stop_on_signals;
 use crate::case::{PackedError, PackedFilter, PackingPlan, RECORD};
 use crate::outcome::packing::PackingRecord;
-use crate::packing::{PackingError, Progress, Stage};
+use crate::packing::{CompressionProgress, PackingError, Stage};
 use crate::report;
 use crate::run::pack::{PackCallbacks, PackError, STATES, make};
 use crate::scene::Scene;
-use crate::store::checkpoint::Harmed;
+use crate::store::checkpoint::CheckpointError;
 use crate::store::{Folder, StoreError};
 
 /// How often a packing that a scene asks for keeps its state.
@@ -32,7 +32,7 @@ const LOOK: Duration = Duration::from_millis(500);
 pub fn pack(args: &PackArgs) -> Result<(), Exit> {
     let mut settings = args.settings.clone();
     settings.extend(args.seed.map(|seed| format!("packing.seed={seed}")));
-    let recipe = Scene::recipe(&args.filter, &settings).map_err(Exit::refused)?;
+    let recipe = Scene::read_packing(&args.filter, &settings).map_err(Exit::refused)?;
     let order = PackingPlan::new(&recipe).map_err(Exit::refused)?;
     let stop = stop_on_signals()?;
     let out = args.out.clone().unwrap_or_else(|| Path::new("voidwalk-packings").join(order.folder_name()));
@@ -129,8 +129,8 @@ fn packed(
     keep_every: Duration,
 ) -> Result<(), Exit> {
     let shown = Shown::new(quiet, order);
-    let warn = |harmed: &Harmed| {
-        to_stderr(&format!("warning: {}; the checkpoint before it was taken\n", plain(&harmed.to_string())));
+    let warn = |error: &CheckpointError| {
+        to_stderr(&format!("warning: {}; the checkpoint before it was taken\n", plain(&error.to_string())));
     };
     let watch = PackCallbacks { tell: &|progress| shown.tell(progress), warn: &warn, stop, keep_every };
     let result = make(folder, order, &watch);
@@ -198,7 +198,7 @@ impl Shown {
         shown
     }
 
-    fn tell(&self, progress: &Progress) {
+    fn tell(&self, progress: &CompressionProgress) {
         if self.first.get().is_none() {
             self.first.set(Some(progress.steps));
         }
@@ -214,7 +214,7 @@ impl Shown {
         }
     }
 
-    fn line(&self, progress: &Progress) -> String {
+    fn line(&self, progress: &CompressionProgress) -> String {
         let stage = match progress.stage {
             Stage::Squeeze => "squeeze",
             Stage::Compress => "compress",

@@ -23,7 +23,7 @@ pub fn precision(args: &PrecisionArgs) -> Result<(), Exit> {
     let scene = scene(&args.scene)?;
     let stop = stop_on_signals()?;
     let pool = pool(args.threads)?;
-    let order = scene.recipe.as_ref().map(PackingPlan::new).transpose().map_err(Exit::refused)?;
+    let order = PackingPlan::of(&scene).map_err(Exit::refused)?;
     let guess = order.as_ref().map(PackedFilter::placeholder).transpose().map_err(Exit::refused)?;
     // Whatever is wrong is said before any work.
     let mut case = Case::with_packed(scene.clone(), guess).map_err(Exit::refused)?;

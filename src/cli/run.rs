@@ -32,7 +32,7 @@ pub fn run(args: &RunArgs) -> Result<(), Exit> {
     let threads = pool.current_num_threads() as u64;
     let wanted = args.out.as_deref().unwrap_or(Path::new("."));
     let room = ResourceLimits::new(args.scene.memory, machine.available, wanted);
-    let order = scene.recipe.as_ref().map(PackingPlan::new).transpose().map_err(Exit::refused)?;
+    let order = PackingPlan::of(&scene).map_err(Exit::refused)?;
     let guess = order.as_ref().map(PackedFilter::placeholder).transpose().map_err(Exit::refused)?;
     // Whatever is wrong with the scene, the memory or the folder is said before hours of packing, not after.
     let mut case = Case::with_packed(scene.clone(), guess).map_err(Exit::refused)?;
@@ -50,7 +50,7 @@ pub fn run(args: &RunArgs) -> Result<(), Exit> {
     if args.overwrite {
         checkpoints::discard(folder.path()).map_err(Exit::failed)?;
     }
-    let fingerprint = results::fingerprint(&case);
+    let fingerprint = case.fingerprint();
     let kept = Checkpoints::scene_in(folder.path()).map_err(Exit::failed)?;
     if kept.is_some_and(|scene| scene != fingerprint) {
         return Err(Exit::refused(plain(&format!(
@@ -112,11 +112,6 @@ pub fn resume(args: &ResumeArgs) -> Result<(), Exit> {
 
 /// Writes the report of a finished run folder again.
 pub fn report(folder: &Path) -> Result<(), Exit> {
-    if report::is_paper(folder) {
-        let page = report::write_paper(folder).map_err(Exit::failed)?.page;
-        to_stdout(&format!("{}\n", plain(&page.display().to_string())));
-        return Ok(());
-    }
     type Writer = fn(&Path) -> Result<report::Written, report::ReportError>;
     let writers: [(&str, Writer); 4] = [
         ("outcome.json", report::write),
@@ -163,10 +158,12 @@ fn walk(
             (RunError::Walk(crate::walk::WalkError::Stopped { .. }), Ok(())) => {
                 Exit::stopped(format!("what is done is kept; `voidwalk resume {shown}` goes on"))
             }
-            (RunError::Harmed(harmed), _) if harmed.unread => Exit::failed(plain(&harmed.to_string())),
-            (RunError::Harmed(harmed), _) => Exit::refused(format!(
+            (RunError::Checkpoint(error), _) if error.is_unreadable() => {
+                Exit::failed(plain(&error.to_string()))
+            }
+            (RunError::Checkpoint(error), _) => Exit::refused(format!(
                 "{}; --overwrite begins anew, another --out leaves it alone",
-                plain(&harmed.to_string())
+                plain(&error.to_string())
             )),
             (RunError::Walk(crate::walk::WalkError::Stopped { .. }), Err(error)) => Exit::failed(error),
             (other, _) => Exit::failed(other),

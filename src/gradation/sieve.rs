@@ -1,15 +1,10 @@
-//! The noun of this stage: a sieve curve.
+//! A sieve curve: how it is made, checked and read.
 
+use super::error::Position;
 use super::error::{GradationError, NumberError, TableError, shortened};
+use super::segments::cumulative;
 use super::table::{Direction, Row, Table, check_percent, check_size, rising};
-use super::{Position, numbers};
 use std::path::Path;
-
-/// Smallest size that an input may hold (mm).
-pub const SIZE_MIN_MM: f64 = 1e-12;
-
-/// Largest size that an input may hold (mm).
-pub const SIZE_MAX_MM: f64 = 1e12;
 
 const FIELDS: [&str; 2] = ["opening_mm", "percent_finer"];
 
@@ -118,7 +113,7 @@ impl Gradation {
     /// A curve from checked points.
     fn new(size_mm: Vec<f64>, percent: Vec<f64>) -> Gradation {
         let log_ratio: Vec<f64> = size_mm.windows(2).map(|w| libm::log(w[1] / w[0])).collect();
-        let number = numbers::cumulative(&size_mm, &percent, &log_ratio);
+        let number = cumulative(&size_mm, &percent, &log_ratio);
         Gradation { size_mm, percent, log_ratio, number }
     }
 

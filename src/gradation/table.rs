@@ -6,9 +6,14 @@
 //! A row is the header when it is the first and none of its fields is a number.
 
 use super::error::{NumberError, Position, TableError, shortened};
-use super::sieve::{SIZE_MAX_MM, SIZE_MIN_MM};
 use std::io::Read;
 use std::path::Path;
+
+/// Smallest size that an input may hold (mm).
+pub const SIZE_MIN_MM: f64 = 1e-12;
+
+/// Largest size that an input may hold (mm).
+pub const SIZE_MAX_MM: f64 = 1e12;
 
 /// Largest file that is read, in bytes.
 pub const FILE_LIMIT_BYTES: u64 = 16 << 20;

@@ -9,7 +9,7 @@
 //! moves(v)  = sum over exits e that it fits of p_e (1 + (0 if e leads out, else moves(t(e))))
 //! ```
 //!
-//! The smallest solution of the first is the chance to leave; the second is the mean number of completed moves, infinite
+//! The smallest solution of the first is the probability to leave; the second is the mean number of completed moves, infinite
 //! where the particle may come to circle for ever. Gauss-Seidel sweeps, downstream voids first: on a lattice that is periodic
 //! sideways only the rows of a layer wait for each other, so some tens of sweeps do.
 
@@ -21,14 +21,14 @@ const SETTLED: f64 = 1e-15;
 /// What a lone particle can expect, by the void that it starts in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FirstPassage {
-    /// Chance to leave the filter.
+    /// Probability to leave the filter.
     pub leaves: Vec<f64>,
     /// Mean number of completed moves, the one that leaves included.
     pub moves: Vec<f64>,
 }
 
 impl FirstPassage {
-    /// Mean of both over the start nodes of the network: a particle starts on each with the same chance.
+    /// Mean of both over the start nodes of the network: a particle starts on each with the same probability.
     pub fn from_start(&self, network: &Network) -> (f64, f64) {
         let mean = |of: &[f64]| {
             let sum: f64 = network.start().iter().map(|&void| of[void as usize]).sum();
@@ -165,7 +165,7 @@ mod tests {
         assert_eq!((stuck.leaves[0], stuck.moves[0]), (0.0, 0.0));
     }
 
-    /// The chance to leave of a stopped particle is that of one that fits everywhere on the network made for it.
+    /// The probability to leave of a stopped particle is that of one that fits everywhere on the network made for it.
     #[test]
     fn the_network_of_a_first_particle_has_its_answer() {
         let diameters: Vec<f32> = (0..3 * 3 * 4 * 5).map(|i| 0.2 + 0.01 * (i * 37 % 61) as f32).collect();

@@ -21,7 +21,7 @@ const PARTS: usize = 512;
 /// Parts for the two others.
 const OTHERS: usize = 64;
 
-/// The chance of a particle to pass a layer of the cubic lattice with this curve, by its size.
+/// The probability of a particle to pass a layer of the cubic lattice with this curve, by its size.
 ///
 /// ```
 /// use voidwalk::constrictions::{Curve, CurveUnit};
@@ -63,7 +63,7 @@ impl<'a> Passage<'a> {
         Self { curve, stopped }
     }
 
-    /// q: the chance that a particle of diameter `d`, in the curve's unit, is stopped in an attempt.
+    /// q: the probability that a particle of diameter `d`, in the curve's unit, is stopped in an attempt.
     pub fn stopped(&self, d: f64) -> f64 {
         // A particle as large as a constriction passes it.
         let finer = self.curve.percent_smaller(d * (1.0 - 1e-12)) / 100.0 * PARTS as f64;
@@ -72,7 +72,7 @@ impl<'a> Passage<'a> {
         (low + (finer - part as f64) * (high - low)).clamp(0.0, 1.0)
     }
 
-    /// s, or P(F): the chance that it comes one layer downstream.
+    /// s, or P(F): the probability that it comes one layer downstream.
     pub fn downstream(&self, d: f64) -> f64 {
         let q = self.stopped(d);
         (1.0 - q) / (1.0 + 2.0 * q)
@@ -84,7 +84,7 @@ impl<'a> Passage<'a> {
         (s < 1.0).then(|| if s > 0.0 { libm::log(1.0 - confidence) / libm::log(s) } else { 0.0 })
     }
 
-    /// The chance that it leaves a lattice of so many layers: `s ^ layers`.
+    /// The probability that it leaves a lattice of so many layers: `s ^ layers`.
     pub fn through(&self, d: f64, layers: u64) -> f64 {
         libm::pow(self.downstream(d), layers as f64)
     }

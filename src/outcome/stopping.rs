@@ -2,7 +2,7 @@
 //!
 //! # Looks
 //! The rule looks at the replicates when there are `n_1` of them (the scene's number, at least 8), then `n_2
-//! = 1.5 n_1`, and so on, rounded up, until it is met or there are `most`.
+//! = 1.5 n_1`, and so on, rounded up, until it is met or there are `most_replicates`.
 //!
 //! # Confidence level of the verdict
 //! A fixed interval that is looked at again and again errs more often than it says. So look `k` takes
@@ -18,31 +18,35 @@
 use super::record::{Statistic, Stopping, Verdict};
 use super::student;
 use super::verdict::{BelowThreshold, THRESHOLD, below_by_interval, classify};
+use crate::schema::{only, section, whole, within};
 
 /// Least number of replicates: fewer say too little of their own scatter.
 const FEWEST: u64 = 8;
 
-/// When to stop adding replicates.
-///
-/// ```
-/// use voidwalk::outcome::stopping::{Look, StopRule};
-/// let rule = StopRule { decide_percent: Some(99.0), most: 100, ..StopRule::default() };
-/// // Eroded mass fractions far above 7.5 % in the first run and far below it in the second.
-/// let run = |mean: f64| (0..10).map(|k| (mean + 1e-3 * f64::from(k), mean < 0.075)).collect::<Vec<_>>();
-/// let Look::Stop(stopping) = rule.look(10, &[run(0.3), run(0.01)]) else { panic!("ten are enough") };
-/// assert!(stopping.met && stopping.looks == 1);
-/// // Close to it, it asks for half as many replicates again.
-/// assert_eq!(rule.look(10, &[run(0.071), run(0.071)]), Look::Until(15));
-/// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct StopRule {
-    /// Half width of the 95 % interval of the eroded mass to reach, in every run (percentage points of the
-    /// base).
-    pub target_error_pp: Option<f64>,
-    /// Confidence level at which the verdict is to be decided (%), corrected for repeated looks.
-    pub decide_percent: Option<f64>,
-    /// Replicates at which it stops in any case.
-    pub most: u64,
+section! {
+    /// Replicates are added until the eroded mass is known closely enough, or the verdict is decided; then `replicates` is where it
+    /// first looks.
+    ///
+    /// ```
+    /// use voidwalk::outcome::stopping::{Look, StopRule};
+    /// let rule = StopRule { decide_percent: Some(99.0), most_replicates: 100, ..StopRule::default() };
+    /// // Eroded mass fractions far above 7.5 % in the first run and far below it in the second, each with its side.
+    /// let run = |mean: f64| (0..10).map(|k| (mean + 1e-3 * f64::from(k), mean < 0.075)).collect::<Vec<_>>();
+    /// let Look::Stop(stopping) = rule.look(10, &[run(0.3), run(0.01)]) else { panic!("ten are enough") };
+    /// assert!(stopping.met && stopping.looks == 1);
+    /// // Close to it, it asks for half as many replicates again.
+    /// assert_eq!(rule.look(10, &[run(0.071), run(0.071)]), Look::Until(15));
+    /// ```
+    pub struct StopRule in "stop" {
+        /// Half width of the 95 % interval of the eroded mass, in every run: percentage points of the base (or --target-error 0.1pp).
+        pub target_error_pp: Option<f64> = None, off "0.1",
+            only("percentage points of the base, above 0 and below 100", |n| *n > 0.0 && *n < 100.0);
+        /// Confidence level (%) at which the verdict is to be decided, corrected for repeated looks (or --decide 99.9%).
+        pub decide_percent: Option<f64> = None, off "99.9",
+            within(50.0..=99.999, "a probability from 50 to 99.999 (%)");
+        /// Where it gives up, and says what it would take.
+        pub most_replicates: u64 = 1000, off, whole(2..=100_000);
+    }
 }
 
 /// What a look at the replicates says.
@@ -58,21 +62,28 @@ pub enum Look {
 pub type ReplicateValues = Vec<(f64, bool)>;
 
 impl StopRule {
-    /// Whether there is anything to look at.
+    /// Whether there is nothing to look at: the replicates are as many as the scene says.
+    pub fn is_unset(&self) -> bool {
+        self.target_error_pp.is_none() && self.decide_percent.is_none()
+    }
+
+    /// Whether there is something to look at.
     pub fn is_set(&self) -> bool {
-        self.target_error_pp.is_some() || self.decide_percent.is_some()
+        !self.is_unset()
     }
 
     /// Number of replicates at look `look`, counted from 1, where the first is at `first`.
     pub fn replicates_at(&self, first: u64, look: u64) -> u64 {
-        let grow = |n: u64| n.saturating_add(n.div_ceil(2)).min(self.most);
-        (1..look).fold(first.max(FEWEST).min(self.most), |n, _| grow(n))
+        let grow = |n: u64| n.saturating_add(n.div_ceil(2)).min(self.most_replicates);
+        (1..look).fold(first.max(FEWEST).min(self.most_replicates), |n, _| grow(n))
     }
 
     /// Looks at `runs[r][replicate]`, where the first look is at `first` replicates.
     pub fn look(&self, first: u64, runs: &[ReplicateValues]) -> Look {
         let replicates = runs.first().map_or(0, |values| values.len() as u64);
-        let look = (1..).find(|&k| self.replicates_at(first, k) >= replicates.min(self.most)).unwrap_or(1);
+        let look = (1..)
+            .find(|&k| self.replicates_at(first, k) >= replicates.min(self.most_replicates))
+            .unwrap_or(1);
         let (half_width, close) = self.closeness(runs);
         let error = self.error_of(look, runs.len());
         let below: Vec<BelowThreshold> =
@@ -81,13 +92,13 @@ impl StopRule {
             error.map(|_| classify(below.first().copied().flatten(), below.get(1).copied().flatten()));
         let met = close && verdict != Some(Verdict::Undecided);
         let next = self.replicates_at(first, look + 1);
-        if !met && next > replicates && replicates < self.most && !self.is_hopeless(runs) {
+        if !met && next > replicates && replicates < self.most_replicates && !self.is_hopeless(runs) {
             return Look::Until(next);
         }
         Look::Stop(Stopping {
             target_error_pp: self.target_error_pp,
             decide_percent: self.decide_percent,
-            most: self.most,
+            most: self.most_replicates,
             looks: look,
             met,
             verdict,
@@ -193,11 +204,11 @@ mod tests {
     use rand::Rng;
 
     fn decide(percent: f64, most: u64) -> StopRule {
-        StopRule { decide_percent: Some(percent), most, ..StopRule::default() }
+        StopRule { decide_percent: Some(percent), most_replicates: most, ..StopRule::default() }
     }
 
     fn close(pp: f64, most: u64) -> StopRule {
-        StopRule { target_error_pp: Some(pp), most, ..StopRule::default() }
+        StopRule { target_error_pp: Some(pp), most_replicates: most, ..StopRule::default() }
     }
 
     fn values(values: impl IntoIterator<Item = f64>) -> ReplicateValues {
@@ -252,7 +263,7 @@ mod tests {
         assert!(stopping.met && stopping.verdict == Some(Verdict::Some) && stopping.sentence.is_none());
         let near = values((0..10).map(|k| THRESHOLD + 0.01 * (f64::from(k) - 4.6)));
         assert_eq!(rule.look(10, &[near.clone(), near]), Look::Until(15));
-        let (stopping, runs) = until_stop(rule, &[0.0751, 0.01], 0.02, false, 3);
+        let (stopping, runs) = until_stop(rule.clone(), &[0.0751, 0.01], 0.02, false, 3);
         assert!(!stopping.met && stopping.verdict == Some(Verdict::Undecided) && runs[0].len() == 60);
         let sentence = stopping.sentence.unwrap();
         assert!(

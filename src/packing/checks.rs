@@ -4,8 +4,8 @@ use super::compression::Compression;
 use super::draw::{draw, random_start};
 use super::grains::{Cell, Packing};
 use super::limits::critical_step;
-use super::measure::Energy;
 use super::motion::LONGEST_MOVE;
+use super::observed::Energy;
 use super::settings::{Contact, PackingError, Settings};
 use crate::gradation::Gradation;
 use crate::stream::{Key, Purpose, unit};
@@ -26,7 +26,7 @@ fn elastic(contact: Contact) -> Settings {
         final_friction: 0.0,
         restitution: 1.0,
         drag: 0.0,
-        brake: 0.0,
+        settling_drag: 0.0,
         clip_tension: false,
         stiffness_ratio: 1e-2,
         ..Settings::default()

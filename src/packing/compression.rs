@@ -19,6 +19,7 @@ use super::grains::{Cell, Packing};
 use super::limits::{critical_step, damped_part, law, mass, stability};
 use super::motion::{LONGEST_MOVE, Part, Rule, Sums, split};
 use super::neighbours::{Chunk, Reach, chunk_bounds};
+use super::observed::HoldState;
 use super::settings::{PackingError, Settings};
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -35,7 +36,8 @@ const CLOSE_STEP: f64 = 0.85;
 const SERVO_SHARE: f64 = 0.25;
 
 /// What a compression is doing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Stage {
     /// The cell shrinks at a constant rate.
     Squeeze,
@@ -105,7 +107,7 @@ pub struct Compression {
     /// Contacts in the last step.
     pub(super) contacts: u64,
     /// What the protocol remembers of its checks.
-    pub(super) watch: super::protocol::Watch,
+    pub(super) hold: HoldState,
     /// The contact law.
     pub(super) law: Law,
     /// The lists, with the tangential memory.
@@ -242,7 +244,7 @@ impl Compression {
             unbalanced: 0.0,
             mean_normal: 0.0,
             contacts: 0,
-            watch: super::protocol::Watch::default(),
+            hold: HoldState::default(),
             law: law(settings, settings.friction),
             chunks: Vec::new(),
             moved: f64::INFINITY,
@@ -344,7 +346,7 @@ impl Compression {
     fn kick_and_drift(&mut self, parallel: bool) {
         let n = self.position.len();
         let step = self.step;
-        let drag = step * if self.watch.braking { self.settings.brake } else { self.settings.drag };
+        let drag = step * if self.hold.braking { self.settings.settling_drag } else { self.settings.drag };
         let rule = Rule {
             step,
             per_cell: step / (self.cell * (1.0 + 0.5 * self.strain_rate * step)),

@@ -1,35 +1,8 @@
-//! What a packing under compression is like: computed from positions and memory, apart from the fast pass.
+//! The observables of a packing under compression, computed from positions and memory, apart from the fast pass.
 
 use super::compression::Compression;
 use super::neighbours::{Memory, nearest};
-
-/// Observables of one instant.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Measure {
-    /// Volume of the voids by that of the grains.
-    pub void_ratio: f64,
-    /// Mean contact pressure (kPa).
-    pub pressure_kpa: f64,
-    /// Contacts per grain, times two.
-    pub coordination: f64,
-    /// The same among the grains that are held: with at least two contacts (four without friction) with held grains.
-    pub coordination_held: f64,
-    /// Part of the grains that are not held.
-    pub rattlers: f64,
-    /// Kinetic by elastic energy.
-    pub kinetic_ratio: f64,
-    /// Root mean square unbalanced force of a grain by the mean normal contact force.
-    pub unbalanced: f64,
-    /// Largest overlap by the smaller diameter of its two grains.
-    pub largest_overlap: f64,
-}
-
-/// Energies in reduced units (pressure times smallest diameter cubed).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Energy {
-    pub kinetic: f64,
-    pub elastic: f64,
-}
+use super::observed::{Energy, Measure};
 
 impl Compression {
     /// Calls `each` with the grains, distance, overlap and tangential memory of every contact.

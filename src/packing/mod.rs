@@ -6,7 +6,7 @@
 //! 1. sizes stratified by number ([`draw`]), random places without overlap ([`random_start`]);
 //! 2. squeeze: the cell shrinks at a constant rate to a part of the expected packing fraction;
 //! 3. compress: the strain rate is proportional to the lack of pressure, up to a limit, with the friction that sets the density;
-//!    once the pressure has come within 2 % the drag on the grains is raised to `brake`;
+//!    once the pressure has come within 2 % the drag on the grains is raised to `settling_drag`;
 //! 4. settle: the same with the final friction, where that is another one.
 //!
 //! # When a stage ends
@@ -35,6 +35,7 @@ mod limits;
 mod measure;
 mod motion;
 mod neighbours;
+mod observed;
 mod place;
 mod protocol;
 mod renewal;
@@ -46,7 +47,7 @@ pub use draw::{draw, random_start};
 pub use export::vtp_points;
 pub use grains::{Cell, Packing};
 pub use import::{ImportError, PACKING_FILE_LIMIT_BYTES};
-pub use measure::Measure;
 pub use neighbours::Reach;
-pub use protocol::{PackReport, Progress, compress};
+pub use observed::Measure;
+pub use protocol::{CompressionProgress, PackReport, compress};
 pub use settings::{Contact, PackingError, Settings};

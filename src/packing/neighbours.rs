@@ -30,7 +30,8 @@ pub(super) fn nearest(d: f64) -> f64 {
 }
 
 /// How far beyond contact the lists reach.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Reach {
     /// Part of the sum of the radii.
     pub relative: f64,

@@ -3,18 +3,18 @@
 use super::compression::{Compression, Stage};
 use super::draw::{draw, random_start};
 use super::grains::Packing;
-use super::measure::Measure;
+use super::observed::Measure;
 use super::settings::{PackingError, Settings};
 use crate::gradation::Gradation;
 use std::f64::consts::PI;
 
-/// Steps between two looks at the state.
+/// Steps between two checks of the state.
 const CHECK: u64 = 100;
 
 /// Allowed departure of the pressure from its target.
 const PRESSURE: f64 = 0.005;
 
-/// Departure of the pressure from its target at which the brake is put on.
+/// Departure of the pressure from its target at which the drag is raised.
 const BRAKE: f64 = 0.02;
 
 /// Allowed root mean square unbalanced force by mean contact force: a frictionless packing has more in an avalanche, less after it.
@@ -30,24 +30,9 @@ const COORDINATION: f64 = 0.05;
 /// with high friction creeps on as the logarithm of time, so some rate has to count as rest.
 const VOID_RATIO: f64 = 5e-4;
 
-/// What the protocol remembers between its looks.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Watch {
-    /// Step since which everything has held.
-    pub since: u64,
-    /// Coordination number then.
-    pub coordination: f64,
-    /// Void ratio then.
-    pub void_ratio: f64,
-    /// Whether the pressure has been near its target: the brake is on.
-    pub braking: bool,
-    /// State before the friction was switched.
-    pub before: Option<Measure>,
-}
-
-/// How far a compression is.
+/// How far a compression is, as it is told while it runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Progress {
+pub struct CompressionProgress {
     /// What is going on.
     pub stage: Stage,
     /// Steps done.
@@ -56,7 +41,7 @@ pub struct Progress {
     pub void_ratio: f64,
     /// Pressure by target.
     pub pressure: f64,
-    /// Contacts per grain, times two.
+    /// Mean coordination number `2 N_c / N_p`.
     pub coordination: f64,
     /// Root mean square unbalanced force by mean contact force.
     pub unbalanced: f64,
@@ -94,7 +79,7 @@ pub struct PackReport {
 pub fn compress(
     gradation: &Gradation,
     settings: &Settings,
-    progress: impl FnMut(&Progress) -> bool,
+    progress: impl FnMut(&CompressionProgress) -> bool,
 ) -> Result<(Packing, PackReport), PackingError> {
     settings.check()?;
     let start = random_start(&draw(gradation, settings.grains, settings.seed), settings)?;
@@ -122,27 +107,27 @@ impl Compression {
                 }
             }
             if self.steps.is_multiple_of(CHECK) {
-                self.look();
+                self.check_stage();
             }
         }
         Ok(())
     }
 
-    fn look(&mut self) {
+    fn check_stage(&mut self) {
         match self.stage {
             Stage::Done => {}
             Stage::Squeeze => {
-                let goal = self.settings.squeeze_to * self.expected_fraction();
+                let goal = self.settings.compression_target_fraction * self.expected_fraction();
                 if 1.0 / (1.0 + self.void_ratio()) >= goal || self.pressure > 0.5 {
                     self.enter(Stage::Compress);
                 }
             }
             Stage::Compress | Stage::Settle => {
-                self.watch.braking |= (self.pressure - 1.0).abs() < BRAKE;
+                self.hold.braking |= (self.pressure - 1.0).abs() < BRAKE;
                 if self.settled() {
                     let measure = self.measure();
                     if self.stage == Stage::Compress {
-                        self.watch.before = Some(measure);
+                        self.hold.before = Some(measure);
                         if self.settings.final_friction == self.settings.friction {
                             self.stage = Stage::Done;
                         } else {
@@ -159,7 +144,7 @@ impl Compression {
 
     fn enter(&mut self, stage: Stage) {
         self.stage = stage;
-        self.watch.since = self.steps;
+        self.hold.since = self.steps;
     }
 
     /// Pressure, unbalanced force, coordination number and void ratio have held for long enough, and the grains rest.
@@ -168,20 +153,20 @@ impl Compression {
         let void_ratio = self.void_ratio();
         let holds = (self.pressure - 1.0).abs() < PRESSURE
             && self.unbalanced_ratio() < UNBALANCED
-            && (coordination - self.watch.coordination).abs() < COORDINATION
-            && (void_ratio - self.watch.void_ratio).abs() < VOID_RATIO;
+            && (coordination - self.hold.coordination).abs() < COORDINATION
+            && (void_ratio - self.hold.void_ratio).abs() < VOID_RATIO;
         if !holds {
-            self.watch.since = self.steps;
-            self.watch.coordination = coordination;
-            self.watch.void_ratio = void_ratio;
+            self.hold.since = self.steps;
+            self.hold.coordination = coordination;
+            self.hold.void_ratio = void_ratio;
         }
-        self.steps - self.watch.since >= self.settings.hold_steps && {
+        self.steps - self.hold.since >= self.settings.hold_steps && {
             let energy = self.energy();
             energy.kinetic < KINETIC * energy.elastic
         }
     }
 
-    /// Contacts per grain, times two, in the last step.
+    /// Mean coordination number `2 N_c / N_p` in the last step.
     pub fn coordination(&self) -> f64 {
         2.0 * self.contacts as f64 / self.rank.len() as f64
     }
@@ -208,8 +193,8 @@ impl Compression {
     }
 
     /// How far the compression is.
-    pub fn progress(&self) -> Progress {
-        Progress {
+    pub fn progress(&self) -> CompressionProgress {
+        CompressionProgress {
             stage: self.stage,
             steps: self.steps,
             void_ratio: self.void_ratio(),
@@ -224,7 +209,10 @@ impl Compression {
     ///
     /// # Errors
     /// Those of [`Compression::advance`]; stopped by `progress`; not settled after the most steps allowed.
-    pub fn run(&mut self, mut progress: impl FnMut(&Progress) -> bool) -> Result<PackReport, PackingError> {
+    pub fn run(
+        &mut self,
+        mut progress: impl FnMut(&CompressionProgress) -> bool,
+    ) -> Result<PackReport, PackingError> {
         while self.stage != Stage::Done {
             self.advance(1000)?;
             if !progress(&self.progress()) {
@@ -242,7 +230,7 @@ impl Compression {
         let unit_s =
             1e-3 * self.unit_mm * (self.settings.density_kg_m3 / (1e3 * self.settings.pressure_kpa)).sqrt();
         Ok(PackReport {
-            before: self.watch.before.unwrap_or(after),
+            before: self.hold.before.unwrap_or(after),
             after,
             steps: self.steps,
             simulated_s: self.time * unit_s,

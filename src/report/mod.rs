@@ -2,10 +2,9 @@
 //!
 //! [`write()`] reads what a run left behind (`outcome.json`, `manifest.json`, `scene.toml`, `series.csv`,
 //! `layers.csv`, `retained.csv`, `eroded.csv`; see [`crate::outcome::record`]) and runs nothing;
-//! [`write_packing()`] reads the folder of a packing, [`write_campaign()`] for a campaign's,
-//! [`write_percolation()`] for a percolation study's, [`write_precision()`] for error against run time, and
-//! [`write_paper()`] for a reproduction of the paper. They write `figures/*.svg`, each a file of its own, and
-//! `report.html`.
+//! [`write_packing()`] reads the folder of a packing, [`write_campaign()`] a campaign's,
+//! [`write_percolation()`] a percolation study's, and [`write_precision()`] that of error against run time.
+//! They write `figures/*.svg`, each a file of its own, and `report.html`.
 //!
 //! # Pages of others
 //! A program with a page of its own over the same results, as `scripts/paper`, builds it from these:
@@ -33,7 +32,6 @@ mod infiltration;
 pub mod numbers;
 mod packing;
 mod page;
-mod paper;
 mod percolation;
 mod precision;
 mod rules;
@@ -46,7 +44,6 @@ pub use campaign::write_campaign;
 pub use error::ReportError;
 pub use packing::write_packing;
 pub use page::write;
-pub use paper::{is_paper, write_paper};
 pub use percolation::{percolation_spread, write_percolation};
 pub use precision::{precision_judgements, write_precision};
 pub use written::{Written, write_page};

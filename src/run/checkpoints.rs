@@ -16,9 +16,9 @@ use serde::{Deserialize, Serialize};
 use crate::network::Network;
 use crate::outcome::record::Run;
 use crate::outcome::{Recorded, Recorder};
-use crate::store::checkpoint::{Harmed, Label, Saved, Section, keep, newest};
+use crate::store::checkpoint::{Checkpoint, CheckpointError, Identity, Label, Section, newest, save};
 use crate::store::{Folder, StoreError, files_in, make_folder, remove_folder};
-use crate::walk::{Kept, State};
+use crate::walk::{SavedState, State};
 
 /// Folder of the checkpoints, inside the run's.
 pub const FOLDER: &str = "checkpoint";
@@ -36,6 +36,26 @@ pub struct Done {
     pub recorded: Recorded,
     /// What has been watched of the run that is under way.
     pub recorder: Recorder,
+}
+
+/// Which walk of a case: a checkpoint of one is never taken for another's.
+#[derive(Clone, Copy, Debug)]
+pub struct WalkId {
+    /// 0: the walks of the scene itself; from 1: those of the sensitivity study.
+    pub part: u64,
+    /// Replicate, counted from 1.
+    pub replicate: u64,
+    /// Seed of the replicate.
+    pub seed: u64,
+    /// Base particles of each run.
+    pub n_base: u64,
+}
+
+impl WalkId {
+    /// Name of its checkpoints.
+    fn name(self) -> String {
+        format!("{}-{}", self.part, self.replicate)
+    }
 }
 
 /// How often a walk is kept.
@@ -82,7 +102,7 @@ pub struct Checkpoints {
     /// Replicates that are done and not on the disk yet, and the next generation of each name.
     waiting: Mutex<BTreeMap<String, (Label, Vec<u8>)>>,
     generations: Mutex<BTreeMap<String, u64>>,
-    harmed: Mutex<Vec<String>>,
+    passed_over: Mutex<Vec<String>>,
 }
 
 impl Checkpoints {
@@ -99,7 +119,7 @@ impl Checkpoints {
             every,
             waiting: Mutex::default(),
             generations: Mutex::default(),
-            harmed: Mutex::default(),
+            passed_over: Mutex::default(),
         })
     }
 
@@ -107,13 +127,14 @@ impl Checkpoints {
     ///
     /// # Errors
     /// The system fails to read one.
-    pub fn scene_in(folder: &Path) -> Result<Option<String>, Harmed> {
+    pub fn scene_in(folder: &Path) -> Result<Option<String>, CheckpointError> {
         let folder = folder.join(FOLDER);
-        let files = files_in(&folder).map_err(|e| Harmed::new(FOLDER, e.to_string()))?;
+        let files = files_in(&folder)
+            .map_err(|e| CheckpointError::Unreadable { file: folder, source: std::io::Error::other(e) })?;
         for file in files {
-            match Saved::open(&file) {
-                Ok(Some(saved)) => return Ok(Some(saved.label.scene)),
-                Err(error) if error.unread => return Err(error),
+            match Checkpoint::open(&file) {
+                Ok(Some(saved)) => return Ok(Some(saved.label.identity.scene)),
+                Err(error) if error.is_unreadable() => return Err(error),
                 _ => {}
             }
         }
@@ -139,30 +160,23 @@ impl Checkpoints {
     /// What was kept of a replicate: what is done, and the checkpoint of the state of the run that is under way.
     ///
     /// # Errors
-    /// There are checkpoints of it, but none is whole and of this case.
-    pub fn load(&self, part: u64, replicate: u64) -> Result<Option<(Done, Saved)>, Harmed> {
-        let name = name(part, replicate);
-        let (saved, harmed) = newest(&self.folder, &name, &self.scene)?;
-        if let Ok(mut all) = self.harmed.lock() {
-            all.extend(harmed.iter().map(ToString::to_string));
+    /// There are checkpoints of it, but none is whole and of this very walk.
+    pub fn load(&self, walk: WalkId) -> Result<Option<(Done, Checkpoint)>, CheckpointError> {
+        let name = walk.name();
+        let (saved, refused) = newest(&self.folder, &name, &self.identity(walk))?;
+        if let Ok(mut all) = self.passed_over.lock() {
+            all.extend(refused.iter().map(ToString::to_string));
         }
         let Some(saved) = saved else { return Ok(None) };
         if let Ok(mut generations) = self.generations.lock() {
             generations.insert(name, saved.label.generation);
         }
-        let text = saved.read::<u8>("done")?;
-        let done = serde_json::from_slice(&text).map_err(|e| {
-            Harmed::new(
-                self.folder.display().to_string(),
-                format!("what is done of replicate {replicate}: {e}"),
-            )
-        })?;
-        Ok(Some((done, saved)))
+        Ok(Some((saved.read_record("done")?, saved)))
     }
 
     /// Checkpoints that were passed over, and why.
     pub fn passed_over(&self) -> Vec<String> {
-        self.harmed.lock().map(|all| all.clone()).unwrap_or_default()
+        self.passed_over.lock().map(|all| all.clone()).unwrap_or_default()
     }
 
     /// Keeps a walk after a whole increment.
@@ -171,33 +185,31 @@ impl Checkpoints {
     /// What the system says; the checkpoint before stays then.
     pub fn save_walk(
         &self,
-        part: u64,
-        replicate: u64,
+        walk: WalkId,
         network: &Network,
         state: &State,
         done: &Done,
     ) -> Result<(), StoreError> {
         let text = serde_json::to_vec(done).expect("figures are numbers and words");
-        let kept = Kept::new(state);
-        let mut sections = kept.sections(state);
+        let saved = SavedState::new(state);
+        let mut sections = saved.sections();
         sections.push(Section::new("done", &text));
-        let label = self.label(part, replicate, state, network_fingerprint(network));
-        keep(&self.folder, &name(part, replicate), &label, &sections)?;
+        let label = Label {
+            network: network_fingerprint(network),
+            run: state.run,
+            increment: state.increment,
+            ..self.next_label(walk)
+        };
+        save(&self.folder, &walk.name(), &label, &sections)?;
         self.flush()
     }
 
     /// Takes a replicate that is done; it goes to the disk with the next checkpoint of any.
-    pub fn save_finished(&self, part: u64, replicate: u64, seed: u64, done: &Done) {
+    pub fn save_finished(&self, walk: WalkId, done: &Done) {
         let text = serde_json::to_vec(done).expect("figures are numbers and words");
-        let label = Label {
-            scene: self.scene.clone(),
-            seed,
-            replicate,
-            generation: self.next_generation(part, replicate),
-            ..Label::default()
-        };
+        let label = self.next_label(walk);
         if let Ok(mut waiting) = self.waiting.lock() {
-            waiting.insert(name(part, replicate), (label, text));
+            waiting.insert(walk.name(), (label, text));
         }
     }
 
@@ -208,7 +220,7 @@ impl Checkpoints {
     pub fn flush(&self) -> Result<(), StoreError> {
         let waiting = self.waiting.lock().map(|mut w| std::mem::take(&mut *w)).unwrap_or_default();
         for (name, (label, text)) in &waiting {
-            keep(&self.folder, name, label, &[Section::new("done", text)])?;
+            save(&self.folder, name, label, &[Section::new("done", text)])?;
         }
         Ok(())
     }
@@ -221,23 +233,19 @@ impl Checkpoints {
         remove_folder(&self.folder)
     }
 
-    fn label(&self, part: u64, replicate: u64, state: &State, network: u64) -> Label {
-        Label {
-            scene: self.scene.clone(),
-            network,
-            seed: state.seed,
-            replicate,
-            run: state.run,
-            increment: state.increment,
-            generation: self.next_generation(part, replicate),
-        }
+    fn identity(&self, walk: WalkId) -> Identity {
+        let WalkId { part, replicate, seed, n_base } = walk;
+        Identity { scene: self.scene.clone(), part, replicate, seed, n_base }
     }
 
-    fn next_generation(&self, part: u64, replicate: u64) -> u64 {
-        let Ok(mut generations) = self.generations.lock() else { return 1 };
-        let generation = generations.entry(name(part, replicate)).or_insert(0);
-        *generation += 1;
-        *generation
+    /// The label of the next checkpoint of a walk, before its first increment.
+    fn next_label(&self, walk: WalkId) -> Label {
+        let generation = self.generations.lock().map_or(1, |mut generations| {
+            let generation = generations.entry(walk.name()).or_insert(0);
+            *generation += 1;
+            *generation
+        });
+        Label { identity: self.identity(walk), generation, ..Label::default() }
     }
 }
 
@@ -247,10 +255,6 @@ impl Checkpoints {
 /// What the system says.
 pub fn discard(folder: &Path) -> Result<(), StoreError> {
     remove_folder(&folder.join(FOLDER))
-}
-
-fn name(part: u64, replicate: u64) -> String {
-    format!("{part}-{replicate}")
 }
 
 /// Fingerprint of everything that a walk takes from its network.

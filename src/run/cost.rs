@@ -29,16 +29,16 @@ impl Case {
         let [voids, constrictions, start_nodes, layers] = self.counts.map(|n| n as f64);
         let one_run = |n_base: u64| {
             let moves = self.one_by_one(n_base) as f64 * layers.max(1.0);
-            let each = self.scene.engine.takes_each(n_base / self.increments(), start_nodes as u64);
+            let each = self.scene.walk.engine.takes_each(n_base / self.increments(), start_nodes as u64);
             let increments = self.increments() as f64 + 3.0 * layers;
             moves * MOVE_S + if each { 0.0 } else { voids * increments * VOID_S }
         };
-        let (runs, replicates) = (self.scene.runs as f64, self.scene.replicates as f64);
+        let (runs, replicates) = (self.scene.walk.runs as f64, self.scene.walk.replicates as f64);
         let own = replicates * one_run(self.n_base);
         let of_factor = |factor: f64| one_run((self.n_base as f64 * factor) as u64);
         let others: f64 = self.sensitivity_factors().into_iter().map(of_factor).sum();
         let networks = runs_to_walk(self) as f64 / runs.max(1.0) * (voids + constrictions) * NETWORK_S;
-        runs * (own + self.scene.sensitivity.1 as f64 * others) + networks + FILES_S
+        runs * (own + self.scene.record.sensitivity_replicates as f64 * others) + networks + FILES_S
     }
 
     /// Bytes that the program takes where its walks take so many.

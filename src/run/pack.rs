@@ -11,8 +11,10 @@ use std::time::{Duration, Instant};
 use crate::case::{GRAINS, PackingPlan, RECORD};
 use crate::constrictions::{Constrictions, ConstrictionsError, CurveError, inscribed};
 use crate::outcome::packing::PackingRecord;
-use crate::packing::{Cell, Compression, PackReport, Packing, PackingError, Progress, draw, random_start};
-use crate::store::checkpoint::{Harmed, Label, Section, keep, newest};
+use crate::packing::{
+    Cell, Compression, CompressionProgress, PackReport, Packing, PackingError, draw, random_start,
+};
+use crate::store::checkpoint::{CheckpointError, Identity, Label, Section, newest, save};
 use crate::store::{Folder, StoreError};
 
 /// The checkpoint of a compression that is not finished ...
@@ -47,7 +49,7 @@ pub enum PackError {
     },
     /// An unfinished compression that the system fails to read.
     #[error(transparent)]
-    Unread(Harmed),
+    Checkpoint(CheckpointError),
     /// Figures that cannot be put into words.
     #[error("cannot write {RECORD}: {0}")]
     Format(#[from] serde_json::Error),
@@ -59,9 +61,9 @@ pub enum PackError {
 /// Watches a compression, and can stop it.
 pub struct PackCallbacks<'a> {
     /// Told how far it is.
-    pub tell: &'a dyn Fn(&Progress),
-    /// Told of a harmed state that was passed over for the one before it.
-    pub warn: &'a dyn Fn(&Harmed),
+    pub tell: &'a dyn Fn(&CompressionProgress),
+    /// Told of a corrupt state that was passed over for the one before it.
+    pub warn: &'a dyn Fn(&CheckpointError),
     /// Set to stop.
     pub stop: &'a AtomicBool,
     /// How often the state is kept.
@@ -107,10 +109,10 @@ fn compress(
     let begun = Instant::now();
     let mut keep_state = |compression: &Compression| {
         generation += 1;
-        let label = Label { scene: order.fingerprint(), seed: settings.seed, generation, ..Label::default() };
+        let label = Label { identity: identity(order), generation, ..Label::default() };
         let (seconds, state) = ([seconds_before + begun.elapsed().as_secs_f64()], compression.to_bytes());
         let sections = [Section::new("seconds", &seconds), Section::new("state", &state)];
-        keep(folder.path(), STATE, &label, &sections)
+        save(folder.path(), STATE, &label, &sections)
     };
     loop {
         let since = Instant::now();
@@ -137,18 +139,22 @@ fn kept(
     order: &PackingPlan,
     watch: &PackCallbacks,
 ) -> Result<Option<(Compression, f64, u64)>, PackError> {
-    let refused = |harmed: Harmed| match harmed.unread {
-        true => PackError::Unread(harmed),
-        false => PackError::State { folder: folder.path().display().to_string(), why: harmed.to_string() },
+    let refused = |error: CheckpointError| match error.is_unreadable() {
+        true => PackError::Checkpoint(error),
+        false => PackError::State { folder: folder.path().display().to_string(), why: error.to_string() },
     };
-    let (saved, harmed) = newest(folder.path(), STATE, &order.fingerprint()).map_err(refused)?;
-    harmed.iter().for_each(watch.warn);
+    let (saved, passed_over) = newest(folder.path(), STATE, &identity(order)).map_err(refused)?;
+    passed_over.iter().for_each(watch.warn);
     let Some(saved) = saved else { return Ok(None) };
     let seconds = saved.read::<f64>("seconds").map_err(refused)?;
     let state = saved.read::<u8>("state").map_err(refused)?;
     let compression = Compression::from_bytes(&order.compression, &state);
-    let compression = compression.map_err(|e| refused(Harmed::new(STATE, e.to_string())))?;
+    let compression = compression.map_err(|e| refused(saved.corrupt(e.to_string())))?;
     Ok(Some((compression, seconds.first().copied().unwrap_or(0.0), saved.label.generation)))
+}
+
+fn identity(order: &PackingPlan) -> Identity {
+    Identity { scene: order.fingerprint(), seed: order.compression.seed, ..Identity::default() }
 }
 
 fn record(
@@ -171,10 +177,10 @@ fn record(
         ("density_kg_m3", s.density_kg_m3),
         ("restitution", s.restitution),
         ("drag", s.drag),
-        ("brake", s.brake),
+        ("settling_drag", s.settling_drag),
         ("local_damping", s.local_damping),
         ("start_fraction", s.start_fraction),
-        ("squeeze_to", s.squeeze_to),
+        ("compression_target_fraction", s.compression_target_fraction),
         ("squeeze_rate", s.squeeze_rate),
         ("servo_rate", s.servo_rate),
         ("servo_gain", s.servo_gain),

@@ -8,16 +8,16 @@ use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
 use rayon::prelude::*;
 
-use super::checkpoints::{Checkpoints, Done, network_fingerprint};
+use super::checkpoints::{Checkpoints, Done, WalkId, network_fingerprint};
 use crate::case::{Case, CaseError, replicate_seed};
 use crate::network::Network;
 use crate::outcome::record::{Replicate, RunSummary, Sensitivity, Statistic, Stopping, Verdict};
-use crate::outcome::stopping::{Look, StopRule};
+use crate::outcome::stopping::Look;
 use crate::outcome::verdict::{below_by_interval, classify};
 use crate::outcome::{Recorded, RunId, RunMetrics};
 use crate::store::StoreError;
-use crate::store::checkpoint::{Harmed, Saved};
-use crate::walk::{Engine, Plan, Progress, SizeClasses, State, Walk, WalkError};
+use crate::store::checkpoint::{Checkpoint, CheckpointError};
+use crate::walk::{Engine, Plan, SizeClasses, State, Walk, WalkControl, WalkError};
 
 /// Why walking ended early.
 #[derive(Debug, thiserror::Error)]
@@ -27,7 +27,7 @@ pub enum RunError {
     Case(#[from] CaseError),
     /// A checkpoint that cannot be gone on from.
     #[error(transparent)]
-    Harmed(#[from] Harmed),
+    Checkpoint(#[from] CheckpointError),
     /// A checkpoint that cannot be kept.
     #[error(transparent)]
     Keep(#[from] StoreError),
@@ -93,7 +93,7 @@ pub struct ReplicateResult {
 /// Number of runs that [`replicates`] and [`sensitivity`] walk for a case, as far as it is known before.
 pub fn runs_to_walk(case: &Case) -> u64 {
     let factors = case.sensitivity_factors().len() as u64;
-    case.scene.runs * (first_replicates(case) + factors * case.scene.sensitivity.1)
+    case.scene.walk.runs * (first_replicates(case) + factors * case.scene.record.sensitivity_replicates)
 }
 
 /// Walks every replicate of the case: as many as the scene says, or until its rule stops.
@@ -108,7 +108,7 @@ pub fn replicates(case: &Case, watch: &Watch) -> Result<Vec<ReplicateResult>, Ru
         walked.extend(some_replicates(case, 0, more, case.n_base, watch)?);
         match look(case, &walked) {
             Some(Look::Until(next)) => {
-                (watch.tell)(Event::More { runs: (next - wanted) * case.scene.runs });
+                (watch.tell)(Event::More { runs: (next - wanted) * case.scene.walk.runs });
                 wanted = next;
             }
             _ => return Ok(walked),
@@ -125,18 +125,18 @@ pub fn stopping(case: &Case, walked: &[ReplicateResult]) -> Option<Stopping> {
 }
 
 fn first_replicates(case: &Case) -> u64 {
-    let (rule, replicates) = (&case.scene.stop, case.scene.replicates);
+    let (rule, replicates) = (&case.scene.stop, case.scene.walk.replicates);
     if rule.is_set() { rule.replicates_at(replicates, 1) } else { replicates }
 }
 
 /// A look of the scene's rule at what is walked.
 fn look(case: &Case, walked: &[ReplicateResult]) -> Option<Look> {
-    let rule = Some(case.scene.stop).filter(StopRule::is_set)?;
+    let rule = Some(&case.scene.stop).filter(|rule| rule.is_set())?;
     let of_run = |run: usize| {
         walked.iter().map(|w| (w.replicate.runs[run].eroded_mass_fraction, w.below[run])).collect()
     };
-    let runs: Vec<_> = (0..case.scene.runs as usize).map(of_run).collect();
-    Some(rule.look(case.scene.replicates, &runs))
+    let runs: Vec<_> = (0..case.scene.walk.runs as usize).map(of_run).collect();
+    Some(rule.look(case.scene.walk.replicates, &runs))
 }
 
 /// Replicates with `n_base` particles each; part 0 are those of the case itself, the only ones that are recorded.
@@ -163,11 +163,12 @@ fn walk_replicate(
     n_base: u64,
     watch: &Watch,
 ) -> Result<ReplicateResult, RunError> {
-    let seed = replicate_seed(case.scene.seed, replicate);
+    let seed = replicate_seed(case.scene.walk.seed, replicate);
+    let id = WalkId { part, replicate, seed, n_base };
     let network = case.network(seed).map_err(CaseError::from)?;
     let mut blocked = BitVec::repeat(false, network.constrictions());
     let first = plan(case, &network, &blocked, n_base);
-    let (mut done, mut saved) = match watch.keeper.map(|keeper| keeper.load(part, replicate)).transpose()? {
+    let (mut done, mut saved) = match watch.keeper.map(|keeper| keeper.load(id)).transpose()? {
         Some(Some((done, saved))) => (done, Some(saved)),
         _ => (Done::default(), None),
     };
@@ -182,7 +183,7 @@ fn walk_replicate(
             pan_fraction: case.base.tail_mass_fraction(),
         };
         let begun = Instant::now();
-        let walk = RunContext { case, network: &network, part, seed, of, n_base };
+        let walk = RunContext { case, network: &network, id, of };
         let state = walk.run(blocked, &mut done, saved.take(), watch)?;
         let metrics = RunMetrics::new(&network, &state, of, begun.elapsed().as_secs_f64());
         let recorder = std::mem::take(&mut done.recorder);
@@ -191,11 +192,11 @@ fn walk_replicate(
         }
         done.below.push(metrics.below_threshold);
         done.runs.push(metrics.run);
-        done.complete = done.runs.len() as u64 == case.scene.runs;
+        done.complete = done.runs.len() as u64 == case.scene.walk.runs;
         blocked = state.blocked;
         (watch.tell)(Event::Run);
         if let (true, Some(keeper)) = (done.complete, watch.keeper) {
-            keeper.save_finished(part, replicate, seed, &done);
+            keeper.save_finished(id, &done);
         }
     }
     let verdict = classify(done.below.first().copied(), done.below.get(1).copied());
@@ -209,8 +210,8 @@ fn walk_replicate(
 }
 
 fn plan(case: &Case, network: &Network, blocked: &BitSlice<u64>, n_base: u64) -> Plan {
-    Plan::new(case.scene.engine, network, &case.sampler, blocked, n_base / case.increments())
-        .sampled(case.scene.sampling)
+    Plan::new(case.scene.walk.engine, network, &case.sampler, blocked, n_base / case.increments())
+        .sampled(case.scene.walk.sampling)
 }
 
 /// What the first run of the first replicate does not need, in words.
@@ -218,7 +219,7 @@ fn plan(case: &Case, network: &Network, blocked: &BitSlice<u64>, n_base: u64) ->
 /// # Errors
 /// As [`Case::network`].
 pub fn left_out_of_first_run(case: &Case) -> Result<Vec<String>, RunError> {
-    let network = case.network(replicate_seed(case.scene.seed, 1)).map_err(CaseError::from)?;
+    let network = case.network(replicate_seed(case.scene.walk.seed, 1)).map_err(CaseError::from)?;
     let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
     Ok(plan(case, &network, &open, case.n_base).left_out().to_vec())
 }
@@ -227,10 +228,8 @@ pub fn left_out_of_first_run(case: &Case) -> Result<Vec<String>, RunError> {
 struct RunContext<'a> {
     case: &'a Case,
     network: &'a Network,
-    part: u64,
-    seed: u64,
+    id: WalkId,
     of: RunId,
-    n_base: u64,
 }
 
 impl RunContext<'_> {
@@ -239,26 +238,26 @@ impl RunContext<'_> {
         &self,
         blocked: BitVec<u64>,
         done: &mut Done,
-        mut saved: Option<Saved>,
+        saved: Option<Checkpoint>,
         watch: &Watch,
     ) -> Result<State, RunError> {
-        let Self { case, network, part, seed, of, n_base } = *self;
-        let blocked = match &mut saved {
+        let Self { case, network, id, of } = *self;
+        let WalkId { part, seed, n_base, .. } = id;
+        let blocked = match &saved {
             Some(saved) if of.run > 1 => blocked_at_start(network, saved)?,
             _ => blocked,
         };
         let plan = plan(case, network, &blocked, n_base);
         let supply = plan.supply(case.sampler.clone(), n_base, case.increments(), seed, of.run);
         let (smallest, largest) = (case.sampler.smallest(), case.sampler.largest());
-        let classes = SizeClasses::logarithmic(smallest, largest, case.scene.wanted.size_classes);
+        let classes = SizeClasses::logarithmic(smallest, largest, case.scene.record.wanted().size_classes);
         let state = State::placed(&case.placement, network, &supply, classes, blocked, seed, of.run);
         let mut state = state.map_err(|source| RunError::Room { particles: supply.total(), source })?;
-        if let Some(mut saved) = saved {
+        if let Some(saved) = saved {
             if saved.label.network != network_fingerprint(network) {
-                let file = format!("checkpoint of replicate {}", of.replicate);
-                return Err(Harmed::new(file, "is of another network").into());
+                return Err(CheckpointError::OtherNetwork { file: saved.path().to_owned() }.into());
             }
-            state.restore(network, &mut saved)?;
+            state.restore(network, &saved)?;
         }
         if state.finished {
             return Ok(state);
@@ -266,21 +265,21 @@ impl RunContext<'_> {
         let (mut last, mut failed) = (Instant::now(), None);
         let walked = Walk::new(network, &supply, &state).run(&mut state, &mut |state| {
             if part == 0 {
-                done.recorder.observe(&case.scene.wanted, state);
+                done.recorder.observe(&case.scene.record.wanted(), state);
             }
             let (increment, moving) = (state.increment, state.tally.moving);
             (watch.tell)(Event::Increment { replicate: of.replicate, run: of.run, increment, moving });
             let stop = watch.stop.load(Ordering::Relaxed);
             if let Some(keeper) = watch.keeper.filter(|keeper| keeper.is_due(last, increment, stop)) {
-                if let Err(error) = keeper.save_walk(part, of.replicate, network, state, done) {
+                if let Err(error) = keeper.save_walk(id, network, state, done) {
                     failed = Some(error);
-                    return Progress::Stop;
+                    return WalkControl::Stop;
                 }
                 last = Instant::now();
             }
             match stop {
-                true => Progress::Stop,
-                false => Progress::Continue,
+                true => WalkControl::Stop,
+                false => WalkControl::Continue,
             }
         });
         if let Some(error) = failed {
@@ -292,7 +291,7 @@ impl RunContext<'_> {
 }
 
 /// Constrictions that were blocked when the saved run began: those blocked now, less those that it blocked itself.
-fn blocked_at_start(network: &Network, saved: &mut Saved) -> Result<BitVec<u64>, RunError> {
+fn blocked_at_start(network: &Network, saved: &Checkpoint) -> Result<BitVec<u64>, RunError> {
     let mut blocked = BitVec::from_vec(saved.read::<u64>("blocked")?);
     blocked.truncate(network.constrictions());
     for constriction in saved.read::<u32>("history_constriction")? {
@@ -339,7 +338,7 @@ fn run_summary(walked: &[ReplicateResult], run: usize) -> RunSummary {
 /// # Errors
 /// As [`replicates`].
 pub fn sensitivity(case: &Case, watch: &Watch) -> Result<Vec<Sensitivity>, RunError> {
-    let each = case.scene.sensitivity.1;
+    let each = case.scene.record.sensitivity_replicates;
     let factors = case.sensitivity_factors().into_iter().zip(1..);
     factors.map(|(factor, part)| one_sensitivity(case, part, factor, each, watch)).collect()
 }

@@ -1,18 +1,16 @@
 //! Writes what came of a case into a run folder.
 
-use std::fmt::Write;
 use std::time::SystemTime;
 
 use serde::Serialize;
 
 use super::machine::Machine;
 use super::replicates::{ReplicateResult, as_it_is, stopping, summarise};
-use crate::case::Case;
-use crate::network::Connectivity;
+use crate::case::{Case, INPUT_NAMES};
 use crate::outcome::record::{Manifest, Outcome, Sensitivity, Statistic};
 use crate::outcome::rules::RuleInputs;
 use crate::outcome::{MODEL_LEAVES_OUT, Recorded, infiltration, rules, verdict};
-use crate::scene::{Amount, BaseGradation, CurveSource, D85, FilterGradation, NetworkSource};
+use crate::scene::{FilterGradation, NetworkSource};
 use crate::store::{Folder, StoreError};
 
 /// Why results cannot be written.
@@ -49,12 +47,12 @@ pub fn outcome(
     let ratios = case.ratios();
     Outcome {
         verdict,
-        seed: case.scene.seed,
+        seed: case.scene.walk.seed,
         n_base: case.n_base,
         n_base_eq2: case.n_base_eq2,
         capped: case.capped,
         grains_per_void: case.grains_per_void,
-        engine: walked.first().map_or(case.scene.engine, |w| w.engine).name().into(),
+        engine: walked.first().map_or(case.scene.walk.engine, |w| w.engine).name().into(),
         replicates: walked.iter().map(|w| w.replicate.clone()).collect(),
         summary,
         stopping,
@@ -65,27 +63,13 @@ pub fn outcome(
         inputs: case.record(),
         ratios,
         rules: rules::apply(&rule_inputs(case, walked)),
-        infiltration: match case.scene.network {
+        infiltration: match case.scene.network.source() {
             NetworkSource::Cubic(_) => Some(infiltration(&case.curve, &case.base, case.counts[3])),
             _ => None,
         },
         sensitivity,
         seconds,
     }
-}
-
-/// Part of the fingerprint of every case: raised whenever the program gives other results for the same scene.
-const PROTOCOL: u32 = 1;
-
-/// Fingerprint of everything that the results of a case follow from: the resolved scene and its files.
-pub fn fingerprint(case: &Case) -> String {
-    let mut text = format!("{PROTOCOL}\n{}", resolved(case)).into_bytes();
-    text.extend_from_slice(case.shipped.map_or("", |shipped| shipped.curve_csv).as_bytes());
-    for input in case.inputs.iter().filter(|input| input.setting != "filter.density") {
-        text.extend_from_slice(input.setting.as_bytes());
-        text.extend_from_slice(&input.bytes);
-    }
-    format!("{:032x}", xxhash_rust::xxh3::xxh3_128(&text))
 }
 
 /// Writes what a run can be started again from: the resolved scene and its input files.
@@ -96,7 +80,11 @@ pub fn write_scene(folder: &Folder, case: &Case) -> Result<(), StoreError> {
     for input in &case.inputs {
         folder.write(&input.kept_as, &input.bytes)?;
     }
-    folder.write("scene.toml", resolved(case).as_bytes())
+    if !case.inputs.is_empty() {
+        let names = serde_json::to_vec_pretty(&case.input_names()).expect("names are text");
+        folder.write(INPUT_NAMES, &names)?;
+    }
+    folder.write("scene.toml", case.resolved().to_toml().as_bytes())
 }
 
 /// What is said of a run besides its results.
@@ -105,7 +93,7 @@ pub fn manifest(case: &Case, threads: u64, started: SystemTime, command: String)
     Manifest {
         version: env!("CARGO_PKG_VERSION").into(),
         commit: option_env!("VOIDWALK_COMMIT").map(String::from),
-        seed: case.scene.seed,
+        seed: case.scene.walk.seed,
         inputs: case.input_files(),
         threads,
         host: machine.host,
@@ -122,7 +110,7 @@ fn rule_inputs<'a>(case: &'a Case, walked: &[ReplicateResult]) -> RuleInputs<'a>
     let largest: Vec<f64> = walked.iter().filter_map(first).collect();
     RuleInputs {
         ratios: case.ratios(),
-        filter_sieve: match case.scene.filter {
+        filter_sieve: match case.scene.filter.gradation() {
             FilterGradation::Sieve(..) => Some(&case.filter),
             FilterGradation::Linear { .. } => None,
         },
@@ -192,133 +180,4 @@ fn csv(file: &'static str, header: &str, rows: &[impl Serialize]) -> Result<Vec<
     writer.flush().map_err(|e| ResultError::Format { file, source: e.into() })?;
     drop(writer);
     Ok(bytes)
-}
-
-/// The scene with every setting given: run again from the run folder, it gives the same bits.
-pub fn resolved(case: &Case) -> String {
-    let scene = &case.scene;
-    let kept = |setting: &str| {
-        let input = case.inputs.iter().find(|i| i.setting == setting);
-        quoted(input.map_or("", |i| &i.kept_as))
-    };
-    let named = |source: &CurveSource, setting: &str| match source {
-        CurveSource::Shipped(name) => quoted(name),
-        CurveSource::File(_) => kept(setting),
-    };
-    let mut text = String::new();
-    let mut line = |name: &str, value: String| {
-        // Writing to a string cannot fail.
-        let _ = match value.is_empty() {
-            true => writeln!(text, "\n[{name}]"),
-            false => writeln!(text, "{name} = {value}"),
-        };
-    };
-    line("seed", scene.seed.to_string());
-    line("engine", quoted(scene.engine.name()));
-    line("runs", scene.runs.to_string());
-    line("replicates", scene.replicates.to_string());
-    line("inject_share", number(scene.inject_share));
-    line("sampling", quoted(scene.sampling.name()));
-    if scene.stop.is_set() {
-        line("stop", String::new());
-        if let Some(pp) = scene.stop.target_error_pp {
-            line("target_error_pp", number(pp));
-        }
-        if let Some(percent) = scene.stop.decide_percent {
-            line("decide_percent", number(percent));
-        }
-        line("most_replicates", scene.stop.most.to_string());
-    }
-    line("filter", String::new());
-    if let Some(density) = scene.estimate {
-        line("estimate", number(density));
-    } else if case.packed.is_some() {
-        line("curve", kept("filter.curve"));
-    } else if let Some(source) = &scene.curve {
-        line("curve", named(source, "filter.curve"));
-    }
-    match &scene.filter {
-        FilterGradation::Linear { d0_mm, cu } => {
-            line("d0_mm", number(*d0_mm));
-            if let Some(cu) = cu.or(case.shipped.map(|s| s.cu)) {
-                line("cu", number(cu));
-            }
-        }
-        FilterGradation::Sieve(_, d0_mm) => {
-            line("sieve", kept("filter.sieve"));
-            if let Some(d0_mm) = d0_mm {
-                line("d0_mm", number(*d0_mm));
-            }
-        }
-    }
-    if let Some(grains) = case.grains_per_void {
-        line("grains_per_void", number(grains));
-    }
-    line("base", String::new());
-    match &scene.base {
-        BaseGradation::Sieve(_, d0_mm) => {
-            line("sieve", kept("base.sieve"));
-            if let Some(d0_mm) = d0_mm {
-                line("d0_mm", number(*d0_mm));
-            }
-        }
-        BaseGradation::Single(size) => line("single_mm", number(*size)),
-        BaseGradation::Linear { cu, d85 } => {
-            line("cu", number(*cu));
-            match d85 {
-                D85::Mm(mm) => line("d85_mm", number(*mm)),
-                D85::Ratio(ratio) => line("d15f_over_d85b", number(*ratio)),
-                D85::AtDc(percent, source) => {
-                    line("d85_at_dc", number(*percent));
-                    if let Some(source) = source {
-                        line("dc_curve", named(source, "base.dc_curve"));
-                    }
-                }
-            }
-        }
-    }
-    match scene.amount {
-        Amount::Number(n) => line("n_base", n.to_string()),
-        Amount::MassRatio(ratio, cap) => {
-            line("mass_ratio", number(ratio));
-            if let Some(cap) = cap {
-                line("cap", cap.to_string());
-            }
-        }
-    }
-    line("network", String::new());
-    if let Some([nx, ny, nz]) = scene.network.shape() {
-        line("nx", nx.to_string());
-        line("ny", ny.to_string());
-        line("nz", nz.to_string());
-    }
-    match &scene.network {
-        NetworkSource::Cubic(_) => {}
-        NetworkSource::Connected(_, wanted) if *wanted == Connectivity::table_3() => {
-            line("connectivity", quoted("table3"));
-        }
-        NetworkSource::Connected(_, wanted) => {
-            let shares: Vec<String> =
-                wanted.percent().iter().map(|(k, share)| format!("{k} = {}", number(*share))).collect();
-            line("connectivity", format!("{{ {} }}", shares.join(", ")));
-        }
-        NetworkSource::File(_) => line("file", kept("network.file")),
-    }
-    line("record", String::new());
-    line("series_every", scene.wanted.series_every.to_string());
-    line("size_curves", format!("{:?}", scene.wanted.size_curves));
-    line("size_classes", scene.wanted.size_classes.to_string());
-    line("sensitivity", format!("{:?}", scene.sensitivity.0));
-    line("sensitivity_replicates", scene.sensitivity.1.to_string());
-    text
-}
-
-/// A TOML string.
-fn quoted(text: &str) -> String {
-    toml::Value::String(text.into()).to_string()
-}
-
-/// A number that reads back to the same bits.
-fn number(value: f64) -> String {
-    format!("{value:?}")
 }

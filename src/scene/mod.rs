@@ -1,136 +1,98 @@
 //! A scene: one base-filter combination and how it is to be walked, as the user states it.
 //!
-//! The names of the settings are a contract; `src/data/scene.toml` shows them with what they mean.
+//! Every setting is declared once, in [`keys`] or by the stage that it belongs to ([`StopRule`], packing's
+//! [`Settings`](crate::packing::Settings)); a [`Scene`] holds them all. From those declarations follow the
+//! commented text of [`Scene::init_text`], what may be set, what is refused, and the resolved scene that a
+//! run writes and is known by. Which settings exclude each other stands in [`groups`]. The names are a
+//! contract.
+
+mod groups;
+mod init;
+mod keys;
+mod meaning;
 
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
-mod names;
-mod network_source;
-mod recipe;
-mod settings;
+use serde::Serialize;
 
-use crate::outcome::Wanted;
+pub use crate::schema::{Origin, SceneError};
+pub use keys::{Base, CurveSource, Density, Filter, FilterPacking, NetworkKeys, Record, WalkKeys};
+pub use meaning::{Amount, BaseGradation, D85, FilterGradation, NetworkSource, PackingSpec};
+
 use crate::outcome::stopping::StopRule;
-use crate::walk::{Engine, Sampling};
-use names::NAMES;
-pub use network_source::NetworkSource;
-pub use recipe::{DENSITIES, PackingSpec};
-pub use settings::{Origin, SceneError, Settings};
-
-/// The built-in scene, commented.
-pub const BUILT_IN: &str = include_str!("../data/scene.toml");
+use crate::packing;
+use crate::schema::{GivenSettings, KeyInfo, Names};
 
 /// What errors call the built-in scene.
 const BUILT_IN_NAME: &str = "built-in scene";
 
-/// The filter's gradation by mass.
-#[derive(Clone, Debug, PartialEq)]
-pub enum FilterGradation {
-    /// Straight on semi-log paper from `d0_mm`; `cu` from the shipped curve where it is not given.
-    Linear {
-        /// Smallest grain (mm).
-        d0_mm: f64,
-        /// D60 / D10.
-        cu: Option<f64>,
-    },
-    /// A sieve table, and where its open tail ends.
-    Sieve(PathBuf, Option<f64>),
-}
-
-/// The base's gradation by mass.
-#[derive(Clone, Debug, PartialEq)]
-pub enum BaseGradation {
-    /// Straight on semi-log paper with a given D85B.
-    Linear {
-        /// D60 / D10.
-        cu: f64,
-        /// What sets D85B.
-        d85: D85,
-    },
-    /// A sieve table, and where its open tail ends.
-    Sieve(PathBuf, Option<f64>),
-    /// One size (mm).
-    Single(f64),
-}
-
-/// What sets D85B.
-#[derive(Clone, Debug, PartialEq)]
-pub enum D85 {
-    /// A length (mm).
-    Mm(f64),
-    /// Dc at this percent of the filter's constriction curve, or of another one.
-    AtDc(f64, Option<CurveSource>),
-    /// D15F over this ratio.
-    Ratio(f64),
-}
-
-/// Where a constriction curve comes from.
-#[derive(Clone, Debug, PartialEq)]
-pub enum CurveSource {
-    /// A filter that comes with the program.
-    Shipped(String),
-    /// A CSV file.
-    File(PathBuf),
-}
-
-/// How many base particles.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Amount {
-    /// Mass of base over mass of filter, Eq. (2), and a cap.
-    MassRatio(f64, Option<u64>),
-    /// The number itself.
-    Number(u64),
-}
-
-/// A scene, each value checked on its own.
-#[derive(Clone, Debug, PartialEq)]
+/// A scene: every setting with its value, given or by default, each checked by itself and against the others.
+///
+/// ```
+/// let scene = voidwalk::Scene::built_in(&["base.cu=3".into(), "network.nz=30".into()]).unwrap();
+/// assert_eq!((scene.base.cu, scene.network.nz), (Some(3.0), Some(30)));
+/// let again = voidwalk::Scene::parse(scene.to_toml().as_bytes(), "again.toml", &[]).unwrap();
+/// assert_eq!(again.to_toml(), scene.to_toml());
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Scene {
     /// What errors call it.
+    #[serde(skip)]
     pub name: String,
-    /// The user's seed.
-    pub seed: u64,
-    /// Which engine walks.
-    pub engine: Engine,
-    /// 1 or 2.
-    pub runs: u64,
-    /// New network and new walk each; the first look's number where a rule adds more.
-    pub replicates: u64,
-    /// When to stop adding replicates, where more than that may be needed.
+    /// Seed, engine, replicates and the like: the settings without a section.
+    #[serde(flatten)]
+    pub walk: WalkKeys,
+    /// When to stop adding replicates, where more than those may be needed.
+    #[serde(skip_serializing_if = "StopRule::is_unset")]
     pub stop: StopRule,
-    /// Share of the base inserted in each increment.
-    pub inject_share: f64,
-    /// How start nodes and sizes of the base particles are drawn.
-    pub sampling: Sampling,
-    /// The filter's constriction curve; missing where the filter is to be packed, or a network is read from a file.
-    pub curve: Option<CurveSource>,
-    /// How the filter is to be packed, where it is.
-    pub recipe: Option<PackingSpec>,
-    /// Relative density at which circles inscribed between touching grains stand for its constrictions, where they do.
-    pub estimate: Option<f64>,
-    /// The filter's gradation.
-    pub filter: FilterGradation,
-    /// Filter grains per void; from the shipped curve where it is not given.
-    pub grains_per_void: Option<f64>,
-    /// The base's gradation.
-    pub base: BaseGradation,
-    /// How much base.
-    pub amount: Amount,
+    /// The filter.
+    pub filter: Filter,
+    /// How the filter is packed, where it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub packing: Option<PackingKeys>,
+    /// The base soil.
+    pub base: Base,
     /// The network.
-    pub network: NetworkSource,
+    pub network: NetworkKeys,
     /// What to keep.
-    pub wanted: Wanted,
-    /// Multiples of N_base at which the verdict is shown, and replicates of each.
-    pub sensitivity: (Vec<f64>, u64),
+    pub record: Record,
 }
 
+/// The section `packing`: what belongs to the measured packing, and how its grains are compressed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PackingKeys {
+    /// Grains and voids.
+    #[serde(flatten)]
+    pub filter: FilterPacking,
+    /// The compression; friction and number of grains are not set here.
+    #[serde(flatten)]
+    pub compression: packing::Settings,
+}
+
+/// The names of all settings, and which exclude each other.
+static NAMES: LazyLock<Names> = LazyLock::new(|| Names {
+    known: Scene::keys().iter().map(KeyInfo::full_name).collect(),
+    groups: groups::GROUPS,
+});
+
 impl Scene {
+    /// Every setting, section by section, in the order in which they are written.
+    pub fn keys() -> Vec<KeyInfo> {
+        init::sections().into_iter().flat_map(|(_, keys)| keys).collect()
+    }
+
+    /// The built-in scene as commented TOML: what `voidwalk init` writes, with every setting there is.
+    pub fn init_text() -> String {
+        init::text()
+    }
+
     /// The built-in scene, with `name=value` settings applied.
     ///
     /// # Errors
     /// A setting that does not exist or is not allowed.
     pub fn built_in(assignments: &[String]) -> Result<Self, SceneError> {
-        let settings = Settings::parse(BUILT_IN.as_bytes(), BUILT_IN_NAME, PathBuf::new(), &NAMES)?;
-        Self::new(settings, BUILT_IN_NAME, assignments)
+        Self::parse(init::text().as_bytes(), BUILT_IN_NAME, assignments)
     }
 
     /// A scene from a file, with `name=value` settings applied.
@@ -138,20 +100,19 @@ impl Scene {
     /// # Errors
     /// The file cannot be read, or a setting does not exist, is not allowed, clashes or is missing.
     pub fn read(path: &Path, assignments: &[String]) -> Result<Self, SceneError> {
-        let settings = Settings::read(path, &NAMES)?;
-        Self::new(settings, &path.display().to_string(), assignments)
+        Self::assigned(GivenSettings::read(path, &NAMES)?, assignments)
     }
 
-    /// A scene from TOML text; `name` stands for the file in errors.
+    /// A scene from TOML text; `name` stands for the file in errors, and paths are taken as they are.
     ///
     /// # Errors
     /// As [`Scene::read`].
     pub fn parse(bytes: &[u8], name: &str, assignments: &[String]) -> Result<Self, SceneError> {
-        Self::new(Settings::parse(bytes, name, PathBuf::new(), &NAMES)?, name, assignments)
+        Self::assigned(GivenSettings::parse(bytes, name, PathBuf::new(), &NAMES)?, assignments)
     }
 
-    /// The scene of a plan's case: the built-in scene or one from a file, with the case's settings, those stated together in
-    /// one list each.
+    /// The scene of a plan's case: the built-in scene or one from a file, with the case's settings, those
+    /// stated together in one list each.
     ///
     /// # Errors
     /// As [`Scene::read`].
@@ -161,237 +122,139 @@ impl Scene {
         origin: &Origin,
     ) -> Result<Self, SceneError> {
         let mut s = match base {
-            Some(path) => Settings::read(path, &NAMES)?,
-            None => Settings::parse(BUILT_IN.as_bytes(), BUILT_IN_NAME, PathBuf::new(), &NAMES)?,
+            Some(path) => GivenSettings::read(path, &NAMES)?,
+            None => GivenSettings::parse(init::text().as_bytes(), BUILT_IN_NAME, PathBuf::new(), &NAMES)?,
         };
         for together in assignments {
             s.set_together(together, &NAMES, origin)?;
         }
-        Self::from_settings(&s, &origin.to_string())
+        Ok(Self { name: origin.to_string(), ..Self::of(&s)? })
     }
 
-    fn new(mut s: Settings, name: &str, assignments: &[String]) -> Result<Self, SceneError> {
+    fn assigned(mut s: GivenSettings, assignments: &[String]) -> Result<Self, SceneError> {
         for assignment in assignments {
             s.set(assignment, &NAMES)?;
         }
-        Self::from_settings(&s, name)
+        Self::of(&s)
     }
 
-    fn from_settings(s: &Settings, name: &str) -> Result<Self, SceneError> {
-        let engine = s.word("engine", Engine::ALL.map(|e| (e.name(), e)), ENGINES)?;
-        let sampling = s.word("sampling", Sampling::ALL.map(|s| (s.name(), s)), SAMPLINGS)?;
-        let inject_share = s.number(
-            "inject_share",
-            is_whole_part,
-            "one part of a whole number of equal parts, from 0.000001 to 1, as 0.01 or 0.02",
-        )?;
-        let every = s.whole("record.series_every", 0..=u64::MAX)?;
-        let curves = s.numbers(
-            "record.size_curves",
-            |n| n >= 1.0 && n.fract() == 0.0,
-            "a list of increments, from 1",
-        )?;
-        let factors = s.numbers("record.sensitivity", |n| n > 0.0, "a list of numbers above 0")?;
-        let filter = filter(s)?;
-        Ok(Self {
-            recipe: PackingSpec::new(s, &filter)?,
-            estimate: s.number(
-                "filter.estimate",
-                |n| (0.0..=1.0).contains(&n),
-                "a relative density from 0 (loose) to 1 (dense)",
-            )?,
-            name: name.into(),
-            seed: s.whole("seed", 0..=u64::MAX)?.unwrap_or(1),
-            engine: engine.unwrap_or(Engine::Auto),
-            runs: s.whole("runs", 1..=2)?.unwrap_or(2),
-            replicates: s.whole("replicates", 1..=100_000)?.unwrap_or(10),
-            stop: stop(s)?,
-            inject_share: inject_share.unwrap_or(0.01),
-            sampling: sampling.unwrap_or_default(),
-            curve: curve(s)?,
-            filter,
-            grains_per_void: positive(s, "filter.grains_per_void")?,
-            base: base(s)?,
-            amount: amount(s)?,
-            network: NetworkSource::of(s)?,
-            wanted: Wanted {
-                series_every: every.unwrap_or(1),
-                size_curves: match curves {
-                    Some(list) => list.into_iter().map(|n| n as u64).collect(),
-                    None => vec![1, 10, 50, 100],
-                },
-                size_classes: s.whole("record.size_classes", 1..=4096)?.unwrap_or(64) as usize,
-            },
-            sensitivity: (
-                factors.unwrap_or_else(|| vec![0.25, 0.5, 2.0, 4.0]),
-                s.whole("record.sensitivity_replicates", 1..=1000)?.unwrap_or(3),
-            ),
-        })
+    fn of(s: &GivenSettings) -> Result<Self, SceneError> {
+        s.check_groups(groups::GROUPS)?;
+        let mut scene = Self {
+            name: s.file().to_owned(),
+            walk: WalkKeys::read(s)?,
+            stop: StopRule::read(s)?,
+            filter: Filter::read(s)?,
+            packing: packing_keys(s)?,
+            base: Base::read(s)?,
+            network: NetworkKeys::read(s)?,
+            record: Record::read(s)?,
+        };
+        scene.check_what_is_missing(s)?;
+        scene.fill_in();
+        Ok(scene)
     }
 
     /// How the filter of a file is to be packed; a scene will do, of which nothing else is looked at.
     ///
     /// # Errors
     /// As [`Scene::read`], or neither density nor friction is given.
-    pub fn recipe(path: &Path, assignments: &[String]) -> Result<PackingSpec, SceneError> {
-        let mut s = Settings::read(path, &NAMES)?;
+    pub fn read_packing(path: &Path, assignments: &[String]) -> Result<PackingSpec, SceneError> {
+        let mut s = GivenSettings::read(path, &NAMES)?;
         for assignment in assignments {
             s.set(assignment, &NAMES)?;
         }
-        let recipe = PackingSpec::new(&s, &filter(&s)?)?;
-        recipe.ok_or_else(|| {
-            s.clash("filter.density is missing: \"dense\", \"intermediate\" or \"loose\"; or filter.friction")
-        })
+        s.check_groups(groups::GROUPS)?;
+        let (mut filter, packing) = (Filter::read(&s)?, packing_keys(&s)?);
+        filter.fill_in();
+        let Some(packing) = packing else {
+            let words = Density::ALL.map(|word| format!("\"{}\"", word.name())).join(", ");
+            return Err(s.clash(format!("filter.density is missing: {words}; or filter.friction")));
+        };
+        PackingSpec::new(&filter, &packing, s.file())
+    }
+
+    /// How the filter is to be packed, where it is.
+    ///
+    /// # Errors
+    /// Its gradation is missing.
+    pub fn packing_spec(&self) -> Result<Option<PackingSpec>, SceneError> {
+        let spec = |packing| PackingSpec::new(&self.filter, packing, &self.name);
+        self.packing.as_ref().map(spec).transpose()
+    }
+
+    /// Every setting that the scene has, in TOML: read again, it is the same scene.
+    pub fn to_toml(&self) -> String {
+        toml::to_string(self).unwrap_or_else(|e| unreachable!("settings are numbers, words and lists: {e}"))
     }
 
     /// The error for settings of this scene that clash.
     pub fn clash(&self, problem: impl Into<String>) -> SceneError {
         SceneError::Clash { file: self.name.clone(), problem: problem.into() }
     }
-}
 
-const ENGINES: &str = "\"auto\", \"particles\", \"counts\" or \"expected\"";
-
-const SAMPLINGS: &str = "\"independent\" or \"stratified\"";
-
-/// Whether a share goes into 1 a whole number of times, within a thousandth.
-fn is_whole_part(share: f64) -> bool {
-    let parts = 1.0 / share;
-    (1e-6..=1.0).contains(&share) && (parts - parts.round()).abs() < 1e-3 * parts
-}
-
-fn stop(s: &Settings) -> Result<StopRule, SceneError> {
-    let rule = StopRule {
-        target_error_pp: s.number(
-            "stop.target_error_pp",
-            |n| n > 0.0 && n < 100.0,
-            "percentage points of the base, above 0 and below 100",
-        )?,
-        decide_percent: s.number(
-            "stop.decide_percent",
-            |n| (50.0..=99.999).contains(&n),
-            "a probability from 50 to 99.999 (%)",
-        )?,
-        most: s.whole("stop.most_replicates", 2..=100_000)?.unwrap_or(1000),
-    };
-    if s.has("stop.most_replicates") && !rule.is_set() {
-        return Err(
-            s.clash("stop.most_replicates says nothing without stop.target_error_pp or stop.decide_percent")
-        );
-    }
-    Ok(rule)
-}
-
-fn positive(s: &Settings, name: &str) -> Result<Option<f64>, SceneError> {
-    s.number(name, |n| n > 0.0, "a finite number above 0")
-}
-
-fn curve(s: &Settings) -> Result<Option<CurveSource>, SceneError> {
-    if let Some(other) =
-        ["filter.curve", "filter.density", "filter.friction", "network.file"].iter().find(|n| s.has(n))
-        && s.has("filter.estimate")
-    {
-        return Err(s.clash(format!(
-            "filter.estimate and {other} both say what the filter's constrictions are: keep one"
-        )));
-    }
-    let source = named_curve(s, "filter.curve")?;
-    let ways = ["filter.density", "filter.friction", "filter.estimate", "network.file"];
-    if source.is_none() && !ways.iter().any(|way| s.has(way)) {
-        return Err(s.clash(
-            "filter.curve is missing: a shipped name, or a CSV file with percent_smaller,diameter_mm; or filter.density, for a filter to be packed",
-        ));
-    }
-    Ok(source)
-}
-
-/// A curve by shipped name or by file name: a file name has a folder or an ending.
-fn named_curve(s: &Settings, name: &str) -> Result<Option<CurveSource>, SceneError> {
-    let Some(text) = s.text(name, "a shipped curve or a file name, in quotes")? else { return Ok(None) };
-    let is_file =
-        text.contains(['/', '\\']) || text.to_lowercase().ends_with(".csv") || text.ends_with(".txt");
-    Ok(Some(match is_file {
-        true => CurveSource::File(s.resolve(name, &text)),
-        false => CurveSource::Shipped(text),
-    }))
-}
-
-fn filter(s: &Settings) -> Result<FilterGradation, SceneError> {
-    let d0_mm = positive(s, "filter.d0_mm")?;
-    if let Some(path) = s.path("filter.sieve")? {
-        if s.has("filter.cu") {
-            return Err(s.clash("filter.sieve and filter.cu both give the gradation: keep one"));
+    /// Refuses a scene that leaves a question open, or answers one that is not asked.
+    fn check_what_is_missing(&self, s: &GivenSettings) -> Result<(), SceneError> {
+        let filter = &self.filter;
+        if filter.curve.is_none()
+            && filter.estimate.is_none()
+            && self.packing.is_none()
+            && self.network.file.is_none()
+        {
+            return Err(s.clash(
+                "filter.curve is missing: a shipped name, or a CSV file with percent_smaller,diameter_mm; \
+                 or filter.density, for a filter to be packed",
+            ));
         }
-        return Ok(FilterGradation::Sieve(path, d0_mm));
+        if filter.measured.is_some() && (self.packing.is_none() || filter.grains_per_void.is_none()) {
+            return Err(s.clash(
+                "filter.measured goes with filter.grains_per_void, and filter.density or filter.friction",
+            ));
+        }
+        let base = &self.base;
+        if base.cu.is_none() && base.sieve.is_none() && base.single_mm.is_none() {
+            return Err(
+                s.clash("the base is missing: give base.cu (with D85B), base.sieve or base.single_mm")
+            );
+        }
+        if base.cu.is_some() && base.d85().is_none() {
+            return Err(s.clash("base.cu needs one of base.d85_mm, base.d85_at_dc, base.d15f_over_d85b"));
+        }
+        if s.has("stop.most_replicates") && self.stop.is_unset() {
+            return Err(s.clash(
+                "stop.most_replicates says nothing without stop.target_error_pp or stop.decide_percent",
+            ));
+        }
+        self.packing_spec().map(drop)
     }
-    let cu = s.number("filter.cu", |n| (1.0..=1000.0).contains(&n), "a number from 1 to 1000")?;
-    Ok(FilterGradation::Linear { d0_mm: d0_mm.unwrap_or(1.0), cu })
+
+    /// Gives the settings that follow from others their values, so that the scene says all that it means.
+    fn fill_in(&mut self) {
+        self.filter.fill_in();
+        self.base.fill_in();
+        self.network.fill_in();
+    }
 }
 
-fn base(s: &Settings) -> Result<BaseGradation, SceneError> {
-    let given = |names: &[&str]| -> Vec<String> {
-        names.iter().filter(|n| s.has(&format!("base.{n}"))).map(|n| format!("base.{n}")).collect()
-    };
-    let kinds = given(&["cu", "sieve", "single_mm"]);
-    if kinds.len() != 1 {
-        let problem = match kinds.is_empty() {
-            true => "the base is missing: give base.cu (with D85B), base.sieve or base.single_mm".into(),
-            false => format!("{} all give the base: keep one", kinds.join(" and ")),
-        };
-        return Err(s.clash(problem));
-    }
-    let sizes = given(&["d85_mm", "d85_at_dc", "d15f_over_d85b"]);
-    let d0_mm = positive(s, "base.d0_mm")?;
-    if kinds[0] != "base.cu" && !sizes.is_empty() {
-        return Err(s.clash(format!("{} goes with base.cu, not with {}", sizes.join(" and "), kinds[0])));
-    }
-    if kinds[0] != "base.sieve" && d0_mm.is_some() {
-        return Err(s.clash("base.d0_mm goes with base.sieve: it says where an open finest tail ends"));
-    }
-    if s.has("base.dc_curve") && !s.has("base.d85_at_dc") {
-        return Err(s.clash("base.dc_curve goes with base.d85_at_dc"));
-    }
-    if let Some(path) = s.path("base.sieve")? {
-        return Ok(BaseGradation::Sieve(path, d0_mm));
-    }
-    if let Some(size) = positive(s, "base.single_mm")? {
-        return Ok(BaseGradation::Single(size));
-    }
-    let cu = s.number("base.cu", |n| (1.0..=1000.0).contains(&n), "a number from 1 to 1000")?.unwrap_or(1.0);
-    if sizes.len() != 1 {
-        return Err(s.clash(match sizes.is_empty() {
-            true => "base.cu needs one of base.d85_mm, base.d85_at_dc, base.d15f_over_d85b".into(),
-            false => format!("{} both set D85B: keep one", sizes.join(" and ")),
-        }));
-    }
-    let percent = s.number("base.d85_at_dc", |n| (0.0..=100.0).contains(&n), "a percentage from 0 to 100")?;
-    let d85 = match (positive(s, "base.d85_mm")?, percent, positive(s, "base.d15f_over_d85b")?) {
-        (Some(mm), ..) => D85::Mm(mm),
-        (_, Some(percent), _) => D85::AtDc(percent, named_curve(s, "base.dc_curve")?),
-        (.., ratio) => D85::Ratio(ratio.unwrap_or(1.0)),
-    };
-    Ok(BaseGradation::Linear { cu, d85 })
-}
-
-fn amount(s: &Settings) -> Result<Amount, SceneError> {
-    let number = s.whole("base.n_base", 1..=u64::MAX)?;
-    let ratio = positive(s, "base.mass_ratio")?;
-    let cap = s.whole("base.cap", 1..=u64::MAX)?;
-    match (number, ratio) {
-        (Some(_), Some(_)) => {
-            Err(s.clash("base.n_base and base.mass_ratio both say how much base: keep one"))
-        }
-        (Some(_), None) if cap.is_some() => {
-            Err(s.clash("base.cap goes with base.mass_ratio, not with base.n_base"))
-        }
-        (Some(n), None) => Ok(Amount::Number(n)),
-        (None, ratio) => Ok(Amount::MassRatio(ratio.unwrap_or(0.05), cap)),
+/// The section `packing`, where density or friction asks for a packing.
+fn packing_keys(s: &GivenSettings) -> Result<Option<PackingKeys>, SceneError> {
+    let stated = s.has("filter.density") || s.has("filter.friction");
+    match s.first_in("packing.") {
+        Some(name) if !stated => Err(s.clash(format!(
+            "{name} goes with filter.density or filter.friction: nothing is packed without one of them"
+        ))),
+        _ if !stated => Ok(None),
+        _ => Ok(Some(PackingKeys {
+            filter: FilterPacking::read(s)?,
+            compression: packing::Settings::read(s)?,
+        })),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::network::Connectivity;
 
     fn built_in(assignments: &[&str]) -> Result<Scene, SceneError> {
         Scene::built_in(&assignments.iter().map(ToString::to_string).collect::<Vec<_>>())
@@ -400,24 +263,87 @@ mod tests {
     #[test]
     fn the_built_in_scene_is_what_it_says() {
         let scene = built_in(&[]).unwrap();
-        assert_eq!(scene.curve, Some(CurveSource::Shipped("shire2016-cu1.5-loose".into())));
-        assert_eq!(scene.base, BaseGradation::Linear { cu: 1.5, d85: D85::AtDc(5.0, None) });
-        assert_eq!(scene.network, NetworkSource::Cubic([40, 40, 60]));
-        assert_eq!((scene.seed, scene.runs, scene.replicates), (1, 2, 10));
-        assert_eq!(scene.amount, Amount::MassRatio(0.05, None));
+        assert_eq!(scene.filter.curve, Some(CurveSource::Shipped("shire2016-cu1.5-loose".into())));
+        assert_eq!(scene.base.gradation(), BaseGradation::Linear { cu: 1.5, d85: D85::AtDc(5.0, None) });
+        assert_eq!(scene.network.source(), NetworkSource::Cubic([40, 40, 60]));
+        assert_eq!((scene.walk.seed, scene.walk.runs, scene.walk.replicates), (1, 2, 10));
+        assert_eq!(scene.base.amount(), Amount::MassRatio(0.05, None));
+        let text = Scene::init_text();
+        assert!(text.lines().all(|line| line.len() <= 100), "{text}");
     }
 
     #[test]
     fn one_alternative_replaces_the_others() {
-        let base = |set: &[&str]| built_in(set).unwrap().base;
+        let base = |set: &[&str]| built_in(set).unwrap().base.gradation();
         assert_eq!(base(&["base.single_mm=0.2"]), BaseGradation::Single(0.2));
         assert_eq!(base(&["base.sieve=b.csv"]), BaseGradation::Sieve("b.csv".into(), None));
         assert_eq!(
             base(&["base.single_mm=0.2", "base.cu=3", "base.d15f_over_d85b=6.5"]),
             BaseGradation::Linear { cu: 3.0, d85: D85::Ratio(6.5) }
         );
-        assert_eq!(built_in(&["base.n_base=2e8"]).unwrap().amount, Amount::Number(200_000_000));
-        assert_eq!(built_in(&["network.file=n.csv"]).unwrap().network, NetworkSource::File("n.csv".into()));
+        assert_eq!(built_in(&["base.n_base=2e8"]).unwrap().base.amount(), Amount::Number(200_000_000));
+        let network = |set: &[&str]| built_in(set).unwrap().network.source();
+        assert_eq!(network(&["network.file=n.csv"]), NetworkSource::File("n.csv".into()));
+        let table_3 = NetworkSource::Connected([8, 40, 60], Connectivity::table_3());
+        assert_eq!(network(&["network.file=n.csv", "network.connectivity=table3", "network.nx=8"]), table_3);
+        assert_eq!(
+            network(&["network.connectivity={6=100}", "network.file=n.csv"]),
+            NetworkSource::File("n.csv".into())
+        );
+    }
+
+    #[test]
+    fn what_is_written_is_the_whole_scene() {
+        for set in [
+            vec![],
+            vec!["seed=18446744073709551615", "stop.decide_percent=99.9", "inject_share=0.02"],
+            vec!["filter.density=dense", "filter.cu=3", "packing.grains=500", "packing.drag=0.04"],
+            vec!["filter.friction=0.2", "filter.sieve=f.csv", "filter.d0_mm=0.1"],
+            vec!["filter.estimate=0.5", "base.sieve=b.csv", "base.n_base=1e6", "record.sensitivity=[]"],
+            vec!["base.dc_curve=cu3-loose", "base.cap=2e8", "network.connectivity={5=50, 7=50}"],
+            vec!["network.file=n.csv", "sampling=stratified", "engine=expected"],
+        ] {
+            let scene = built_in(&set).unwrap();
+            let text = scene.to_toml();
+            let again =
+                Scene::parse(text.as_bytes(), &scene.name, &[]).unwrap_or_else(|e| panic!("{text}{e}"));
+            assert_eq!(again, scene, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_distribution_of_connectivity_is_given_by_name_or_as_a_table() {
+        let of = |network: &str| {
+            let text = format!("[filter]\ncurve = \"a.csv\"\n[base]\nsingle_mm = 1\n{network}");
+            Scene::parse(text.as_bytes(), "s.toml", &[]).map(|scene| scene.network.source())
+        };
+        let table_3 = NetworkSource::Connected([40, 40, 60], Connectivity::table_3());
+        assert_eq!(of("[network]\nconnectivity = \"table3\"").unwrap(), table_3);
+        for text in [
+            "[network]\nnx = 5\nconnectivity = { 5 = 50, 7 = 50.0 }",
+            "[network]\nnx = 5\n[network.connectivity]\n7 = 50\n5 = 50",
+        ] {
+            let expected = Connectivity::new(&[(5, 50.0), (7, 50.0)]).unwrap();
+            assert_eq!(of(text).unwrap(), NetworkSource::Connected([5, 40, 60], expected));
+        }
+        for (text, message) in [
+            (
+                "connectivity = \"table4\"",
+                "s.toml, line 6, network.connectivity: `table4` is not allowed; \"table3\"",
+            ),
+            (
+                "connectivity = { 6 = 90 }",
+                "`{ 6 = 90 }` is not allowed; \"table3\", or percentages that sum to 100",
+            ),
+            ("connectivity = { six = 100 }", "`{ six = 100 }` is not allowed; \"table3\", or percent"),
+            ("connectivity = { 6 = \"all\" }", "is not allowed; \"table3\", or percent"),
+            ("connectivity = { 1 = 100 }", "from 2"),
+            ("connectivity = [6, 100]", "is not allowed"),
+            ("connectivity = \"table3\"\nfile = \"n.csv\"", "keep one"),
+        ] {
+            let error = of(&format!("[network]\n{text}")).unwrap_err().to_string();
+            assert!(error.starts_with("s.toml") && error.contains(message), "{text}: {error}");
+        }
     }
 
     #[test]
@@ -446,6 +372,9 @@ mod tests {
             ("record.size_curves=[0]", "increments, from 1"),
             ("base.d0_mm=1", "goes with base.sieve"),
             ("bas.cu=2", "did you mean `base.cu`"),
+            ("filter.density=medium", "\"dense\" (friction 0), \"intermediate\" (0.1) or \"loose\" (0.3)"),
+            ("packing.drag=1", "packing.drag goes with filter.density or filter.friction"),
+            ("filter.density=loose", "filter.cu or filter.sieve is missing"),
         ] {
             let error = built_in(&[set]).unwrap_err().to_string();
             assert!(error.contains(message), "{set}: {error}");
@@ -457,6 +386,14 @@ mod tests {
             ("[filter]\ncurve = \"a.csv\"\n[base]\ncu = 2\nsingle_mm = 1", "keep one"),
             ("[filter]\ncurve = \"a.csv\"\n[base]\nsingle_mm = 1\nd85_mm = 1", "goes with base.cu"),
             ("[filter]\ncurve = \"a.csv\"\n[base]\nsingle_mm = 1\nn_base = 5\ncap = 3", "base.cap goes with"),
+            (
+                "[filter]\ncurve = \"a.csv\"\ndensity = \"loose\"",
+                "both say what the filter's constrictions are",
+            ),
+            (
+                "[filter]\nfriction = 99\ncu = 2\n[base]\nsingle_mm = 1",
+                "filter.friction: `99` is not allowed",
+            ),
         ] {
             let error = Scene::parse(text.as_bytes(), "s.toml", &[]).unwrap_err().to_string();
             assert!(error.starts_with("s.toml") && error.contains(message), "{text}: {error}");

@@ -6,8 +6,9 @@ use super::{Sampling, Supply};
 use crate::gradation::SizeSampler;
 use crate::network::Network;
 
-/// How passive base particles are moved; the law of a run is the same for the first three.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// How passive base particles are moved; a run has the same distribution with the first three.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Engine {
     /// `Counts` where a particle can be passive and there are enough of them for that to be faster, else `Particles`.
     Auto,
@@ -33,7 +34,7 @@ impl Engine {
         }
     }
 
-    /// The word for it.
+    /// The word for it in a scene.
     pub fn name(self) -> &'static str {
         match self {
             Engine::Auto => "auto",
@@ -54,7 +55,7 @@ const WORTH_COUNTS: u64 = 8;
 /// use bitvec::vec::BitVec;
 /// use voidwalk::gradation::{Gradation, SizeSampler};
 /// use voidwalk::network::Network;
-/// use voidwalk::walk::{Engine, Plan, SizeClasses, State, Walk, Progress};
+/// use voidwalk::walk::{Engine, Plan, SizeClasses, State, Walk, WalkControl};
 ///
 /// let network = Network::cubic_from_diameters([4, 4, 6], vec![1.0; 288], 1.0)?;
 /// let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.2, 1.5)?, 1.0)?;
@@ -64,7 +65,7 @@ const WORTH_COUNTS: u64 = 8;
 /// let supply = plan.supply(sampler, 1_000_000_000_000, 100, 7, 1);
 /// let classes = SizeClasses::logarithmic(0.2, 0.45, 32);
 /// let mut state = State::new(&network, &supply, classes, open, 7, 1);
-/// Walk::new(&network, &supply, &state).run(&mut state, &mut |_| Progress::Continue)?;
+/// Walk::new(&network, &supply, &state).run(&mut state, &mut |_| WalkControl::Continue)?;
 /// assert_eq!(state.tally.eroded, 1_000_000_000_000);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -102,7 +103,7 @@ impl Plan {
         if wanted == Engine::Auto && engine == Engine::Particles && passive_words > 0 {
             left_out.push(format!(
                 "None is kept as a count: {share} base particles an increment for {} start nodes are so few that walking each by \
-                 itself is faster, and the law is the same.",
+                 itself is faster, and the distribution is the same.",
                 network.start().len()
             ));
         }

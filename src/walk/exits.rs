@@ -2,7 +2,7 @@
 
 use bitvec::slice::BitSlice;
 
-use super::{Isa, State};
+use super::Isa;
 use crate::network::Network;
 
 /// Thresholds of the exits of one void on the 64-bit scale, written into `thresholds`; the position
@@ -70,9 +70,17 @@ pub(super) struct General {
 /// Stands for "no open exit".
 pub(super) const NONE: u32 = u32::MAX;
 
+/// What a kernel reads: the network and its exits open at the start of the increment.
+pub(super) struct OpenExits<'a> {
+    pub network: &'a Network,
+    pub table: &'a ExitTable,
+    pub blocked: &'a BitSlice<u64>,
+    pub passive_limit: f32,
+}
+
 impl ExitTable {
-    /// The table for the constrictions that `state` leaves open.
-    pub fn new(network: &Network, state: &State) -> Self {
+    /// The table for the constrictions that `blocked` leaves open.
+    pub fn new(network: &Network, blocked: &BitSlice<u64>) -> Self {
         let form = match network.shape() {
             Some([nx, ny, _]) => Form::Lattice(Lattice::new(network.voids(), nx, nx * ny)),
             None => Form::General(General {
@@ -83,17 +91,17 @@ impl ExitTable {
         let mut table = Self { form, isa: Isa::chosen(), upstream: network.upstream() };
         let mut scratch = Vec::new();
         for void in 0..network.voids() as u32 {
-            table.set(network, &state.blocked, void, &mut scratch);
+            table.set(network, blocked, void, &mut scratch);
         }
         table
     }
 
     /// Renews the voids upstream of constrictions that have just closed.
-    pub(super) fn refresh(&mut self, network: &Network, state: &State, closed: &[u32]) {
+    pub(super) fn refresh(&mut self, network: &Network, blocked: &BitSlice<u64>, closed: &[u32]) {
         let mut scratch = Vec::new();
         for &constriction in closed {
             let void = self.upstream[constriction as usize];
-            self.set(network, &state.blocked, void, &mut scratch);
+            self.set(network, blocked, void, &mut scratch);
         }
     }
 

@@ -1,31 +1,48 @@
 //! Insertion: which chunks receive this increment's base particles, and where they start.
 
+use super::chunks::{self, ChunkColumns};
+use super::fill::fill_diameters;
 use super::merge::Events;
 use super::sizes::cube;
-use super::{CHUNK, Isa, State, Supply, kernel};
+use super::{CHUNK, Isa, State, Supply};
 use crate::network::Network;
 use crate::stream::{Key, LANES, Lanes, Purpose, below};
 
-/// Notes in `events` how many particles each chunk receives in this increment.
-pub(super) fn plan(supply: &Supply, state: &mut State, events: &mut Vec<Events>) {
+/// Appends this increment's particles to their chunks, in parallel where that pays; `events` keeps their number and mass.
+pub(super) fn insert(
+    network: &Network,
+    supply: &Supply,
+    isa: Isa,
+    state: &mut State,
+    events: &mut Vec<Events>,
+) {
     events.resize_with(state.particles.live.len(), Events::default);
     let (before, after) = (supply.inserted(state.increment - 1), supply.inserted(state.increment));
-    let first = (before as usize) / CHUNK;
-    for (chunk, events) in events.iter_mut().enumerate().skip(first) {
-        let begin = (chunk * CHUNK) as u64;
-        if begin >= after {
-            break;
-        }
-        events.inserted = (after.min(begin + CHUNK as u64) - before.max(begin)) as u32;
+    if before == after {
+        return;
     }
+    let purpose = Purpose::Insertion;
+    let key = Key { seed: state.seed, purpose, run: state.run, increment: state.increment, chunk: 0 };
+    let limit = state.passive_limit;
+    let receiving = (before as usize) / CHUNK..(after as usize).div_ceil(CHUNK);
+    let size = supply.single_size();
+    chunks::for_each(&mut state.particles, size, events, receiving, after - before, |columns| {
+        let ChunkColumns { chunk, void, diameter, live, events } = columns;
+        let begin = chunk * CHUNK as u64;
+        events.inserted = (after.min(begin + CHUNK as u64) - before.max(begin)) as u32;
+        let (old, new) = (*live as usize, (*live + events.inserted) as usize);
+        let key = Key { chunk, ..key };
+        append(network, supply, key, isa, limit, &mut void[old..new], &mut diameter[old..new], events);
+        *live = new as u32;
+    });
 }
 
 /// Particles drawn at a time.
 const BATCH: usize = 8 * LANES;
 
-/// Appends the particles of one chunk to its columns, and notes their mass and how many are passive.
+/// Draws the particles of one chunk into its columns, and notes their mass and how many are passive.
 #[expect(clippy::too_many_arguments, reason = "what it reads, and the columns that it writes")]
-pub(super) fn insert(
+fn append(
     network: &Network,
     supply: &Supply,
     key: Key,
@@ -35,25 +52,25 @@ pub(super) fn insert(
     diameter: &mut [f32],
     events: &mut Events,
 ) {
-    let mut lanes = Key { purpose: Purpose::Insertion, ..key }.lanes();
+    let mut lanes = key.lanes();
     let nodes = network.start();
     let mut mass = 0.0;
-    let layer = supply.layer(key.increment);
+    let strata = supply.strata(key.increment);
     let mut place = place_in_increment(supply, key);
     for (void, diameter) in void.chunks_mut(BATCH).zip(diameter.chunks_mut(BATCH)) {
         let mut size_words = [0; BATCH];
         let size_words = &mut size_words[..void.len()];
-        match &layer {
+        match &strata {
             None => draw(&mut lanes, void, size_words, |pair| {
                 (nodes[below(pair[0], nodes.len() as u64) as usize], pair[1])
             }),
-            Some(layer) => draw(&mut lanes, void, size_words, |pair| {
+            Some(strata) => draw(&mut lanes, void, size_words, |pair| {
                 place += 1;
-                let node = layer.node(place - 1, pair[0], nodes.len() as u64);
-                (nodes[node], layer.size_word(place - 1, pair[1]))
+                let node = strata.node(place - 1, pair[0], nodes.len() as u64);
+                (nodes[node], strata.size_word(place - 1, pair[1]))
             }),
         }
-        kernel::fill_diameters(isa, supply, size_words, diameter);
+        fill_diameters(isa, supply, size_words, diameter);
         mass = diameter.iter().fold(mass, |mass, &d| mass + cube(d));
         events.passive_inserted += diameter.iter().map(|&d| u32::from(d <= passive_limit)).sum::<u32>();
     }

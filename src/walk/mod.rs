@@ -22,7 +22,7 @@
 //!
 //! # Sampling
 //! Start nodes and sizes are independent draws, as in the paper, or spread evenly over both ([`Sampling::Stratified`], module
-//! `strata`): each particle's law is the same, and replicates scatter less.
+//! `strata`): each particle's marginal distribution is the same, and replicates scatter less.
 //!
 //! # Exit choice
 //! With `c_e` the sum of open areas up to exit `e` and `c` that of all, exit `e` is the first whose
@@ -31,11 +31,11 @@
 //!
 //! # The end
 //! A run ends when nothing moves, or when every moving particle is *trapped*: x and y are periodic, so
-//! a particle can circle for ever (module `trapped`).
+//! a particle can move in closed loops for good (module `trapped`).
 //!
 //! # Engines
 //! Passive particles may be kept as one count a void instead ([`Plan`], module `counts`): each increment then
-//! also inserts and parts counts, on the same open set, before the merge. Everything else is the same code,
+//! also inserts and splits counts, on the same open set, before the merge. Everything else is the same code,
 //! so whoever watches a [`State`] need not know which engine walks. [`Engine::Auto`] takes counts unless particles are few: a choice
 //! by numbers alone, never by the clock, so a seed stands for the same bits everywhere.
 //!
@@ -43,10 +43,14 @@
 //! The columns of the particles take 8 bytes each. [`State::placed`] puts them into mapped files where they would not fit; the
 //! kernels see slices either way, and the bits are the same.
 
+mod chunks;
 mod counts;
 mod engine;
+mod error;
 mod exits;
+mod fill;
 mod insert;
+mod isa;
 mod kernel;
 mod merge;
 pub mod reference;
@@ -56,46 +60,28 @@ mod state;
 mod strata;
 mod supply;
 mod tally;
+mod threads;
 mod trapped;
 
-pub use counts::{Expected, Passive};
+pub use counts::{Counted, Expected, ExpectedSums, Passive};
 pub use engine::{Engine, Plan};
+pub use error::WalkError;
 pub use exits::ExitTable;
-pub use kernel::{Isa, threads};
-pub use saved::Kept;
+pub use isa::Isa;
+pub use saved::SavedState;
 pub use sizes::{SizeClasses, SizeCounts};
 pub use state::{Blocking, CHUNK, Particles, State};
 pub use strata::Sampling;
 pub use supply::Supply;
 pub use tally::Tally;
+pub use threads::threads;
 
 use crate::network::Network;
 use merge::Events;
 
-/// A run that goes against the model's own book-keeping: a fault of the program.
-#[derive(Debug, thiserror::Error)]
-pub enum WalkError {
-    /// Inserted particles are not all accounted for.
-    #[error("increment {increment}: {inserted} base particles inserted, but {accounted} accounted for")]
-    NotConserved {
-        /// The increment.
-        increment: u64,
-        /// Inserted so far.
-        inserted: u64,
-        /// Moving, retained, trapped and eroded.
-        accounted: u64,
-    },
-    /// The caller asked the run to stop.
-    #[error("stopped on request in increment {increment}")]
-    Stopped {
-        /// The last whole increment.
-        increment: u64,
-    },
-}
-
 /// Whether a run goes on after an increment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Progress {
+pub enum WalkControl {
     /// Go on.
     Continue,
     /// Stop here.
@@ -103,7 +89,7 @@ pub enum Progress {
 }
 
 /// What happens after each increment: recording, progress, a request to stop.
-pub type Observer<'a> = dyn FnMut(&State) -> Progress + Send + 'a;
+pub type Observer<'a> = dyn FnMut(&State) -> WalkControl + Send + 'a;
 
 /// The machinery of one run that is rebuilt from network and state, and never stored.
 pub struct Walk<'a> {
@@ -120,7 +106,7 @@ pub struct Walk<'a> {
 impl<'a> Walk<'a> {
     /// Prepares to walk from `state` on.
     pub fn new(network: &'a Network, supply: &'a Supply, state: &State) -> Self {
-        let table = ExitTable::new(network, state);
+        let table = ExitTable::new(network, &state.blocked);
         let (trap, passive) =
             (trapped::Search::new(network), counts::PassiveWalk::new(network, supply, state));
         Self { network, supply, table, events: Vec::new(), trap, all_caught: false, passive }
@@ -145,25 +131,39 @@ impl<'a> Walk<'a> {
     /// [`WalkError::NotConserved`] where particles are lost or made.
     pub fn increment(&mut self, state: &mut State) -> Result<(), WalkError> {
         state.increment += 1;
+        self.insert(state);
         self.step(state);
+        self.merge(state);
+        self.tally(state)
+    }
+
+    /// This increment's share of the base starts, each particle on a start node.
+    fn insert(&mut self, state: &mut State) {
+        insert::insert(self.network, self.supply, self.table.isa(), state, &mut self.events);
         if let Some(passive) = &mut self.passive {
-            passive.increment(self.network, self.supply, state);
+            passive.insert(self.network, self.supply, state);
         }
+    }
+
+    /// Every moving particle attempts one move, on the open set at the start of the increment.
+    fn step(&mut self, state: &mut State) {
+        kernel::step(self.network, &self.table, self.supply, state, &mut self.events);
+        if let Some(passive) = &mut self.passive {
+            passive.step(self.network, state);
+        }
+    }
+
+    /// What happened is added to the state, and the constrictions that were blocked close.
+    fn merge(&mut self, state: &mut State) {
         let closed = merge::merge(&mut self.events, self.table.upstream(), state);
-        self.table.refresh(self.network, state, &closed);
+        self.table.refresh(self.network, &state.blocked, &closed);
         if let Some(passive) = &mut self.passive {
             let upstream = self.table.upstream();
             passive.refresh(self.network, state, closed.iter().map(|&c| upstream[c as usize]));
         }
-        self.tally(state)
     }
 
-    /// Inserts and moves the particles, chunk by chunk.
-    fn step(&mut self, state: &mut State) {
-        insert::plan(self.supply, state, &mut self.events);
-        kernel::step(self.network, &self.table, self.supply, state, &mut self.events);
-    }
-
+    /// Whether the run has ended, and whether every particle inserted is somewhere.
     fn tally(&mut self, state: &mut State) -> Result<(), WalkError> {
         let inserting = state.increment < self.supply.increments();
         if !inserting && state.tally.moving > 0 && self.all_trapped(state) {
@@ -188,7 +188,7 @@ impl<'a> Walk<'a> {
     pub fn run(&mut self, state: &mut State, observe: &mut Observer) -> Result<(), WalkError> {
         while !state.finished {
             self.increment(state)?;
-            if observe(state) == Progress::Stop && !state.finished {
+            if observe(state) == WalkControl::Stop && !state.finished {
                 return Err(WalkError::Stopped { increment: state.increment });
             }
         }

@@ -36,7 +36,7 @@ pub struct Reference<'a> {
     pub stopped: Vec<(Particle, usize)>,
     /// Particles in voids without open exits.
     pub stranded: Vec<Particle>,
-    /// Particles that circle for ever.
+    /// Particles trapped in closed loops.
     pub trapped: Vec<Particle>,
     /// Whether each constriction is blocked.
     pub blocked: Vec<bool>,
@@ -121,10 +121,10 @@ impl<'a> Reference<'a> {
             let nodes = self.network.start();
             let (mut node, mut size) =
                 (((u128::from(word(2 * *place)) * nodes.len() as u128) >> 64) as usize, word(2 * *place + 1));
-            if let Some(layer) = self.supply.layer(self.increment) {
+            if let Some(strata) = self.supply.strata(self.increment) {
                 let m = rank - self.supply.inserted(self.increment - 1);
                 (node, size) =
-                    (layer.node(m, word(2 * *place), nodes.len() as u64), layer.size_word(m, size));
+                    (strata.node(m, word(2 * *place), nodes.len() as u64), strata.size_word(m, size));
             }
             let diameter = self.supply.diameter(size);
             *place += 1;

@@ -1,74 +1,122 @@
 //! A state as sections of a checkpoint, and back.
 //!
-//! Nothing that can be rebuilt is kept: no generator, no thresholds, no network. Of the particles' columns the moving ones are
-//! kept, chunk after chunk.
+//! Nothing that can be rebuilt is saved: no generator, no thresholds, no network.
 
 use bitvec::vec::BitVec;
 use bytemuck::Pod;
+use serde::{Deserialize, Serialize};
 
-use super::{Blocking, CHUNK, Expected, Passive, SizeCounts, State, Tally};
+use super::{Blocking, CHUNK, Expected, ExpectedSums, Passive, SizeCounts, State, Tally};
 use crate::network::Network;
-use crate::store::checkpoint::{Harmed, Saved, Section};
+use crate::store::checkpoint::{Checkpoint, CheckpointError, Section};
 
-/// What is kept beside the columns; lives as long as the sections that borrow it.
-pub struct Kept {
-    words: Vec<u64>,
-    reals: Vec<f64>,
+/// A state as the sections of a checkpoint.
+///
+/// | section | element | what |
+/// |---|---|---|
+/// | `state` | JSON | a record: `seed`, `run`, `increment`, `finished`, `passive` (`one_by_one`, `counts` or `expected`), `passive_limit` (`null` where no constriction was open), `expected` (with engine `expected`: `eroded`, `moves`, `inserted`, and in `counted` the `moves`, `eroded` and `at_rest` that the tally holds of them), `tally` (the fields of [`Tally`]), `constrictions` (their number) |
+/// | `live` | u32 | moving particles by chunk |
+/// | `void` | u32 | void of each moving particle, chunk after chunk |
+/// | `diameter` | f32 | diameter of each moving particle, chunk after chunk |
+/// | `counts` | u64 | moving passive particles by void; empty but with engine `counts` |
+/// | `expected_moving` | f64 | expected moving passive particles by void; empty but with engine `expected` |
+/// | `expected_retained` | f64 | expected passive particles retained in each void; empty but with engine `expected` |
+/// | `counted_retained` | u64 | how many of these the state counts; empty but with engine `expected` |
+/// | `blocked` | u64 | bit `c % 64` of word `c / 64`: constriction `c` is blocked |
+/// | `history_increment` | u64 | increment of each blocking of this run |
+/// | `history_constriction` | u32 | constriction of each blocking of this run |
+/// | `retained_in_constrictions` | u64 | by void |
+/// | `retained_in_voids` | u64 | by void |
+/// | `eroded_number`, `retained_number` | u64 | particles by size class |
+/// | `eroded_mass`, `retained_mass` | f64 | mass by size class |
+pub struct SavedState<'a> {
+    state: &'a State,
+    record: Vec<u8>,
     history_increment: Vec<u64>,
     history_constriction: Vec<u32>,
-    expected: Vec<u64>,
 }
 
-impl Kept {
-    /// What of a state is not a column.
-    pub fn new(state: &State) -> Self {
-        let t = &state.tally;
-        let words = vec![
-            state.seed,
-            state.run,
-            state.increment,
-            u64::from(state.finished),
-            state.passive.kind(),
-            u64::from(state.passive_limit.to_bits()),
-            t.inserted,
-            t.moving,
-            t.eroded,
-            t.retained_in_constrictions,
-            t.retained_in_voids,
-            t.trapped,
-            t.blocked,
-            t.particle_moves,
-            t.passive_inserted,
-            t.passive_eroded,
-            u64::from(t.largest_eroded.to_bits()),
-            state.blocked.len() as u64,
-        ];
+/// What of a state is not a column.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Record {
+    seed: u64,
+    run: u64,
+    increment: u64,
+    finished: bool,
+    passive: PassiveKind,
+    passive_limit: Option<f32>,
+    expected: Option<ExpectedSums>,
+    tally: Tally,
+    constrictions: usize,
+}
+
+/// How a run follows its passive particles.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum PassiveKind {
+    OneByOne,
+    Counts,
+    Expected,
+}
+
+impl PassiveKind {
+    fn of(passive: &Passive) -> Self {
+        match passive {
+            Passive::OneByOne => Self::OneByOne,
+            Passive::Counts(_) => Self::Counts,
+            Passive::Expected(_) => Self::Expected,
+        }
+    }
+}
+
+/// JSON has no infinity.
+fn finite(limit: f32) -> Option<f32> {
+    limit.is_finite().then_some(limit)
+}
+
+impl<'a> SavedState<'a> {
+    /// Of this state.
+    pub fn new(state: &'a State) -> Self {
+        let record = Record {
+            seed: state.seed,
+            run: state.run,
+            increment: state.increment,
+            finished: state.finished,
+            passive: PassiveKind::of(&state.passive),
+            passive_limit: finite(state.passive_limit),
+            expected: state.passive.expected().map(|expected| expected.sums),
+            tally: state.tally,
+            constrictions: state.blocked.len(),
+        };
         Self {
-            words,
-            reals: vec![t.inserted_mass, t.eroded_mass],
+            state,
+            record: serde_json::to_vec(&record).expect("numbers and words"),
             history_increment: state.history.iter().map(|b| b.increment).collect(),
             history_constriction: state.history.iter().map(|b| b.constriction).collect(),
-            expected: state.passive.expected_words(),
         }
     }
 
-    /// The sections of a state.
-    pub fn sections<'a>(&'a self, state: &'a State) -> Vec<Section<'a>> {
+    /// The sections.
+    pub fn sections(&self) -> Vec<Section<'_>> {
+        let state = self.state;
         let particles = &state.particles;
         let chunks = 0..particles.live.len();
+        let expected = state.passive.expected();
         vec![
-            Section::new("words", &self.words),
-            Section::new("reals", &self.reals),
+            Section::new("state", &self.record),
             Section::new("live", &particles.live),
             Section::parts("void", chunks.clone().map(|c| particles.chunk(c).0)),
             Section::parts("diameter", chunks.map(|c| particles.chunk(c).1)),
             Section::new("counts", state.passive.counts()),
-            Section::new("expected", &self.expected),
+            Section::new("expected_moving", expected.map_or(&[], |e| &e.moving)),
+            Section::new("expected_retained", expected.map_or(&[], |e| &e.retained)),
+            Section::new("counted_retained", expected.map_or(&[], |e| &e.counted_retained)),
             Section::new("blocked", state.blocked.as_raw_slice()),
             Section::new("history_increment", &self.history_increment),
             Section::new("history_constriction", &self.history_constriction),
-            Section::new("in_constrictions", &state.retained_in_constrictions),
-            Section::new("in_voids", &state.retained_in_voids),
+            Section::new("retained_in_constrictions", &state.retained_in_constrictions),
+            Section::new("retained_in_voids", &state.retained_in_voids),
             Section::new("eroded_number", &state.eroded_sizes.number),
             Section::new("eroded_mass", &state.eroded_sizes.mass),
             Section::new("retained_number", &state.retained_sizes.number),
@@ -81,19 +129,27 @@ impl State {
     /// Takes a state from a checkpoint into this one, which is that of the same run before its first increment.
     ///
     /// # Errors
-    /// A checkpoint that is harmed, or whose counts are not those of this run.
-    pub fn restore(&mut self, network: &Network, saved: &mut Saved) -> Result<(), Harmed> {
-        let file = format!("checkpoint of replicate {}", saved.label.replicate);
-        let wrong = |what: &str| Harmed::new(file.clone(), format!("{what} cannot be of this run"));
-        let words: Vec<u64> = fixed(saved, "words", 18)?;
-        let reals: Vec<f64> = fixed(saved, "reals", 2)?;
-        if words[0] != self.seed || words[1] != self.run || words[4] != self.passive.kind() {
-            return Err(wrong("seed, run or engine"));
+    /// A checkpoint that is corrupt, or of another run.
+    pub fn restore(&mut self, network: &Network, saved: &Checkpoint) -> Result<(), CheckpointError> {
+        let wrong = |what: &str| saved.corrupt(format!("{what} cannot be of this run"));
+        let record: Record = saved.read_record("state")?;
+        let other = |found: String, expected: String| CheckpointError::OtherWalk {
+            file: saved.path().to_owned(),
+            found,
+            expected,
+        };
+        let name = |seed: u64, run: u64, kind: &PassiveKind| {
+            format!("seed {seed}, run {run}, passive particles {kind:?}")
+        };
+        let found = name(record.seed, record.run, &record.passive);
+        let expected = name(self.seed, self.run, &PassiveKind::of(&self.passive));
+        if found != expected {
+            return Err(other(found, expected));
         }
-        if words[17] != self.blocked.len() as u64 || words[5] != u64::from(self.passive_limit.to_bits()) {
-            return Err(wrong("its network"));
+        if record.constrictions != self.blocked.len() || record.passive_limit != finite(self.passive_limit) {
+            return Err(CheckpointError::OtherNetwork { file: saved.path().to_owned() });
         }
-        let live: Vec<u32> = fixed(saved, "live", self.particles.live.len())?;
+        let live: Vec<u32> = saved.read_exact("live", self.particles.live.len())?;
         if live.iter().any(|&n| n as usize > CHUNK) {
             return Err(wrong("particles of a chunk"));
         }
@@ -121,69 +177,44 @@ impl State {
         self.particles.live = live;
         self.passive = match &self.passive {
             Passive::OneByOne => Passive::OneByOne,
-            Passive::Counts(now) => Passive::Counts(fixed(saved, "counts", now.len())?),
-            Passive::Expected(now) => {
-                let words = saved.read::<u64>("expected")?;
-                let then = Expected::from_words(now.moving.len(), &words);
-                Passive::Expected(Box::new(then.ok_or_else(|| wrong("expectation"))?))
-            }
+            Passive::Counts(now) => Passive::Counts(saved.read_exact("counts", now.len())?),
+            Passive::Expected(_) => Passive::Expected(Box::new(Expected {
+                moving: saved.read_exact("expected_moving", network.voids())?,
+                retained: saved.read_exact("expected_retained", network.voids())?,
+                counted_retained: saved.read_exact("counted_retained", network.voids())?,
+                sums: record.expected.ok_or_else(|| wrong("expectation"))?,
+            })),
         };
-        let blocked: Vec<u64> = fixed(saved, "blocked", self.blocked.as_raw_slice().len())?;
+        let blocked: Vec<u64> = saved.read_exact("blocked", self.blocked.as_raw_slice().len())?;
         let mut bits = BitVec::from_vec(blocked);
         bits.truncate(self.blocked.len());
         self.blocked = bits;
         let increments: Vec<u64> = saved.read("history_increment")?;
-        let constrictions: Vec<u32> = fixed(saved, "history_constriction", increments.len())?;
+        let constrictions: Vec<u32> = saved.read_exact("history_constriction", increments.len())?;
         if constrictions.iter().any(|&c| c as usize >= self.blocked.len() || !self.blocked[c as usize]) {
             return Err(wrong("history"));
         }
         let pair = |(&increment, &constriction)| Blocking { increment, constriction };
         self.history = increments.iter().zip(&constrictions).map(pair).collect();
-        self.retained_in_constrictions =
-            fixed(saved, "in_constrictions", self.retained_in_constrictions.len())?;
-        self.retained_in_voids = fixed(saved, "in_voids", self.retained_in_voids.len())?;
+        self.retained_in_constrictions = saved.read_exact("retained_in_constrictions", network.voids())?;
+        self.retained_in_voids = saved.read_exact("retained_in_voids", network.voids())?;
         for (sizes, number, mass) in [
             (&mut self.eroded_sizes, "eroded_number", "eroded_mass"),
             (&mut self.retained_sizes, "retained_number", "retained_mass"),
         ] {
             let classes = sizes.number.len();
-            *sizes =
-                SizeCounts { number: fixed(saved, number, classes)?, mass: fixed(saved, mass, classes)? };
+            *sizes = SizeCounts {
+                number: saved.read_exact(number, classes)?,
+                mass: saved.read_exact(mass, classes)?,
+            };
         }
-        self.increment = words[2];
-        self.finished = words[3] != 0;
-        let size = |word: u64| f32::from_bits(word as u32);
-        self.tally = Tally {
-            inserted: words[6],
-            moving: words[7],
-            eroded: words[8],
-            retained_in_constrictions: words[9],
-            retained_in_voids: words[10],
-            trapped: words[11],
-            blocked: words[12],
-            particle_moves: words[13],
-            inserted_mass: reals[0],
-            eroded_mass: reals[1],
-            passive_inserted: words[14],
-            passive_eroded: words[15],
-            largest_eroded: size(words[16]),
-        };
+        (self.increment, self.finished, self.tally) = (record.increment, record.finished, record.tally);
         if self.tally.check(self.increment).is_err() || self.tally.blocked != self.blocked.count_ones() as u64
         {
             return Err(wrong("sums"));
         }
         Ok(())
     }
-}
-
-/// A section with so many elements.
-fn fixed<T: Pod>(saved: &mut Saved, name: &str, count: usize) -> Result<Vec<T>, Harmed> {
-    let found = saved.count::<T>(name)?;
-    if found != count {
-        let file = format!("checkpoint of replicate {}", saved.label.replicate);
-        return Err(Harmed::new(file, format!("section {name} has {found} elements, not {count}")));
-    }
-    saved.read(name)
 }
 
 /// Where the next moving particle of a column goes.

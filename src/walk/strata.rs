@@ -1,4 +1,4 @@
-//! Stratified insertion: each base particle keeps the law of an independent draw, but together they cover sizes and start
+//! Stratified insertion: the marginal distribution of each base particle is unchanged, but together they cover sizes and start
 //! nodes evenly.
 //!
 //! # Sizes
@@ -10,19 +10,20 @@
 //! # Start nodes
 //! The `n` particles of an increment divide the start nodes, in their order, into `n` equal parts, and each takes a place in its part.
 //!
-//! Group, stratum, place in the stratum and place among the nodes of any one particle are uniform, so its law is the one of
-//! independent draws exactly; only the joint law differs. The order of the particles in an increment plays no part in the
+//! Group, stratum, place in the stratum and place among the nodes of any one particle are uniform, so its marginal distribution
+//! is exactly that of independent draws; only the joint distribution differs. The order of the particles in an increment plays no part in the
 //! walk, so that of the nodes needs no permutation.
 
 use crate::stream::{Key, Purpose, Words, below};
 
 /// How start nodes and sizes of the base particles are drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Sampling {
     /// Each by itself: the paper's way.
     #[default]
     Independent,
-    /// Evenly over sizes and start nodes: the same law for each particle, less scatter between replicates.
+    /// Evenly over sizes and start nodes: the marginal distribution of each particle is unchanged, and replicates scatter less.
     Stratified,
 }
 
@@ -30,7 +31,7 @@ impl Sampling {
     /// Both, in the order in which a user is told of them.
     pub const ALL: [Sampling; 2] = [Sampling::Independent, Sampling::Stratified];
 
-    /// The word for it.
+    /// The word for it in a scene.
     pub fn name(self) -> &'static str {
         match self {
             Sampling::Independent => "independent",
@@ -67,15 +68,21 @@ impl Strata {
     }
 
     /// The strata of one increment that inserts `count` particles.
-    pub fn increment(&self, increment: u64, count: u64) -> Layer<'_> {
+    pub fn increment(&self, increment: u64, count: u64) -> IncrementStrata<'_> {
         let key =
             |increment| Key { seed: self.seed, purpose: Purpose::Strata, run: self.run, increment, chunk: 0 };
-        Layer { strata: self, increment, count, groups: key(increment).words(), order: key(0).words() }
+        IncrementStrata {
+            strata: self,
+            increment,
+            count,
+            groups: key(increment).words(),
+            order: key(0).words(),
+        }
     }
 }
 
 /// The strata of one increment.
-pub(super) struct Layer<'a> {
+pub(super) struct IncrementStrata<'a> {
     strata: &'a Strata,
     increment: u64,
     count: u64,
@@ -85,7 +92,7 @@ pub(super) struct Layer<'a> {
     order: Words,
 }
 
-impl Layer<'_> {
+impl IncrementStrata<'_> {
     /// The start node, of `nodes`, that random `word` gives particle `m` of the increment.
     #[inline]
     pub fn node(&self, m: u64, word: u64, nodes: u64) -> usize {
@@ -227,10 +234,10 @@ mod tests {
             let strata = Strata::new(3, 1, most, increments);
             let mut taken = BTreeSet::new();
             for t in 1..=increments {
-                let layer = strata.increment(t, most);
+                let of_increment = strata.increment(t, most);
                 for m in 0..most {
                     // Both ends of a stratum.
-                    let (low, high) = (layer.size_word(m, 0), layer.size_word(m, u64::MAX));
+                    let (low, high) = (of_increment.size_word(m, 0), of_increment.size_word(m, u64::MAX));
                     assert!(low < high || most * increments == 1);
                     taken.insert((low, high));
                 }
@@ -245,13 +252,13 @@ mod tests {
     #[test]
     fn start_nodes_differ_by_one_particle_at_most() {
         let strata = Strata::new(5, 1, 1003, 2);
-        let layer = strata.increment(2, 1003);
+        let many = strata.increment(2, 1003);
         let mut on = [0; 16];
-        (0..1003).for_each(|m| on[layer.node(m, m.wrapping_mul(0x9e37_79b9_7f4a_7c15), 16)] += 1);
+        (0..1003).for_each(|m| on[many.node(m, m.wrapping_mul(0x9e37_79b9_7f4a_7c15), 16)] += 1);
         assert!(on.iter().all(|&n| (62..=64).contains(&n)) && on.iter().sum::<u64>() == 1003, "{on:?}");
         // Few particles for many nodes: no two in one part.
-        let layer = strata.increment(1, 10);
-        let nodes: Vec<usize> = (0..10).map(|m| layer.node(m, u64::MAX / 3 * (m % 3), 1000)).collect();
+        let few = strata.increment(1, 10);
+        let nodes: Vec<usize> = (0..10).map(|m| few.node(m, u64::MAX / 3 * (m % 3), 1000)).collect();
         assert!(nodes.iter().enumerate().all(|(m, &node)| node / 100 == m), "{nodes:?}");
         assert_eq!(strata.increment(1, 4).node(3, u64::MAX, u64::MAX), (u64::MAX - 1) as usize);
     }

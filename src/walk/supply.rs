@@ -1,7 +1,7 @@
 //! What a run inserts: how many base particles in each increment, and of what sizes.
 
 use super::counts::{Passive, coarse_share};
-use super::strata::{self, Layer, Strata};
+use super::strata::{self, IncrementStrata, Strata};
 use crate::gradation::SizeSampler;
 use crate::stream::{Key, Purpose};
 
@@ -113,7 +113,7 @@ impl Supply {
     }
 
     /// The strata of the particles inserted one by one in increment `increment`, where there are any.
-    pub(super) fn layer(&self, increment: u64) -> Option<Layer<'_>> {
+    pub(super) fn strata(&self, increment: u64) -> Option<IncrementStrata<'_>> {
         let count = self.inserted(increment) - self.inserted(increment - 1);
         self.strata.as_ref().map(|strata| strata.increment(increment, count))
     }

@@ -1,6 +1,6 @@
 //! Sums over a run: integers, and masses added in a fixed order.
 
-use super::WalkError;
+use super::error::WalkError;
 
 /// Sums over a run up to and including an increment. Masses are sums of diameter cubed, in units of the
 /// reference length cubed.
@@ -16,7 +16,7 @@ pub struct Tally {
     pub retained_in_constrictions: u64,
     /// Base particles in voids without open exits.
     pub retained_in_voids: u64,
-    /// Base particles that circle for ever.
+    /// Base particles trapped in closed loops.
     pub trapped: u64,
     /// Blocked constrictions, those of earlier runs included.
     pub blocked: u64,
@@ -35,7 +35,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Books every moving particle as trapped.
+    /// Counts every moving particle as trapped.
     pub(super) fn trap_all_moving(&mut self) {
         self.trapped += std::mem::take(&mut self.moving);
     }

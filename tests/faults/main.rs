@@ -16,7 +16,7 @@ use std::process::{Command, ExitCode, Output};
 use disk::{Noted, VARIABLE};
 use power::{Model, Unsynced};
 use serde_json::Value;
-use voidwalk::store::checkpoint::{Saved, newest};
+use voidwalk::store::checkpoint::{Checkpoint, newest};
 
 fn main() -> ExitCode {
     if let Ok(words) = std::env::var(VARIABLE) {
@@ -264,10 +264,10 @@ fn checkpoints(at: &Path) -> Vec<(PathBuf, String)> {
 fn generations(at: &Path) -> BTreeMap<(PathBuf, String), u64> {
     let mut all = BTreeMap::new();
     for (folder, name) in checkpoints(at) {
-        let scenes = [0, 1].map(|slot| Saved::open(&folder.join(format!("{name}.{slot}"))).unwrap());
-        let scene = scenes.into_iter().flatten().next().unwrap().label.scene;
-        let (saved, harmed) = newest(&folder, &name, &scene).unwrap();
-        assert!(harmed.is_empty(), "{harmed:?}");
+        let slots = [0, 1].map(|slot| Checkpoint::open(&folder.join(format!("{name}.{slot}"))).unwrap());
+        let identity = slots.into_iter().flatten().next().unwrap().label.identity;
+        let (saved, passed_over) = newest(&folder, &name, &identity).unwrap();
+        assert!(passed_over.is_empty(), "{passed_over:?}");
         all.insert((folder.strip_prefix(at).unwrap().to_owned(), name), saved.unwrap().label.generation);
     }
     all

@@ -18,10 +18,9 @@ use voidwalk::constrictions::Curve;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
 use voidwalk::packing::Packing;
-use voidwalk::run::results::resolved;
 use voidwalk::scene::{CurveSource, Scene};
-use voidwalk::store::checkpoint::{Label, keep, newest};
-use voidwalk::walk::{Engine, Kept, Plan, Progress, SizeClasses, State, Supply, Walk};
+use voidwalk::store::checkpoint::{Checkpoint, Identity, Label, Section, newest, save};
+use voidwalk::walk::{Engine, Plan, SavedState, SizeClasses, State, Supply, Walk, WalkControl};
 use xxhash_rust::xxh3::xxh3_64;
 
 /// The most memory that a process reading hostile input may hold (bytes).
@@ -70,18 +69,19 @@ fn shown<T, E: Display>(result: Result<T, E>) -> Option<T> {
 pub fn scene(bytes: &[u8]) {
     let Some(scene) = shown(Scene::parse(bytes, "scene.toml", &[])) else { return };
     // A lattice that is changed void by void is only built where that is quick; files are other readers' matter.
-    let voids = scene.network.shape().map(|lengths| lengths.iter().map(|&n| f64::from(n)).product::<f64>());
-    let given = matches!(scene.curve, Some(CurveSource::Shipped(_)));
+    let voids =
+        scene.network.source().shape().map(|lengths| lengths.iter().map(|&n| f64::from(n)).product::<f64>());
+    let given = matches!(scene.filter.curve, Some(CurveSource::Shipped(_)));
     if !given || voids.is_none_or(|voids| voids > 60.0) || String::from_utf8_lossy(bytes).contains("sieve") {
         return;
     }
     let Some(case) = shown(Case::new(scene)) else { return };
-    let text = resolved(&case);
+    let text = case.resolved().to_toml();
     if case.inputs.is_empty() {
         let again =
             Scene::parse(text.as_bytes(), "resolved.toml", &[]).unwrap_or_else(|e| panic!("{text}: {e}"));
         let again = Case::new(again).unwrap_or_else(|e| panic!("{text}: {e}"));
-        assert_eq!(resolved(&again), text);
+        assert_eq!(again.resolved().to_toml(), text);
     }
 }
 
@@ -137,18 +137,15 @@ pub fn checkpoint(bytes: &[u8]) {
     let folder = folder();
     for content in [bytes.to_vec(), with_right_sums(bytes.to_vec())] {
         fs::write(folder.join("x.0"), &content).unwrap();
-        let scene = content.get(32..64).map_or_else(String::new, |field| {
-            let end = field.iter().position(|&b| b == 0).unwrap_or(32);
-            String::from_utf8_lossy(&field[..end]).into_owned()
-        });
-        let Some((Some(mut saved), _)) = shown(newest(&folder, "x", &scene)) else { continue };
+        let Some(Some(opened)) = shown(Checkpoint::open(&folder.join("x.0"))) else { continue };
+        let Some((Some(saved), _)) = shown(newest(&folder, "x", &opened.label.identity)) else { continue };
         SMALL_RUNS.with_borrow(|runs| {
             for run in runs {
                 let mut state = run.fresh();
-                shown(state.restore(&run.network, &mut saved));
+                shown(state.restore(&run.network, &saved));
             }
         });
-        for name in ["words", "history_increment", "blocked"] {
+        for name in ["counts", "history_increment", "blocked"] {
             shown(saved.read::<u64>(name));
         }
         shown(saved.read::<u8>("done"));
@@ -221,7 +218,12 @@ impl SmallRun {
         State::new(&self.network, &self.supply, classes, self.open.clone(), 11, 1)
     }
 
-    /// Walks on from `state`, and keeps it in `folder` once, after this increment.
+    /// What its checkpoints are of.
+    pub fn identity() -> Identity {
+        Identity { scene: "small".into(), part: 0, replicate: 1, seed: 11, n_base: 2000 }
+    }
+
+    /// Walks on from `state`, and saves it in `folder` once, after this increment.
     pub fn walk(&self, state: &mut State, kept: Option<(&Path, u64)>) {
         let done = br#"{"complete":false}"#;
         let mut walk = Walk::new(&self.network, &self.supply, state);
@@ -229,20 +231,14 @@ impl SmallRun {
             if let Some((folder, increment)) = kept
                 && state.increment == increment
             {
-                let label = Label {
-                    scene: "small".into(),
-                    seed: 11,
-                    run: 1,
-                    generation: 2,
-                    increment,
-                    ..Label::default()
-                };
-                let parts = Kept::new(state);
-                let mut sections = parts.sections(state);
-                sections.push(voidwalk::store::checkpoint::Section::new("done", done));
-                keep(folder, "x", &label, &sections).unwrap();
+                let identity = SmallRun::identity();
+                let label = Label { identity, network: 0, run: 1, increment, generation: 2 };
+                let saved = SavedState::new(state);
+                let mut sections = saved.sections();
+                sections.push(Section::new("done", done));
+                save(folder, "x", &label, &sections).unwrap();
             }
-            Progress::Continue
+            WalkControl::Continue
         });
         result.unwrap();
     }
@@ -250,21 +246,25 @@ impl SmallRun {
 
 /// The file with its length, the sums of its pieces and that of its header made right, as far as it has room for them.
 pub fn with_right_sums(mut bytes: Vec<u8>) -> Vec<u8> {
+    /// Bytes of a piece, of the fixed fields of a header and of a row of its table; where the number of sections is.
     const PIECE: usize = 1 << 20;
+    const FIXED: usize = 160;
+    const ROW: usize = 56;
+    const NUMBER: usize = 128;
     let word = |bytes: &[u8], at: usize| -> usize {
         bytes.get(at..at + 8).map_or(0, |w| u64::from_le_bytes(w.try_into().unwrap()) as usize)
     };
     let (length, header) = (bytes.len(), word(&bytes, 16));
-    if header < 152 || header > length {
+    if header < FIXED + 8 || header > length {
         return bytes;
     }
     bytes[24..32].copy_from_slice(&(length as u64).to_le_bytes());
-    let mut sum_at = 144 + 48 * word(&bytes, 112).min(64);
-    for section in 0..word(&bytes, 112).min(64) {
-        let at = 144 + 48 * section;
-        let Some(element) = bytes.get(at + 24..at + 28) else { break };
+    let mut sum_at = FIXED + ROW * word(&bytes, NUMBER).min(64);
+    for section in 0..word(&bytes, NUMBER).min(64) {
+        let at = FIXED + ROW * section;
+        let Some(element) = bytes.get(at + 32..at + 36) else { break };
         let element = u32::from_le_bytes(element.try_into().unwrap()) as usize;
-        let (count, offset) = (word(&bytes, at + 32), word(&bytes, at + 40));
+        let (count, offset) = (word(&bytes, at + 40), word(&bytes, at + 48));
         let Some(size) = count.checked_mul(element).filter(|size| *size <= length) else { break };
         let Some(data) = offset.checked_add(size).and_then(|end| bytes.get(offset..end)) else { break };
         let sums: Vec<u8> = data.chunks(PIECE).flat_map(|piece| xxh3_64(piece).to_le_bytes()).collect();

@@ -132,7 +132,7 @@ pub fn write_scripts(args: &CampaignArgs, plan: &Plan, orders: &[(&str, PackingP
 /// Memory of a task that walks these cases.
 fn memory(cases: &[PreparedCase], bundle: &[usize], processors: u64, asked: Option<u64>) -> u64 {
     let of_bundle = || bundle.iter().map(|case| &cases[*case].case);
-    let fewest = of_bundle().map(|case| case.scene.replicates).min().unwrap_or(1).max(1);
+    let fewest = of_bundle().map(|case| case.scene.walk.replicates).min().unwrap_or(1).max(1);
     let side_by_side = processors.div_ceil(fewest).min(bundle.len() as u64);
     let largest = of_bundle().map(|case| case.peak_bytes(processors)).max().unwrap_or(0);
     let walks = largest.saturating_mul(side_by_side).min(asked.unwrap_or(u64::MAX));

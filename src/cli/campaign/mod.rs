@@ -169,8 +169,7 @@ fn check<'a>(wanted: &[&'a PlannedCase]) -> Result<Vec<(&'a str, PackingPlan)>, 
     let mut orders = Vec::new();
     for case in wanted {
         let mut placeholder = None;
-        if let Some(recipe) = &case.scene.recipe {
-            let order = PackingPlan::new(recipe).map_err(|e| refuse(case, &e))?;
+        if let Some(order) = PackingPlan::of(&case.scene).map_err(|e| refuse(case, &e))? {
             placeholder = Some(PackedFilter::placeholder(&order).map_err(Exit::refused)?);
             orders.push((case.name.as_str(), order));
         }

@@ -41,9 +41,9 @@ impl Change {
             all.extend(WIDTHS.into_iter().filter(|&w| [w, w] != [nx, ny]).map(Change::Width));
             all.extend(LENGTHS.into_iter().filter(|&l| l != nz).map(Change::Length));
         }
-        let set = case.scene.inject_share;
+        let set = case.scene.walk.inject_share;
         all.extend(INJECTED.into_iter().filter(|share| (share / set - 1.0).abs() > 1e-6).map(Change::Inject));
-        if matches!(case.scene.network, NetworkSource::Cubic(_)) {
+        if matches!(case.scene.network.source(), NetworkSource::Cubic(_)) {
             all.push(Change::Stratified);
         }
         all

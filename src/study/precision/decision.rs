@@ -67,7 +67,7 @@ impl Rule {
 /// The class of the rule that `--decide` follows, and the replicates that it takes of these.
 fn sequential(percent: f64, eroded: &[&[f64]]) -> (Verdict, u64) {
     let most = eroded.len() as u64;
-    let rule = StopRule { target_error_pp: None, decide_percent: Some(percent), most };
+    let rule = StopRule { target_error_pp: None, decide_percent: Some(percent), most_replicates: most };
     let runs = eroded[0].len();
     let mut wanted = rule.replicates_at(0, 1);
     loop {
@@ -137,7 +137,7 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<Option<DecisionTier>,
         (study.tell)("decision: no factor on the base's sizes brings its erosion near 7.5 %");
         return Ok(None);
     };
-    let runs = study.case.scene.runs;
+    let runs = study.case.scene.walk.runs;
     // The cases erode less than the scene, and take about as long.
     let replicates = factors.len() as u64 * REPLICATES.0 * runs;
     let near = Near(ScaledScene::affordable(study, replicates, 0.9 * budget_s)?);
@@ -207,7 +207,7 @@ fn factors(near: &Near) -> Result<Option<Vec<f64>>, PrecisionError> {
 /// A rule, tried on random subsets of the replicates.
 fn tried(study: &Study, case: &DecisionCase, rule: Rule, eroded: &[&[f64]]) -> DecisionRow {
     let key = Key {
-        seed: study.case.scene.seed,
+        seed: study.case.scene.walk.seed,
         purpose: Purpose::Resampling,
         run: 0,
         increment: 0,

@@ -7,7 +7,7 @@ use super::work::timed;
 use crate::gradation::{Gradation, SizeSampler};
 use crate::network::Network;
 use crate::outcome::eroded_mass_fraction;
-use crate::walk::{Engine, Plan, Progress, Sampling, SizeClasses, State, Walk};
+use crate::walk::{Engine, Plan, Sampling, SizeClasses, State, Walk, WalkControl};
 
 /// A first run, up to its network and seed.
 #[derive(Clone)]
@@ -43,12 +43,12 @@ impl FirstRun {
     pub fn of(study: &Study) -> Self {
         let case = study.case;
         Self {
-            engine: case.scene.engine,
+            engine: case.scene.walk.engine,
             sampler: case.sampler.clone(),
             pan_fraction: case.base.tail_mass_fraction(),
             n_base: case.n_base,
             increments: case.increments(),
-            sampling: case.scene.sampling,
+            sampling: case.scene.walk.sampling,
         }
     }
 
@@ -105,7 +105,7 @@ impl FirstRun {
             let mut state = State::new(network, &supply, classes, blocked, seed, run);
             Walk::new(network, &supply, &state).run(&mut state, &mut |state| {
                 observe(state);
-                Progress::Continue
+                WalkControl::Continue
             })?;
             Ok((state, supply.total()))
         };

@@ -56,7 +56,7 @@ impl Study<'_> {
             commit: option_env!("VOIDWALK_COMMIT").map(String::from),
             machine: Machine::here().description,
             started: humantime::format_rfc3339_seconds(started).to_string(),
-            seed: self.case.scene.seed,
+            seed: self.case.scene.walk.seed,
             budget_s: self.budget_s,
             scene: format!(
                 "filter: {}, {}; base: {}; {}",

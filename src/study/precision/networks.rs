@@ -11,12 +11,12 @@ use crate::network::Network;
 impl Study<'_> {
     /// Seed of replicate `k`, counted from 1: of its network, and of its walk.
     pub(super) fn seed(&self, k: u64) -> u64 {
-        replicate_seed(self.case.scene.seed, k)
+        replicate_seed(self.case.scene.walk.seed, k)
     }
 
     /// The scene's voids along x, y, z, where its network is a lattice.
     pub(super) fn shape(&self) -> Option<[u32; 3]> {
-        self.case.scene.network.shape()
+        self.case.scene.network.source().shape()
     }
 
     /// The scene's network of this seed, with `shape` voids where it is a lattice.

@@ -5,7 +5,7 @@
 //! their order, so neither do the bits on the number of workers.
 //!
 //! A few particles in a void of three exits choose each by themselves, with one random word for both thresholds. More of them
-//! part exit by exit, and draws for many voids are made at once.
+//! are split exit by exit, and draws for many voids are made at once.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -46,7 +46,7 @@ pub(super) struct Flow {
     /// By block: whether it holds a particle.
     occupied: Vec<bool>,
     workers: Vec<Worker>,
-    /// Particles that move, counted afresh in every step.
+    /// Particles that move: those inserted are added, and all are counted afresh in every step.
     moving: u64,
     /// Instructions that it uses.
     isa: Isa,
@@ -58,17 +58,17 @@ struct Worker {
     /// By block: whether `next` may hold something.
     touched: Vec<bool>,
     moved: Moved,
-    parting: Box<Parting>,
+    batch: Box<SplitBatch>,
 }
 
-/// Counts that part over the exits of their voids, as columns: a row is a void whose particles are yet to choose
+/// Counts that are split over the exits of their voids, as columns: a row is a void whose particles are yet to choose
 /// between an exit and those after it.
-struct Parting {
+struct SplitBatch {
     rows: usize,
     /// The exit, as a constriction.
     exit: [u32; BLOCK],
     count: [u64; BLOCK],
-    chance: [u64; BLOCK],
+    probability: [u64; BLOCK],
     taken: [u64; BLOCK],
 }
 
@@ -79,7 +79,7 @@ impl Flow {
             next: vec![0; moving.len() + 1],
             touched: vec![false; blocks],
             moved: Moved::default(),
-            parting: Box::new(Parting::new()),
+            batch: Box::new(SplitBatch::new()),
         };
         Self {
             downstream: (0..blocks).map(|block| downstream(network, block)).collect(),
@@ -94,7 +94,7 @@ impl Flow {
         self.isa = isa;
     }
 
-    /// Particles that moved on in the last step.
+    /// Particles that move.
     pub fn moving(&self) -> u64 {
         self.moving
     }
@@ -105,6 +105,7 @@ impl Flow {
         let nodes = network.start();
         let mut draws = Draws::new(Key { chunk: INSERTION, ..key });
         let mut left = count;
+        self.moving += count;
         let mut put = |node: usize, n: u64| {
             moving[nodes[node] as usize] += n;
             self.occupied[nodes[node] as usize / BLOCK] = true;
@@ -243,13 +244,13 @@ impl Worker {
     #[inline(always)]
     fn step(&mut self, block: Block) {
         let Block { network, shares, key, counts, voids } = block;
-        let Self { next, moved, parting, .. } = self;
+        let Self { next, moved, batch, .. } = self;
         let targets = network.targets();
         let outside = next.len() - 1;
         // END is beyond every void.
         let mut arrive =
             |constriction: usize, n: u64| next[(targets[constriction] as usize).min(outside)] += n;
-        parting.rows = 0;
+        batch.rows = 0;
         let mut draws = Draws::new(key);
         for (void, &n) in voids.clone().zip(&counts[voids]) {
             if n == 0 {
@@ -271,18 +272,18 @@ impl Worker {
                 arrive(exits.start + 2, n - to_second);
                 continue;
             }
-            let row = parting.rows;
-            parting.rows = parting.face(row, exits.start, n, shares, &mut arrive);
+            let row = batch.rows;
+            batch.rows = batch.face(row, exits.start, n, shares, &mut arrive);
         }
-        while parting.rows > 0 {
-            parting.round(&mut draws, shares, &mut arrive);
+        while batch.rows > 0 {
+            batch.round(&mut draws, shares, &mut arrive);
         }
     }
 }
 
-impl Parting {
+impl SplitBatch {
     fn new() -> Self {
-        Self { rows: 0, exit: [0; BLOCK], count: [0; BLOCK], chance: [0; BLOCK], taken: [0; BLOCK] }
+        Self { rows: 0, exit: [0; BLOCK], count: [0; BLOCK], probability: [0; BLOCK], taken: [0; BLOCK] }
     }
 
     /// `n` particles face the exits of a void from `exit` on: they are through where the next open one is the last,
@@ -296,15 +297,15 @@ impl Parting {
         shares: &Shares,
         arrive: &mut impl FnMut(usize, u64),
     ) -> usize {
-        while shares.chance()[exit] == 0 {
+        while shares.probability()[exit] == 0 {
             exit += 1;
         }
-        let chance = shares.chance()[exit];
-        if chance == CERTAIN {
+        let probability = shares.probability()[exit];
+        if probability == CERTAIN {
             arrive(exit, n);
             return row;
         }
-        (self.exit[row], self.count[row], self.chance[row]) = (exit as u32, n, chance);
+        (self.exit[row], self.count[row], self.probability[row]) = (exit as u32, n, probability);
         row + 1
     }
 
@@ -312,7 +313,7 @@ impl Parting {
     #[inline(always)]
     fn round(&mut self, draws: &mut Draws, shares: &Shares, arrive: &mut impl FnMut(usize, u64)) {
         let rows = self.rows;
-        fill(draws, &self.count[..rows], &self.chance[..rows], &mut self.taken[..rows]);
+        fill(draws, &self.count[..rows], &self.probability[..rows], &mut self.taken[..rows]);
         self.rows = 0;
         for row in 0..rows {
             let (exit, taken) = (self.exit[row] as usize, self.taken[row]);

@@ -4,13 +4,13 @@
 //! nothing, voids have no capacity, so it influences nobody. The coarser ones are walked one by one as ever;
 //! how many of an increment's share they are is binomial, with the sampler's exact word limit for its
 //! probability. The passive ones move beside them as one count a void: in each increment the share is put
-//! on the start nodes (multinomial), and each void's count parts over the exits that were open when the
+//! on the start nodes (multinomial), and each void's count is split over the exits that were open when the
 //! increment began (conditional binomials). Which passive particle is which is never known, nor asked.
-//! This is the law of the walk one by one, not an approximation of it.
+//! This is the distribution of the walk one by one, not an approximation of it.
 //!
 //! # Streams
 //! Increment `t` of run `r` draws the number of coarse particles from (seed, coarse share, `r`, `t`, 0), the start
-//! nodes of the passive ones from (seed, passive, `r`, `t`, 2^64 - 1), the partings of block `b` of voids from (seed,
+//! nodes of the passive ones from (seed, passive, `r`, `t`, 2^64 - 1), the splits of block `b` of voids from (seed,
 //! passive, `r`, `t`, `b`), and sizes of the passive particles that came to rest from (seed, passive size, `r`, `t`, 0).
 //! Threads appear nowhere in this.
 //!
@@ -22,74 +22,21 @@
 mod binomial;
 mod expected;
 mod flow;
+mod passive;
 mod shares;
 mod sizes;
 
-pub use expected::Expected;
+pub use expected::{Counted, Expected, ExpectedSums};
+pub use passive::Passive;
+pub(super) use sizes::coarse_share;
 
 use super::{Isa, State, Supply};
 use crate::network::{END, Network};
 use crate::stream::{Key, Purpose};
-use binomial::{Draws, one};
+use binomial::Draws;
 use flow::Flow;
 use shares::Shares;
 use sizes::PassiveSizes;
-
-/// Moving passive particles, where they are not walked one by one.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Passive {
-    /// Among the particles, like any other.
-    OneByOne,
-    /// How many move, by void.
-    Counts(Vec<u64>),
-    /// How many are expected to move, by void.
-    Expected(Box<Expected>),
-}
-
-impl Passive {
-    /// None yet, on a network of `voids` voids.
-    pub(super) fn none_yet(voids: usize, expected: bool) -> Self {
-        match expected {
-            true => Passive::Expected(Box::new(Expected::new(voids))),
-            false => Passive::Counts(vec![0; voids]),
-        }
-    }
-}
-
-impl Passive {
-    /// A number for each kind, for a checkpoint.
-    pub(super) fn kind(&self) -> u64 {
-        match self {
-            Passive::OneByOne => 0,
-            Passive::Counts(_) => 1,
-            Passive::Expected(_) => 2,
-        }
-    }
-
-    /// The counts, where there are any.
-    pub(super) fn counts(&self) -> &[u64] {
-        match self {
-            Passive::Counts(moving) => moving,
-            _ => &[],
-        }
-    }
-
-    /// The expectation as words, where there is one.
-    pub(super) fn expected_words(&self) -> Vec<u64> {
-        match self {
-            Passive::Expected(expected) => expected.words(),
-            _ => Vec::new(),
-        }
-    }
-}
-
-/// How many of an increment's `share` of base particles are coarse, given that `passive_words` of the sampler's
-/// words draw passive ones.
-pub(super) fn coarse_share(share: u64, passive_words: u128, seed: u64, run: u64, increment: u64) -> u64 {
-    let all = 1u128 << 64;
-    let key = Key { seed, purpose: Purpose::CoarseShare, run, increment, chunk: 0 };
-    one(&mut Draws::new(key), share, sizes::fraction(all - passive_words, all))
-}
 
 /// The machinery of the passive particles of a run; rebuilt from network and state, and never stored.
 pub struct PassiveWalk<'a> {
@@ -140,8 +87,8 @@ impl<'a> PassiveWalk<'a> {
         }
     }
 
-    /// Inserts this increment's passive particles, moves all, and books what became of them.
-    pub fn increment(&mut self, network: &Network, supply: &Supply, state: &mut State) {
+    /// Inserts this increment's passive particles.
+    pub fn insert(&mut self, network: &Network, supply: &Supply, state: &mut State) {
         let inserted =
             supply.passive_inserted(state.increment) - supply.passive_inserted(state.increment - 1);
         let tally = &mut state.tally;
@@ -149,30 +96,38 @@ impl<'a> PassiveWalk<'a> {
         tally.passive_inserted += inserted;
         tally.inserted_mass += self.sizes.mass(inserted);
         tally.moving += inserted;
+        let key = passive_key(state);
         match (&mut self.mover, &mut state.passive) {
             (Mover::Counts(flow), Passive::Counts(moving)) => {
-                let purpose = Purpose::Passive;
-                let key =
-                    Key { seed: state.seed, purpose, run: state.run, increment: state.increment, chunk: 0 };
                 flow.insert(network, inserted, supply.is_stratified(), key, moving);
-                let before: u64 = flow.moving() + inserted;
+            }
+            (_, Passive::Expected(expected)) => expected.insert(network, inserted),
+            _ => unreachable!("the mover was made for this state"),
+        }
+    }
+
+    /// Moves all, and counts what became of them.
+    pub fn step(&mut self, network: &Network, state: &mut State) {
+        let (key, tally) = (passive_key(state), &mut state.tally);
+        match (&mut self.mover, &mut state.passive) {
+            (Mover::Counts(flow), Passive::Counts(moving)) => {
+                let before = flow.moving();
                 let moved = flow.step(network, &self.shares, key, moving);
                 // Counted afresh, so that the check of the tally means something.
                 tally.moving = tally.moving - before + flow.moving();
                 tally.particle_moves = tally.particle_moves.saturating_add(moved.moves);
-                self.book(moved.eroded, &moved.stranded, state);
+                self.count(moved.eroded, &moved.stranded, state);
             }
             (Mover::Expected(next), Passive::Expected(expected)) => {
-                expected.insert(network, inserted);
                 expected.step(network, &self.shares, next);
-                self.book_expected(None, state);
+                self.count_expected(None, state);
             }
             _ => unreachable!("the mover was made for this state"),
         }
     }
 
-    /// Books what left and what stays in voids, with drawn sizes.
-    fn book(&self, eroded: u64, stranded: &[(u32, u64)], state: &mut State) {
+    /// Adds what left and what stays in voids to the tally, with drawn sizes.
+    fn count(&self, eroded: u64, stranded: &[(u32, u64)], state: &mut State) {
         let retained: u64 = stranded.iter().map(|&(_, n)| n).sum();
         if eroded == 0 && retained == 0 {
             return;
@@ -193,22 +148,21 @@ impl<'a> PassiveWalk<'a> {
         }
     }
 
-    /// Books the rounded expectation; `settled` as in [`Expected::book`].
-    fn book_expected(&self, settled: Option<f64>, state: &mut State) {
+    /// Adds the rounded expectation to the tally; `trapped` as in [`Expected::count`].
+    fn count_expected(&self, trapped: Option<f64>, state: &mut State) {
         let Passive::Expected(expected) = &mut state.passive else { return };
-        let booked = expected.book(settled, &mut state.retained_in_voids);
-        let ([moves, eroded, at_rest], [moves_now, eroded_now, at_rest_now]) = (booked.before, booked.after);
-        let (retained, retained_now) = (at_rest - eroded, at_rest_now - eroded_now);
+        let [before, now] = expected.count(trapped, &mut state.retained_in_voids);
+        let [retained, retained_now] = [before, now].map(|counted| counted.at_rest - counted.eroded);
         let tally = &mut state.tally;
-        tally.particle_moves = tally.particle_moves.saturating_add(moves_now - moves);
-        tally.eroded = tally.eroded + eroded_now - eroded;
-        tally.passive_eroded = eroded_now;
-        tally.eroded_mass += self.sizes.mass(eroded_now) - self.sizes.mass(eroded);
+        tally.particle_moves = tally.particle_moves.saturating_add(now.moves - before.moves);
+        tally.eroded = tally.eroded + now.eroded - before.eroded;
+        tally.passive_eroded = now.eroded;
+        tally.eroded_mass += self.sizes.mass(now.eroded) - self.sizes.mass(before.eroded);
         tally.retained_in_voids = tally.retained_in_voids + retained_now - retained;
-        tally.moving = tally.moving + at_rest - at_rest_now;
-        self.sizes.expect(eroded, eroded_now, &mut state.eroded_sizes);
+        tally.moving = tally.moving + before.at_rest - now.at_rest;
+        self.sizes.expect(before.eroded, now.eroded, &mut state.eroded_sizes);
         self.sizes.expect(retained, retained_now, &mut state.retained_sizes);
-        let largest = self.sizes.median_largest(eroded_now).unwrap_or(0.0);
+        let largest = self.sizes.median_largest(now.eroded).unwrap_or(0.0);
         tally.largest_eroded = tally.largest_eroded.max(largest);
     }
 
@@ -222,7 +176,7 @@ impl<'a> PassiveWalk<'a> {
     /// Whether every moving passive particle is trapped; to be asked when everything is inserted and nothing can
     /// block any more.
     pub fn all_trapped(&mut self, network: &Network, state: &mut State) -> bool {
-        let settled = match &state.passive {
+        let trapped = match &state.passive {
             Passive::OneByOne => return true,
             Passive::Counts(moving) => {
                 let Mover::Counts(flow) = &self.mover else { return false };
@@ -241,11 +195,17 @@ impl<'a> PassiveWalk<'a> {
                 (free < 0.5).then_some(trapped)
             }
         };
-        if settled.is_some() {
-            self.book_expected(settled, state);
+        if trapped.is_some() {
+            self.count_expected(trapped, state);
         }
-        settled.is_some()
+        trapped.is_some()
     }
+}
+
+/// The stream of the passive particles in this increment.
+fn passive_key(state: &State) -> Key {
+    let purpose = Purpose::Passive;
+    Key { seed: state.seed, purpose, run: state.run, increment: state.increment, chunk: 0 }
 }
 
 impl Trap {

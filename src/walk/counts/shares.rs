@@ -1,4 +1,4 @@
-//! How the passive particles of a void part over its exits.
+//! How the passive particles of a void are split over its exits.
 
 use bitvec::slice::BitSlice;
 
@@ -6,10 +6,10 @@ use super::binomial::CERTAIN;
 use crate::network::Network;
 use crate::walk::exits;
 
-/// By constriction: the chance that a particle which has not taken an earlier exit of its void takes this one, as
+/// By constriction: the probability that a particle which has not taken an earlier exit of its void takes this one, as
 /// a 64-bit fraction. The last open exit is certain; closed ones have none.
 pub(super) struct Shares {
-    chance: Vec<u64>,
+    probability: Vec<u64>,
     /// By void: whether it has an open exit.
     leads_on: Vec<bool>,
 }
@@ -18,7 +18,7 @@ impl Shares {
     /// The shares of the constrictions that `blocked` leaves open.
     pub fn new(network: &Network, blocked: &BitSlice<u64>) -> Self {
         let mut shares =
-            Self { chance: vec![0; network.constrictions()], leads_on: vec![false; network.voids()] };
+            Self { probability: vec![0; network.constrictions()], leads_on: vec![false; network.voids()] };
         let mut thresholds = Vec::new();
         for void in 0..network.voids() as u32 {
             shares.set(network, blocked, void, &mut thresholds);
@@ -35,8 +35,8 @@ impl Shares {
         let last = exits::thresholds(network, blocked, void, thresholds);
         self.leads_on[void as usize] = last.is_some();
         let mut before = 0u64;
-        for (e, chance) in self.chance[exits].iter_mut().enumerate() {
-            *chance = match last {
+        for (e, probability) in self.probability[exits].iter_mut().enumerate() {
+            *probability = match last {
                 Some(last) if e == last => CERTAIN,
                 Some(last) if e < last => {
                     let (width, rest) = (thresholds[e] - before, (1u128 << 64) - u128::from(before));
@@ -48,17 +48,17 @@ impl Shares {
         }
     }
 
-    /// Chance of each constriction.
-    pub fn chance(&self) -> &[u64] {
-        &self.chance
+    /// Probability of each constriction.
+    pub fn probability(&self) -> &[u64] {
+        &self.probability
     }
 
-    /// Chances of the first two of three exits, and the same two as thresholds for one 64-bit draw: it picks the first
+    /// Probabilities of the first two of three exits, and the same two as thresholds for one 64-bit draw: it picks the first
     /// exit below the first threshold, else the second below the second, else the third. They do not hold beyond an exit that is
     /// certain.
     #[inline(always)]
     pub fn of_three(&self, exit: usize) -> (u64, u64, [u64; 2]) {
-        let (first, second) = (self.chance[exit], self.chance[exit + 1]);
+        let (first, second) = (self.probability[exit], self.probability[exit + 1]);
         let of_rest = second - ((u128::from(second) * u128::from(first)) >> 64) as u64;
         (first, second, [first, first + of_rest])
     }
@@ -79,15 +79,15 @@ mod tests {
         let network = Network::cubic_from_diameters([1, 1, 1], diameters.to_vec(), 1.0).unwrap();
         let blocked: BitVec<u64> = closed.into_iter().collect();
         let shares = Shares::new(&network, &blocked);
-        (shares.chance.clone(), shares.leads_on(0))
+        (shares.probability.clone(), shares.leads_on(0))
     }
 
     #[test]
-    fn chances_are_conditional_and_the_last_open_exit_is_certain() {
-        let (chance, on) = of([1.0, 1.0, f32::sqrt(2.0)], [false; 3]);
-        assert!(on && chance[2] == CERTAIN);
-        assert!((chance[0] as f64 / 2f64.powi(62) - 1.0).abs() < 1e-6);
-        assert!((chance[1] as f64 / 2f64.powi(64) - 1.0 / 3.0).abs() < 1e-6);
+    fn probabilities_are_conditional_and_the_last_open_exit_is_certain() {
+        let (probability, on) = of([1.0, 1.0, f32::sqrt(2.0)], [false; 3]);
+        assert!(on && probability[2] == CERTAIN);
+        assert!((probability[0] as f64 / 2f64.powi(62) - 1.0).abs() < 1e-6);
+        assert!((probability[1] as f64 / 2f64.powi(64) - 1.0 / 3.0).abs() < 1e-6);
         assert_eq!(of([1.0; 3], [false, true, true]).0, [CERTAIN, 0, 0]);
         assert_eq!(of([1.0; 3], [true, false, true]).0, [0, CERTAIN, 0]);
         assert_eq!(of([1.0; 3], [false, true, false]).0[..2], [1 << 63, 0]);

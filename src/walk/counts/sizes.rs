@@ -7,15 +7,16 @@
 
 use super::binomial::{CERTAIN, Draws, one};
 use crate::gradation::SizeSampler;
-use crate::walk::{SizeClasses, SizeCounts};
+use crate::stream::{Key, Purpose};
+use crate::walk::sizes::{SizeClasses, SizeCounts};
 
 /// The passive part of a base, class by class.
 pub(super) struct PassiveSizes<'a> {
     sampler: &'a SizeSampler,
     /// Words up to the upper bound of each class; the last is the number of passive words.
     words: Vec<u128>,
-    /// Chance that a passive particle, no finer than the class, is in it.
-    chance: Vec<u64>,
+    /// Probability that a passive particle, no finer than the class, is in it.
+    probability: Vec<u64>,
     /// Mean diameter cubed of each class.
     mean_cube: Vec<f64>,
     /// Mean diameter cubed of all.
@@ -30,15 +31,15 @@ impl<'a> PassiveSizes<'a> {
             bounds.iter().map(|&bound| sampler.word_limit(bound).min(passive_words)).collect();
         // Sizes above the last bound count in the last class.
         words[bounds.len() - 1] = passive_words;
-        let (mut chance, mut mean_cube, mut before) = (Vec::new(), Vec::new(), 0);
+        let (mut probability, mut mean_cube, mut before) = (Vec::new(), Vec::new(), 0);
         for &upto in &words {
             let (width, rest) = (upto - before, passive_words - before);
-            chance.push(fraction(width, rest));
+            probability.push(fraction(width, rest));
             mean_cube.push(sampler.part(before..upto).mean_cube().unwrap_or(0.0));
             before = upto;
         }
         let mean_cube_of_all = sampler.part(0..passive_words).mean_cube().unwrap_or(0.0);
-        Self { sampler, words, chance, mean_cube, mean_cube_of_all }
+        Self { sampler, words, probability, mean_cube, mean_cube_of_all }
     }
 
     /// Mass of `count` passive particles, expected.
@@ -53,7 +54,7 @@ impl<'a> PassiveSizes<'a> {
             if left == 0 {
                 break;
             }
-            let n = one(draws, left, self.chance[class]);
+            let n = one(draws, left, self.probability[class]);
             left -= n;
             if n > 0 {
                 into.number[class] += n;
@@ -86,6 +87,20 @@ impl<'a> PassiveSizes<'a> {
         let all = *self.words.last().expect("at least one class");
         self.sampler.part(0..all).largest_of(count, 1 << 63)
     }
+}
+
+/// How many of an increment's `share` of base particles are coarse, given that `passive_words` of the sampler's
+/// words draw passive ones.
+pub(in crate::walk) fn coarse_share(
+    share: u64,
+    passive_words: u128,
+    seed: u64,
+    run: u64,
+    increment: u64,
+) -> u64 {
+    let all = 1u128 << 64;
+    let key = Key { seed, purpose: Purpose::CoarseShare, run, increment, chunk: 0 };
+    one(&mut Draws::new(key), share, fraction(all - passive_words, all))
 }
 
 /// `width / rest` as a 64-bit fraction.

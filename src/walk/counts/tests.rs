@@ -4,7 +4,7 @@ use bitvec::vec::BitVec;
 
 use super::*;
 use crate::gradation::{Gradation, SizeSampler};
-use crate::walk::{Blocking, Progress, SizeClasses, Walk};
+use crate::walk::{Blocking, SizeClasses, Walk, WalkControl};
 
 /// What is expected of passive particles on a given history.
 struct Flowed {
@@ -107,7 +107,7 @@ fn both_engines_follow_one_history() {
                 passive.for_each(|(&void, _)| moving[void as usize] += 1);
             }
         }
-        Progress::Continue
+        WalkControl::Continue
     };
     Walk::new(&network, &supply, &walked).run(&mut walked, &mut observe).unwrap();
     let increments = eroded.len();
@@ -135,7 +135,8 @@ fn both_engines_follow_one_history() {
     let upstream = network.upstream();
     for t in 1..=increments as u64 {
         state.increment = t;
-        passive.increment(&network, &supply, &mut state);
+        passive.insert(&network, &supply, &mut state);
+        passive.step(&network, &mut state);
         inserted.push(state.tally.passive_inserted);
         eroded.push(state.tally.passive_eroded);
         if let (LOOKED_AT, Passive::Counts(counts)) = (t as usize, &state.passive) {
@@ -165,7 +166,7 @@ fn both_engines_follow_one_history() {
         }
     }
     let total: f64 = flowed.eroded.iter().sum();
-    assert!((expected.eroded / total - 1.0).abs() < 1e-9);
+    assert!((expected.sums.eroded / total - 1.0).abs() < 1e-9);
     for (a, b) in expected.retained.iter().zip(&flowed.retained) {
         assert!((a - b).abs() < 1e-9 * b + 1e-9);
     }

@@ -2,9 +2,9 @@
 
 use std::arch::x86_64::*;
 
-use super::Isa;
-use super::lattice::{BELOW_FIRST, Chunk, SECOND, fits_gathers};
+use super::lattice::{BELOW_FIRST, LatticeChunk, SECOND, fits_gathers};
 use crate::stream::{DRAWS_PER_BLOCK, LANES, draw16};
+use crate::walk::Isa;
 
 const WIDTH: usize = 8;
 
@@ -29,14 +29,14 @@ const fn staying() -> [[u32; WIDTH]; 1 << WIDTH] {
 }
 
 /// Moves the particles of one chunk; returns how many still move.
-pub(super) fn step(chunk: Chunk) -> usize {
+pub(super) fn step(chunk: LatticeChunk) -> usize {
     assert!(Isa::Avx2.is_available() && fits_gathers(chunk.table));
     // SAFETY: the machine has the instructions.
     unsafe { step_vectors(chunk) }
 }
 
 #[target_feature(enable = "avx2,popcnt")]
-fn step_vectors(mut chunk: Chunk) -> usize {
+fn step_vectors(mut chunk: LatticeChunk) -> usize {
     let count = chunk.void.len();
     assert_eq!(count, chunk.diameter.len());
     assert_eq!(chunk.exits.network.diameters().len(), 3 * chunk.table.entry.len());
@@ -58,7 +58,7 @@ fn step_vectors(mut chunk: Chunk) -> usize {
 /// move.
 #[inline]
 #[target_feature(enable = "avx2,popcnt")]
-fn step_eight(chunk: &mut Chunk, begin: usize, words: &[u64; 2], kept: usize) -> usize {
+fn step_eight(chunk: &mut LatticeChunk, begin: usize, words: &[u64; 2], kept: usize) -> usize {
     assert!(kept <= begin && begin + WIDTH <= chunk.void.len() && begin + WIDTH <= chunk.diameter.len());
     let table = chunk.table;
     let last = _mm256_set1_epi32(table.entry.len() as i32 - 1);
@@ -153,7 +153,7 @@ fn bits(lanes: __m256i) -> u32 {
 
 #[cold]
 #[inline(never)]
-fn step_singly(chunk: &mut Chunk, begin: usize, words: &[u64; 2], mut kept: usize) -> usize {
+fn step_singly(chunk: &mut LatticeChunk, begin: usize, words: &[u64; 2], mut kept: usize) -> usize {
     let mut block = [0; LANES];
     block[..2].copy_from_slice(words);
     for j in 0..WIDTH {
@@ -178,7 +178,7 @@ fn note(column: &mut Vec<(u32, f32)>, place: __m256i, d: __m256, lanes: u32) {
 
 #[inline]
 #[target_feature(enable = "avx2")]
-fn note_eroded(chunk: &mut Chunk, d: __m256, mut eroded: u32) {
+fn note_eroded(chunk: &mut LatticeChunk, d: __m256, mut eroded: u32) {
     let mut diameters = [0f32; WIDTH];
     // SAFETY: eight entries.
     unsafe { _mm256_storeu_ps(diameters.as_mut_ptr(), d) };

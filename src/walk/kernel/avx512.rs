@@ -7,21 +7,21 @@
 
 use std::arch::x86_64::*;
 
-use super::Isa;
-use super::lattice::{BELOW_FIRST, Chunk, PAST_FIRST, PAST_SECOND, SECOND, fits_gathers};
+use super::lattice::{BELOW_FIRST, LatticeChunk, PAST_FIRST, PAST_SECOND, SECOND, fits_gathers};
 use crate::stream::{DRAWS_PER_BLOCK, LANES, Lanes, draw16};
+use crate::walk::Isa;
 
 const WIDTH: usize = 16;
 
 /// Moves the particles of one chunk; returns how many still move.
-pub(super) fn step(chunk: Chunk) -> usize {
+pub(super) fn step(chunk: LatticeChunk) -> usize {
     assert!(Isa::Avx512.is_available() && fits_gathers(chunk.table));
     // SAFETY: the machine has the instructions.
     unsafe { step_vectors(chunk) }
 }
 
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
-fn step_vectors(mut chunk: Chunk) -> usize {
+fn step_vectors(mut chunk: LatticeChunk) -> usize {
     let count = chunk.void.len();
     let diameters = chunk.exits.network.diameters();
     let table = &chunk.table.entry[..];
@@ -133,7 +133,7 @@ fn constriction(from: __m512i, past_first: __mmask16, past_second: __mmask16) ->
 #[cold]
 #[inline(never)]
 #[target_feature(enable = "avx512f")]
-fn step_singly(chunk: &mut Chunk, begin: usize, draws: __m512i, mut kept: usize) -> usize {
+fn step_singly(chunk: &mut LatticeChunk, begin: usize, draws: __m512i, mut kept: usize) -> usize {
     let words = words_of(draws);
     for j in 0..WIDTH {
         kept = chunk.attempt(begin + j, draw16(&words, j), kept);

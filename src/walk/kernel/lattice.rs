@@ -4,11 +4,10 @@
 //! The fifteen top bits of a sixteen-bit draw stand beside the thresholds in a word as `draw << 16`, with ones below: that is
 //! no less than the word exactly where they are no less than the first threshold, and no less than the
 //! word shifted by fifteen where they are no less than the second. Where fifteen bits equal a
-//! threshold, the particle goes the long way ([`Chunk::attempt`]).
+//! threshold, the particle goes the long way ([`LatticeChunk::attempt`]).
 
-use super::OpenExits;
 use crate::stream::{DRAWS_PER_BLOCK, LANES, Lanes, draw16};
-use crate::walk::exits::{self, Lattice};
+use crate::walk::exits::{self, Lattice, OpenExits};
 use crate::walk::merge::Events;
 
 /// Ones below the bits of the first threshold in a word of [`Lattice::entry`].
@@ -29,7 +28,7 @@ pub(super) fn fits_gathers(table: &Lattice) -> bool {
 }
 
 /// The moving particles of one chunk, and what their step reads and writes.
-pub(super) struct Chunk<'a> {
+pub(super) struct LatticeChunk<'a> {
     pub exits: &'a OpenExits<'a>,
     pub table: &'a Lattice,
     /// The stream of this chunk and increment.
@@ -44,7 +43,7 @@ pub(super) struct Chunk<'a> {
 /// Whole blocks in three passes: table words one by one, then arithmetic alone, which compiles to vector code, then
 /// what few particles leave.
 #[inline(never)]
-pub(super) fn step(mut chunk: Chunk) -> usize {
+pub(super) fn step(mut chunk: LatticeChunk) -> usize {
     let mut lanes = chunk.lanes.clone();
     let count = chunk.void.len();
     let mut kept = 0;
@@ -55,8 +54,8 @@ pub(super) fn step(mut chunk: Chunk) -> usize {
         kept = match whole {
             (Some(from), Some(diameter)) => {
                 let (from, diameter) = (from.try_into().unwrap(), diameter.try_into().unwrap());
-                let (to, rare) = sketch(chunk.exits, chunk.table, from, diameter, &block);
-                chunk.settle(begin, &block, &to, rare, kept)
+                let (to, rare) = predict(chunk.exits, chunk.table, from, diameter, &block);
+                chunk.commit(begin, &block, &to, rare, kept)
             }
             _ => chunk.step_block(begin, count, &block, kept),
         };
@@ -64,10 +63,10 @@ pub(super) fn step(mut chunk: Chunk) -> usize {
     kept
 }
 
-/// Where a block of particles goes if nothing rare happens, and a bit for each particle for which it may:
+/// Predicts where a block of particles goes if nothing rare happens, and a bit for each particle for which it may:
 /// a tie, no open exit, not passive, leaves.
 #[inline]
-fn sketch(
+fn predict(
     exits: &OpenExits,
     table: &Lattice,
     from: &[u32; DRAWS_PER_BLOCK],
@@ -108,10 +107,10 @@ fn ones(yes: bool) -> u32 {
     0u32.wrapping_sub(u32::from(yes))
 }
 
-impl Chunk<'_> {
-    /// Writes what [`sketch`] says, and takes the rare particles the long way.
+impl LatticeChunk<'_> {
+    /// Writes what [`predict`] says, and takes the rare particles the long way.
     #[inline]
-    fn settle(
+    fn commit(
         &mut self,
         begin: usize,
         block: &[u64; LANES],

@@ -7,6 +7,7 @@ use super::*;
 use crate::gradation::{Gradation, SizeSampler};
 use crate::stream::{DRAWS_PER_BLOCK, draw16};
 use crate::walk::SizeClasses;
+use crate::walk::fill::fill_diameters;
 
 /// A lattice, and what is blocked in it.
 #[derive(Clone, Debug)]
@@ -33,7 +34,7 @@ fn after(scene: &Scene, key: Key, isa: Isa, void: &[u32], diameter: &[f32]) -> A
     let supply = Supply::new(SizeSampler::new(&Gradation::single(1.0).unwrap(), 1.0).unwrap(), 1, 1);
     let classes = SizeClasses::logarithmic(1.0, 1.0, 1);
     let state = State::new(&network, &supply, classes, blocked, 1, 1);
-    let mut table = ExitTable::new(&network, &state);
+    let mut table = ExitTable::new(&network, &state.blocked);
     table.set_isa(isa);
     let exits = OpenExits {
         network: &network,

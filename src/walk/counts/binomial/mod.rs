@@ -15,19 +15,19 @@
 //! [`fill`] draws for many pairs at once, in loops over eight lanes that the compiler turns into vector
 //! instructions. Only `+ - * /`, `sqrt` and the `libm` crate touch a float, so the instruction set changes no bit.
 
+mod draws;
+mod normal;
 mod quantile;
 mod rejection;
 mod saddle;
 mod trials;
 
-use crate::stream::{Key, LANES, Lanes, unit};
-use quantile::Normal;
+use crate::stream::{LANES, unit};
+pub(super) use draws::{CERTAIN, Draws};
+use draws::{as_unit, rarer, turned};
 use rejection::{Hat, LEAST_MEAN};
 pub(super) use trials::below_both;
 use trials::by_bits;
-
-/// The probability 1.
-pub(super) const CERTAIN: u64 = u64::MAX;
 
 /// Most trials of a single draw by rejection or inversion.
 const LARGEST: u64 = 1 << 50;
@@ -37,42 +37,6 @@ pub(super) const FEW: u64 = 64;
 
 /// Up to this many trials, bits are compared where the variance is small.
 const FEW_RARE: u64 = 2048;
-
-const TWO_TO_MINUS_64: f64 = 1.0 / 18_446_744_073_709_551_616.0;
-
-/// 2^52: adding it rounds a smaller float to a whole number.
-const ROUNDER: f64 = 4_503_599_627_370_496.0;
-const MANTISSA: u64 = (1 << 52) - 1;
-
-/// The random words of one stream, one after another or a block at a time.
-pub(super) struct Draws {
-    lanes: Lanes,
-    block: [u64; LANES],
-    used: usize,
-    normal: &'static Normal,
-}
-
-impl Draws {
-    pub fn new(key: Key) -> Self {
-        Self { lanes: key.lanes(), block: [0; LANES], used: LANES, normal: Normal::table() }
-    }
-
-    #[inline(always)]
-    pub fn word(&mut self) -> u64 {
-        if self.used == LANES {
-            self.block = self.lanes.next_block();
-            self.used = 0;
-        }
-        self.used += 1;
-        self.block[self.used - 1]
-    }
-
-    /// A fresh block; words left of the current one stay for [`Draws::word`].
-    #[inline(always)]
-    fn block(&mut self) -> [u64; LANES] {
-        self.lanes.next_block()
-    }
-}
 
 /// How many of `n` trials with probability `p` succeed.
 pub(super) fn one(draws: &mut Draws, n: u64, p: u64) -> u64 {
@@ -124,23 +88,6 @@ fn fill_eight(draws: &mut Draws, used: usize, n: &[u64; LANES], p: &[u64; LANES]
         };
         open &= open - 1;
     }
-}
-
-/// `drawn` is of the rarer outcome.
-#[inline(always)]
-fn turned(n: u64, p: u64, drawn: u64) -> u64 {
-    if p > 1 << 63 { n.wrapping_sub(drawn) } else { drawn }
-}
-
-/// The probability of the rarer outcome.
-#[inline(always)]
-fn rarer(p: u64) -> u64 {
-    p.min(p.wrapping_neg())
-}
-
-#[inline(always)]
-fn as_unit(p: u64) -> f64 {
-    p as f64 * TWO_TO_MINUS_64
 }
 
 /// A draw that is neither by trials nor by quantiles.

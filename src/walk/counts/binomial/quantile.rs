@@ -2,7 +2,7 @@
 //!
 //! The draw for a uniform `t` is the least `k` whose distribution function `F(k)` exceeds `t`. The Cornish-Fisher expansion
 //! (E. A. Cornish and R. A. Fisher 1938, doi:10.2307/1400905) to second order, about the variance less 1/12 as befits whole
-//! numbers, says where `F` crosses `t` to within [`Row::margin`]: it is off by less than half of that for every count and chance
+//! numbers, says where `F` crosses `t` to within [`Row::margin`]: it is off by less than half of that for every count and probability
 //! that [`holds`] admits, and the tests look at each. Where the crossing is farther than the margin from the middle between two
 //! whole numbers, the nearer one is the draw. Else, in one draw of a hundred or a thousand, `F` itself decides, summed from
 //! [`super::saddle`]. So the draw follows from `F` alone, not from the expansion.
@@ -10,10 +10,9 @@
 //! Only `+ - * /` and `sqrt` touch a float before `F` is asked, in loops over eight lanes that the compiler turns into vector
 //! instructions, and they round alike everywhere.
 
-use std::sync::OnceLock;
-
+use super::draws::{CERTAIN, TWO_TO_MINUS_64, as_unit, rarer, turned};
+use super::normal::{FAR, MANTISSA, Normal, ROUNDER};
 use super::saddle::ln_probability;
-use super::{CERTAIN, MANTISSA, ROUNDER, TWO_TO_MINUS_64, as_unit, rarer, turned};
 use crate::stream::LANES;
 
 /// Least variance for which the margin is known to hold.
@@ -22,103 +21,10 @@ pub(super) const LEAST_VARIANCE: f64 = 6.0;
 /// Most trials: `F` is a sum over some standard deviations, which is to stay short.
 pub(super) const MOST_TRIALS: u64 = 1 << 32;
 
-const ONE: u64 = 1023 << 52;
-
 /// 2^-53.
 const TWO_TO_MINUS_53: f64 = f64::EPSILON / 2.0;
 
-/// Cells of the quantile table in each halving of the tail.
-const CELL_BITS: u32 = 5;
-
-/// Halvings of the tail that the table covers, from 1/2 on.
-const HALVINGS: u64 = 14;
-
-/// Below this tail, 4 standard deviations out, `F` decides.
-const FAR: f64 = 1.0 / 32768.0;
-
-/// Place of the first cell among all floats.
-const FIRST_CELL: u64 = (1023 - 1 - HALVINGS) << CELL_BITS;
-
-/// Cells, and some beyond them that are never used: an index cut to nine bits needs no check.
-const CELLS: usize = 512;
-
-/// Cubic polynomials for the distance from the middle of a normal distribution beyond which a tail lies, by cells of the tail; the
-/// variable runs from 0 to 1 over a cell.
-pub(super) struct Normal {
-    cells: [[f64; 4]; CELLS],
-}
-
-impl Normal {
-    /// The one table.
-    pub fn table() -> &'static Self {
-        static TABLE: OnceLock<Box<Normal>> = OnceLock::new();
-        TABLE.get_or_init(|| Box::new(Self::new()))
-    }
-
-    fn new() -> Self {
-        let mut cells = [[0.0; 4]; CELLS];
-        for (cell, polynomial) in cells.iter_mut().enumerate().take((HALVINGS as usize) << CELL_BITS) {
-            let begin = f64::from_bits((cell as u64 + FIRST_CELL) << (52 - CELL_BITS));
-            let end = f64::from_bits((cell as u64 + 1 + FIRST_CELL) << (52 - CELL_BITS));
-            *polynomial = cubic(|x| beyond(begin + (end - begin) * x));
-        }
-        Self { cells }
-    }
-
-    /// Where the tail `t` begins, for `t` from [`FAR`] to 1/2.
-    #[inline(always)]
-    fn quantile(&self, t: f64) -> f64 {
-        let bits = t.to_bits();
-        let cell = ((bits >> (52 - CELL_BITS)) - FIRST_CELL) as usize % CELLS;
-        let along = f64::from_bits((bits << CELL_BITS) & MANTISSA | ONE) - 1.0;
-        let [a, b, c, d] = self.cells[cell];
-        a + along * (b + along * (c + along * d))
-    }
-}
-
-/// The cubic through four values of `f` between 0 and 1, at the places where its error is least (Chebyshev's).
-fn cubic(f: impl Fn(f64) -> f64) -> [f64; 4] {
-    let x = [
-        -0.923_879_532_511_286_7,
-        -0.382_683_432_365_089_8,
-        0.382_683_432_365_089_8,
-        0.923_879_532_511_286_7,
-    ]
-    .map(|node| 0.5 + 0.5 * node);
-    let y = x.map(f);
-    // Divided differences.
-    let slope = |a: f64, b: f64, i: usize, j: usize| (b - a) / (x[j] - x[i]);
-    let first: [f64; 3] = std::array::from_fn(|i| slope(y[i], y[i + 1], i, i + 1));
-    let second: [f64; 2] = std::array::from_fn(|i| slope(first[i], first[i + 1], i, i + 2));
-    let third = slope(second[0], second[1], 0, 3);
-    let products = [x[0] * x[1], x[0] * x[2] + x[1] * x[2], x[0] * x[1] * x[2]];
-    [
-        y[0] - first[0] * x[0] + second[0] * products[0] - third * products[2],
-        first[0] - second[0] * (x[0] + x[1]) + third * (products[0] + products[1]),
-        second[0] - third * (x[0] + x[1] + x[2]),
-        third,
-    ]
-}
-
-/// Density of the normal distribution.
-fn density(z: f64) -> f64 {
-    0.398_942_280_401_432_7 * libm::exp(-0.5 * z * z)
-}
-
-/// Where the tail `t <= 1/2` of the normal distribution begins, by Newton's method.
-fn beyond(t: f64) -> f64 {
-    let mut z = 0.0;
-    loop {
-        // From the left of a convex function: every step goes right, until rounding ends it.
-        let step = (0.5 * libm::erfc(z * std::f64::consts::FRAC_1_SQRT_2) - t) / density(z);
-        if step <= 1e-15 * z {
-            return z;
-        }
-        z += step;
-    }
-}
-
-/// Whether `n` trials with chance `p` can be drawn here.
+/// Whether `n` trials with probability `p` can be drawn here.
 #[inline(always)]
 pub(super) fn holds(n: u64, p: u64) -> bool {
     let row = Row::new(n, p);
@@ -249,7 +155,7 @@ pub(super) fn decide(n: u64, p: u64, word: u64) -> u64 {
     turned(n, p, k as u64)
 }
 
-/// The least `k` whose distribution function exceeds `t <= 1/2`, for `n` trials with chance `p = 1 - q`.
+/// The least `k` whose distribution function exceeds `t <= 1/2`, for `n` trials with probability `p = 1 - q`.
 fn least_beyond(t: f64, n: f64, p: f64, q: f64) -> f64 {
     let mean = n * p;
     let z = Normal::table().quantile(t.max(FAR));
@@ -287,6 +193,7 @@ fn distribution(n: f64, p: f64, q: f64, k: f64, pmf: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::normal::beyond;
     use super::*;
 
     /// `F(k)` and `1 - F(k)` for all `k` within 4.5 standard deviations, summed from both ends.
@@ -310,10 +217,10 @@ mod tests {
     }
 
     fn rows() -> Vec<(u64, f64)> {
-        let chances = [0.5, 0.45, 0.4, 0.35, 0.3, 0.25, 0.2, 0.15, 0.1, 0.05, 0.02, 0.005, 5e-4, 1e-6];
+        let probabilities = [0.5, 0.45, 0.4, 0.35, 0.3, 0.25, 0.2, 0.15, 0.1, 0.05, 0.02, 0.005, 5e-4, 1e-6];
         let variances = [1.0, 1.03, 1.1, 1.3, 1.7, 2.5, 5.0, 15.0, 100.0, 1000.0].map(|f| f * LEAST_VARIANCE);
         let row = |p: f64, v: f64| ((v / (p * (1.0 - p))).ceil() as u64, p);
-        chances.into_iter().flat_map(|p| variances.map(|v| row(p, v))).collect()
+        probabilities.into_iter().flat_map(|p| variances.map(|v| row(p, v))).collect()
     }
 
     /// Every place where the distribution function jumps: the expansion is off by less than half of the margin there, and rises in
@@ -337,20 +244,6 @@ mod tests {
             assert!((-420..420).all(rises), "n {n} p {p}");
         }
         assert!(jumps > 10_000, "{jumps}");
-    }
-
-    /// The table against Newton's method, at the ends of every cell and between: to less than half of what the margin allows.
-    #[test]
-    fn the_table_is_the_normal_quantile() {
-        let normal = Normal::table();
-        let mut worst = 0f64;
-        for i in 0..(HALVINGS << CELL_BITS) * 8 {
-            let t = f64::from_bits((FIRST_CELL << (52 - CELL_BITS)) + (i << (49 - CELL_BITS)) + 12345);
-            worst = worst.max((normal.quantile(t) - beyond(t)).abs());
-        }
-        assert!(worst < 0.5 / (1u64 << 29) as f64, "{worst:e}");
-        assert!((beyond(0.5)).abs() < 1e-15 && (beyond(0.158_655_253_931_457_05) - 1.0).abs() < 1e-14);
-        assert!((beyond(FAR) - 4.008).abs() < 1e-2);
     }
 
     /// Fast and slow draws agree for every word that is looked at, and both are the least `k` beyond.

@@ -1,8 +1,9 @@
 //! Transformed rejection (BTRS; W. Hoermann 1993, doi:10.1080/00949659308811496), for counts too large for anything else: most draws
 //! are accepted by a squeeze, the others by [`super::saddle`].
 
+use super::draws::{Draws, as_unit, rarer};
+use super::normal::ROUNDER;
 use super::saddle::ln_probability;
-use super::{Draws, ROUNDER, as_unit, rarer};
 use crate::stream::unit;
 
 /// Below this mean (of the rarer outcome) rejection does not hold.

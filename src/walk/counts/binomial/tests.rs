@@ -3,6 +3,7 @@
 use super::rejection::QUICK_U;
 use super::saddle::ln_probability;
 use super::*;
+use crate::stream::Key;
 use crate::stream::Purpose;
 
 fn draws(chunk: u64) -> Draws {
@@ -27,8 +28,8 @@ const CELLS: f64 = 24.0;
 ///
 /// Above a million trials a cell's probability is summed over `k` in steps, which the density is smooth enough for.
 fn z_score(n: u64, p: u64, sample: &[u64]) -> f64 {
-    let (chance, q) = (as_unit(p), as_unit(p.wrapping_neg()));
-    let mean = n as f64 * chance;
+    let (probability, q) = (as_unit(p), as_unit(p.wrapping_neg()));
+    let mean = n as f64 * probability;
     let sigma = (mean * q).sqrt();
     let width = ((6.0 * sigma / CELLS).ceil() as u64).max(1);
     let low = ((mean - 3.0 * sigma).max(0.0)) as u64;
@@ -36,7 +37,7 @@ fn z_score(n: u64, p: u64, sample: &[u64]) -> f64 {
     // Cell 0 is all below `low`, the last all above.
     let cell = |k: u64| if k < low { 0 } else { 1 + ((k - low) / width).min(cells as u64) as usize };
     let mut expected = vec![0.0; cells + 2];
-    let pmf = |k: u64| libm::exp(ln_probability(n as f64, chance, q, k as f64));
+    let pmf = |k: u64| libm::exp(ln_probability(n as f64, probability, q, k as f64));
     for c in 0..cells {
         let begin = low + c as u64 * width;
         let end = (begin + width).min(n + 1);
@@ -77,7 +78,7 @@ fn z_score(n: u64, p: u64, sample: &[u64]) -> f64 {
             (e, f) = (0.0, 0.0);
         }
     }
-    assert!(freedom >= 1.0, "n {n} p {chance}: one cell only");
+    assert!(freedom >= 1.0, "n {n} p {probability}: one cell only");
     z_of_chi_square(square, freedom)
 }
 
@@ -171,7 +172,7 @@ fn never_and_always_are_exact() {
     let mut k = [7; 3];
     fill(&mut words, &[0, 9, 9_000_000], &[1 << 63, 0, CERTAIN], &mut k);
     assert_eq!(k, [0, 0, 9_000_000]);
-    // The smallest and the largest chance that are neither.
+    // The smallest and the largest probability that are neither.
     assert_eq!(one(&mut words, 1_000_000, 1), 0);
     assert_eq!(one(&mut words, 1_000_000, CERTAIN - 1), 1_000_000);
 }
@@ -183,8 +184,8 @@ fn never_and_always_are_exact() {
 fn the_squeeze_lies_inside_and_the_hat_outside() {
     let counts =
         [100, 500, 3_750, 20_000, 1_000_000, 1_000_000_000, quantile::MOST_TRIALS + 1, 1 << 40, LARGEST];
-    let chances = [0.5, 0.49, 1.0 / 3.0, 0.2, 0.1, 0.05, 1e-3, 1e-5, 1e-9];
-    let pairs = counts.into_iter().flat_map(|n| chances.map(|p| (n, p)));
+    let probabilities = [0.5, 0.49, 1.0 / 3.0, 0.2, 0.1, 0.05, 1e-3, 1e-5, 1e-9];
+    let pairs = counts.into_iter().flat_map(|n| probabilities.map(|p| (n, p)));
     let mut scanned = 0;
     for (n, p) in pairs.filter(|&(n, p)| n as f64 * p >= LEAST_MEAN) {
         let hat = Hat::of(n, fraction(p));
@@ -206,7 +207,7 @@ fn the_squeeze_lies_inside_and_the_hat_outside() {
     assert!(scanned > 50, "{scanned}");
 }
 
-/// Both counts of one call against the joint law of three outcomes, ties of sixteen bits included: the thresholds share their top
+/// Both counts of one call against the joint distribution of three outcomes, ties of sixteen bits included: the thresholds share their top
 /// sixteen bits in two cases. Each of the three numbers, and so their dependence, is binomial. Bound 4 on 12 tests; what shows
 /// is as above.
 #[test]
@@ -224,12 +225,12 @@ fn two_thresholds_are_compared_with_the_same_words() {
         let mut words = draws(4000 + i as u64);
         let drawn: Vec<[u64; 2]> = (0..SAMPLE).map(|_| below_both(&mut words, n, [first, second])).collect();
         assert!(drawn.iter().all(|&[a, b]| a <= b && b <= n));
-        for (part, chance) in [(0, first), (1, second), (2, second - first)] {
+        for (part, probability) in [(0, first), (1, second), (2, second - first)] {
             let of = |[a, b]: &[u64; 2]| [*a, *b, b - a][part];
             let sample: Vec<u64> = drawn.iter().map(of).collect();
             // In 2,000 draws of some 32 words none of the few possible ones may turn up.
-            if n as f64 * as_unit(chance) > 1.0 && n as f64 * as_unit(chance) < n as f64 - 1.0 {
-                let z = z_score(n, chance, &sample);
+            if n as f64 * as_unit(probability) > 1.0 && n as f64 * as_unit(probability) < n as f64 - 1.0 {
+                let z = z_score(n, probability, &sample);
                 assert!(z < 4.0, "{n} {first} {second}, part {part}: {z}");
             }
         }

@@ -1,6 +1,6 @@
-//! Few trials, each made: random bits are compared with chances.
+//! Few trials, each made: random bits are compared with probabilities.
 
-use super::Draws;
+use super::draws::Draws;
 use crate::stream::DRAWS_PER_BLOCK;
 
 /// How many of `n` uniform 64-bit words are below each of two thresholds.

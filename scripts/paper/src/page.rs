@@ -1,0 +1,263 @@
+//! The page: each figure of the paper with ours, every statement beside ours, every combination.
+
+use std::path::Path;
+
+use maud::{Markup, html};
+use voidwalk::outcome::MODEL_LEAVES_OUT;
+use voidwalk::outcome::record::Verdict;
+use voidwalk::report::numbers::{duration, significant, whole};
+use voidwalk::report::shell::{Drawn, clean, drawing, whole_page};
+use voidwalk::report::{ReportError, Written, write_page};
+use voidwalk::store::write_whole;
+
+use crate::figures;
+use crate::measured::Measured;
+use crate::statements::{self, Judged, Judgement};
+use crate::study::{Case, Study};
+
+/// A figure or table of the paper: its key in the statements, its heading, what is drawn for it.
+type Section = (&'static str, &'static str, fn(&Study) -> Vec<Drawn>);
+
+const SECTIONS: [Section; 15] = [
+    ("6", "Fig. 6 and the first checks: percolation, one size", figures::fig_6),
+    ("table2", "Table 2: the filters", |_| Vec::new()),
+    ("7", "Fig. 7: gradations and constriction curves", figures::fig_7),
+    ("8", "Fig. 8: Kenney’s tests, filter with Cu 1.2", figures::fig_8),
+    ("9", "Fig. 9: Kenney’s tests, filter with Cu 3", figures::fig_9),
+    ("10", "Fig. 10: Kenney’s tests, filter with Cu 6", figures::fig_10),
+    ("13", "Fig. 13: one case of each class", figures::fig_13),
+    ("14", "Fig. 14: erosion against D15F/D85B, and reruns", figures::fig_14),
+    ("15", "Fig. 15: erosion against D15F/D95B", figures::fig_15),
+    ("16", "Fig. 16: influence of the filter’s Cu", figures::fig_16),
+    ("17", "Fig. 17: influence of the filter’s density", figures::fig_17),
+    ("18", "Fig. 18: what is retained", figures::fig_18),
+    ("19", "Fig. 19: erosion against blocked constrictions", figures::fig_19),
+    ("table3", "Table 3: connectivity", |_| Vec::new()),
+    ("20", "Fig. 20: erosion on the modified network", figures::fig_20),
+];
+
+/// Writes `report.html`, `figures/*.svg` and `statements.csv` into the folder of a reproduction.
+///
+/// # Errors
+/// A file that is missing or malformed; nothing is written then.
+pub fn write(folder: &Path) -> Result<Written, ReportError> {
+    let study = Study::read(folder)?;
+    if study.is_empty() {
+        return Err(ReportError::Value {
+            path: folder.to_owned(),
+            field: "cases".into(),
+            value: "none".into(),
+            allowed: "folders of the plans in scripts/campaigns, filled by scripts/paper.sh".into(),
+        });
+    }
+    let judged = statements::judged(&study);
+    let sections: Vec<(&Section, Vec<Drawn>)> = SECTIONS.iter().map(|s| (s, s.2(&study))).collect();
+    let page = page(&study, &judged, &sections);
+    let figures: Vec<Drawn> = sections.into_iter().flat_map(|(_, drawn)| drawn).collect();
+    write_whole(&folder.join("statements.csv"), statements::table(&judged).as_bytes())?;
+    write_page(folder, &figures, &page)
+}
+
+fn page(study: &Study, judged: &[Judged], sections: &[(&Section, Vec<Drawn>)]) -> String {
+    let title = "The paper’s numbers, and ours";
+    let count =
+        |wanted: fn(Judgement) -> bool| judged.iter().filter(|judged| wanted(judged.ours().1)).count();
+    let (agree, differ) = (count(|j| j == Judgement::Agrees), count(|j| matches!(j, Judgement::Differs(_))));
+    let header = html! {
+        h1 { (title) }
+        p.names { "Shire and O’Sullivan, " cite { "A network model to assess base-filter combinations" } }
+    };
+    let main = html! {
+        div.first {
+            section {
+                p.lead {
+                    "Of " (judged.len()) " statements, " b { (agree) " agree" } ", "
+                    b { (differ) " differ" } ", and "
+                    b { (judged.len() - agree - differ) } " cannot be told."
+                }
+                p {
+                    "A statement agrees when our value lies within what the paper states and its tolerance, \
+                     or when our 95 % interval covers the stated value; it cannot be told when nothing was \
+                     walked or when the interval lies on both sides of what decides; it differs otherwise. \
+                     No judgement is typed in, and nothing is tuned to the paper case by case. Where a \
+                     number differs, the same is measured in campaigns that change one thing each: grains \
+                     per void, cap, constriction curves, overlap rule."
+                }
+            }
+            aside.leaves {
+                h2 { "What the model leaves out" }
+                ul { @for item in MODEL_LEAVES_OUT { li { (item) } } }
+            }
+        }
+        (what_differs(judged))
+        @for ((key, heading, _), drawn) in sections {
+            h2 { (heading) }
+            @for drawn in drawn {
+                figure {
+                    (drawing(drawn))
+                    figcaption { b { (drawn.figure.title()) ". " } (drawn.caption) }
+                }
+            }
+            (statements_of(judged, key))
+        }
+        h2 { "Every statement in every campaign" }
+        p.small {
+            "The first column of ours is the one judged above. Empty: the campaign cannot say, or nothing \
+             changes for it. ✗ differs, ? cannot tell."
+        }
+        (matrix(study, judged))
+        h2 { "Every combination" }
+        p.small {
+            "Percent of the base eroded in the first and the second run, and the class: N no, S some, \
+             C continuing erosion, ? undecided. ● marks the combinations without Dc15: the paper walked 66 \
+             of the 78 and does not say which, so that is a guess."
+        }
+        (combinations(study))
+        (provenance(study))
+    };
+    let footer = html! { p.small { "Regenerated by " code { "scripts/paper.sh" } "." } };
+    whole_page(title, &header, &main, &footer)
+}
+
+/// The statements that differ, each in a line.
+fn what_differs(judged: &[Judged]) -> Markup {
+    let differ: Vec<_> = judged.iter().filter(|j| matches!(j.ours().1, Judgement::Differs(_))).collect();
+    html! {
+        @if !differ.is_empty() {
+            h2 { "What differs, and in which campaign it does not" }
+            ul { @for judged in differ {
+                @let stated = &judged.statement;
+                li {
+                    (stated.says) ": paper " b { (stated.states) } ", ours "
+                    @if let Some(measured) = judged.ours().0 { b { (ours(judged, measured)) } }
+                    "; " (judged.sentence()) "."
+                }
+            } }
+        }
+    }
+}
+
+fn ours(judged: &Judged, measured: &Measured) -> String {
+    let s = &judged.statement;
+    let interval = measured.interval.map(|(low, high)| format!(" ({} to {})", s.show(low), s.show(high)));
+    format!("{}{}", s.show(measured.value), interval.unwrap_or_default())
+}
+
+fn statements_of(judged: &[Judged], key: &str) -> Markup {
+    let class = |judgement| match judgement {
+        Judgement::Agrees => "keeps",
+        Judgement::Differs(_) => "breaks",
+        Judgement::CannotTell => "small",
+    };
+    html! {
+        div.scroll { table {
+            thead { tr { th { "What" } th { "Paper" } th { "Ours (95 % interval)" } th { "Judgement" } } }
+            tbody { @for judged in judged.iter().filter(|judged| judged.statement.shown == key) {
+                @let (measured, judgement) = judged.ours();
+                tr {
+                    td { (judged.statement.says) br; span.small { (judged.statement.place) } }
+                    td { (judged.statement.states) br; span.small { (judged.statement.why) } }
+                    td {
+                        @if let Some(measured) = measured {
+                            (ours(judged, measured)) br; span.small { (measured.words) }
+                        } @else { "–" }
+                    }
+                    td { @match judgement {
+                        Judgement::Differs(_) => { (judged.sentence()) },
+                        _ => span class=(class(judgement)) { (judged.sentence()) },
+                    } }
+                }
+            } }
+        } }
+    }
+}
+
+fn matrix(study: &Study, judged: &[Judged]) -> Markup {
+    let variants: Vec<_> = study.variants().collect();
+    let cell = |judged: &Judged, name: &str| {
+        let found = judged.variants.iter().find(|(variant, ..)| variant.name == name);
+        let Some((_, Some(measured), judgement)) = found else { return String::new() };
+        let sign = match judgement {
+            Judgement::Agrees => "",
+            Judgement::Differs(_) => " ✗",
+            Judgement::CannotTell => " ?",
+        };
+        format!("{}{sign}", judged.statement.show(measured.value))
+    };
+    html! {
+        div.scroll { table.replicates {
+            thead { tr {
+                th { "Statement" } th { "Paper" }
+                @for variant in &variants { th.n { (variant.title) } }
+            } }
+            tbody { @for judged in judged { tr {
+                th { (judged.statement.id) }
+                td { (judged.statement.states) }
+                @for variant in &variants { td.n { (cell(judged, variant.name)) } }
+            } } }
+        } }
+    }
+}
+
+fn combinations(study: &Study) -> Markup {
+    let variants: Vec<_> = study.variants().collect();
+    let class = |case: &Case| match case.line.verdict {
+        Verdict::None => "N",
+        Verdict::Some => "S",
+        Verdict::Continuing => "C",
+        Verdict::Undecided => "?",
+    };
+    let cell = |name: &str, case: &Case| {
+        let levels = ["filter", "cu_b", "d85b"].map(|factor| (factor, case.level(factor)));
+        let Some(case) = study.case(name, &levels) else { return String::new() };
+        let capped = if case.line.capped { " capped" } else { "" };
+        format!("{:.1} → {:.1} {}{capped}", case.mean(1), case.mean(2), class(case))
+    };
+    let Some(first) = variants.first() else { return html! {} };
+    html! {
+        div.scroll { table.replicates {
+            thead { tr {
+                th { "filter" } th.n { "base Cu" } th { "D85B" } th { "66" }
+                th.n { "D15F/D85B" } th.n { "D15F/D95B" } th.n { "N_base" }
+                @for variant in &variants { th.n { (variant.title) } }
+            } }
+            tbody { @for case in study.cases(first.name) { tr {
+                td { (clean(case.level("filter"))) }
+                td.n { (clean(case.level("cu_b"))) }
+                td { (clean(case.level("d85b"))) }
+                td { @if case.in_the_66() { "●" } }
+                td.n { (significant(case.d85_ratio())) }
+                td.n { (significant(case.d95_ratio())) }
+                td.n { (whole(case.line.n_base)) }
+                @for variant in &variants { td.n { (cell(variant.name, case)) } }
+            } } }
+        } }
+    }
+}
+
+fn provenance(study: &Study) -> Markup {
+    let unlike = |of: fn(&Case) -> String| {
+        let mut all: Vec<String> = study.walked().iter().flat_map(|walked| &walked.cases).map(of).collect();
+        all.sort_unstable();
+        all.dedup();
+        clean(&all.join(", "))
+    };
+    let fewest = |cases: &[Case]| cases.iter().map(|case| case.line.replicates).min().unwrap_or(0);
+    html! {
+        h2 { "How this was made" }
+        table {
+            thead { tr { th { "Plan" } th.n { "cases" } th.n { "replicates" } th.n { "walks" } } }
+            tbody { @for walked in study.walked() { tr {
+                td { code { "scripts/campaigns/" (walked.name) ".toml" } }
+                td.n { (walked.cases.len()) }
+                td.n { (fewest(&walked.cases)) }
+                td.n { (duration(walked.cases.iter().map(|case| case.line.made.seconds).sum())) }
+            } } }
+        }
+        p {
+            "voidwalk " (unlike(|case| case.line.version.clone())) ", commit "
+            (unlike(|case| case.line.commit.clone().unwrap_or_else(|| "not known".into()))) "."
+            " Seeds are in the plans; each case’s own is in its ledger."
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! What a case is known by: its scene with every number given and its files beside it, and the fingerprint of
+//! both.
+
+use std::path::PathBuf;
+
+use super::Case;
+use crate::scene::{CurveSource, Scene};
+
+/// Part of the fingerprint of every case: raised whenever the program gives other results for the same scene.
+const PROTOCOL: u32 = 1;
+
+impl Case {
+    /// The scene with what its files and its filter's packing say of it, and with its files' names in a run
+    /// folder: run again from there, it gives the same bits.
+    pub fn resolved(&self) -> Scene {
+        let mut scene = self.scene.clone();
+        let kept = |setting: &str| {
+            let input = self.inputs.iter().find(|input| input.setting == setting);
+            input.map(|input| PathBuf::from(&input.kept_as))
+        };
+        let kept_curve = |source: Option<CurveSource>, setting: &str| match source {
+            Some(CurveSource::File(_)) => kept(setting).map(CurveSource::File),
+            shipped => shipped,
+        };
+        if self.packed.is_some() {
+            scene.filter.measured = kept("filter.curve");
+        }
+        scene.filter.curve = kept_curve(scene.filter.curve, "filter.curve");
+        scene.filter.sieve = kept("filter.sieve");
+        if scene.filter.sieve.is_none() {
+            scene.filter.cu = scene.filter.cu.or(self.shipped.map(|shipped| shipped.cu));
+        }
+        scene.filter.grains_per_void = self.grains_per_void;
+        scene.base.sieve = kept("base.sieve");
+        scene.base.dc_curve = kept_curve(scene.base.dc_curve, "base.dc_curve");
+        scene.network.file = kept("network.file");
+        scene
+    }
+
+    /// Fingerprint of everything that the results follow from: the resolved scene and its files.
+    pub fn fingerprint(&self) -> String {
+        let mut text = format!("{PROTOCOL}\n{}", self.resolved().to_toml()).into_bytes();
+        text.extend_from_slice(self.shipped.map_or("", |shipped| shipped.curve_csv).as_bytes());
+        for input in self.inputs.iter().filter(|input| input.setting != "filter.density") {
+            text.extend_from_slice(input.setting.as_bytes());
+            text.extend_from_slice(&input.bytes);
+        }
+        format!("{:032x}", xxhash_rust::xxh3::xxh3_128(&text))
+    }
+}

@@ -1,0 +1,276 @@
+//! The settings of a scene, section by section: each declared once, with what it means and what is allowed.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use crate::constrictions::DEFAULT_MERGE_OVERLAP;
+use crate::network::Connectivity;
+use crate::schema::{Leaf, above_zero, any, only, section, whole, within, words};
+use crate::walk::{Engine, Sampling};
+
+section! {
+    /// A base-filter combination for voidwalk: `voidwalk run scene.toml`, or `voidwalk check scene.toml`
+    /// first. Sizes are diameters. Every setting can also be given on the command line, as `--set
+    /// filter.cu=3`.
+    pub struct WalkKeys in "" {
+        /// The same seed gives the same bits, for any number of threads.
+        pub seed: u64 = 1, set, whole(0..=u64::MAX);
+        /// How passive particles, which can block nothing, are walked: "counts" keeps exact counts of them
+        /// per void; "particles" walks every one by itself; "expected" keeps their expectation only; "auto"
+        /// is counts, but particles where none is passive or where they are few (below 8 a start node and
+        /// increment).
+        pub engine: Engine = Engine::Auto, set, words(&Engine::ALL.map(Engine::name));
+        /// 1, or 2: fresh base on the constrictions that the first run left blocked.
+        pub runs: u64 = 2, set, whole(1..=2);
+        /// New network and new walk each; their spread is the verdict's uncertainty.
+        pub replicates: u64 = 10, set, whole(1..=100_000);
+        /// Share of the base inserted in each increment (paper: 1 %).
+        pub inject_share: f64 = 0.01, set, only(
+            "one part of a whole number of equal parts, from 0.000001 to 1, as 0.01 or 0.02",
+            |share| is_whole_part(*share),
+        );
+        /// Sampling of sizes and start nodes: "independent" (the paper's), or "stratified": spread evenly
+        /// over both, so that replicates scatter less; the marginal distribution of each particle is
+        /// unchanged.
+        pub sampling: Sampling = Sampling::Independent, set, words(&Sampling::ALL.map(Sampling::name));
+    }
+}
+
+/// Whether a share goes into 1 a whole number of times, within a thousandth.
+fn is_whole_part(share: f64) -> bool {
+    let parts = 1.0 / share;
+    (1e-6..=1.0).contains(&share) && (parts - parts.round()).abs() < 1e-3 * parts
+}
+
+section! {
+    /// The filter: its constrictions and its gradation by mass.
+    pub struct Filter in "filter" {
+        /// The constriction curve, by number: a shipped name, or a CSV file with the columns percent_smaller
+        /// and diameter_mm (or diameter_over_d0f). `voidwalk check` lists the shipped names.
+        pub curve: Option<CurveSource> = None, set "\"shire2016-cu1.5-loose\"",
+            any("a shipped curve or a file name, in quotes");
+        /// Instead of a curve: the grains are packed this densely first and the constrictions measured
+        /// (seconds to minutes, once).
+        pub density: Option<Density> = None, off "\"loose\"",
+            any("\"dense\" (friction 0), \"intermediate\" (0.1) or \"loose\" (0.3)");
+        /// Instead of a word for the density: friction between grains while they are compressed.
+        pub friction: Option<f64> = None, off "0.3", within(0.0..=10.0, "a number from 0 to 10");
+        /// Written by a run whose filter was packed: the constriction curve measured on that packing, so that it is not packed
+        /// again.
+        pub measured: Option<PathBuf> = None, off "\"inputs/filter-curve.csv\"", any("a file name in quotes");
+        /// Instead of a curve or a packing: constrictions estimated from the gradation by inscribed circles,
+        /// at a relative density from 0 (loose) to 1 (dense).
+        pub estimate: Option<f64> = None, off "0.5", within(0.0..=1.0, "a relative density from 0 (loose) \
+         to 1 (dense)");
+        /// The gradation by mass is linear on semi-log paper from this size (mm); 1 means lengths in units of
+        /// D0F. With a sieve table: where its open finest tail ends.
+        pub d0_mm: Option<f64> = None, set "1.0", above_zero();
+        /// Cu of a linear gradation (a shipped curve knows its own).
+        pub cu: Option<f64> = None, off "1.5", within(1.0..=1000.0, "a number from 1 to 1000");
+        /// Instead of a linear gradation: a sieve table (CSV: opening in mm, percent finer by mass).
+        pub sieve: Option<PathBuf> = None, off "\"filter.csv\"", any("a file name in quotes");
+        /// N_p / N_voids of Eq. (2): filter grains per void of the packing (a shipped curve or a packing
+        /// knows its own).
+        pub grains_per_void: Option<f64> = None, off "0.61", above_zero();
+    }
+}
+
+section! {
+    /// How the filter is packed, where filter.density or filter.friction asks for it: its grains, and its
+    /// voids.
+    pub struct FilterPacking in "packing" {
+        /// Grains: by default enough for a cell 5.4 times as wide as the largest one, 9,000 to 60,000.
+        pub grains: Option<u64> = None, off "10000", whole(10..=10_000_000);
+        /// Overlap of two inscribed spheres from which their tetrahedra are one void.
+        pub merge_overlap: f64 = DEFAULT_MERGE_OVERLAP, off, only("a number from 0", |f| *f >= 0.0);
+    }
+}
+
+section! {
+    /// The base soil: its gradation by mass, and how much of it.
+    pub struct Base in "base" {
+        /// Cu of a gradation that is linear on semi-log paper; one of the next three says how coarse it is.
+        pub cu: Option<f64> = None, set "1.5", within(1.0..=1000.0, "a number from 1 to 1000");
+        /// D85B is the constriction size that this percent of the filter's constrictions are smaller than.
+        pub d85_at_dc: Option<f64> = None, set "5", within(0.0..=100.0, "a percentage from 0 to 100");
+        /// The constriction curve that d85_at_dc is read on, where it is not the filter's own.
+        pub dc_curve: Option<CurveSource> = None, off "\"cu3-loose\"", any("a shipped curve or a file name, \
+         in quotes");
+        /// D85B (mm).
+        pub d85_mm: Option<f64> = None, off "0.2", above_zero();
+        /// D15F by D85B.
+        pub d15f_over_d85b: Option<f64> = None, off "6.5", above_zero();
+        /// Instead of a linear gradation: a sieve table (CSV: opening in mm, percent finer by mass).
+        pub sieve: Option<PathBuf> = None, off "\"base.csv\"", any("a file name in quotes");
+        /// With a sieve table: where its open finest tail ends (mm).
+        pub d0_mm: Option<f64> = None, off "0.01", above_zero();
+        /// Instead of a gradation: one size (mm).
+        pub single_mm: Option<f64> = None, off "0.18", above_zero();
+        /// How much base: mass of base over mass of filter, Eq. (2).
+        pub mass_ratio: Option<f64> = None, set "0.05", above_zero();
+        /// A cap on the number of base particles by Eq. (2): off unless set, and reported where it bites (the
+        /// paper's is 2e8).
+        pub cap: Option<u64> = None, off "2e8", whole(1..=u64::MAX);
+        /// Instead of a mass ratio: the number of base particles itself.
+        pub n_base: Option<u64> = None, off "1000000", whole(1..=u64::MAX);
+    }
+}
+
+section! {
+    /// The network: a directed cubic lattice, z being the direction of flow, or one from a file.
+    pub struct NetworkKeys in "network" {
+        /// Voids across.
+        pub nx: Option<u64> = None, set "40", whole(1..=u64::from(u32::MAX));
+        /// Voids across, the other way.
+        pub ny: Option<u64> = None, set "40", whole(1..=u64::from(u32::MAX));
+        /// Voids along the flow: layers.
+        pub nz: Option<u64> = None, set "60", whole(1..=u64::from(u32::MAX));
+        /// Diagonals are added and constrictions deleted until voids have 4 to 8 entrances and exits as in
+        /// Table 3 ("table3"), or the percent of the voids by connectivity that are given here, as { 5 = 25,
+        /// 6 = 50, 7 = 25 }.
+        pub connectivity: Option<VoidConnectivity> = None, off "\"table3\"", any(
+            "\"table3\", or percentages that sum to 100 of the voids by connectivity, each a whole number \
+             from 2 to 12, as { 4 = 10, 5 = 20, 6 = 40, 7 = 20, 8 = 10 }",
+        );
+        /// Instead of a lattice, any directed network: CSV with from,to,diameter_mm, rows `start,ID,`, and
+        /// `to` = end.
+        pub file: Option<PathBuf> = None, off "\"network.csv\"", any("a file name in quotes");
+    }
+}
+
+section! {
+    /// What to keep of the walks.
+    pub struct Record in "record" {
+        /// Keep the sums of every such increment; 0 keeps the last only.
+        pub series_every: u64 = 1, set, whole(0..=u64::MAX);
+        /// Increments whose retained and eroded size curves are kept, besides the last.
+        pub size_curves: Vec<u64> = vec![1, 10, 50, 100], set,
+            only("a list of increments, from 1", |list: &Vec<u64>| !list.contains(&0));
+        /// Size classes of those curves.
+        pub size_classes: u64 = 64, set, whole(1..=4096);
+        /// Multiples of N_base that show how the verdict moves; [] leaves the study out.
+        pub sensitivity: Vec<f64> = vec![0.25, 0.5, 2.0, 4.0], set,
+            only("a list of numbers above 0", |list: &Vec<f64>| list.iter().all(|factor| *factor > 0.0));
+        /// Replicates of each.
+        pub sensitivity_replicates: u64 = 3, set, whole(1..=1000);
+    }
+}
+
+/// Where a constriction curve comes from: a file name has a folder or an ending.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CurveSource {
+    /// A filter that comes with the program.
+    Shipped(String),
+    /// A CSV file.
+    File(PathBuf),
+}
+
+impl Serialize for CurveSource {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Shipped(name) => name.serialize(serializer),
+            Self::File(path) => path.serialize(serializer),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for CurveSource {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        let is_file =
+            text.contains(['/', '\\']) || text.to_lowercase().ends_with(".csv") || text.ends_with(".txt");
+        Ok(if is_file { Self::File(text.into()) } else { Self::Shipped(text) })
+    }
+}
+
+impl Leaf for CurveSource {
+    fn placed(self, folder: &Path) -> Self {
+        match self {
+            Self::File(path) => Self::File(folder.join(path)),
+            shipped => shipped,
+        }
+    }
+}
+
+/// A word for how densely a filter is packed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Density {
+    /// As dense as it gets: no friction.
+    Dense,
+    /// Between the two: friction 0.1.
+    Intermediate,
+    /// Loose: friction 0.3.
+    Loose,
+}
+
+impl Density {
+    /// From the densest.
+    pub const ALL: [Self; 3] = [Self::Dense, Self::Intermediate, Self::Loose];
+
+    /// The word that a scene says.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Dense => "dense",
+            Self::Intermediate => "intermediate",
+            Self::Loose => "loose",
+        }
+    }
+
+    /// Friction between grains during compression that makes a packing of this density.
+    pub fn friction(self) -> f64 {
+        match self {
+            Self::Dense => 0.0,
+            Self::Intermediate => 0.1,
+            Self::Loose => 0.3,
+        }
+    }
+}
+
+impl Leaf for Density {}
+impl Leaf for Engine {}
+impl Leaf for Sampling {}
+
+/// Percent of the voids by connectivity, as a scene says it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VoidConnectivity(pub Connectivity);
+
+const TABLE_3: &str = "table3";
+
+/// The forms in which it may be written.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum WrittenConnectivity {
+    Name(String),
+    Percent(BTreeMap<String, f64>),
+}
+
+impl Serialize for VoidConnectivity {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let percent = self.0.percent().iter().map(|(k, share)| (k.to_string(), *share));
+        match self.0 == Connectivity::table_3() {
+            true => WrittenConnectivity::Name(TABLE_3.into()),
+            false => WrittenConnectivity::Percent(percent.collect()),
+        }
+        .serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for VoidConnectivity {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        use serde::de::Error;
+        let percent = match WrittenConnectivity::deserialize(deserializer)? {
+            WrittenConnectivity::Name(name) if name == TABLE_3 => return Ok(Self(Connectivity::table_3())),
+            WrittenConnectivity::Name(name) => return Err(D::Error::custom(name)),
+            WrittenConnectivity::Percent(percent) => percent,
+        };
+        let one = |(k, share): (&String, &f64)| Some((k.parse::<u32>().ok()?, *share));
+        let percent: Vec<_> =
+            percent.iter().map(one).collect::<Option<_>>().ok_or_else(|| D::Error::custom("not a number"))?;
+        Connectivity::new(&percent).map(Self).map_err(D::Error::custom)
+    }
+}
+
+impl Leaf for VoidConnectivity {}

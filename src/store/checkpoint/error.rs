@@ -1,0 +1,85 @@
+//! Why a checkpoint is refused.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why a checkpoint is refused. What can be done about it depends on the command, which says so.
+#[derive(Debug, thiserror::Error)]
+pub enum CheckpointError {
+    /// The content of the file is not what was written.
+    #[error("{}: corrupt: {problem}", file.display())]
+    Corrupt {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// The system fails to read the file, which may be whole.
+    #[error("{}: cannot be read: {source}; it is left as it is, and nothing was taken in its place", file.display())]
+    Unreadable {
+        /// The file.
+        file: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// The file is of another version of the format.
+    #[error(
+        "{}: was written by {} version of voidwalk (checkpoint format {found}; this one reads {expected}), which can finish it",
+        file.display(), if found < expected { "an earlier" } else { "a later" }
+    )]
+    OtherVersion {
+        /// The file.
+        file: PathBuf,
+        /// Version of its format.
+        found: u32,
+        /// The version that is read.
+        expected: u32,
+    },
+    /// The file was written on a machine of another kind.
+    #[error("{}: was written by a machine with another byte order", file.display())]
+    OtherByteOrder {
+        /// The file.
+        file: PathBuf,
+    },
+    /// The scene, or the plan of the packing, is another one.
+    #[error("{}: is of another scene", file.display())]
+    OtherScene {
+        /// The file.
+        file: PathBuf,
+    },
+    /// The scene is the same, but the walk is another one.
+    #[error("{}: is of another walk of this scene: {found}; expected: {expected}", file.display())]
+    OtherWalk {
+        /// The file.
+        file: PathBuf,
+        /// The walk that it is of.
+        found: String,
+        /// The walk that was asked for.
+        expected: String,
+    },
+    /// The walk is the same, but the network is another one.
+    #[error("{}: is of another network", file.display())]
+    OtherNetwork {
+        /// The file.
+        file: PathBuf,
+    },
+}
+
+impl CheckpointError {
+    /// Whether the system failed to read the file, so that it may be whole.
+    pub fn is_unreadable(&self) -> bool {
+        matches!(self, Self::Unreadable { .. })
+    }
+
+    /// What reading a file came to: a file that ends too early is corrupt.
+    pub(super) fn from_io(file: &Path, source: io::Error) -> Self {
+        match source.kind() {
+            io::ErrorKind::UnexpectedEof => Self::corrupt(file, "ends early"),
+            _ => Self::Unreadable { file: file.to_owned(), source },
+        }
+    }
+
+    pub(super) fn corrupt(file: &Path, problem: impl Into<String>) -> Self {
+        Self::Corrupt { file: file.to_owned(), problem: problem.into() }
+    }
+}

@@ -1,0 +1,196 @@
+//! The header of a checkpoint: its fixed fields, the table of its sections, and checksums.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use bytemuck::{Pod, Zeroable};
+use xxhash_rust::xxh3::xxh3_64;
+
+use super::error::CheckpointError;
+use super::label::{Identity, Label};
+use super::section::{PIECE, Section};
+use crate::store::disk::{Call, ask};
+
+const MAGIC: [u8; 8] = *b"vwcheckp";
+const VERSION: u32 = 2;
+const BYTE_ORDER: u32 = 0x0a0b_0c0d;
+const MOST_SECTIONS: u64 = 64;
+/// A longer header is no header (bytes): that of 8 TB of columns.
+const LONGEST_HEADER: u64 = 64 << 20;
+
+/// What every header begins with, byte for byte; the fields are those of the [module](super).
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Fixed {
+    magic: [u8; 8],
+    version: u32,
+    byte_order: u32,
+    header_length: u64,
+    file_length: u64,
+    scene: [u8; 32],
+    part: u64,
+    replicate: u64,
+    seed: u64,
+    n_base: u64,
+    network: u64,
+    run: u64,
+    increment: u64,
+    generation: u64,
+    sections: u64,
+    program: [u8; 24],
+}
+
+/// One row of the table of sections, byte for byte.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Row {
+    name: [u8; 32],
+    element: u32,
+    zero: u32,
+    count: u64,
+    offset: u64,
+}
+
+/// A section of a file.
+#[derive(Debug)]
+pub(super) struct Entry {
+    pub name: String,
+    /// Bytes of an element.
+    pub element: u64,
+    /// Elements.
+    pub count: u64,
+    pub offset: u64,
+    /// Checksums of its pieces.
+    pub sums: Vec<u64>,
+}
+
+/// The header, filled up to a multiple of 4096 bytes.
+pub(super) fn encode(label: &Label, sections: &[Section]) -> Vec<u8> {
+    let sums: Vec<u64> = sections.iter().flat_map(Section::sums).collect();
+    let length = size_of::<Fixed>() + size_of::<Row>() * sections.len() + 8 * sums.len() + 8;
+    let mut at = (length as u64).next_multiple_of(4096);
+    let mut table = Vec::new();
+    for section in sections {
+        let (element, size) = (section.element as u32, section.bytes());
+        let offset = at.next_multiple_of(64);
+        let count = size / u64::from(element);
+        table.push(Row { name: field(section.name), element, zero: 0, count, offset });
+        at = offset + size;
+    }
+    let Identity { scene, part, replicate, seed, n_base } = &label.identity;
+    let fixed = Fixed {
+        magic: MAGIC,
+        version: VERSION,
+        byte_order: BYTE_ORDER,
+        header_length: length as u64,
+        file_length: at,
+        scene: field(scene),
+        part: *part,
+        replicate: *replicate,
+        seed: *seed,
+        n_base: *n_base,
+        network: label.network,
+        run: label.run,
+        increment: label.increment,
+        generation: label.generation,
+        sections: sections.len() as u64,
+        program: field(env!("CARGO_PKG_VERSION")),
+    };
+    let mut bytes = bytemuck::bytes_of(&fixed).to_vec();
+    bytes.extend_from_slice(bytemuck::cast_slice(&table));
+    bytes.extend_from_slice(bytemuck::cast_slice(&sums));
+    bytes.extend_from_slice(&xxh3_64(&bytes).to_ne_bytes());
+    debug_assert_eq!(bytes.len(), length);
+    bytes.resize(length.next_multiple_of(4096), 0);
+    bytes
+}
+
+/// Label, sections and length in bytes of the header of a file of `length` bytes.
+pub(super) fn read(
+    path: &Path,
+    file: &mut File,
+    length: u64,
+) -> Result<(Label, Vec<Entry>, u64), CheckpointError> {
+    let corrupt = |problem: String| CheckpointError::corrupt(path, problem);
+    let mut read = |bytes: &mut [u8]| {
+        let read = ask(Call::Read(path), || file.read_exact(bytes));
+        read.map_err(|source| CheckpointError::from_io(path, source))
+    };
+    let mut bytes = vec![0; size_of::<Fixed>()];
+    read(&mut bytes)?;
+    let fixed: Fixed = bytemuck::pod_read_unaligned(&bytes);
+    if fixed.magic != MAGIC {
+        return Err(corrupt("is no checkpoint of voidwalk".into()));
+    }
+    if fixed.byte_order == BYTE_ORDER.swap_bytes() {
+        return Err(CheckpointError::OtherByteOrder { file: path.to_owned() });
+    }
+    if fixed.version != VERSION {
+        let (found, expected) = (fixed.version, VERSION);
+        return Err(CheckpointError::OtherVersion { file: path.to_owned(), found, expected });
+    }
+    if fixed.file_length != length {
+        return Err(corrupt(format!("has {length} bytes where its header says {}", fixed.file_length)));
+    }
+    let shortest = size_of::<Fixed>() as u64 + 8;
+    if !(shortest..=LONGEST_HEADER.min(length)).contains(&fixed.header_length) {
+        return Err(corrupt("its header has an impossible length".into()));
+    }
+    bytes.resize(fixed.header_length as usize, 0);
+    read(&mut bytes[size_of::<Fixed>()..])?;
+    let (body, sum) = bytes.split_last_chunk::<8>().expect("longer than the fixed fields");
+    if xxh3_64(body) != u64::from_ne_bytes(*sum) || fixed.byte_order != BYTE_ORDER {
+        return Err(corrupt("the checksum of its header is wrong".into()));
+    }
+    let sections = entries(&body[size_of::<Fixed>()..], fixed.sections, length).map_err(corrupt)?;
+    let identity = Identity {
+        scene: text(&fixed.scene).map_err(corrupt)?,
+        part: fixed.part,
+        replicate: fixed.replicate,
+        seed: fixed.seed,
+        n_base: fixed.n_base,
+    };
+    let Fixed { network, run, increment, generation, .. } = fixed;
+    Ok((Label { identity, network, run, increment, generation }, sections, fixed.header_length))
+}
+
+/// The sections of a file of `length` bytes, from the table and the checksums after it; or what is wrong.
+fn entries(table: &[u8], number: u64, length: u64) -> Result<Vec<Entry>, String> {
+    let rows = usize::try_from(number).unwrap_or(usize::MAX).saturating_mul(size_of::<Row>());
+    if number > MOST_SECTIONS || rows > table.len() {
+        return Err("has an impossible number of sections".into());
+    }
+    let (rows, mut sums) = table.split_at(rows);
+    let mut sections = Vec::new();
+    for row in rows.chunks_exact(size_of::<Row>()) {
+        let Row { name, element, count, offset, .. } = bytemuck::pod_read_unaligned(row);
+        let (name, element) = (text(&name)?, u64::from(element));
+        let size = count.checked_mul(element).filter(|_| element > 0);
+        let end = size.and_then(|size| size.checked_add(offset)).filter(|end| *end <= length);
+        let (Some(size), Some(_)) = (size, end) else {
+            return Err(format!("section {name} does not fit the file"));
+        };
+        let own = 8 * size.div_ceil(PIECE as u64) as usize;
+        let Some((own, later)) = sums.split_at_checked(own) else {
+            return Err(format!("section {name} lacks checksums"));
+        };
+        sections.push(Entry { name, element, count, offset, sums: bytemuck::pod_collect_to_vec(own) });
+        sums = later;
+    }
+    Ok(sections)
+}
+
+/// Text in a field of fixed length.
+fn field<const N: usize>(text: &str) -> [u8; N] {
+    let mut field = [0; N];
+    field[..text.len()].copy_from_slice(text.as_bytes());
+    field
+}
+
+/// The text in a field.
+fn text(field: &[u8]) -> Result<String, String> {
+    let end = field.iter().position(|&b| b == 0).unwrap_or(field.len());
+    let text = std::str::from_utf8(&field[..end]).map_err(|_| "a name in its header is no text")?;
+    Ok(text.to_owned())
+}

@@ -1,0 +1,235 @@
+//! Reading a checkpoint: nothing of it is used before its checksum was found right.
+
+use std::cmp::Reverse;
+use std::fs::File;
+use std::io;
+use std::os::unix::fs::FileExt;
+use std::path::{Path, PathBuf};
+
+use bytemuck::Pod;
+use serde::de::DeserializeOwned;
+use xxhash_rust::xxh3::xxh3_64;
+
+use super::error::CheckpointError;
+use super::header::{self, Entry};
+use super::label::{Identity, Label};
+use super::section::PIECE;
+use super::write::slot;
+use crate::store::disk::{Call, ask};
+
+/// A checkpoint whose header has been checked; its sections are as they are read.
+#[derive(Debug)]
+pub struct Checkpoint {
+    /// What it is of.
+    pub label: Label,
+    path: PathBuf,
+    file: File,
+    sections: Vec<Entry>,
+    /// Offset and length of what lies between the sections, all zeros.
+    gaps: Vec<(u64, usize)>,
+}
+
+impl Checkpoint {
+    /// Opens a checkpoint and checks its header; `None` where there is no such file.
+    ///
+    /// # Errors
+    /// A file that is cut, corrupt, of another version or no checkpoint at all.
+    pub fn open(path: &Path) -> Result<Option<Self>, CheckpointError> {
+        let unreadable = |source| CheckpointError::from_io(path, source);
+        let is_file = match path.symlink_metadata() {
+            Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(e) => return Err(unreadable(e)),
+            Ok(meta) => meta.is_file(),
+        };
+        if !is_file {
+            return Err(CheckpointError::corrupt(path, "is no regular file"));
+        }
+        let mut file = ask(Call::Read(path), || File::open(path)).map_err(unreadable)?;
+        let length = file.metadata().map_err(unreadable)?.len();
+        let (label, sections, header) = header::read(path, &mut file, length)?;
+        let gaps =
+            gaps(&sections, header, length).map_err(|problem| CheckpointError::corrupt(path, problem))?;
+        Ok(Some(Self { label, path: path.to_owned(), file, sections, gaps }))
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// This checkpoint with something wrong in what its checksums say is whole.
+    pub fn corrupt(&self, problem: impl Into<String>) -> CheckpointError {
+        CheckpointError::corrupt(&self.path, problem)
+    }
+
+    /// Whether it is of what is expected.
+    ///
+    /// # Errors
+    /// [`CheckpointError::OtherScene`] or [`CheckpointError::OtherWalk`].
+    pub fn expect(&self, expected: &Identity) -> Result<(), CheckpointError> {
+        let (found, file) = (&self.label.identity, self.path.clone());
+        if found.scene != expected.scene {
+            return Err(CheckpointError::OtherScene { file });
+        }
+        if found != expected {
+            let (found, expected) = (found.to_string(), expected.to_string());
+            return Err(CheckpointError::OtherWalk { file, found, expected });
+        }
+        Ok(())
+    }
+
+    /// Elements of a section.
+    ///
+    /// # Errors
+    /// There is no such section, or its elements have another size.
+    pub fn count<T: Pod>(&self, name: &str) -> Result<usize, CheckpointError> {
+        self.entry::<T>(name).map(|entry| entry.count as usize)
+    }
+
+    fn entry<T: Pod>(&self, name: &str) -> Result<&Entry, CheckpointError> {
+        let entry = self.sections.iter().find(|entry| entry.name == name);
+        let entry = entry.ok_or_else(|| self.corrupt(format!("has no section {name}")))?;
+        if entry.element != size_of::<T>() as u64 {
+            return Err(self.corrupt(format!("section {name} has elements of {} bytes", entry.element)));
+        }
+        Ok(entry)
+    }
+
+    /// A whole section.
+    ///
+    /// # Errors
+    /// As [`Checkpoint::count`]; a piece whose checksum is wrong.
+    pub fn read<T: Pod>(&self, name: &str) -> Result<Vec<T>, CheckpointError> {
+        // The header's length bounds what is allocated: the file is as long as it says.
+        let mut all = Vec::with_capacity(self.count::<T>(name)?);
+        self.read_pieces::<T>(name, |piece| all.extend_from_slice(piece))?;
+        Ok(all)
+    }
+
+    /// A whole section of `count` elements.
+    ///
+    /// # Errors
+    /// As [`Checkpoint::read`]; another number of elements.
+    pub fn read_exact<T: Pod>(&self, name: &str, count: usize) -> Result<Vec<T>, CheckpointError> {
+        let found = self.count::<T>(name)?;
+        if found != count {
+            return Err(self.corrupt(format!("section {name} has {found} elements, not {count}")));
+        }
+        self.read(name)
+    }
+
+    /// A section that is a record with named fields.
+    ///
+    /// # Errors
+    /// As [`Checkpoint::read`]; a field that is missing, unknown or of another type.
+    pub fn read_record<T: DeserializeOwned>(&self, name: &str) -> Result<T, CheckpointError> {
+        let text = self.read::<u8>(name)?;
+        serde_json::from_slice(&text).map_err(|e| self.corrupt(format!("section {name}: {e}")))
+    }
+
+    /// A section piece by piece, each checked before it is handed on.
+    ///
+    /// # Errors
+    /// As [`Checkpoint::read`].
+    pub fn read_pieces<T: Pod>(&self, name: &str, mut take: impl FnMut(&[T])) -> Result<(), CheckpointError> {
+        let entry = self.entry::<T>(name)?;
+        let size = (entry.count * entry.element) as usize;
+        let mut words: Vec<T> = vec![T::zeroed(); PIECE.min(size).div_ceil(size_of::<T>())];
+        for piece in 0..entry.sums.len() {
+            let now = PIECE.min(size - piece * PIECE);
+            self.read_piece(entry, piece, &mut bytemuck::cast_slice_mut(&mut words)[..now])?;
+            take(&words[..now / size_of::<T>()]);
+        }
+        Ok(())
+    }
+
+    /// Fills `bytes` with piece `piece` of a section, and checks it.
+    fn read_piece(&self, entry: &Entry, piece: usize, bytes: &mut [u8]) -> Result<(), CheckpointError> {
+        self.read_at(entry.offset + (piece * PIECE) as u64, bytes)?;
+        match xxh3_64(bytes) == entry.sums[piece] {
+            true => Ok(()),
+            false => {
+                Err(self.corrupt(format!("section {}, piece {piece}: its checksum is wrong", entry.name)))
+            }
+        }
+    }
+
+    fn read_at(&self, offset: u64, bytes: &mut [u8]) -> Result<(), CheckpointError> {
+        let read = ask(Call::Read(&self.path), || self.file.read_exact_at(bytes, offset));
+        read.map_err(|source| CheckpointError::from_io(&self.path, source))
+    }
+
+    /// Reads every piece of every section, and what lies between them, and checks it; in order, as the disk likes it.
+    ///
+    /// # Errors
+    /// The first that is wrong.
+    pub fn check(&self) -> Result<(), CheckpointError> {
+        let mut bytes = vec![0; PIECE];
+        for &(offset, length) in &self.gaps {
+            self.read_at(offset, &mut bytes[..length])?;
+            if bytes[..length].iter().any(|&byte| byte != 0) {
+                return Err(self.corrupt(format!("is not zero between its sections, near byte {offset}")));
+            }
+        }
+        for entry in &self.sections {
+            let size = (entry.count * entry.element) as usize;
+            for piece in 0..entry.sums.len() {
+                self.read_piece(entry, piece, &mut bytes[..PIECE.min(size - piece * PIECE)])?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What lies between the header and the sections, which follow one another to the end of the file.
+fn gaps(sections: &[Entry], header: u64, length: u64) -> Result<Vec<(u64, usize)>, String> {
+    let mut spans: Vec<(u64, u64)> = sections.iter().map(|e| (e.offset, e.count * e.element)).collect();
+    spans.sort_unstable();
+    spans.push((length, 0));
+    let (mut at, mut gaps) = (header, Vec::new());
+    for (offset, size) in spans {
+        match offset.checked_sub(at) {
+            Some(gap) if gap < 4096 => gaps.push((at, gap as usize)),
+            _ => return Err("its sections do not follow one another".into()),
+        }
+        at = offset + size;
+    }
+    gaps.retain(|&(_, gap)| gap > 0);
+    Ok(gaps)
+}
+
+/// The newest whole checkpoint of this name and of what is expected, and why any newer one was passed over.
+///
+/// # Errors
+/// There are checkpoints of this name, but none is whole and of what is expected; or the system fails to read one.
+pub fn newest(
+    folder: &Path,
+    name: &str,
+    expected: &Identity,
+) -> Result<(Option<Checkpoint>, Vec<CheckpointError>), CheckpointError> {
+    let mut refused = Vec::new();
+    let mut found = Vec::new();
+    let open = |parity| match Checkpoint::open(&slot(folder, name, parity))? {
+        None => Ok(None),
+        Some(checkpoint) => checkpoint.expect(expected).map(|()| Some(checkpoint)),
+    };
+    for parity in 0..2 {
+        match open(parity) {
+            Ok(checkpoint) => found.extend(checkpoint),
+            Err(error) if error.is_unreadable() => return Err(error),
+            Err(error) => refused.push(error),
+        }
+    }
+    found.sort_by_key(|checkpoint| Reverse(checkpoint.label.generation));
+    for checkpoint in found {
+        match checkpoint.check() {
+            Ok(()) => return Ok((Some(checkpoint), refused)),
+            Err(error) if error.is_unreadable() => return Err(error),
+            Err(error) => refused.push(error),
+        }
+    }
+    match refused.pop() {
+        Some(error) => Err(error),
+        None => Ok((None, refused)),
+    }
+}

@@ -1,0 +1,22 @@
+//! Why a walk ended before its run did.
+
+/// Why a walk ended before its run did.
+#[derive(Debug, thiserror::Error)]
+pub enum WalkError {
+    /// Inserted particles are not all accounted for.
+    #[error("increment {increment}: {inserted} base particles inserted, but {accounted} accounted for")]
+    NotConserved {
+        /// The increment.
+        increment: u64,
+        /// Inserted so far.
+        inserted: u64,
+        /// Moving, retained, trapped and eroded.
+        accounted: u64,
+    },
+    /// The caller asked the run to stop.
+    #[error("stopped on request in increment {increment}")]
+    Stopped {
+        /// The last whole increment.
+        increment: u64,
+    },
+}
