@@ -24,9 +24,9 @@ impl Case {
     }
 
     /// What the user called each file, by its name in the folder of inputs.
-    pub fn input_names(&self) -> std::collections::BTreeMap<&str, &str> {
-        let in_folder = |input| Some((input.kept_as.rsplit('/').next()?, input.name.as_str()));
-        self.inputs.iter().filter_map(in_folder).collect()
+    pub fn input_names(&self) -> std::collections::BTreeMap<String, String> {
+        let kept = |input: &Input| input.kept_as.rsplit('/').next().unwrap_or_default().to_owned();
+        self.inputs.iter().map(|input| (kept(input), input.name.clone())).collect()
     }
 
     /// What went in, as a run folder records it.
