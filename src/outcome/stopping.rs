@@ -24,13 +24,13 @@ use crate::schema::{only, section, whole, within};
 const FEWEST: u64 = 8;
 
 section! {
-    /// Replicates are added until the eroded mass is known closely enough, or the verdict is decided; then `replicates` is where it
-    /// first looks.
+    /// Replicates are added until the eroded mass is known closely enough, or the verdict is decided; then
+    /// `replicates` is where it first looks.
     ///
     /// ```
     /// use voidwalk::outcome::stopping::{Look, StopRule};
     /// let rule = StopRule { decide_percent: Some(99.0), most_replicates: 100, ..StopRule::default() };
-    /// // Eroded mass fractions far above 7.5 % in the first run and far below it in the second, each with its side.
+    /// // Eroded mass fractions far above 7.5 % in the first run and far below it in the second.
     /// let run = |mean: f64| (0..10).map(|k| (mean + 1e-3 * f64::from(k), mean < 0.075)).collect::<Vec<_>>();
     /// let Look::Stop(stopping) = rule.look(10, &[run(0.3), run(0.01)]) else { panic!("ten are enough") };
     /// assert!(stopping.met && stopping.looks == 1);
@@ -38,10 +38,12 @@ section! {
     /// assert_eq!(rule.look(10, &[run(0.071), run(0.071)]), Look::Until(15));
     /// ```
     pub struct StopRule in "stop" {
-        /// Half width of the 95 % interval of the eroded mass, in every run: percentage points of the base (or --target-error 0.1pp).
+        /// Half width of the 95 % interval of the eroded mass, in every run: percentage points of the base
+        /// (or --target-error 0.1pp).
         pub target_error_pp: Option<f64> = None, off "0.1",
             only("percentage points of the base, above 0 and below 100", |n| *n > 0.0 && *n < 100.0);
-        /// Confidence level (%) at which the verdict is to be decided, corrected for repeated looks (or --decide 99.9%).
+        /// Confidence level (%) at which the verdict is to be decided, corrected for repeated looks (or
+        /// --decide 99.9%).
         pub decide_percent: Option<f64> = None, off "99.9",
             within(50.0..=99.999, "a probability from 50 to 99.999 (%)");
         /// Where it gives up, and says what it would take.
