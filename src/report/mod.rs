@@ -2,9 +2,9 @@
 //!
 //! [`write()`] reads what a run left behind (`outcome.json`, `manifest.json`, `scene.toml`, `series.csv`,
 //! `layers.csv`, `retained.csv`, `eroded.csv`; see [`crate::outcome::record`]) and runs nothing;
-//! [`write_packing()`] reads the folder of a packing, [`write_campaign()`] a campaign's,
-//! [`write_percolation()`] a percolation study's, and [`write_precision()`] that of error against run time.
-//! They write `figures/*.svg`, each a file of its own, and `report.html`.
+//! [`write_packing()`] reads the folder of a packing, [`write_campaign()`] that of a campaign,
+//! [`write_percolation()`] that of a percolation study, and [`write_precision()`] that of a study of error
+//! against run time. They write `figures/*.svg`, each a file of its own, and `report.html`.
 //!
 //! # Pages of others
 //! A program with a page of its own over the same results, as `scripts/paper`, builds it from these:
