@@ -108,7 +108,7 @@ def main():
             "differences of the eroded mass are paired by network (percentage points, with the standard error of the mean). "
             "Both engines on all 78 combinations of the paper: `results/engines-2026-11-21.md`.", "",
             "| scene | engine as it is | s | s, full path | ratio | peak MB, as it is / full | first run, difference | second run, difference | "
-            "first run alone, nothing recorded: s, figures |", "|---|---|---|---|---|---|---|---|---|", *rows, "",
+            "first run alone, nothing recorded: s, quantities |", "|---|---|---|---|---|---|---|---|---|", *rows, "",
             "## What was left out, as the report of each says", "", *said]
     (folder / "left-out.md").write_text("\n".join(text))
     if wrong:

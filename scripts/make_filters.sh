@@ -25,7 +25,7 @@ number() { # number FILE KEY: the number behind the last "KEY" of a JSON file
     sed -n "s/.*\"$2\": *\([-0-9.e+]*\),\{0,1\}\$/\1/p" "$1" | tail -1
 }
 
-echo "| filter | void ratio before, after friction 0.3 | paper | Cu_CSD | paper | Dc0 / D0F | grains per void | coordination without rattlers | steps | s |"
+echo "| filter | void ratio before, after friction 0.3 | paper | Cu_CSD | paper | Dc0 / D0F | grains per void | mean coordination number without rattlers | steps | s |"
 echo "|---|---|---|---|---|---|---|---|---|---|"
 while read -r name cu friction grains state paper_e paper_cu; do
     [ -z "$name" ] && continue

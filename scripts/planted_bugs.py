@@ -99,7 +99,7 @@ def plant(edits):
         path = COPY / file
         text = path.read_text()
         if text.count(before) != 1:
-            sys.exit(f"{file}: `{before}` is there {text.count(before)} times, not once: mend this script")
+            sys.exit(f"{file}: `{before}` is there {text.count(before)} times, not once: fix this script")
         path.write_text(text.replace(before, after))
 
 

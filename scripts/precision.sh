@@ -52,9 +52,9 @@ for slope in first["exact"]["slopes"]:
     row = [r for r in rows if (r["quantity"], r["engine"]) == (slope["quantity"], slope["engine"])][-1]
     z = "nothing drawn" if slope["largest_z"] is None else f"{slope['largest_z']:.2f}"
     lines.append(f"| {slope['quantity']}, {slope['engine']} | {row['particles']:.0e} | {row['error']:.2e} | {row['expected_error']:.2e} | {slope['slope']:.3f} | {z} |")
-broken = [row["what"] for row in first["exact"]["closed"] if not row["holds"]]
-lines += ["", f"{first['exact']['networks']} networks a line. Integers and closed forms: {len(first['exact']['closed'])}, broken: {len(broken)}.", ""]
-lines += ["## Scatter of a scene", "", "| study | line | replicates | eroded, % | sd of a replicate, points | times the binomial | s a replicate | 1/(error^2 time) |", "|---|---|---|---|---|---|---|---|"]
+failed = [row["what"] for row in first["exact"]["closed"] if not row["holds"]]
+lines += ["", f"{first['exact']['networks']} networks a line. Integers and closed forms: {len(first['exact']['closed'])}, failed: {len(failed)}.", ""]
+lines += ["## Scatter of a scene", "", "| study | line | replicates | eroded, % | replicate SD, points | times the binomial | s a replicate | 1/(error^2 time) |", "|---|---|---|---|---|---|---|---|"]
 for name, study in studies.items():
     for line in study["sampling"]["lines"]:
         merit = "" if line["merit"] is None else f"{line['merit']:.2e}"

@@ -32,7 +32,7 @@ VARIANTS = {
     "stiffness 0.01": {"stiffness_ratio": 0.01, "hold_steps": 1860},
     "stiffness 0.3": {"stiffness_ratio": 0.3, "hold_steps": 5770},
     "stiffness 1": {"stiffness_ratio": 1, "hold_steps": 8620},
-    "half the squeeze and servo rate": {"squeeze_rate": 5e-3, "servo_rate": 1e-3},
+    "half the compression and servo rate": {"squeeze_rate": 5e-3, "servo_rate": 1e-3},
     "mass exponent 0 (true masses)": {"mass_exponent": 0},
     "mass exponent 2": {"mass_exponent": 2},
     "1500 grains": {"grains": 1500},
@@ -41,11 +41,11 @@ VARIANTS = {
     "restitution 0.8": {"restitution": 0.8},
     "drag 0.01": {"drag": 0.01},
     "drag 0.1": {"drag": 0.1},
-    "settling_drag 0.03": {"settling_drag": 0.03},
-    "settling_drag 0.3": {"settling_drag": 0.3},
+    "settling drag 0.03": {"settling_drag": 0.03},
+    "settling drag 0.3": {"settling_drag": 0.3},
     "start fraction 0.2": {"start_fraction": 0.2},
     "start fraction 0.45": {"start_fraction": 0.45},
-    "squeeze to 0.8": {"compression_target_fraction": 0.8},
+    "compression to a fraction of 0.8": {"compression_target_fraction": 0.8},
     "servo gain 0.003": {"servo_gain": 3e-3},
     "servo gain 0.03": {"servo_gain": 3e-2},
     "half the time step": {"step_fraction": 0.35, "hold_steps": 8000},
@@ -130,7 +130,7 @@ def main():
         return known[key]
 
     seeds = [int(s) for s in options.seeds.split(",")]
-    head = ["void ratio", "with friction 0.3", "held coordination", "rattlers", "Dc5", "Dc50", "Cu_CSD", "steps", "CPU s"]
+    head = ["void ratio", "with friction 0.3", "coordination without rattlers", "rattler fraction", "Dc5", "Dc50", "Cu_CSD", "steps", "CPU s"]
 
     def row(name, lines):
         cells = [
@@ -140,7 +140,7 @@ def main():
             f"{statistics.fmean(line['cpu_s'] for line in lines):.1f}",
         ]
         settled = sum(line["settled"] for line in lines)
-        note = "" if settled == len(lines) else f" ({settled} of {len(lines)} settled)"
+        note = "" if settled == len(lines) else f" ({settled} of {len(lines)} at rest)"
         print(f"| {name}{note} | " + " | ".join(cells) + " |", flush=True)
 
     def header(first):

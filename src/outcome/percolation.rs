@@ -136,7 +136,7 @@ struct Point {
 }
 
 impl Point {
-    /// `None` without spread, which leaves no weight.
+    /// `None` without scatter, which leaves no weight.
     fn of(size: &SizeThreshold, thresholds: &[(u64, Vec<f64>)]) -> Option<Self> {
         let count = thresholds.iter().find(|(s, _)| *s == size.size)?.1.len() as f64;
         let sd = size.threshold.sd.filter(|sd| *sd > 0.0)?;
@@ -198,7 +198,7 @@ fn many_starts(points: &[Point]) -> Option<ManyStarts> {
 mod tests {
     use super::*;
 
-    /// Thresholds with these means, each with the same small spread.
+    /// Thresholds with these means, all with one small standard deviation.
     fn around(mean: impl Fn(f64) -> f64) -> Vec<(u64, Vec<f64>)> {
         let of = |size: u64| {
             let (mean, off) = (mean(size as f64), 0.01 / size as f64);

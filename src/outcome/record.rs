@@ -221,7 +221,7 @@ pub struct RunSummary {
     pub backbone_fraction: Statistic,
 }
 
-/// A mean, and with two or more replicates its spread and interval.
+/// A mean, and with two or more replicates its standard deviation and interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Statistic {
     /// Mean over the replicates.

@@ -180,7 +180,10 @@ fn kenney_lau(filter: Option<&Gradation>) -> AppliedRule {
 fn note_of(found: Option<Option<ShapeIndex>>, what: &str) -> String {
     match found {
         None => "needs the filter's sieve curve".into(),
-        Some(None) => "needs finer sieves, or filter.d0_mm: too much of the filter is of unknown size".into(),
+        Some(None) => {
+            "needs finer sieves, or filter.d0_mm: too much of the filter is finer than its finest sieve"
+                .into()
+        }
         Some(Some(index)) => format!("at {what} = {:.0} %", index.percent),
     }
 }
@@ -238,7 +241,7 @@ mod tests {
         let both = ["Kézdi", "Kenney and Lau"].map(|name| find(&all, name).meets);
         assert_eq!(both, [Some(true), Some(true)]);
         let hidden = Gradation::from_points(&[(1.0, 90.0), (4.0, 100.0)], None).unwrap();
-        assert!(find(&rules(Some(&hidden), None), "Kézdi").note.contains("unknown size"));
+        assert!(find(&rules(Some(&hidden), None), "Kézdi").note.contains("finest sieve"));
     }
 
     #[test]

@@ -217,7 +217,7 @@ mod tests {
         values.into_iter().map(|v| (v, v < THRESHOLD)).collect()
     }
 
-    /// Replicates with this mean and spread until the rule stops; skewed ones are exponential.
+    /// Replicates with this mean and standard deviation until the rule stops; skewed ones are exponential.
     fn until_stop(
         rule: StopRule,
         means: &[f64],

@@ -20,7 +20,7 @@
 //!
 //! # Order
 //! An engineer reads the verdict first, with its numbers, and beside it what the model leaves out; then
-//! warnings, figures, the rules of practice, tables, and how to make the same again.
+//! warnings, figures, the rules of practice, tables, and how to run it again.
 
 mod campaign;
 mod connectivity;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use voidwalk::outcome::ledger::LedgerLine;
 use voidwalk::outcome::percolation::PercolationStudy;
-use voidwalk::outcome::record::{FilterRecord as Filter, Outcome, RunSummary, SeriesRow, SizeRow, Statistic};
+use voidwalk::outcome::record::{FilterRecord, Outcome, RunSummary, SeriesRow, SizeRow, Statistic};
 use voidwalk::report::ReportError;
 use voidwalk::report::files::{json, lines, rows};
 
@@ -133,7 +133,7 @@ impl Study {
     }
 
     /// A filter of a plan by the name of its level.
-    pub fn filter(&self, plan: &str, name: &str) -> Option<&Filter> {
+    pub fn filter(&self, plan: &str, name: &str) -> Option<&FilterRecord> {
         self.case(plan, &[("filter", name)]).map(|case| &case.outcome.inputs.filter)
     }
 }

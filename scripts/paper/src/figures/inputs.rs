@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::scatter::{Group, Plot, across, scatter};
 use crate::study::Study;
-use voidwalk::outcome::record::{FilterRecord as Filter, SeriesRow, Statistic};
+use voidwalk::outcome::record::{FilterRecord, SeriesRow, Statistic};
 use voidwalk::report::figures::{
     Across, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Shape, VERMILLION,
     ramp,
@@ -21,7 +21,7 @@ pub fn fig_6(study: &Study) -> Vec<Drawn> {
 }
 
 /// The six filters of Table 2, and the published curve of each where there is one.
-fn filters(study: &Study) -> Vec<(&Filter, Option<&Filter>, &'static str, Colour, Dash)> {
+fn filters(study: &Study) -> Vec<(&FilterRecord, Option<&FilterRecord>, &'static str, Colour, Dash)> {
     let named = [
         ("cu1.2-dense", "Cu 1.2", GREEN, Dash::Solid),
         ("cu1.5-loose", "Cu 1.5, loose", BLUE, Dash::Solid),
@@ -52,7 +52,7 @@ pub fn fig_7(study: &Study) -> Vec<Drawn> {
         let rows = curve(&own.gradation, own.d0_mm);
         gradations.add(Line::new(rows, *colour).dash(*dash).label(label));
     }
-    let constrictions = |title: &str, x: Axis, unit: fn(&Filter) -> f64| {
+    let constrictions = |title: &str, x: Axis, unit: fn(&FilterRecord) -> f64| {
         let mut figure = Figure::new(title, title, "", x, y()).names_above();
         let mut named = false;
         for (own, published, label, colour, dash) in &filters {

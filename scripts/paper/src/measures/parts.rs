@@ -4,10 +4,10 @@
 use crate::measured::{Measured, Of};
 use crate::study::{Case, Study, size_at, times};
 use voidwalk::outcome::by_connectivity::of_replicates;
-use voidwalk::outcome::record::{ByConnectivity, FilterRecord as Filter, SizeRow, Statistic};
+use voidwalk::outcome::record::{ByConnectivity, FilterRecord, SizeRow, Statistic};
 
 /// A filter of a plan; those that only Kenney's tests need are in the plan of that name.
-fn filter<'a>(study: &'a Study, plan: &str, name: &str) -> Option<&'a Filter> {
+fn filter<'a>(study: &'a Study, plan: &str, name: &str) -> Option<&'a FilterRecord> {
     let elsewhere = || if plan == "paper" { study.filter("kenney", name) } else { None };
     study.filter(plan, name).or_else(elsewhere)
 }
@@ -31,8 +31,8 @@ pub fn dc0_over_d0f(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
 const COMPARED: [f64; 7] = [5.0, 10.0, 25.0, 50.0, 75.0, 90.0, 95.0];
 
 /// Ratios of two constriction curves in units of a size each.
-fn curve_ratios(a: &Filter, b: &Filter, unit: fn(&Filter) -> f64) -> Option<Vec<f64>> {
-    let at = |f: &Filter, percent| size_at(&f.constrictions, percent).map(|d| d / unit(f));
+fn curve_ratios(a: &FilterRecord, b: &FilterRecord, unit: fn(&FilterRecord) -> f64) -> Option<Vec<f64>> {
+    let at = |f: &FilterRecord, percent| size_at(&f.constrictions, percent).map(|d| d / unit(f));
     COMPARED.iter().map(|&percent| Some(at(a, percent)? / at(b, percent)?)).collect()
 }
 
