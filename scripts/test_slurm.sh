@@ -126,12 +126,12 @@ disturbed() { # folder, what
     count "$what: campaigns"
     count "$what: attempts at tasks" "$(logged "$folder" 'attempt ')"
     count "$what: walks begun" "$(logged "$folder" '^begins: ')"
-    count "$what: walks gone on with" "$(logged "$folder" '^goes on: ')"
+    count "$what: walks gone on with" "$(logged "$folder" '^continues: ')"
     case $what in
         kill | requeue) [ "$(logged "$folder" 'attempt 2 ')" -ge 1 ] || fail "$what: no second attempt" ;;
     esac
     echo "$what: the same ledger and tables; $(logged "$folder" 'attempt ') attempts at 4 tasks, $(logged "$folder" '^begins: ') walks begun," \
-        "$(logged "$folder" '^goes on: ') gone on with"
+        "$(logged "$folder" '^continues: ') gone on with"
     rm -rf "${work:?}/$folder"
 }
 

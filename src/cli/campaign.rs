@@ -6,7 +6,7 @@ use std::path::Path;
 use super::args::CampaignArgs;
 use super::case_progress::CaseProgress;
 use super::print::{percent, plain, shown, to_stdout};
-use super::progress::followed;
+use super::progress::{followed, unfollowed};
 use super::run::command_line;
 use crate::campaign::cluster::scripts::quoted_if_needed;
 use crate::campaign::{
@@ -54,7 +54,7 @@ pub fn campaign(args: &CampaignArgs) -> Result<(), RunError> {
         return followed(quiet, |run| campaign::make_packing(&plan, number, &options, run));
     }
     let (lines, problem) = if args.collect {
-        (Some(followed(quiet, |run| campaign::collect(&plan, &options, run))?), None)
+        (Some(campaign::collect(&plan, &options, &unfollowed())?), None)
     } else {
         let finished = walk(args, &plan, &options)?;
         let problem = finished.problem();
@@ -117,7 +117,7 @@ fn write_scripts(
         plan: args.plan.clone(),
         tasks: args.tasks.map(usize::from),
     };
-    let written = followed(args.walk.quiet, |run| campaign::write_job_scripts(plan, options, &jobs, run))?;
+    let written = campaign::write_job_scripts(plan, options, &jobs, &unfollowed())?;
     to_stdout(&jobs_in_words(&written));
     Ok(())
 }

@@ -108,12 +108,9 @@ fn packing_words(packing: &PackingCheck) -> String {
 }
 
 fn packing_time(packing: &PackingCheck) -> String {
+    let (time, steps) = (duration(packing.core_seconds), count(packing.steps));
     match packing.is_made {
         true => "none: the packing is made already".into(),
-        false => format!(
-            "about {} of one core, a rough guess: some {} steps, once",
-            duration(packing.core_seconds),
-            count(packing.steps)
-        ),
+        false => format!("about {time} of one core, a rough guess: some {steps} steps, once"),
     }
 }

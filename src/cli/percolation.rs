@@ -2,9 +2,9 @@
 
 use super::args::PercolationArgs;
 use super::print::{json, shown, to_stdout};
-use super::report::page;
+use super::progress::unfollowed;
 use crate::outcome::percolation::PercolationStudy;
-use crate::run::{Callbacks, RunError};
+use crate::run::RunError;
 use crate::study::percolation::{self, PercolationOptions};
 
 /// Finds the thresholds and writes them into a folder.
@@ -17,9 +17,7 @@ pub fn percolation(args: &PercolationArgs) -> Result<(), RunError> {
         overwrite: args.overwrite,
         threads: args.threads,
     };
-    let callbacks =
-        Callbacks { on_results: &|kind, folder| Ok(page(kind, folder).map(drop)?), ..Callbacks::default() };
-    let study = percolation::run(&options, &callbacks)?;
+    let study = percolation::run(&options, &unfollowed())?;
     match args.json {
         true => to_stdout(&json(&study)?),
         false => to_stdout(&format!("{}{}\n", words(&study), shown(&args.out.join("report.html")))),

@@ -30,8 +30,8 @@ pub fn precision(args: &PrecisionArgs) -> Result<(), RunError> {
 
 fn words(precision: &Precision) -> String {
     let judged = precision_judgements(precision).into_iter();
-    let mut text: String = judged.map(|(tier, sentence)| format!("{tier}: {sentence}\n")).collect();
+    let text: String = judged.map(|(tier, sentence)| format!("{tier}: {sentence}\n")).collect();
     let spent: f64 = precision.spent.iter().map(|(_, seconds)| seconds).sum();
-    text += &format!("{:.0} s, {spent:.0} s of processor time, seed {}; ", precision.seconds, precision.seed);
-    text
+    let (seconds, seed) = (precision.seconds, precision.seed);
+    format!("{text}{seconds:.0} s, {spent:.0} s of processor time, seed {seed}; ")
 }

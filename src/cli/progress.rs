@@ -25,10 +25,19 @@ pub fn followed<T>(quiet: bool, work: impl FnOnce(&Callbacks) -> Result<T, RunEr
         on_event: &|event| display.tell(event),
         stop: &stop,
         warn: &|warning| display.warn(warning),
-        on_results: &|kind, folder| Ok(page(kind, folder).map(drop)?),
+        on_results: unfollowed().on_results,
     });
     display.end();
     done
+}
+
+/// What short work is told: its results get their pages, and a signal ends it as it ends any program.
+pub fn unfollowed() -> Callbacks<'static> {
+    Callbacks {
+        warn: &|warning| to_stderr(&format!("warning: {}\n", plain(warning))),
+        on_results: &|kind, folder| Ok(page(kind, folder).map(drop)?),
+        ..Callbacks::default()
+    }
 }
 
 /// A flag that the first SIGINT or SIGTERM sets; a SIGINT after that ends the program at once.

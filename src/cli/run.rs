@@ -88,7 +88,9 @@ fn summary(run: &FinishedRun) -> String {
             None => "grains per void not given".into(),
         }
     ));
-    line(format!("The model leaves out: {}.", leaves_out(&outcome.model_leaves_out)));
+    // The first words of each thing.
+    let left_out = outcome.model_leaves_out.iter().filter_map(|item| item.split(':').next());
+    line(format!("The model leaves out: {}.", left_out.collect::<Vec<_>>().join("; ")));
     let page = shown(&run.folder.join("report.html"));
     line(format!("{:.1} s, seed {}; report: {page}", outcome.seconds, outcome.seed));
     text
@@ -106,10 +108,4 @@ fn run_line(run: &RunSummary) -> String {
     };
     let which = if run.run == 1 { "first" } else { "second" };
     format!("{which} run: {} of the mass eroded{interval}, {largest}", percent(eroded.mean))
-}
-
-/// The first words of each thing that the model leaves out.
-fn leaves_out(items: &[String]) -> String {
-    let first = |item: &String| item.split(':').next().unwrap_or_default().to_string();
-    items.iter().map(first).collect::<Vec<_>>().join("; ")
 }

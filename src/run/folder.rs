@@ -4,9 +4,11 @@ use std::path::Path;
 
 use super::checkpoints::Checkpoints;
 use super::error::RunError;
-use super::pack::STATES;
 use crate::case::RECORD;
 use crate::store::{Folder, StoreError};
+
+/// The files of the checkpoint of a compression that is not finished.
+pub(super) const STATES: [&str; 2] = ["compression.0", "compression.1"];
 
 /// What a folder holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use super::callbacks::{Callbacks, Event};
 use super::error::RunError;
-use super::folder::{FolderKind, claim, shown};
+use super::folder::{FolderKind, STATES, claim, shown};
 use super::machine::on_threads;
 use super::packing_record::record;
 use crate::case::{GRAINS, PackedFilter, PackingPlan, RECORD};
@@ -22,10 +22,8 @@ use crate::scene::PackingSpec;
 use crate::store::checkpoint::{CheckpointError, Identity, Label, Section, newest, save};
 use crate::store::{Folder, StoreError};
 
-/// The checkpoint of a compression that is not finished ...
+/// The checkpoint of a compression that is not finished; its files are [`STATES`].
 const STATE: &str = "compression";
-/// ... and its files.
-pub const STATES: [&str; 2] = ["compression.0", "compression.1"];
 
 /// What is removed where a packing is begun anew, its record first.
 const ALL_FILES: [&str; 9] = [
