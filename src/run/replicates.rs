@@ -17,7 +17,7 @@ use crate::outcome::verdict::{below_by_interval, classify};
 use crate::outcome::{Recorded, RunId, RunMetrics};
 use crate::store::StoreError;
 use crate::store::checkpoint::{Checkpoint, CheckpointError};
-use crate::walk::{Engine, Plan, SizeClasses, State, Walk, WalkControl, WalkError};
+use crate::walk::{Engine, RunPlan, SizeClasses, State, Walk, WalkControl, WalkError};
 
 /// Why walking ended early.
 #[derive(Debug, thiserror::Error)]
@@ -180,7 +180,7 @@ fn walk_replicate(
             replicate,
             run: done.runs.len() as u64 + 1,
             d15f_mm: case.filter.d(15.0).unwrap_or(f64::NAN),
-            pan_fraction: case.base.tail_mass_fraction(),
+            pan_fraction: case.base.pan_fraction(),
         };
         let begun = Instant::now();
         let walk = RunContext { case, network: &network, id, of };
@@ -209,8 +209,8 @@ fn walk_replicate(
     })
 }
 
-fn plan(case: &Case, network: &Network, blocked: &BitSlice<u64>, n_base: u64) -> Plan {
-    Plan::new(case.scene.walk.engine, network, &case.sampler, blocked, n_base / case.increments())
+fn plan(case: &Case, network: &Network, blocked: &BitSlice<u64>, n_base: u64) -> RunPlan {
+    RunPlan::new(case.scene.walk.engine, network, &case.sampler, blocked, n_base / case.increments())
         .sampled(case.scene.walk.sampling)
 }
 

@@ -21,8 +21,9 @@
 //! appear nowhere in this, so they change no bit, and a walk can go on from its columns alone.
 //!
 //! # Sampling
-//! Start nodes and sizes are independent draws, as in the paper, or spread evenly over both ([`Sampling::Stratified`], module
-//! `strata`): each particle's marginal distribution is the same, and replicates scatter less.
+//! Start nodes and sizes are independent draws, as in the paper, or spread evenly over both
+//! ([`Sampling::Stratified`], module `strata`): each particle's marginal distribution is the same, and
+//! replicates scatter less.
 //!
 //! # Exit choice
 //! With `c_e` the sum of open areas up to exit `e` and `c` that of all, exit `e` is the first whose
@@ -34,14 +35,15 @@
 //! a particle can move in closed loops for good (module `trapped`).
 //!
 //! # Engines
-//! Passive particles may be kept as one count a void instead ([`Plan`], module `counts`): each increment then
-//! also inserts and splits counts, on the same open set, before the merge. Everything else is the same code,
-//! so whoever watches a [`State`] need not know which engine walks. [`Engine::Auto`] takes counts unless particles are few: a choice
-//! by numbers alone, never by the clock, so a seed stands for the same bits everywhere.
+//! Passive particles may be followed as one count a void instead ([`RunPlan`], module `counts`): each
+//! increment then also inserts and splits counts, on the same open set, before the merge. Everything else is
+//! the same code, so whoever watches a [`State`] need not know which engine walks. [`Engine::Auto`] takes
+//! counts unless particles are few: a choice by numbers alone, never by the clock, so a seed stands for the
+//! same bits everywhere.
 //!
 //! # Memory
-//! The columns of the particles take 8 bytes each. [`State::placed`] puts them into mapped files where they would not fit; the
-//! kernels see slices either way, and the bits are the same.
+//! The columns of the particles take 8 bytes each. [`State::placed`] puts them into mapped files where they
+//! would not fit; the kernels see slices either way, and the bits are the same.
 
 mod chunks;
 mod counts;
@@ -64,7 +66,7 @@ mod threads;
 mod trapped;
 
 pub use counts::{Counted, Expected, ExpectedSums, Passive};
-pub use engine::{Engine, Plan};
+pub use engine::{Engine, RunPlan};
 pub use error::WalkError;
 pub use exits::ExitTable;
 pub use isa::Isa;
@@ -112,7 +114,7 @@ impl<'a> Walk<'a> {
         Self { network, supply, table, events: Vec::new(), trap, all_caught: false, passive }
     }
 
-    /// The same walk with the instructions of `isa`, to the same bits: for tests and measurements.
+    /// This walk with the instructions of `isa`, to the same bits: for tests and measurements.
     ///
     /// # Panics
     /// If this machine does not have them.
@@ -173,8 +175,8 @@ impl<'a> Walk<'a> {
         state.tally.check(state.increment)
     }
 
-    /// Whether every moving particle is trapped. Once those walked one by one are, nothing can block any more, so
-    /// they stay so.
+    /// Whether every moving particle is trapped. Once those walked one by one are, nothing can block any
+    /// more, so they stay so.
     fn all_trapped(&mut self, state: &mut State) -> bool {
         self.all_caught = self.all_caught || self.trap.all_trapped(self.network, state);
         self.all_caught

@@ -7,7 +7,7 @@ use super::work::timed;
 use crate::gradation::{Gradation, SizeSampler};
 use crate::network::Network;
 use crate::outcome::eroded_mass_fraction;
-use crate::walk::{Engine, Plan, Sampling, SizeClasses, State, Walk, WalkControl};
+use crate::walk::{Engine, RunPlan, Sampling, SizeClasses, State, Walk, WalkControl};
 
 /// A first run, up to its network and seed.
 #[derive(Clone)]
@@ -45,7 +45,7 @@ impl FirstRun {
         Self {
             engine: case.scene.walk.engine,
             sampler: case.sampler.clone(),
-            pan_fraction: case.base.tail_mass_fraction(),
+            pan_fraction: case.base.pan_fraction(),
             n_base: case.n_base,
             increments: case.increments(),
             sampling: case.scene.walk.sampling,
@@ -99,7 +99,8 @@ impl FirstRun {
     ) -> Result<Ended, PrecisionError> {
         let walk = || -> Result<(State, u64), PrecisionError> {
             let share = self.n_base / self.increments;
-            let plan = Plan::new(self.engine, network, &self.sampler, &blocked, share).sampled(self.sampling);
+            let plan =
+                RunPlan::new(self.engine, network, &self.sampler, &blocked, share).sampled(self.sampling);
             let supply = plan.supply(self.sampler.clone(), self.n_base, self.increments, seed, run);
             let classes = SizeClasses::logarithmic(self.sampler.smallest(), self.sampler.largest(), 64);
             let mut state = State::new(network, &supply, classes, blocked, seed, run);
