@@ -93,7 +93,29 @@ pub enum WalkControl {
 /// What happens after each increment: recording, progress, a request to stop.
 pub type Observer<'a> = dyn FnMut(&State) -> WalkControl + Send + 'a;
 
-/// The machinery of one run that is rebuilt from network and state, and never stored.
+/// A run under way: the machinery that is rebuilt from network and state, and never stored.
+///
+/// ```
+/// use bitvec::vec::BitVec;
+/// use voidwalk::constrictions::{Curve, CurveUnit};
+/// use voidwalk::gradation::{Gradation, SizeSampler};
+/// use voidwalk::network::Network;
+/// use voidwalk::walk::{SizeClasses, State, Supply, Walk, WalkControl};
+///
+/// let curve = Curve::from_points(&[(0.0, 0.1), (100.0, 0.3)], CurveUnit::Mm)?;
+/// let network = Network::cubic([8, 8, 12], &curve, 1.0, 7)?;
+/// let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.08, 1.5)?, 1.0)?;
+/// let supply = Supply::new(sampler, 20_000, 100);
+/// let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
+/// let classes = SizeClasses::logarithmic(0.08, 0.18, 16);
+/// let mut state = State::new(&network, &supply, classes, open, 7, 1);
+/// Walk::new(&network, &supply, &state).run(&mut state, &mut |_| WalkControl::Continue)?;
+/// let tally = state.tally;
+/// assert_eq!((tally.inserted, tally.moving), (20_000, 0));
+/// assert!(tally.eroded > 0 && tally.retained_in_constrictions > 0);
+/// assert_eq!(state.history.len() as u64, tally.blocked);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Walk<'a> {
     network: &'a Network,
     supply: &'a Supply,
@@ -127,7 +149,7 @@ impl<'a> Walk<'a> {
         self
     }
 
-    /// One increment.
+    /// One increment, as in the paper's Fig. 3.
     ///
     /// # Errors
     /// [`WalkError::NotConserved`] where particles are lost or made.
