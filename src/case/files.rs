@@ -1,6 +1,7 @@
 //! The files of a scene: each is read once, and what was read is kept for the run folder.
 
-use std::path::{Path, PathBuf};
+use std::collections::BTreeMap;
+use std::path::Path;
 
 use super::CaseError;
 use super::packed_filter::{PackedFilter, RECORD};
@@ -15,8 +16,8 @@ use crate::scene::SceneError;
 pub struct Input {
     /// The setting that names it.
     pub setting: &'static str,
-    /// Its path as given.
-    pub path: PathBuf,
+    /// Its path as the user gave it first: a run that continues from the files in its folder says what the user called them.
+    pub name: String,
     /// Name inside the run folder.
     pub kept_as: String,
     /// Its bytes.
@@ -27,6 +28,23 @@ pub struct Input {
 const LARGEST_TABLE: u64 = 16 << 20;
 /// Likewise a network.
 const LARGEST_NETWORK: u64 = 1 << 36;
+
+/// Folder of the files that went in, inside a run's.
+const INPUTS: &str = "inputs";
+
+/// What the user called the files in that folder, by their names there.
+pub const INPUT_NAMES: &str = "inputs/names.json";
+
+/// What the user called a file: what is written beside it in a run's folder, or else its path.
+fn first_name(path: &Path) -> String {
+    let kept = || {
+        let folder = path.parent().filter(|folder| folder.ends_with(INPUTS))?;
+        let text = std::fs::read(folder.parent()?.join(INPUT_NAMES)).ok()?;
+        let mut names: BTreeMap<String, String> = serde_json::from_slice(&text).ok()?;
+        names.remove(path.file_name()?.to_str()?)
+    };
+    kept().unwrap_or_else(|| path.display().to_string())
+}
 
 /// Reads the files of a scene, and remembers them.
 #[derive(Default)]
@@ -49,9 +67,13 @@ impl Files {
             return Err(SceneError::Syntax { file, at: String::new(), problem }.into());
         }
         let bytes = std::fs::read(path).map_err(io)?;
-        let input = Input { setting, path: path.to_owned(), kept_as: format!("inputs/{kept_as}"), bytes };
-        self.0.push(input);
+        self.keep(setting, path, kept_as, bytes);
         Ok((file, &self.0[self.0.len() - 1].bytes))
+    }
+
+    fn keep(&mut self, setting: &'static str, path: &Path, kept_as: &str, bytes: Vec<u8>) {
+        let (name, kept_as) = (first_name(path), format!("{INPUTS}/{kept_as}"));
+        self.0.push(Input { setting, name, kept_as, bytes });
     }
 
     pub fn curve(
@@ -72,15 +94,14 @@ impl Files {
         }
     }
 
-    /// The curve of a filter that was packed; kept as if it had been given.
+    /// The curve of a filter that was packed; kept as if it had been given, with the packing's record.
     pub fn packed(&mut self, packed: &PackedFilter) -> Curve {
-        if let Some(folder) = &packed.folder {
-            for (setting, name, kept_as, bytes) in [
-                ("filter.curve", "constrictions.csv", "filter-curve.csv", packed.curve_csv.as_bytes()),
-                ("filter.density", RECORD, RECORD, &packed.record),
+        if let Some([curve, record]) = &packed.files {
+            for (setting, path, kept_as, bytes) in [
+                ("filter.curve", curve, "filter-curve.csv", packed.curve_csv.as_bytes()),
+                ("filter.density", record, RECORD, &packed.record),
             ] {
-                let (path, bytes) = (folder.join(name), bytes.to_vec());
-                self.0.push(Input { setting, path, kept_as: format!("inputs/{kept_as}"), bytes });
+                self.keep(setting, path, kept_as, bytes.to_vec());
             }
         }
         packed.curve.clone()

@@ -6,8 +6,8 @@ use super::{Case, CaseError};
 use crate::store::Placement;
 use crate::walk::CHUNK;
 
-/// Replicates walk side by side only while all of them together stay below this, so that memory does not grow with
-/// the number of threads.
+/// Replicates walk side by side only while all of them together stay below this, so that memory does not grow
+/// with the number of threads.
 const SIDE_BY_SIDE_BYTES: u64 = 1 << 30;
 
 /// What happens to the particles of a chunk in an increment, and their size classes (measured).
@@ -23,8 +23,8 @@ pub struct ResourceLimits {
 }
 
 impl ResourceLimits {
-    /// As much memory as was asked for, else 80 % of what is available, and never more than that; the disk that is free where
-    /// `folder` is or will be.
+    /// As much memory as was asked for, else 80 % of what is available, and never more than that; the disk
+    /// that is free where `folder` is or will be.
     pub fn new(asked: Option<u64>, available: u64, folder: &Path) -> Self {
         let share = available / 5 * 4;
         let there = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
@@ -37,8 +37,8 @@ impl ResourceLimits {
 }
 
 impl Case {
-    /// Base particles of a run of `n_base` that are walked one by one: all, or those that may be coarser than the
-    /// finest constriction.
+    /// Base particles of a run of `n_base` that are walked one by one: all, or those that may be coarser than
+    /// the finest constriction.
     pub fn one_by_one(&self, n_base: u64) -> u64 {
         if self.scene.walk.engine.takes_each(n_base / self.increments(), self.counts[2]) {
             return n_base;
@@ -82,14 +82,15 @@ impl Case {
         self.bytes(n_base).saturating_mul(self.side_by_side(n_base, threads))
     }
 
-    /// Replicates of `n_base` particles that walk at the same time on this many threads: one, unless they are small.
+    /// Replicates of `n_base` particles that walk at the same time on this many threads: one, unless they are
+    /// small.
     pub fn side_by_side(&self, n_base: u64, threads: u64) -> u64 {
         let all = self.bytes(n_base).saturating_mul(threads);
         if all <= SIDE_BY_SIDE_BYTES.min(self.memory) { threads.max(1) } else { 1 }
     }
 
-    /// Says where the columns of the particles go: into memory where they fit, else into files in `folder` that are mapped
-    /// into memory.
+    /// Says where the columns of the particles go: into memory where they fit, else into files in `folder`
+    /// that are mapped into memory.
     ///
     /// # Errors
     /// [`CaseError::Memory`]: they fit neither.
@@ -122,8 +123,8 @@ impl Case {
         match &self.placement {
             Placement::Memory => format!("{bytes} a walk, of {limit} that it may take"),
             Placement::Mapped(_) => format!(
-                "{} a walk, of {limit} that it may take, and {} in files in the run folder for the particles, mapped into memory: \
-                 slower, the same bits",
+                "{} a walk, of {limit} that it may take, and {} in files in the run folder for the \
+                 particles, mapped into memory: slower, the same bits",
                 in_words(self.other_bytes(self.n_base)),
                 in_words(self.column_bytes(self.most_particles()))
             ),

@@ -10,7 +10,7 @@ mod sizes;
 mod warnings;
 
 use files::Files;
-pub use files::Input;
+pub use files::{INPUT_NAMES, Input};
 pub use memory::{ResourceLimits, in_words};
 pub use packed_filter::{GRAINS, PackedError, PackedFilter, RECORD};
 pub use packing_plan::PackingPlan;
@@ -42,6 +42,9 @@ pub enum CaseError {
     /// The network.
     #[error(transparent)]
     Network(#[from] NetworkError),
+    /// The packing.
+    #[error(transparent)]
+    Packed(#[from] PackedError),
     /// The filter has to be packed first.
     #[error("{file}: the filter has not been packed yet")]
     NotPacked {
@@ -50,8 +53,8 @@ pub enum CaseError {
     },
     /// More memory, or more disk, than there is.
     #[error(
-        "{n_base} base particles walked one by one on {voids} voids need {needed} of memory, but {available} are \
-         available{disk}; set base.cap or base.n_base lower, or a smaller network"
+        "{n_base} base particles walked one by one on {voids} voids need {needed} of memory, but \
+         {available} are available{disk}; set base.cap or base.n_base lower, or a smaller network"
     )]
     Memory {
         /// Base particles.
@@ -96,7 +99,8 @@ pub struct Case {
     pub capped: bool,
     /// Filter grains per void, where given.
     pub grains_per_void: Option<f64>,
-    /// Mass of base over mass of filter that `n_base` stands for; `None` where the grains per void are not given.
+    /// Mass of base over mass of filter that `n_base` stands for; `None` where the grains per void are not
+    /// given.
     pub mass_ratio: Option<f64>,
     /// The reference length: the smallest filter grain (mm).
     pub unit_mm: f64,
@@ -128,6 +132,10 @@ impl Case {
     /// # Errors
     /// As [`Case::new`]; the scene's filter is to be packed and has not been.
     pub fn with_packed(scene: Scene, packed: Option<PackedFilter>) -> Result<Self, CaseError> {
+        let packed = match (&scene.filter.measured, scene.filter.grains_per_void) {
+            (Some(curve), Some(grains_per_void)) => Some(PackedFilter::kept(curve, grains_per_void)?),
+            _ => packed,
+        };
         let mut files = Files::default();
         let curve = match (&scene.filter.curve, &packed) {
             (_, Some(packed)) => Some((files.packed(packed), None)),
@@ -141,7 +149,10 @@ impl Case {
         let filter = match &scene.filter.gradation() {
             FilterGradation::Linear { d0_mm, cu } => {
                 let cu = cu.or(shipped.map(|s| s.cu)).ok_or_else(|| {
-                    scene.clash("filter.cu or filter.sieve is missing: this constriction curve does not say its filter's gradation")
+                    scene.clash(
+                        "filter.cu or filter.sieve is missing: this constriction curve does not say \
+                     its filter's gradation",
+                    )
                 })?;
                 Gradation::linear_from_d0(*d0_mm, cu)?
             }
@@ -162,7 +173,8 @@ impl Case {
             (Some(network), _) => curve_of(network)?,
             (None, Some((curve, _))) => {
                 if curve.unit() == CurveUnit::D0f && filter.pan_fraction() > 0.0 {
-                    let problem = "this constriction curve is in units of D0F, but the filter's finest sieve leaves a tail of unknown size: give filter.d0_mm";
+                    let problem = "this constriction curve is in units of D0F, but the filter's finest \
+                     sieve leaves a tail of unknown size: give filter.d0_mm";
                     return Err(scene.clash(problem).into());
                 }
                 curve.in_mm(unit_mm)?
@@ -182,14 +194,14 @@ impl Case {
         };
         // The grains per void of a shipped packing say nothing of a network from elsewhere.
         let of_shipped = shipped.filter(|_| network_file.is_none()).map(|s| s.grains_per_void);
-        let of_packing = packed.as_ref().map(|p| p.grains_per_void).or(of_shipped);
+        let of_packing = packed.as_ref().map(|packed| packed.grains_per_void).or(of_shipped);
         let grains_per_void = scene.filter.grains_per_void.or(of_packing);
         let (supply, mass_ratio) = supply(&scene, grains_per_void, counts[0], &base, &filter)?;
-        let is_guess = packed.as_ref().is_some_and(|packed| packed.folder.is_none());
+        let is_guess = packed.as_ref().is_some_and(|packed| packed.files.is_none());
         if base.pan_fraction() > 0.0 && base.smallest_mm() > curve.smallest() && !is_guess {
             let problem = format!(
-                "the base's finest sieve, {} mm, is coarser than the finest constriction, {:.4} mm: its tail of unknown size \
-                 may not be passive; give base.d0_mm or a finer sieve",
+                "the base's finest sieve, {} mm, is coarser than the finest constriction, {:.4} mm: its \
+                 tail of unknown size may not be passive; give base.d0_mm or a finer sieve",
                 base.smallest_mm(),
                 curve.smallest()
             );
@@ -199,7 +211,8 @@ impl Case {
         for (name, gradation, percent) in [("filter", &filter, 15.0), ("base", &base, 85.0)] {
             if gradation.d(percent).is_none() {
                 let problem = format!(
-                    "the {name}'s D{percent} lies in a finest tail of unknown size: add finer sieves, or {name}.d0_mm"
+                    "the {name}'s D{percent} lies in a finest tail of unknown size: add finer sieves, or \
+                     {name}.d0_mm"
                 );
                 return Err(scene.clash(problem).into());
             }
@@ -235,8 +248,8 @@ impl Case {
         self.network_of_shape(self.scene.network.source().shape().unwrap_or_default(), seed)
     }
 
-    /// The network of the replicate with this seed, with `shape` voids along x, y, z in place of the scene's; a network from a
-    /// file has the shape that it has.
+    /// The network of the replicate with this seed, with `shape` voids along x, y, z in place of the scene's;
+    /// a network from a file has the shape that it has.
     ///
     /// # Errors
     /// A length of 0, or more constrictions than 32 bits can number.
@@ -255,7 +268,8 @@ impl Case {
         (1.0 / self.scene.walk.inject_share).round().max(1.0) as u64
     }
 
-    /// Multiples of N_base that the sensitivity study walks: those asked for, none above a cap that the user set.
+    /// Multiples of N_base that the sensitivity study walks: those asked for, none above a cap that the user
+    /// set.
     pub fn sensitivity_factors(&self) -> Vec<f64> {
         let cap = match self.scene.base.amount() {
             Amount::MassRatio(_, Some(cap)) => cap as f64,
@@ -365,7 +379,8 @@ fn supply(
     };
     let BaseSupply { n_base, n_base_eq2, capped } = base_particles(ratio, grains, voids, base, filter, cap)?;
     if n_base == 0 {
-        let problem = "Eq. (2) gives less than half a base particle: a larger network, mass ratio or grains per void is needed";
+        let problem = "Eq. (2) gives less than half a base particle: a larger network, mass ratio or grains \
+         per void is needed";
         return Err(scene.clash(problem).into());
     }
     Ok(((n_base, Some(n_base_eq2), capped), Some(ratio)))

@@ -1,7 +1,8 @@
 //! A filter that has been packed: what a walk needs of it, read from the folder that it was packed into.
 //!
-//! The grains follow from the packing plan alone, so a packing is made once and kept under the fingerprint of its plan. Its
-//! constrictions are measured again for each use: that takes a second, and the overlap of voids may change.
+//! The grains follow from the packing plan alone, so a packing is made once and kept under the fingerprint of
+//! its plan. Its constrictions are measured again for each use: that takes a second, and the overlap of voids
+//! may change.
 
 use std::path::{Path, PathBuf};
 
@@ -19,8 +20,8 @@ pub const GRAINS: &str = "grains.csv";
 /// A filter that has been packed: what a walk needs of it.
 #[derive(Clone, Debug)]
 pub struct PackedFilter {
-    /// Where it is kept; `None` for a stand-in.
-    pub folder: Option<PathBuf>,
+    /// Its files: the curve, and the record; `None` for a placeholder.
+    pub files: Option<[PathBuf; 2]>,
     /// Its constriction curve (mm).
     pub curve: Curve,
     /// The same as CSV.
@@ -89,7 +90,7 @@ impl PackedFilter {
         let packing = Packing::parse(&grains.display().to_string(), &bytes)?;
         let found = Constrictions::measure(&packing, order.merge_overlap)?;
         Ok(Some(Self {
-            folder: Some(folder.to_owned()),
+            files: Some([folder.join("constrictions.csv"), path]),
             curve: found.curve()?,
             curve_csv: found.curve_csv()?,
             grains_per_void: found.grains_per_void(),
@@ -98,7 +99,31 @@ impl PackedFilter {
         }))
     }
 
-    /// A rough guess at a filter that has not been packed yet, for estimates and for finding faults of a scene early.
+    /// The filter whose curve a run kept in its folder, with `packing.json` beside it.
+    ///
+    /// # Errors
+    /// A file that is missing or damaged.
+    pub fn kept(curve: &Path, grains_per_void: f64) -> Result<Self, PackedError> {
+        let record = curve.with_file_name(RECORD);
+        let read = |path: &Path| {
+            let io = |source| StoreError::Io { path: path.to_owned(), action: "read", source };
+            read_whole(path).map_err(io)
+        };
+        let (curve_bytes, record_bytes) = (read(curve)?, read(&record)?);
+        let problem = |problem: String| PackedError::Record { file: record.display().to_string(), problem };
+        let of: PackingRecord = serde_json::from_slice(&record_bytes).map_err(|e| problem(e.to_string()))?;
+        Ok(Self {
+            curve: Curve::from_csv_text(&curve.display().to_string(), &curve_bytes)?,
+            curve_csv: String::from_utf8_lossy(&curve_bytes).into_owned(),
+            files: Some([curve.to_owned(), record]),
+            grains_per_void,
+            record: record_bytes,
+            void_ratio: of.after.void_ratio,
+        })
+    }
+
+    /// A rough guess at a filter that has not been packed yet, for estimates and for finding faults of a
+    /// scene early.
     ///
     /// # Errors
     /// None for a gradation that can be packed.
@@ -109,7 +134,7 @@ impl PackedFilter {
             .map(|(percent, share)| (percent, share * if percent < 100.0 { d(percent) } else { d(99.0) }))
             .collect();
         Ok(Self {
-            folder: None,
+            files: None,
             curve: Curve::from_points(&points, CurveUnit::Mm)?,
             curve_csv: String::new(),
             grains_per_void: 0.6,

@@ -5,7 +5,8 @@ use crate::gradation::Gradation;
 use crate::packing::Settings as Compression;
 use crate::scene::{FilterGradation, PackingSpec, Scene, SceneError};
 
-/// A cell is made this many times as wide as the largest grain, where the user does not say how many grains ...
+/// A cell is made this many times as wide as the largest grain, where the user does not say how many grains
+/// ...
 const CELLS_WIDTH: f64 = 5.4;
 /// ... within these numbers of grains: fewer scatter, more cost a wide gradation hours.
 const GRAINS: (usize, usize) = (9_000, 60_000);
@@ -33,18 +34,20 @@ pub struct PackingPlan {
 }
 
 impl PackingPlan {
-    /// What is to be packed for a scene, where its filter is to be packed.
+    /// What is to be packed for a scene, where its filter is to be packed and was not measured before.
     ///
     /// # Errors
     /// As [`PackingPlan::new`].
     pub fn of(scene: &Scene) -> Result<Option<Self>, CaseError> {
-        scene.packing_spec()?.as_ref().map(Self::new).transpose()
+        let spec = scene.packing_spec()?.filter(|_| scene.filter.measured.is_none());
+        spec.as_ref().map(Self::new).transpose()
     }
 
     /// Reads the specification's files and works out its number of grains.
     ///
     /// # Errors
-    /// A file that is refused, a gradation that cannot be packed, a cell narrower than two of the largest grain.
+    /// A file that is refused, a gradation that cannot be packed, a cell narrower than two of the largest
+    /// grain.
     pub fn new(recipe: &PackingSpec) -> Result<Self, CaseError> {
         let mut files = Files::default();
         let (gradation, linear) = match &recipe.gradation {
@@ -64,8 +67,8 @@ impl PackingPlan {
         let width = width_by_largest(&gradation, compression.grains);
         if width < 2.2 {
             let problem = format!(
-                "packing.grains = {}: the cell would be about {width:.1} times as wide as the largest grain, at least 2.2 times \
-                 is needed; about {} grains would do",
+                "packing.grains = {}: the cell would be about {width:.1} times as wide as the largest \
+                 grain, at least 2.2 times is needed; about {} grains would do",
                 compression.grains,
                 (compression.grains as f64 * (2.3 / width).powi(3)).ceil()
             );

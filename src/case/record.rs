@@ -9,10 +9,24 @@ impl Case {
     /// Files that were read, with their checksums.
     pub fn input_files(&self) -> Vec<InputFile> {
         let one = |i: &Input| InputFile {
-            name: i.path.display().to_string(),
+            name: i.name.clone(),
             xxh3: format!("{:016x}", xxhash_rust::xxh3::xxh3_64(&i.bytes)),
         };
         self.inputs.iter().map(one).collect()
+    }
+
+    /// What the user called the file of a setting.
+    fn name_of(&self, setting: &str) -> String {
+        self.inputs
+            .iter()
+            .find(|input| input.setting == setting)
+            .map_or(String::new(), |input| input.name.clone())
+    }
+
+    /// What the user called each file, by its name in the folder of inputs.
+    pub fn input_names(&self) -> std::collections::BTreeMap<String, String> {
+        let kept = |input: &Input| input.kept_as.rsplit('/').next().unwrap_or_default().to_owned();
+        self.inputs.iter().map(|input| (kept(input), input.name.clone())).collect()
     }
 
     /// What went in, as a run folder records it.
@@ -30,14 +44,14 @@ impl Case {
                 let name = format!("{} with connectivity {}", cubic(n), shares.join(", "));
                 (record::NetworkKind::Connected, name)
             }
-            NetworkSource::File(path) => (record::NetworkKind::File, path.display().to_string()),
+            NetworkSource::File(_) => (record::NetworkKind::File, self.name_of("network.file")),
         };
         let shape = match self.scene.network.source().shape() {
             Some(shape) => shape.map(|n| Some(u64::from(n))),
             None => [None; 3],
         };
         let curve_name = match (&self.network_file, &self.scene.filter.curve) {
-            (None, None) if self.packed.as_ref().is_some_and(|packed| packed.folder.is_none()) => {
+            (None, None) if self.packed.as_ref().is_some_and(|packed| packed.files.is_none()) => {
                 "a guess, until the filter is packed".to_string()
             }
             (None, None) if self.packed.is_some() => "measured on its packing".to_string(),
@@ -46,12 +60,12 @@ impl Case {
             }
             (Some(_), _) | (None, None) => "the network's own constrictions".to_string(),
             (None, Some(CurveSource::Shipped(name))) => name.clone(),
-            (None, Some(CurveSource::File(path))) => path.display().to_string(),
+            (None, Some(CurveSource::File(_))) => self.name_of("filter.curve"),
         };
         record::Inputs {
             filter: record::FilterRecord {
                 name: match &self.scene.filter.gradation() {
-                    FilterGradation::Sieve(path, _) => path.display().to_string(),
+                    FilterGradation::Sieve(..) => self.name_of("filter.sieve"),
                     FilterGradation::Linear { .. } => {
                         format!("linear, Cu {}", rounded(self.filter.cu()))
                     }
@@ -77,7 +91,7 @@ impl Case {
             },
             base: record::BaseRecord {
                 name: match &self.scene.base.gradation() {
-                    BaseGradation::Sieve(path, _) => path.display().to_string(),
+                    BaseGradation::Sieve(..) => self.name_of("base.sieve"),
                     BaseGradation::Single(_) => "one size".into(),
                     BaseGradation::Linear { cu, .. } => format!("linear, Cu {cu}"),
                 },

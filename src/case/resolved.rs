@@ -1,4 +1,5 @@
-//! What a case is known by: its scene with every number given and its files beside it, and the fingerprint of both.
+//! What a case is known by: its scene with every number given and its files beside it, and the fingerprint of
+//! both.
 
 use std::path::PathBuf;
 
@@ -9,8 +10,8 @@ use crate::scene::{CurveSource, Scene};
 const PROTOCOL: u32 = 1;
 
 impl Case {
-    /// The scene with what its files and its filter's packing say of it, and with its files' names in a run folder: run again from
-    /// there, it gives the same bits.
+    /// The scene with what its files and its filter's packing say of it, and with its files' names in a run
+    /// folder: run again from there, it gives the same bits.
     pub fn resolved(&self) -> Scene {
         let mut scene = self.scene.clone();
         let kept = |setting: &str| {
@@ -22,9 +23,7 @@ impl Case {
             shipped => shipped,
         };
         if self.packed.is_some() {
-            // The measured curve stands for the packing.
-            scene.filter.curve = kept("filter.curve").map(CurveSource::File);
-            (scene.filter.density, scene.filter.friction, scene.packing) = (None, None, None);
+            scene.filter.measured = kept("filter.curve");
         }
         scene.filter.curve = kept_curve(scene.filter.curve, "filter.curve");
         scene.filter.sieve = kept("filter.sieve");

@@ -1,11 +1,13 @@
-//! How large a network is: its voids, constrictions, start nodes and layers, and the connectivity of its voids.
+//! How large a network is: its voids, constrictions, start nodes and layers, and the connectivity of its
+//! voids.
 
 use std::collections::BTreeMap;
 
 use crate::constrictions::Curve;
 use crate::network::{Connectivity, Network, NetworkError};
 
-/// A lattice with more voids than this is not made for its counts alone: those of a smaller one are scaled up.
+/// A lattice with more voids than this is not made for its counts alone: those of a smaller one are scaled
+/// up.
 const MADE_FOR_COUNTS: u64 = 4_000_000;
 
 /// Voids along each side of that smaller one, at most.

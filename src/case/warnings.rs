@@ -17,7 +17,8 @@ impl Case {
             let fines = self.base.percent_finer_by_mass(0.075).max(100.0 * self.base.pan_fraction());
             if self.base.smallest_mm() < 0.075 && fines > 15.0 {
                 warnings.push(format!(
-                    "{fines:.0} % of the base is finer than 0.075 mm: cohesion may govern, which the model does not know"
+                    "{fines:.0} % of the base is finer than 0.075 mm: cohesion may govern, which the model \
+                     does not know"
                 ));
             }
         }
@@ -26,7 +27,8 @@ impl Case {
         }
         if self.base.pan_fraction() > 0.0 {
             warnings.push(format!(
-                "{:.1} % of the base is finer than its finest sieve: taken as passive and counted by mass only",
+                "{:.1} % of the base is finer than its finest sieve: taken as passive and counted by mass \
+                 only",
                 100.0 * self.base.pan_fraction()
             ));
         }
@@ -35,28 +37,30 @@ impl Case {
             && (cu / shipped.cu - 1.0).abs() > 0.05
         {
             warnings.push(format!(
-                "the filter's Cu is {cu:.2}, but its constriction curve {} belongs to Cu {}: constrictions of another filter",
+                "the filter's Cu is {cu:.2}, but its constriction curve {} belongs to Cu {}: constrictions \
+                 of another filter",
                 shipped.name, shipped.cu
             ));
         }
         if self.scene.filter.estimate.is_some() {
             warnings.push(
-                "the constriction curve is a guess from circles inscribed between three or four grains; the wider the \
-                 filter's gradation, the more it is off. filter.density packs the grains and measures it"
+                "the constriction curve is a guess from circles inscribed between three or four grains; the \
+                 wider the filter's gradation, the more it is off. filter.density packs the grains and \
+                 measures it"
                     .into(),
             );
         }
         if self.filter.pan_fraction() > 0.0 {
             warnings.push(format!(
-                "{:.1} % of the filter is finer than its finest sieve: its grains are not in Eq. (2), which then asks for too \
-                 much base; filter.d0_mm says where that tail ends",
+                "{:.1} % of the filter is finer than its finest sieve: its grains are not in Eq. (2), which \
+                 then asks for too much base; filter.d0_mm says where that tail ends",
                 100.0 * self.filter.pan_fraction()
             ));
         }
         if let Some(eq2) = self.n_base_eq2.filter(|_| self.capped) {
             warnings.push(format!(
-                "the cap of {} base particles bit: Eq. (2) asks for {eq2}. Fewer particles are a bias, not noise, and its \
-                 sign depends on the case",
+                "the cap of {} base particles bit: Eq. (2) asks for {eq2}. Fewer particles are a bias, not \
+                 noise, and its sign depends on the case",
                 self.n_base
             ));
         }

@@ -9,8 +9,8 @@ use crate::walk::State;
 /// Voids, exits, blocked exits, particles in exits, particles in voids.
 type Sums = [u64; 5];
 
-/// By connectivity, rising; empty where all voids have the same. Trapped particles are in no void for good and
-/// not counted.
+/// By connectivity, rising; empty where all voids have the same. Trapped particles are in no void for good
+/// and not counted.
 pub fn of_run(network: &Network, state: &State) -> Vec<ByConnectivity> {
     let mut sums: BTreeMap<u64, Sums> = BTreeMap::new();
     for (void, &k) in network.connectivity().iter().enumerate() {

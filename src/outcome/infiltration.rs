@@ -1,4 +1,5 @@
-//! Eq. (1) of the paper beside the walk: how far single particles come in the clean filter, and what blocking changes.
+//! Eq. (1) of the paper beside the walk: how far single particles come in the clean filter, and what blocking
+//! changes.
 
 use super::record::{Infiltration, InfiltrationSize};
 use crate::constrictions::Curve;
@@ -52,7 +53,8 @@ mod tests {
         let of = |d0: f64| infiltration(&curve, &Gradation::linear_from_d0(d0, 1.5).unwrap(), 60);
         assert_eq!(of(0.05).eroded_without_blocking, 1.0);
         assert_eq!(of(0.3).eroded_without_blocking, 0.0);
-        // Straight from 0.15 to 0.3375 on semi-log paper: ln(0.2 / 0.15) / ln(2.25) of the mass is fine enough.
+        // Straight from 0.15 to 0.3375 on semi-log paper: ln(0.2 / 0.15) / ln(2.25) of the mass is fine
+        // enough.
         let some = of(0.15);
         let expected = libm::log(0.2 / 0.15) / libm::log(2.25);
         assert!((some.eroded_without_blocking - expected).abs() < 0.5 / 400.0 + 1e-9);

@@ -23,7 +23,7 @@ pub struct LedgerLine {
     pub commit: Option<String>,
     /// The class that the replicates together support.
     pub verdict: Verdict,
-    /// Replicates by their own class: no, some, continuing erosion, undecided.
+    /// Replicates by their own class, in the order of [`Verdict::ALL`].
     pub replicate_verdicts: [u64; 4],
     /// Replicates.
     pub replicates: u64,
@@ -95,8 +95,7 @@ impl LedgerLine {
             version: env!("CARGO_PKG_VERSION").into(),
             commit: option_env!("VOIDWALK_COMMIT").map(String::from),
             verdict: outcome.verdict,
-            replicate_verdicts: [Verdict::None, Verdict::Some, Verdict::Continuing, Verdict::Undecided]
-                .map(of),
+            replicate_verdicts: Verdict::ALL.map(of),
             replicates: outcome.replicates.len() as u64,
             n_base: outcome.n_base,
             n_base_eq2: outcome.n_base_eq2,

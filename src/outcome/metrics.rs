@@ -44,7 +44,8 @@ pub struct Recorded {
 
 /// Mass eroded over the mass that the run inserts in all.
 ///
-/// The pan fraction is passive: as much of it erodes as of the passive particles, and all of it where the base has none.
+/// The pan fraction is passive: as much of it erodes as of the passive particles, and all of it where the
+/// base has none.
 pub(crate) fn eroded_mass_fraction(tally: &Tally, end: &Tally, pan_fraction: f64) -> f64 {
     let sized = match end.inserted_mass > 0.0 {
         // The same masses added in two orders may differ in their last bits.
@@ -137,7 +138,8 @@ impl Recorded {
     }
 }
 
-/// The deepest layer with a retained particle, and the one down to which 95 % of those that a layer retains lie.
+/// The deepest layer with a retained particle, and the one down to which 95 % of those that a layer retains
+/// lie.
 fn retained_layers(network: &Network, state: &State) -> [Option<u64>; 2] {
     let mut by_layer = vec![0u64; network.layers()];
     for (void, &layer) in network.layer_of().iter().enumerate().filter(|&(_, &layer)| layer != NO_LAYER) {

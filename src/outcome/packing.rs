@@ -53,9 +53,10 @@ pub struct PackingRecord {
     pub seconds: f64,
     /// Edge of the periodic cell (mm).
     pub cell_mm: f64,
-    /// Rows of diameter (mm) and percent smaller by number of the curves estimated by inscribed circles: dense, loose.
+    /// Rows of diameter (mm) and percent smaller by number of the curves estimated by inscribed circles:
+    /// dense, loose.
     pub inscribed: [Vec<[f64; 2]>; 2],
-    /// Grains cut by the plane through the middle of the cell: x, y of the centre, diameter of the cut, diameter of the
-    /// grain (mm).
+    /// Grains cut by the plane through the middle of the cell: x, y of the centre, diameter of the cut,
+    /// diameter of the grain (mm).
     pub slice: Vec<[f64; 4]>,
 }

@@ -2,16 +2,19 @@
 //! `percolation.json` holds, and how thresholds are put together.
 //!
 //! # Finite size
-//! Two finite-size relations are fitted to the mean threshold p(L) of an L x L x L lattice, by weighted least squares:
+//! Two finite-size relations are fitted to the mean threshold p(L) of an L x L x L lattice, by weighted least
+//! squares:
 //!
 //! - *One length*: `p(L) = p - a L^(-1/nu)`, with the exponent of the correlation length along the flow.
-//! - *Many starts*: the start layer holds of order `(L / xi_across)^2` independent starts, and each survives L layers with a
-//!   probability that falls as `exp(-L / xi_along)`; so `L / xi_along` grows with the logarithm of their number. With
-//!   `d = p - p(L)`, `xi_along = d^(-nu)` and `xi_across = d^(-nu / z)`: `L d^nu = b + c ln(L d^(nu / z))`. The p of the least sum
-//!   of squares is the threshold; its interval is where the sum is no more than 1 above that.
+//! - *Many starts*: the start layer holds of order `(L / xi_across)^2` independent starts, and each survives
+//!   L layers with a probability that falls as `exp(-L / xi_along)`; so `L / xi_along` grows with the
+//!   logarithm of their number. With `d = p - p(L)`, `xi_along = d^(-nu)` and `xi_across = d^(-nu / z)`: `L
+//!   d^nu = b + c ln(L d^(nu / z))`. The p of the least sum of squares is the threshold; its interval is
+//!   where the sum is no more than 1 above that.
 //!
-//! Exponents are those of directed percolation in 2 + 1 dimensions, which this lattice is (two across the flow, one along
-//! it): `nu` = 1.295(6) (Hinrichsen, Adv. Phys. 49, 815, 2000) and `z` = 1.766. (1.105 belongs to 3 + 1 dimensions.)
+//! Exponents are those of directed percolation in 2 + 1 dimensions, which this lattice is (two across the
+//! flow, one along it): `nu` = 1.295(6) (Hinrichsen, Adv. Phys. 49, 815, 2000) and `z` = 1.766. (1.105
+//! belongs to 3 + 1 dimensions.)
 
 use serde::{Deserialize, Serialize};
 
@@ -21,7 +24,8 @@ use super::record::Statistic;
 /// Threshold of the infinite lattice: directed bond percolation on the simple cubic lattice.
 pub const INFINITE_LATTICE: f64 = 0.38222;
 
-/// Exponent of the correlation length along the flow, directed percolation in 2 + 1 dimensions (Hinrichsen 2000).
+/// Exponent of the correlation length along the flow, directed percolation in 2 + 1 dimensions (Hinrichsen
+/// 2000).
 pub const NU_PARALLEL: f64 = 1.295;
 
 /// Ratio of the exponents along and across the flow, directed percolation in 2 + 1 dimensions.
@@ -162,7 +166,8 @@ fn starts_at(points: &[Point], threshold: f64) -> Straight {
     Straight::through(&points.iter().map(row).collect::<Vec<_>>())
 }
 
-/// Tries every threshold above the means in steps of 1e-5; `None` where the best is the last or the first tried.
+/// Tries every threshold above the means in steps of 1e-5; `None` where the best is the last or the first
+/// tried.
 fn many_starts(points: &[Point]) -> Option<ManyStarts> {
     const STEPS: u32 = 12_000;
     let highest = points.iter().map(|p| p.mean).fold(0.0, f64::max);
@@ -214,7 +219,8 @@ mod tests {
 
     #[test]
     fn many_starts_are_found_again() {
-        // d by bisection from L d^nu = 0.2 + 0.13 ln(L d^(nu / z)); below the lower bound the logarithm rules.
+        // d by bisection from L d^nu = 0.2 + 0.13 ln(L d^(nu / z)); below the lower bound the logarithm
+        // rules.
         let d = |size: f64| {
             let off = |d: f64| {
                 let starts = libm::log(size * libm::pow(d, NU_PARALLEL / Z));

@@ -4,13 +4,14 @@
 //! Nothing here computes.
 //!
 //! # Conventions
-//! - Sizes are diameters, in mm. When [`Inputs::scale_free`] is set they are multiples of D0F, the smallest filter
-//!   grain; the names keep their `_mm`.
-//! - A fraction is of 1, a percentage is of 100 and says `percent`. Fractions of base material are of what the run
-//!   inserts in all (`N_base` particles), not of what has been inserted so far.
+//! - Sizes are diameters, in mm. When [`Inputs::scale_free`] is set they are multiples of D0F, the smallest
+//!   filter grain; the names keep their `_mm`.
+//! - A fraction is of 1, a percentage is of 100 and says `percent`. Fractions of base material are of what
+//!   the run inserts in all (`N_base` particles), not of what has been inserted so far.
 //! - Replicates and runs count from 1, increments from 1, layers from 0 (the layer of the start nodes).
-//! - What a run *blocked* is a state: the constrictions blocked at that moment, so the second run's number contains
-//!   the first's. What a run *retained* is its own: particles of the first run are gone when the second begins.
+//! - What a run *blocked* is a state: the constrictions blocked at that moment, so the second run's number
+//!   contains the first's. What a run *retained* is its own: particles of the first run are gone when the
+//!   second begins.
 
 use serde::{Deserialize, Serialize};
 
@@ -23,7 +24,8 @@ pub struct Outcome {
     pub seed: u64,
     /// Base particles inserted in each run.
     pub n_base: u64,
-    /// Base particles by Eq. (2), before any cap or user's number; `None` where the grains per void are not given.
+    /// Base particles by Eq. (2), before any cap or user's number; `None` where the grains per void are not
+    /// given.
     pub n_base_eq2: Option<u64>,
     /// Whether a cap made `n_base` smaller than `n_base_eq2`.
     pub capped: bool,
@@ -79,6 +81,9 @@ pub enum Verdict {
 }
 
 impl Verdict {
+    /// Every class, in the order of `replicate_verdicts`.
+    pub const ALL: [Verdict; 4] = [Verdict::None, Verdict::Some, Verdict::Continuing, Verdict::Undecided];
+
     /// Its name in `outcome.json` and in every table.
     pub fn words(self) -> &'static str {
         match self {
@@ -93,7 +98,8 @@ impl Verdict {
 /// What a rule that adds replicates until they are enough arrived at.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stopping {
-    /// Target half width of the 95 % interval of the eroded mass, in every run (percentage points of the base).
+    /// Target half width of the 95 % interval of the eroded mass, in every run (percentage points of the
+    /// base).
     pub target_error_pp: Option<f64>,
     /// Confidence level at which the verdict was to be decided (%), corrected for repeated looks.
     pub decide_percent: Option<f64>,
@@ -204,7 +210,8 @@ pub struct RunSummary {
     pub eroded_mass_fraction: Statistic,
     /// Of [`Run::eroded_number_fraction`].
     pub eroded_number_fraction: Statistic,
-    /// Of [`Run::largest_eroded_over_d15f`], over the replicates in which something eroded; `None` if in none.
+    /// Of [`Run::largest_eroded_over_d15f`], over the replicates in which something eroded; `None` if in
+    /// none.
     pub largest_eroded_over_d15f: Option<Statistic>,
     /// Of [`Run::blocked_fraction`].
     pub blocked_fraction: Statistic,
@@ -506,7 +513,8 @@ pub struct LayerRow {
     pub retained_in_voids: u64,
 }
 
-/// One row of `retained.csv` or `eroded.csv`: a point of the size curve of what is retained, or eroded, so far.
+/// One row of `retained.csv` or `eroded.csv`: a point of the size curve of what is retained, or eroded, so
+/// far.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SizeRow {
     /// Counts from 1.

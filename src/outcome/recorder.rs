@@ -5,8 +5,8 @@ use crate::walk::{SizeCounts, State, Tally};
 /// What to record of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wanted {
-    /// Record the sums of every such increment, and of the last one; 0 records the last only. A run of more than
-    /// 20,000 such increments is thinned: every second of those recorded goes, and so on.
+    /// Record the sums of every such increment, and of the last one; 0 records the last only. A run of more
+    /// than 20,000 such increments is thinned: every second of those recorded goes, and so on.
     pub series_every: u64,
     /// Increments whose size curves are recorded, besides the last one's.
     pub size_curves: Vec<u64>,

@@ -1,7 +1,7 @@
 //! Empirical filter rules, applied to the same two curves and shown beside the verdict.
 //!
-//! Each rule stands with where it is published and what it was made for. A rule whose inputs the scene does not give
-//! is listed with what it needs; one that was not made for this base is listed without a result.
+//! Each rule stands with where it is published and what it was made for. A rule whose inputs the scene does
+//! not give is listed with what it needs; one that was not made for this base is listed without a result.
 
 use super::record::{AppliedRule, Ratios};
 use crate::gradation::{Gradation, ShapeIndex};
@@ -24,7 +24,8 @@ pub struct RuleInputs<'a> {
     pub largest_eroded_over_d15f: Option<f64>,
 }
 
-/// The rules that the paper states, in its words and with its sources, and those of the filter's own stability.
+/// The rules that the paper states, in its words and with its sources, and those of the filter's own
+/// stability.
 ///
 /// A rule that lacks an input, or was not made for this base, has no result; its note says why.
 pub fn apply(inputs: &RuleInputs) -> Vec<AppliedRule> {
@@ -45,7 +46,10 @@ pub fn apply(inputs: &RuleInputs) -> Vec<AppliedRule> {
         },
         AppliedRule {
             name: "Kenney et al.: controlling constriction size Dc* ≤ D15F/5".into(),
-            applies_to: "bases without cohesion; Dc* is the largest eroded particle, here that of the walk's first run".into(),
+            applies_to:
+                "bases without cohesion; Dc* is the largest eroded particle, here that of the walk's \
+                         first run"
+                    .into(),
             note: match inputs.largest_eroded_over_d15f {
                 Some(_) => "checks the walk against their tests, not the filter".into(),
                 None => "nothing eroded in the first run".into(),
@@ -136,7 +140,8 @@ fn foster_and_fell_some(d15f_over_d85b: Option<f64>, base_mm: Option<&Gradation>
 }
 
 /// Where both stability rules are stated.
-const INTERNAL_STABILITY: &str = "U.S. Army Corps of Engineers, Internal Instability Toolbox manual (RMC-CPD-2023-10), after Li and Fannin (2008)";
+const INTERNAL_STABILITY: &str = "U.S. Army Corps of Engineers, Internal Instability Toolbox manual \
+                                  (RMC-CPD-2023-10), after Li and Fannin (2008)";
 
 fn kezdi(filter: Option<&Gradation>) -> AppliedRule {
     let found = filter.map(|f| f.kezdi());
@@ -230,7 +235,8 @@ mod tests {
         );
         let uniform = Gradation::from_points(&[(1.0, 0.0), (4.0, 100.0)], None).unwrap();
         let all = rules(Some(&uniform), None);
-        assert_eq!((find(&all, "Kézdi").meets, find(&all, "Kenney and Lau").meets), (Some(true), Some(true)));
+        let both = ["Kézdi", "Kenney and Lau"].map(|name| find(&all, name).meets);
+        assert_eq!(both, [Some(true), Some(true)]);
         let hidden = Gradation::from_points(&[(1.0, 90.0), (4.0, 100.0)], None).unwrap();
         assert!(find(&rules(Some(&hidden), None), "Kézdi").note.contains("unknown size"));
     }

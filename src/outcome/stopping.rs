@@ -1,19 +1,19 @@
 //! How many replicates are enough: until the error is small, or the verdict decided at a confidence level.
 //!
 //! # Looks
-//! The rule looks at the replicates when there are `n_1` of them (the scene's number, at least 8), then `n_2 = 1.5 n_1`, and
-//! so on, rounded up, until it is met or there are `most_replicates`.
+//! The rule looks at the replicates when there are `n_1` of them (the scene's number, at least 8), then `n_2
+//! = 1.5 n_1`, and so on, rounded up, until it is met or there are `most_replicates`.
 //!
 //! # Confidence level of the verdict
-//! A fixed interval that is looked at again and again errs more often than it says. So look `k` takes intervals whose error
-//! probability is `1 / (k (k + 1))` of the whole, which sums to 1 over all looks; and the two runs share it. If each interval
-//! has the coverage that it claims, the verdict is wrong with no more than the error probability asked for, however often one
-//! looks (Bonferroni), at the price of intervals that are somewhat wide. The intervals are Student's, for means of
-//! independent replicates.
+//! A fixed interval that is looked at again and again errs more often than it says. So look `k` takes
+//! intervals whose error probability is `1 / (k (k + 1))` of the whole, which sums to 1 over all looks; and
+//! the two runs share it. If each interval has the coverage that it claims, the verdict is wrong with no more
+//! than the error probability asked for, however often one looks (Bonferroni), at the price of intervals that
+//! are somewhat wide. The intervals are Student's, for means of independent replicates.
 //!
 //! # Target error
-//! Met when the 95 % interval of the mean reaches no further than the target to either side, in every run (Chow and
-//! Robbins). Its coverage is measured in the tests.
+//! Met when the 95 % interval of the mean reaches no further than the target to either side, in every run
+//! (Chow and Robbins). Its coverage is measured in the tests.
 
 use super::record::{Statistic, Stopping, Verdict};
 use super::student;
@@ -24,13 +24,13 @@ use crate::schema::{only, section, whole, within};
 const FEWEST: u64 = 8;
 
 section! {
-    /// Replicates are added until the eroded mass is known closely enough, or the verdict is decided; then `replicates` is where it
-    /// first looks.
+    /// Replicates are added until the eroded mass is known closely enough, or the verdict is decided; then
+    /// `replicates` is where it first looks.
     ///
     /// ```
     /// use voidwalk::outcome::stopping::{Look, StopRule};
     /// let rule = StopRule { decide_percent: Some(99.0), most_replicates: 100, ..StopRule::default() };
-    /// // Eroded mass fractions far above 7.5 % in the first run and far below it in the second, each with its side.
+    /// // Eroded mass fractions far above 7.5 % in the first run and far below it in the second.
     /// let run = |mean: f64| (0..10).map(|k| (mean + 1e-3 * f64::from(k), mean < 0.075)).collect::<Vec<_>>();
     /// let Look::Stop(stopping) = rule.look(10, &[run(0.3), run(0.01)]) else { panic!("ten are enough") };
     /// assert!(stopping.met && stopping.looks == 1);
@@ -38,10 +38,12 @@ section! {
     /// assert_eq!(rule.look(10, &[run(0.071), run(0.071)]), Look::Until(15));
     /// ```
     pub struct StopRule in "stop" {
-        /// Half width of the 95 % interval of the eroded mass, in every run: percentage points of the base (or --target-error 0.1pp).
+        /// Half width of the 95 % interval of the eroded mass, in every run: percentage points of the base
+        /// (or --target-error 0.1pp).
         pub target_error_pp: Option<f64> = None, off "0.1",
             only("percentage points of the base, above 0 and below 100", |n| *n > 0.0 && *n < 100.0);
-        /// Confidence level (%) at which the verdict is to be decided, corrected for repeated looks (or --decide 99.9%).
+        /// Confidence level (%) at which the verdict is to be decided, corrected for repeated looks (or
+        /// --decide 99.9%).
         pub decide_percent: Option<f64> = None, off "99.9",
             within(50.0..=99.999, "a probability from 50 to 99.999 (%)");
         /// Where it gives up, and says what it would take.
@@ -131,7 +133,8 @@ impl StopRule {
     /// What to say where the verdict is open.
     fn undecided(&self, error: f64, below: &[BelowThreshold], runs: &[ReplicateValues]) -> String {
         if below == [Some(false)] {
-            return "The first run alone does not separate some erosion from continuing erosion: ask for two runs."
+            return "The first run alone does not separate some erosion from continuing erosion: ask for two \
+                    runs."
                 .into();
         }
         let open = below.iter().position(Option::is_none).unwrap_or(0);
@@ -147,8 +150,8 @@ impl StopRule {
             _ => "no number of replicates will decide".into(),
         };
         format!(
-            "Inconclusive at the {} % confidence level: the mean of the {which} run, {:.3} %, lies {:.3} percentage points \
-             from 7.5 %, and the replicate SD is {:.3}; {needed}.",
+            "Inconclusive at the {} % confidence level: the mean of the {which} run, {:.3} %, lies {:.3} \
+             percentage points from 7.5 %, and the replicate SD is {:.3}; {needed}.",
             self.decide_percent.unwrap_or(0.0),
             100.0 * mean,
             100.0 * distance,
@@ -172,8 +175,8 @@ impl StopRule {
         let half_width = 100.0 * half_width?;
         let needed = replicates as f64 * (half_width / target) * (half_width / target);
         Some(format!(
-            "The target error, {target} percentage points, was not reached: the 95 % interval reaches {half_width:.4} to \
-             either side after {replicates} replicates; about {} would do.",
+            "The target error, {target} percentage points, was not reached: the 95 % interval reaches \
+             {half_width:.4} to either side after {replicates} replicates; about {} would do.",
             two_digits(needed)
         ))
     }
@@ -284,8 +287,9 @@ mod tests {
         assert!(stopping.sentence.unwrap().contains("about 1"));
     }
 
-    /// 1,500 runs with a first-run mean a fifth of the standard deviation beside the threshold, 2 % allowed to be wrong: wrong
-    /// ones are binomial; a true rate of 4 % would be seen with a power of 0.97. Skewed replicates too.
+    /// 1,500 runs with a first-run mean a fifth of the standard deviation beside the threshold, 2 % allowed
+    /// to be wrong: wrong ones are binomial; a true rate of 4 % would be seen with a power of 0.97. Skewed
+    /// replicates too.
     #[test]
     fn the_error_rate_is_kept_however_often_it_looks() {
         for (skewed, mean) in
@@ -302,8 +306,8 @@ mod tests {
         }
     }
 
-    /// 3,000 runs until a 95 % interval is narrow enough: it still covers. A true coverage of 92 % would be seen in about half
-    /// of them.
+    /// 3,000 runs until a 95 % interval is narrow enough: it still covers. A true coverage of 92 % would be
+    /// seen in about half of them.
     #[test]
     fn an_interval_that_was_waited_for_covers() {
         for sd in [0.005, 0.02] {

@@ -2,11 +2,11 @@
 
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
-/// The `t` that lies beyond no more than `error` of Student's distribution, both tails together: the factor of a
-/// two-sided interval at level `1 - error`.
+/// The `t` that lies beyond no more than `error` of Student's distribution, both tails together: the factor
+/// of a two-sided interval at level `1 - error`.
 ///
-/// The finite sums of Abramowitz and Stegun 26.7.3 and 26.7.4, solved for the angle `atan(t / sqrt(degrees))`.
-/// Good to about 1e-13 / `error`, relative.
+/// The finite sums of Abramowitz and Stegun 26.7.3 and 26.7.4, solved for the angle `atan(t /
+/// sqrt(degrees))`. Good to about 1e-13 / `error`, relative.
 ///
 /// # Panics
 /// Without a degree of freedom, or where `error` does not lie between 0 and 1.

@@ -47,8 +47,9 @@ pub fn below_by_count(eroded: u64, inserted: u64) -> bool {
     u128::from(eroded) * 40 < u128::from(inserted) * 3
 }
 
-/// Where the mean over replicates lies: where its whole interval is. `each` says where every replicate lies, exactly; it
-/// decides where there is only one, or where they do not differ, so that the rounding of a mean decides nothing.
+/// Where the mean over replicates lies: where its whole interval is. `each` says where every replicate lies,
+/// exactly; it decides where there is only one, or where they do not differ, so that the rounding of a mean
+/// decides nothing.
 pub fn below_by_interval(statistic: &Statistic, each: &[bool]) -> BelowThreshold {
     let no_scatter = statistic.sd.is_none_or(|sd| sd < 1e-12);
     if no_scatter && each.iter().all(|&below| below == each[0]) {

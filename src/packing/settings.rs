@@ -15,17 +15,21 @@ pub enum Contact {
 section! {
     /// How the grains are compressed; the defaults suit nearly every filter.
     ///
-    /// The defaults are those of the paper where it gives them. The others come from the study in `results/packing-2026-11-21.md`
-    /// (`scripts/study_packing.py`): half the rates, other masses, half the time step, twice the hold, and more or fewer grains change the void
-    /// ratio by no more than 0.003, about what seeds do (standard deviation 0.0035 loose and 0.0016 dense for 4,000 grains, 0.0011 and 0.0005 for 15,000).
+    /// The defaults are those of the paper where it gives them. The others come from the study in
+    /// `results/packing-2026-11-21.md` (`scripts/study_packing.py`): half the rates, other masses, half the
+    /// time step, twice the hold, and more or fewer grains change the void ratio by no more than 0.003, about
+    /// what seeds do (standard deviation 0.0035 loose and 0.0016 dense for 4,000 grains, 0.0011 and 0.0005
+    /// for 15,000).
     ///
-    /// A loose packing remembers its start: a packing fraction of 0.45 at the start makes it 0.014 denser, 0.2 makes it 0.005 looser, three times the drag 0.006
-    /// looser. Take void ratios of loose packings as uncertain by 0.01; constriction curves move by less than 1 % with any of this.
+    /// A loose packing remembers its start: a packing fraction of 0.45 at the start makes it 0.014 denser,
+    /// 0.2 makes it 0.005 looser, three times the drag 0.006 looser. Take void ratios of loose packings as
+    /// uncertain by 0.01; constriction curves move by less than 1 % with any of this.
     ///
-    /// `stiffness_ratio`: with the default, a tenth, packings with friction keep their void ratio within 0.003, but those without friction
-    /// come out 0.003 to 0.008 denser than at the full stiffness, which gives the paper's values within 0.002 (Cu 1.2 to 3) in
-    /// two and a half times the time: `stiffness_ratio: 1.0, hold_steps: 8000`. A tenth of the stiffness is the default because all six filters of
-    /// the paper, up to 60,000 grains of Cu 6, were settled with it.
+    /// `stiffness_ratio`: with the default, a tenth, packings with friction keep their void ratio within
+    /// 0.003, but those without friction come out 0.003 to 0.008 denser than at the full stiffness, which
+    /// gives the paper's values within 0.002 (Cu 1.2 to 3) in two and a half times the time:
+    /// `stiffness_ratio: 1.0, hold_steps: 8000`. A tenth of the stiffness is the default because all six
+    /// filters of the paper, up to 60,000 grains of Cu 6, were settled with it.
     pub struct Settings in "packing" {
         /// Seed of sizes and start positions.
         pub seed: u64 = 1, off, whole(0..=u64::MAX);
@@ -47,21 +51,22 @@ section! {
         pub drag: f64 = 0.03, off, zero_or_more();
         /// Drag once the pressure has first come within 2 %: it stops rattlers, which no contact would.
         pub settling_drag: f64 = 0.1, off, zero_or_more();
-        /// Cundall's local damping: each component of the unbalanced force is reduced by this part of itself where it drives the
-        /// motion, raised where it resists.
+        /// Cundall's local damping: each component of the unbalanced force is reduced by this part of itself
+        /// where it drives the motion, raised where it resists.
         pub local_damping: f64 = 0.0, off, only("0 to below 1", |v| (0.0..1.0).contains(v));
         /// Packing fraction of the random placement.
         pub start_fraction: f64 = 0.35, off, only("more than 0, at most 0.5", |v| *v > 0.0 && *v <= 0.5);
         /// Part of the expected final packing fraction up to which the cell shrinks at `squeeze_rate`.
-        pub compression_target_fraction: f64 = 0.87, off, only("more than 0, at most 1", |v| *v > 0.0 && *v <= 1.0);
+        pub compression_target_fraction: f64 = 0.87, off, only("more than 0, at most \
+         1", |v| *v > 0.0 && *v <= 1.0);
         /// Linear strain rate of that first compression, in reduced units.
         pub squeeze_rate: f64 = 0.01, off, positive();
         /// Largest linear strain rate of the servo, in reduced units.
         pub servo_rate: f64 = 2e-3, off, positive();
         /// Linear strain rate of the servo per relative lack of pressure, in reduced units.
         pub servo_gain: f64 = 1e-2, off, positive();
-        /// Mass of a grain grows with diameter to the power of three less this: 0 is the true mass, more lets small grains govern the
-        /// time step less. At rest masses do not matter.
+        /// Mass of a grain grows with diameter to the power of three less this: 0 is the true mass, more lets
+        /// small grains govern the time step less. At rest masses do not matter.
         pub mass_exponent: f64 = 1.0, off, only("0 to 2", |v| (0.0..=2.0).contains(v));
         /// Time step as part of the critical one; a low restitution lowers it further.
         pub step_fraction: f64 = 0.7, off, only("more than 0, less than 1", |v| *v > 0.0 && *v < 1.0);
@@ -98,8 +103,8 @@ fn friction() -> Allowed<f64> {
     only("0 to 10", |v| (0.0..=10.0).contains(v))
 }
 
-/// With larger overlaps (%, of the diameter) grains are no spheres in contact any more: the void ratio falls with the stiffness, below 0 in
-/// the end, although every other criterion of a settled packing is met.
+/// With larger overlaps (%, of the diameter) grains are no spheres in contact any more: the void ratio falls
+/// with the stiffness, below 0 in the end, although every other criterion of a settled packing is met.
 const MOST_OVERLAP_PERCENT: f64 = 3.0;
 
 /// Why a packing could not be made.
@@ -117,8 +122,9 @@ pub enum PackingError {
     },
     /// Grains so soft that their overlaps mean nothing.
     #[error(
-        "stiffness_ratio = {value} is not allowed: under the pressure of {pressure_kpa} kPa grains would overlap by about {overlap_percent:.2} % of \
-         their size; allowed: at least {least:.1e}, where they overlap by {MOST_OVERLAP_PERCENT} %"
+        "stiffness_ratio = {value} is not allowed: under the pressure of {pressure_kpa} kPa grains would \
+         overlap by about {overlap_percent:.2} % of their size; allowed: at least {least:.1e}, where they \
+         overlap by {MOST_OVERLAP_PERCENT} %"
     )]
     Soft {
         /// The ratio asked for.
@@ -152,7 +158,8 @@ pub enum PackingError {
     Cell(String),
     /// A grain would touch itself or another grain twice.
     #[error(
-        "the cell is {cell_mm} mm wide, narrower than two of the largest grain ({largest_mm} mm): use more grains or a narrower gradation"
+        "the cell is {cell_mm} mm wide, narrower than two of the largest grain ({largest_mm} mm): use more \
+         grains or a narrower gradation"
     )]
     NarrowCell {
         /// Edge of the cell (mm).
@@ -170,7 +177,8 @@ pub enum PackingError {
     },
     /// The time step cannot be stable.
     #[error(
-        "time step {step:e} (reduced units) is not below the critical time step {critical:e}, which is set by {cause}"
+        "time step {step:e} (reduced units) is not below the critical time step {critical:e}, which is set \
+         by {cause}"
     )]
     Step {
         /// The step asked for.
@@ -192,7 +200,8 @@ pub enum PackingError {
     },
     /// The stage did not settle.
     #[error(
-        "not settled after {steps} steps: pressure {pressure} of the target, kinetic by elastic energy {kinetic_ratio:e}"
+        "not settled after {steps} steps: pressure {pressure} of the target, kinetic by elastic energy \
+         {kinetic_ratio:e}"
     )]
     Unsettled {
         /// Steps done.
@@ -242,7 +251,8 @@ impl Settings {
         self.check_softness()
     }
 
-    /// Two equal grains of diameter D that carry the force p D^2 overlap by `0.5 (4.24 (1 - nu) p / G)^(2/3)` of D (Hertz).
+    /// Two equal grains of diameter D that carry the force p D^2 overlap by `0.5 (4.24 (1 - nu) p / G)^(2/3)`
+    /// of D (Hertz).
     fn check_softness(&self) -> Result<(), PackingError> {
         if self.contact != Contact::Hertz {
             return Ok(());

@@ -4,6 +4,7 @@ use maud::{Markup, html};
 
 use super::numbers::{percent, significant, whole};
 use super::run_figures::run_name;
+use super::table::Table;
 use crate::outcome::by_connectivity::of_replicates;
 use crate::outcome::record::{ByConnectivity, Outcome};
 
@@ -19,41 +20,35 @@ pub(super) fn by_connectivity(outcome: &Outcome) -> Markup {
         @if !runs.is_empty() {
             h2 { "By connectivity of the void" }
             p {
-                "A void’s connectivity is the number of its entrances and exits. The network is not uniform: voids with few "
-                "connections close early and then retain whatever enters (Table 3 of the paper). All replicates together."
+                "A void’s connectivity is the number of its entrances and exits. The network is not \
+                 uniform: voids with few "
+                "connections close early and then retain whatever enters (Table 3 of the paper). All \
+                 replicates together."
             }
-            @for (run, rows) in &runs { (table(*run, rows)) }
+            @for (run, rows) in &runs { (of_run(*run, rows)) }
         }
     }
 }
 
-fn table(run: u64, rows: &[ByConnectivity]) -> Markup {
+fn of_run(run: u64, rows: &[ByConnectivity]) -> Markup {
     let sum = |of: fn(&ByConnectivity) -> u64| rows.iter().map(of).sum::<u64>();
     let retained = sum(|r| r.retained_in_constrictions + r.retained_in_voids);
     let blocked = |blocked: u64, all: u64| percent(blocked as f64 / all.max(1) as f64);
+    let table = Table::of(rows)
+        .number("Connectivity", |row| row.connectivity)
+        .number("Share of voids", |row| percent(row.voids_fraction))
+        .number("Retained per void", |row| significant(row.retained_per_void))
+        .number("Share of retained", |row| percent(row.retained_fraction))
+        .number("Exits blocked", |row| blocked(row.blocked, row.constrictions));
+    let all = html! { tr {
+        th { "All (" (whole(sum(|r| r.voids))) " voids)" }
+        td.n { (percent(1.0)) }
+        td.n { (significant(retained as f64 / sum(|r| r.voids) as f64)) }
+        td.n { (percent(1.0)) }
+        td.n { (blocked(sum(|r| r.blocked), sum(|r| r.constrictions))) }
+    } };
     html! {
         h3 { span class={ "run-" (run) } { (run_name(run)) } }
-        div.scroll { table {
-            thead { tr {
-                th.n { "Connectivity" } th.n { "Share of voids" } th.n { "Retained per void" } th.n { "Share of retained" }
-                th.n { "Exits blocked" }
-            } }
-            tbody {
-                @for row in rows { tr {
-                    td.n { (row.connectivity) }
-                    td.n { (percent(row.voids_fraction)) }
-                    td.n { (significant(row.retained_per_void)) }
-                    td.n { (percent(row.retained_fraction)) }
-                    td.n { (blocked(row.blocked, row.constrictions)) }
-                } }
-                tr {
-                    th { "All (" (whole(sum(|r| r.voids))) " voids)" }
-                    td.n { (percent(1.0)) }
-                    td.n { (significant(retained as f64 / sum(|r| r.voids) as f64)) }
-                    td.n { (percent(1.0)) }
-                    td.n { (blocked(sum(|r| r.blocked), sum(|r| r.constrictions))) }
-                }
-            }
-        } }
+        (table.more(all))
     }
 }

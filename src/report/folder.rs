@@ -38,7 +38,8 @@ impl RunFolder {
                 return Ok(());
             }
             let message = format!(
-                "replicate {replicate}, run {run}: outcome.json holds replicates 1 to {replicates} and runs 1 to {runs}"
+                "replicate {replicate}, run {run}: outcome.json holds replicates 1 to {replicates} and runs \
+                 1 to {runs}"
             );
             Err(ReportError::Form { path: path.to_owned(), line, message })
         };
@@ -97,7 +98,8 @@ impl RunFolder {
     }
 }
 
-/// The outcome itself is the case of factor 1; it is shown among the others when it was not walked a second time.
+/// The outcome itself is the case of factor 1; it is shown among the others when it was not walked a second
+/// time.
 fn stand_among_its_variations(outcome: &mut Outcome) {
     if outcome.sensitivity.is_empty() || outcome.sensitivity.iter().any(|case| case.factor == 1.0) {
         return;

@@ -1,10 +1,11 @@
 //! The section on Eq. (1) of a report page.
 
-use maud::{Markup, html};
+use maud::{Markup, Render, html};
 
 use super::numbers::{percent, significant, size, whole};
 use super::run_figures::run_name;
 use super::shell::clean;
+use super::table::Table;
 use crate::outcome::record::{Infiltration, Outcome, Run};
 
 /// Eq. (1) for single particles, what the walk found, and where the two part.
@@ -17,12 +18,14 @@ pub(super) fn infiltration(outcome: &Outcome) -> Markup {
             },
             Some(found) => {
                 p {
-                    "How far a particle comes that enters the clean filter alone, n = ln(1 − P) / ln(P(F)): with a confidence of 95 % (or "
-                    "99 %) it does not pass more layers. P(F), the chance to come one layer downstream, is that of the directed "
-                    "lattice that is walked. Nothing is blocked here."
+                    "How far a particle comes that enters the clean filter alone, n = ln(1 − P) / \
+                     ln(P(F)): with a confidence of "
+                    "95 % (or 99 %) it does not pass more layers. P(F), the probability that it moves one \
+                     layer downstream, is "
+                    "that of the directed lattice that is walked. Nothing is blocked here."
                 }
                 (sizes(found, outcome.inputs.scale_free))
-                (parting(found, outcome))
+                (beside_the_walk(found, outcome))
             },
         }
     }
@@ -30,41 +33,38 @@ pub(super) fn infiltration(outcome: &Outcome) -> Markup {
 
 fn sizes(found: &Infiltration, scale_free: bool) -> Markup {
     let layers = |layers: Option<f64>| layers.map_or_else(|| "no end".to_owned(), significant);
-    html! {
-        div.scroll { table {
-            thead { tr {
-                th { "Particle" } th.n { "Size" } th.n { "P(F)" } th.n { "Layers, 95 %" } th.n { "Layers, 99 %" }
-                th.n { "Passes all " (whole(found.layers)) }
-            } }
-            tbody { @for row in &found.sizes { tr {
-                th { (clean(&row.name)) }
-                td.n { (size(row.diameter_mm, scale_free)) }
-                td.n { (format!("{:.4}", row.downstream)) }
-                td.n { (layers(row.layers_95)) }
-                td.n { (layers(row.layers_99)) }
-                td.n { (percent(row.through)) }
-            } } }
-        } }
-    }
+    Table::of(&found.sizes)
+        .name("Particle", |row| clean(&row.name))
+        .number("Size", |row| size(row.diameter_mm, scale_free))
+        .number("P(F)", |row| format!("{:.4}", row.downstream))
+        .number("Layers, 95 %", |row| layers(row.layers_95))
+        .number("Layers, 99 %", |row| layers(row.layers_99))
+        .number(format!("Passes all {}", whole(found.layers)), |row| percent(row.through))
+        .render()
 }
 
-fn parting(found: &Infiltration, outcome: &Outcome) -> Markup {
+fn beside_the_walk(found: &Infiltration, outcome: &Outcome) -> Markup {
     let scale_free = outcome.inputs.scale_free;
-    let mean = |run: u64, of: fn(&Run) -> Option<f64>| {
+    // Mean over the replicates of what some of them have.
+    let mean = |run: u64, of: fn(&Run) -> Option<f64>, show: &dyn Fn(f64) -> String| {
         let runs = outcome.replicates.iter().flat_map(|r| &r.runs).filter(|r| r.run == run);
         let values: Vec<f64> = runs.filter_map(of).collect();
-        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+        match values.len() {
+            0 => "none".to_owned(),
+            n => show(values.iter().sum::<f64>() / n as f64),
+        }
     };
-    let layer = |value: Option<f64>| value.map_or_else(|| "none".to_owned(), |l| format!("{l:.1}"));
+    let in_unit = |d| size(d, scale_free);
+    let layer = |layer| format!("{layer:.1}");
     let eroded = |run: usize| outcome.summary.get(run).map(|s| s.eroded_mass_fraction.mean);
     html! {
         ul {
             li {
-                "Eq. (1) lets particles up to " (size(found.coarsest_through_mm, scale_free)) " through all layers with a chance of 5 % or more. "
-                "The largest that left in the walk: "
+                "By Eq. (1) particles up to " (size(found.coarsest_through_mm, scale_free))
+                " pass all layers with a probability of 5 % or more. The largest that left in the walk: "
                 @for (index, run) in outcome.summary.iter().enumerate() {
                     @if index > 0 { ", " }
-                    (mean(run.run, |r| r.largest_eroded_mm).map_or_else(|| "none".to_owned(), |d| size(d, scale_free)))
+                    (mean(run.run, |r| r.largest_eroded_mm, &in_unit))
                     " (" (run_name(run.run)) ")"
                 }
                 ", mean over the replicates; of many particles a few come further than one in twenty does."
@@ -73,15 +73,16 @@ fn parting(found: &Infiltration, outcome: &Outcome) -> Markup {
                 "Layers with retained particles, counted from 0: "
                 @for (index, run) in outcome.summary.iter().enumerate() {
                     @if index > 0 { "; " }
-                    "down to " (layer(mean(run.run, |r| r.deepest_retained_layer.map(|l| l as f64))))
-                    ", 95 % of them down to " (layer(mean(run.run, |r| r.retained_95_layer.map(|l| l as f64))))
+                    "down to " (mean(run.run, |r| Some(r.deepest_retained_layer? as f64), &layer))
+                    ", 95 % of them down to " (mean(run.run, |r| Some(r.retained_95_layer? as f64), &layer))
                     " (" (run_name(run.run)) ")"
                 }
                 ", means over the replicates."
             }
             @if let Some(first) = eroded(0) { li {
-                "If nothing were ever blocked, " b { (percent(found.eroded_without_blocking)) } " of the base’s mass would leave; in the walk "
-                b { (percent(first)) } " left in the first run"
+                "If nothing were ever blocked, " b { (percent(found.eroded_without_blocking)) }
+                " of the base’s mass would leave; in the walk " b { (percent(first)) }
+                " left in the first run"
                 @if let Some(second) = eroded(1) { " and " b { (percent(second)) } " in the second" }
                 ". "
                 (what_blocking_does(found.eroded_without_blocking - first))
@@ -93,11 +94,11 @@ fn parting(found: &Infiltration, outcome: &Outcome) -> Markup {
 /// What the difference between all that Eq. (1) lets through and what left says.
 fn what_blocking_does(held: f64) -> &'static str {
     if held > 0.01 {
-        "The difference is what blocking holds: coarser particles close constrictions, and finer ones, which Eq. (1) lets pass, stay \
-         behind them."
+        "The difference is what blocking holds: coarser particles close constrictions, and finer ones, which \
+         Eq. (1) lets pass, stay behind them."
     } else if held < -0.01 {
-        "More left than Eq. (1) lets pass: a constriction that stops one particle is closed to the next, which then takes a coarser \
-         exit."
+        "More left than Eq. (1) lets pass: a constriction that stops one particle is closed to the next, \
+         which then takes a coarser exit."
     } else {
         "Here blocking changes little: what Eq. (1) lets pass leaves."
     }

@@ -12,7 +12,7 @@ use crate::outcome::record::Statistic;
 /// A narrow space that no line breaks at: it groups thousands and stands before units.
 const THIN: char = '\u{202f}';
 
-/// A value that may not be known, in words.
+/// A value, or that it is not given.
 pub(super) fn known<T>(value: Option<T>, words: impl FnOnce(T) -> String) -> String {
     value.map_or_else(|| "not given".to_owned(), words)
 }
@@ -71,8 +71,7 @@ pub(super) fn percent(fraction: f64) -> String {
 
 /// The threshold between the classes as a percentage, no digit more than it has.
 pub(super) fn threshold(fraction: f64) -> String {
-    let text = format!("{:.3}", fraction * 100.0);
-    format!("{}{THIN}%", text.trim_end_matches('0').trim_end_matches('.'))
+    format!("{}{THIN}%", trimmed(fraction * 100.0))
 }
 
 /// The 95 % interval of a fraction, where there is one.
@@ -84,6 +83,23 @@ pub(super) fn percent_interval(statistic: &Statistic) -> Option<String> {
 /// The interval of a fraction, kept within 0 and 1.
 pub(super) fn interval(statistic: &Statistic) -> Option<(f64, f64)> {
     Some((statistic.low?.clamp(0.0, 1.0), statistic.high?.clamp(0.0, 1.0)))
+}
+
+/// The interval of a fraction in percent, kept within 0 and 100.
+pub(super) fn interval_in_percent(statistic: &Statistic) -> Option<(f64, f64)> {
+    interval(statistic).map(|(low, high)| (100.0 * low, 100.0 * high))
+}
+
+/// A factor or a limit with no digit more than it needs.
+pub(super) fn trimmed(factor: f64) -> String {
+    let text = format!("{factor:.3}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// The text with its first letter a capital.
+pub(super) fn capital(text: &str) -> String {
+    let mut characters = text.chars();
+    characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
 }
 
 /// A size with its unit: mm, or multiples of D0F when nothing has a scale.

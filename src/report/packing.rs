@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
-use maud::{Markup, html};
+use maud::{Markup, Render, html};
 
-use super::Written;
 use super::error::ReportError;
 use super::figures::{Axis, BLUE, Dash, Disc, Figure, GREY, Line, Point, Shape, VERMILLION, ramp};
 use super::files::{json, rows};
 use super::numbers::{duration, known, percent, significant, whole};
-use super::shell::{Drawn, clean, fact, figure, whole_page};
+use super::shell::{Drawn, citation, clean, fact, figures, whole_page};
+use super::table::Table;
+use super::written::{Written, write_page};
 use crate::outcome::packing::{CurveRow, Measure, PackingRecord, Summary};
 use crate::outcome::paper;
 
@@ -35,7 +36,7 @@ pub fn write_packing(folder: &Path) -> Result<Written, ReportError> {
         curve: rows(&folder.join("constrictions.csv"))?.into_iter().map(|(_, row)| row).collect(),
     };
     let figures = [curves(&packed), slice(&packed.record), connectivity(&packed)];
-    super::write_page(folder, &figures, &page(&packed, &figures))
+    write_page(folder, &figures, &page(&packed, &figures))
 }
 
 /// A diameter (mm) of the summary.
@@ -71,24 +72,19 @@ fn curves(packed: &Packed) -> Drawn {
         }
     }
     let caption = format!(
-        "The filter’s gradation (percent finer by mass) and its constrictions (percent smaller by number). Voids whose \
-         inscribed spheres overlap by at least {} of the smaller one’s radius count as one void. Dotted: what circles inscribed \
-         between three (dense) and four (loose) touching grains would give without a packing; the wider the gradation, the \
-         worse that guess.",
+        "The filter’s gradation (percent finer by mass) and its constrictions (percent smaller by number). \
+         Voids whose inscribed spheres overlap by at least {} of the smaller one’s radius count as one \
+         void. Dotted: what circles inscribed between three (dense) and four (loose) touching grains would \
+         give without a packing; the wider the gradation, the worse that guess.",
         significant(packed.summary.merge_overlap)
     );
-    Drawn { name: "curves", caption, figure }
+    Drawn::new("curves", figure, caption)
 }
 
 /// The plane through the middle of the cell.
 pub(super) fn slice(record: &PackingRecord) -> Drawn {
     let edge = record.cell_mm;
-    let axis = |label| {
-        let mut axis = Axis::linear(label, 0.0, edge);
-        (axis.low, axis.high) = (0.0, edge);
-        axis.ticks.retain(|tick| tick.at <= edge);
-        axis
-    };
+    let axis = |label| Axis::linear(label, 0.0, edge).within(0.0, edge);
     let what =
         "Grains cut by the plane through the middle of the periodic cell; the darker, the larger the grain";
     let mut figure = Figure::new("A slice through the packing", what, "", axis("x (mm)"), axis("y (mm)"))
@@ -102,11 +98,11 @@ pub(super) fn slice(record: &PackingRecord) -> Drawn {
         figure.add(Disc::new((x, y), cut, ramp(shade, SHADES)));
     }
     let caption = format!(
-        "The plane z = {} mm through the middle of the periodic cell. A circle is the cut of a grain, not its diameter; \
-         the darker, the larger the grain.",
+        "The plane z = {} mm through the middle of the periodic cell. A circle is the cut of a grain, not \
+         its diameter; the darker, the larger the grain.",
         significant(0.5 * edge)
     );
-    Drawn { name: "slice", caption, figure }
+    Drawn::new("slice", figure, caption)
 }
 
 /// Share of the voids by number of their constrictions.
@@ -131,33 +127,39 @@ fn connectivity(packed: &Packed) -> Drawn {
         "Number of constrictions of a void; {} on average.",
         significant(packed.summary.mean_connectivity)
     );
-    Drawn { name: "connectivity", caption, figure }
+    Drawn::new("connectivity", figure, caption)
 }
 
-fn page(packed: &Packed, figures: &[Drawn]) -> String {
+fn page(packed: &Packed, drawn: &[Drawn]) -> String {
     let (record, summary) = (&packed.record, &packed.summary);
     let header = html! {
         h1 { "A filter, packed" }
-        p.names { b { bdi { (clean(&record.name)) } } ", friction " (significant(record.friction)) " during compression" }
+        p.names {
+            b { bdi { (clean(&record.name)) } }
+            ", friction " (significant(record.friction)) " during compression"
+        }
     };
     let at = |percent: f64| known(dc(summary, percent), |d| format!("{} mm", significant(d)));
     let main = html! {
         p.lead {
-            "Void ratio " b { (format!("{:.4}", record.after.void_ratio)) } ", " (whole(record.grains)) " grains, "
-            (whole(summary.constrictions as u64)) " constrictions with Cu " b { (format!("{:.3}", summary.cu_csd)) }
-            ", " b { (format!("{:.3}", summary.grains_per_void)) } " grains per void."
+            "Void ratio " b { (format!("{:.4}", record.after.void_ratio)) } ", "
+            (whole(record.grains)) " grains, " (whole(summary.constrictions as u64)) " constrictions with Cu "
+            b { (format!("{:.3}", summary.cu_csd)) } ", "
+            b { (format!("{:.3}", summary.grains_per_void)) } " grains per void."
         }
-        @for (index, drawn) in figures.iter().enumerate() { (figure(index + 1, drawn)) }
+        (figures(drawn))
         (beside_the_paper(packed))
         h2 { "Constrictions and voids" }
         table.facts { tbody {
             (fact("Dc0, Dc5, Dc15", [0.0, 5.0, 15.0].map(at).join(", ")))
             (fact("Dc50, Dc75, Dc99", [50.0, 75.0, 99.0].map(at).join(", ")))
-            (fact("Constrictions, tetrahedra", format!("{}, {}", whole(summary.constrictions as u64), whole(summary.tetrahedra as u64))))
+            (fact("Constrictions, tetrahedra",
+                format!("{}, {}", whole(summary.constrictions as u64), whole(summary.tetrahedra as u64))))
             (fact("Voids", whole(summary.voids as u64)))
             (fact("Grains per void, N_p/N_voids of Eq. (2)", significant(summary.grains_per_void)))
-            (fact("Constrictions of a void, on average", significant(summary.mean_connectivity)))
-            (fact("Overlap from which tetrahedra are one void", significant(summary.merge_overlap)))
+            (fact("Mean number of constrictions of a void", significant(summary.mean_connectivity)))
+            (fact("Overlap from which tetrahedra are merged into one \
+                   void", significant(summary.merge_overlap)))
         } }
         h2 { "Compression" }
         (states(record))
@@ -165,42 +167,36 @@ fn page(packed: &Packed, figures: &[Drawn]) -> String {
             (fact("Mean pressure", format!("{} kPa", significant(record.pressure_kpa))))
             (fact("Edge of the periodic cell", format!("{} mm", significant(record.cell_mm))))
             (fact("Steps", whole(record.steps)))
-            (fact("Simulated time", format!("{} s, with masses scaled so that small grains do not set the step alone", significant(record.simulated_s))))
+            (fact("Simulated time", format!("{} s, with masses scaled so that small grains do not set the \
+                                             step alone",
+                significant(record.simulated_s))))
             (fact("Seed", record.seed.to_string()))
             (fact("Wall time", duration(record.seconds)))
             @for (name, value) in &record.settings { (fact(name, value.to_string())) }
         } }
-        p.small { "Spheres, Hertz-Mindlin contacts with Coulomb friction, no gravity, no cohesion, no breakage." }
+        p.small { "Spheres, Hertz-Mindlin contacts with Coulomb friction, no gravity, no cohesion, no \
+                   breakage." }
     };
-    let footer = html! {
-        h2 { "How to cite" }
-        p { "The model: Shire and O’Sullivan, " cite { "A network model to assess base-filter combinations" } "." }
-    };
-    whole_page(&format!("Packing: {}", clean(&record.name)), &header, &main, &footer)
+    whole_page(&format!("Packing: {}", clean(&record.name)), &header, &main, &citation())
 }
 
 fn states(record: &PackingRecord) -> Markup {
-    let row = |name: &str, of: fn(&Measure) -> String| {
-        html! { tr { th { (name) } td.n { (of(&record.before)) } td.n { (of(&record.after)) } } }
-    };
-    html! {
-        table {
-            thead { tr {
-                th { "At rest with friction" }
-                th.n { (significant(record.friction)) } th.n { (significant(record.final_friction)) }
-            } }
-            tbody {
-                (row("Void ratio", |s| format!("{:.4}", s.void_ratio)))
-                (row("Pressure (kPa)", |s| format!("{:.3}", s.pressure_kpa)))
-                (row("Contacts of a grain", |s| format!("{:.3}", s.coordination)))
-                (row("the same without rattlers", |s| format!("{:.3}", s.coordination_held)))
-                (row("Rattlers, of the grains", |s| percent(s.rattlers)))
-                (row("Kinetic by elastic energy", |s| format!("{:.1e}", s.kinetic_ratio)))
-                (row("Unbalanced force by mean contact force", |s| format!("{:.1e}", s.unbalanced)))
-                (row("Largest overlap by smaller diameter", |s| format!("{:.1e}", s.largest_overlap)))
-            }
-        }
-    }
+    type Row = (&'static str, fn(&Measure) -> String);
+    let rows: [Row; 8] = [
+        ("Void ratio", |s| format!("{:.4}", s.void_ratio)),
+        ("Pressure (kPa)", |s| format!("{:.3}", s.pressure_kpa)),
+        ("Mean coordination number (2 N_c / N_p)", |s| format!("{:.3}", s.coordination)),
+        ("Mean coordination number without rattlers", |s| format!("{:.3}", s.coordination_held)),
+        ("Rattler fraction", |s| percent(s.rattlers)),
+        ("Kinetic over elastic energy", |s| format!("{:.1e}", s.kinetic_ratio)),
+        ("Unbalanced force over mean contact force", |s| format!("{:.1e}", s.unbalanced)),
+        ("Largest overlap over smaller diameter", |s| format!("{:.1e}", s.largest_overlap)),
+    ];
+    Table::of(&rows)
+        .name("At rest with friction", |row: &Row| row.0)
+        .number(significant(record.friction), |row| (row.1)(&record.before))
+        .number(significant(record.final_friction), |row| (row.1)(&record.after))
+        .render()
 }
 
 /// The paper's values, where its Table 2 has this filter.
@@ -208,23 +204,18 @@ fn beside_the_paper(packed: &Packed) -> Markup {
     let record = &packed.record;
     let found = record.cu.filter(|_| record.linear).and_then(|cu| paper::filter(cu, record.friction));
     let Some(paper) = found else { return html! {} };
-    let row = |name: &str, ours: f64, theirs: f64| {
-        html! { tr {
-            th { (name) } td.n { (format!("{ours:.3}")) } td.n { (format!("{theirs:.3}")) }
-            td.n { (format!("{:+.3}", ours - theirs)) }
-        } }
-    };
+    let mut rows = vec![("Void ratio", record.after.void_ratio, paper.void_ratio)];
+    if record.friction != record.final_friction {
+        rows.push(("Void ratio before the final friction", record.before.void_ratio, paper.void_ratio));
+    }
+    rows.push(("Cu of the constrictions", packed.summary.cu_csd, paper.cu_csd));
+    let table = Table::of(&rows)
+        .name("", |row| row.0)
+        .number("this packing", |row| format!("{:.3}", row.1))
+        .number("paper", |row| format!("{:.3}", row.2))
+        .number("difference", |row| format!("{:+.3}", row.1 - row.2));
     html! {
         h2 { "Beside the paper’s Table 2" }
-        table {
-            thead { tr { th {} th.n { "this packing" } th.n { "paper" } th.n { "difference" } } }
-            tbody {
-                (row("Void ratio", record.after.void_ratio, paper.void_ratio))
-                @if record.friction != record.final_friction {
-                    (row("Void ratio before the final friction", record.before.void_ratio, paper.void_ratio))
-                }
-                (row("Cu of the constrictions", packed.summary.cu_csd, paper.cu_csd))
-            }
-        }
+        (table)
     }
 }

@@ -1,19 +1,28 @@
 //! The page of a run.
 
+use std::path::Path;
+
 use maud::{Markup, html};
 
 use super::connectivity::by_connectivity;
+use super::error::ReportError;
 use super::figures::{shorten, visible};
 use super::folder::RunFolder;
 use super::infiltration::infiltration;
 use super::numbers::{
-    duration, interval, known, percent, percent_interval, significant, size, threshold, whole,
+    capital, duration, interval, known, percent, percent_interval, significant, size, size_unit, threshold,
+    trimmed, whole,
 };
 use super::rules::rules;
-use super::run_figures::{run_name, trimmed};
-use super::shell::{Drawn, clean, drawing, fact, figure, whole_page};
+use super::run_figures::{self, run_name};
+use super::shell::{self, Drawn, clean, drawing, fact, whole_page};
+use super::table::Table;
+use super::written::{Written, write_page};
+use super::{packing, shell::leaves_out};
 use crate::outcome::packing::PackingRecord;
-use crate::outcome::record::{NetworkKind, Outcome, Run, RunSummary, Statistic, Stopping, Verdict};
+use crate::outcome::record::{
+    NetworkKind, Outcome, Replicate, Run, RunSummary, Sensitivity, Statistic, Stopping, Verdict,
+};
 
 /// Replicates listed one by one; all are in `outcome.json`.
 const LISTED: usize = 100;
@@ -21,8 +30,35 @@ const LISTED: usize = 100;
 /// Characters of `scene.toml` that are shown.
 const SCENE: usize = 100_000;
 
+/// Writes `report.html` and `figures/*.svg` into a finished run folder.
+///
+/// Each file appears whole or not at all, and an older one of the same name is replaced.
+///
+/// # Errors
+/// [`ReportError`] names the file, and where there is one the line and field, that is missing, malformed or
+/// contradicts another. Nothing is written then.
+pub fn write(folder: &Path) -> Result<Written, ReportError> {
+    let run = RunFolder::read(folder)?;
+    let verdict = run_figures::verdict(&run);
+    let figures: Vec<Drawn> = [
+        Some(run_figures::gradations(&run)),
+        run_figures::eroded(&run),
+        run_figures::layers(&run),
+        run_figures::retained(&run),
+        run_figures::sensitivity(&run),
+        run.packing.as_ref().map(packing::slice),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+
+    let page = page(&run, &verdict, &figures);
+    let all: Vec<Drawn> = std::iter::once(verdict).chain(figures).collect();
+    write_page(folder, &all, &page)
+}
+
 /// The page as text. `verdict` stands beside the verdict, `figures` below it.
-pub(super) fn page(folder: &RunFolder, verdict: &Drawn, figures: &[Drawn]) -> String {
+fn page(folder: &RunFolder, verdict: &Drawn, figures: &[Drawn]) -> String {
     let outcome = &folder.outcome;
     let (filter, base) = (&outcome.inputs.filter, &outcome.inputs.base);
     let title = format!(
@@ -33,21 +69,22 @@ pub(super) fn page(folder: &RunFolder, verdict: &Drawn, figures: &[Drawn]) -> St
     );
     let header = html! {
         h1 { "Will this filter hold this soil?" }
-        p.names { "Base " b { bdi { (clean(&base.name)) } } " against filter " b { bdi { (clean(&filter.name)) } } }
+        p.names {
+            "Base " b { bdi { (clean(&base.name)) } } " against filter " b { bdi { (clean(&filter.name)) } }
+        }
     };
     let main = html! {
         div.first {
             (verdict_box(outcome, verdict))
-            aside.leaves {
-                h2 { "What the model leaves out" }
+            (leaves_out(&outcome.model_leaves_out, &html! {
                 @if outcome.model_leaves_out.is_empty() { p { "outcome.json does not say." } }
-                ul { @for item in &outcome.model_leaves_out { li { (clean(item)) } } }
-                p { "The verdict is the model’s. It does not replace a filter test or a designer’s judgement." }
-            }
+                p { "The verdict is the model’s. It does not replace a filter test or a designer’s \
+                     judgement." }
+            }))
         }
         (warnings(outcome))
         h2 { "Figures" }
-        @for (index, drawn) in figures.iter().enumerate() { (figure(index + 1, drawn)) }
+        (shell::figures(figures))
         (missing(folder, figures))
         (rules(outcome))
         (results(outcome))
@@ -62,45 +99,53 @@ pub(super) fn page(folder: &RunFolder, verdict: &Drawn, figures: &[Drawn]) -> St
 }
 
 fn verdict_box(outcome: &Outcome, verdict: &Drawn) -> Markup {
-    let (class, word) = match outcome.verdict {
-        Verdict::None => ("none", "No erosion"),
-        Verdict::Some => ("some", "Some erosion"),
-        Verdict::Continuing => ("continuing", "Continuing erosion"),
-        Verdict::Undecided => ("undecided", "Undecided"),
+    let class = match outcome.verdict {
+        Verdict::None => "none",
+        Verdict::Some => "some",
+        Verdict::Continuing => "continuing",
+        Verdict::Undecided => "undecided",
     };
     let count = outcome.replicates.len();
+    let table = Table::of(&outcome.summary)
+        .name("Base eroded, by mass", |run| run_heading(run.run))
+        .number("mean", |run| percent(run.eroded_mass_fraction.mean))
+        .number("95 % interval", |run| {
+            percent_interval(&run.eroded_mass_fraction).unwrap_or_else(|| "none".to_owned())
+        });
     html! {
         section.verdict.(class) {
-            p.word { (word) }
+            p.word { (capital(outcome.verdict.words())) }
             p.lead { (in_words(outcome)) }
             div { (drawing(verdict)) }
-            table {
-                thead { tr { th { "Base eroded, by mass" } th.n { "mean" } th.n { "95 % interval" } } }
-                tbody { @for run in &outcome.summary {
-                    tr {
-                        th { span class={ "run-" (run.run) } { (capital(run_name(run.run))) } }
-                        td.n { (percent(run.eroded_mass_fraction.mean)) }
-                        td.n { (percent_interval(&run.eroded_mass_fraction).unwrap_or_else(|| "none".to_owned())) }
-                    }
-                } }
-            }
+            (table)
             @if let Some(stopping) = &outcome.stopping { p { (stopped(stopping)) } }
             p { (tally(outcome)) " Threshold between the classes: " (threshold(outcome.threshold)) "." }
             @if count == 1 {
-                p { b { "One replicate: the scatter is unknown." } " Walk more replicates before relying on this." }
+                p {
+                    b { "One replicate: the scatter is unknown." }
+                    " Walk more replicates before relying on this."
+                }
             }
         }
     }
 }
 
-/// What the rule that added replicates came to.
+/// "First run", in the colour of the run.
+fn run_heading(run: u64) -> Markup {
+    html! { span class={ "run-" (run) } { (capital(run_name(run))) } }
+}
+
+/// What the rule that added replicates arrived at.
 fn stopped(stopping: &Stopping) -> String {
     let mut text = String::new();
     if let Some(percent) = stopping.decide_percent {
-        text += &format!("Replicates were added until the verdict would be right with {percent} %. ");
+        text += &format!(
+            "Replicates were added to decide the verdict at the {percent} % confidence level, corrected for \
+             repeated looks. "
+        );
     }
     if let Some(pp) = stopping.target_error_pp {
-        text += &format!("Replicates were added until the error would be {pp} percentage points. ");
+        text += &format!("Replicates were added to reach an error of {pp} percentage points. ");
     }
     text += match (&stopping.sentence, stopping.met) {
         (_, true) => "That was reached.",
@@ -118,12 +163,12 @@ fn in_words(outcome: &Outcome) -> String {
             "In the model the filter holds this base: less than {limit} of its mass passes in the first run."
         ),
         Verdict::Some => format!(
-            "In the model the filter seals after some erosion: {limit} or more of the base passes in the first run, less \
-             in the second, on the constrictions that the first left blocked."
+            "In the model the filter seals after some erosion: {limit} or more of the base passes in the \
+             first run, less in the second, on the constrictions that the first left blocked."
         ),
         Verdict::Continuing => format!(
-            "In the model the filter does not hold this base: {limit} or more of its mass passes in the first run and \
-             again in the second."
+            "In the model the filter does not hold this base: {limit} or more of its mass passes in the \
+             first run and again in the second."
         ),
         Verdict::Undecided => {
             let straddles = |run: &&RunSummary| {
@@ -134,36 +179,31 @@ fn in_words(outcome: &Outcome) -> String {
                 outcome.summary.iter().filter(straddles).map(|run| run_name(run.run)).collect();
             if !runs.is_empty() {
                 let plural = if runs.len() > 1 { "intervals of the " } else { "interval of the " };
-                format!(
-                    "The {plural}{} includes {limit}: these replicates cannot tell the classes apart.",
-                    runs.join(" and the ")
-                )
+                format!("Inconclusive: the {plural}{} includes {limit}.", runs.join(" and the "))
             } else if outcome.summary.len() == 1 {
-                "Only a first run was asked for: it cannot tell some erosion from continuing erosion."
+                "Inconclusive: some and continuing erosion differ by the second run, and only a first was \
+                 asked for."
                     .to_owned()
             } else {
-                "These replicates cannot tell the classes apart.".to_owned()
+                "Inconclusive: these replicates do not separate the classes.".to_owned()
             }
         }
     }
 }
 
-/// How the replicates voted.
+/// The classes of the replicates, counted.
 fn tally(outcome: &Outcome) -> String {
     let count = outcome.replicates.len();
     if count == 1 {
         return "1 replicate (one network, one walk).".to_owned();
     }
-    let classes = [Verdict::None, Verdict::Some, Verdict::Continuing, Verdict::Undecided];
-    let votes = classes.into_iter().filter_map(|class| {
-        let votes = outcome.replicates.iter().filter(|replicate| replicate.verdict == class).count();
-        let of = if votes == count { "all".to_owned() } else { votes.to_string() };
-        (votes > 0).then(|| format!("{} in {of}", class.words()))
+    let classes = Verdict::ALL.into_iter().filter_map(|class| {
+        let found = outcome.replicates.iter().filter(|replicate| replicate.verdict == class).count();
+        let of = if found == count { "all".to_owned() } else { found.to_string() };
+        (found > 0).then(|| format!("{} in {of}", class.words()))
     });
-    format!(
-        "{count} replicates, each a new network and a new walk: {}.",
-        votes.collect::<Vec<_>>().join(", ")
-    )
+    let classes = classes.collect::<Vec<_>>().join(", ");
+    format!("{count} replicates, each a new network and a new walk: {classes}.")
 }
 
 fn warnings(outcome: &Outcome) -> Markup {
@@ -174,8 +214,8 @@ fn warnings(outcome: &Outcome) -> Markup {
                 ul {
                     @if outcome.capped {
                         li {
-                            "A cap cut the number of base particles from " (known(outcome.n_base_eq2, whole)) " (Eq. 2) to "
-                            (whole(outcome.n_base)) "."
+                            "Capped: " (whole(outcome.n_base)) " base particles were walked; "
+                            "Eq. (2) requires " (known(outcome.n_base_eq2, whole)) "."
                         }
                     }
                     @for warning in &outcome.warnings { li { (clean(warning)) } }
@@ -199,10 +239,11 @@ fn missing(folder: &RunFolder, figures: &[Drawn]) -> Markup {
     ];
     html! {
         @for (name, reason) in reasons { @if !has(name) { p.small { (reason) } } }
-        @if folder.series.len() as u64 != folder.outcome.replicates.len() as u64 * folder.outcome.summary.len() as u64
-            && has("eroded")
+        @if has("eroded")
+            && folder.series.len() != folder.outcome.replicates.len() * folder.outcome.summary.len()
         {
-            p.small { "series.csv does not hold every replicate and run: the mean is over those that it holds." }
+            p.small { "series.csv does not hold every replicate and run: the mean is over those that it \
+                       holds." }
         }
     }
 }
@@ -220,121 +261,103 @@ fn fraction(statistic: &Statistic) -> Markup {
 }
 
 fn results(outcome: &Outcome) -> Markup {
+    type Row<'a> = (&'static str, &'a dyn Fn(&RunSummary) -> Markup);
     let (filter, scale_free) = (&outcome.inputs.filter, outcome.inputs.scale_free);
-    let sd = |statistic: &Statistic| statistic.sd.map_or_else(|| "none".to_owned(), percent);
-    let row = |name: &str, cell: &dyn Fn(&RunSummary) -> Markup| {
-        html! { tr { th { (name) } @for run in &outcome.summary { td.n { (cell(run)) } } } }
+    let nothing = || html! { "nothing eroded" };
+    let largest_ratio = |run: &RunSummary| match &run.largest_eroded_over_d15f {
+        Some(of) => {
+            let ends = of.low.zip(of.high);
+            let ends = ends.map(|(low, high)| format!("{} to {}", significant(low), significant(high)));
+            with_interval(significant(of.mean), ends)
+        }
+        None => nothing(),
     };
+    let largest = |run: &RunSummary| match &run.largest_eroded_over_d15f {
+        Some(of) => html! { (size(of.mean * filter.d15_mm, scale_free)) },
+        None => nothing(),
+    };
+    let sd =
+        |run: &RunSummary| html! { (run.eroded_mass_fraction.sd.map_or_else(|| "none".to_owned(), percent)) };
+    let rows: [Row; 8] = [
+        ("Base eroded, by mass", &|run| fraction(&run.eroded_mass_fraction)),
+        ("Replicate SD of the base eroded, by mass", &sd),
+        ("Base eroded, by number", &|run| fraction(&run.eroded_number_fraction)),
+        ("Largest particle eroded, over D15F", &largest_ratio),
+        ("Largest particle eroded", &largest),
+        ("Constrictions blocked at the end", &|run| fraction(&run.blocked_fraction)),
+        ("Blocked in the first three layers", &|run| fraction(&run.blocked_first_three_layers_fraction)),
+        ("Backbone: constrictions on an open path", &|run| fraction(&run.backbone_fraction)),
+    ];
+    let mut table = Table::of(&rows).name("Mean, and 95 % interval", |row| row.0);
+    for run in &outcome.summary {
+        table = table.number(run_heading(run.run), move |row| (row.1)(run));
+    }
     html! {
         h2 { "Results" }
-        table {
-            thead { tr {
-                th { "Mean, and 95 % interval" }
-                @for run in &outcome.summary { th.n { span class={ "run-" (run.run) } { (capital(run_name(run.run))) } } }
-            } }
-            tbody {
-                (row("Base eroded, by mass", &|run| fraction(&run.eroded_mass_fraction)))
-                (row("its standard deviation between replicates", &|run| html! { (sd(&run.eroded_mass_fraction)) }))
-                (row("Base eroded, by number", &|run| fraction(&run.eroded_number_fraction)))
-                (row("Largest particle eroded, over D15F", &|run| match &run.largest_eroded_over_d15f {
-                    Some(statistic) => {
-                        let ends = statistic.low.zip(statistic.high);
-                        let ends = ends.map(|(low, high)| format!("{} to {}", significant(low), significant(high)));
-                        with_interval(significant(statistic.mean), ends)
-                    }
-                    None => html! { "nothing eroded" },
-                }))
-                (row("Largest particle eroded", &|run| match &run.largest_eroded_over_d15f {
-                    Some(statistic) => html! { (size(statistic.mean * filter.d15_mm, scale_free)) },
-                    None => html! { "nothing eroded" },
-                }))
-                (row("Constrictions blocked at the end", &|run| fraction(&run.blocked_fraction)))
-                (row("the same, in the first three layers", &|run| fraction(&run.blocked_first_three_layers_fraction)))
-                (row("Backbone: constrictions on an open path", &|run| fraction(&run.backbone_fraction)))
-            }
-        }
+        (table)
     }
 }
 
 fn replicates(outcome: &Outcome) -> Markup {
-    let scale_free = outcome.inputs.scale_free;
-    let unit = super::numbers::size_unit(scale_free);
+    let unit = size_unit(outcome.inputs.scale_free);
+    let of_known = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), significant);
     let listed = outcome.replicates.len().min(LISTED);
-    let cells = |run: &Run| {
-        html! {
-            td.n { (percent(run.eroded_mass_fraction)) }
-            td.n { (percent(run.eroded_number_fraction)) }
-            td.n { (run.largest_eroded_mm.map_or_else(|| "–".to_owned(), significant)) }
-            td.n { (run.largest_eroded_over_d15f.map_or_else(|| "–".to_owned(), significant)) }
-            td.n { (percent(run.blocked_fraction)) }
-            td.n { (percent(run.blocked_first_three_layers_fraction)) }
-            td.n { (percent(run.backbone_fraction)) }
-            td.n { (whole(run.inserted)) }
-            td.n { (whole(run.eroded)) }
-            td.n { (whole(run.retained_in_constrictions)) }
-            td.n { (whole(run.retained_in_voids)) }
-            td.n { (whole(run.trapped)) }
-            td.n { (significant(run.retained_per_void)) }
-            td.n { (whole(run.increments)) }
-            td.n { (whole(run.particle_moves)) }
-            td.n { (duration(run.seconds)) }
-        }
-    };
+    let rows: Vec<(usize, &Replicate, &Run)> = (1..)
+        .zip(outcome.replicates.iter().take(LISTED))
+        .flat_map(|(number, replicate)| replicate.runs.iter().map(move |run| (number, replicate, run)))
+        .collect();
+    let table = Table::of(&rows)
+        .class("replicates")
+        .name("Replicate", |(number, replicate, _)| format!("{number} (seed {})", replicate.seed))
+        .text("Verdict", |(_, replicate, _)| replicate.verdict.words())
+        .text("Run", |(.., run)| html! { span class={ "run-" (run.run) } { (run.run) } })
+        .number("Eroded, mass", |(.., run)| percent(run.eroded_mass_fraction))
+        .number("number", |(.., run)| percent(run.eroded_number_fraction))
+        .number(format!("largest ({unit})"), |(.., run)| of_known(run.largest_eroded_mm))
+        .number("/ D15F", |(.., run)| of_known(run.largest_eroded_over_d15f))
+        .number("Blocked", |(.., run)| percent(run.blocked_fraction))
+        .number("3 layers", |(.., run)| percent(run.blocked_first_three_layers_fraction))
+        .number("Backbone", |(.., run)| percent(run.backbone_fraction))
+        .number("Inserted", |(.., run)| whole(run.inserted))
+        .number("Eroded", |(.., run)| whole(run.eroded))
+        .number("In constrictions", |(.., run)| whole(run.retained_in_constrictions))
+        .number("In voids", |(.., run)| whole(run.retained_in_voids))
+        .number("Trapped", |(.., run)| whole(run.trapped))
+        .number("Per void", |(.., run)| significant(run.retained_per_void))
+        .number("Increments", |(.., run)| whole(run.increments))
+        .number("Moves", |(.., run)| whole(run.particle_moves))
+        .number("Time", |(.., run)| duration(run.seconds));
     html! {
         details {
-            summary { "Each replicate (" (listed) @if listed < outcome.replicates.len() { " of " (outcome.replicates.len()) } ")" }
-            div.scroll { table.replicates {
-                thead { tr {
-                    th { "Replicate" } th { "Verdict" } th { "Run" }
-                    th.n { "Eroded, mass" } th.n { "number" } th.n { "largest (" (unit) ")" } th.n { "/ D15F" }
-                    th.n { "Blocked" } th.n { "3 layers" } th.n { "Backbone" } th.n { "Inserted" } th.n { "Eroded" }
-                    th.n { "In constrictions" } th.n { "In voids" } th.n { "Trapped" } th.n { "Per void" }
-                    th.n { "Increments" } th.n { "Moves" } th.n { "Time" }
-                } }
-                tbody { @for (index, replicate) in outcome.replicates.iter().take(LISTED).enumerate() {
-                    @for run in &replicate.runs {
-                        tr {
-                            th { (index + 1) " (seed " (replicate.seed) ")" }
-                            td { (replicate.verdict.words()) }
-                            td { span class={ "run-" (run.run) } { (run.run) } }
-                            (cells(run))
-                        }
-                    }
-                } }
-            } }
+            summary {
+                "Each replicate (" (listed)
+                @if listed < outcome.replicates.len() { " of " (outcome.replicates.len()) } ")"
+            }
+            (table)
             p.small {
-                "Inserted, eroded, in constrictions, in voids and trapped count particles; per void is all retained "
-                "particles over voids; trapped particles would circle for ever."
+                "Inserted, eroded, in constrictions, in voids and trapped count particles; per void is all \
+                 retained "
+                "particles over voids; trapped particles are trapped in closed loops."
             }
         }
     }
 }
 
 fn sensitivity(outcome: &Outcome) -> Markup {
+    let mut table = Table::of(&outcome.sensitivity)
+        .number("× N_base", |case| trimmed(case.factor))
+        .number("N_base", |case| whole(case.n_base))
+        .number("Grains per void", |case| known(case.grains_per_void, significant))
+        .number("or mass ratio", |case| known(case.mass_ratio, percent))
+        .number("Replicates", |case| case.replicates);
+    for (index, run) in outcome.summary.iter().enumerate() {
+        let of = move |case: &Sensitivity| case.runs.get(index).map_or_else(|| html! { "–" }, fraction);
+        table = table.number(capital(run_name(run.run)), of);
+    }
     html! {
         @if !outcome.sensitivity.is_empty() { details {
             summary { "Sensitivity to the number of base particles, in numbers" }
-            div.scroll { table {
-                thead { tr {
-                    th.n { "× N_base" } th.n { "N_base" } th.n { "Grains per void" } th.n { "or mass ratio" }
-                    th.n { "Replicates" } @for run in &outcome.summary { th.n { (capital(run_name(run.run))) } } th { "Verdict" }
-                } }
-                tbody { @for case in &outcome.sensitivity {
-                    tr {
-                        td.n { (trimmed(case.factor)) }
-                        td.n { (whole(case.n_base)) }
-                        td.n { (known(case.grains_per_void, significant)) }
-                        td.n { (known(case.mass_ratio, percent)) }
-                        td.n { (case.replicates) }
-                        @for (index, _) in outcome.summary.iter().enumerate() {
-                            td.n { @if let Some(run) = case.runs.get(index) {
-                                (fraction(run))
-                            } @else { "–" } }
-                        }
-                        td { (case.verdict.words()) }
-                    }
-                } }
-            } }
+            (table.text("Verdict", |case| case.verdict.words()))
         } }
     }
 }
@@ -349,7 +372,8 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
         }
         (NetworkKind::Connected, Some(nx), Some(ny), Some(nz)) => {
             format!(
-                "directed lattice, {nx} × {ny} × {nz} voids ({nz} along the flow), diagonals added and constrictions deleted"
+                "directed lattice, {nx} × {ny} × {nz} voids ({nz} along the flow), diagonals added and \
+                 constrictions deleted"
             )
         }
         (NetworkKind::Cubic | NetworkKind::Connected, ..) => "directed lattice".to_owned(),
@@ -359,10 +383,11 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
         h2 { "Filter thickness and inputs" }
         @match network.thickness_mm {
             Some(thickness) => p {
-                "The network stands for " b { (mm(thickness)) } " of filter along the flow: " (whole(network.layers))
-                " layers, each D50F by number, " (mm(filter.d50_by_number_mm)) "."
+                "Modelled filter thickness: " b { (mm(thickness)) } " along the flow, "
+                (whole(network.layers)) " layers, each D50F by number, " (mm(filter.d50_by_number_mm)) "."
             },
-            None => p { "The network stands for no particular thickness of filter: its layers have none." },
+            None => p { "Modelled filter thickness: none in particular, the layers of this network have \
+                         none." },
         }
         h3 { "Filter" }
         table.facts { tbody {
@@ -372,23 +397,28 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
                 [filter.d0_mm, filter.d15_mm, filter.d50_mm, filter.d85_mm].map(mm).join(", ")))
             (fact("D50 by number", mm(filter.d50_by_number_mm)))
             @if let Some(packing) = packing {
-                (fact("Packing", format!("{} grains, friction {}, {} kPa, {} contacts of a grain, seed {}", whole(packing.grains),
-                    significant(packing.friction), significant(packing.pressure_kpa), significant(packing.after.coordination), packing.seed)))
+                (fact("Packing", format!(
+                    "{} grains, friction {}, {} kPa, mean coordination number {}, seed {}",
+                    whole(packing.grains), significant(packing.friction), significant(packing.pressure_kpa),
+                    significant(packing.after.coordination), packing.seed)))
             }
-            (fact("Void ratio", filter.void_ratio.map_or_else(|| "not given".to_owned(), significant)))
+            (fact("Void ratio", known(filter.void_ratio, significant)))
             (fact("Grains per void, N_p/N_voids", known(outcome.grains_per_void, significant)))
-            (fact("Constriction curve", format!("{}, Cu of the curve {}", filter.curve_name, significant(filter.cu_csd))))
-            (fact("Credit for the curve", if filter.attribution.is_empty() { "the user’s own" } else { &filter.attribution }))
+            (fact("Constriction curve",
+                format!("{}, Cu of the curve {}", filter.curve_name, significant(filter.cu_csd))))
+            (fact("Credit for the curve",
+                if filter.attribution.is_empty() { "the user’s own" } else { &filter.attribution }))
         } }
         h3 { "Base" }
         table.facts { tbody {
             (fact("Name", &base.name))
             (fact("Cu = D60/D10", known(base.cu, significant)))
-            (fact("D0, D15, D50 (by mass)", [Some(base.d0_mm), base.d15_mm, base.d50_mm].map(|d| known(d, mm)).join(", ")))
+            (fact("D0, D15, D50 (by mass)",
+                [Some(base.d0_mm), base.d15_mm, base.d50_mm].map(|d| known(d, mm)).join(", ")))
             (fact("D85, D95, D100 (by mass)", [base.d85_mm, base.d95_mm, base.d100_mm].map(mm).join(", ")))
             @if base.tail_mass_fraction > 0.0 {
-                (fact("Finer than the finest sieve", format!("{} by mass; taken as passive, counted by mass only",
-                    percent(base.tail_mass_fraction))))
+                (fact("Pan fraction (finer than the finest sieve)",
+                    format!("{} by mass; passive, counted by mass only", percent(base.tail_mass_fraction))))
             }
             (fact("D15F/D85B, D15F/D95B", format!("{}, {}", significant(outcome.ratios.d15f_over_d85b),
                 significant(outcome.ratios.d15f_over_d95b))))
@@ -402,8 +432,8 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
         table.facts { tbody {
             (fact("Kind", &kind))
             @if !network.name.is_empty() { (fact("Name", &network.name)) }
-            (fact("Voids, constrictions", format!("{}, {}", whole(network.voids), whole(network.constrictions))))
-            (fact("Start nodes, layers", format!("{}, {}", whole(network.start_nodes), whole(network.layers))))
+            (fact("Voids, constrictions", [network.voids, network.constrictions].map(whole).join(", ")))
+            (fact("Start nodes, layers", [network.start_nodes, network.layers].map(whole).join(", ")))
         } }
     }
 }
@@ -416,20 +446,27 @@ fn provenance(folder: &RunFolder) -> Markup {
         h2 { "How this was made" }
         table.facts { tbody {
             (fact("Seed", outcome.seed.to_string()))
-            (fact("voidwalk", format!("{} (commit {})", manifest.version, manifest.commit.as_deref().unwrap_or("unknown"))))
+            (fact("voidwalk",
+                format!("{} (commit {})", manifest.version, manifest.commit.as_deref().unwrap_or("unknown"))))
             (fact("Engine", &outcome.engine))
             (fact("Command", &manifest.command))
             (fact("Started, finished", format!("{}, {}", manifest.started, manifest.finished)))
             (fact("Wall time", duration(outcome.seconds)))
-            (fact("Machine", format!("{}, {}, {} threads", manifest.host, manifest.machine, manifest.threads)))
-            @for input in &manifest.inputs { (fact("Input file", format!("{} (XXH3 {})", input.name, input.xxh3))) }
-            @if !outcome.left_out.is_empty() { (fact("Not needed for this scene", outcome.left_out.join("; "))) }
+            (fact("Machine",
+                format!("{}, {}, {} threads", manifest.host, manifest.machine, manifest.threads)))
+            @for input in &manifest.inputs {
+                (fact("Input file", format!("{} (XXH3 {})", input.name, input.xxh3)))
+            }
+            @if !outcome.left_out.is_empty() {
+                (fact("Not needed for this scene", outcome.left_out.join("; ")))
+            }
         } }
         details open {
             summary { "scene.toml" }
             pre { (scene) }
             @if cut { p.small { "Cut here; the whole is in scene.toml." } }
-            p.small { "Running this scene again gives the same results, bit for bit, on any number of threads." }
+            p.small { "Running this scene again gives the same results, bit for bit, on any number of \
+                       threads." }
         }
     }
 }
@@ -437,17 +474,8 @@ fn provenance(folder: &RunFolder) -> Markup {
 fn citation(outcome: &Outcome) -> Markup {
     let attribution = &outcome.inputs.filter.attribution;
     html! {
-        h2 { "How to cite" }
-        p {
-            "The model: Shire and O’Sullivan, " cite { "A network model to assess base-filter combinations" }
-            ", Computers and Geotechnics."
-        }
+        (shell::citation())
         @if !attribution.is_empty() { p { "The constriction curve: " (clean(attribution)) } }
         p { "The classes: Foster and Fell, as that paper uses them." }
     }
-}
-
-fn capital(text: &str) -> String {
-    let mut characters = text.chars();
-    characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
 }

@@ -2,54 +2,50 @@
 
 use std::path::Path;
 
-use maud::{Markup, html};
+use maud::{Markup, Render, html};
 
-use super::Written;
 use super::error::ReportError;
 use super::figures::{Across, Axis, BLUE, Dash, Figure, GREY, Line, PURPLE, Point, Rule, Shape, Tick};
 use super::numbers::{duration, significant, whole};
-use super::shell::{Drawn, figure, whole_page};
+use super::shell::{Drawn, figures, whole_page};
+use super::table::Table;
+use super::written::{Written, write_page};
 use crate::outcome::percolation::{NU_PARALLEL, PercolationStudy, Z};
 
 /// Writes `report.html` and its figures into the folder of a percolation study.
 ///
 /// # Errors
-/// What the folder says.
+/// [`ReportError::Write`] names the file that cannot be written.
 pub fn write_percolation(folder: &Path, study: &PercolationStudy) -> Result<Written, ReportError> {
-    let figures = [percolation_spread(study), threshold(study)];
+    let drawn = [percolation_spread(study), threshold(study)];
     let title = "Percolation threshold of the directed cubic lattice";
     let header = html! { h1 { (title) } };
     let main = html! {
         p {
-            "Constrictions of an L × L × L lattice, periodic sideways, opened one by one at random until a path leads from "
+            "Constrictions of an L × L × L lattice, periodic sideways, opened one by one at random until a \
+             path leads from "
             "the start layer out of the last: the share that is then open. " (whole(study.realisations))
             " realisations of each size, seed " (study.seed) ", each threshold exact."
         }
-        (table(study))
+        (sizes(study))
         (fits(study))
-        @for (index, drawn) in figures.iter().enumerate() { (figure(index + 1, drawn)) }
+        (figures(&drawn))
     };
     let footer = html! { p.small { "voidwalk " (study.version) ", " (duration(study.seconds)) "." } };
-    super::write_page(folder, &figures, &whole_page(title, &header, &main, &footer))
+    write_page(folder, &drawn, &whole_page(title, &header, &main, &footer))
 }
 
-fn table(study: &PercolationStudy) -> Markup {
+fn sizes(study: &PercolationStudy) -> Markup {
     let digits = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.5}"));
-    html! {
-        div.scroll { table {
-            thead { tr {
-                th.n { "L" } th.n { "Mean threshold" } th.n { "95 % interval of the mean" }
-                th.n { "Standard deviation" } th.n { "its standard error" }
-            } }
-            tbody { @for size in &study.sizes { tr {
-                td.n { (size.size) }
-                td.n { (digits(Some(size.threshold.mean))) }
-                td.n { (digits(size.threshold.low)) " to " (digits(size.threshold.high)) }
-                td.n { (digits(size.threshold.sd)) }
-                td.n { (digits(size.sd_error)) }
-            } } }
-        } }
-    }
+    Table::of(&study.sizes)
+        .number("L", |row| row.size)
+        .number("Mean threshold", |row| digits(Some(row.threshold.mean)))
+        .number("95 % interval of the mean", |row| {
+            format!("{} to {}", digits(row.threshold.low), digits(row.threshold.high))
+        })
+        .number("Standard deviation", |row| digits(row.threshold.sd))
+        .number("its standard error", |row| digits(row.sd_error))
+        .render()
 }
 
 fn fits(study: &PercolationStudy) -> Markup {
@@ -61,12 +57,14 @@ fn fits(study: &PercolationStudy) -> Markup {
             p { "Threshold of the infinite lattice; the known value is " (study.infinite_lattice) ":" }
             ul {
                 li {
-                    "One length, p(L) = p − a L" sup { "−1/ν" } " with ν = " (NU_PARALLEL) ": " (format!("{:.5}", fit.threshold)) " ± "
-                    (format!("{:.5}", fit.threshold_error)) (quality(fit.chi_squared, fit.degrees))
+                    "One length, p(L) = p − a L" sup { "−1/ν" } " with ν = " (NU_PARALLEL) ": "
+                    (format!("{:.5} ± {:.5}", fit.threshold, fit.threshold_error))
+                    (quality(fit.chi_squared, fit.degrees))
                 }
                 @if let Some(fit) = &study.many_starts { li {
-                    "Many starts, L d" sup { "ν" } " = b + c ln(L d" sup { "ν/z" } ") with d = p − p(L), z = " (Z) ": "
-                    (format!("{:.5}", fit.threshold)) " (" (format!("{:.5} to {:.5}", fit.threshold_low, fit.threshold_high)) ", 68 %)"
+                    "Many starts, L d" sup { "ν" } " = b + c ln(L d" sup { "ν/z" }
+                    ") with d = p − p(L), z = " (Z) ": " (format!("{:.5}", fit.threshold))
+                    (format!(" ({:.5} to {:.5}, 68 %)", fit.threshold_low, fit.threshold_high))
                     (quality(fit.chi_squared, fit.degrees))
                 } }
                 @if let Some(slope) = study.sd_exponent { li {
@@ -74,7 +72,9 @@ fn fits(study: &PercolationStudy) -> Markup {
                 } }
             }
             p.small {
-                "A χ² far above the degrees of freedom says that the law does not describe these sizes; its error then says nothing."
+                "A χ² far above the degrees of freedom says that the relation does not describe these \
+                 sizes; its error then "
+                "says nothing."
             }
         }
     }
@@ -92,16 +92,15 @@ pub fn percolation_spread(study: &PercolationStudy) -> Drawn {
     let x = Axis::linear("Size of the lattice, L (voids along each side)", 0.0, widest);
     let y = Axis::linear("Standard deviation of the threshold (–)", 0.0, highest);
     let what = "Standard deviation of the percolation threshold against the size of the lattice";
-    let mut figure = Figure::new("Spread of the percolation threshold", what, "", x, y);
+    let mut figure = Figure::new("Scatter of the percolation threshold", what, "", x, y);
     figure.add(Line::new(points.iter().map(|(x, sd, _)| (*x, *sd)).collect(), BLUE));
     for (x, sd, error) in points {
         let bar = Some((sd - 1.96 * error, sd + 1.96 * error));
         figure.add(Point::new(x, sd, BLUE, Shape::Circle).y_interval(bar));
     }
-    let caption = "Standard deviation of the percolation threshold over the realisations, as in Fig. 6 of the paper. Bars: \
-                   95 % intervals, for normal thresholds."
-        .to_owned();
-    Drawn { name: "percolation-sd", caption, figure }
+    let caption = "Standard deviation of the percolation threshold over the realisations, as in Fig. 6 of \
+                   the paper. Bars: 95 % intervals, for normal thresholds.";
+    Drawn::new("percolation-sd", figure, caption)
 }
 
 /// Mean threshold against `L^(-1/nu)`, where a power law is a straight line.
@@ -120,7 +119,7 @@ fn threshold(study: &PercolationStudy) -> Drawn {
     let sizes = study.sizes.iter().map(|s| Tick::new(at(s.size as f64), &[&s.size.to_string()]));
     x = x.with_ticks(std::iter::once(Tick::new(0.0, &["∞"])).chain(sizes).collect());
     let y = Axis::linear("Mean threshold (–)", lowest - room, highest + room);
-    let what = "Mean percolation threshold against the size of the lattice, with the fitted law";
+    let what = "Mean percolation threshold against the size of the lattice, with the fitted relations";
     let mut figure = Figure::new("Percolation threshold against size", what, "", x, y);
     let known = format!("known, {}", study.infinite_lattice);
     figure.add(Rule::new(Across::Y, study.infinite_lattice, GREY).dash(Dash::Dashed).label(&known));
@@ -129,7 +128,8 @@ fn threshold(study: &PercolationStudy) -> Drawn {
         figure.add(Line::new(ends.to_vec(), BLUE).label("one length"));
     }
     if let Some(fit) = &study.many_starts {
-        // By d, from which L follows: y = b + c ln(L d^(nu / z)) with y = L d^nu, by repetition, which contracts.
+        // By d, from which L follows: y = b + c ln(L d^(nu / z)) with y = L d^nu, by repetition, which
+        // contracts.
         let least = means().map(|mean| fit.threshold - mean).fold(f64::MAX, f64::min);
         let most = means().map(|mean| fit.threshold - mean).fold(0.0, f64::max);
         let size = |d: f64| {
@@ -150,8 +150,7 @@ fn threshold(study: &PercolationStudy) -> Drawn {
         figure
             .add(Point::new(at(size.size as f64), size.threshold.mean, BLUE, Shape::Circle).y_interval(bar));
     }
-    let caption =
-        "Mean threshold of each size, and the two laws fitted to them. Bars: 95 % intervals of the mean."
-            .to_owned();
-    Drawn { name: "percolation-threshold", caption, figure }
+    let caption = "Mean threshold of each size, and the two relations fitted to them. Bars: 95 % intervals \
+                   of the mean.";
+    Drawn::new("percolation-threshold", figure, caption)
 }

@@ -4,12 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::figures::{
     Across, Area, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Point, Rule,
-    Shape, Tick, VERMILLION, ramp, shorten,
+    Shape, Tick, VERMILLION, positive_range, ramp, shorten,
 };
 use super::folder::RunFolder;
-use super::numbers::{interval, known, percent, significant, size, threshold, whole};
+use super::numbers::{
+    capital, interval, interval_in_percent, known, percent, significant, size, threshold, trimmed, whole,
+};
 use super::shell::Drawn;
-use crate::outcome::record::{LayerRow, SeriesRow, SizeRow, Verdict};
+use crate::outcome::record::{LayerRow, SeriesRow, SizeRow, Statistic, Verdict};
 
 /// Replicates drawn one by one; with more, the mean and the first ones are drawn.
 const DRAWN: usize = 40;
@@ -19,9 +21,9 @@ pub(super) fn run_name(run: u64) -> &'static str {
     if run == 1 { "first run" } else { "second run" }
 }
 
-/// The colour and symbol of a run, the same in every figure.
-fn run_look(run: u64) -> (Colour, Shape) {
-    if run == 1 { (BLUE, Shape::Circle) } else { (PURPLE, Shape::Square) }
+/// The colour, symbol and dashes of a run in every figure.
+fn run_look(run: u64) -> (Colour, Shape, Dash) {
+    if run == 1 { (BLUE, Shape::Circle, Dash::Solid) } else { (PURPLE, Shape::Square, Dash::Dashed) }
 }
 
 /// The colour of a class.
@@ -34,8 +36,20 @@ pub(super) fn verdict_colour(verdict: Verdict) -> Colour {
     }
 }
 
-fn size_label(folder: &RunFolder) -> String {
-    if folder.outcome.inputs.scale_free { "Size / D0F (–)".to_owned() } else { "Size (mm)".to_owned() }
+/// A logarithmic axis around sizes.
+fn size_axis(folder: &RunFolder, sizes: impl Iterator<Item = f64>) -> Axis {
+    let (low, high) = positive_range(sizes);
+    Axis::log(if folder.outcome.inputs.scale_free { "Size / D0F (–)" } else { "Size (mm)" }, low, high)
+}
+
+/// Rows of (size, percent finer) as points.
+fn points(rows: &[[f64; 2]]) -> Vec<(f64, f64)> {
+    rows.iter().map(|row| (row[0], row[1])).collect()
+}
+
+/// The upper end of an interval, or the mean where there is none.
+fn upper(statistic: &Statistic) -> f64 {
+    interval(statistic).map_or(statistic.mean, |(_, high)| high)
 }
 
 fn threshold_rule(folder: &RunFolder, across: Across) -> Rule {
@@ -52,18 +66,9 @@ fn eroded_axis(label: &str, folder: &RunFolder, highest: f64) -> Axis {
 /// Mean and interval of both runs against the threshold, for the eye, beside the verdict.
 pub(super) fn verdict(folder: &RunFolder) -> Drawn {
     let summary = &folder.outcome.summary;
-    let most = |high: f64, run: &_| -> f64 {
-        let run: &crate::outcome::record::RunSummary = run;
-        let statistic = &run.eroded_mass_fraction;
-        high.max(interval(statistic).map_or(statistic.mean, |(_, top)| top))
-    };
-    let highest = 100.0 * summary.iter().fold(0.0, most);
+    let highest = 100.0 * summary.iter().map(|run| upper(&run.eroded_mass_fraction)).fold(0.0, f64::max);
     let x = eroded_axis("Base eroded, by mass (%)", folder, highest * 1.08);
-    let ticks = summary
-        .iter()
-        .map(|run| Tick::new(run.run as f64, &[if run.run == 1 { "First run" } else { "Second run" }]));
-    let mut y = Axis::linear("", 0.0, 1.0).with_ticks(ticks.collect()).downward();
-    (y.low, y.high) = (0.3, summary.len() as f64 + 0.7);
+    let y = Axis::rows(summary.iter().map(|run| capital(run_name(run.run))));
     let height = 84.0 + 48.0 * summary.len() as f64;
     let what = "Mean and 95 % interval of the eroded mass in each run, against the threshold";
     let mut figure =
@@ -71,30 +76,23 @@ pub(super) fn verdict(folder: &RunFolder) -> Drawn {
     figure.add(threshold_rule(folder, Across::X));
     for run in summary {
         let statistic = &run.eroded_mass_fraction;
-        let (colour, shape) = run_look(run.run);
-        let bar = interval(statistic).map(|(low, high)| (low * 100.0, high * 100.0));
-        let point = Point::new(statistic.mean * 100.0, run.run as f64, colour, shape).x_interval(bar);
-        figure.add(point.label(&percent(statistic.mean)));
+        let (colour, shape, _) = run_look(run.run);
+        let point = Point::new(statistic.mean * 100.0, run.run as f64, colour, shape);
+        figure.add(point.x_interval(interval_in_percent(statistic)).label(&percent(statistic.mean)));
     }
-    let caption = String::new();
-    Drawn { name: "verdict", caption, figure }
+    Drawn::new("verdict", figure, "")
 }
 
 /// Filter, base and constrictions on semi-logarithmic axes.
 pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     let inputs = &folder.outcome.inputs;
     let (filter, base) = (&inputs.filter, &inputs.base);
-    let points = |rows: &[[f64; 2]]| -> Vec<(f64, f64)> { rows.iter().map(|row| (row[0], row[1])).collect() };
-    let sizes = || {
-        let rows = filter.gradation.iter().chain(&filter.constrictions).chain(&base.gradation);
-        rows.map(|row| row[0]).filter(|size| *size > 0.0)
-    };
-    let (low, high) = (sizes().fold(f64::MAX, f64::min), sizes().fold(0.0, f64::max));
-    let x = Axis::log(&size_label(folder), low.min(high), high.max(low.min(1.0)));
+    let rows = filter.gradation.iter().chain(&filter.constrictions).chain(&base.gradation);
+    let x = size_axis(folder, rows.map(|row| row[0]));
     let y = Axis::percent("Percent finer (%)");
     let what = format!(
-        "Percent finer against size for the filter (by mass), its constrictions (by number) and the base (by mass). \
-         D15F is {}, D85B is {}.",
+        "Percent finer against size for the filter (by mass), its constrictions (by number) and the base (by \
+         mass). D15F is {}, D85B is {}.",
         size(filter.d15_mm, inputs.scale_free),
         size(base.d85_mm, inputs.scale_free),
     );
@@ -114,18 +112,19 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     figure.add(mark(filter.d15_mm, 15.0, BLACK, Shape::Circle, "D15F"));
     figure.add(mark(base.d85_mm, 85.0, VERMILLION, Shape::Square, "D85B"));
     let caption = format!(
-        "Gradations of filter and base (percent finer by mass) and the filter’s constrictions (percent smaller by \
-         number, curve “{}”). Base particles pass a constriction that is no smaller than they are. \
-         D15F/D85B = {}, D15F/D95B = {}.{}",
+        "Gradations of filter and base (percent finer by mass) and the filter’s constrictions (percent \
+         smaller by number, curve “{}”). Base particles pass a constriction that is no smaller than they \
+         are. D15F/D85B = {}, D15F/D95B = {}.{}",
         shorten(&filter.curve_name, 80),
         significant(folder.outcome.ratios.d15f_over_d85b),
         significant(folder.outcome.ratios.d15f_over_d95b),
         if inputs.scale_free { " Sizes are multiples of D0F, the smallest filter grain." } else { "" },
     );
-    Drawn { name: "gradations", caption, figure }
+    Drawn::new("gradations", figure, caption)
 }
 
-/// Eroded mass in percent after an increment, by straight lines between recorded increments, level after the last.
+/// Eroded mass in percent after an increment, by straight lines between recorded increments, level after the
+/// last.
 fn eroded_at(rows: &[SeriesRow], increment: f64) -> f64 {
     let value = |row: &SeriesRow| row.eroded_mass_fraction * 100.0;
     let after = rows.partition_point(|row| (row.increment as f64) < increment);
@@ -159,7 +158,7 @@ pub(super) fn eroded(folder: &RunFolder) -> Option<Drawn> {
     let replicates = folder.outcome.replicates.len();
     let mut bold = Vec::new();
     for run in folder.runs() {
-        let (colour, _) = run_look(run);
+        let (colour, _, dash) = run_look(run);
         let all: Vec<&[SeriesRow]> =
             folder.series.range((run, 0)..=(run, u64::MAX)).map(|(_, rows)| rows.as_slice()).collect();
         if all.is_empty() {
@@ -183,30 +182,23 @@ pub(super) fn eroded(folder: &RunFolder) -> Option<Drawn> {
         for at in increments.iter().step_by(stride).chain(increments.last()).map(|at| *at as f64) {
             mean.push((at, all.iter().map(|rows| eroded_at(rows, at)).sum::<f64>() / all.len() as f64));
         }
-        let dash = if run == 1 { Dash::Solid } else { Dash::Dashed };
         bold.push(Line::new(mean, colour).width(3.0).dash(dash).label(run_name(run)));
     }
-    for line in bold {
-        figure.add(line);
-    }
-    let mut caption = "Base eroded, in percent of the mass that a run inserts, against increment (an increment is not a \
-                       length of time). The second run brings fresh base onto the constrictions that the first left \
-                       blocked."
+    bold.into_iter().for_each(|line| figure.add(line));
+    let mut caption = "Base eroded, in percent of the mass that a run inserts, against increment (an \
+                       increment is not a length of time). The second run brings fresh base onto the \
+                       constrictions that the first left blocked."
         .to_owned();
     if replicates > 1 {
         let thin = replicates.min(DRAWN);
-        let which = if thin < replicates {
-            format!("the first {thin} of {replicates}")
-        } else {
-            format!("{replicates}")
-        };
-        caption.push_str(&format!(" Bold: mean; thin: {which} replicates."));
+        let first = if thin < replicates { format!("the first {thin} of ") } else { String::new() };
+        caption.push_str(&format!(" Bold: mean; thin: {first}{replicates} replicates."));
     }
     if shown < last {
-        caption
-            .push_str(&format!(" The curves stay level from there to the last increment, {}.", whole(last)));
+        let last = whole(last);
+        caption.push_str(&format!(" The curves stay level from there to the last increment, {last}."));
     }
-    Some(Drawn { name: "eroded", caption, figure })
+    Some(Drawn::new("eroded", figure, caption))
 }
 
 /// Blocked constrictions by layer, depth downward, for each run.
@@ -219,10 +211,11 @@ pub(super) fn layers(folder: &RunFolder) -> Option<Drawn> {
     let x_label = "Constrictions blocked (% of the layer’s)";
     let x =
         if highest > 60.0 { Axis::percent(x_label) } else { Axis::linear(x_label, 0.0, highest.max(1.0)) };
-    let mut y = Axis::linear("Layer (0 = where the base enters)", 0.0, (deepest as f64).max(1.0)).downward();
+    let high = deepest as f64 * 1.02 + f64::from(u8::from(deepest == 0));
+    let mut y = Axis::linear("Layer (0 = where the base enters)", 0.0, (deepest as f64).max(1.0))
+        .downward()
+        .within(-0.02 * deepest as f64, high);
     y.ticks.retain(|tick| tick.at == libm::floor(tick.at));
-    (y.low, y.high) = (-0.02 * deepest as f64, deepest as f64 * 1.02 + f64::from(u8::from(deepest == 0)));
-    y.ticks.retain(|tick| tick.at <= y.high);
     let what =
         "Share of the constrictions of each layer that are blocked at the end of each run, depth downward";
     let mut figure = Figure::new("Blocked constrictions by layer", what, "", x, y)
@@ -230,7 +223,7 @@ pub(super) fn layers(folder: &RunFolder) -> Option<Drawn> {
         .names_above();
     let mut bold = Vec::new();
     for run in folder.runs() {
-        let (colour, _) = run_look(run);
+        let (colour, _, dash) = run_look(run);
         let mut by_layer: BTreeMap<u64, Vec<f64>> = BTreeMap::new();
         for rows in folder.layers.range((run, 0)..=(run, u64::MAX)).map(|(_, rows)| rows) {
             for row in rows {
@@ -245,15 +238,11 @@ pub(super) fn layers(folder: &RunFolder) -> Option<Drawn> {
         if folder.outcome.replicates.len() > 1 {
             figure.add(Area::new(least.chain(most.into_iter().rev()).collect(), colour, 0.22));
         }
-        let dash = if run == 1 { Dash::Solid } else { Dash::Dashed };
         let mean = at(|shares| shares.iter().sum::<f64>() / shares.len() as f64).collect();
-        bold.push(
-            Line::new(mean, colour).width(2.4).dash(dash).label(&format!("after the {}", run_name(run))),
-        );
+        let name = format!("after the {}", run_name(run));
+        bold.push(Line::new(mean, colour).width(2.4).dash(dash).label(&name));
     }
-    for line in bold {
-        figure.add(line);
-    }
+    bold.into_iter().for_each(|line| figure.add(line));
     let mut caption =
         "Constrictions blocked at the end of each run, by layer; the second run starts with what the \
                        first left blocked."
@@ -263,12 +252,13 @@ pub(super) fn layers(folder: &RunFolder) -> Option<Drawn> {
     }
     if let Some(thickness) = folder.outcome.inputs.network.thickness_mm {
         let depth = size(thickness, folder.outcome.inputs.scale_free);
-        caption.push_str(&format!(" All layers together stand for {depth} of filter."));
+        caption.push_str(&format!(" All layers together are {depth} of filter."));
     }
-    Some(Drawn { name: "layers", caption, figure })
+    Some(Drawn::new("layers", figure, caption))
 }
 
-/// Size curves of what the first run of the first replicate retained, after chosen increments, beside base and eroded.
+/// Size curves of what the first run of the first replicate retained, after chosen increments, beside base
+/// and eroded.
 pub(super) fn retained(folder: &RunFolder) -> Option<Drawn> {
     const CURVES: usize = 6;
     let (run, replicate) = (1, 1);
@@ -287,36 +277,29 @@ pub(super) fn retained(folder: &RunFolder) -> Option<Drawn> {
     let chosen: Vec<_> =
         (0..count).map(|i| all[if count > 1 { i * (all.len() - 1) / (count - 1) } else { 0 }]).collect();
     let base = &folder.outcome.inputs.base.gradation;
-    let sizes = || {
-        let curves = chosen.iter().map(|(_, rows)| *rows).chain(gone);
-        let drawn = curves.flatten().map(|row| row.diameter_mm);
-        drawn.chain(base.iter().map(|row| row[0])).filter(|size| *size > 0.0)
-    };
-    let (low, high) = (sizes().fold(f64::MAX, f64::min), sizes().fold(0.0, f64::max));
-    let x = Axis::log(&size_label(folder), low.min(high), high.max(low.min(1.0)));
+    let drawn = chosen.iter().map(|(_, rows)| *rows).chain(gone).flatten().map(|row| row.diameter_mm);
+    let x = size_axis(folder, drawn.chain(base.iter().map(|row| row[0])));
     let y = Axis::percent("Percent finer by mass (%)");
     let what = "Size curves of the base, of what is retained after some increments, and of what is eroded";
     let mut figure = Figure::new("What is retained and what is eroded", what, "", x, y)
         .names_above()
         .sizes((720.0, 460.0), (358.0, 480.0));
-    let points =
+    let curve =
         |rows: &[SizeRow]| rows.iter().map(|row| (row.diameter_mm, row.percent_finer_by_mass)).collect();
-    figure.add(
-        Line::new(base.iter().map(|row| (row[0], row[1])).collect(), VERMILLION).width(2.6).label("base"),
-    );
+    figure.add(Line::new(points(base), VERMILLION).width(2.6).label("base"));
     for (index, (increment, rows)) in chosen.iter().enumerate() {
         let end = if index + 1 == chosen.len() { ", the end" } else { "" };
         let label = format!("retained, increment {}{end}", whole(*increment));
-        figure.add(Line::new(points(rows), ramp(index, chosen.len())).width(1.8).label(&label));
+        figure.add(Line::new(curve(rows), ramp(index, chosen.len())).width(1.8).label(&label));
     }
     if let Some(rows) = gone {
-        figure.add(Line::new(points(rows), BLACK).dash(Dash::Dashed).label("eroded, the end"));
+        figure.add(Line::new(curve(rows), BLACK).dash(Dash::Dashed).label("eroded, the end"));
     }
     let of = if folder.outcome.replicates.len() > 1 { " of the first replicate" } else { "" };
     let mut caption = format!(
-        "What the filter has retained after chosen increments of the first run{of}, what has left it, and the base as \
-         inserted. Retained curves that move to the left show self-filtering: what coarse particles blocked holds \
-         finer ones."
+        "What the filter has retained after chosen increments of the first run{of}, what has left it, and \
+         the base as inserted. Retained curves that move to the left show self-filtering: what coarse \
+         particles blocked holds finer ones."
     );
     if gone.is_none() {
         caption.push_str(" Nothing left the filter.");
@@ -324,7 +307,7 @@ pub(super) fn retained(folder: &RunFolder) -> Option<Drawn> {
     if all.is_empty() {
         caption.push_str(" Nothing was retained.");
     }
-    Some(Drawn { name: "retained", caption, figure })
+    Some(Drawn::new("retained", figure, caption))
 }
 
 /// Eroded mass against the number of base particles, and the class that each number gives.
@@ -340,17 +323,13 @@ pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
         tick.rank = u8::from(case.factor != 1.0);
         tick
     });
-    let mut x =
-        Axis::log("Multiple of N_base, and below it the grains per void that it stands for", least, most);
-    x = x.with_ticks(ticks.collect());
-    (x.low, x.high) = (least / 1.25, most * 1.25);
-    let reach = |fraction: &crate::outcome::record::Statistic| {
-        interval(fraction).map_or(fraction.mean, |(_, high)| high)
-    };
-    let highest = 100.0 * cases.iter().flat_map(|case| &case.runs).map(reach).fold(0.0, f64::max);
+    let x = Axis::log("Multiple of N_base, and below it the grains per void that this is", least, most)
+        .with_ticks(ticks.collect())
+        .within(least / 1.25, most * 1.25);
+    let highest = 100.0 * cases.iter().flat_map(|case| &case.runs).map(upper).fold(0.0, f64::max);
     let y = eroded_axis("Base eroded, by mass (%)", folder, (highest * 1.3).min(100.0));
-    let what = "Percent of the base mass eroded in each run against multiples of the number of base particles; the colour \
-                behind is the verdict";
+    let what = "Percent of the base mass eroded in each run against multiples of the number of base \
+                particles; the colour behind is the verdict";
     let mut figure = Figure::new("How the verdict moves with the number of base particles", what, "", x, y);
     let edge = |left: f64, right: f64| libm::sqrt(left * right);
     let mut left = least / 1.25;
@@ -365,31 +344,25 @@ pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
     }
     figure.add(threshold_rule(folder, Across::Y));
     for run in folder.runs() {
-        let (colour, shape) = run_look(run);
-        // the runs stand a little apart, so that their bars can be told from one another
+        let (colour, shape, dash) = run_look(run);
+        // the runs stand a little apart, so that their bars do not overlap
         let apart = if run == 1 { 0.985 } else { 1.015 };
         let found =
             || cases.iter().filter_map(|case| Some((case.factor * apart, case.runs.get(run as usize - 1)?)));
-        let dash = if run == 1 { Dash::Solid } else { Dash::Dashed };
         let means = found().map(|(factor, statistic)| (factor, statistic.mean * 100.0)).collect();
         figure.add(Line::new(means, colour).dash(dash).label(run_name(run)));
         for (factor, statistic) in found() {
-            let bar = interval(statistic).map(|(low, high)| (low * 100.0, high * 100.0));
-            figure.add(Point::new(factor, statistic.mean * 100.0, colour, shape).y_interval(bar));
+            let point = Point::new(factor, statistic.mean * 100.0, colour, shape);
+            figure.add(point.y_interval(interval_in_percent(statistic)));
         }
     }
     let caption = format!(
-        "How the verdict moves with the number of base particles, N_base. Grains per void and mass ratio enter N_base only \
-         as a product (Eq. 2), so this one axis answers for both: ×2 is twice the grains per void or twice the mass \
-         ratio. ×1 is this scene: {} grains per void, mass ratio {}. Bars: 95 % intervals.",
+        "How the verdict moves with the number of base particles, N_base. Grains per void and mass ratio \
+         enter N_base only as a product (Eq. 2), so this one axis answers for both: ×2 is twice the grains \
+         per void or twice the mass ratio. ×1 is this scene: {} grains per void, mass ratio {}. Bars: 95 % \
+         intervals.",
         known(folder.outcome.grains_per_void, significant),
         known(folder.outcome.inputs.mass_ratio, percent),
     );
-    Some(Drawn { name: "sensitivity", caption, figure })
-}
-
-/// A factor with no digit more than it needs.
-pub(super) fn trimmed(factor: f64) -> String {
-    let text = format!("{factor:.3}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    Some(Drawn::new("sensitivity", figure, caption))
 }

@@ -31,7 +31,7 @@ use super::figures::{Figure, Size, visible};
 
 const STYLE: &str = include_str!("page.css");
 
-/// A figure of a page, and what stands below it.
+/// A figure of a page with its caption.
 pub struct Drawn {
     /// Name of its file, without the ending; no other figure of the page has it.
     pub name: &'static str,
@@ -39,6 +39,13 @@ pub struct Drawn {
     pub caption: String,
     /// The figure.
     pub figure: Figure,
+}
+
+impl Drawn {
+    /// A figure with the name of its file and its caption.
+    pub fn new(name: &'static str, figure: Figure, caption: impl Into<String>) -> Self {
+        Self { name, caption: caption.into(), figure }
+    }
 }
 
 /// A page as text: `title` for the browser, and what stands in each part of its body.
@@ -80,6 +87,12 @@ pub fn drawing(drawn: &Drawn) -> Markup {
     html! { div.wide { (PreEscaped(wide)) } div.narrow { (PreEscaped(narrow)) } }
 }
 
+/// Figures with their captions, numbered from 1.
+pub(super) fn figures(drawn: &[Drawn]) -> Markup {
+    html! { @for (index, drawn) in drawn.iter().enumerate() { (figure(index + 1, drawn)) } }
+}
+
+/// A figure with its number and its caption.
 pub(super) fn figure(number: usize, drawn: &Drawn) -> Markup {
     html! {
         figure {
@@ -89,6 +102,30 @@ pub(super) fn figure(number: usize, drawn: &Drawn) -> Markup {
     }
 }
 
+/// What a page says beside its results: what the model does not contain.
+pub(super) fn leaves_out<T: AsRef<str>>(items: &[T], more: &Markup) -> Markup {
+    html! {
+        aside.leaves {
+            h2 { "What the model leaves out" }
+            ul { @for item in items { li { (clean(item.as_ref())) } } }
+            (more)
+        }
+    }
+}
+
+/// Whom to cite for the model.
+pub(super) fn citation() -> Markup {
+    html! {
+        h2 { "How to cite" }
+        p {
+            "The model: Shire and O’Sullivan, " cite { "A network model to assess base-filter \
+                                                        combinations" }
+            ", Computers and Geotechnics."
+        }
+    }
+}
+
+/// A row of a table of facts: what it is, and its value.
 pub(super) fn fact(name: &str, value: impl AsRef<str>) -> Markup {
     html! { tr { th { (name) } td { (clean(value.as_ref())) } } }
 }

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::machine::Machine;
 use super::replicates::{ReplicateResult, as_it_is, stopping, summarise};
-use crate::case::Case;
+use crate::case::{Case, INPUT_NAMES};
 use crate::outcome::record::{Manifest, Outcome, Sensitivity, Statistic};
 use crate::outcome::rules::RuleInputs;
 use crate::outcome::{MODEL_LEAVES_OUT, Recorded, infiltration, rules, verdict};
@@ -79,6 +79,10 @@ pub fn outcome(
 pub fn write_scene(folder: &Folder, case: &Case) -> Result<(), StoreError> {
     for input in &case.inputs {
         folder.write(&input.kept_as, &input.bytes)?;
+    }
+    if !case.inputs.is_empty() {
+        let names = serde_json::to_vec_pretty(&case.input_names()).expect("names are text");
+        folder.write(INPUT_NAMES, &names)?;
     }
     folder.write("scene.toml", case.resolved().to_toml().as_bytes())
 }

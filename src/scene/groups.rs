@@ -4,6 +4,14 @@ use crate::schema::{Alternative, Group};
 
 /// Settings that say the same thing in different ways.
 pub(super) const GROUPS: &[Group] = &[
+    // What was measured on a packing says nothing of another one.
+    Group {
+        says: "say what is packed",
+        alternatives: &[Alternative {
+            resets: &["filter.measured"],
+            ..Alternative::by(&["filter.density", "filter.friction", "filter.cu", "filter.sieve", "packing."])
+        }],
+    },
     Group {
         says: "say what the filter's constrictions are",
         alternatives: &[

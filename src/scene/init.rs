@@ -5,13 +5,13 @@ use std::fmt::Write;
 use super::keys::{Base, Filter, FilterPacking, NetworkKeys, Record, WalkKeys};
 use crate::outcome::stopping::StopRule;
 use crate::packing;
-use crate::schema::Key;
+use crate::schema::KeyInfo;
 
 /// Columns of a comment.
 const WIDTH: usize = 96;
 
 /// What is said of each section, with its settings.
-pub(super) fn sections() -> Vec<(&'static [&'static str], Vec<Key>)> {
+pub(super) fn sections() -> Vec<(&'static [&'static str], Vec<KeyInfo>)> {
     let packing_keys = [FilterPacking::keys(), packing::Settings::keys()].concat();
     vec![
         (WalkKeys::ABOUT, WalkKeys::keys()),
@@ -24,7 +24,8 @@ pub(super) fn sections() -> Vec<(&'static [&'static str], Vec<Key>)> {
     ]
 }
 
-/// The text: words stand after `# `, settings that are off after `#`; a section whose settings are all off is off too.
+/// The text: words stand after `# `, settings that are off after `#`; a section whose settings are all off is
+/// off too.
 pub(super) fn text() -> String {
     let mut text = String::new();
     for (about, keys) in sections() {

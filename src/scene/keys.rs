@@ -11,14 +11,16 @@ use crate::schema::{Leaf, above_zero, any, only, section, whole, within, words};
 use crate::walk::{Engine, Sampling};
 
 section! {
-    /// A base-filter combination for voidwalk: `voidwalk run scene.toml`, or `voidwalk check scene.toml` first.
-    /// Sizes are diameters. Every setting can also be given on the command line, as `--set filter.cu=3`.
+    /// A base-filter combination for voidwalk: `voidwalk run scene.toml`, or `voidwalk check scene.toml`
+    /// first. Sizes are diameters. Every setting can also be given on the command line, as `--set
+    /// filter.cu=3`.
     pub struct WalkKeys in "" {
         /// The same seed gives the same bits, for any number of threads.
         pub seed: u64 = 1, set, whole(0..=u64::MAX);
-        /// How passive particles, which can block nothing, are walked: "counts" keeps exact counts of them per void; "particles"
-        /// walks every one by itself; "expected" keeps their expectation only; "auto" is counts, but particles where none is passive
-        /// or where they are few (below 8 a start node and increment).
+        /// How passive particles, which can block nothing, are walked: "counts" keeps exact counts of them
+        /// per void; "particles" walks every one by itself; "expected" keeps their expectation only; "auto"
+        /// is counts, but particles where none is passive or where they are few (below 8 a start node and
+        /// increment).
         pub engine: Engine = Engine::Auto, set, words(&Engine::ALL.map(Engine::name));
         /// 1, or 2: fresh base on the constrictions that the first run left blocked.
         pub runs: u64 = 2, set, whole(1..=2);
@@ -29,8 +31,9 @@ section! {
             "one part of a whole number of equal parts, from 0.000001 to 1, as 0.01 or 0.02",
             |share| is_whole_part(*share),
         );
-        /// Sampling of sizes and start nodes: "independent" (the paper's), or "stratified": spread evenly over both, so that
-        /// replicates scatter less; the marginal distribution of each particle is unchanged.
+        /// Sampling of sizes and start nodes: "independent" (the paper's), or "stratified": spread evenly
+        /// over both, so that replicates scatter less; the marginal distribution of each particle is
+        /// unchanged.
         pub sampling: Sampling = Sampling::Independent, set, words(&Sampling::ALL.map(Sampling::name));
     }
 }
@@ -44,32 +47,39 @@ fn is_whole_part(share: f64) -> bool {
 section! {
     /// The filter: its constrictions and its gradation by mass.
     pub struct Filter in "filter" {
-        /// The constriction curve, by number: a shipped name, or a CSV file with the columns percent_smaller and diameter_mm (or
-        /// diameter_over_d0f). `voidwalk check` lists the shipped names.
+        /// The constriction curve, by number: a shipped name, or a CSV file with the columns percent_smaller
+        /// and diameter_mm (or diameter_over_d0f). `voidwalk check` lists the shipped names.
         pub curve: Option<CurveSource> = None, set "\"shire2016-cu1.5-loose\"",
             any("a shipped curve or a file name, in quotes");
-        /// Instead of a curve: the grains are packed this densely first and the constrictions measured (seconds to minutes, once).
+        /// Instead of a curve: the grains are packed this densely first and the constrictions measured
+        /// (seconds to minutes, once).
         pub density: Option<Density> = None, off "\"loose\"",
             any("\"dense\" (friction 0), \"intermediate\" (0.1) or \"loose\" (0.3)");
         /// Instead of a word for the density: friction between grains while they are compressed.
         pub friction: Option<f64> = None, off "0.3", within(0.0..=10.0, "a number from 0 to 10");
-        /// Instead of a curve or a packing: constrictions estimated from the gradation by inscribed circles, at a relative density
-        /// from 0 (loose) to 1 (dense).
-        pub estimate: Option<f64> = None, off "0.5", within(0.0..=1.0, "a relative density from 0 (loose) to 1 (dense)");
-        /// The gradation by mass is linear on semi-log paper from this size (mm); 1 means lengths in units of D0F. With a sieve table:
-        /// where its open finest tail ends.
+        /// Written by a run whose filter was packed: the constriction curve measured on that packing, so that it is not packed
+        /// again.
+        pub measured: Option<PathBuf> = None, off "\"inputs/filter-curve.csv\"", any("a file name in quotes");
+        /// Instead of a curve or a packing: constrictions estimated from the gradation by inscribed circles,
+        /// at a relative density from 0 (loose) to 1 (dense).
+        pub estimate: Option<f64> = None, off "0.5", within(0.0..=1.0, "a relative density from 0 (loose) \
+         to 1 (dense)");
+        /// The gradation by mass is linear on semi-log paper from this size (mm); 1 means lengths in units of
+        /// D0F. With a sieve table: where its open finest tail ends.
         pub d0_mm: Option<f64> = None, set "1.0", above_zero();
         /// Cu of a linear gradation (a shipped curve knows its own).
         pub cu: Option<f64> = None, off "1.5", within(1.0..=1000.0, "a number from 1 to 1000");
         /// Instead of a linear gradation: a sieve table (CSV: opening in mm, percent finer by mass).
         pub sieve: Option<PathBuf> = None, off "\"filter.csv\"", any("a file name in quotes");
-        /// N_p / N_voids of Eq. (2): filter grains per void of the packing (a shipped curve or a packing knows its own).
+        /// N_p / N_voids of Eq. (2): filter grains per void of the packing (a shipped curve or a packing
+        /// knows its own).
         pub grains_per_void: Option<f64> = None, off "0.61", above_zero();
     }
 }
 
 section! {
-    /// How the filter is packed, where filter.density or filter.friction asks for it: its grains, and its voids.
+    /// How the filter is packed, where filter.density or filter.friction asks for it: its grains, and its
+    /// voids.
     pub struct FilterPacking in "packing" {
         /// Grains: by default enough for a cell 5.4 times as wide as the largest one, 9,000 to 60,000.
         pub grains: Option<u64> = None, off "10000", whole(10..=10_000_000);
@@ -86,7 +96,8 @@ section! {
         /// D85B is the constriction size that this percent of the filter's constrictions are smaller than.
         pub d85_at_dc: Option<f64> = None, set "5", within(0.0..=100.0, "a percentage from 0 to 100");
         /// The constriction curve that d85_at_dc is read on, where it is not the filter's own.
-        pub dc_curve: Option<CurveSource> = None, off "\"cu3-loose\"", any("a shipped curve or a file name, in quotes");
+        pub dc_curve: Option<CurveSource> = None, off "\"cu3-loose\"", any("a shipped curve or a file name, \
+         in quotes");
         /// D85B (mm).
         pub d85_mm: Option<f64> = None, off "0.2", above_zero();
         /// D15F by D85B.
@@ -99,7 +110,8 @@ section! {
         pub single_mm: Option<f64> = None, off "0.18", above_zero();
         /// How much base: mass of base over mass of filter, Eq. (2).
         pub mass_ratio: Option<f64> = None, set "0.05", above_zero();
-        /// A cap on the number of base particles by Eq. (2): off unless set, and reported where it bites (the paper's is 2e8).
+        /// A cap on the number of base particles by Eq. (2): off unless set, and reported where it bites (the
+        /// paper's is 2e8).
         pub cap: Option<u64> = None, off "2e8", whole(1..=u64::MAX);
         /// Instead of a mass ratio: the number of base particles itself.
         pub n_base: Option<u64> = None, off "1000000", whole(1..=u64::MAX);
@@ -115,13 +127,15 @@ section! {
         pub ny: Option<u64> = None, set "40", whole(1..=u64::from(u32::MAX));
         /// Voids along the flow: layers.
         pub nz: Option<u64> = None, set "60", whole(1..=u64::from(u32::MAX));
-        /// Diagonals are added and constrictions deleted until voids have 4 to 8 entrances and exits as in Table 3 ("table3"), or
-        /// the percent of the voids by connectivity that are given here, as { 5 = 25, 6 = 50, 7 = 25 }.
+        /// Diagonals are added and constrictions deleted until voids have 4 to 8 entrances and exits as in
+        /// Table 3 ("table3"), or the percent of the voids by connectivity that are given here, as { 5 = 25,
+        /// 6 = 50, 7 = 25 }.
         pub connectivity: Option<VoidConnectivity> = None, off "\"table3\"", any(
-            "\"table3\", or percentages that sum to 100 of the voids by connectivity, each a whole number from 2 to 12, as \
-             { 4 = 10, 5 = 20, 6 = 40, 7 = 20, 8 = 10 }",
+            "\"table3\", or percentages that sum to 100 of the voids by connectivity, each a whole number \
+             from 2 to 12, as { 4 = 10, 5 = 20, 6 = 40, 7 = 20, 8 = 10 }",
         );
-        /// Instead of a lattice, any directed network: CSV with from,to,diameter_mm, rows `start,ID,`, and `to` = end.
+        /// Instead of a lattice, any directed network: CSV with from,to,diameter_mm, rows `start,ID,`, and
+        /// `to` = end.
         pub file: Option<PathBuf> = None, off "\"network.csv\"", any("a file name in quotes");
     }
 }

@@ -1,4 +1,5 @@
-//! What the settings of a scene mean together: settings that exclude each other, as one value that is one of several.
+//! What the settings of a scene mean together: settings that exclude each other, as one value that is one of
+//! several.
 
 use std::path::PathBuf;
 

@@ -1,9 +1,10 @@
 //! A scene: one base-filter combination and how it is to be walked, as the user states it.
 //!
 //! Every setting is declared once, in [`keys`] or by the stage that it belongs to ([`StopRule`], packing's
-//! [`Settings`](crate::packing::Settings)); a [`Scene`] holds them all. From those declarations follow the commented text of
-//! [`Scene::init_text`], what may be set, what is refused, and the resolved scene that a run writes and is known by. Which settings
-//! exclude each other stands in [`groups`]. The names are a contract.
+//! [`Settings`](crate::packing::Settings)); a [`Scene`] holds them all. From those declarations follow the
+//! commented text of [`Scene::init_text`], what may be set, what is refused, and the resolved scene that a
+//! run writes and is known by. Which settings exclude each other stands in [`groups`]. The names are a
+//! contract.
 
 mod groups;
 mod init;
@@ -21,7 +22,7 @@ pub use meaning::{Amount, BaseGradation, D85, FilterGradation, NetworkSource, Pa
 
 use crate::outcome::stopping::StopRule;
 use crate::packing;
-use crate::schema::{Key, Names, Settings};
+use crate::schema::{GivenSettings, KeyInfo, Names};
 
 /// What errors call the built-in scene.
 const BUILT_IN_NAME: &str = "built-in scene";
@@ -71,13 +72,13 @@ pub struct PackingKeys {
 
 /// The names of all settings, and which exclude each other.
 static NAMES: LazyLock<Names> = LazyLock::new(|| Names {
-    known: Scene::keys().iter().map(Key::full_name).collect(),
+    known: Scene::keys().iter().map(KeyInfo::full_name).collect(),
     groups: groups::GROUPS,
 });
 
 impl Scene {
     /// Every setting, section by section, in the order in which they are written.
-    pub fn keys() -> Vec<Key> {
+    pub fn keys() -> Vec<KeyInfo> {
         init::sections().into_iter().flat_map(|(_, keys)| keys).collect()
     }
 
@@ -99,7 +100,7 @@ impl Scene {
     /// # Errors
     /// The file cannot be read, or a setting does not exist, is not allowed, clashes or is missing.
     pub fn read(path: &Path, assignments: &[String]) -> Result<Self, SceneError> {
-        Self::assigned(Settings::read(path, &NAMES)?, assignments)
+        Self::assigned(GivenSettings::read(path, &NAMES)?, assignments)
     }
 
     /// A scene from TOML text; `name` stands for the file in errors, and paths are taken as they are.
@@ -107,11 +108,11 @@ impl Scene {
     /// # Errors
     /// As [`Scene::read`].
     pub fn parse(bytes: &[u8], name: &str, assignments: &[String]) -> Result<Self, SceneError> {
-        Self::assigned(Settings::parse(bytes, name, PathBuf::new(), &NAMES)?, assignments)
+        Self::assigned(GivenSettings::parse(bytes, name, PathBuf::new(), &NAMES)?, assignments)
     }
 
-    /// The scene of a plan's case: the built-in scene or one from a file, with the case's settings, those stated together in
-    /// one list each.
+    /// The scene of a plan's case: the built-in scene or one from a file, with the case's settings, those
+    /// stated together in one list each.
     ///
     /// # Errors
     /// As [`Scene::read`].
@@ -121,8 +122,8 @@ impl Scene {
         origin: &Origin,
     ) -> Result<Self, SceneError> {
         let mut s = match base {
-            Some(path) => Settings::read(path, &NAMES)?,
-            None => Settings::parse(init::text().as_bytes(), BUILT_IN_NAME, PathBuf::new(), &NAMES)?,
+            Some(path) => GivenSettings::read(path, &NAMES)?,
+            None => GivenSettings::parse(init::text().as_bytes(), BUILT_IN_NAME, PathBuf::new(), &NAMES)?,
         };
         for together in assignments {
             s.set_together(together, &NAMES, origin)?;
@@ -130,14 +131,14 @@ impl Scene {
         Ok(Self { name: origin.to_string(), ..Self::of(&s)? })
     }
 
-    fn assigned(mut s: Settings, assignments: &[String]) -> Result<Self, SceneError> {
+    fn assigned(mut s: GivenSettings, assignments: &[String]) -> Result<Self, SceneError> {
         for assignment in assignments {
             s.set(assignment, &NAMES)?;
         }
         Self::of(&s)
     }
 
-    fn of(s: &Settings) -> Result<Self, SceneError> {
+    fn of(s: &GivenSettings) -> Result<Self, SceneError> {
         s.check_groups(groups::GROUPS)?;
         let mut scene = Self {
             name: s.file().to_owned(),
@@ -159,7 +160,7 @@ impl Scene {
     /// # Errors
     /// As [`Scene::read`], or neither density nor friction is given.
     pub fn read_packing(path: &Path, assignments: &[String]) -> Result<PackingSpec, SceneError> {
-        let mut s = Settings::read(path, &NAMES)?;
+        let mut s = GivenSettings::read(path, &NAMES)?;
         for assignment in assignments {
             s.set(assignment, &NAMES)?;
         }
@@ -193,7 +194,7 @@ impl Scene {
     }
 
     /// Refuses a scene that leaves a question open, or answers one that is not asked.
-    fn check_what_is_missing(&self, s: &Settings) -> Result<(), SceneError> {
+    fn check_what_is_missing(&self, s: &GivenSettings) -> Result<(), SceneError> {
         let filter = &self.filter;
         if filter.curve.is_none()
             && filter.estimate.is_none()
@@ -201,8 +202,13 @@ impl Scene {
             && self.network.file.is_none()
         {
             return Err(s.clash(
-                "filter.curve is missing: a shipped name, or a CSV file with percent_smaller,diameter_mm; or filter.density, for a \
-                 filter to be packed",
+                "filter.curve is missing: a shipped name, or a CSV file with percent_smaller,diameter_mm; \
+                 or filter.density, for a filter to be packed",
+            ));
+        }
+        if filter.measured.is_some() && (self.packing.is_none() || filter.grains_per_void.is_none()) {
+            return Err(s.clash(
+                "filter.measured goes with filter.grains_per_void, and filter.density or filter.friction",
             ));
         }
         let base = &self.base;
@@ -231,7 +237,7 @@ impl Scene {
 }
 
 /// The section `packing`, where density or friction asks for a packing.
-fn packing_keys(s: &Settings) -> Result<Option<PackingKeys>, SceneError> {
+fn packing_keys(s: &GivenSettings) -> Result<Option<PackingKeys>, SceneError> {
     let stated = s.has("filter.density") || s.has("filter.friction");
     match s.first_in("packing.") {
         Some(name) if !stated => Err(s.clash(format!(

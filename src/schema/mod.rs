@@ -1,9 +1,11 @@
-//! Settings, each declared once: its name, type, default, what is allowed, and what a user is told of it.
+//! Settings, each declared once: its name, type, default, what is allowed, and what a user is told of
+//! it.
 //!
-//! A stage declares what it can be told with [`section!`]; from that one declaration follow the struct with its fields, the
-//! reading of a TOML file and of `--set` with errors that name the line ([`Settings`]), the commented text that `voidwalk init`
-//! writes ([`Key`]), the check of values that a program gave, and what is written back ([`serde::Serialize`]). So a setting cannot
-//! be forgotten in one of these places. Which settings exclude each other is declared by [`Group`]s.
+//! A stage declares what it can be told with [`section!`]; from that one declaration follow the struct with
+//! its fields, the reading of a TOML file and of `--set` with errors that name the line ([`GivenSettings`]),
+//! the commented text that `voidwalk init` writes ([`KeyInfo`]), the check of values that a program gave, and
+//! what is written back ([`serde::Serialize`]). So a setting cannot be forgotten in one of these places.
+//! Which settings exclude each other is declared by [`Group`]s.
 
 mod settings;
 mod value;
@@ -14,12 +16,12 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-pub use settings::{Alternative, Group, Names, Origin, SceneError, Settings};
+pub use settings::{Alternative, GivenSettings, Group, Names, Origin, SceneError};
 pub use value::Value;
 
 /// What `voidwalk init` writes of a setting.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Key {
+pub struct KeyInfo {
     /// Its section, empty for the settings at the top.
     pub section: &'static str,
     /// Its name inside the section.
@@ -32,7 +34,7 @@ pub struct Key {
     pub is_set: bool,
 }
 
-impl Key {
+impl KeyInfo {
     /// Its full name: `base.cu`.
     pub fn full_name(&self) -> String {
         full_name(self.section, self.name)
@@ -181,8 +183,8 @@ pub fn in_toml(value: &impl Serialize) -> String {
 ///     pub struct Base in "base" {
 ///         /// What the setting means: for the docs and for `voidwalk init`.
 ///         pub cu: Option<f64> = None, set "1.5", within(1.0..=1000.0, "a number from 1 to 1000");
-///         /// `name: type = default`; then how `init` shows it: `set` as in the built-in scene, or `off` in a comment, with a value
-///         /// where the default has none; then what is allowed.
+///         /// `name: type = default`; then how `init` shows it: `set` as in the built-in scene, or `off` in a
+///         /// comment, with a value where the default has none; then what is allowed.
 ///         pub cap: Option<u64> = None, off "2e8", whole(1..=u64::MAX);
 ///     }
 ///     // Fields that only a program sets, not a scene.
@@ -198,7 +200,10 @@ macro_rules! section {
                 pub $name:ident: $Type:ty = $default:expr, $state:ident $($example:literal)?, $allowed:expr;
             )*
         }
-        $(beside { $( $(#[doc = $beside_doc:literal])* pub $beside:ident: $Beside:ty = $beside_default:expr; )* })?
+        $(beside { $(
+            $(#[doc = $beside_doc:literal])*
+            pub $beside:ident: $Beside:ty = $beside_default:expr;
+        )* })?
     ) => {
         $(#[doc = $about])*
         #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -229,8 +234,8 @@ macro_rules! section {
             pub const ABOUT: &'static [&'static str] = &[$($about),*];
 
             /// What a user is told of each setting, in the order in which they are written.
-            pub fn keys() -> Vec<crate::schema::Key> {
-                vec![$(crate::schema::Key {
+            pub fn keys() -> Vec<crate::schema::KeyInfo> {
+                vec![$(crate::schema::KeyInfo {
                     section: $section,
                     name: stringify!($name),
                     doc: [$($doc),*].concat().trim().to_owned(),
@@ -248,11 +253,12 @@ macro_rules! section {
             ///
             /// # Errors
             /// A value that is not allowed.
-            pub fn read(settings: &crate::schema::Settings) -> Result<Self, crate::schema::SceneError> {
+            pub fn read(settings: &crate::schema::GivenSettings) -> Result<Self, crate::schema::SceneError> {
                 Ok(Self {
-                    $($name: match settings.get(&crate::schema::full_name($section, stringify!($name)), &$allowed)? {
-                        Some(value) => crate::schema::Setting::given(value),
-                        None => $default,
+                    $($name: {
+                        let name = crate::schema::full_name($section, stringify!($name));
+                        let given = settings.get(&name, &$allowed)?;
+                        given.map_or_else(|| $default, crate::schema::Setting::given)
                     },)*
                     $($($beside: $beside_default,)*)?
                 })
@@ -262,7 +268,8 @@ macro_rules! section {
             pub fn out_of_range(&self) -> Option<crate::schema::OutOfRange> {
                 $(
                     let allowed: crate::schema::Allowed<<$Type as crate::schema::Setting>::Value> = $allowed;
-                    if let Some(value) = crate::schema::Setting::value(&self.$name).filter(|value| !allowed.admits(value)) {
+                    let value = crate::schema::Setting::value(&self.$name);
+                    if let Some(value) = value.filter(|value| !allowed.admits(value)) {
                         return Some(crate::schema::OutOfRange {
                             name: stringify!($name),
                             value: crate::schema::in_toml(value),

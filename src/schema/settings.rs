@@ -1,7 +1,7 @@
 //! Settings with where they come from: a line of a TOML file, or the command line.
 //!
-//! A setting has a dotted name (`base.cu`). Some exclude each other ([`Group`]): setting one on the command line replaces the
-//! others, and a file that gives both is refused.
+//! A setting has a dotted name (`base.cu`). Some exclude each other ([`Group`]): setting one on the command
+//! line replaces the others, and a file that gives both is refused.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -103,7 +103,8 @@ pub struct Alternative {
     pub with: &'static [&'static str],
     /// Whether those choose this alternative too, on the command line.
     pub with_chooses: bool,
-    /// Settings that mean something else under the other alternatives: choosing this one on the command line removes them.
+    /// Settings that mean something else under the other alternatives: choosing this one on the command
+    /// line removes them.
     pub resets: &'static [&'static str],
 }
 
@@ -119,7 +120,8 @@ impl Alternative {
     }
 
     fn is_chosen_by(&self, name: &str) -> bool {
-        self.by.contains(&name) || (self.with_chooses && self.with.contains(&name))
+        let is_by = |by: &&str| name == *by || (by.ends_with('.') && name.starts_with(*by));
+        self.by.iter().any(is_by) || (self.with_chooses && self.with.contains(&name))
     }
 }
 
@@ -133,7 +135,7 @@ pub struct Names {
 
 /// Settings by name.
 #[derive(Debug)]
-pub struct Settings {
+pub struct GivenSettings {
     file: String,
     folder: PathBuf,
     values: BTreeMap<String, (Value, Origin)>,
@@ -142,7 +144,7 @@ pub struct Settings {
 /// A larger settings file is refused (bytes).
 const LARGEST_FILE: u64 = 1 << 20;
 
-impl Settings {
+impl GivenSettings {
     /// Reads a TOML file.
     ///
     /// # Errors
@@ -163,7 +165,7 @@ impl Settings {
     /// Reads TOML text; `file` names it in errors, and relative paths start from `folder`.
     ///
     /// # Errors
-    /// As [`Settings::read`].
+    /// As [`GivenSettings::read`].
     pub fn parse(bytes: &[u8], file: &str, folder: PathBuf, names: &Names) -> Result<Self, SceneError> {
         let syntax = |at, problem| SceneError::Syntax { file: file.into(), at, problem };
         let text =
@@ -208,10 +210,11 @@ impl Settings {
         self.set_together(&[assignment.to_owned()], names, &Origin::CommandLine)
     }
 
-    /// Applies assignments that are stated together: they replace alternatives that were given before, not one another.
+    /// Applies assignments that are stated together: they replace alternatives that were given before, not
+    /// one another.
     ///
     /// # Errors
-    /// As [`Settings::set`].
+    /// As [`GivenSettings::set`].
     pub fn set_together(
         &mut self,
         assignments: &[String],
@@ -347,7 +350,8 @@ impl Names {
 mod tests {
     use super::*;
     use crate::schema::{above_zero, any, whole, within};
-    use proptest::prelude::*;
+    use proptest::collection::vec;
+    use proptest::prelude::proptest;
 
     const GROUPS: &[Group] = &[Group {
         says: "give the base",
@@ -362,11 +366,11 @@ mod tests {
         Names { known: known.map(String::from).to_vec(), groups: GROUPS }
     }
 
-    fn parse(text: &str) -> Result<Settings, SceneError> {
-        Settings::parse(text.as_bytes(), "s.toml", PathBuf::from("there"), &names())
+    fn parse(text: &str) -> Result<GivenSettings, SceneError> {
+        GivenSettings::parse(text.as_bytes(), "s.toml", PathBuf::from("there"), &names())
     }
 
-    fn sieve(settings: &Settings) -> Option<PathBuf> {
+    fn sieve(settings: &GivenSettings) -> Option<PathBuf> {
         settings.get("base.sieve", &any("a file name in quotes")).unwrap()
     }
 
@@ -426,16 +430,19 @@ mod tests {
     #[test]
     fn what_is_no_toml_is_refused_with_its_line() {
         assert!(parse("seed = 1\nbase = \n").unwrap_err().to_string().starts_with("s.toml, line 2: "));
-        assert!(Settings::read(Path::new("/"), &names()).is_err());
+        assert!(GivenSettings::read(Path::new("/"), &names()).is_err());
         assert!(
-            Settings::read(Path::new("/no/such"), &names()).unwrap_err().to_string().starts_with("/no/such")
+            GivenSettings::read(Path::new("/no/such"), &names())
+                .unwrap_err()
+                .to_string()
+                .starts_with("/no/such")
         );
     }
 
     proptest! {
         #[test]
-        fn parsing_never_panics(bytes in proptest::collection::vec(proptest::arbitrary::any::<u8>(), 0..200)) {
-            let _ = Settings::parse(&bytes, "s.toml", PathBuf::new(), &names());
+        fn parsing_never_panics(bytes in vec(u8::MIN..=u8::MAX, 0..200)) {
+            let _ = GivenSettings::parse(&bytes, "s.toml", PathBuf::new(), &names());
         }
     }
 }

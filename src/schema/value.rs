@@ -99,7 +99,8 @@ impl<'de> IntoDeserializer<'de> for &'de Value {
     }
 }
 
-/// What type a setting has decides how its digits are read: a count may be written `2e8`, a length may not be infinite.
+/// What type a setting has decides how its digits are read: a count may be written `2e8`, a length may not be
+/// infinite.
 impl<'de> Deserializer<'de> for &'de Value {
     type Error = Error;
 
@@ -143,7 +144,7 @@ impl<'de> Deserializer<'de> for &'de Value {
     }
 
     forward_to_deserialize_any! {
-        bool i8 i16 i32 i64 i128 u8 u16 u32 u128 f32 char str string bytes byte_buf option unit unit_struct seq
-        tuple tuple_struct map struct identifier ignored_any
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u128 f32 char str string bytes byte_buf option unit
+        unit_struct seq tuple tuple_struct map struct identifier ignored_any
     }
 }

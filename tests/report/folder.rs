@@ -1,5 +1,5 @@
-//! A run folder as a finished run leaves it, made up but plausible: the loose Cu 1.5 filter with D0F = 4 mm against a
-//! base of Cu 3. No walk is behind it; only the report is tested with it.
+//! A run folder as a finished run leaves it, made up but plausible: the loose Cu 1.5 filter with D0F = 4 mm
+//! against a base of Cu 3. No walk is behind it; only the report is tested with it.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -274,8 +274,8 @@ impl Plan {
     }
 
     fn series(&self) -> String {
-        let mut text = "replicate,run,increment,inserted,moving,eroded,retained_in_constrictions,retained_in_voids,trapped,\
-                        blocked,eroded_mass_fraction\n"
+        let mut text = "replicate,run,increment,inserted,moving,eroded,retained_in_constrictions,\
+                 retained_in_voids,trapped,blocked,eroded_mass_fraction\n"
             .to_owned();
         for (replicate, run) in self.runs() {
             let end =
@@ -369,5 +369,6 @@ fn manifest() -> Manifest {
     }
 }
 
-const SCENE: &str = "seed = 2016\nreplicates = 10\n\n[filter]\ncurve = \"shire2016-cu1.5-loose\"\ncu = 1.5\nd0_mm = 4.0\n\n\
-[base]\nsieve = \"core-fill.csv\"\nmass_ratio = 0.05\n\n[network]\nnx = 40\nny = 40\nnz = 60\n";
+const SCENE: &str = "seed = 2016\nreplicates = 10\n\n[filter]\ncurve = \"shire2016-cu1.5-loose\"\ncu = \
+                     1.5\nd0_mm = 4.0\n\n[base]\nsieve = \"core-fill.csv\"\nmass_ratio = \
+                     0.05\n\n[network]\nnx = 40\nny = 40\nnz = 60\n";

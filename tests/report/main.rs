@@ -51,7 +51,7 @@ fn the_page_says_what_an_engineer_reads_first() {
         "Filter rules beside the verdict",
         "Terzaghi",
         "Largest particle eroded, over D15F",
-        "The network stands for 296 mm of filter",
+        "Modelled filter thickness: 296 mm",
         "21 443 871 (Eq. 2)",
         "4f2c43f",
         "curve = \"shire2016-cu1.5-loose\"".replace('"', "&quot;").as_str(),
@@ -86,7 +86,7 @@ fn every_class_has_its_words() {
         (Verdict::None, "less than 7.5 % of its mass passes in the first run"),
         (Verdict::Some, "the filter seals after some erosion"),
         (Verdict::Continuing, "does not hold this base"),
-        (Verdict::Undecided, "replicates cannot tell the classes apart"),
+        (Verdict::Undecided, "Inconclusive: these replicates do not separate the classes"),
     ];
     for (verdict, expected) in cases {
         let mut plan = Plan::usual();
@@ -97,12 +97,13 @@ fn every_class_has_its_words() {
     plan.outcome.verdict = Verdict::Undecided;
     plan.outcome.summary[1].eroded_mass_fraction =
         Statistic { mean: 0.074, sd: Some(0.01), low: Some(0.066), high: Some(0.082) };
-    let rule = "added until the verdict would be right with 99.9 %. That was reached.";
+    let rule = "to decide the verdict at the 99.9 % confidence level, corrected for repeated looks. That was \
+                reached.";
     assert!(words(&made(&plan).0).contains(rule));
-    assert!(words(&made(&plan).0).contains("The interval of the second run includes 7.5 %"));
+    assert!(words(&made(&plan).0).contains("Inconclusive: the interval of the second run includes 7.5 %"));
     plan.outcome.summary.truncate(1);
     plan.outcome.replicates.iter_mut().for_each(|replicate| replicate.runs.truncate(1));
-    assert!(words(&made(&plan).0).contains("Only a first run was asked for"));
+    assert!(words(&made(&plan).0).contains("only a first was asked for"));
 }
 
 #[test]
@@ -203,7 +204,10 @@ fn a_cap_is_never_silent() {
     plan.outcome.warnings.clear();
     plan.outcome.capped = true;
     plan.outcome.n_base_eq2 = Some(970_000_000);
-    assert!(words(&made(&plan).0).contains("from 970 000 000 (Eq. 2) to 21 443 871"));
+    assert!(words(&made(&plan).0).contains(
+        "Capped: 21 443 871 base particles were walked; Eq. (2) requires \
+                                            970 000 000"
+    ));
 }
 
 #[test]
@@ -282,8 +286,8 @@ fn a_missing_file_is_named_and_nothing_is_written() {
 fn a_malformed_file_is_named_with_its_line() {
     let header = "replicate,run,layer,constrictions,blocked,retained_in_constrictions,retained_in_voids\n";
     let sizes = "replicate,run,increment,diameter_mm,percent_finer_by_mass,percent_finer_by_number\n";
-    let series = "replicate,run,increment,inserted,moving,eroded,retained_in_constrictions,retained_in_voids,trapped,\
-                  blocked,eroded_mass_fraction\n";
+    let series = "replicate,run,increment,inserted,moving,eroded,retained_in_constrictions,\
+                 retained_in_voids,trapped,blocked,eroded_mass_fraction\n";
     let cases = [
         (
             "outcome.json",

@@ -1,14 +1,16 @@
-//! How much accuracy a second buys: what `precision.json` holds, and the statistics of a work-precision diagram.
+//! How much accuracy a second buys: what `precision.json` holds, and the statistics of a work-precision
+//! diagram.
 //!
 //! # Error, time, figure of merit
-//! An error is a standard deviation over replicates (new walks, and where it says so new networks), never one worked out
-//! from the number of particles: all particles of a run share one network and what they block, so a binomial error is several
-//! times too small. Time is processor time, all cores together. The figure of merit is `1 / (error^2 time)`: it does not
-//! change with the number of replicates, and two settings compare by its ratio.
+//! An error is a standard deviation over replicates (new walks, and where it says so new networks), never one
+//! worked out from the number of particles: all particles of a run share one network and what they block, so
+//! a binomial error is several times too small. Time is processor time, all cores together. The figure of
+//! merit is `1 / (error^2 time)`: it does not change with the number of replicates, and two settings compare
+//! by its ratio.
 //!
 //! # Intervals
-//! 95 %. Of a mean: Student's t over replicates. Of a standard deviation: chi squared with as many degrees of freedom as there
-//! are independent groups less one. Of a share of wrong verdicts: Wilson's.
+//! 95 %. Of a mean: Student's t over replicates. Of a standard deviation: chi squared with as many degrees of
+//! freedom as there are independent groups less one. Of a share of wrong verdicts: Wilson's.
 
 mod statistics;
 
@@ -210,7 +212,8 @@ pub struct SamplingLine {
     pub replicates: u64,
     /// Mean of the eroded mass fraction.
     pub mean: f64,
-    /// Mean less that of the first variant, on the same networks: zero but for the scatter, if both have one expectation.
+    /// Mean less that of the first variant, on the same networks: zero but for the scatter, if both have one
+    /// expectation.
     pub difference: f64,
     /// Its standard error; `None` for the first variant.
     pub difference_error: Option<f64>,
@@ -255,8 +258,8 @@ pub struct BiasRow {
     pub bias_low: Option<f64>,
     /// Upper end of the 95 % interval.
     pub bias_high: Option<f64>,
-    /// Whether both were walked on the same networks with the same random numbers, so that the interval is that of the
-    /// differences replicate by replicate.
+    /// Whether both were walked on the same networks with the same random numbers, so that the interval is
+    /// that of the differences replicate by replicate.
     pub paired: bool,
     /// Processor time of a replicate, mean, s.
     pub core_seconds: f64,

@@ -21,8 +21,8 @@ pub struct SdEstimate {
 /// The 97.5 % point of the normal distribution.
 const Z: f64 = 1.959_963_984_540_054;
 
-/// Chi squared over its degrees of freedom at the normal point `z` (Wilson and Hilferty; its lower points are up to 8 % low
-/// at 4 degrees, 1 % at 10, so that intervals are somewhat wide).
+/// Chi squared over its degrees of freedom at the normal point `z` (Wilson and Hilferty; its lower points are
+/// up to 8 % low at 4 degrees, 1 % at 10, so that intervals are somewhat wide).
 fn chi_squared_over(degrees: f64, z: f64) -> f64 {
     let a = 2.0 / (9.0 * degrees);
     let root = 1.0 - a + z * a.sqrt();
@@ -30,8 +30,8 @@ fn chi_squared_over(degrees: f64, z: f64) -> f64 {
     (root * root * root).max(1e-3)
 }
 
-/// The standard deviation of independent normal values, with the 95 % interval of chi squared; about `known_mean` where it is
-/// given, about the mean of the values otherwise.
+/// The standard deviation of independent normal values, with the 95 % interval of chi squared; about
+/// `known_mean` where it is given, about the mean of the values otherwise.
 ///
 /// # Panics
 /// With fewer than two values, one where the mean is known.

@@ -118,6 +118,21 @@ impl Axis {
         self
     }
 
+    /// From `low` to `high` exactly; ticks beyond them go.
+    pub fn within(mut self, low: f64, high: f64) -> Axis {
+        (self.low, self.high) = (low, high);
+        self.ticks.retain(|tick| (low..=high).contains(&tick.at));
+        self
+    }
+
+    /// Rows with names instead of values, counted from 1, downward.
+    pub fn rows(names: impl IntoIterator<Item = String>) -> Axis {
+        let ticks: Vec<Tick> =
+            (1..).zip(names).map(|(row, name): (u32, _)| Tick::new(f64::from(row), &[&name])).collect();
+        let high = ticks.len() as f64 + 0.7;
+        Axis::linear("", 0.0, 1.0).with_ticks(ticks).downward().within(0.3, high)
+    }
+
     /// Where a value stands: 0 at `low`, 1 at `high`; `None` for a value that the scale cannot show.
     pub fn position(&self, value: f64) -> Option<f64> {
         let position = match self.scale {
@@ -127,6 +142,14 @@ impl Axis {
         };
         position.is_finite().then_some(position)
     }
+}
+
+/// Least and most of the positive values; 0.1 and 1 where there is none.
+pub fn positive_range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let positive = values.filter(|v| *v > 0.0 && v.is_finite());
+    let (low, high) =
+        positive.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), v| (low.min(v), high.max(v)));
+    if low.is_finite() { (low, high) } else { (0.1, 1.0) }
 }
 
 /// The next 1, 2 or 5 times a power of ten that is no smaller than `rough`.

@@ -83,8 +83,8 @@ fn draw(figure: &Figure, size: Size, id: &str, namespace: &str) -> String {
     let mut svg = Svg::default();
     svg.raw(&format!(
         "<svg{namespace} id=\"{id}\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
-         role=\"img\" aria-labelledby=\"{id}-title {id}-desc\" font-family=\"{FONT}\" font-size=\"{TICK_TEXT}\" \
-         fill=\"#1a1a1a\">\n"
+         role=\"img\" aria-labelledby=\"{id}-title {id}-desc\" font-family=\"{FONT}\" \
+         font-size=\"{TICK_TEXT}\" fill=\"#1a1a1a\">\n"
     ));
     svg.raw(&format!("<title id=\"{id}-title\">{}</title>\n", escape(&figure.title)));
     svg.raw(&format!("<desc id=\"{id}-desc\">{}</desc>\n", escape(&figure.description)));
@@ -291,8 +291,8 @@ fn grid(svg: &mut Svg, frame: &Frame<'_>) {
     }
 }
 
-/// The ticks whose labels fit beside one another, the important ones first, each with its place. `room` gives the
-/// place of a tick and half the room of its label.
+/// The ticks whose labels fit beside one another, the important ones first, each with its place. `room` gives
+/// the place of a tick and half the room of its label.
 fn labelled(axis: &Axis, room: impl Fn(&Tick) -> Option<(f64, f64)>) -> Vec<(&Tick, f64)> {
     let mut kept: Vec<(&Tick, f64, f64)> = Vec::new();
     let highest = axis.ticks.iter().map(|tick| tick.rank).max().unwrap_or(0);

@@ -37,8 +37,8 @@ pub struct Figure {
 }
 
 impl Figure {
-    /// An empty figure. `title` and `description` are for readers who do not see it, `heading` (may be empty) is drawn
-    /// above the frame.
+    /// An empty figure. `title` and `description` are for readers who do not see it, `heading` (may be empty)
+    /// is drawn above the frame.
     pub fn new(title: &str, description: &str, heading: &str, x: Axis, y: Axis) -> Figure {
         Figure {
             title: title.to_owned(),

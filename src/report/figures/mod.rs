@@ -1,10 +1,11 @@
 //! Figures: axes, lines, areas, points and rules, drawn as SVG.
 //!
-//! A [`Figure`] says what is shown; [`Figure::file`] and [`Figure::inline`] draw it. It is written for what
-//! a geotechnical engineer expects (semi-logarithmic paper with its minor lines, depth downward, a name beside
-//! each curve) and for pages that forbid everything but themselves: only presentation attributes, no script, no style
-//! element, no font or image from elsewhere. Colours are those of Okabe and Ito, which colour-blind readers tell apart,
-//! and never the only difference between two curves: dashes, widths and symbols differ as well.
+//! A [`Figure`] says what is shown; [`Figure::file`] and [`Figure::inline`] draw it. It is written for what a
+//! geotechnical engineer expects (semi-logarithmic paper with its minor lines, depth downward, a name beside
+//! each curve) and for pages that forbid everything but themselves: only presentation attributes, no script,
+//! no style element, no font or image from elsewhere. Colours are those of Okabe and Ito, which colour-blind
+//! readers tell apart, and never the only difference between two curves: dashes, widths and symbols differ as
+//! well.
 //!
 //! ```
 //! use voidwalk::report::figures::{Axis, BLUE, Figure, Line, Size};
@@ -24,7 +25,7 @@ mod path;
 mod place;
 mod svg;
 
-pub use axis::{Axis, Scale, Tick};
+pub use axis::{Axis, Scale, Tick, positive_range};
 pub use colour::{BLACK, BLUE, Colour, GREEN, GREY, ORANGE, PURPLE, VERMILLION, ramp};
 pub use figure::{Figure, Naming, Size};
 pub use marks::{Across, Area, Dash, Disc, Line, Mark, Point, Rule, Shape};

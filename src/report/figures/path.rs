@@ -18,8 +18,8 @@ pub(super) fn along(path: &[(f64, f64)], share: f64) -> Option<(f64, f64)> {
     path.last().copied()
 }
 
-/// The path with as few points as keep it within a third of a pixel (Douglas and Peucker), after points that fall on
-/// their predecessor are left out.
+/// The path with as few points as keep it within a third of a pixel (Douglas and Peucker), after points that
+/// fall on their predecessor are left out.
 pub(super) fn simplify(points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
     const NEAR: f64 = 0.3;
     let mut path: Vec<(f64, f64)> = Vec::new();

@@ -59,8 +59,9 @@ impl Canvas {
         self.ink.extend(path.last().map(|end| (*end, mark)));
     }
 
-    /// A free box of this size near one of the anchors (tried in order), or `None`. The box is taken. What belongs to
-    /// other marks is kept at a greater distance, so that a name stands on its own curve's side of a neighbour.
+    /// A free box of this size near one of the anchors (tried in order), or `None`. The box is taken. What
+    /// belongs to other marks is kept at a greater distance, so that a name stands on its own curve's side of
+    /// a neighbour.
     pub(super) fn place(
         &mut self,
         anchors: &[(f64, f64)],

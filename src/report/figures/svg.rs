@@ -39,8 +39,8 @@ pub fn escape(text: &str) -> String {
     out
 }
 
-/// The character itself, or U+FFFD for one that is no text: a control character other than tab and line feed, one
-/// that turns the direction of writing, or one that XML 1.0 forbids.
+/// The character itself, or U+FFFD for one that is no text: a control character other than tab and line feed,
+/// one that turns the direction of writing, or one that XML 1.0 forbids.
 pub fn visible(character: char) -> char {
     match character {
         '\t' | '\n' => character,
@@ -104,8 +104,8 @@ pub(super) fn short(value: f64) -> String {
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
-/// Elements, one after another. Only presentation attributes are written, never a `style`: a strict content security
-/// policy lets them pass.
+/// Elements, one after another. Only presentation attributes are written, never a `style`: a strict content
+/// security policy lets them pass.
 #[derive(Default)]
 pub(super) struct Svg {
     text: String,

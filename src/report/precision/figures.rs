@@ -1,13 +1,18 @@
-//! The figures of a precision study: log-log, with a guide line of slope -1/2 where more time means more samples.
+//! The figures of a precision study: log-log, with a guide line of slope -1/2 where more time means more
+//! samples.
 
 use crate::outcome::precision::{
     BiasRow, DecisionTier, ExactRow, ExactTier, PackingTier, SamplingLine, SamplingTier, ScalingRow,
+    TriangulationRow,
 };
 use crate::report::figures::{
     Across, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Point, Rule, Shape,
-    VERMILLION, ramp,
+    VERMILLION, positive_range, ramp,
 };
 use crate::report::shell::Drawn;
+
+/// Percentage points of a fraction.
+const PP: f64 = 100.0;
 
 /// Colour and symbol of an engine or a way of drawing.
 fn look(name: &str) -> (Colour, Shape) {
@@ -24,28 +29,33 @@ fn look(name: &str) -> (Colour, Shape) {
     }
 }
 
-/// Room for names above the frame, on a page and on a telephone.
-const WIDE: (f64, f64) = (720.0, 500.0);
-const NARROW: (f64, f64) = (358.0, 600.0);
-
-/// Least and most of positive values.
-fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let positive = values.filter(|v| *v > 0.0 && v.is_finite());
-    let (low, high) =
-        positive.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), v| (low.min(v), high.max(v)));
-    if low.is_finite() { (low, high) } else { (0.1, 1.0) }
+/// An empty figure with room for names above its frame, on a page and on a telephone.
+fn figure(title: &str, what: &str, x: Axis, y: Axis) -> Figure {
+    Figure::new(title, what, "", x, y).names_above().sizes((720.0, 500.0), (358.0, 600.0))
 }
 
-/// A line of slope -1/2 through a point, from one x to another.
-fn guide(through: (f64, f64), from: f64, to: f64) -> Line {
-    let at = |x: f64| (x, through.1 * (through.0 / x).sqrt());
-    Line::new(vec![at(from), at(to)], GREY).width(1.5).dash(Dash::Dashed).label("slope −1/2")
+/// A logarithmic axis around positive values.
+fn log(label: &str, values: impl Iterator<Item = f64>) -> Axis {
+    let (low, high) = positive_range(values);
+    Axis::log(label, low, high)
+}
+
+/// A dashed power law through a point, over positive values of x.
+fn power(through: (f64, f64), exponent: f64, x: impl Iterator<Item = f64>, colour: Colour) -> Line {
+    let (low, high) = positive_range(x);
+    let at = |x: f64| (x, through.1 * libm::pow(x / through.0, exponent));
+    Line::new(vec![at(low), at(high)], colour).width(1.5).dash(Dash::Dashed)
+}
+
+/// The dashed line on which errors of independent samples lie.
+fn guide(through: (f64, f64), x: impl Iterator<Item = f64>) -> Line {
+    power(through, -0.5, x, GREY).label("slope −1/2")
 }
 
 /// Distinct values in order of first appearance.
-fn distinct<'a, T>(rows: &'a [T], of: impl Fn(&'a T) -> &'a str) -> Vec<&'a str> {
+fn distinct<'a, T: 'a>(rows: impl IntoIterator<Item = &'a T>, of: impl Fn(&'a T) -> &'a str) -> Vec<&'a str> {
     let mut all: Vec<&str> = Vec::new();
-    for name in rows.iter().map(of) {
+    for name in rows.into_iter().map(of) {
         if !all.contains(&name) {
             all.push(name);
         }
@@ -54,108 +64,93 @@ fn distinct<'a, T>(rows: &'a [T], of: impl Fn(&'a T) -> &'a str) -> Vec<&'a str>
 }
 
 pub(super) fn exact(exact: &ExactTier) -> Vec<Drawn> {
-    let captions = [
+    type Of = fn(&ExactRow) -> f64;
+    let kinds: [(&'static str, &str, Of, &str); 2] = [
         (
             "exact-particles",
-            "Root mean square error of the chance to leave over the random networks, against the number of particles. Dashed: the error of independent \
-             particles, slope −1/2; particles, counts and single particles must lie on it. \"Expected\" draws nothing: its error is the rounding of its whole numbers. Filled: clogged lattice; hollow, dotted: first particle.",
+            "Particles of a network",
+            |row| row.particles as f64,
+            "Root mean square error of the probability to leave over the random networks, against the number \
+             of particles. Dashed: the error of independent particles, slope −1/2; particles, counts and \
+             single particles must lie on it. \"Expected\" draws nothing: its error is the rounding of its \
+             whole numbers. Filled: clogged lattice; hollow, dotted: first particle.",
         ),
         (
             "exact-time",
-            "The same errors against the processor time of one network. Counts cost the same for any number of particles, so their line falls without more time. \
+            "Processor time of a network (s)",
+            |row| row.core_seconds,
+            "Root mean square error of the probability to leave, against the processor time of one network. \
+             Counts cost the same for any number of particles, so their line falls without more time. \
              Dashed: slope −1/2.",
         ),
     ];
-    let mut figures = Vec::new();
-    for (index, (name, caption)) in captions.into_iter().enumerate() {
-        let by_time = index == 1;
-        let x = |row: &ExactRow| if by_time { row.core_seconds } else { row.particles as f64 };
-        let (low, high) = range(exact.rows.iter().map(x));
-        let label = if by_time { "Processor time of a network (s)" } else { "Particles of a network" };
+    let drawn = |(name, label, x, caption): (&'static str, &str, Of, &str)| {
+        let what = "Root mean square error of the probability to leave, by engine";
         let errors = exact.rows.iter().flat_map(|row| [row.error_low, row.error_high]);
-        let (least, most) = range(errors);
-        let mut figure = Figure::new(
-            "Error against exact answers",
-            "Root mean square error of the chance to leave, by engine",
-            "",
-            Axis::log(label, low, high),
-            Axis::log("Error of the chance to leave (–)", least, most),
-        )
-        .names_above()
-        .sizes(WIDE, NARROW);
+        let y = log("Error of the probability to leave (–)", errors);
+        let mut figure = figure("Error against exact answers", what, log(label, exact.rows.iter().map(x)), y);
         let mut named: Vec<&str> = Vec::new();
-        for quantity in &exact.quantities {
-            let rows: Vec<&ExactRow> =
-                exact.rows.iter().filter(|row| row.quantity == quantity.name).collect();
-            let mut engines: Vec<&str> = Vec::new();
-            rows.iter().for_each(|row| {
-                if !engines.contains(&row.engine.as_str()) {
-                    engines.push(&row.engine)
-                }
-            });
-            let first = quantity.name == exact.quantities[0].name;
-            for engine in engines {
+        for (index, quantity) in exact.quantities.iter().enumerate() {
+            let rows = || exact.rows.iter().filter(|row| row.quantity == quantity.name);
+            for engine in distinct(rows(), |row| &row.engine) {
                 let (colour, shape) = look(engine);
-                let of_engine: Vec<&&ExactRow> = rows.iter().filter(|row| row.engine == engine).collect();
-                let path = of_engine.iter().map(|row| (x(row), row.error)).collect();
-                let dash = if first { Dash::Solid } else { Dash::Dotted };
+                let of_engine = || rows().filter(|row| row.engine == engine);
+                let dash = if index == 0 { Dash::Solid } else { Dash::Dotted };
+                let path = of_engine().map(|row| (x(row), row.error)).collect();
                 let line = Line::new(path, colour).width(1.5).dash(dash);
-                let is_new = !named.contains(&engine);
-                figure.add(if is_new { line.label(engine) } else { line });
+                figure.add(if named.contains(&engine) { line } else { line.label(engine) });
                 named.push(engine);
-                for row in of_engine {
+                for row in of_engine() {
                     let bar = Some((row.error_low, row.error_high));
                     let point = Point::new(x(row), row.error, colour, shape).y_interval(bar);
-                    figure.add(if first { point } else { point.hollow() });
+                    figure.add(if index == 0 { point } else { point.hollow() });
                 }
             }
         }
-        let leading = exact.rows.iter().rev().find(|row| row.engine == "particles");
-        if let Some(row) = leading {
-            figure.add(guide((x(row), row.expected_error), low, high));
+        if let Some(row) = exact.rows.iter().rfind(|row| row.engine == "particles") {
+            figure.add(guide((x(row), row.expected_error), exact.rows.iter().map(x)));
         }
-        figures.push(Drawn { name, caption: caption.to_owned(), figure });
-    }
-    figures
+        Drawn::new(name, figure, caption)
+    };
+    kinds.into_iter().map(drawn).collect()
 }
 
 pub(super) fn sampling(sampling: &SamplingTier) -> Vec<Drawn> {
-    let captions = [
+    let kinds = [
         (
             "sampling-new-networks",
             "new networks",
-            "Over new networks and new walks: standard deviation of the mean of 1, 2, 4, ... replicates against the processor time that they take together. Bars: 95 % intervals from the \
-             independent groups of replicates. The floor is the scatter between networks, which no other way of drawing base particles lowers.",
+            "Over new networks and new walks: standard deviation of the mean of 1, 2, 4, ... replicates \
+             against the processor time that they take together. Bars: 95 % intervals from the independent \
+             groups of replicates. The floor is the scatter between networks, which no other way of drawing \
+             base particles lowers.",
         ),
         (
             "sampling-one-network",
             "one network",
-            "The same over new walks on one network: what a way of drawing base particles can change.",
+            "Over new walks on one network: standard deviation of the mean of 1, 2, 4, ... replicates \
+             against their processor time, which a way of drawing base particles can change.",
         ),
     ];
     let drawn = |(name, kind, caption): (&'static str, &str, &str)| {
         let lines: Vec<&SamplingLine> = sampling.lines.iter().filter(|line| line.networks == kind).collect();
         (!lines.is_empty()).then(|| scatter(sampling, name, caption, &lines))
     };
-    captions.into_iter().filter_map(drawn).collect()
+    kinds.into_iter().filter_map(drawn).collect()
 }
 
 fn scatter(sampling: &SamplingTier, name: &'static str, caption: &str, lines: &[&SamplingLine]) -> Drawn {
-    const PP: f64 = 100.0;
-    let kind = &lines[0].networks;
+    let first = lines[0];
+    let kind = &first.networks;
     let rows = || sampling.rows.iter().filter(|row| row.networks == *kind);
-    let (low, high) = range(rows().map(|row| row.core_seconds));
+    let seconds = || rows().map(|row| row.core_seconds);
     let errors = rows().flat_map(|row| [PP * row.error_low, PP * row.error_high]);
-    let (least, most) = range(errors.chain([PP * lines[0].binomial]));
-    let mut figure = Figure::new(
+    let mut figure = figure(
         &format!("Standard error of the eroded mass against time, {kind}"),
         "Standard deviation of means over replicates of the eroded mass fraction against processor time",
-        "",
-        Axis::log("Processor time of the replicates averaged (s)", low, high),
-        Axis::log("Standard error of the eroded mass (percentage points)", least, most),
-    )
-    .names_above()
-    .sizes(WIDE, NARROW);
+        log("Processor time of the replicates averaged (s)", seconds()),
+        log("Standard error of the eroded mass (percentage points)", errors.chain([PP * first.binomial])),
+    );
     for line in lines {
         let (colour, shape) = look(&line.variant);
         let of_line = || rows().filter(|row| row.variant == line.variant);
@@ -166,17 +161,16 @@ fn scatter(sampling: &SamplingTier, name: &'static str, caption: &str, lines: &[
             figure.add(Point::new(row.core_seconds, PP * row.error, colour, shape).y_interval(bar));
         }
     }
-    let first = lines[0];
-    figure.add(guide((first.core_seconds, PP * first.sd), low, high));
+    figure.add(guide((first.core_seconds, PP * first.sd), seconds()));
     if let (true, Some(floor)) = (kind == "new networks", between_networks(sampling, first)) {
-        let at = |x: f64| (x, PP * floor * (first.core_seconds / x).sqrt());
-        let floor = Line::new(vec![at(low), at(high)], BLACK).width(1.5).dash(Dash::Dashed);
+        let floor = power((first.core_seconds, PP * floor), -0.5, seconds(), BLACK);
         figure.add(floor.label("networks alone: the sampling floor"));
     }
+    let (low, high) = positive_range(seconds());
     let binomial = vec![(low, PP * first.binomial), (high, PP * first.binomial)];
     let binomial = Line::new(binomial, BLACK).width(1.0).dash(Dash::Dotted);
     figure.add(binomial.label("one replicate by a binomial: too small"));
-    Drawn { name, caption: caption.to_owned(), figure }
+    Drawn::new(name, figure, caption)
 }
 
 /// The scatter between networks alone: what a line over new networks has beyond that over one.
@@ -200,70 +194,90 @@ fn factor_look(factor: &str) -> (Colour, Shape) {
     }
 }
 
-/// A difference with its interval on a logarithmic axis: its size, hollow where the interval holds zero.
-fn sized(x: f64, bias: f64, interval: Option<(f64, f64)>, least: f64, look: (Colour, Shape)) -> Point {
-    let point = Point::new(x, bias.abs().max(least), look.0, look.1);
-    let Some((low, high)) = interval else { return point.hollow() };
-    let holds_zero = low <= 0.0 && high >= 0.0;
-    let (near, far) = (low.abs().min(high.abs()), low.abs().max(high.abs()));
-    let near = if holds_zero { least } else { near.max(least) };
-    let point = point.y_interval(Some((near, far.max(least))));
-    if holds_zero { point.hollow() } else { point }
+/// A changed setting: the processor time of a replicate (s), and a difference from the reference with its
+/// interval.
+struct Changed<'a> {
+    factor: &'a str,
+    core_seconds: f64,
+    bias: f64,
+    interval: Option<(f64, f64)>,
+}
+
+impl Changed<'_> {
+    /// The size of the difference on a logarithmic axis from `least` on: hollow where the interval holds
+    /// zero.
+    fn sized(&self, least: f64) -> Point {
+        let (colour, shape) = factor_look(self.factor);
+        let point = Point::new(self.core_seconds, self.bias.abs().max(least), colour, shape);
+        let Some((low, high)) = self.interval else { return point.hollow() };
+        let holds_zero = low <= 0.0 && high >= 0.0;
+        let (near, far) = (low.abs().min(high.abs()), low.abs().max(high.abs()));
+        let near = if holds_zero { least } else { near.max(least) };
+        let point = point.y_interval(Some((near, far.max(least))));
+        if holds_zero { point.hollow() } else { point }
+    }
+}
+
+/// Sizes of differences from the reference setting against time, a symbol a setting; `decades` below the
+/// largest.
+fn differences(
+    [title, what, y]: [&str; 3],
+    x: Axis,
+    changed: &[Changed],
+    decades: f64,
+    floor: Option<(f64, &str)>,
+) -> Figure {
+    let ends = changed.iter().filter_map(|row| row.interval).flat_map(|(low, high)| [low.abs(), high.abs()]);
+    let (_, most) = positive_range(ends.chain(changed.iter().map(|row| row.bias.abs())));
+    let least = most * libm::pow(10.0, -decades);
+    let mut figure = figure(title, what, x, Axis::log(y, least, most));
+    for factor in distinct(changed, |row| row.factor) {
+        let of_factor = changed.iter().filter(|row| row.factor == factor);
+        figure.add_points(factor, of_factor.map(|row| row.sized(least)));
+    }
+    if let Some((floor, label)) = floor {
+        figure.add(Rule::new(Across::Y, floor, BLACK).dash(Dash::Dashed).label(label));
+    }
+    figure
 }
 
 pub(super) fn bias(rows: &[BiasRow]) -> Vec<Drawn> {
-    const PP: f64 = 100.0;
-    let changed: Vec<&BiasRow> = rows.iter().filter(|row| !row.reference).collect();
-    let (low, high) = range(changed.iter().map(|row| row.core_seconds));
-    let ends = changed.iter().flat_map(|row| [row.bias_low, row.bias_high]).flatten().map(|b| PP * b.abs());
-    let (_, most) = range(ends.chain(changed.iter().map(|row| PP * row.bias.abs())));
-    let least = most * 1e-4;
-    let mut figure = Figure::new(
+    let others = || rows.iter().filter(|row| !row.reference);
+    let changed: Vec<Changed> = others()
+        .map(|row| Changed {
+            factor: &row.factor,
+            core_seconds: row.core_seconds,
+            bias: PP * row.bias,
+            interval: row.bias_low.zip(row.bias_high).map(|(low, high)| (PP * low, PP * high)),
+        })
+        .collect();
+    // Half of the width of the narrowest interval without pairs: what is smaller was not to be seen without
+    // them.
+    let unpaired = changed.iter().zip(others()).filter(|(_, row)| !row.paired);
+    let widths = unpaired.filter_map(|(changed, _)| changed.interval).map(|(low, high)| (high - low) / 2.0);
+    let floor = widths.reduce(f64::min).filter(|_| rows.len() > 1);
+    let words = [
         "Bias of settings against time",
-        "Size of the difference of the eroded mass from the reference setting, against processor time of a replicate",
-        "",
-        Axis::log("Processor time of a replicate (s)", low, high),
-        Axis::log("Size of the difference from the reference (percentage points)", least, most),
-    )
-    .names_above()
-        .sizes(WIDE, NARROW);
-    for factor in distinct(rows, |row| &row.factor) {
-        let (colour, shape) = factor_look(factor);
-        let of_factor: Vec<&&BiasRow> = changed.iter().filter(|row| row.factor == factor).collect();
-        for (index, row) in of_factor.iter().enumerate() {
-            let interval = row.bias_low.zip(row.bias_high).map(|(l, h)| (PP * l, PP * h));
-            let point = sized(row.core_seconds, PP * row.bias, interval, least, (colour, shape));
-            figure.add(if index == 0 { point.label(factor) } else { point });
-        }
-    }
-    // Half of the width of the reference's own interval: what is smaller was not to be seen without pairs.
-    let unpaired = changed.iter().filter(|row| !row.paired);
-    let widths = unpaired.filter_map(|row| Some(PP * (row.bias_high? - row.bias_low?) / 2.0));
-    if let (true, floor) = (rows.len() > 1, widths.fold(f64::INFINITY, f64::min))
-        && floor.is_finite()
-    {
-        let rule = Rule::new(Across::Y, floor, BLACK).dash(Dash::Dashed);
-        figure.add(rule.label("sampling floor without common networks"));
-    }
-    let caption = "Size of the difference of the mean eroded mass from the reference setting, against the processor time of a replicate. Hollow: the 95 % interval holds zero. Bars: 95 % \
-                   intervals, replicate by replicate where both were walked on the same networks."
-        .to_owned();
-    let mut figures = vec![Drawn { name: "bias", caption, figure }];
-    figures.extend(amount(rows));
-    figures
+        "Size of the difference of the eroded mass from the reference setting, against processor time of a \
+         replicate",
+        "Size of the difference from the reference (percentage points)",
+    ];
+    let x = log("Processor time of a replicate (s)", changed.iter().map(|row| row.core_seconds));
+    let floor = floor.map(|floor| (floor, "sampling floor without common networks"));
+    let caption = "Size of the difference of the mean eroded mass from the reference setting, against the \
+                   processor time of a replicate. Hollow: the 95 % interval holds zero. Bars: 95 % \
+                   intervals, replicate by replicate where both were walked on the same networks.";
+    let figure = differences(words, x, &changed, 4.0, floor);
+    std::iter::once(Drawn::new("bias", figure, caption)).chain(amount(rows)).collect()
 }
 
 /// Eroded mass against the share of the base that is walked.
 fn amount(rows: &[BiasRow]) -> Option<Drawn> {
-    const PP: f64 = 100.0;
     let reference = rows.iter().find(|row| row.reference)?;
     let shares: Vec<&BiasRow> = rows.iter().filter(|row| row.factor == "base particles").collect();
-    let smallest = shares.iter().map(|row| row.at).fold(1.0, f64::min);
+    let smallest = shares.iter().map(|row| row.at).reduce(f64::min)?.min(1.0);
     let highest = shares.iter().filter_map(|row| row.bias_high).fold(0.0, f64::max);
     let lowest = shares.iter().filter_map(|row| row.bias_low).fold(0.0, f64::min);
-    if shares.is_empty() {
-        return None;
-    }
     let mut figure = Figure::new(
         "Bias of too few base particles",
         "Difference of the eroded mass from that with all base particles of Eq. 2",
@@ -279,44 +293,39 @@ fn amount(rows: &[BiasRow]) -> Option<Drawn> {
     }
     figure.add(Rule::new(Across::Y, 0.0, GREY).dash(Dash::Dashed));
     let caption = format!(
-        "Difference of the eroded mass when only a part of the base particles that Eq. (2) asks for is walked: a bias that no replicate takes away. With all of them {:.1} % erode. Bars: 95 % \
-         intervals.",
+        "Difference of the eroded mass when only a part of the base particles that Eq. (2) requires is \
+         walked: a bias that no replicate takes away. With all of them {:.1} % erode. Bars: 95 % intervals.",
         PP * reference.value
     );
-    Some(Drawn { name: "bias-base-particles", caption, figure })
+    Some(Drawn::new("bias-base-particles", figure, caption))
 }
 
 pub(super) fn decision(decision: &DecisionTier) -> Vec<Drawn> {
-    let (low, high) = range(decision.rows.iter().map(|row| row.core_seconds));
     let most = decision.rows.iter().map(|row| row.wrong_high).fold(0.1, f64::max);
-    let mut figure = Figure::new(
+    let mut figure = figure(
         "Wrong class against time",
         "Share of wrong classes against processor time, for cases near the threshold",
-        "",
-        Axis::log("Processor time (s)", low, high),
-        Axis::linear("Wrong class (% of trials)", 0.0, 100.0 * most),
-    )
-    .names_above()
-    .sizes(WIDE, NARROW);
+        log("Processor time (s)", decision.rows.iter().map(|row| row.core_seconds)),
+        Axis::linear("Wrong class (% of trials)", 0.0, PP * most),
+    );
     for (index, case) in decision.cases.iter().enumerate() {
         let colour = ramp(index, decision.cases.len());
-        let of = |rule: bool| {
-            decision.rows.iter().filter(move |row| row.case == case.name && (row.rule == "fixed") == rule)
+        let of = |fixed: bool| {
+            decision.rows.iter().filter(move |row| row.case == case.name && (row.rule == "fixed") == fixed)
         };
-        let path = of(true).map(|row| (row.core_seconds, 100.0 * row.wrong)).collect();
+        let path = of(true).map(|row| (row.core_seconds, PP * row.wrong)).collect();
         figure.add(Line::new(path, colour).width(1.5).label(&case.name));
-        for (fixed, shape) in [(true, Shape::Circle), (false, Shape::Diamond)] {
+        for (fixed, colour, shape) in [(true, colour, Shape::Circle), (false, VERMILLION, Shape::Diamond)] {
             for row in of(fixed) {
-                let bar = Some((100.0 * row.wrong_low, 100.0 * row.wrong_high));
-                let colour = if fixed { colour } else { VERMILLION };
-                figure.add(Point::new(row.core_seconds, 100.0 * row.wrong, colour, shape).y_interval(bar));
+                let bar = Some((PP * row.wrong_low, PP * row.wrong_high));
+                figure.add(Point::new(row.core_seconds, PP * row.wrong, colour, shape).y_interval(bar));
             }
         }
     }
-    let caption = "Share of trials whose class is not that of all replicates together, against their processor time; a line a case, named by its eroded mass. Circles: the mean of 1, 2, 4, ... \
-                   replicates. Diamonds: sequential stopping. Bars: 95 % intervals."
-        .to_owned();
-    vec![Drawn { name: "decision", caption, figure }]
+    let caption = "Share of trials whose class is not that of all replicates together, against their \
+                   processor time; a line a case, named by its eroded mass. Circles: the mean of 1, 2, 4, \
+                   ... replicates. Diamonds: sequential stopping. Bars: 95 % intervals.";
+    vec![Drawn::new("decision", figure, caption)]
 }
 
 pub(super) fn scaling(rows: &[ScalingRow]) -> Vec<Drawn> {
@@ -327,119 +336,97 @@ pub(super) fn scaling(rows: &[ScalingRow]) -> Vec<Drawn> {
             "scaling-base-particles",
             "Base particles",
             |row| row.n_base as f64,
-            "Processor time of a first run of this scene's base against the number of its particles. Dashed: in proportion.",
+            "Processor time of a first run of this scene's base against the number of its particles. Dashed: \
+             in proportion.",
         ),
         (
             "voids",
             "scaling-voids",
             "Voids",
             |row| row.voids as f64,
-            "Processor time of a first run on cubes, with as many base particles a void as this scene has. Dashed: in proportion.",
+            "Processor time of a first run on cubes, with as many base particles a void as this scene has. \
+             Dashed: in proportion.",
         ),
     ];
-    let mut figures = Vec::new();
-    for (against, name, label, x, caption) in kinds {
+    let drawn = |(against, name, label, x, caption): (&str, &'static str, &str, Of, &str)| {
         let of: Vec<&ScalingRow> = rows.iter().filter(|row| row.against == against).collect();
-        let Some(first) = of.first() else { continue };
-        let (low, high) = range(of.iter().map(|row| x(row)));
-        let (least, most) = range(of.iter().map(|row| row.core_seconds));
-        let title = format!("Time against {against}");
-        let mut figure = Figure::new(
-            &title,
+        let all_x = || of.iter().map(|row| x(row));
+        let mut figure = figure(
+            &format!("Time against {against}"),
             &format!("Processor time of a first run against {against}, by engine"),
-            "",
-            Axis::log(label, low, high),
-            Axis::log("Processor time of a first run (s)", least, most),
-        )
-        .names_above()
-        .sizes(WIDE, NARROW);
-        for engine in distinct(rows, |row| &row.engine) {
+            log(label, all_x()),
+            log("Processor time of a first run (s)", of.iter().map(|row| row.core_seconds)),
+        );
+        for engine in distinct(of.iter().copied(), |row| &row.engine) {
             let (colour, shape) = look(engine);
-            let points: Vec<(f64, f64)> =
-                of.iter().filter(|row| row.engine == engine).map(|row| (x(row), row.core_seconds)).collect();
-            if points.is_empty() {
-                continue;
-            }
+            let of_engine = of.iter().filter(|row| row.engine == engine);
+            let points: Vec<(f64, f64)> = of_engine.map(|row| (x(row), row.core_seconds)).collect();
             points.iter().for_each(|&(x, y)| figure.add(Point::new(x, y, colour, shape)));
             figure.add(Line::new(points, colour).width(1.5).label(engine));
         }
-        let end = of.iter().rfind(|row| row.engine == "particles").unwrap_or(first);
-        let at = |to: f64| (to, end.core_seconds * to / x(end));
-        figure.add(Line::new(vec![at(low), at(high)], GREY).width(1.5).dash(Dash::Dashed).label("slope 1"));
-        figures.push(Drawn { name, caption: caption.to_owned(), figure });
-    }
-    figures
+        let end = of.iter().rfind(|row| row.engine == "particles").or(of.first())?;
+        figure.add(power((x(end), end.core_seconds), 1.0, all_x(), GREY).label("slope 1"));
+        Some(Drawn::new(name, figure, caption))
+    };
+    kinds.into_iter().filter_map(drawn).collect()
 }
 
 pub(super) fn packing(tier: &PackingTier) -> Vec<Drawn> {
-    let mut figures = Vec::new();
-    let changed: Vec<_> = tier.packings.iter().filter(|row| !row.reference).collect();
-    if !changed.is_empty() {
-        let (low, high) = range(tier.packings.iter().map(|row| row.core_seconds));
-        let ends = changed.iter().flat_map(|row| [row.bias_low, row.bias_high]).flatten().map(f64::abs);
-        let (_, most) = range(ends.chain(changed.iter().map(|row| row.bias.abs())));
-        let least = most * 1e-3;
-        let mut figure = Figure::new(
-            "Void ratio of packings against time",
-            "Size of the difference of the void ratio from the default settings, against processor time of a packing",
-            "",
-            Axis::log("Processor time of a packing (s)", low, high),
-            Axis::log("Size of the difference of the void ratio (–)", least, most),
-        )
-        .names_above()
-        .sizes(WIDE, NARROW);
-        for factor in distinct(&tier.packings, |row| &row.factor) {
-            let mut named = false;
-            for row in changed.iter().filter(|row| row.factor == factor) {
-                let interval = row.bias_low.zip(row.bias_high);
-                let point = sized(row.core_seconds, row.bias, interval, least, factor_look(factor));
-                figure.add(if named { point } else { point.label(factor) });
-                named = true;
-            }
-        }
-        let reference = tier.packings.iter().find(|row| row.reference);
-        if let Some((sd, row)) = reference.and_then(|row| Some((row.void_ratio_sd?, row)))
-            && sd > 0.0
-        {
-            let floor = sd * (2.0 / row.seeds as f64).sqrt();
-            let rule = Rule::new(Across::Y, floor, BLACK).dash(Dash::Dashed);
-            figure.add(rule.label("sampling floor: standard error of a difference"));
-        }
-        let caption = "Size of the difference of the mean void ratio from the default settings against the processor time of a packing. Hollow: the 95 % interval holds zero. The floor is what as \
-                       many seeds scatter."
-            .to_owned();
-        figures.push(Drawn { name: "packing", caption, figure });
-    }
-    if !tier.triangulations.is_empty() {
-        let rows = &tier.triangulations;
-        let (low, high) = range(rows.iter().map(|row| row.grains as f64));
-        let (least, most) = range(rows.iter().flat_map(|row| [row.triangulate_seconds, row.measure_seconds]));
-        let mut figure = Figure::new(
-            "Time of triangulations",
-            "Processor time of triangulation and of the constrictions against the number of grains",
-            "",
-            Axis::log("Grains", low, high),
-            Axis::log("Processor time (s)", least, most),
-        )
-        .names_above()
-        .sizes(WIDE, NARROW);
-        for (index, row) in rows.iter().enumerate() {
-            let x = row.grains as f64;
-            let points = [
-                (row.triangulate_seconds, BLUE, Shape::Circle, "triangulation"),
-                (row.measure_seconds, VERMILLION, Shape::Square, "voids, discs and curve"),
-            ];
-            for (y, colour, shape, name) in points {
-                let point = Point::new(x, y, colour, shape);
-                let point = if row.packing.starts_with("at random") { point.hollow() } else { point };
-                figure.add(if index == 0 { point.label(name) } else { point });
-            }
-        }
-        let last = &rows[rows.len() - 1];
-        let at = |x: f64| (x, last.triangulate_seconds * x / last.grains as f64);
-        figure.add(Line::new(vec![at(low), at(high)], GREY).width(1.5).dash(Dash::Dashed).label("slope 1"));
-        let caption = "Processor time of the regular triangulation and of the constrictions measured on it. Filled: compressed packings; hollow: grains at random before compression.".to_owned();
-        figures.push(Drawn { name: "triangulation", caption, figure });
-    }
-    figures
+    void_ratios(tier).into_iter().chain(triangulations(tier)).collect()
+}
+
+fn void_ratios(tier: &PackingTier) -> Option<Drawn> {
+    let others = tier.packings.iter().filter(|row| !row.reference);
+    let changed: Vec<Changed> = others
+        .map(|row| Changed {
+            factor: &row.factor,
+            core_seconds: row.core_seconds,
+            bias: row.bias,
+            interval: row.bias_low.zip(row.bias_high),
+        })
+        .collect();
+    changed.first()?;
+    let reference = tier.packings.iter().find(|row| row.reference);
+    let sd = reference.and_then(|row| Some((row.void_ratio_sd.filter(|sd| *sd > 0.0)?, row.seeds as f64)));
+    let floor =
+        sd.map(|(sd, seeds)| (sd * (2.0 / seeds).sqrt(), "sampling floor: standard error of a difference"));
+    let words = [
+        "Void ratio of packings against time",
+        "Size of the difference of the void ratio from the default settings, against processor time of a \
+         packing",
+        "Size of the difference of the void ratio (–)",
+    ];
+    let x = log("Processor time of a packing (s)", tier.packings.iter().map(|row| row.core_seconds));
+    let caption = "Size of the difference of the mean void ratio from the default settings against the \
+                   processor time of a packing. Hollow: the 95 % interval holds zero. The floor is the \
+                   scatter of as many seeds.";
+    Some(Drawn::new("packing", differences(words, x, &changed, 3.0, floor), caption))
+}
+
+fn triangulations(tier: &PackingTier) -> Option<Drawn> {
+    let rows = &tier.triangulations;
+    let last = rows.last()?;
+    let grains = || rows.iter().map(|row| row.grains as f64);
+    let seconds = rows.iter().flat_map(|row| [row.triangulate_seconds, row.measure_seconds]);
+    let mut figure = figure(
+        "Time of triangulations",
+        "Processor time of triangulation and of the constrictions against the number of grains",
+        log("Grains", grains()),
+        log("Processor time (s)", seconds),
+    );
+    let mut add = |name: &str, of: fn(&TriangulationRow) -> f64, colour, shape| {
+        figure.add_points(
+            name,
+            rows.iter().map(|row| {
+                let point = Point::new(row.grains as f64, of(row), colour, shape);
+                if row.packing.starts_with("at random") { point.hollow() } else { point }
+            }),
+        );
+    };
+    add("triangulation", |row| row.triangulate_seconds, BLUE, Shape::Circle);
+    add("voids, discs and curve", |row| row.measure_seconds, VERMILLION, Shape::Square);
+    figure.add(power((last.grains as f64, last.triangulate_seconds), 1.0, grains(), GREY).label("slope 1"));
+    let caption = "Processor time of the regular triangulation and of the constrictions measured on it. \
+                   Filled: compressed packings; hollow: grains at random before compression.";
+    Some(Drawn::new("triangulation", figure, caption))
 }

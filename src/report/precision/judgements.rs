@@ -26,13 +26,15 @@ fn several(n: usize, thing: &str) -> String {
 
 fn exact(exact: &ExactTier) -> String {
     let sampled: Vec<_> = exact.slopes.iter().filter(|slope| slope.engine != "expected").collect();
-    let closed_broken = exact.closed.iter().filter(|row| !row.holds).count();
-    let closed = match closed_broken {
+    let failed = exact.closed.iter().filter(|row| !row.holds).count();
+    let closed = match failed {
         0 => format!("all {} integers and closed forms hold", exact.closed.len()),
-        n => format!("{n} of {} integers and closed forms are BROKEN", exact.closed.len()),
+        n => format!("{n} of {} integers and closed forms FAILED", exact.closed.len()),
     };
     if sampled.is_empty() {
-        return format!("No network of this curve has a chance that is worth a linear solve; {closed}.");
+        return format!(
+            "Inconclusive: no network of this curve has a probability worth a linear solve; {closed}."
+        );
     }
     let slopes = || sampled.iter().filter_map(|slope| slope.slope);
     let (flat, steep) = (slopes().fold(f64::NEG_INFINITY, f64::max), slopes().fold(f64::INFINITY, f64::min));
@@ -40,10 +42,14 @@ fn exact(exact: &ExactTier) -> String {
     let particles = sampled.iter().filter(|slope| slope.engine == "particles");
     let by_particles = particles.map(|slope| slope.smallest_error).fold(f64::INFINITY, f64::min);
     let z = sampled.iter().filter_map(|slope| slope.largest_z).fold(0.0, f64::max);
-    let verdict = if z < 4.0 { "Every engine gives the exact answer" } else { "AN ENGINE IS OFF" };
+    let verdict = match z < 4.0 {
+        true => "Every engine agrees with the exact value",
+        false => "FAILED: an engine disagrees with the exact value",
+    };
     format!(
-        "{verdict}: the error falls with slopes of {} to {} down to {by_particles:.0e} (particles) and {smallest:.0e} (counts), and none of {} networks is off by more than \
-         {z:.1} standard errors; {closed}.",
+        "{verdict}: the error falls with slopes of {} to {} down to {by_particles:.0e} (particles) and \
+         {smallest:.0e} (counts), and none of {} networks deviates by more than {z:.1} standard errors; \
+         {closed}.",
         minus(flat),
         minus(steep),
         exact.networks
@@ -63,7 +69,7 @@ fn sampling(sampling: &SamplingTier) -> Option<String> {
         return Some("The eroded mass does not scatter: one replicate is enough.".into());
     };
     let floor = between_networks(sampling, best).map_or_else(String::new, |floor| {
-        format!(", of which {} come from the networks alone", significant(100.0 * floor))
+        format!(", of which {} are the networks alone", significant(100.0 * floor))
     });
     let gain = |variant: &str, networks: &str| {
         let of =
@@ -76,7 +82,8 @@ fn sampling(sampling: &SamplingTier) -> Option<String> {
         (gain("counts, stratified base", "one network"), gain("counts, stratified base", "new networks"))
     {
         gains += &format!(
-            " Stratified start nodes and sizes divide the variance by {one} on one network and by {new} over new ones."
+            " Stratified start nodes and sizes divide the variance by {one} on one network and by {new} over \
+             new ones."
         );
     }
     if let Some(new) = gain("counts, stratified constrictions", "new networks") {
@@ -85,8 +92,8 @@ fn sampling(sampling: &SamplingTier) -> Option<String> {
     // For half a percentage point at 95 %: 1.96 standard errors.
     let needed = (1.96 * best.sd / 0.005).powi(2).max(1.0).ceil();
     Some(format!(
-        "A replicate scatters by {} percentage points{floor}, {} times what a binomial of its particles would say. {} buys most: ± 0.5 points (95 %) take {needed:.0} replicates, {} of processor \
-         time.{gains}",
+        "The replicate SD is {} percentage points{floor}, {} times the binomial one of its particles. {} \
+         buys most: ± 0.5 points (95 %) take {needed:.0} replicates, {} of processor time.{gains}",
         significant(100.0 * best.sd),
         significant(best.sd / best.binomial),
         best.variant,
@@ -94,7 +101,7 @@ fn sampling(sampling: &SamplingTier) -> Option<String> {
     ))
 }
 
-/// Whether the interval of a difference keeps it apart from zero.
+/// Whether the interval of a difference excludes zero.
 fn is_seen(row: &BiasRow) -> bool {
     matches!((row.bias_low, row.bias_high), (Some(low), Some(high)) if low > 0.0 || high < 0.0)
 }
@@ -102,7 +109,7 @@ fn is_seen(row: &BiasRow) -> bool {
 fn bias(rows: &[BiasRow]) -> Option<String> {
     let changed: Vec<&BiasRow> = rows.iter().filter(|row| !row.reference).collect();
     let seen: Vec<&&BiasRow> = changed.iter().filter(|row| is_seen(row)).collect();
-    let words = |row: &BiasRow| format!("{} ({}): {:+.2} points", row.factor, row.level, 100.0 * row.bias);
+    let about = |row: &BiasRow| format!("{} ({}): {:+.2} points", row.factor, row.level, 100.0 * row.bias);
     // A longer network is a thicker filter, which is no choice of the method.
     let method = changed.iter().filter(|row| row.factor != "length" && is_seen(row));
     let largest = method.max_by(|a, b| a.bias.abs().total_cmp(&b.bias.abs()));
@@ -114,13 +121,14 @@ fn bias(rows: &[BiasRow]) -> Option<String> {
             format!("{} {:+.3} ± {:.3}", row.level, 100.0 * row.bias, 100.0 * half)
         })
         .collect();
-    let mut text = format!("Of {} {} keep apart from zero", several(changed.len(), "change"), seen.len());
+    let mut text =
+        format!("Of {} the intervals of {} exclude zero", several(changed.len(), "change"), seen.len());
     text += &largest.map_or_else(
         || "; none of them but the length of the network.".to_owned(),
         |row| {
             format!(
                 "; the largest but for the length of the network, which is the filter's thickness, is {}.",
-                words(row)
+                about(row)
             )
         },
     );
@@ -150,15 +158,16 @@ fn decision(decision: &DecisionTier) -> String {
     if let Some(worst) = stopped().map(|row| row.wrong).reduce(f64::max) {
         let undecided = stopped().map(|row| row.undecided).fold(0.0, f64::max);
         text += &format!(
-            "stopping where the verdict is certain to 99.9 % is wrong in at most {:.1} % of trials of a case (and leaves up to {:.0} % undecided); ",
+            "stopping where the verdict is decided at the 99.9 % confidence level is wrong in at most {:.1} \
+             % of trials of a case (and leaves up to {:.0} % undecided); ",
             100.0 * worst,
             100.0 * undecided
         );
     }
     let uncertain = decision.cases.iter().filter(|case| !case.certain).count();
     text += &match uncertain {
-        0 => "the reference is certain of every case.".to_owned(),
-        n => format!("the reference itself leaves {} open.", several(n, "case")),
+        0 => "the reference decides every case.".to_owned(),
+        n => format!("the reference itself is inconclusive in {}.", several(n, "case")),
     };
     text
 }
@@ -186,13 +195,14 @@ fn packing(tier: &PackingTier) -> Option<String> {
         .filter(|row| !row.reference)
         .max_by(|a, b| a.bias.abs().total_cmp(&b.bias.abs()))?;
     let curve = tier.packings.iter().map(|row| row.dc50_bias.abs()).fold(0.0, f64::max);
-    let broken = tier.triangulations.iter().filter(|row| !row.identities_hold).count();
-    let identities = match broken {
-        0 => "every triangulation keeps its identities".to_owned(),
-        n => format!("{n} triangulations BREAK their identities"),
+    let failed = tier.triangulations.iter().filter(|row| !row.identities_hold).count();
+    let identities = match failed {
+        0 => "the identities of every triangulation hold".to_owned(),
+        n => format!("FAILED: the identities of {} do not hold", several(n, "triangulation")),
     };
     Some(format!(
-        "{} grains settle in {} (friction {}); no setting moves the void ratio by more than {:.4} ({} x {}, friction {}), nor Dc50 by more than {:.1} %; {identities}.",
+        "{} grains come to rest in {} (friction {}); no setting moves the void ratio by more than {:.4} ({} \
+         x {}, friction {}), nor Dc50 by more than {:.1} %; {identities}.",
         reference.grains,
         duration(reference.core_seconds),
         reference.friction,

@@ -1,4 +1,4 @@
-//! The page of a precision study: what a second buys, tier by tier, read top-down.
+//! The page of a precision study: what a second of processor time buys, tier by tier.
 
 mod figures;
 mod judgements;
@@ -8,11 +8,11 @@ use std::path::Path;
 
 use maud::{Markup, html};
 
-use super::Written;
 use super::error::ReportError;
 use super::files::json;
 use super::numbers::{duration, whole};
 use super::shell::{Drawn, clean, fact, figure, whole_page};
+use super::written::{Written, write_page_as};
 use crate::outcome::precision::Precision;
 
 pub use judgements::precision_judgements;
@@ -29,7 +29,7 @@ struct Section {
 /// Writes `precision.html` and its figures into the folder of a precision study, from `precision.json` alone.
 ///
 /// # Errors
-/// `precision.json` is missing or malformed, or what the folder says.
+/// `precision.json` is missing or malformed, or a file cannot be written.
 pub fn write_precision(folder: &Path) -> Result<Written, ReportError> {
     let study: Precision = json(&folder.join("precision.json"))?;
     let sections = sections(&study);
@@ -42,15 +42,21 @@ pub fn write_precision(folder: &Path) -> Result<Written, ReportError> {
     let mut number = 0;
     let main = html! {
         p {
-            "How much accuracy a second of processor time buys. Errors are standard deviations over replicates, never worked out from the "
-            "number of particles; bars are 95 % intervals. The figure of merit is 1 / (error² × time): "
-            "it does not depend on how many replicates were walked, and of two settings the one with the larger figure gives the same accuracy in less time."
+            "How much accuracy a second of processor time buys. Errors are standard deviations over \
+             replicates, never worked "
+            "out from the number of particles; bars are 95 % intervals. The figure of merit is 1 / (error² \
+             × time): it does not "
+            "depend on how many replicates were walked, and of two settings the one with the larger figure \
+             of merit gives "
+            "the same accuracy in less time."
         }
         (tables::merits(&study))
         @for section in &sections {
             h2 { (section.heading) }
             p { (clean(&section.question)) }
-            @for (_, sentence) in judgements.iter().filter(|(tier, _)| *tier == section.name) { p { b { (clean(sentence)) } } }
+            @for (_, sentence) in judgements.iter().filter(|(tier, _)| *tier == section.name) {
+                p { b { (clean(sentence)) } }
+            }
             @for drawn in &section.figures { ({ number += 1; figure(number, drawn) }) }
             (section.tables)
         }
@@ -60,69 +66,70 @@ pub fn write_precision(folder: &Path) -> Result<Written, ReportError> {
         p.small { "voidwalk " (study.version) ", " (duration(study.seconds)) "." }
     };
     let drawn: Vec<Drawn> = sections.into_iter().flat_map(|section| section.figures).collect();
-    super::write_page_as("precision.html", folder, &drawn, &whole_page(title, &header, &main, &footer))
+    write_page_as("precision.html", folder, &drawn, &whole_page(title, &header, &main, &footer))
 }
 
 fn sections(study: &Precision) -> Vec<Section> {
-    let mut sections = Vec::new();
-    if let Some(exact) = &study.exact {
-        sections.push(Section {
-            name: "exact",
-            heading: "Against exact answers",
-            question: "On a given network the chance of a first particle to leave is known by a linear solve. Does every engine find it, and \
-                       does its error fall as that of independent particles must?".into(),
-            figures: figures::exact(exact),
-            tables: tables::exact(exact),
-        });
-    }
-    if let Some(sampling) = &study.sampling {
-        sections.push(Section {
-            name: "sampling",
-            heading: "Scatter of this scene",
-            question: format!("Eroded mass of the first run, walked on {}. Replicates differ by their network and their walk, or by their walk alone; the scatter between networks is the \
-                       floor of every better way of drawing base particles.", sampling.on),
-            figures: figures::sampling(sampling),
-            tables: tables::sampling(sampling),
-        });
-    }
-    if let Some(bias) = &study.bias {
-        sections.push(Section {
-            name: "bias",
-            heading: "What settings do to the answer",
-            question: "One setting is changed at a time. A difference that its interval keeps apart from zero is a bias: no number of replicates takes it away.".into(),
-            figures: figures::bias(bias),
-            tables: tables::bias(bias),
-        });
-    }
-    if let Some(decision) = &study.decision {
-        sections.push(Section {
-            name: "decision",
-            heading: "Wrong verdicts",
-            question: format!("Cases near the 7.5 % that divide \"no erosion\" from the rest, made of this scene by other sizes of its base and walked on {}: how often is the class wrong, by the time spent?", decision.on),
-            figures: figures::decision(decision),
-            tables: tables::decision(decision),
-        });
-    }
-    if let Some(scaling) = &study.scaling {
-        sections.push(Section {
-            name: "scaling",
-            heading: "What a larger problem costs",
-            question: "Processor time of one first run.".into(),
-            figures: figures::scaling(scaling),
-            tables: tables::scaling(scaling),
-        });
-    }
-    if let Some(packing) = &study.packing {
-        sections.push(Section {
-            name: "packing",
-            heading: "Packing and triangulation",
-            question: "Void ratio and constriction curve of small packings of this scene's filter, one setting changed at a time; and the time and the identities of \
-                       triangulations.".into(),
-            figures: figures::packing(packing),
-            tables: tables::packing(packing),
-        });
-    }
-    sections
+    let exact = study.exact.as_ref().map(|exact| Section {
+        name: "exact",
+        heading: "Against exact answers",
+        question: "On a given network the probability that a first particle leaves is known by a linear \
+                   solve. Does every engine find it, and does its error fall as that of independent \
+                   particles must?"
+            .into(),
+        figures: figures::exact(exact),
+        tables: tables::exact(exact),
+    });
+    let sampling = study.sampling.as_ref().map(|sampling| Section {
+        name: "sampling",
+        heading: "Scatter of this scene",
+        question: format!(
+            "Eroded mass of the first run, walked on {}. Replicates differ by their network and their walk, \
+             or by their walk alone; the scatter between networks is the floor of every better way of \
+             drawing base particles.",
+            sampling.on
+        ),
+        figures: figures::sampling(sampling),
+        tables: tables::sampling(sampling),
+    });
+    let bias = study.bias.as_ref().map(|bias| Section {
+        name: "bias",
+        heading: "What settings do to the answer",
+        question:
+            "One setting is changed at a time. A difference whose interval excludes zero is a bias: no \
+                   number of replicates takes it away."
+                .into(),
+        figures: figures::bias(bias),
+        tables: tables::bias(bias),
+    });
+    let decision = study.decision.as_ref().map(|decision| Section {
+        name: "decision",
+        heading: "Wrong verdicts",
+        question: format!(
+            "Cases near the 7.5 % that divide \"no erosion\" from the rest, made of this scene by other \
+             sizes of its base and walked on {}: how often is the class wrong, by the time spent?",
+            decision.on
+        ),
+        figures: figures::decision(decision),
+        tables: tables::decision(decision),
+    });
+    let scaling = study.scaling.as_ref().map(|scaling| Section {
+        name: "scaling",
+        heading: "What a larger problem costs",
+        question: "Processor time of one first run.".into(),
+        figures: figures::scaling(scaling),
+        tables: tables::scaling(scaling),
+    });
+    let packing = study.packing.as_ref().map(|packing| Section {
+        name: "packing",
+        heading: "Packing and triangulation",
+        question: "Void ratio and constriction curve of small packings of this scene's filter, one setting \
+                   changed at a time; and the time and the identities of triangulations."
+            .into(),
+        figures: figures::packing(packing),
+        tables: tables::packing(packing),
+    });
+    [exact, sampling, bias, decision, scaling, packing].into_iter().flatten().collect()
 }
 
 fn made(study: &Precision) -> Markup {
@@ -134,13 +141,18 @@ fn made(study: &Precision) -> Markup {
             (fact("Commit", study.commit.as_deref().unwrap_or("not known")))
             (fact("Seed", study.seed.to_string()))
             (fact("Budget of processor time", duration(study.budget_s)))
-            @for (tier, seconds) in &study.spent { (fact(&format!("Processor time, {tier}"), duration(*seconds))) }
+            @for (tier, seconds) in &study.spent {
+                (fact(&format!("Processor time, {tier}"), duration(*seconds)))
+            }
             (fact("Base particles of a run", whole(study.n_base)))
             (fact("Voids", whole(study.voids)))
         } } }
         p.small {
-            "The same seed and budget give the same numbers on every machine; only times differ. Each run is walked by one thread and its time is that thread's \
-             processor time. The numbers of every figure are in the CSV files beside this page."
+            "The same seed and budget give the same numbers on every machine; only times differ. Each run is \
+             walked by one "
+            "thread and its time is that thread's processor time. The numbers of every figure are in the CSV \
+             files beside "
+            "this page."
         }
     }
 }

@@ -101,7 +101,8 @@ impl Change {
         }
     }
 
-    /// About what it costs, by what the reference costs: a run takes some 3.6 increments a layer beside those of insertion.
+    /// About what it costs, by what the reference costs: a run takes some 3.6 increments a layer beside those
+    /// of insertion.
     pub fn cost(self, scene: &ScaledScene) -> f64 {
         let last = |increments: u64, layers: u32| increments as f64 + 3.6 * f64::from(layers);
         let changed = self.of(scene);

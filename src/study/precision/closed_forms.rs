@@ -51,7 +51,8 @@ fn moves(study: &Study, _: f64) -> Result<Vec<ClosedRow>, PrecisionError> {
     Ok(rows)
 }
 
-/// One exit with 1e12 times the area of each of the two others, which lead round: a billionth of a thousandth of the moves.
+/// One exit with 1e12 times the area of each of the two others, which lead round: a billionth of a thousandth
+/// of the moves.
 fn giant(study: &Study, _: f64) -> Result<Vec<ClosedRow>, PrecisionError> {
     let network = given([1, 1, 1], vec![1.0, 1.0, 1e6])?;
     let n = 1_000_000_000_000_000u64;

@@ -37,8 +37,9 @@ pub(super) fn paired_difference(a: &Replicates, b: &Replicates) -> Statistic {
     Statistic::of(&each)
 }
 
-/// The row of a setting compared with the reference (`None`: it is the reference): replicate by replicate where they are
-/// `paired`. What is changed, to what, and the number of base particles are the caller's to fill in.
+/// The row of a setting compared with the reference (`None`: it is the reference): replicate by replicate
+/// where they are `paired`. What is changed, to what, and the number of base particles are the caller's to
+/// fill in.
 pub(super) fn compared(found: &Replicates, reference: Option<&Replicates>, paired: bool) -> BiasRow {
     let difference = reference.map(|reference| match paired {
         true => paired_difference(found, reference),

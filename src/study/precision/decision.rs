@@ -1,8 +1,9 @@
 //! How often the class is wrong, against the time that is spent on it.
 //!
-//! Cases near the 7.5 % of the first run, which divide "no erosion" from the rest, are made of the scene by a factor on every
-//! size of its base (the number of particles follows by Eq. 2). Each replicate walks the scene's runs. The class of all
-//! replicates of a case is the reference; rules that stop earlier are tried on random subsets of them.
+//! Cases near the 7.5 % of the first run, which divide "no erosion" from the rest, are made of the scene by a
+//! factor on every size of its base (the number of particles follows by Eq. 2). Each replicate walks the
+//! scene's runs. The class of all replicates of a case is the reference; rules that stop earlier are tried on
+//! random subsets of them.
 
 use rand::Rng;
 

@@ -2,14 +2,16 @@
 //!
 //! Two probabilities to leave are known by a linear solve ([`Network::first_passage`]), on random networks:
 //!
-//! - *first particle*: a single particle of size Dc35 on a clean lattice. It is walked alone, over and over, with the rule that
-//!   stops it; and, so that each of many million particles is a first one, as particles that fit everywhere on the network
-//!   in which finer exits lead into a void without exits ([`Network::as_first_particle_of`]).
-//! - *clogged lattice*: particles that fit everywhere, on a lattice of which 58 % of the constrictions are blocked from the
-//!   start, as a second run meets it. They end in voids without open exits, are trapped in closed loops, or leave.
+//! - *first particle*: a single particle of size Dc35 on a clean lattice. It is walked alone, over and over,
+//!   with the rule that stops it; and, so that each of many million particles is a first one, as particles
+//!   that fit everywhere on the network in which finer exits lead into a void without exits
+//!   ([`Network::as_first_particle_of`]).
+//! - *clogged lattice*: particles that fit everywhere, on a lattice of which 58 % of the constrictions are
+//!   blocked from the start, as a second run meets it. They end in voids without open exits, are trapped in
+//!   closed loops, or leave.
 //!
-//! On one of these networks the particles are independent, so here, and only here, the error must be the binomial one; the
-//! engine `expected` draws nothing, and its error is the rounding of its whole numbers.
+//! On one of these networks the particles are independent, so here, and only here, the error must be the
+//! binomial one; the engine `expected` draws nothing, and its error is the rounding of its whole numbers.
 
 use bitvec::vec::BitVec;
 use rand::Rng;
@@ -46,8 +48,8 @@ const FIRST_AT_DC: f64 = 35.0;
 /// Expected particles that leave, and that do not, from which a deviation is counted in standard errors.
 const NORMAL_FROM: f64 = 50.0;
 
-/// Processor time of a particle walked through such a network, on the lattice and on the general one, and of a single one with
-/// all that a run takes.
+/// Processor time of a particle walked through such a network, on the lattice and on the general one, and of
+/// a single one with all that a run takes.
 const PARTICLE_S: [f64; 2] = [2.5e-8, 6.0e-8];
 const SINGLE_S: f64 = 2.0e-5;
 
@@ -102,8 +104,8 @@ pub(super) fn tier(study: &Study, budget_s: f64) -> Result<(ExactTier, Vec<Netwo
         all.map(|(engine, most)| Line { quantity, known, way: Way::Together(engine), most })
     };
     if !clogged.is_empty() {
-        let what = "probability that a particle that fits everywhere leaves a 6 x 6 x 4 lattice of which 58 % of the \
-                    constrictions are blocked from the start";
+        let what = "probability that a particle that fits everywhere leaves a 6 x 6 x 4 lattice of which 58 \
+                    % of the constrictions are blocked from the start";
         quantities.push(quantity("clogged lattice", what, &clogged));
         lines.extend(engines("clogged lattice", &clogged, particles));
     }
@@ -169,7 +171,8 @@ impl Known {
 }
 
 impl Study<'_> {
-    /// Random networks of the scene's curve with an answer that is neither sure nor hopeless; none where there are not enough.
+    /// Random networks of the scene's curve with an answer that is neither sure nor hopeless; none where
+    /// there are not enough.
     fn known(&self, of: impl Fn(Network, u64) -> Known) -> Result<Vec<Known>, PrecisionError> {
         let mut taken = Vec::new();
         for k in 1..=TRIES * NETWORKS as u64 {

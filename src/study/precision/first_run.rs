@@ -197,8 +197,8 @@ const MOVE_S: f64 = 2.5e-9;
 /// Processor time of the insertion of one.
 const INSERTION_S: f64 = 1.5e-8;
 
-/// Processor time of a run, counted from what it did, network included: the same number on every machine, about right on one
-/// of 2024.
+/// Processor time of a run, counted from what it did, network included: the same number on every machine,
+/// about right on one of 2024.
 pub(super) fn nominal(ended: &Ended, network: &Network) -> f64 {
     let each = ended.one_by_one as f64;
     // Where the others are counts, the coarse ones are soon stopped.

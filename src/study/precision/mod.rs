@@ -2,21 +2,21 @@
 //!
 //! | tier | question | error |
 //! |---|---|---|
-//! | `exact` | does each engine give what is known exactly? | against a linear solve, integers, closed forms |
+//! | `exact` | does each engine give what is known exactly? | against a linear solve and closed forms |
 //! | `sampling` | what does a second of the scene buy? | standard deviation over replicates |
 //! | `bias` | what does a setting do to the answer? | difference from the reference setting |
 //! | `decision` | how often is the class wrong? | against a long reference |
 //! | `scaling` | what does a larger problem cost? | none: time alone |
-//! | `packing` | what do settings do to packings, and what does a triangulation cost? | difference from the reference setting |
+//! | `packing` | what do settings do to packings? | difference from the reference setting |
 //!
 //! # Budget and determinism
-//! The budget is processor time. It decides how many replicates are walked, by the work that a run is counted to be (moves,
-//! increments, voids) and never by the clock; so a seed and a budget give the same numbers on every machine and for any
-//! number of threads. Only the times differ.
+//! The budget is processor time. It decides how many replicates are walked, by the work that a run is counted
+//! to be (moves, increments, voids) and never by the clock; so a seed and a budget give the same numbers on
+//! every machine and for any number of threads. Only the times differ.
 //!
 //! # Time
-//! Every run is walked by one thread, as many runs side by side as there are threads, and its time is the processor time of
-//! that thread; only the scaling over threads walks one run with several.
+//! Every run is walked by one thread, as many runs side by side as there are threads, and its time is the
+//! processor time of that thread; only the scaling over threads walks one run with several.
 
 mod bias;
 mod changes;
@@ -43,8 +43,8 @@ use crate::outcome::precision::{NetworkRow, Precision};
 use crate::run::machine::Machine;
 
 impl Study<'_> {
-    /// Runs every tier: what `precision.json` holds, and the networks of the tier of exact answers, at the most particles of
-    /// each line.
+    /// Runs every tier: what `precision.json` holds, and the networks of the tier of exact answers, at the
+    /// most particles of each line.
     ///
     /// # Errors
     /// A network, a walk or a packing that fails, or [`PrecisionError::Stopped`].

@@ -1,7 +1,8 @@
 //! The networks of a study: the scene's own, and lattices on which answers are known.
 //!
-//! Networks of the scene are made by [`Case`](crate::case::Case) alone, so whatever a scene says of its network holds here
-//! too. The others are plain cubic lattices on purpose: their answers are worked out for those.
+//! Networks of the scene are made by [`Case`](crate::case::Case) alone, so whatever a scene says of its
+//! network holds here too. The others are plain cubic lattices on purpose: their answers are worked out for
+//! those.
 
 use super::study::{PrecisionError, Study};
 use crate::case::replicate_seed;
@@ -34,7 +35,8 @@ impl Study<'_> {
     }
 }
 
-/// A cubic lattice with these constriction diameters, in the order of [`Network::cubic_from_diameters`]; the unit is theirs.
+/// A cubic lattice with these constriction diameters, in the order of [`Network::cubic_from_diameters`]; the
+/// unit is theirs.
 pub(super) fn given(shape: [u32; 3], diameters: Vec<f32>) -> Result<Network, PrecisionError> {
     Ok(Network::cubic_from_diameters(shape, diameters, 1.0)?)
 }

@@ -1,5 +1,5 @@
-//! Error against run time of packings and triangulations: void ratio and constriction curve by stiffness, rate, number of
-//! grains and time step.
+//! Error against run time of packings and triangulations: void ratio and constriction curve by stiffness,
+//! rate, number of grains and time step.
 
 use super::comparison::{Replicates, compared, mean};
 use super::study::{PrecisionError, Study};
@@ -10,8 +10,8 @@ use crate::outcome::precision::{PackingRow, PackingTier, TriangulationRow};
 use crate::outcome::record::Statistic;
 use crate::packing::{Compression, Packing, PackingError, Settings, draw, random_start};
 
-/// Grains of the reference, fewest first; the most that the budget pays for, and no fewer than make the cell three of the
-/// largest grain wide.
+/// Grains of the reference, fewest first; the most that the budget pays for, and no fewer than make the cell
+/// three of the largest grain wide.
 const GRAINS: [usize; 5] = [300, 500, 1000, 2000, 4000];
 
 /// Packings of each setting, at least and at most.
@@ -43,8 +43,8 @@ const CHANGES: [(&str, f64); 10] = [
 /// What the changes cost together, by the cost of the reference.
 const ALL_COST: f64 = 12.5;
 
-/// Default settings at a tenth of the stiffness, but for what is changed. The hold is a number of steps: rows of another step
-/// hold for the same time.
+/// Default settings at a tenth of the stiffness, but for what is changed. The hold is a number of steps: rows
+/// of another step hold for the same time.
 fn settings(change: (&str, f64), friction: f64, grains: usize, seed: u64) -> Settings {
     let of = Settings { friction, grains, seed, max_steps: 400_000, ..Settings::default() };
     let (factor, at) = change;

@@ -1,7 +1,8 @@
 //! The scatter of the scene's eroded mass over replicates: what another second buys.
 //!
-//! Two kinds of replicate: *new networks* (what a verdict is about), and *one network* walked anew (what a way of drawing
-//! base particles can change; the rest is the scatter between networks, which no way of drawing lowers).
+//! Two kinds of replicate: *new networks* (what a verdict is about), and *one network* walked anew (what a
+//! way of drawing base particles can change; the rest is the scatter between networks, which no way of
+//! drawing lowers).
 
 use super::changes::Change;
 use super::comparison::{Replicates, mean, paired_difference};
@@ -11,8 +12,8 @@ use super::work::affordable;
 use crate::outcome::precision::{SamplingLine, SamplingRow, SamplingTier, merit, sd_estimate};
 use crate::walk::{Engine, Sampling};
 
-/// A way of drawing and moving base particles; under all of them the eroded mass has one expectation. The first that is walked
-/// is what the others are compared with.
+/// A way of drawing and moving base particles; under all of them the eroded mass has one expectation. The
+/// first that is walked is what the others are compared with.
 struct Variant {
     name: &'static str,
     engine: Engine,

@@ -1,9 +1,9 @@
-//! A second, slow walk, particle by particle, with what the fast one decided left open: 32 or 64 bits for every diameter and
-//! weight, blocking from the next increment or at once.
+//! A second, slow walk, particle by particle, with what the fast one decided left open: 32 or 64 bits for
+//! every diameter and weight, blocking from the next increment or at once.
 //!
-//! Every base particle has one random stream of its own, for where it starts, its size and every exit it picks. So two twins
-//! differ only where a rounding or a blocked constriction makes them, and their difference is seen without the scatter of
-//! either.
+//! Every base particle has one random stream of its own, for where it starts, its size and every exit it
+//! picks. So two twins differ only where a rounding or a blocked constriction makes them, and their
+//! difference is seen without the scatter of either.
 
 use rand::Rng;
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -108,7 +108,8 @@ fn eroded_mass_fraction(
     let mut area: Vec<f64> = diameter.iter().map(|d| d * d).collect();
     let mut moving: Vec<Particle> = Vec::new();
     let (mut inserted_mass, mut eroded_mass, mut increment) = (0.0, 0.0, 0);
-    // A particle trapped in a closed loop is retained; so many increments without an end are far beyond all others.
+    // A particle trapped in a closed loop is retained; so many increments without an end are far beyond all
+    // others.
     let last = increments + 400 * u64::from(shape[2]);
     while increment < last && (increment < increments || !moving.is_empty()) {
         let share = |t: u64| (u128::from(n_base) * u128::from(t) / u128::from(increments)) as u64;

@@ -29,7 +29,8 @@ pub(super) fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     (made, this_thread() - begun)
 }
 
-/// The sum of what `work` gives, piece after piece, and the processor time of this thread that all of it takes (s).
+/// The sum of what `work` gives, piece after piece, and the processor time of this thread that all of it
+/// takes (s).
 pub(super) fn summed(
     mut pieces: impl Iterator<Item = u64>,
     work: impl Fn(u64) -> Result<u64, PrecisionError>,

@@ -1,0 +1,105 @@
+//! Tables of a page: a column is its heading and what it shows of a row, so that the two cannot drift apart.
+
+use maud::{Markup, Render, html};
+
+/// Where the text of a column stands.
+#[derive(Clone, Copy)]
+enum Kind {
+    /// Left, as the name of its row.
+    Name,
+    /// Left.
+    Text,
+    /// Right.
+    Number,
+}
+
+/// A column: its heading, and its cell of a row.
+struct Column<'a, T> {
+    kind: Kind,
+    heading: Markup,
+    cell: Box<dyn Fn(&T) -> Markup + 'a>,
+}
+
+/// A table, which scrolls by itself where the page is too narrow for it.
+pub(super) struct Table<'a, T> {
+    rows: Vec<&'a T>,
+    columns: Vec<Column<'a, T>>,
+    class: Option<&'static str>,
+    more: Markup,
+}
+
+impl<'a, T> Table<'a, T> {
+    /// A table of these rows, without a column.
+    pub(super) fn of(rows: impl IntoIterator<Item = &'a T>) -> Self {
+        Self { rows: rows.into_iter().collect(), columns: Vec::new(), class: None, more: html! {} }
+    }
+
+    /// With a class of the style.
+    pub(super) fn class(self, class: &'static str) -> Self {
+        Self { class: Some(class), ..self }
+    }
+
+    /// With a further row at its end.
+    pub(super) fn more(self, more: Markup) -> Self {
+        Self { more, ..self }
+    }
+
+    /// With a column of the names of the rows.
+    pub(super) fn name<R: Render>(self, heading: impl Render, cell: impl Fn(&T) -> R + 'a) -> Self {
+        self.column(Kind::Name, heading, cell)
+    }
+
+    /// With a column of texts.
+    pub(super) fn text<R: Render>(self, heading: impl Render, cell: impl Fn(&T) -> R + 'a) -> Self {
+        self.column(Kind::Text, heading, cell)
+    }
+
+    /// With a column of numbers.
+    pub(super) fn number<R: Render>(self, heading: impl Render, cell: impl Fn(&T) -> R + 'a) -> Self {
+        self.column(Kind::Number, heading, cell)
+    }
+
+    fn column<R: Render>(mut self, kind: Kind, heading: impl Render, cell: impl Fn(&T) -> R + 'a) -> Self {
+        let cell = Box::new(move |row: &T| cell(row).render());
+        self.columns.push(Column { kind, heading: heading.render(), cell });
+        self
+    }
+}
+
+impl<T> Render for Table<'_, T> {
+    fn render(&self) -> Markup {
+        html! {
+            div.scroll { table class=[self.class] {
+                thead { tr { @for column in &self.columns { @match column.kind {
+                    Kind::Number => th.n { (column.heading) },
+                    _ => th { (column.heading) },
+                } } } }
+                tbody {
+                    @for row in &self.rows { tr { @for column in &self.columns { @match column.kind {
+                        Kind::Name => th { ((column.cell)(row)) },
+                        Kind::Text => td { ((column.cell)(row)) },
+                        Kind::Number => td.n { ((column.cell)(row)) },
+                    } } } }
+                    (self.more)
+                }
+            } }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_heading_stands_over_its_cells_and_markup_in_texts_is_escaped() {
+        let table = Table::of(&[("<b>", 0.25)])
+            .class("study")
+            .name("Name", |row| row.0)
+            .number("Value", |row| format!("{:.2}", row.1));
+        let expected = "<div class=\"scroll\"><table class=\"study\"><thead><tr><th>Name</th><th \
+                        class=\"n\">Value</th></tr></thead><tbody><tr><th>&lt;b&gt;</th><td \
+                        class=\"n\">0.25</td></tr></tbody></table></div>";
+        assert_eq!(table.render().into_string(), expected);
+    }
+}
