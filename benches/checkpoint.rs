@@ -1,10 +1,12 @@
-//! What a checkpoint of a long run costs, against writing and syncing the same bytes, and what resuming costs against reading them.
+//! What a checkpoint of a long run costs, against writing and syncing the same bytes, and what resuming costs
+//! against reading them.
 //!
-//! `cargo bench --bench checkpoint -- FOLDER [N]` walks N particles (2e8 unless said otherwise; 8 bytes each in memory and twice
-//! on the disk) one by one, keeps the walk after each of seven increments with all of them moving, in turns with a plain file of the
-//! same bytes that takes its place in the same way, and goes on from the last one. Seconds, by increment; in the first two the disk
-//! has not held any of the files before, so they do not count. `cpu` is the processor time of all threads. Files go into FOLDER
-//! and are removed.
+//! `cargo bench --bench checkpoint -- FOLDER [N]` walks N particles (2e8 unless said otherwise; 8 bytes each
+//! in memory and twice on the disk) one by one, keeps the walk after each of seven increments with all of
+//! them moving, in turns with a plain file of the same bytes that takes its place in the same way, and goes
+//! on from the last one. Seconds, by increment; in the first two the disk has not held any of the files
+//! before, so they do not count. `cpu` is the processor time of all threads. Files go into FOLDER and are
+//! removed.
 
 use std::fs::File;
 use std::io::{Read, Write};
@@ -15,7 +17,7 @@ use voidwalk::constrictions;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
 use voidwalk::store::checkpoint::{Identity, Label, newest, save};
-use voidwalk::walk::{Engine, Plan, SavedState, SizeClasses, State, Walk, WalkControl};
+use voidwalk::walk::{Engine, RunPlan, SavedState, SizeClasses, State, Walk, WalkControl};
 
 const SEED: u64 = 1;
 /// With two that do not count.
@@ -35,7 +37,7 @@ fn main() {
     let sampler = SizeSampler::new(&base, 1.0).unwrap();
     let open = bitvec::vec::BitVec::repeat(false, network.constrictions());
     // All in the first increment, so that all are moving.
-    let plan = Plan::new(Engine::Particles, &network, &sampler, &open, n);
+    let plan = RunPlan::new(Engine::Particles, &network, &sampler, &open, n);
     let supply = plan.supply(sampler.clone(), n, 1, SEED, 1);
     let fresh = || {
         let classes = SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), 64);

@@ -12,7 +12,7 @@ use criterion::{Criterion, Throughput};
 use voidwalk::constrictions::find;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
-use voidwalk::walk::{Engine, Plan, SizeClasses, State, Walk, WalkControl};
+use voidwalk::walk::{Engine, RunPlan, SizeClasses, State, Walk, WalkControl};
 
 struct Scene {
     network: Network,
@@ -30,7 +30,7 @@ impl Scene {
     /// The end of the run, and how many particles were walked one by one.
     fn first_run(&self, engine: Engine, n: u64) -> (State, u64) {
         let open = BitVec::repeat(false, self.network.constrictions());
-        let plan = Plan::new(engine, &self.network, &self.sampler, &open, n / 100);
+        let plan = RunPlan::new(engine, &self.network, &self.sampler, &open, n / 100);
         let supply = plan.supply(self.sampler.clone(), n, 100, 1, 1);
         let classes = SizeClasses::logarithmic(self.sampler.smallest(), self.sampler.largest(), 64);
         let mut state = State::new(&self.network, &supply, classes, open, 1, 1);

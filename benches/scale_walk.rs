@@ -12,7 +12,7 @@ use voidwalk::constrictions;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
 use voidwalk::report::figures::{Axis, BLUE, Colour, Dash, Figure, GREEN, Line, Point, Shape, VERMILLION};
-use voidwalk::walk::{Engine, Isa, Plan, SizeClasses, State, Walk, WalkControl};
+use voidwalk::walk::{Engine, Isa, RunPlan, SizeClasses, State, Walk, WalkControl};
 
 const SEED: u64 = 1;
 
@@ -56,7 +56,7 @@ fn run(engine: Engine, n: u64, shape: [u32; 3], cu: f64, isa: Isa) {
     let sampler = SizeSampler::new(&base, 1.0).unwrap();
     let open = bitvec::vec::BitVec::repeat(false, network.constrictions());
     let begin = now();
-    let plan = Plan::new(engine, &network, &sampler, &open, n / 100);
+    let plan = RunPlan::new(engine, &network, &sampler, &open, n / 100);
     let classes = SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), 64);
     let supply = plan.supply(sampler, n, 100, SEED, 1);
     let mut state = State::new(&network, &supply, classes, open, SEED, 1);

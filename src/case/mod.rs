@@ -172,7 +172,7 @@ impl Case {
         let curve = match (&network_file, curve) {
             (Some(network), _) => curve_of(network)?,
             (None, Some((curve, _))) => {
-                if curve.unit() == CurveUnit::D0f && filter.tail_mass_fraction() > 0.0 {
+                if curve.unit() == CurveUnit::D0f && filter.pan_fraction() > 0.0 {
                     let problem = "this constriction curve is in units of D0F, but the filter's finest \
                      sieve leaves a tail of unknown size: give filter.d0_mm";
                     return Err(scene.clash(problem).into());
@@ -198,7 +198,7 @@ impl Case {
         let grains_per_void = scene.filter.grains_per_void.or(of_packing);
         let (supply, mass_ratio) = supply(&scene, grains_per_void, counts[0], &base, &filter)?;
         let is_guess = packed.as_ref().is_some_and(|packed| packed.files.is_none());
-        if base.tail_mass_fraction() > 0.0 && base.smallest_mm() > curve.smallest() && !is_guess {
+        if base.pan_fraction() > 0.0 && base.smallest_mm() > curve.smallest() && !is_guess {
             let problem = format!(
                 "the base's finest sieve, {} mm, is coarser than the finest constriction, {:.4} mm: its \
                  tail of unknown size may not be passive; give base.d0_mm or a finer sieve",

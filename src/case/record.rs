@@ -102,7 +102,7 @@ impl Case {
                 d85_mm: d(&self.base, 85.0),
                 d95_mm: d(&self.base, 95.0),
                 d100_mm: self.base.largest_mm(),
-                tail_mass_fraction: self.base.tail_mass_fraction(),
+                tail_mass_fraction: self.base.pan_fraction(),
                 gradation: pairs(self.base.points()),
             },
             network: record::NetworkRecord {

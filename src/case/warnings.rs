@@ -14,7 +14,7 @@ impl Case {
         cu("filter", self.filter.cu(), 1.2, 6.0);
         cu("base", self.base.cu(), 1.2, 4.5);
         if !self.is_scale_free() {
-            let fines = self.base.percent_finer_by_mass(0.075).max(100.0 * self.base.tail_mass_fraction());
+            let fines = self.base.percent_finer_by_mass(0.075).max(100.0 * self.base.pan_fraction());
             if self.base.smallest_mm() < 0.075 && fines > 15.0 {
                 warnings.push(format!(
                     "{fines:.0} % of the base is finer than 0.075 mm: cohesion may govern, which the model \
@@ -25,11 +25,11 @@ impl Case {
         if self.base.d(50.0).zip(self.filter.d(50.0)).is_some_and(|(b, f)| b > f) {
             warnings.push("the base is coarser than the filter (D50): are the two files exchanged?".into());
         }
-        if self.base.tail_mass_fraction() > 0.0 {
+        if self.base.pan_fraction() > 0.0 {
             warnings.push(format!(
                 "{:.1} % of the base is finer than its finest sieve: taken as passive and counted by mass \
                  only",
-                100.0 * self.base.tail_mass_fraction()
+                100.0 * self.base.pan_fraction()
             ));
         }
         if let Some(shipped) = self.shipped.filter(|_| self.network_file.is_none())
@@ -50,11 +50,11 @@ impl Case {
                     .into(),
             );
         }
-        if self.filter.tail_mass_fraction() > 0.0 {
+        if self.filter.pan_fraction() > 0.0 {
             warnings.push(format!(
                 "{:.1} % of the filter is finer than its finest sieve: its grains are not in Eq. (2), which \
                  then asks for too much base; filter.d0_mm says where that tail ends",
-                100.0 * self.filter.tail_mass_fraction()
+                100.0 * self.filter.pan_fraction()
             ));
         }
         if let Some(eq2) = self.n_base_eq2.filter(|_| self.capped) {

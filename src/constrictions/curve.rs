@@ -233,7 +233,7 @@ impl Curve {
         self.percent.iter().copied().zip(self.diameter.iter().copied()).collect()
     }
 
-    /// The same curve, in the same unit, with every diameter multiplied by `factor`.
+    /// This curve, in its unit, with every diameter multiplied by `factor`.
     ///
     /// # Errors
     /// A factor that is not positive and finite, or that takes a diameter out of range.

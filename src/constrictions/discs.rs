@@ -9,7 +9,7 @@
 //! step further cut no further disc.
 
 use super::tangent::{Tangent, circle, cross};
-use super::triangulation::{Point, Positions, Shift, Triangulation};
+use super::triangulation::{GrainPoint, Positions, Shift, Triangulation};
 
 /// Cuts shallower than this part of the disc's radius are contacts.
 const CONTACT: f64 = 1e-9;
@@ -22,7 +22,7 @@ const RINGS: usize = 2;
 
 /// Where grains may pass a facet, in grid units.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Disc {
+pub(super) struct ConstrictionDisc {
     /// In the stored translate of the tetrahedron it was asked for.
     pub(super) centre: [f64; 3],
     /// Zero where the grains leave no room.
@@ -33,12 +33,12 @@ pub(super) struct Disc {
 
 /// The plane of a facet: coordinates along `u`, `v`, and `w` above it.
 struct Plane {
-    origin: Point,
+    origin: GrainPoint,
     axes: [[f64; 3]; 3],
 }
 
 impl Plane {
-    fn through(facet: &[Point; 3]) -> Self {
+    fn through(facet: &[GrainPoint; 3]) -> Self {
         let along = |k: usize| -> [f64; 3] { std::array::from_fn(|axis| facet[k][axis] - facet[0][axis]) };
         let unit = |v: [f64; 3]| {
             let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
@@ -49,13 +49,13 @@ impl Plane {
         Self { origin: facet[0], axes: [u, cross(&w, &u), w] }
     }
 
-    fn local(&self, p: &Point) -> [f64; 3] {
+    fn local(&self, p: &GrainPoint) -> [f64; 3] {
         let d: [f64; 3] = std::array::from_fn(|axis| p[axis] - self.origin[axis]);
         self.axes.map(|a| a[0] * d[0] + a[1] * d[1] + a[2] * d[2])
     }
 
     /// Circle in which a grain meets the plane.
-    fn section(&self, p: &Point) -> Option<[f64; 3]> {
+    fn section(&self, p: &GrainPoint) -> Option<[f64; 3]> {
         let [u, v, w] = self.local(p);
         let square = (p[3] - w) * (p[3] + w);
         (square > 0.0).then(|| [u, v, square.sqrt()])
@@ -69,7 +69,12 @@ impl Plane {
 }
 
 /// The disc of the facet opposite a corner of a tetrahedron.
-pub(super) fn disc(t: &Triangulation, positions: &Positions<'_>, tetrahedron: usize, corner: usize) -> Disc {
+pub(super) fn disc(
+    t: &Triangulation,
+    positions: &Positions<'_>,
+    tetrahedron: usize,
+    corner: usize,
+) -> ConstrictionDisc {
     let corners = t.at(positions, tetrahedron, Shift::ZERO);
     let facet = [1, 2, 3].map(|k| corners[(corner + k) % 4]);
     let plane = Plane::through(&facet);
@@ -78,8 +83,8 @@ pub(super) fn disc(t: &Triangulation, positions: &Positions<'_>, tetrahedron: us
         [u, v, g[3]]
     });
     let place = |found: Option<Tangent<2>>, cut: bool| match found {
-        Some(Tangent { centre, radius }) => Disc { centre: plane.global(centre), radius, cut },
-        None => Disc { centre: [facet[0][0], facet[0][1], facet[0][2]], radius: 0.0, cut },
+        Some(Tangent { centre, radius }) => ConstrictionDisc { centre: plane.global(centre), radius, cut },
+        None => ConstrictionDisc { centre: [facet[0][0], facet[0][1], facet[0][2]], radius: 0.0, cut },
     };
     let Some(first) = circle(&own) else { return place(None, false) };
     // Few discs are cut: look for one grain that does before listing all.
@@ -137,7 +142,7 @@ fn around(
     positions: &Positions<'_>,
     tetrahedron: usize,
     corner: usize,
-    mut visit: impl FnMut(&Point),
+    mut visit: impl FnMut(&GrainPoint),
 ) {
     visit(&t.corner_at(positions, tetrahedron, corner, Shift::ZERO));
     beyond(t, positions, (tetrahedron, Shift::ZERO, corner), RINGS, &mut visit);
@@ -153,7 +158,7 @@ fn beyond(
     positions: &Positions<'_>,
     (tetrahedron, translate, entered): (usize, Shift, usize),
     rings: usize,
-    visit: &mut impl FnMut(&Point),
+    visit: &mut impl FnMut(&GrainPoint),
 ) {
     if rings == 0 {
         return;

@@ -1,14 +1,16 @@
 //! A guess at a filter's constrictions from its gradation alone: circles inscribed between touching grains.
 //!
-//! After the idea of Silveira: grains that meet at a constriction are drawn from the gradation and laid touching in a
-//! plane. *Dense*: three touch each other, and the constriction is the circle between them. *Loose*: four touch in a ring that
-//! is opened until the room between them is largest and the constriction is the largest circle in
-//! it. Each grain is drawn with a probability proportional to its surface. In between, diameters of one percentage are
-//! mixed by relative density; that mixture is linear here, which is this program's choice.
+//! After the idea of Silveira: grains that meet at a constriction are drawn from the gradation and laid
+//! touching in a plane. *Dense*: three touch each other, and the constriction is the circle between them.
+//! *Loose*: four touch in a ring that is opened until the area between them is largest and the constriction
+//! is the largest circle in it. Each grain is drawn with a probability proportional to its surface. In
+//! between, diameters of one percentage are mixed by relative density; that mixture is linear here, which is
+//! this program's choice.
 //!
-//! Nothing of the packing but three or four grains is looked at. In a filter of wide gradation coarse grains meet through
-//! many fine ones, and fine grains hide in the gaps of coarse ones, so the guess gets worse the wider the gradation: beside
-//! the triangulation of the same filters its Dc50 is off by the percentages in `results/filters-2026-11-21.md`.
+//! Nothing of the packing but three or four grains is looked at. In a filter of wide gradation coarse grains
+//! meet through many fine ones, and fine grains hide in the gaps of coarse ones, so the guess gets worse the
+//! wider the gradation: beside the triangulation of the same filters its Dc50 is off by the percentages in
+//! `results/filters-2026-11-21.md`.
 
 use super::curve::{Curve, CurveError, CurveUnit};
 use super::tangent::circle;
@@ -26,8 +28,8 @@ const SIZES: usize = 4000;
 /// Steps by which the angle of a ring is found.
 const STEPS: usize = 34;
 
-/// The constriction curve (mm, by number) of touching grains of this gradation, at a relative density from 0, loose, to 1,
-/// dense. A tail of unknown size is left out.
+/// The constriction curve (mm, by number) of touching grains of this gradation, at a relative density from 0,
+/// loose, to 1, dense. A pan fraction is left out.
 ///
 /// ```
 /// use voidwalk::{constrictions::inscribed, gradation::Gradation};
@@ -98,27 +100,28 @@ fn between_three(radius: [f64; 3]) -> f64 {
     1.0 / (a + b + c + 2.0 * (a * b + b * c + c * a).sqrt())
 }
 
-/// Radius of the largest circle inside four circles that touch in a ring, opened until the room in it is largest.
+/// Radius of the largest circle inside four circles that touch in a ring, opened until the area in it is
+/// largest.
 fn between_four(radius: [f64; 4]) -> f64 {
     let [a, b, c, d] = radius;
     // The angle at `a` runs from where `b` and `d` touch to where `a` and `c` do.
     let (ab, ad) = (a + b, a + d);
     let least = angle(ab, ad, b + d);
     let most = angle(ab, a + c, b + c) + angle(ad, a + c, c + d);
-    // Golden section on a room with one maximum.
+    // Golden section on an area with one maximum.
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let (mut low, mut high) = (least, most);
     let (mut x, mut y) = (high - golden * (high - low), low + golden * (high - low));
-    let (mut at_x, mut at_y) = (room(radius, x), room(radius, y));
+    let (mut at_x, mut at_y) = (area_between(radius, x), area_between(radius, y));
     for _ in 0..STEPS {
         if at_x < at_y {
             (low, x, at_x) = (x, y, at_y);
             y = low + golden * (high - low);
-            at_y = room(radius, y);
+            at_y = area_between(radius, y);
         } else {
             (high, y, at_y) = (y, x, at_x);
             x = high - golden * (high - low);
-            at_x = room(radius, x);
+            at_x = area_between(radius, x);
         }
     }
     let ring = ring(radius, 0.5 * (low + high));
@@ -132,7 +135,7 @@ fn between_four(radius: [f64; 4]) -> f64 {
             largest = largest.max(found.radius);
         }
     }
-    // Where rounding lets none through, the room is that of the three smallest.
+    // Where rounding lets none through, the circle is that of the three smallest.
     if largest > 0.0 {
         return largest;
     }
@@ -160,7 +163,7 @@ fn ring([a, b, c, d]: [f64; 4], at_a: f64) -> [[f64; 3]; 4] {
 }
 
 /// Area between the four circles of a ring.
-fn room(radius: [f64; 4], at_a: f64) -> f64 {
+fn area_between(radius: [f64; 4], at_a: f64) -> f64 {
     let [a, b, c, d] = radius;
     let at = ring(radius, at_a);
     let twice: f64 = (0..4)
@@ -191,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ring_touches_and_its_room_is_largest() {
+    fn a_ring_touches_and_its_area_is_largest() {
         for radius in [[1.0, 2.0, 1.5, 3.0], [1.0, 1.0, 4.0, 1.0], [2.0, 1.0, 1.0, 8.0]] {
             let found = between_four(radius);
             let smallest = radius.iter().fold(f64::MAX, |m: f64, &r| m.min(r));

@@ -1,9 +1,9 @@
 //! From a packing to its constrictions.
 
 use super::curve::{Curve, CurveError, CurveUnit};
-use super::discs::{Disc, disc};
-use super::triangulation::{Point, Positions, Shift, Triangulation, TriangulationError};
-use super::voids::{Room, Voids};
+use super::discs::{ConstrictionDisc, disc};
+use super::triangulation::{GrainPoint, Positions, Shift, Triangulation, TriangulationError};
+use super::voids::{Insphere, Voids};
 use crate::packing::Packing;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -172,7 +172,7 @@ impl Constrictions {
             .flat_map_iter(|i| (0..4).map(move |k| (i, k)))
             .filter(|&(i, k)| counts(i, k))
             .collect();
-        let discs: Vec<Disc> =
+        let discs: Vec<ConstrictionDisc> =
             facets.par_iter().with_min_len(256).map(|&(i, k)| disc(t, &positions, i, k)).collect();
         let frame = Frame::new(t);
         let mut found = Self::empty(t, &voids, &frame);
@@ -211,11 +211,11 @@ impl Constrictions {
         let mut void_diameter_mm = vec![0.0; voids.count];
         let mut void_centre_mm = vec![[f64::NAN; 3]; voids.count];
         let mut void_tetrahedra = vec![0; voids.count];
-        for (i, (&v, room)) in voids.of.iter().zip(&voids.rooms).enumerate() {
+        for (i, (&v, insphere)) in voids.of.iter().zip(&voids.inspheres).enumerate() {
             let v = v as usize;
             void_tetrahedra[v] += 1;
-            match room {
-                Room::Sphere(s) if 2.0 * s.radius * frame.unit_mm > void_diameter_mm[v] => {
+            match insphere {
+                Insphere::Sphere(s) if 2.0 * s.radius * frame.unit_mm > void_diameter_mm[v] => {
                     void_diameter_mm[v] = 2.0 * s.radius * frame.unit_mm;
                     void_centre_mm[v] = frame.inside_mm(s.centre);
                 }
@@ -226,7 +226,9 @@ impl Constrictions {
                 _ => {}
             }
         }
-        let count = |wanted: fn(&Room) -> bool| voids.rooms.iter().filter(|room| wanted(room)).count();
+        let count = |wanted: fn(&Insphere) -> bool| {
+            voids.inspheres.iter().filter(|insphere| wanted(insphere)).count()
+        };
         let mut is_hidden = vec![false; t.grains()];
         t.hidden().iter().for_each(|&g| is_hidden[g as usize] = true);
         let visible = || t.spheres().iter().zip(&is_hidden).filter(|(_, hidden)| !**hidden).map(|(s, _)| s);
@@ -250,8 +252,8 @@ impl Constrictions {
             void_tetrahedra,
             closed: 0,
             cut: 0,
-            open_tetrahedra: count(|room| matches!(room, Room::Open)),
-            flat_tetrahedra: count(|room| matches!(room, Room::Flat)),
+            open_tetrahedra: count(|insphere| matches!(insphere, Insphere::Open)),
+            flat_tetrahedra: count(|insphere| matches!(insphere, Insphere::Flat)),
             tetrahedra: t.tetrahedra(),
             hidden: t.hidden().to_vec(),
             duplicates: t.duplicates().to_vec(),
@@ -331,7 +333,7 @@ impl Constrictions {
 }
 
 /// Whether the facet opposite a corner leads from its tetrahedron towards higher z.
-fn leads_up(corners: &[Point; 4], corner: usize) -> bool {
+fn leads_up(corners: &[GrainPoint; 4], corner: usize) -> bool {
     let facet = [1, 2, 3].map(|k| corners[(corner + k) % 4]);
     let edge = |k: usize| -> [f64; 2] { [facet[k][0] - facet[0][0], facet[k][1] - facet[0][1]] };
     let normal_z = edge(1)[0] * edge(2)[1] - edge(1)[1] * edge(2)[0];

@@ -133,9 +133,9 @@ mod tests {
         }
     }
 
-    /// The program's own six beside Table 2: Cu_CSD within 0.04, but for Cu 6 (0.049 too wide, a finding); void ratio within
-    /// 0.006 without friction, 0.02 with 0.3, 0.03 with 0.7. And beside the published curves: 3 % at Dc5, Dc25, Dc50, 5 % at
-    /// Dc75.
+    /// The program's own six beside Table 2: Cu_CSD within 0.04, but for Cu 6 (0.049 too wide, a finding);
+    /// void ratio within 0.006 without friction, 0.02 with 0.3, 0.03 with 0.7. And beside the published
+    /// curves: 3 % at Dc5, Dc25, Dc50, 5 % at Dc75.
     #[test]
     fn own_curves_are_near_table_2_and_the_published_ones() {
         for (name, void_ratio, within, cu_csd, cu_within) in [

@@ -125,7 +125,8 @@ mod tests {
 
         /// A sphere found is at its radius from all four grains.
         #[test]
-        fn a_tangent_sphere_touches(v in prop::collection::vec(0.0..10.0, 12), r in prop::collection::vec(0.1..1.0, 4)) {
+        fn a_tangent_sphere_touches(
+            v in prop::collection::vec(0.0..10.0, 12), r in prop::collection::vec(0.1..1.0, 4)) {
             let grains: [[f64; 4]; 4] = std::array::from_fn(|i| [v[3 * i], v[3 * i + 1], v[3 * i + 2], r[i]]);
             if let Some(found) = sphere(&grains) && found.radius < 1e3 {
                 for g in grains {

@@ -1,15 +1,15 @@
-//! Voids: tetrahedra that share one room.
+//! Voids: tetrahedra whose inspheres overlap.
 //!
-//! A tetrahedron's room is the sphere tangent to its four grains. Two tetrahedra belong to one void
-//! when `overlap = (r1 + r2 - distance) / min(r1, r2) >= merge_overlap`, for neighbours and neighbours'
-//! neighbours, transitively. Two kinds have no such sphere to go by:
+//! A tetrahedron's insphere is the sphere tangent to its four grains from between them. Two tetrahedra belong
+//! to one void when `overlap = (r1 + r2 - distance) / min(r1, r2) >= merge_overlap`, for neighbours and
+//! neighbours' neighbours, transitively. Two kinds have no such sphere to go by:
 //! - wide gradings have tetrahedra without one: they join all four neighbours;
 //! - four grains (nearly) on one circle make a flat tetrahedron, whose sphere may lie anywhere on the
-//!   axis of that circle. It is a window, not a room: it joins the neighbour with the largest sphere
+//!   axis of that circle. It is a window, not a void: it joins the neighbour with the largest sphere
 //!   and never links two.
 
 use super::tangent::{Tangent, cross, sphere};
-use super::triangulation::{Point, Positions, Shift, Triangulation};
+use super::triangulation::{GrainPoint, Positions, Shift, Triangulation};
 use rayon::prelude::*;
 use std::collections::HashSet;
 
@@ -23,7 +23,7 @@ const COPLANAR: f64 = 1e-4;
 
 /// What a tetrahedron encloses, in grid units.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Room {
+pub(super) enum Insphere {
     /// The sphere tangent to its grains, in its stored translate.
     Sphere(Tangent<3>),
     /// No sphere touches all four from between them.
@@ -38,21 +38,21 @@ pub(super) struct Voids {
     pub(super) of: Vec<u32>,
     /// Number of voids.
     pub(super) count: usize,
-    /// Room by tetrahedron.
-    pub(super) rooms: Vec<Room>,
+    /// Insphere by tetrahedron.
+    pub(super) inspheres: Vec<Insphere>,
 }
 
 impl Voids {
     pub(super) fn merge(t: &Triangulation, positions: &Positions<'_>, merge_overlap: f64) -> Self {
-        let rooms: Vec<Room> = (0..t.tetrahedra())
+        let inspheres: Vec<Insphere> = (0..t.tetrahedra())
             .into_par_iter()
             .with_min_len(1024)
-            .map(|i| room(&t.at(positions, i, Shift::ZERO)))
+            .map(|i| insphere(&t.at(positions, i, Shift::ZERO)))
             .collect();
         let pairs: Vec<[u32; 2]> = (0..t.tetrahedra())
             .into_par_iter()
             .with_min_len(1024)
-            .flat_map_iter(|i| joined(t, positions, &rooms, merge_overlap, i))
+            .flat_map_iter(|i| joined(t, positions, &inspheres, merge_overlap, i))
             .collect();
         let mut sets = Sets((0..t.tetrahedra() as u32).collect());
         for [a, b] in pairs {
@@ -70,7 +70,7 @@ impl Voids {
                 number[root]
             })
             .collect();
-        Self { of, count: count as usize, rooms }
+        Self { of, count: count as usize, inspheres }
     }
 }
 
@@ -86,9 +86,9 @@ impl Voids {
     ) -> bool {
         let own = t.at(positions, tetrahedron, Shift::ZERO);
         let [a, b, c] = [1, 2, 3].map(|k| own[(corner + k) % 4]);
-        let from_a = |p: &Point| -> [f64; 3] { std::array::from_fn(|axis| p[axis] - a[axis]) };
+        let from_a = |p: &GrainPoint| -> [f64; 3] { std::array::from_fn(|axis| p[axis] - a[axis]) };
         let normal = cross(&from_a(&b), &from_a(&c));
-        let height = |p: &Point| {
+        let height = |p: &GrainPoint| {
             let d = from_a(p);
             d[0] * normal[0] + d[1] * normal[1] + d[2] * normal[2]
         };
@@ -98,7 +98,7 @@ impl Voids {
         let mut open = vec![(tetrahedron, Shift::ZERO)];
         while let Some((at, shift)) = open.pop() {
             // Grains in the plane of the facet (a square window) count as on its side.
-            let beyond = |p: &Point| height(p) * inside.signum() < -COPLANAR * inside.abs();
+            let beyond = |p: &GrainPoint| height(p) * inside.signum() < -COPLANAR * inside.abs();
             if t.at(positions, at, shift).iter().any(beyond) {
                 return false;
             }
@@ -112,14 +112,14 @@ impl Voids {
     }
 }
 
-fn room(corners: &[Point; 4]) -> Room {
+fn insphere(corners: &[GrainPoint; 4]) -> Insphere {
     if is_flat(corners) {
-        return Room::Flat;
+        return Insphere::Flat;
     }
-    sphere(corners).map_or(Room::Open, Room::Sphere)
+    sphere(corners).map_or(Insphere::Open, Insphere::Sphere)
 }
 
-fn is_flat(corners: &[Point; 4]) -> bool {
+fn is_flat(corners: &[GrainPoint; 4]) -> bool {
     let edge =
         |a: usize, b: usize| -> [f64; 3] { std::array::from_fn(|axis| corners[b][axis] - corners[a][axis]) };
     let length = |a: usize, b: usize| {
@@ -139,16 +139,16 @@ fn is_flat(corners: &[Point; 4]) -> bool {
 fn joined(
     t: &Triangulation,
     positions: &Positions<'_>,
-    rooms: &[Room],
+    inspheres: &[Insphere],
     merge_overlap: f64,
     i: usize,
 ) -> Vec<[u32; 2]> {
     let neighbours = (0..4).filter_map(|k| t.across(i, k).map(|(u, _, shift)| (u, shift)));
     let pair = |u: usize| [i as u32, u as u32];
-    match rooms[i] {
-        Room::Open => neighbours.map(|(u, _)| pair(u)).collect(),
-        Room::Flat => {
-            let radius = |u: usize| if let Room::Sphere(s) = rooms[u] { s.radius } else { 0.0 };
+    match inspheres[i] {
+        Insphere::Open => neighbours.map(|(u, _)| pair(u)).collect(),
+        Insphere::Flat => {
+            let radius = |u: usize| if let Insphere::Sphere(s) = inspheres[u] { s.radius } else { 0.0 };
             neighbours
                 .map(|(u, _)| u)
                 .reduce(|best, u| if (radius(u), best) > (radius(best), u) { u } else { best })
@@ -156,12 +156,12 @@ fn joined(
                 .into_iter()
                 .collect()
         }
-        Room::Sphere(own) => {
+        Insphere::Sphere(own) => {
             let mut found = Vec::new();
             let mut test = |u: usize, shift: Shift| {
                 // Each pair is seen from both sides.
                 if u > i
-                    && let Room::Sphere(other) = rooms[u]
+                    && let Insphere::Sphere(other) = inspheres[u]
                 {
                     let by = positions.displacement(shift);
                     let d: [f64; 3] =

@@ -11,10 +11,10 @@
 //! Between two points of a curve the mass is spread evenly over ln(D), so the number of particles
 //! per mm of diameter is proportional to `D^-4`, and the number finer than `D` is linear in `D^-3`.
 //!
-//! # The tail
-//! A finest row above 0 % leaves a tail of unknown size. With `d0_mm` the tail ends there, as one
-//! more straight segment. Without it the tail is taken as passive and counted by mass only: number
-//! statistics cover the sized part, and [`Gradation::tail_mass_fraction`] says what they leave out.
+//! # The pan fraction
+//! A finest row above 0 % leaves a pan fraction, finer than the finest sieve. With `d0_mm` it ends there, as
+//! one more straight segment. Without it the pan fraction is taken as passive and counted by mass only:
+//! number statistics cover the sized part, and [`Gradation::pan_fraction`] says what they leave out.
 //!
 //! # Units
 //! Sizes are diameters in mm. Only ratios of sizes enter a formula that rounds, so a factor of two
@@ -32,7 +32,7 @@ mod table;
 
 pub(crate) use error::shortened;
 pub use error::{GradationError, NumberError, Position, TableError};
-pub use sampler::{Part, SizeSampler};
+pub use sampler::{SizeRange, SizeSampler};
 pub use sieve::Gradation;
 pub use stability::ShapeIndex;
 pub use supply::{BaseSupply, base_particles};

@@ -9,7 +9,7 @@ impl Gradation {
     /// mass fraction.
     ///
     /// Base and filter have one solid density, so the ratio of two of these is
-    /// `N_base,unit / N_filter,unit` of Eq. (2). A tail of unknown size is in the solid, not in the
+    /// `N_base,unit / N_filter,unit` of Eq. (2). A pan fraction is in the solid, not in the
     /// number.
     pub fn particles_per_unit_volume(&self) -> f64 {
         self.number[self.number.len() - 1]

@@ -201,15 +201,15 @@ impl SizeSampler {
     ///
     /// # Panics
     /// If the range ends before it starts or beyond 2^64.
-    pub fn part(&self, words: Range<u128>) -> Part<'_> {
+    pub fn part(&self, words: Range<u128>) -> SizeRange<'_> {
         assert!(words.start <= words.end && words.end <= ALL_WORDS, "a range of words: {words:?}");
         let share = |words: u128| (words as f64) * (1.0 / ALL_WORDS as f64);
         let (v_fine, v_coarse) = (share(ALL_WORDS - words.start), share(ALL_WORDS - words.end));
-        Part { sampler: self, words, v_fine, v_coarse }
+        SizeRange { sampler: self, words, v_fine, v_coarse }
     }
 
     /// All particles.
-    pub fn whole(&self) -> Part<'_> {
+    pub fn whole(&self) -> SizeRange<'_> {
         self.part(0..ALL_WORDS)
     }
 }
@@ -226,7 +226,7 @@ fn coarser_share(word: u64) -> f64 {
 /// The limits are those of the words; between them sizes count as continuous, before the rounding
 /// to f32.
 #[derive(Clone, Debug)]
-pub struct Part<'a> {
+pub struct SizeRange<'a> {
     sampler: &'a SizeSampler,
     words: Range<u128>,
     /// Share of all particles coarser than the finest of this part.
@@ -235,7 +235,7 @@ pub struct Part<'a> {
     v_coarse: f64,
 }
 
-impl Part<'_> {
+impl SizeRange<'_> {
     /// Share of all particles that are in this part, by number.
     pub fn number_fraction(&self) -> f64 {
         ((self.words.end - self.words.start) as f64) * (1.0 / ALL_WORDS as f64)

@@ -73,7 +73,7 @@ impl Gradation {
     /// A sieve table: pairs of opening (mm) and percent finer by mass, ascending or descending.
     ///
     /// A finest point above 0 % leaves a tail: with `d0_mm` the curve goes on straight to 0 % there;
-    /// without it the tail is counted by mass only.
+    /// without it the pan fraction is counted by mass only.
     ///
     /// # Errors
     /// What [`Gradation::from_sieve_csv`] refuses, with the point's place in the list as the line.
@@ -117,7 +117,7 @@ impl Gradation {
         Gradation { size_mm, percent, log_ratio, number }
     }
 
-    /// The same curve with every size multiplied by `factor`.
+    /// This curve with every size multiplied by `factor`.
     ///
     /// # Errors
     /// A factor that is not positive and finite, or that takes a size out of range.
@@ -132,7 +132,7 @@ impl Gradation {
 
     /// D_x: the smallest size (mm) that `percent` of the mass is finer than or equal to.
     ///
-    /// `None` for a percentage outside 0 to 100, or in a tail of unknown size.
+    /// `None` for a percentage outside 0 to 100, or in a pan fraction.
     pub fn d(&self, percent: f64) -> Option<f64> {
         if !(0.0..=100.0).contains(&percent) || percent < self.tail_percent() {
             return None;
@@ -146,7 +146,7 @@ impl Gradation {
         Some(d.clamp(self.size_mm[i - 1], self.size_mm[i]))
     }
 
-    /// Coefficient of uniformity, `D_60 / D_10`; `None` where D_10 lies in a tail of unknown size.
+    /// Coefficient of uniformity, `D_60 / D_10`; `None` where D_10 lies in a pan fraction.
     pub fn cu(&self) -> Option<f64> {
         Some(self.d(60.0)? / self.d(10.0)?)
     }
@@ -161,7 +161,7 @@ impl Gradation {
         self.size_mm[self.size_mm.len() - 1]
     }
 
-    /// Percent by mass no coarser than `d_mm`. A tail of unknown size counts as finer than any size.
+    /// Percent by mass no coarser than `d_mm`. A pan fraction counts as finer than any size.
     pub fn percent_finer_by_mass(&self, d_mm: f64) -> f64 {
         let above = self.size_mm.partition_point(|&d| d <= d_mm);
         if above == 0 {
@@ -175,8 +175,8 @@ impl Gradation {
         (low + share * (high - low)).clamp(low, high)
     }
 
-    /// Share of the mass, 0 to 1, that is in a tail of unknown size: counted by mass only.
-    pub fn tail_mass_fraction(&self) -> f64 {
+    /// Pan fraction: share of the mass, 0 to 1, finer than the finest sieve. It is counted by mass only.
+    pub fn pan_fraction(&self) -> f64 {
         self.tail_percent() / 100.0
     }
 

@@ -1,16 +1,18 @@
 //! Whether a soil holds its own fines: the two classical indices of a sieve curve's shape.
 //!
-//! - Kenney and Lau (1985, 1986): F is the mass finer than D, H the mass between D and 4 D. Where H is less than F, the coarse
-//!   part does not hold the fine part. Only the part of a curve that can be loose counts: F up to 20 % where Cu > 3, up to 30 %
-//!   otherwise. The limit of 1986 is H / F = 1 (1985: 1.3).
-//! - Kezdi (1979): the curve is split at every size; Terzaghi's ratio of the coarser part over the finer, D'15 / d'85, is not to be
-//!   more than 4. Whatever the split, 15 % of the whole mass lie between the two sizes.
+//! - Kenney and Lau (1985, 1986): F is the mass finer than D, H the mass between D and 4 D. Where H is less
+//!   than F, the coarse part does not hold the fine part. Only the part of a curve that can be loose counts:
+//!   F up to 20 % where Cu > 3, up to 30 % otherwise. The limit of 1986 is H / F = 1 (1985: 1.3).
+//! - Kezdi (1979): the curve is split at every size; Terzaghi's ratio of the coarser part over the finer,
+//!   D'15 / d'85, is not to be more than 4. Whatever the split, 15 % of the whole mass lie between the two
+//!   sizes.
 //!
-//! Definitions and limits as in the technical manual of the U.S. Army Corps of Engineers' Internal Instability Toolbox
-//! (Risk Management Center, RMC-CPD-2023-10, "Modified Kenney and Lau method"), which follows Li and Fannin (2008).
+//! Definitions and limits as in the technical manual of the U.S. Army Corps of Engineers' Internal
+//! Instability Toolbox (Risk Management Center, RMC-CPD-2023-10, "Modified Kenney and Lau method"), which
+//! follows Li and Fannin (2008).
 //!
-//! Both indices are extreme at a point of the curve, or where the other end of their window is at one; so they are found
-//! exactly. A tail of unknown size is left out: what it would say is not known.
+//! Both indices are extreme at a point of the curve, or where the other end of their window is at one; so
+//! they are found exactly. A pan fraction is left out: what it would say is not known.
 
 use super::Gradation;
 
@@ -27,14 +29,16 @@ pub struct ShapeIndex {
 }
 
 impl Gradation {
-    /// Percent finer up to which Kenney and Lau look: 20 where Cu > 3, 30 otherwise; `None` where Cu is not known.
+    /// Percent finer up to which Kenney and Lau look: 20 where Cu > 3, 30 otherwise; `None` where Cu is not
+    /// known.
     pub fn loose_percent(&self) -> Option<f64> {
         Some(if self.cu()? > NARROW_CU { 20.0 } else { 30.0 })
     }
 
     /// Kenney and Lau: the least H / F over F up to [`Gradation::loose_percent`].
     ///
-    /// `None` for a single size, where D_10 lies in a tail of unknown size, or where that tail reaches beyond F.
+    /// `None` for a single size, where D_10 lies in a pan fraction, or where that pan fraction reaches beyond
+    /// F.
     ///
     /// ```
     /// use voidwalk::gradation::Gradation;
@@ -60,7 +64,7 @@ impl Gradation {
 
     /// Kezdi: the greatest D'15 / d'85 over all splits of the curve.
     ///
-    /// `None` for a single size, or where more than 85 % of the mass is in a tail of unknown size.
+    /// `None` for a single size, or where more than 85 % of the mass is in a pan fraction.
     pub fn kezdi(&self) -> Option<ShapeIndex> {
         // A split at n % has d'85 at 0.85 n % and D'15 at 15 % more of the whole mass.
         const BETWEEN: f64 = 15.0;
@@ -79,7 +83,8 @@ impl Gradation {
             .max_by(|a, b| a.value.total_cmp(&b.value))
     }
 
-    /// The largest size (mm) that no more than `percent` of the mass is finer than; [`Gradation::d`] gives the smallest.
+    /// The largest size (mm) that no more than `percent` of the mass is finer than; [`Gradation::d`] gives
+    /// the smallest.
     fn highest_size_at(&self, percent: f64) -> Option<f64> {
         let above = self.percent.partition_point(|&p| p <= percent);
         match above.checked_sub(1).map(|i| (self.percent[i], self.size_mm[i])) {
@@ -97,8 +102,8 @@ mod tests {
         Gradation::from_points(points, None).unwrap()
     }
 
-    /// Straight on semi-log paper the mass between D and 4 D is the same everywhere, 50 ln 4 / ln Cu percent, so H / F is least at
-    /// the largest F; and 15 % of the mass always spans Cu^0.3.
+    /// Straight on semi-log paper the mass between D and 4 D is the same everywhere, 50 ln 4 / ln Cu percent,
+    /// so H / F is least at the largest F; and 15 % of the mass always spans Cu^0.3.
     #[test]
     fn straight_curves_by_hand() {
         for (cu, limit) in [(3.0, 30.0), (8.0, 20.0), (60.0, 20.0)] {
@@ -111,15 +116,16 @@ mod tests {
         }
     }
 
-    /// A gap from 0.2 to 2 mm at 25 %: F = 25 % is within the loose part of no widely graded soil, but Kezdi's split there
-    /// has d'85 at 21.25 % and D'15 at 36.25 %.
+    /// A gap from 0.2 to 2 mm at 25 %: F = 25 % is within the loose part of no widely graded soil, but
+    /// Kezdi's split there has d'85 at 21.25 % and D'15 at 36.25 %.
     #[test]
     fn a_gap_by_hand() {
         let gap = points(&[(0.1, 0.0), (0.2, 25.0), (2.0, 25.0), (20.0, 100.0)]);
         let fine = 0.1 * libm::pow(2.0, 21.25 / 25.0);
         let coarse = 2.0 * libm::pow(10.0, 11.25 / 75.0);
         assert!(gap.kezdi().unwrap().value >= coarse / fine - 1e-12);
-        // The widest window of 15 % begins where the other end has just passed the gap: D(25+) over D(10), or D(40) over D(25).
+        // The widest window of 15 % begins where the other end has just passed the gap: D(25+) over D(10), or
+        // D(40) over D(25).
         let d_40 = 2.0 * libm::pow(10.0, 15.0 / 75.0);
         let d_10 = 0.1 * libm::pow(2.0, 0.4);
         let widest = (d_40 / 0.2).max(2.0 / d_10);

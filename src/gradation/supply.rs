@@ -2,7 +2,7 @@
 
 use super::{Gradation, GradationError, NumberError};
 
-/// The number of base particles, and what a cap made of it.
+/// The number of base particles, and whether it is capped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BaseSupply {
     /// Base particles to insert.
@@ -24,11 +24,11 @@ pub struct BaseSupply {
 /// network. N_unit is the number of particles per unit mass; base and filter have one solid density,
 /// so numbers per unit of solid volume ([`Gradation::particles_per_unit_volume`]) do.
 ///
-/// A tail of unknown size in the base is in its mass, not in its number: the particles stand for
+/// A pan fraction in the base is in its mass, not in its number: the particles stand for
 /// `1 - tail` of `mass_ratio`.
 ///
-/// `cap` is a limit on the number, off with `None`. Fewer particles than Eq. (2) asks for is a bias
-/// towards more erosion, not noise, so the result says when the cap bit.
+/// `cap` is a limit on the number, off with `None`. Fewer particles than Eq. (2) requires is a bias
+/// towards more erosion, not noise, so the result says when it is capped.
 ///
 /// # Errors
 /// A mass ratio or grains per void that is not a positive finite number, no voids, or a number of

@@ -146,7 +146,8 @@ impl Table {
                 at: Position { file: self.file.clone(), line, field: "number" },
                 value: shortened(value),
                 allowed: format!(
-                    "one decimal sign in the whole file (line {dot_line} has a decimal point), no thousands separators"
+                    "one decimal sign in the whole file (line {dot_line} has a decimal point), no \
+                     thousands separators"
                 ),
             }),
             _ => Ok(()),

@@ -1,29 +1,31 @@
 //! Lattices with a given distribution of void connectivity (paper, section 6, Table 3 and Fig. 20).
 //!
-//! The *connectivity* of a void is the number of its entrances and exits. On the cubic lattice it is 6 for every void:
-//! the inlet of a start node counts as an entrance, the way out of the last layer as an exit. The paper keeps the mean
-//! of 6 but spreads it over 4 to 8: "constrictions were created between diagonally neighbouring voids, or
-//! deleted until the connectivity distribution shown in Table 3 was reached". It does not say in which order,
-//! or which diagonals. Decided here:
+//! The *connectivity* of a void is the number of its entrances and exits. On the cubic lattice it is 6 for
+//! every void: the inlet of a start node counts as an entrance, the way out of the last layer as an exit. The
+//! paper keeps the mean of 6 but spreads it over 4 to 8: "constrictions were created between diagonally
+//! neighbouring voids, or deleted until the connectivity distribution shown in Table 3 was reached". It does
+//! not say in which order, or which diagonals. Decided here:
 //!
-//! - Every void has six possible exits: the lattice's +x, +y, +z and the three face diagonals +x+y, +x+z, +y+z. All lead in
-//!   positive directions, so the network stays directed: no move leads upstream, and the only cycles are those of the lattice,
-//!   around a periodic side within one layer. A diagonal that would leave the last layer does not exist.
-//! - One possible exit of one void is drawn at a time, uniformly. If it is there, deleting it is proposed, otherwise
-//!   creating it. The proposal is taken when it brings the distribution nearer to the wanted one; *near* is the sum over k of
-//!   | voids with connectivity up to k, less those wanted |. It ends when that sum is 0. So hardly more constrictions are
-//!   changed than must be. Where as many proposals as there are possible exits brought nothing nearer, those that
-//!   leave it as near are taken too, until one does.
-//! - A void never loses its last entrance (the inlet of a start node is one), and keeps two exits; one where connectivities
-//!   below 4 are wanted. The paper's Table 3 speaks for two: a void that one particle can close retains so much that those of
-//!   connectivity 4 would hold three times as much each as those of 5, while the paper has them alike (397 and 444; see
-//!   `results/connectivity-2026-11-21.md`).
-//! - The wanted numbers of voids are the percentages rounded by largest remainder. A sum that stays above 0 (parity, or a
-//!   distribution that no such network has) is accepted when every number is within [`TOLERANCE_PERCENT`] of all voids, or one
-//!   void, of what is wanted; otherwise the distribution is refused.
+//! - Every void has six possible exits: the lattice's +x, +y, +z and the three face diagonals +x+y, +x+z,
+//!   +y+z. All lead in positive directions, so the network stays directed: no move leads upstream, and the
+//!   only cycles are those of the lattice, around a periodic side within one layer. A diagonal that would
+//!   leave the last layer does not exist.
+//! - One possible exit of one void is drawn at a time, uniformly. If it is there, deleting it is proposed,
+//!   otherwise creating it. The proposal is taken when it brings the distribution nearer to the wanted one;
+//!   *near* is the sum over k of | voids with connectivity up to k, less those wanted |. It ends when that
+//!   sum is 0. So hardly more constrictions are changed than must be. Where as many proposals as there are
+//!   possible exits brought nothing nearer, those that leave it as near are taken too, until one does.
+//! - A void never loses its last entrance (the inlet of a start node is one), and keeps two exits; one where
+//!   connectivities below 4 are wanted. The paper's Table 3 speaks for two: a void that one particle can
+//!   close retains so much that those of connectivity 4 would hold three times as much each as those of 5,
+//!   while the paper has them alike (397 and 444; see `results/connectivity-2026-11-21.md`).
+//! - The wanted numbers of voids are the percentages rounded by largest remainder. A sum that stays above 0
+//!   (parity, or a distribution that no such network has) is accepted when every number is within
+//!   [`TOLERANCE_PERCENT`] of all voids, or one void, of what is wanted; otherwise the distribution is
+//!   refused.
 //!
-//! Constrictions that are kept have the diameters that the cubic lattice has for the same seed; diagonals are further
-//! independent draws from the same curve. Layers are those of the lattice: voids with the same z.
+//! Constrictions that are kept have the diameters that the cubic lattice has for the same seed; diagonals are
+//! further independent draws from the same curve. Layers are those of the lattice: voids with the same z.
 
 use rand::Rng;
 
@@ -66,7 +68,7 @@ pub struct Connectivity {
 }
 
 impl Connectivity {
-    /// That of Table 3.
+    /// The distribution of Table 3.
     pub fn table_3() -> Self {
         Self { percent: TABLE_3.to_vec() }
     }
@@ -74,8 +76,8 @@ impl Connectivity {
     /// A distribution from pairs of connectivity and percent of the voids, in any order.
     ///
     /// # Errors
-    /// A connectivity outside 2 to 12 or given twice, a percentage that is negative or not finite, or percentages that do
-    /// not sum to 100 within 0.5; the sum is then made exact.
+    /// A connectivity outside 2 to 12 or given twice, a percentage that is negative or not finite, or
+    /// percentages that do not sum to 100 within 0.5; the sum is then made exact.
     pub fn new(percent: &[(u32, f64)]) -> Result<Self, NetworkError> {
         let refused =
             |value: String, allowed: &str| Err(NetworkError::Connectivity { value, allowed: allowed.into() });
@@ -127,7 +129,8 @@ impl Connectivity {
 }
 
 impl Network {
-    /// A lattice of this shape whose voids have this distribution of connectivity; diameters as in [`Network::cubic`].
+    /// A lattice of this shape whose voids have this distribution of connectivity; diameters as in
+    /// [`Network::cubic`].
     ///
     /// # Errors
     /// As [`Network::cubic`], and a distribution that no such network has.
@@ -239,8 +242,9 @@ impl PossibleExits {
         (self.present[void as usize].count_ones() + u32::from(self.entrances[void as usize])) as usize
     }
 
-    /// Books that a void's connectivity goes from `k` to one more, or one less; how much nearer that is (negative) or not.
-    fn book(&mut self, k: usize, more: bool) -> i64 {
+    /// Counts that a void's connectivity goes from `k` to one more, or one less; how much nearer that is
+    /// (negative) or not.
+    fn count_change(&mut self, k: usize, more: bool) -> i64 {
         // One more: the voids up to k are one fewer. One less: those up to k - 1 are one more.
         let (at, by) = if more { (k, -1) } else { (k - 1, 1) };
         let before = self.surplus[at].abs();
@@ -250,10 +254,10 @@ impl PossibleExits {
 
     /// Creates or deletes a possible exit.
     fn toggle(&mut self, void: u32, slot: usize, target: u32, more: bool) -> i64 {
-        let mut change = self.book(self.connectivity(void), more);
+        let mut change = self.count_change(self.connectivity(void), more);
         self.present[void as usize] ^= 1 << slot;
         if target != END {
-            change += self.book(self.connectivity(target), more);
+            change += self.count_change(self.connectivity(target), more);
             let entrances = &mut self.entrances[target as usize];
             *entrances = if more { *entrances + 1 } else { *entrances - 1 };
         }
@@ -317,7 +321,8 @@ impl PossibleExits {
         Err(NetworkError::Connectivity {
             value: list(&|k| counts[k]),
             allowed: format!(
-                "a distribution (percent of voids by connectivity) that adding diagonals and deleting constrictions reaches; \
+                "a distribution (percent of voids by connectivity) that adding diagonals and deleting \
+                 constrictions reaches; \
                  the nearest found was {}",
                 list(&|k| counts[k] + off(k))
             ),
@@ -353,8 +358,8 @@ mod tests {
         assert!((mean - 5.998).abs() < 1e-9, "{mean}");
     }
 
-    /// Steps lead to x, y, z or one more, around the periodic sides; without the steps over a seam nothing is cyclic, since
-    /// every step then leads to a larger number.
+    /// Steps lead to x, y, z or one more, around the periodic sides; without the steps over a seam nothing is
+    /// cyclic, since every step then leads to a larger number.
     fn check_directed(network: &Network, shape: [u32; 3]) {
         let [nx, ny, nz] = shape;
         let place = |v: u32| [v % nx, v / nx % ny, v / (nx * ny)];
@@ -411,8 +416,9 @@ mod tests {
                 }
             }
         }
-        // A void that goes from 6 to k takes | k - 6 | changes, and a change serves two voids: 29.8 % of the voids are entrances or
-        // exits lost, 29.6 % gained. Of 36,000 constrictions 1,788 must go and 1,776 diagonals be made; few more do.
+        // A void that goes from 6 to k takes | k - 6 | changes, and a change serves two voids: 29.8 % of the
+        // voids are entrances or exits lost, 29.6 % gained. Of 36,000 constrictions 1,788 must go and 1,776
+        // diagonals be made; few more do.
         let deleted = cubic.constrictions() - kept;
         assert!(
             (1788..1900).contains(&deleted) && (1776.0..1900.0).contains(&diagonals),
@@ -464,7 +470,8 @@ mod tests {
         /// Around a mean of 5 to 7 any distribution over 3 to 9 is met.
         #[test]
         fn distributions_are_met(
-            shares in proptest::array::uniform7(0.0f64..1.0), seed: u64, shape in [6u32..12, 6u32..12, 6u32..12],
+            shares in proptest::array::uniform7(0.0f64..1.0), seed: u64,
+            shape in [6u32..12, 6u32..12, 6u32..12],
         ) {
             let sum: f64 = shares.iter().sum();
             prop_assume!(sum > 0.5);

@@ -29,6 +29,17 @@ impl Network {
     /// Constriction diameters are independent draws from `curve`, in its own units, divided by
     /// `unit_mm`.
     ///
+    /// ```
+    /// use voidwalk::constrictions::{Curve, CurveUnit};
+    /// use voidwalk::network::Network;
+    /// let curve = Curve::from_points(&[(0.0, 0.15), (100.0, 0.35)], CurveUnit::Mm)?;
+    /// let network = Network::cubic([10, 10, 20], &curve, 1.0, 7)?;
+    /// assert_eq!((network.voids(), network.constrictions(), network.layers()), (2000, 6000, 20));
+    /// assert_eq!(network.targets()[network.exits(0)], [1, 10, 100]);
+    /// assert!(network.diameters().iter().all(|diameter| (0.15..=0.35).contains(diameter)));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// A length of 0, or more constrictions than 32 bits can number.
     pub fn cubic(shape: [u32; 3], curve: &Curve, unit_mm: f64, seed: u64) -> Result<Self, NetworkError> {

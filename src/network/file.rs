@@ -18,7 +18,8 @@ const BYTES_A_VOID: f64 = 215.0;
 pub enum NetworkError {
     /// A lattice of no voids, or of more constrictions than 32 bits can number.
     #[error(
-        "network of {} x {} x {} voids: every length must be at least 1 and 3 nx ny nz below 4294967295; this one would take {:.2e} bytes",
+        "network of {} x {} x {} voids: every length must be at least 1 and 3 nx ny nz below 4294967295; \
+         this one would take {:.2e} bytes",
         shape[0], shape[1], shape[2], shape.iter().map(|&n| f64::from(n)).product::<f64>() * BYTES_A_VOID
     )]
     Shape {

@@ -1,24 +1,25 @@
 //! What the first particle does on a given network: an exact answer, by a linear solve.
 //!
-//! A particle of diameter `d` that alone enters a network picks one of the open exits of its void with a probability
-//! proportional to area, `p_e = A_e / sum A`. It is stopped where that exit is finer than it, and in a void without open
-//! exits. With `t(e)` the void that exit `e` leads to,
+//! A particle of diameter `d` that alone enters a network picks one of the open exits of its void with a
+//! probability proportional to area, `p_e = A_e / sum A`. It is stopped where that exit is finer than it, and
+//! in a void without open exits. With `t(e)` the void that exit `e` leads to,
 //!
 //! ```text
 //! leaves(v) = sum over exits e that it fits of p_e (1 if e leads out, else leaves(t(e)))
 //! moves(v)  = sum over exits e that it fits of p_e (1 + (0 if e leads out, else moves(t(e))))
 //! ```
 //!
-//! The smallest solution of the first is the probability to leave; the second is the mean number of completed moves, infinite
-//! where the particle may come to circle for ever. Gauss-Seidel sweeps, downstream voids first: on a lattice that is periodic
-//! sideways only the rows of a layer wait for each other, so some tens of sweeps do.
+//! The smallest solution of the first is the probability to leave; the second is the mean number of completed
+//! moves, infinite where the particle may be trapped in closed loops. Gauss-Seidel sweeps, downstream voids
+//! first: on a lattice that is periodic sideways only the rows of a layer wait for each other, so some tens
+//! of sweeps do.
 
 use super::{END, Network};
 
 /// Sweeps end when nothing changes by more than this part of itself.
-const SETTLED: f64 = 1e-15;
+const CONVERGED: f64 = 1e-15;
 
-/// What a lone particle can expect, by the void that it starts in.
+/// What a single particle can expect, by the void that it starts in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FirstPassage {
     /// Probability to leave the filter.
@@ -39,12 +40,12 @@ impl FirstPassage {
 }
 
 impl Network {
-    /// What a lone particle of diameter `d` (in units of [`Network::unit_mm`]) can expect while `closed` constrictions, and those of
-    /// size 0, are closed.
+    /// What a single particle of diameter `d` (in units of [`Network::unit_mm`]) can expect while `closed`
+    /// constrictions, and those of size 0, are closed.
     ///
     /// ```
     /// use voidwalk::network::Network;
-    /// // One void: it leaves through z with the share of its area, or is stopped by the finer x; y leads back.
+    /// // One void: it leaves through z by the share of area, or is stopped by the finer x; y leads back.
     /// let network = Network::cubic_from_diameters([1, 1, 1], vec![1.0, 2.0, 2.0], 1.0)?;
     /// let passage = network.first_passage(1.5, |_| false);
     /// assert!((passage.leaves[0] - 0.8).abs() < 1e-12);
@@ -95,7 +96,8 @@ impl Network {
         }
     }
 
-    /// The smallest solution of `x(v) = sum share_e (gain(e leads out) + x(t(e)))`; infinite where `unending`.
+    /// The smallest solution of `x(v) = sum share_e (gain(e leads out) + x(t(e)))`; infinite where
+    /// `unending`.
     fn relax(&self, share: &[f64], unending: &[bool], gain: impl Fn(bool) -> f64) -> Vec<f64> {
         let mut x: Vec<f64> = unending.iter().map(|&u| if u { f64::INFINITY } else { 0.0 }).collect();
         loop {
@@ -112,15 +114,15 @@ impl Network {
                 }
                 x[void] = new;
             }
-            if change <= SETTLED {
+            if change <= CONVERGED {
                 return x;
             }
         }
     }
 
-    /// The network on which a particle that fits everywhere fares as a lone particle of diameter `d` does on this one:
-    /// constrictions finer than `d` lead into one more void, which has no exit. Particles there cannot block anything, so
-    /// each of any number of them is a first particle.
+    /// The network on which a particle that fits everywhere fares as a single particle of diameter `d` does
+    /// on this one: constrictions finer than `d` lead into one more void, which has no exit. Particles there
+    /// cannot block anything, so each of any number of them is a first particle.
     pub fn as_first_particle_of(&self, d: f32) -> Network {
         let stop = self.voids() as u32;
         let end = self.exit_begin[self.voids()];
@@ -151,7 +153,7 @@ mod tests {
         assert_eq!(network.first_passage(0.6, |_| false).leaves, vec![0.0; 42]);
     }
 
-    /// x and y lead round, z is closed: it never leaves, and moves for ever.
+    /// x and y lead round, z is closed: it never leaves, and never stops moving.
     #[test]
     fn a_particle_that_circles_never_leaves() {
         let network = Network::cubic_from_diameters([2, 2, 2], vec![1.0; 24], 1.0).unwrap();
@@ -165,7 +167,8 @@ mod tests {
         assert_eq!((stuck.leaves[0], stuck.moves[0]), (0.0, 0.0));
     }
 
-    /// The probability to leave of a stopped particle is that of one that fits everywhere on the network made for it.
+    /// The probability to leave of a stopped particle is that of one that fits everywhere on the network made
+    /// for it.
     #[test]
     fn the_network_of_a_first_particle_has_its_answer() {
         let diameters: Vec<f32> = (0..3 * 3 * 4 * 5).map(|i| 0.2 + 0.01 * (i * 37 % 61) as f32).collect();

@@ -25,7 +25,7 @@ pub use file::NetworkError;
 pub use first_passage::FirstPassage;
 pub use passage::Passage;
 pub use percolation::percolation_threshold;
-pub use reach::Reach;
+pub use reach::Reachability;
 
 /// Target of an exit that leaves the filter.
 pub const END: u32 = u32::MAX;

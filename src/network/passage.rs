@@ -1,17 +1,18 @@
 //! How far one particle comes in a clean cubic lattice: Eq. (1) of the paper.
 //!
-//! A particle that alone enters a clean network blocks nothing that matters to it. In each void it picks one of three exits with a
-//! probability proportional to area; it is stopped where that exit is finer than it. With independent constrictions
+//! A particle that alone enters a clean network blocks nothing that matters to it. In each void it picks one
+//! of three exits with a probability proportional to area; it is stopped where that exit is finer than it.
+//! With independent constrictions
 //!
 //! ```text
 //! q = E[ area of exits finer than d / area of all three ]     stopped in this attempt
-//! s = (1 - q) / (1 + 2 q)                                     P(F): comes one layer downstream, whatever it does sideways
-//! n = ln(1 - confidence) / ln(s)                              Eq. (1): layers that it does not pass with that confidence
+//! s = (1 - q) / (1 + 2 q)                                   P(F): comes one layer downstream
+//! n = ln(1 - confidence) / ln(s)                            Eq. (1): layers that it does not pass
 //! ```
 //!
-//! s follows from q: a third of the moves that succeed lead downstream. Eq. (1) in the paper speaks of Schuler's network, in
-//! which a void has five exits; this P(F) is that of the directed lattice the program walks. It takes every void as new, which
-//! holds for lattices wider than a particle's way around them.
+//! s follows from q: a third of the moves that succeed lead downstream. Eq. (1) in the paper speaks of
+//! Schuler's network, in which a void has five exits; this P(F) is that of the directed lattice the program
+//! walks. It takes every void as new, which holds for lattices wider than a particle's way around them.
 
 use crate::constrictions::Curve;
 
@@ -37,7 +38,8 @@ const OTHERS: usize = 64;
 #[derive(Clone, Debug)]
 pub struct Passage<'a> {
     curve: &'a Curve,
-    /// Three times the integral, over the finest i / PARTS of the curve, of the share of area that such an exit has.
+    /// Three times the integral, over the finest i / PARTS of the curve, of the share of area that such an
+    /// exit has.
     stopped: Vec<f64>,
 }
 
@@ -78,7 +80,8 @@ impl<'a> Passage<'a> {
         (1.0 - q) / (1.0 + 2.0 * q)
     }
 
-    /// Eq. (1): the layers that it does not pass with this confidence (0 to 1); `None` where nothing can stop it.
+    /// Eq. (1): the layers that it does not pass with this confidence (0 to 1); `None` where nothing can stop
+    /// it.
     pub fn layers(&self, d: f64, confidence: f64) -> Option<f64> {
         let s = self.downstream(d);
         (s < 1.0).then(|| if s > 0.0 { libm::log(1.0 - confidence) / libm::log(s) } else { 0.0 })
@@ -89,7 +92,8 @@ impl<'a> Passage<'a> {
         libm::pow(self.downstream(d), layers as f64)
     }
 
-    /// The diameter whose [`Passage::layers`] at this confidence are `layers`: coarser particles come less far.
+    /// The diameter whose [`Passage::layers`] at this confidence are `layers`: coarser particles come less
+    /// far.
     pub fn coarsest_through(&self, layers: u64, confidence: f64) -> f64 {
         let (mut low, mut high) = (self.curve.smallest(), self.curve.largest());
         for _ in 0..100 {
@@ -128,7 +132,8 @@ mod tests {
         assert!(passage.stopped(curve.smallest()) == 0.0 && passage.stopped(2.0 * curve.largest()) == 1.0);
     }
 
-    /// The mean over the voids of a network: 96,000 voids, standard error of q at most 0.3 / sqrt(96,000) = 0.001.
+    /// The mean over the voids of a network: 96,000 voids, standard error of q at most 0.3 / sqrt(96,000) =
+    /// 0.001.
     #[test]
     fn q_is_the_mean_over_the_voids_of_a_network() {
         let curve = find("shire2016-cu1.5-loose").unwrap().curve().unwrap();

@@ -1,20 +1,22 @@
 //! The percolation threshold of the directed cubic lattice (paper, section 3 and Fig. 6).
 //!
-//! All constrictions closed, then opened one by one in random order: the threshold of a realisation is the share of all
-//! constrictions that is open when a path of open ones first leads from the start layer out of the last layer.
+//! All constrictions closed, then opened one by one in random order: the threshold of a realisation is the
+//! share of all constrictions that is open when a path of open ones first leads from the start layer out of
+//! the last layer.
 //!
 //! # One pass instead of trial and error
-//! Every constriction gets an independent opening value, uniform on 64 bits; opening them by rising value is a random
-//! order. A path is open once its largest value is, so the threshold is the least, over all paths, of the largest value
-//! on the path: a bottleneck path. No move leads upstream, so layers are done one after the other and only one is held.
-//! Within a layer, moves lead along +x and +y: one sweep in that order is exact but for the periodic seam, and is repeated
-//! while a move over the seam still improves a void. A second reading of the same streams counts the constrictions
-//! whose value is no larger than the bottleneck's.
+//! Every constriction gets an independent opening value, uniform on 64 bits; opening them by rising value is
+//! a random order. A path is open once its largest value is, so the threshold is the least, over all paths,
+//! of the largest value on the path: a bottleneck path. No move leads upstream, so layers are done one after
+//! the other and only one is held. Within a layer, moves lead along +x and +y: one sweep in that order is
+//! exact but for the periodic seam, and is repeated while a move over the seam still improves a void. A
+//! second reading of the same streams counts the constrictions whose value is no larger than the
+//! bottleneck's.
 //!
 //! # Streams
 //! Every shape has a seed of its own, drawn from the user's; realisation `r` reads layer `z` from (that seed,
-//! percolation, `r`, 0, `z`): plane by plane the values of +x, +y and +z of the layer's voids. Nothing is shared between
-//! shapes, realisations or layers, and no thread appears in it.
+//! percolation, `r`, 0, `z`): plane by plane the values of +x, +y and +z of the layer's voids. Nothing is
+//! shared between shapes, realisations or layers, and no thread appears in it.
 
 use rand::Rng;
 
@@ -24,8 +26,9 @@ use crate::stream::{Key, LANES, Purpose};
 /// Share of all constrictions of an `nx x ny x nz` lattice that is open when it first percolates, in
 /// realisation `realisation` (counted from 1) of `seed`.
 ///
-/// The lattice is that of [`Network::cubic`]: directed, periodic in x and y, every void of layer 0 a start node, +z of
-/// the last layer the end. Memory grows with `nx ny` alone; time with the number of constrictions.
+/// The lattice is that of [`Network::cubic`]: directed, periodic in x and y, every void of layer 0 a start
+/// node, +z of the last layer the end. Memory grows with `nx ny` alone; time with the number of
+/// constrictions.
 ///
 /// # Errors
 /// A length of 0, or more constrictions than 32 bits can number.
@@ -76,7 +79,8 @@ struct Layer {
     plane: usize,
     /// Opening values: those of +x of all voids, then of +y, then of +z.
     opening: Vec<u64>,
-    /// The least over paths from the start layer of the largest opening value on the path; 0 in the start layer.
+    /// The least over paths from the start layer of the largest opening value on the path; 0 in the start
+    /// layer.
     least: Vec<u64>,
 }
 
@@ -160,7 +164,7 @@ mod tests {
     use proptest::prelude::*;
     use rayon::prelude::*;
 
-    /// The same by trial and error: constrictions opened one by one, and after each a search for a path.
+    /// The threshold by trial and error: constrictions opened one by one, and after each a search for a path.
     fn by_trial(shape: [u32; 3], seed: u64, realisation: u64) -> f64 {
         let count = Network::lattice_constrictions(shape).unwrap();
         let network = Network::cubic_from_diameters(shape, vec![1.0; count], 1.0).unwrap();
@@ -222,10 +226,10 @@ mod tests {
         (mean, (all.iter().map(|t| (t - mean) * (t - mean)).sum::<f64>() / (n - 1.0)).sqrt())
     }
 
-    /// Against thresholds known from elsewhere, to four and two digits: 0.3297 (sd 0.032) at 10^3 and 0.3448 (sd 0.017)
-    /// at 20^3; a lattice that is walked both ways has 0.248. With 4,000 realisations at 10^3 the mean has a standard error
-    /// of 0.0005 and the sd one of 0.00036, with 1,000 at 20^3 0.00054 and 0.00038: a bias of the mean of 0.002 would pass one
-    /// time in forty or less.
+    /// Against thresholds known from elsewhere, to four and two digits: 0.3297 (sd 0.032) at 10^3 and 0.3448
+    /// (sd 0.017) at 20^3; a lattice that is walked both ways has 0.248. With 4,000 realisations at 10^3 the
+    /// mean has a standard error of 0.0005 and the sd one of 0.00036, with 1,000 at 20^3 0.00054 and 0.00038:
+    /// a bias of the mean of 0.002 would pass one time in forty or less.
     #[test]
     fn thresholds_are_those_of_directed_percolation() {
         let (mean, sd) = mean_and_sd(10, 4000);

@@ -3,7 +3,7 @@
 use super::{END, NO_LAYER, Network};
 
 /// Where paths through passable constrictions lead, found breadth-first.
-pub struct Reach {
+pub struct Reachability {
     /// Voids that a start node leads to.
     pub from_start: Vec<bool>,
     /// Voids from which the end can be reached.
@@ -13,9 +13,9 @@ pub struct Reach {
 impl Network {
     /// Follows the constrictions that `passable` admits, downstream from the start nodes and
     /// upstream from the end.
-    pub fn reach(&self, passable: impl Fn(usize) -> bool) -> Reach {
+    pub fn reach(&self, passable: impl Fn(usize) -> bool) -> Reachability {
         let from_start = self.distances(&passable).into_iter().map(|d| d != NO_LAYER).collect();
-        Reach { from_start, to_end: self.leading_to_end(&passable) }
+        Reachability { from_start, to_end: self.leading_to_end(&passable) }
     }
 
     /// Share of all constrictions that lie on a path from start to end through constrictions that

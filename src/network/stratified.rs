@@ -7,11 +7,12 @@ use crate::constrictions::Curve;
 use crate::stream::{Key, Purpose, below, unit};
 
 impl Network {
-    /// [`Network::cubic`] with stratified sizes: the curve is cut into as many equal parts as there are constrictions, and each
-    /// constriction, in an order drawn at random, has one draw from a part of its own.
+    /// [`Network::cubic`] with stratified sizes: the curve is cut into as many equal parts as there are
+    /// constrictions, and each constriction, in an order drawn at random, has one draw from a part of its
+    /// own.
     ///
-    /// The size of every single constriction has the distribution of the curve, as with independent draws; together they follow the
-    /// curve closely, so networks of one curve differ less.
+    /// The size of every single constriction has the distribution of the curve, as with independent draws;
+    /// together they follow the curve closely, so networks of one curve differ less.
     ///
     /// ```
     /// use voidwalk::constrictions::{Curve, CurveUnit};
@@ -53,10 +54,10 @@ mod tests {
     use super::*;
     use crate::constrictions::CurveUnit;
 
-    /// One constriction over 4,000 networks: in the finer quarter with a probability of a quarter (standard deviation 27; a bias of
-    /// 3 % of itself would pass), and no closer to its neighbour than at random.
+    /// One constriction over 4,000 networks: in the finer quarter with a probability of a quarter (standard
+    /// deviation 27; a bias of 3 % of itself would pass), and no closer to its neighbour than at random.
     #[test]
-    fn each_constriction_alone_has_the_law_of_the_curve() {
+    fn each_constriction_alone_has_the_distribution_of_the_curve() {
         let curve = Curve::from_points(&[(0.0, 1.0), (100.0, 2.0)], CurveUnit::Mm).unwrap();
         let (mut fine, mut both) = (0, 0);
         for seed in 0..4000 {

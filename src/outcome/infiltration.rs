@@ -28,7 +28,7 @@ pub fn infiltration(curve: &Curve, base: &Gradation, layers: u64) -> Infiltratio
             through: passage.through(diameter_mm, layers),
         })
     };
-    let pan_fraction = base.tail_mass_fraction();
+    let pan_fraction = base.pan_fraction();
     let sized = (0..PARTS).filter_map(|part| {
         let share = (f64::from(part) + 0.5) / f64::from(PARTS);
         Some(passage.through(base.d(100.0 * (pan_fraction + (1.0 - pan_fraction) * share))?, layers))

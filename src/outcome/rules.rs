@@ -122,7 +122,7 @@ fn foster_and_fell_some(d15f_over_d85b: Option<f64>, base_mm: Option<&Gradation>
             ..rule
         };
     };
-    if base.smallest_mm() > FINES_MM && base.tail_mass_fraction() > 0.0 {
+    if base.smallest_mm() > FINES_MM && base.pan_fraction() > 0.0 {
         let note = format!(
             "whether the base has less than 15 % fines is not known: its finest sieve is {} mm",
             base.smallest_mm()

@@ -145,8 +145,8 @@ fn hertz_contact_time() {
     }
 }
 
-/// A slope that a contact rolls and slides on: a small grain pressed against a large one that turns at constant rate ends in
-/// rolling without sliding, with the friction force never above its limit.
+/// A slope that a contact rolls and slides on: a small grain pressed against a large one that turns at
+/// constant rate ends in rolling without sliding, with the friction force never above its limit.
 #[test]
 fn coulomb_limit_holds_for_spring_and_damping_together() {
     let settings = Settings {
@@ -183,16 +183,16 @@ fn the_step_is_refused_with_both_numbers() {
     for factor in [1.0, 2.0] {
         let settings = Settings { step: Some(factor * critical), ..Settings::default() };
         let error = Compression::new(&grains, &settings).unwrap_err();
-        assert!(
-            matches!(error, PackingError::Step { step, critical: c, .. } if step == factor * critical && c == critical)
-        );
+        assert!(matches!(error, PackingError::Step { step, critical: c, .. }
+                if step == factor * critical && c == critical));
         assert!(error.to_string().contains(&format!("{critical:e}")));
     }
     let settings = Settings { step: Some(0.99 * critical), ..Settings::default() };
     assert!(Compression::new(&grains, &settings).is_ok());
 }
 
-/// Squeezed and then held by the servo: the step that follows the contacts is below the critical one of every instant, with room.
+/// Squeezed and then held by the servo: the step that follows the contacts is below the critical one of every
+/// instant, with room.
 #[test]
 fn the_automatic_step_stays_below_the_critical_one() {
     let filter = Gradation::linear_from_d0(1.0, 2.0).unwrap();
@@ -210,8 +210,8 @@ fn the_automatic_step_stays_below_the_critical_one() {
     }
 }
 
-/// With a gain far above the inverse of the contacts' viscosity, the strain rate goes to where it has to be instead of swinging between its
-/// limits: its changes of sign stay rare.
+/// With a gain far above the inverse of the contacts' viscosity, the strain rate goes to where it has to be
+/// instead of swinging between its limits: its changes of sign stay rare.
 #[test]
 fn the_servo_does_not_swing() {
     let filter = Gradation::linear_from_d0(1.0, 2.0).unwrap();
@@ -232,7 +232,8 @@ fn the_servo_does_not_swing() {
     assert!(swings < 100 && (c.pressure - 1.0).abs() < 0.005, "{swings} {}", c.pressure);
 }
 
-/// The step at which a chain of two grains really becomes unstable is not below the critical step of their contact.
+/// The step at which a chain of two grains really becomes unstable is not below the critical step of their
+/// contact.
 #[test]
 fn the_critical_step_is_stable_and_not_far_from_the_limit() {
     let k = STIFFNESS;
@@ -357,8 +358,8 @@ fn undamped_gas_keeps_energy_and_momentum() {
     }
 }
 
-/// Friction without damping, true masses: the energy of a gas of two sizes falls and never rises, beyond what the time step's
-/// error of single contacts allows.
+/// Friction without damping, true masses: the energy of a gas of two sizes falls and never rises, beyond what
+/// the time step's error of single contacts allows.
 #[test]
 fn friction_makes_no_energy_at_any_size_ratio() {
     for ratio in [1.0, 10.0, 36.0, 100.0] {
@@ -389,9 +390,9 @@ fn friction_makes_no_energy_at_any_size_ratio() {
     }
 }
 
-/// Vyas and others' case: a small grain squeezed between two large ones has to leave; where the tangential motion is taken in the wrong plane it
-/// sticks. Here: squeezed by two large grains that approach, it is expelled faster than they come, and the
-/// energy of the three never rises above what they brought.
+/// Vyas and others' case: a small grain squeezed between two large ones has to leave; where the tangential
+/// motion is taken in the wrong plane it sticks. Here: squeezed by two large grains that approach, it is
+/// expelled faster than they come, and the energy of the three never rises above what they brought.
 #[test]
 fn a_small_grain_between_large_ones_is_expelled() {
     for ratio in [4.0, 10.0, 36.0, 100.0] {

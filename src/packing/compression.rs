@@ -1,24 +1,25 @@
 //! The state of a compression, as columns, and one step of it.
 //!
 //! # Reduced units
-//! Length: the smallest diameter. Stress: the target pressure. Density: that of the grains. So the unit of time is
-//! `smallest diameter * sqrt(density / pressure)` and a strain rate of 1e-3 is an inertial number of 1e-3 for the
-//! smallest grains.
+//! Length: the smallest diameter. Stress: the target pressure. Density: that of the grains. So the unit of
+//! time is `smallest diameter * sqrt(density / pressure)` and a strain rate of 1e-3 is an inertial number of
+//! 1e-3 for the smallest grains.
 //!
 //! # Step
-//! Positions are in units of the cell and relative to its deformation, at full steps; velocities (without the motion of
-//! the cell) and spins at half steps. A step: forces from positions and the last half step's velocities, kick, drift, and
-//! the cell grows by the servo's strain rate.
+//! Positions are in units of the cell and relative to its deformation, at full steps; velocities (without the
+//! motion of the cell) and spins at half steps. A step: forces from positions and the last half step's
+//! velocities, kick, drift, and the cell grows by the servo's strain rate.
 //!
 //! # Masses
-//! A grain of diameter `D` weighs `pi/6 D^(3 - mass_exponent)`. With the true masses (0) the smallest grains set the
-//! time step and the largest take `Dmax/Dmin` times as many steps to move as the smallest. Where the packing rests no mass matters.
+//! A grain of diameter `D` weighs `pi/6 D^(3 - mass_exponent)`. With the true masses (0) the smallest grains
+//! set the time step and the largest take `Dmax/Dmin` times as many steps to move as the smallest. Where the
+//! packing rests no mass matters.
 
 use super::contact::{Grains, Law, Now, Work, pass};
 use super::grains::{Cell, Packing};
 use super::limits::{critical_step, damped_part, law, mass, stability};
-use super::motion::{LONGEST_MOVE, Part, Rule, Sums, split};
-use super::neighbours::{Chunk, Reach, chunk_bounds};
+use super::motion::{ChunkInStep, LONGEST_MOVE, StepRule, Sums, split};
+use super::neighbours::{GrainChunk, Reach, chunk_bounds};
 use super::observed::HoldState;
 use super::settings::{PackingError, Settings};
 use rayon::prelude::*;
@@ -30,9 +31,10 @@ const STEP_CHECK: u64 = 16;
 /// Part of the critical step at which the step is looked at without waiting.
 const CLOSE_STEP: f64 = 0.85;
 
-/// Part of the way to the strain rate it wants that the servo goes in a step. The contacts' damping makes the pressure answer at
-/// once to the strain rate; an immediate servo swings between its limits from step to step once its gain exceeds the
-/// viscosity's inverse (0.03 for Cu 6 at 5e4 times the pressure), this one from seven times as much on.
+/// Part of the way to the strain rate it wants that the servo goes in a step. The contacts' damping makes the
+/// pressure answer at once to the strain rate; an immediate servo swings between its limits from step to step
+/// once its gain exceeds the viscosity's inverse (0.03 for Cu 6 at 5e4 times the pressure), this one from
+/// seven times as much on.
 const SERVO_SHARE: f64 = 0.25;
 
 /// What a compression is doing.
@@ -49,7 +51,8 @@ pub enum Stage {
     Done,
 }
 
-/// Grains under compression: columns by grain in memory order, which changes, and `rank` (0 = the largest), which stays.
+/// Grains under compression: columns by grain in memory order, which changes, and `rank` (0 = the largest),
+/// which stays.
 #[derive(Clone, Debug)]
 pub struct Compression {
     /// The settings.
@@ -111,8 +114,9 @@ pub struct Compression {
     /// The contact law.
     pub(super) law: Law,
     /// The lists, with the tangential memory.
-    pub(super) chunks: Vec<Chunk>,
-    /// Farthest any grain moved since the close pairs were picked, in units of the cell; infinite before the first pick.
+    pub(super) chunks: Vec<GrainChunk>,
+    /// Farthest any grain moved since the close pairs were picked, in units of the cell; infinite before the
+    /// first pick.
     pub(super) moved: f64,
     /// The critical step before there are contacts.
     loose_step: f64,
@@ -127,8 +131,8 @@ impl Compression {
     /// Grains of any position, at rest.
     ///
     /// # Errors
-    /// Settings out of range; grains that are none; a cell narrower than two of the largest grain; coincident centres; a fixed
-    /// step that is not below the critical one.
+    /// Settings out of range; grains that are none; a cell narrower than two of the largest grain; coincident
+    /// centres; a fixed step that is not below the critical one.
     pub fn new(packing: &Packing, settings: &Settings) -> Result<Self, PackingError> {
         settings.check()?;
         let columns = [packing.x.len(), packing.y.len(), packing.z.len(), packing.diameter.len()];
@@ -347,7 +351,7 @@ impl Compression {
         let n = self.position.len();
         let step = self.step;
         let drag = step * if self.hold.braking { self.settings.settling_drag } else { self.settings.drag };
-        let rule = Rule {
+        let rule = StepRule {
             step,
             per_cell: step / (self.cell * (1.0 + 0.5 * self.strain_rate * step)),
             keep: (1.0 - 0.5 * drag) / (1.0 + 0.5 * drag),
@@ -359,14 +363,14 @@ impl Compression {
         let work = &self.work;
         let picked = &self.picked;
         let bounds = chunk_bounds(n);
-        let mut parts: Vec<Part<'_>> = split(&mut self.position)
+        let mut parts: Vec<ChunkInStep<'_>> = split(&mut self.position)
             .into_iter()
             .zip(split(&mut self.velocity))
             .zip(split(&mut self.spin))
             .zip(split(&mut self.force).into_iter().zip(split(&mut self.torque)))
             .zip(bounds)
             .enumerate()
-            .map(|(c, ((((position, velocity), spin), (force, torque)), (first, last)))| Part {
+            .map(|(c, ((((position, velocity), spin), (force, torque)), (first, last)))| ChunkInStep {
                 chunk: c,
                 first,
                 position,

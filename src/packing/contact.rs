@@ -4,31 +4,35 @@
 //! With overlap `d`, reduced radius `R`, reduced mass `m`, contact stiffness `E* = G / (1 - nu)`:
 //!
 //! - normal, Hertz: `4/3 E* sqrt(R) d^1.5`; tangent stiffness `kn = 2 E* sqrt(R d)`;
-//! - tangential, Mindlin without micro-slip: spring force `T` grows by `kt` times the tangential
-//!   motion, `kt = 8 G* sqrt(R d) = kn 2 (1 - nu) / (2 - nu)`. Where `kt` falls, `T` falls with it (Thornton,
-//!   Cummins & Cleary 2013, doi:10.1016/j.powtec.2012.08.012), so that no cycle of loading and unloading makes energy;
-//! - damping: normal `2 sqrt(5/6) b sqrt(m kn)` times the approach, `b = -ln e / sqrt(pi^2 + ln^2 e)`, gives the
-//!   restitution `e` at every speed (Tsuji, Tanaka & Ishida 1992, doi:10.1016/0032-5910(92)88030-L); tangential the same with `kt`;
+//! - tangential, Mindlin without micro-slip: spring force `T` grows by `kt` times the tangential motion, `kt
+//!   = 8 G* sqrt(R d) = kn 2 (1 - nu) / (2 - nu)`. Where `kt` falls, `T` falls with it (Thornton, Cummins &
+//!   Cleary 2013, doi:10.1016/j.powtec.2012.08.012), so that no cycle of loading and unloading makes energy;
+//! - damping: normal `2 sqrt(5/6) b sqrt(m kn)` times the approach, `b = -ln e / sqrt(pi^2 + ln^2 e)`, gives
+//!   the restitution `e` at every speed (Tsuji, Tanaka & Ishida 1992, doi:10.1016/0032-5910(92)88030-L);
+//!   tangential the same with `kt`;
 //! - no tension: the normal force with its damping is never below zero;
-//! - Coulomb: spring and damping together at most friction times the normal force; where they slip both are cut alike.
+//! - Coulomb: spring and damping together at most friction times the normal force; where they slip both are
+//!   cut alike.
 //!
 //! Torques act with the lever arms `r ri / (ri + rj)`, which add up to the distance `r` of the centres.
 //! A linear spring (constant `kn`) is there for tests.
 //!
 //! # Time levels
-//! Positions are at full steps, velocities at half steps. The tangential motion over a step is the
-//! velocity of the half step in the plane perpendicular to the half step's normal, and `T` is then turned into
-//! the plane of the full step. The usual scheme takes the half step's velocity in the full step's plane; a part of the normal motion is then booked
-//! as tangential, and small grains between large ones stick or gain energy beyond a size ratio of
-//! about 3 (Vyas, Ottino, Lueptow & Umbanhowar 2025, doi:10.1016/j.cpc.2025.109524).
+//! Positions are at full steps, velocities at half steps. The tangential motion over a step is the velocity
+//! of the half step in the plane perpendicular to the half step's normal, and `T` is then turned into the
+//! plane of the full step. The usual scheme takes the half step's velocity in the full step's plane; a part
+//! of the normal motion is then counted as tangential, and small grains between large ones stick or gain
+//! energy beyond a size ratio of about 3 (Vyas, Ottino, Lueptow & Umbanhowar 2025,
+//! doi:10.1016/j.cpc.2025.109524).
 //!
 //! # Order
-//! Each chunk goes through its close pairs in list order, in blocks: gather, compute lane by lane, scatter those that touch. Which
-//! pairs count as close changes no bit: a pair that does not touch leaves no trace. Forces on
-//! grains of other chunks go to outboxes, one per chunk, which their chunk adds in the order of the senders. All
-//! sums therefore have one order, whatever the number of threads or the width of the vector unit.
+//! Each chunk goes through its close pairs in list order, in blocks: gather, compute lane by lane, scatter
+//! those that touch. Which pairs count as close changes no bit: a pair that does not touch leaves no trace.
+//! Forces on grains of other chunks go to outboxes, one per chunk, which their chunk adds in the order of the
+//! senders. All sums therefore have one order, whatever the number of threads or the width of the vector
+//! unit.
 
-use super::neighbours::{Chunk, Reach, nearest};
+use super::neighbours::{GrainChunk, Reach, nearest};
 use multiversion::multiversion;
 
 /// Contacts computed together.
@@ -171,11 +175,12 @@ impl Default for Block {
     }
 }
 
-/// Forces and torques on the grains of `chunk` from the pairs that it lists, into `force` and `torque` (of its grains), and
-/// for other chunks into the outboxes. The fourth entry of a force sums normal stiffness, that of a torque is zero.
+/// Forces and torques on the grains of `chunk` from the pairs that it lists, into `force` and `torque` (of
+/// its grains), and for other chunks into the outboxes. The fourth entry of a force sums normal stiffness,
+/// that of a torque is zero.
 #[multiversion(targets("x86_64+avx+avx2+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx+avx2"))]
 pub(super) fn pass(
-    chunk: &mut Chunk,
+    chunk: &mut GrainChunk,
     work: &mut Work,
     grains: Grains<'_>,
     law: &Law,
@@ -193,7 +198,7 @@ pub(super) fn pass(
 
 #[inline(always)]
 fn sweep<const FRICTION: bool, const HERTZ: bool>(
-    chunk: &mut Chunk,
+    chunk: &mut GrainChunk,
     work: &mut Work,
     grains: Grains<'_>,
     law: &Law,
@@ -223,7 +228,7 @@ fn sweep<const FRICTION: bool, const HERTZ: bool>(
 #[inline(always)]
 #[allow(clippy::too_many_arguments)]
 fn block<const FRICTION: bool, const HERTZ: bool>(
-    chunk: &mut Chunk,
+    chunk: &mut GrainChunk,
     work: &mut Work,
     range: std::ops::Range<usize>,
     grains: Grains<'_>,

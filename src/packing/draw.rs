@@ -8,10 +8,11 @@ use crate::stream::{Key, Purpose, unit};
 use rand::Rng;
 use std::f64::consts::PI;
 
-/// Diameters (mm, descending) drawn from the known sizes of a gradation, one from each of `grains` equal strata of the
-/// number: the sample's curve follows the gradation much more closely than independent draws would.
+/// Diameters (mm, descending) drawn from the known sizes of a gradation, one from each of `grains` equal
+/// strata of the number: the sample's curve follows the gradation much more closely than independent draws
+/// would.
 ///
-/// A tail of unknown size is left out: its grains are too fine to form the skeleton, and their number is not known.
+/// A pan fraction is left out: its grains are too fine to form the skeleton, and their number is not known.
 ///
 /// ```
 /// use voidwalk::{gradation::Gradation, packing::draw};
@@ -29,8 +30,8 @@ pub fn draw(gradation: &Gradation, grains: usize, seed: u64) -> Vec<f64> {
     diameter
 }
 
-/// These grains (mm, any order) at random places without overlap, at the packing fraction of the settings; the grains of
-/// the result are in descending order of size.
+/// These grains (mm, any order) at random places without overlap, at the packing fraction of the settings;
+/// the grains of the result are in descending order of size.
 ///
 /// # Errors
 /// Settings out of range; a diameter that is none; a cell narrower than two of the largest grain; no room.

@@ -1,4 +1,4 @@
-//! The noun of this stage: grains in a cell.
+//! A packing: grains in a cell.
 
 /// Where the grains live.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,6 +10,19 @@ pub enum Cell {
 }
 
 /// Filter grains as columns; grain `i` is entry `i` of each.
+///
+/// ```
+/// use voidwalk::packing::{Cell, Packing};
+/// let packing = Packing {
+///     cell: Cell::Periodic([2.0; 3]),
+///     x: vec![0.0, 1.0],
+///     y: vec![0.0, 1.0],
+///     z: vec![0.0, 1.0],
+///     diameter: vec![1.0, 0.7],
+/// };
+/// assert_eq!(Packing::parse("grains.csv", packing.to_csv().as_bytes())?, packing);
+/// # Ok::<(), voidwalk::packing::ImportError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Packing {
     /// Where the grains live.

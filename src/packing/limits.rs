@@ -37,24 +37,26 @@ pub(super) fn law(settings: &Settings, friction: f64) -> Law {
     }
 }
 
-/// Upper bound of `(angular frequency)^2` by the largest sum of normal contact stiffness by mass: a contact of stiffness `kn` between two
-/// free grains has the modes `2 kn / m` and, with friction, `7 kt / m` (sliding and rolling together); the sum over the contacts of
-/// a grain bounds the whole network (each contact's energy is at most that of its two grains moved alone, twice).
+/// Upper bound of `(angular frequency)^2` by the largest sum of normal contact stiffness by mass: a contact
+/// of stiffness `kn` between two free grains has the modes `2 kn / m` and, with friction, `7 kt / m` (sliding
+/// and rolling together); the sum over the contacts of a grain bounds the whole network (each contact's
+/// energy is at most that of its two grains moved alone, twice).
 pub(super) fn stability(law: &Law) -> f64 {
     if law.friction > 0.0 { (7.0 * law.tangential).max(2.0) } else { 2.0 }
 }
 
-/// Part of the critical step that damping leaves. The damping force takes the velocity of the last half step, so an oscillator of damping ratio `z` is stable
-/// up to `sqrt(1 + z^2) - z` of its undamped limit. The ratio of a grain between several contacts is above that of a pair, the
-/// critical step is below the true limit; 0.9 of the damping coefficient stands for both. Checked by packings: at restitution 0.2 this is
-/// 0.50, and 0.5 settles where 0.6 and 0.7 of the critical step never do.
+/// Part of the critical step that damping leaves. The damping force takes the velocity of the last half step,
+/// so an oscillator of damping ratio `z` is stable up to `sqrt(1 + z^2) - z` of its undamped limit. The ratio
+/// of a grain between several contacts is above that of a pair, the critical step is below the true limit;
+/// 0.9 of the damping coefficient stands for both. Checked by packings: at restitution 0.2 this is 0.50, and
+/// 0.5 settles where 0.6 and 0.7 of the critical step never do.
 pub(super) fn damped_part(law: &Law) -> f64 {
     let z = 0.9 * law.damping;
     (1.0 + z * z).sqrt() - z
 }
 
-/// The critical time step before there are contacts, and what sets it: the Rayleigh wave across the smallest grain by
-/// mass; the period of a Hertz contact under the target pressure; a grain with six such contacts.
+/// The critical time step before there are contacts, and what sets it: the Rayleigh wave across the smallest
+/// grain by mass; the period of a Hertz contact under the target pressure; a grain with six such contacts.
 pub(super) fn critical_step(
     position: &[[f64; 4]],
     velocity: &[[f64; 4]],

@@ -1,4 +1,5 @@
-//! The observables of a packing under compression, computed from positions and memory, apart from the fast pass.
+//! The observables of a packing under compression, computed from positions and memory, apart from the fast
+//! pass.
 
 use super::compression::Compression;
 use super::neighbours::{Memory, nearest};

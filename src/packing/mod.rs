@@ -5,21 +5,24 @@
 //!
 //! 1. sizes stratified by number ([`draw`]), random places without overlap ([`random_start`]);
 //! 2. squeeze: the cell shrinks at a constant rate to a part of the expected packing fraction;
-//! 3. compress: the strain rate is proportional to the lack of pressure, up to a limit, with the friction that sets the density;
-//!    once the pressure has come within 2 % the drag on the grains is raised to `settling_drag`;
+//! 3. compress: the strain rate is proportional to the lack of pressure, up to a limit, with the friction
+//!    that sets the density; once the pressure has come within 2 % the drag on the grains is raised to
+//!    `settling_drag`;
 //! 4. settle: the same with the final friction, where that is another one.
 //!
 //! # When a stage ends
-//! Looked at every 100 steps: the pressure within 0.5 %, the root mean square unbalanced force below 5 % of the mean contact
-//! force, and the coordination number within 0.05 and the void ratio within 5e-4 of what they were `hold_steps` ago; and kinetic below 1 % of
-//! elastic energy at the end.
+//! Looked at every 100 steps: the pressure within 0.5 %, the root mean square unbalanced force below 5 % of
+//! the mean contact force, and the coordination number within 0.05 and the void ratio within 5e-4 of what
+//! they were `hold_steps` ago; and kinetic below 1 % of elastic energy at the end.
 //!
-//! The paper's criterion is the coordination number alone, held for 20,000 of its shorter steps. It also holds while a packing
-//! still creeps, so the void ratio has to hold too. No packing stops creeping altogether: without friction it goes on by ever rarer avalanches, and a
-//! wide grading with high friction by sliding, both about as the logarithm of time (void ratio 0.003 lower for Cu 1.5, and 0.002 for Cu 3,
-//! both without friction, when the unbalanced force has to fall to 2 %, which takes two to three times the steps). So some rate has to count as
-//! rest; this one is a quarter of the 0.002 that is wanted of the void ratio, per hold. Grains that touch nothing make the
-//! kinetic energy fall slowly and the void ratio not at all, so that limit is wide; what was reached is reported ([`PackReport`]).
+//! The paper's criterion is the coordination number alone, held for 20,000 of its shorter steps. It also
+//! holds while a packing still creeps, so the void ratio has to hold too. No packing stops creeping
+//! altogether: without friction it goes on by ever rarer avalanches, and a wide grading with high friction by
+//! sliding, both about as the logarithm of time (void ratio 0.003 lower for Cu 1.5, and 0.002 for Cu 3, both
+//! without friction, when the unbalanced force has to fall to 2 %, which takes two to three times the steps).
+//! So some rate has to count as rest; this one is a quarter of the 0.002 that is wanted of the void ratio,
+//! per hold. Grains that touch nothing make the kinetic energy fall slowly and the void ratio not at all, so
+//! that limit is wide; what was reached is reported ([`PackReport`]).
 
 #[cfg(test)]
 mod checks;

@@ -3,7 +3,8 @@
 use super::contact::Work;
 use super::neighbours::chunk_bounds;
 
-/// Farthest a grain may move in a step, in units of the smallest diameter: only an overlapping start comes near it.
+/// Farthest a grain may move in a step, in units of the smallest diameter: only an overlapping start comes
+/// near it.
 pub(super) const LONGEST_MOVE: f64 = 0.02;
 
 /// A column cut at the bounds of the chunks.
@@ -19,7 +20,7 @@ pub(super) fn split<T>(mut column: &mut [T]) -> Vec<&mut [T]> {
 }
 
 /// How the grains of a chunk take a step.
-pub(super) struct Rule {
+pub(super) struct StepRule {
     pub step: f64,
     pub per_cell: f64,
     pub keep: f64,
@@ -39,7 +40,7 @@ pub(super) struct Sums {
 }
 
 /// The grains of a chunk on their way through a step.
-pub(super) struct Part<'a> {
+pub(super) struct ChunkInStep<'a> {
     pub chunk: usize,
     pub first: usize,
     pub position: &'a mut [[f64; 4]],
@@ -51,8 +52,8 @@ pub(super) struct Part<'a> {
     pub sums: Sums,
 }
 
-impl Part<'_> {
-    pub fn advance(&mut self, work: &[Work], rule: &Rule) {
+impl ChunkInStep<'_> {
+    pub fn advance(&mut self, work: &[Work], rule: &StepRule) {
         for sender in work {
             let outbox = &sender.outbox[self.chunk];
             for (&i, f) in outbox.grain.iter().zip(&outbox.force) {

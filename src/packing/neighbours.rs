@@ -5,12 +5,12 @@
 //! ones (large looks into small), so a grain of 36 times the size costs as many cell visits as the
 //! shell it touches holds, and the many small grains never look into coarse cells.
 //!
-//! A pair is listed, by its larger grain, when the grains are nearer than `R (1 + relative) + absolute`, R the sum of the radii.
-//! The list is complete as long as no grain has moved by more than `absolute / 2` relative to the
-//! deforming cell and the cell has shrunk by less than `relative`: see [`Reach::holds`].
+//! A pair is listed, by its larger grain, when the grains are nearer than `R (1 + relative) + absolute`, R
+//! the sum of the radii. The list is complete as long as no grain has moved by more than `absolute / 2`
+//! relative to the deforming cell and the cell has shrunk by less than `relative`: see [`Reach::holds`].
 //!
-//! From the lists, the pairs that are close within a much shorter reach are picked every few steps; the force pass goes through those
-//! alone. Most of them touch.
+//! From the lists, the pairs that are close within a much shorter reach are picked every few steps; the force
+//! pass goes through those alone. Most of them touch.
 //!
 //! The grains are cut into chunks by their number alone; each chunk owns the pairs that its grains
 //! list. A chunk is the unit of parallel work, so that no sum depends on the number of threads.
@@ -43,11 +43,12 @@ impl Reach {
     /// No farther than contact.
     pub(super) const CONTACT: Self = Self { relative: 0.0, absolute: 0.0 };
 
-    /// Whether lists made when the cell was `listed_cell` wide still hold every pair within the shorter `reach`, when the
-    /// farthest any grain has moved since is `moved` (in units of the cell).
+    /// Whether lists made when the cell was `listed_cell` wide still hold every pair within the shorter
+    /// `reach`, when the farthest any grain has moved since is `moved` (in units of the cell).
     ///
-    /// A pair that was not listed is, in units of the cell, at least `(R (1 + self.relative) + self.absolute) / listed_cell - 2 moved`
-    /// apart, for every `R`; that has to reach `(R (1 + reach.relative) + reach.absolute) / cell`.
+    /// A pair that was not listed is, in units of the cell, at least `(R (1 + self.relative) + self.absolute)
+    /// / listed_cell - 2 moved` apart, for every `R`; that has to reach `(R (1 + reach.relative) +
+    /// reach.absolute) / cell`.
     pub(super) fn holds(&self, reach: Reach, cell: f64, listed_cell: f64, moved: f64) -> bool {
         let shrunk = listed_cell / cell;
         shrunk * (1.0 + reach.relative) <= 1.0 + self.relative
@@ -55,13 +56,13 @@ impl Reach {
     }
 }
 
-/// The tangential memory of a pair: spring force on the larger grain along x, y, z, and the tangential stiffness that
-/// it was made with; zero for pairs that do not touch.
+/// The tangential memory of a pair: spring force on the larger grain along x, y, z, and the tangential
+/// stiffness that it was made with; zero for pairs that do not touch.
 pub(super) type Memory = [f64; 4];
 
 /// The pairs that the grains `first .. last` list.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Chunk {
+pub(super) struct GrainChunk {
     /// First grain.
     pub first: usize,
     /// One past the last grain.
@@ -78,7 +79,7 @@ pub(super) struct Chunk {
     pub memory: Vec<Memory>,
 }
 
-impl Chunk {
+impl GrainChunk {
     /// The pairs listed by grain `i` of this chunk.
     #[inline(always)]
     pub fn pairs(&self, i: usize) -> std::ops::Range<usize> {
@@ -210,13 +211,13 @@ fn runs(s: f64, half: f64, cells: usize) -> [(usize, usize); 2] {
     if low <= high { [(low, high + 1), (0, 0)] } else { [(0, high + 1), (low, cells)] }
 }
 
-/// Lists every pair within `reach`. Positions are in units of the cell, `0 <= s < 1`, the fourth entry the radius; `rank`
-/// orders the grains from large to small.
-pub(super) fn list(position: &[[f64; 4]], rank: &[u32], cell: f64, reach: Reach) -> Vec<Chunk> {
+/// Lists every pair within `reach`. Positions are in units of the cell, `0 <= s < 1`, the fourth entry the
+/// radius; `rank` orders the grains from large to small.
+pub(super) fn list(position: &[[f64; 4]], rank: &[u32], cell: f64, reach: Reach) -> Vec<GrainChunk> {
     let (level, count) = levels_of(position);
     let grids = grids(position, &level, count, cell, reach);
     let build = |&(first, last): &(usize, usize)| {
-        let mut chunk = Chunk { first, last, start: vec![0], ..Chunk::default() };
+        let mut chunk = GrainChunk { first, last, start: vec![0], ..GrainChunk::default() };
         for i in first..last {
             let [x, y, z, radius] = position[i];
             for (l, grid) in grids.iter().enumerate().take(usize::from(level[i]) + 1) {
@@ -262,7 +263,8 @@ pub(super) fn list(position: &[[f64; 4]], rank: &[u32], cell: f64, reach: Reach)
     }
 }
 
-/// What is remembered of the contacts, by the rank of the smaller grain: it has few contacts with larger ones.
+/// What is remembered of the contacts, by the rank of the smaller grain: it has few contacts with larger
+/// ones.
 pub(super) struct Remembered {
     start: Vec<u32>,
     /// Rank of the larger grain, and the memory.
@@ -271,7 +273,7 @@ pub(super) struct Remembered {
 
 impl Remembered {
     /// Collects the memories of the close pairs.
-    pub fn collect(chunks: &[Chunk], rank: &[u32]) -> Self {
+    pub fn collect(chunks: &[GrainChunk], rank: &[u32]) -> Self {
         let mut start = vec![0u32; rank.len() + 1];
         let visit = |each: &mut dyn FnMut(u32, u32, Memory)| {
             for chunk in chunks {
@@ -296,7 +298,7 @@ impl Remembered {
     }
 
     /// Gives the pairs of new lists their memory back, as close pairs.
-    pub fn restore(&self, chunks: &mut [Chunk], rank: &[u32]) {
+    pub fn restore(&self, chunks: &mut [GrainChunk], rank: &[u32]) {
         for chunk in chunks {
             for i in chunk.first..chunk.last {
                 for pair in chunk.pairs(i) {

@@ -9,8 +9,8 @@ pub struct Measure {
     pub pressure_kpa: f64,
     /// Mean coordination number `2 N_c / N_p`, over all grains.
     pub coordination: f64,
-    /// Mean coordination number among the grains that are held: with at least two contacts (four without friction) with held
-    /// grains.
+    /// Mean coordination number among the grains that are held: with at least two contacts (four without
+    /// friction) with held grains.
     pub coordination_held: f64,
     /// Rattler fraction: grains that are not held, by all grains.
     pub rattlers: f64,

@@ -16,8 +16,8 @@ struct Grid {
     head: Vec<u32>,
 }
 
-/// Centres in units of the cell for spheres of these radii (descending), so that none overlap in a periodic cell of
-/// edge `cell`.
+/// Centres in units of the cell for spheres of these radii (descending), so that none overlap in a periodic
+/// cell of edge `cell`.
 pub(super) fn place(
     radius: &[f64],
     cell: f64,

@@ -17,7 +17,8 @@ const PRESSURE: f64 = 0.005;
 /// Departure of the pressure from its target at which the drag is raised.
 const BRAKE: f64 = 0.02;
 
-/// Allowed root mean square unbalanced force by mean contact force: a frictionless packing has more in an avalanche, less after it.
+/// Allowed root mean square unbalanced force by mean contact force: a frictionless packing has more in an
+/// avalanche, less after it.
 const UNBALANCED: f64 = 0.05;
 
 /// Allowed kinetic by elastic energy.
@@ -26,8 +27,9 @@ const KINETIC: f64 = 1e-2;
 /// Allowed change of the coordination number while it is held.
 const COORDINATION: f64 = 0.05;
 
-/// Allowed change of the void ratio while it is held: a quarter of the 0.002 that two seeds or half the rate change it by. A wide grading
-/// with high friction creeps on as the logarithm of time, so some rate has to count as rest.
+/// Allowed change of the void ratio while it is held: a quarter of the 0.002 that two seeds or half the rate
+/// change it by. A wide grading with high friction creeps on as the logarithm of time, so some rate has to
+/// count as rest.
 const VOID_RATIO: f64 = 5e-4;
 
 /// How far a compression is, as it is told while it runs.
@@ -62,8 +64,9 @@ pub struct PackReport {
     pub simulated_s: f64,
 }
 
-/// Draws grains from the gradation, places them at random and compresses them: see the [module](crate::packing) for the
-/// protocol. `progress` is called every thousand steps and says whether to go on.
+/// Draws grains from the gradation, places them at random and compresses them: see the
+/// [module](crate::packing) for the protocol. `progress` is called every thousand steps and says whether to
+/// go on.
 ///
 /// ```
 /// use voidwalk::{gradation::Gradation, packing::{Settings, compress}};
@@ -89,8 +92,8 @@ pub fn compress(
 }
 
 impl Compression {
-    /// Does `steps` steps of the protocol, or fewer if it settles. The result does not depend on how the steps are
-    /// divided into calls.
+    /// Does `steps` steps of the protocol, or fewer if it settles. The result does not depend on how the
+    /// steps are divided into calls.
     ///
     /// # Errors
     /// A fixed time step that the contacts have become too stiff for.
@@ -147,7 +150,8 @@ impl Compression {
         self.hold.since = self.steps;
     }
 
-    /// Pressure, unbalanced force, coordination number and void ratio have held for long enough, and the grains rest.
+    /// Pressure, unbalanced force, coordination number and void ratio have held for long enough, and the
+    /// grains rest.
     fn settled(&mut self) -> bool {
         let coordination = self.coordination();
         let void_ratio = self.void_ratio();

@@ -26,9 +26,11 @@ fn follow(reach: &mut Reach, strained: bool, lasted: u64, meant: (u64, u64), lea
 }
 
 impl Compression {
-    /// Makes sure that every pair that can touch is among the close ones; says whether they are to be picked anew.
+    /// Makes sure that every pair that can touch is among the close ones; says whether they are to be picked
+    /// anew.
     ///
-    /// Both reaches follow from how long they last: a longer one costs more pairs a step, a shorter one is renewed more often.
+    /// Both reaches follow from how long they last: a longer one costs more pairs a step, a shorter one is
+    /// renewed more often.
     pub(super) fn renew(&mut self) -> Option<Reach> {
         if self.close.holds(Reach::CONTACT, self.cell, self.picked_cell, self.moved) {
             return None;

@@ -50,9 +50,9 @@ impl Compression {
     /// | bytes | what |
     /// |---|---|
     /// | 8 | `vwpacked` |
-    /// | 8 | version of this format, 2 (numbers are little-endian, as on every machine that voidwalk is built for) |
+    /// | 8 | version of this format, 2 (all numbers are little-endian) |
     /// | 8 | bytes of the record |
-    /// | | the record: JSON with named fields, from which every floating-point number comes back bit for bit |
+    /// | | the record: JSON with named fields; every floating-point number comes back bit for bit |
     /// | 4 n | `rank` (u32) of each of the `n` grains by size, in memory order |
     /// | 4 n | `origin` (u32): place in the user's columns, by rank |
     /// | 32 n each | `position`, `velocity`, `spin`, `listed`, `picked`: rows of four f64, in memory order |

@@ -17,7 +17,7 @@ use crate::outcome::stopping::Look;
 use crate::outcome::verdict::{below_by_interval, classify};
 use crate::outcome::{Recorded, RunId, RunMetrics};
 use crate::store::checkpoint::{Checkpoint, CheckpointError};
-use crate::walk::{Engine, Plan, SizeClasses, State, Walk, WalkControl};
+use crate::walk::{Engine, RunPlan, SizeClasses, State, Walk, WalkControl};
 
 /// How replicates are walked: who follows them, and what saves them.
 #[derive(Clone, Copy)]
@@ -139,7 +139,7 @@ fn walk_replicate(
             replicate,
             run: done.runs.len() as u64 + 1,
             d15f_mm: case.filter.d(15.0).unwrap_or(f64::NAN),
-            pan_fraction: case.base.tail_mass_fraction(),
+            pan_fraction: case.base.pan_fraction(),
         };
         let begun = Instant::now();
         let walk = RunContext { case, network: &network, id, of };
@@ -168,8 +168,8 @@ fn walk_replicate(
     })
 }
 
-fn plan(case: &Case, network: &Network, blocked: &BitSlice<u64>, n_base: u64) -> Plan {
-    Plan::new(case.scene.walk.engine, network, &case.sampler, blocked, n_base / case.increments())
+fn plan(case: &Case, network: &Network, blocked: &BitSlice<u64>, n_base: u64) -> RunPlan {
+    RunPlan::new(case.scene.walk.engine, network, &case.sampler, blocked, n_base / case.increments())
         .sampled(case.scene.walk.sampling)
 }
 

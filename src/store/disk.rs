@@ -1,9 +1,9 @@
-//! What is asked of the disk: every call of the program that makes, changes, reads or removes a file of its own goes through
-//! `ask`, and through one [`Disk`].
+//! What is asked of the disk: every call of the program that makes, changes, reads or removes a file of its
+//! own goes through `ask`, and through one [`Disk`].
 //!
-//! A process has one disk, so it is process-wide and not handed from function to function: a writer that has no folder at
-//! hand (a report, a ledger, a mapped column) cannot forget it, and nothing but a test ever sets it. The real disk is the
-//! absence of another; it costs one load of a pointer a call.
+//! A process has one disk, so it is process-wide and not handed from function to function: a writer that has
+//! no folder at hand (a report, a ledger, a mapped column) cannot forget it, and nothing but a test ever sets
+//! it. The real disk is the absence of another; it costs one load of a pointer a call.
 
 use std::fmt;
 use std::fs::File;
@@ -106,15 +106,16 @@ pub(super) fn ask<T>(call: Call<'_>, mut act: impl FnMut() -> io::Result<T>) -> 
 /// Opening what is a link fails.
 pub(super) const NO_LINK: i32 = rustix::fs::OFlags::NOFOLLOW.bits() as i32;
 
-/// What the names of files begin with that are not whole yet; one that a killed process left is removed when its folder is
-/// next taken.
+/// What the names of files begin with that are not whole yet; one that a killed process left is removed when
+/// its folder is next taken.
 pub(super) const PART: &str = ".voidwalk-part-";
 
-/// After so many bytes more, a file that is being written is sent to the disk while the writing goes on (bytes).
+/// After so many bytes more, a file that is being written is sent to the disk while the writing goes on
+/// (bytes).
 const SEND_EVERY: u64 = 64 << 20;
 
 /// A new file beside the one that it is to become; removed unless it became it.
-pub(super) struct Part {
+pub(super) struct PartFile {
     path: PathBuf,
     file: Arc<File>,
     /// Bytes written since the file was last sent to the disk, and the thread that is sending it.
@@ -123,7 +124,7 @@ pub(super) struct Part {
     whole: bool,
 }
 
-impl Part {
+impl PartFile {
     pub fn beside(folder: &Path) -> io::Result<Self> {
         static NUMBER: AtomicU64 = AtomicU64::new(0);
         loop {
@@ -142,7 +143,8 @@ impl Part {
         }
     }
 
-    /// After an error of this, the file is given up: a second sync may say that all is well when nothing was written.
+    /// After an error of this, the file is given up: a second sync may say that all is well when nothing was
+    /// written.
     pub fn sync(&mut self) -> io::Result<()> {
         self.sent()?;
         ask(Call::Sync(&self.path), || self.file.sync_all())
@@ -177,7 +179,7 @@ impl Part {
     }
 }
 
-impl Write for Part {
+impl Write for PartFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         // All of it, so that a disk that takes notes knows what is in the file.
         ask(Call::Write(&self.path, bytes), || (&*self.file).write_all(bytes))?;
@@ -191,7 +193,7 @@ impl Write for Part {
     }
 }
 
-impl Drop for Part {
+impl Drop for PartFile {
     fn drop(&mut self) {
         let _ = self.sent();
         if !self.whole {

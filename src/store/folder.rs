@@ -1,19 +1,20 @@
 //! The run folder: one writer, and no file that is half written.
 //!
-//! - A folder is ours when it was empty or absent, or holds our lock file [`LOCK_FILE`] or a finished run. Anything else is
-//!   not written to; neither is a folder reached through a symbolic link.
+//! - A folder is ours when it was empty or absent, or holds our lock file [`LOCK_FILE`] or a finished run.
+//!   Anything else is not written to; neither is a folder reached through a symbolic link.
 //! - The lock belongs to the process: the system releases it however the process dies. The lock file
 //!   says who holds it.
 //! - A file appears under its name only when it is whole: written beside it, synced, renamed, and the
 //!   folder synced. A folder that is made is synced into the one that it is in.
-//! - What a killed process left half written beside a file is removed when its folder is next taken by one process alone.
+//! - What a killed process left half written beside a file is removed when its folder is next taken by one
+//!   process alone.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use super::disk::{self, Call, PART, Part, ask};
+use super::disk::{self, Call, PART, PartFile, ask};
 
 /// Name of the lock file, which marks a folder as ours.
 pub const LOCK_FILE: &str = ".voidwalk.lock";
@@ -62,7 +63,7 @@ pub enum StoreError {
 }
 
 impl StoreError {
-    /// Whether the user can mend it by naming another folder, before any work is done.
+    /// Whether the user can fix it by naming another folder, before any work is done.
     pub fn is_refusal(&self) -> bool {
         use io::ErrorKind::{NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem};
         let by_name = [NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem];
@@ -86,8 +87,8 @@ impl Folder {
         Self::open_locked(path, false)
     }
 
-    /// The same for a folder that several processes work in, each in folders of its own inside; it is not taken while one
-    /// process holds it alone.
+    /// [`Folder::open`] for a folder that several processes work in, each in folders of its own inside; it is
+    /// not taken while one process holds it alone.
     ///
     /// # Errors
     /// As [`Folder::open`].
@@ -250,7 +251,8 @@ fn is_empty(folder: &Path) -> io::Result<bool> {
     ask(Call::List(folder), || Ok(fs::read_dir(folder)?.next().is_none()))
 }
 
-/// Removes what killed processes left half written in a folder and in those inside that have no lock of their own.
+/// Removes what killed processes left half written in a folder and in those inside that have no lock of their
+/// own.
 fn clear_parts(folder: &Path) -> io::Result<()> {
     let entries = ask(Call::List(folder), || fs::read_dir(folder)?.collect::<io::Result<Vec<_>>>())?;
     for entry in entries {
@@ -267,7 +269,8 @@ fn clear_parts(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Whether a name is that of a part whose process is gone. Where locks do not work, a process that lives may be at it.
+/// Whether a name is that of a part whose process is gone. Where locks do not work, a process that lives may
+/// be at it.
 fn is_left(name: &str) -> bool {
     let Some(process) = name.strip_prefix(PART).and_then(|rest| rest.split('-').next()) else { return false };
     process == std::process::id().to_string() || !Path::new("/proc").join(process).exists()
@@ -352,7 +355,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
     write_whole_with(path, |file| file.write_all(bytes))
 }
 
-/// The same for what does not lie in one piece.
+/// [`write_whole`] for what does not lie in one piece.
 ///
 /// # Errors
 /// What the system says, with the file's path.
@@ -362,7 +365,7 @@ pub fn write_whole_with(
 ) -> Result<(), StoreError> {
     let io = |action| move |source| StoreError::Io { path: path.to_owned(), action, source };
     let folder = path.parent().unwrap_or(Path::new(""));
-    let mut part = Part::beside(folder).map_err(io("write beside the file"))?;
+    let mut part = PartFile::beside(folder).map_err(io("write beside the file"))?;
     fill(&mut part).map_err(io("write"))?;
     part.sync().map_err(io("sync"))?;
     part.rename(path).map_err(io("rename"))?;

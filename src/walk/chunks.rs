@@ -1,4 +1,5 @@
-//! The chunks of the particles, one after another or over threads: nothing that a chunk does depends on which.
+//! The chunks of the particles, one after another or over threads: nothing that a chunk does depends on
+//! which.
 
 use std::cell::RefCell;
 use std::ops::Range;
@@ -22,13 +23,13 @@ pub(super) struct ChunkColumns<'a> {
 const WORTH_THREADS: u64 = 4 * CHUNK as u64;
 
 thread_local! {
-    /// Diameters of the chunk that a thread is at, where all base particles have one size: a column of them would say
-    /// nothing, and be read from memory.
+    /// Diameters of the chunk that a thread is at, where all base particles have one size: a column of them
+    /// would say nothing, and be read from memory.
     static SIZES: RefCell<Vec<f32>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Does `work` on the chunks of `range`, which are `effort` particles to work on. `single_size`: that of all base particles,
-/// where they have one.
+/// Does `work` on the chunks of `range`, which are `effort` particles to work on. `single_size`: that of all
+/// base particles, where they have one.
 pub(super) fn for_each(
     particles: &mut Particles,
     single_size: Option<f32>,

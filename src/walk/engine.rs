@@ -10,7 +10,8 @@ use crate::network::Network;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Engine {
-    /// `Counts` where a particle can be passive and there are enough of them for that to be faster, else `Particles`.
+    /// `Counts` where a particle can be passive and there are enough of them for that to be faster, else
+    /// `Particles`.
     Auto,
     /// Every base particle one by one.
     Particles,
@@ -24,8 +25,9 @@ impl Engine {
     /// Every engine, in the order in which a user is told of them.
     pub const ALL: [Engine; 4] = [Engine::Auto, Engine::Particles, Engine::Counts, Engine::Expected];
 
-    /// Whether it walks every base particle one by one when each increment inserts `share` of them on this many start nodes,
-    /// whatever their sizes. A question of numbers alone, so that a seed gives the same bits on every machine.
+    /// Whether it walks every base particle one by one when each increment inserts `share` of them on this
+    /// many start nodes, whatever their sizes. A question of numbers alone, so that a seed gives the same
+    /// bits on every machine.
     pub fn takes_each(self, share: u64, start_nodes: u64) -> bool {
         match self {
             Engine::Particles => true,
@@ -34,7 +36,7 @@ impl Engine {
         }
     }
 
-    /// The word for it in a scene.
+    /// Its name in a scene.
     pub fn name(self) -> &'static str {
         match self {
             Engine::Auto => "auto",
@@ -45,8 +47,8 @@ impl Engine {
     }
 }
 
-/// Base particles inserted on a start node in an increment from which counts are faster than particles one by one: where both
-/// took as long lies between 4 (portable instructions) and 13 (AVX-512), see `results/`.
+/// Base particles inserted on a start node in an increment from which counts are faster than particles one by
+/// one: where both took as long lies between 4 (portable instructions) and 13 (AVX-512), see `results/`.
 const WORTH_COUNTS: u64 = 8;
 
 /// What one run needs: an engine, and how much of the base is passive.
@@ -55,12 +57,12 @@ const WORTH_COUNTS: u64 = 8;
 /// use bitvec::vec::BitVec;
 /// use voidwalk::gradation::{Gradation, SizeSampler};
 /// use voidwalk::network::Network;
-/// use voidwalk::walk::{Engine, Plan, SizeClasses, State, Walk, WalkControl};
+/// use voidwalk::walk::{Engine, RunPlan, SizeClasses, State, Walk, WalkControl};
 ///
 /// let network = Network::cubic_from_diameters([4, 4, 6], vec![1.0; 288], 1.0)?;
 /// let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.2, 1.5)?, 1.0)?;
 /// let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
-/// let plan = Plan::new(Engine::Auto, &network, &sampler, &open, 10_000_000_000);
+/// let plan = RunPlan::new(Engine::Auto, &network, &sampler, &open, 10_000_000_000);
 /// assert_eq!(plan.engine(), Engine::Counts);
 /// let supply = plan.supply(sampler, 1_000_000_000_000, 100, 7, 1);
 /// let classes = SizeClasses::logarithmic(0.2, 0.45, 32);
@@ -70,16 +72,16 @@ const WORTH_COUNTS: u64 = 8;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Plan {
+pub struct RunPlan {
     engine: Engine,
     passive_words: u128,
     sampling: Sampling,
     left_out: Vec<String>,
 }
 
-impl Plan {
-    /// What a run of this base needs on the constrictions that `blocked` leaves open, where each increment inserts `share`
-    /// base particles.
+impl RunPlan {
+    /// What a run of this base needs on the constrictions that `blocked` leaves open, where each increment
+    /// inserts `share` base particles.
     pub fn new(
         wanted: Engine,
         network: &Network,
@@ -102,7 +104,8 @@ impl Plan {
         }
         if wanted == Engine::Auto && engine == Engine::Particles && passive_words > 0 {
             left_out.push(format!(
-                "None is kept as a count: {share} base particles an increment for {} start nodes are so few that walking each by \
+                "None is kept as a count: {share} base particles an increment for {} start nodes are so \
+                 few that walking each by \
                  itself is faster, and the distribution is the same.",
                 network.start().len()
             ));
@@ -110,7 +113,7 @@ impl Plan {
         Self { engine, passive_words, sampling: Sampling::Independent, left_out }
     }
 
-    /// The same with start nodes and sizes drawn in this way.
+    /// This plan with start nodes and sizes drawn in this way.
     pub fn sampled(self, sampling: Sampling) -> Self {
         Self { sampling, ..self }
     }
@@ -147,7 +150,8 @@ fn left_out(engine: Engine, limit: f32, passive_words: u128, unit_mm: f64) -> Ve
         sentences.push("No constriction is open: every base particle stays in the void it starts in.".into());
     } else if passive_words == 0 {
         sentences.push(format!(
-            "No base particle is as fine as the finest open constriction ({size_mm:.4} mm), so none is kept as a count."
+            "No base particle is as fine as the finest open constriction ({size_mm:.4} mm), so none is \
+             kept as a count."
         ));
     }
     if engine == Engine::Particles {
@@ -160,12 +164,15 @@ fn left_out(engine: Engine, limit: f32, passive_words: u128, unit_mm: f64) -> Ve
     if passive_words == 1 << 64 {
         if limit != f32::INFINITY {
             sentences.push(format!(
-                "Every base particle passes every open constriction (finest {size_mm:.4} mm): nothing can be blocked, and none is walked on its own; {how}."
+                "Every base particle passes every open constriction (finest {size_mm:.4} mm): nothing can \
+                 be blocked, and none is walked on its own; {how}."
             ));
         }
     } else {
         sentences.push(format!(
-            "All but {coarse_percent:.3e} % of the base particles by number are no coarser than the finest open constriction ({size_mm:.4} mm) and can block nothing: {how}, and their sizes are drawn where they come to rest."
+            "All but {coarse_percent:.3e} % of the base particles by number are no coarser than the finest \
+             open constriction ({size_mm:.4} mm) and can block nothing: {how}, and their sizes are drawn \
+            where they come to rest."
         ));
     }
     sentences

@@ -52,8 +52,8 @@ pub(super) struct Lattice {
     /// Bits 17..32: top fifteen bits of the first threshold. Bits 2..17: of the second. Bit 1: +y wraps.
     /// Bit 0: +x wraps. A void without open exits has the first above the second.
     pub entry: Vec<u32>,
-    /// What a move adds to the void, modulo 2^32. Bits 0 and 1 of the index: as in `entry`. Bit 2: not the first exit. Bit
-    /// 3: the third exit.
+    /// What a move adds to the void, modulo 2^32. Bits 0 and 1 of the index: as in `entry`. Bit 2: not the
+    /// first exit. Bit 3: the third exit.
     pub moves: [u32; 16],
     nx: u32,
     plane: u32,

@@ -8,7 +8,8 @@ use super::{CHUNK, Isa, State, Supply};
 use crate::network::Network;
 use crate::stream::{Key, LANES, Lanes, Purpose, below};
 
-/// Appends this increment's particles to their chunks, in parallel where that pays; `events` keeps their number and mass.
+/// Appends this increment's particles to their chunks, in parallel where that pays; `events` keeps their
+/// number and mass.
 pub(super) fn insert(
     network: &Network,
     supply: &Supply,

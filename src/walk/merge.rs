@@ -9,8 +9,8 @@ use super::sizes::cube;
 use super::{Blocking, SizeClasses, SizeCounts, State};
 
 thread_local! {
-    /// Room for the eroded particles of the chunk that a thread works on.
-    static ROOM: RefCell<Vec<f32>> = const { RefCell::new(Vec::new()) };
+    /// Buffer for the eroded particles of the chunk that a thread works on.
+    static ERODED: RefCell<Vec<f32>> = const { RefCell::new(Vec::new()) };
 }
 
 /// What one chunk did in one increment.
@@ -49,14 +49,14 @@ impl Events {
         self.stranded.clear();
     }
 
-    /// Takes room for `count` eroded particles that this thread used before.
-    pub fn lend_room(&mut self, count: usize) {
-        self.eroded = ROOM.take();
+    /// Takes the buffer that this thread used before, with room for `count` eroded particles.
+    pub fn lend_buffer(&mut self, count: usize) {
+        self.eroded = ERODED.take();
         self.eroded.clear();
         self.eroded.reserve(count);
     }
 
-    /// Sums over the chunk, and gives the room back; called where the chunk was worked on.
+    /// Sums over the chunk, and gives the buffer back; called where the chunk was worked on.
     pub fn sum(&mut self, classes: &SizeClasses, passive_limit: f32) {
         self.eroded_count = self.eroded.len() as u64;
         self.passive_eroded = self.eroded.iter().map(|&d| u64::from(d <= passive_limit)).sum();
@@ -65,7 +65,7 @@ impl Events {
         if !self.is_quiet() {
             self.sum_sizes(classes);
         }
-        ROOM.set(std::mem::take(&mut self.eroded));
+        ERODED.set(std::mem::take(&mut self.eroded));
     }
 
     fn sum_sizes(&mut self, classes: &SizeClasses) {

@@ -21,8 +21,9 @@
 //! appear nowhere in this, so they change no bit, and a walk can go on from its columns alone.
 //!
 //! # Sampling
-//! Start nodes and sizes are independent draws, as in the paper, or spread evenly over both ([`Sampling::Stratified`], module
-//! `strata`): each particle's marginal distribution is the same, and replicates scatter less.
+//! Start nodes and sizes are independent draws, as in the paper, or spread evenly over both
+//! ([`Sampling::Stratified`], module `strata`): each particle's marginal distribution is the same, and
+//! replicates scatter less.
 //!
 //! # Exit choice
 //! With `c_e` the sum of open areas up to exit `e` and `c` that of all, exit `e` is the first whose
@@ -34,14 +35,15 @@
 //! a particle can move in closed loops for good (module `trapped`).
 //!
 //! # Engines
-//! Passive particles may be kept as one count a void instead ([`Plan`], module `counts`): each increment then
-//! also inserts and splits counts, on the same open set, before the merge. Everything else is the same code,
-//! so whoever watches a [`State`] need not know which engine walks. [`Engine::Auto`] takes counts unless particles are few: a choice
-//! by numbers alone, never by the clock, so a seed stands for the same bits everywhere.
+//! Passive particles may be followed as one count a void instead ([`RunPlan`], module `counts`): each
+//! increment then also inserts and splits counts, on the same open set, before the merge. Everything else is
+//! the same code, so whoever watches a [`State`] need not know which engine walks. [`Engine::Auto`] takes
+//! counts unless particles are few: a choice by numbers alone, never by the clock, so a seed stands for the
+//! same bits everywhere.
 //!
 //! # Memory
-//! The columns of the particles take 8 bytes each. [`State::placed`] puts them into mapped files where they would not fit; the
-//! kernels see slices either way, and the bits are the same.
+//! The columns of the particles take 8 bytes each. [`State::placed`] puts them into mapped files where they
+//! would not fit; the kernels see slices either way, and the bits are the same.
 
 mod chunks;
 mod counts;
@@ -64,7 +66,7 @@ mod threads;
 mod trapped;
 
 pub use counts::{Counted, Expected, ExpectedSums, Passive};
-pub use engine::{Engine, Plan};
+pub use engine::{Engine, RunPlan};
 pub use error::WalkError;
 pub use exits::ExitTable;
 pub use isa::Isa;
@@ -91,7 +93,29 @@ pub enum WalkControl {
 /// What happens after each increment: recording, progress, a request to stop.
 pub type Observer<'a> = dyn FnMut(&State) -> WalkControl + Send + 'a;
 
-/// The machinery of one run that is rebuilt from network and state, and never stored.
+/// A run under way: the machinery that is rebuilt from network and state, and never stored.
+///
+/// ```
+/// use bitvec::vec::BitVec;
+/// use voidwalk::constrictions::{Curve, CurveUnit};
+/// use voidwalk::gradation::{Gradation, SizeSampler};
+/// use voidwalk::network::Network;
+/// use voidwalk::walk::{SizeClasses, State, Supply, Walk, WalkControl};
+///
+/// let curve = Curve::from_points(&[(0.0, 0.1), (100.0, 0.3)], CurveUnit::Mm)?;
+/// let network = Network::cubic([8, 8, 12], &curve, 1.0, 7)?;
+/// let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.08, 1.5)?, 1.0)?;
+/// let supply = Supply::new(sampler, 20_000, 100);
+/// let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
+/// let classes = SizeClasses::logarithmic(0.08, 0.18, 16);
+/// let mut state = State::new(&network, &supply, classes, open, 7, 1);
+/// Walk::new(&network, &supply, &state).run(&mut state, &mut |_| WalkControl::Continue)?;
+/// let tally = state.tally;
+/// assert_eq!((tally.inserted, tally.moving), (20_000, 0));
+/// assert!(tally.eroded > 0 && tally.retained_in_constrictions > 0);
+/// assert_eq!(state.history.len() as u64, tally.blocked);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Walk<'a> {
     network: &'a Network,
     supply: &'a Supply,
@@ -112,7 +136,7 @@ impl<'a> Walk<'a> {
         Self { network, supply, table, events: Vec::new(), trap, all_caught: false, passive }
     }
 
-    /// The same walk with the instructions of `isa`, to the same bits: for tests and measurements.
+    /// This walk with the instructions of `isa`, to the same bits: for tests and measurements.
     ///
     /// # Panics
     /// If this machine does not have them.
@@ -125,7 +149,7 @@ impl<'a> Walk<'a> {
         self
     }
 
-    /// One increment.
+    /// One increment, as in the paper's Fig. 3.
     ///
     /// # Errors
     /// [`WalkError::NotConserved`] where particles are lost or made.
@@ -173,8 +197,8 @@ impl<'a> Walk<'a> {
         state.tally.check(state.increment)
     }
 
-    /// Whether every moving particle is trapped. Once those walked one by one are, nothing can block any more, so
-    /// they stay so.
+    /// Whether every moving particle is trapped. Once those walked one by one are, nothing can block any
+    /// more, so they stay so.
     fn all_trapped(&mut self, state: &mut State) -> bool {
         self.all_caught = self.all_caught || self.trap.all_trapped(self.network, state);
         self.all_caught

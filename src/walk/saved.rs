@@ -14,13 +14,13 @@ use crate::store::checkpoint::{Checkpoint, CheckpointError, Section};
 ///
 /// | section | element | what |
 /// |---|---|---|
-/// | `state` | JSON | a record: `seed`, `run`, `increment`, `finished`, `passive` (`one_by_one`, `counts` or `expected`), `passive_limit` (`null` where no constriction was open), `expected` (with engine `expected`: `eroded`, `moves`, `inserted`, and in `counted` the `moves`, `eroded` and `at_rest` that the tally holds of them), `tally` (the fields of [`Tally`]), `constrictions` (their number) |
+/// | `state` | JSON | the record below |
 /// | `live` | u32 | moving particles by chunk |
 /// | `void` | u32 | void of each moving particle, chunk after chunk |
 /// | `diameter` | f32 | diameter of each moving particle, chunk after chunk |
 /// | `counts` | u64 | moving passive particles by void; empty but with engine `counts` |
 /// | `expected_moving` | f64 | expected moving passive particles by void; empty but with engine `expected` |
-/// | `expected_retained` | f64 | expected passive particles retained in each void; empty but with engine `expected` |
+/// | `expected_retained` | f64 | expected retained passive particles by void; empty as well |
 /// | `counted_retained` | u64 | how many of these the state counts; empty but with engine `expected` |
 /// | `blocked` | u64 | bit `c % 64` of word `c / 64`: constriction `c` is blocked |
 /// | `history_increment` | u64 | increment of each blocking of this run |
@@ -29,6 +29,13 @@ use crate::store::checkpoint::{Checkpoint, CheckpointError, Section};
 /// | `retained_in_voids` | u64 | by void |
 /// | `eroded_number`, `retained_number` | u64 | particles by size class |
 /// | `eroded_mass`, `retained_mass` | f64 | mass by size class |
+///
+/// The record holds, in these fields, those of [`State`] of the same names: `seed`, `run`, `increment`,
+/// `finished`, `passive_limit` (`null` where no constriction was open when the run began) and `tally` (all
+/// fields of [`Tally`]). Besides: `passive`, how the passive particles are followed (`one_by_one`, `counts`
+/// or `expected`); `constrictions`, their number; `expected`, with that engine alone the sums `eroded`,
+/// `moves` and `inserted`, and in `counted` the whole numbers `moves`, `eroded` and `at_rest` that the tally
+/// holds of them.
 pub struct SavedState<'a> {
     state: &'a State,
     record: Vec<u8>,
@@ -126,7 +133,8 @@ impl<'a> SavedState<'a> {
 }
 
 impl State {
-    /// Takes a state from a checkpoint into this one, which is that of the same run before its first increment.
+    /// Takes a state from a checkpoint into this one, which is that of the same run before its first
+    /// increment.
     ///
     /// # Errors
     /// A checkpoint that is corrupt, or of another run.

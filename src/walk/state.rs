@@ -97,7 +97,7 @@ impl State {
         state.expect("columns in memory need no file")
     }
 
-    /// The same, with the columns of the particles in `placement`; what is there changes no bit.
+    /// [`State::new`] with the columns of the particles in `placement`, which changes no bit.
     ///
     /// # Errors
     /// Files for the columns cannot be made or allocated.

@@ -1,18 +1,20 @@
-//! Stratified insertion: the marginal distribution of each base particle is unchanged, but together they cover sizes and start
-//! nodes evenly.
+//! Stratified insertion: the marginal distribution of each base particle is unchanged, but together they
+//! cover sizes and start nodes evenly.
 //!
 //! # Sizes
-//! A run of `T` increments that inserts at most `K` particles in each has `T K` strata of equal probability: `K` groups of `T`,
-//! finest first. Within each group every increment has one stratum, and within an increment every particle has a group of its own;
-//! so the sizes of an increment are stratified, and so are those of the whole run. Particle `m` of increment `t` takes group
-//! `k = P_t(m)` and in it stratum `Q_k(t - 1)`; `P` and `Q` are keyed permutations.
+//! A run of `T` increments that inserts at most `K` particles in each has `T K` strata of equal probability:
+//! `K` groups of `T`, finest first. Within each group every increment has one stratum, and within an
+//! increment every particle has a group of its own; so the sizes of an increment are stratified, and so are
+//! those of the whole run. Particle `m` of increment `t` takes group `k = P_t(m)` and in it stratum `Q_k(t -
+//! 1)`; `P` and `Q` are keyed permutations.
 //!
 //! # Start nodes
-//! The `n` particles of an increment divide the start nodes, in their order, into `n` equal parts, and each takes a place in its part.
+//! The `n` particles of an increment divide the start nodes, in their order, into `n` equal parts, and each
+//! takes a place in its part.
 //!
-//! Group, stratum, place in the stratum and place among the nodes of any one particle are uniform, so its marginal distribution
-//! is exactly that of independent draws; only the joint distribution differs. The order of the particles in an increment plays no part in the
-//! walk, so that of the nodes needs no permutation.
+//! Group, stratum, place in the stratum and place among the nodes of any one particle are uniform, so its
+//! marginal distribution is exactly that of independent draws; only the joint distribution differs. The order
+//! of the particles in an increment plays no part in the walk, so that of the nodes needs no permutation.
 
 use crate::stream::{Key, Purpose, Words, below};
 
@@ -23,15 +25,16 @@ pub enum Sampling {
     /// Each by itself: the paper's way.
     #[default]
     Independent,
-    /// Evenly over sizes and start nodes: the marginal distribution of each particle is unchanged, and replicates scatter less.
+    /// Evenly over sizes and start nodes: the marginal distribution of each particle is unchanged, and
+    /// replicates scatter less.
     Stratified,
 }
 
 impl Sampling {
-    /// Both, in the order in which a user is told of them.
+    /// Every sampling, in the order in which a user is told of them.
     pub const ALL: [Sampling; 2] = [Sampling::Independent, Sampling::Stratified];
 
-    /// The word for it in a scene.
+    /// Its name in a scene.
     pub fn name(self) -> &'static str {
         match self {
             Sampling::Independent => "independent",
@@ -116,8 +119,9 @@ impl IncrementStrata<'_> {
     }
 }
 
-/// Keyed permutations of `0 .. size`: a shuffle for few elements; for many an alternating Feistel network on the next larger
-/// rectangle, walked until it ends inside, and then turned round by a random step. The image of every element is exactly uniform.
+/// Keyed permutations of `0 .. size`: a shuffle for few elements; for many an alternating Feistel network on
+/// the next larger rectangle, walked until it ends inside, and then turned round by a random step. The image
+/// of every element is exactly uniform.
 #[derive(Clone, Copy, Debug)]
 struct Permutation {
     size: u64,
@@ -128,7 +132,8 @@ struct Permutation {
 /// Elements up to which a shuffle costs no more.
 const SHUFFLED: usize = 16;
 
-/// With 6 rounds pairs of images are not yet evenly spread in small domains; 10 show no difference from random permutations.
+/// With 6 rounds pairs of images are not yet evenly spread in small domains; 10 show no difference from
+/// random permutations.
 const ROUNDS: u64 = 10;
 
 impl Permutation {
@@ -177,8 +182,8 @@ fn turn(at: u64, by: u64, size: u64) -> u64 {
     if sum >= size { sum - size } else { sum }
 }
 
-/// How many of the first `inserted` particles of a run are coarse, given that `coarse_words` of all 2^64 words draw coarse ones:
-/// the expected number, rounded up or down with one random word for the whole run.
+/// How many of the first `inserted` particles of a run are coarse, given that `coarse_words` of all 2^64
+/// words draw coarse ones: the expected number, rounded up or down with one random word for the whole run.
 pub(super) fn coarse_until(inserted: u64, coarse_words: u128, word: u64) -> u64 {
     ((u128::from(inserted) * coarse_words).saturating_add(u128::from(word)) >> 64) as u64
 }
@@ -203,7 +208,8 @@ mod tests {
         }
     }
 
-    /// Images of pairs over 2,000 keys for each: a pair that came up a seventh too often or too rarely would be seen.
+    /// Images of pairs over 2,000 keys for each: a pair that came up a seventh too often or too rarely would
+    /// be seen.
     #[test]
     fn pairs_of_images_are_as_frequent_as_in_random_permutations() {
         for size in [2u64, 3, 5, 17, 20, 25] {
@@ -263,7 +269,8 @@ mod tests {
         assert_eq!(strata.increment(1, 4).node(3, u64::MAX, u64::MAX), (u64::MAX - 1) as usize);
     }
 
-    /// One particle's size word over 20,000 seeds: 16 equal classes, chi2 with 15 degrees of freedom (0.0001 point: 44).
+    /// One particle's size word over 20,000 seeds: 16 equal classes, chi2 with 15 degrees of freedom (0.0001
+    /// point: 44).
     #[test]
     fn one_particle_is_uniform() {
         for (m, t) in [(0, 1), (2, 3), (4, 5)] {

@@ -41,8 +41,8 @@ impl Supply {
         Self { sampler, first_word: 0, inserted, passive: PassiveSupply::default(), strata: None }
     }
 
-    /// The same with start nodes and sizes spread evenly (module `strata`), for run `run` of `seed`. To be asked before
-    /// a passive part is taken out.
+    /// This supply with start nodes and sizes spread evenly (module `strata`), for run `run` of `seed`. To be
+    /// called before a passive part is taken out.
     pub fn stratified(self, seed: u64, run: u64) -> Self {
         let share = |t| self.inserted(t) - self.inserted(t - 1);
         let most = (1..=self.increments()).map(share).max().unwrap_or(0);
@@ -50,7 +50,7 @@ impl Supply {
         Self { strata: Some(strata), ..self }
     }
 
-    /// The same particles, of which those drawn by words below `passive_words` are kept as counts, or as an
+    /// This supply, of which the particles drawn by words below `passive_words` are kept as counts, or as an
     /// expectation. How many of each increment's share these are is drawn for run `run` of `seed`.
     pub fn with_passive_part(self, passive_words: u128, expected: bool, seed: u64, run: u64) -> Self {
         let increments = 1..=self.increments();

@@ -5,10 +5,10 @@ use rustix::thread::{CpuSet, sched_getaffinity, sched_setaffinity};
 
 /// A pool of `count` threads to run walks in (0: one for each processor that the program may use).
 ///
-/// With `pinned`, thread `i` stays on the `i`-th of those processors, where there are as many as threads: some
-/// systems keep the threads of a busy program together on one. Whether it could is not an error: results do
-/// not depend on it. Use it where the machine is for this program alone: two programs that pin
-/// their threads share the same processors.
+/// With `pinned`, thread `i` stays on the `i`-th of those processors, where there are as many as threads:
+/// some systems keep the threads of a busy program together on one. Whether it could is not an error: results
+/// do not depend on it. Use it where the machine is for this program alone: two programs that pin their
+/// threads share the same processors.
 ///
 /// # Errors
 /// What the system says when it cannot start a thread.

@@ -10,7 +10,7 @@ use serde_json::Value;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
 use voidwalk::store::checkpoint::{Identity, Label, newest, save};
-use voidwalk::walk::{Engine, Plan, SavedState, SizeClasses, State, Supply, Walk, WalkControl};
+use voidwalk::walk::{Engine, RunPlan, SavedState, SizeClasses, State, Supply, Walk, WalkControl};
 
 /// A lattice on which a graded base blocks and passes.
 fn network(seed: u64) -> Network {
@@ -47,7 +47,7 @@ fn a_walk_goes_on_from_every_increment_with_every_engine_on_any_threads() {
         let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
         let supply_of = |blocked: &BitVec<u64>, run| {
             let sampler = SizeSampler::new(&gradation, 1.0).unwrap();
-            Plan::new(engine, &network, &sampler, blocked, 700).supply(sampler, 70_000, 100, seed, run)
+            RunPlan::new(engine, &network, &sampler, blocked, 700).supply(sampler, 70_000, 100, seed, run)
         };
         let first_supply = supply_of(&open, 1);
         let mut first = fresh(&network, &first_supply, &open, seed, 1);
@@ -99,7 +99,7 @@ fn a_state_of_another_run_is_refused() {
     let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
     let supply = |engine, n| {
         let sampler = SizeSampler::new(&gradation, 1.0).unwrap();
-        Plan::new(engine, &network, &sampler, &open, n / 100).supply(sampler, n, 100, 1, 1)
+        RunPlan::new(engine, &network, &sampler, &open, n / 100).supply(sampler, n, 100, 1, 1)
     };
     let particles = supply(Engine::Particles, 40_000);
     let state = fresh(&network, &particles, &open, 1, 1);

@@ -1,15 +1,14 @@
-//! Checkpoints of every version of the format: those of this version are read and continued to the same answer, older ones are
-//! refused with a sentence that says so.
+//! Checkpoints of every version of the format: those of this version are read and continued to the same
+//! answer, older ones are refused with a sentence that says so.
 //!
-//! A new version of the format adds files and never changes one: `cargo test --release --test files -- golden --ignored` writes those
-//! of the version at hand.
+//! A new version of the format adds files and never changes one: `cargo test --release --test files --
+//! golden --ignored` writes those of the version at hand.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use voidwalk::store::checkpoint::{CheckpointError, newest};
 use voidwalk::walk::{Engine, State};
-
 
 use crate::readers::SmallRun;
 

@@ -9,9 +9,10 @@ use voidwalk::store::checkpoint::{Identity, Label, Section, newest, save};
 /// Bytes that have a checksum of their own.
 const PIECE: usize = 1 << 20;
 
-/// Every length up to the end of the header and around every edge of a piece, every bit of the header, and bits all over the rest,
-/// what lies between the sections included: all are detected, and the older slot is taken. A fixed part of all; with
-/// `VOIDWALK_FAULTS=all` all lengths up to 4,096, all header bits, and 10,000 bits of the rest.
+/// Every length up to the end of the header and around every edge of a piece, every bit of the header, and
+/// bits all over the rest, what lies between the sections included: all are detected, and the older slot is
+/// taken. A fixed part of all; with `VOIDWALK_FAULTS=all` all lengths up to 4,096, all header bits, and
+/// 10,000 bits of the rest.
 #[test]
 fn no_corruption_goes_unnoticed() {
     let all = std::env::var("VOIDWALK_FAULTS").is_ok_and(|value| value == "all");

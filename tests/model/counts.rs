@@ -3,7 +3,7 @@
 use bitvec::vec::BitVec;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
-use voidwalk::walk::{Engine, Isa, Passive, Plan, SizeClasses, State, Supply, Tally, Walk, WalkControl};
+use voidwalk::walk::{Engine, Isa, Passive, RunPlan, SizeClasses, State, Supply, Tally, Walk, WalkControl};
 
 fn sampler(d0: f64, cu: f64) -> SizeSampler {
     let base = if cu == 1.0 { Gradation::single(d0) } else { Gradation::linear_from_d0(d0, cu) };
@@ -70,7 +70,7 @@ fn whole_run(
     seed: u64,
     engine: Engine,
 ) -> (State, Vec<Tally>) {
-    let plan = Plan::new(engine, network, base, &open(network), n / k);
+    let plan = RunPlan::new(engine, network, base, &open(network), n / k);
     walk(network, &plan.supply(base.clone(), n, k, seed, 1), open(network), seed, 1)
 }
 
@@ -181,7 +181,7 @@ fn threads_change_no_bit() {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
                 let supply = |run, blocked: &BitVec<u64>| {
-                    Plan::new(engine, &network, &base, blocked, 60_000).supply(
+                    RunPlan::new(engine, &network, &base, blocked, 60_000).supply(
                         base.clone(),
                         3_000_000,
                         50,
@@ -209,7 +209,7 @@ fn threads_change_no_bit() {
 #[test]
 fn instructions_change_no_bit() {
     let (network, base) = blocking_scene();
-    let plan = Plan::new(Engine::Counts, &network, &base, &open(&network), 600_000);
+    let plan = RunPlan::new(Engine::Counts, &network, &base, &open(&network), 600_000);
     let supply = plan.supply(base.clone(), 30_000_000, 50, 12, 1);
     let with = |isa: Isa| {
         let classes = SizeClasses::logarithmic(base.smallest(), base.largest(), 20);
@@ -228,7 +228,7 @@ fn instructions_change_no_bit() {
 fn a_walk_rebuilt_from_its_state_ends_the_same() {
     let (network, base) = blocking_scene();
     for engine in [Engine::Counts, Engine::Expected] {
-        let plan = Plan::new(engine, &network, &base, &open(&network), 25_000);
+        let plan = RunPlan::new(engine, &network, &base, &open(&network), 25_000);
         let supply = plan.supply(base.clone(), 1_000_000, 40, 3, 1);
         let (unbroken, _) = walk(&network, &supply, open(&network), 3, 1);
         let classes = SizeClasses::logarithmic(base.smallest(), base.largest(), 20);
@@ -250,7 +250,7 @@ fn a_walk_rebuilt_from_its_state_ends_the_same() {
 fn the_full_path_gives_what_the_plan_leaves_out() {
     let network = lattice([5, 5, 8], scattered);
     let coarse = sampler(1.2, 1.4);
-    let plan = Plan::new(Engine::Auto, &network, &coarse, &open(&network), 2_000);
+    let plan = RunPlan::new(Engine::Auto, &network, &coarse, &open(&network), 2_000);
     assert_eq!((plan.engine(), plan.left_out().len()), (Engine::Particles, 1));
     let short = walk(&network, &plan.supply(coarse.clone(), 40_000, 20, 8, 1), open(&network), 8, 1).0;
     let full = Supply::new(coarse.clone(), 40_000, 20).with_passive_part(0, false, 8, 1);
@@ -260,7 +260,7 @@ fn the_full_path_gives_what_the_plan_leaves_out() {
     assert_same(&short, &full);
 
     let fine = sampler(0.2, 2.0);
-    let plan = Plan::new(Engine::Auto, &network, &fine, &open(&network), 2_000);
+    let plan = RunPlan::new(Engine::Auto, &network, &fine, &open(&network), 2_000);
     assert_eq!((plan.engine(), plan.left_out().len()), (Engine::Counts, 1));
     let supply = plan.supply(fine.clone(), 40_000, 20, 8, 1);
     assert_eq!(supply.total(), 0);
@@ -279,13 +279,13 @@ fn the_full_path_gives_what_the_plan_leaves_out() {
 fn few_particles_are_walked_one_by_one() {
     let network = lattice([5, 5, 8], scattered);
     let base = sampler(0.5, 1.8);
-    let plan = |share| Plan::new(Engine::Auto, &network, &base, &open(&network), share);
+    let plan = |share| RunPlan::new(Engine::Auto, &network, &base, &open(&network), share);
     let (few, enough) = (plan(199), plan(200));
     assert_eq!((few.engine(), enough.engine()), (Engine::Particles, Engine::Counts));
     assert!(few.left_out().iter().any(|s| s.contains("199 base particles an increment for 25 start nodes")));
     assert!(!enough.left_out().iter().any(|s| s.contains("so few")));
     for wanted in [Engine::Counts, Engine::Expected] {
-        assert_eq!(Plan::new(wanted, &network, &base, &open(&network), 1).engine(), wanted);
+        assert_eq!(RunPlan::new(wanted, &network, &base, &open(&network), 1).engine(), wanted);
     }
     let chosen = whole_run(&network, &base, 19_900, 100, 5, Engine::Auto).0;
     let asked = whole_run(&network, &base, 19_900, 100, 5, Engine::Particles).0;
@@ -303,7 +303,7 @@ fn nothing_leaves_closed_voids() {
         assert_eq!(state.retained_in_voids[..6].iter().sum::<u64>(), 6_000);
         assert_eq!(state.increment, 10);
     }
-    let plan = Plan::new(Engine::Auto, &network, &sampler(0.5, 3.0), &open(&network), 600);
+    let plan = RunPlan::new(Engine::Auto, &network, &sampler(0.5, 3.0), &open(&network), 600);
     assert!(plan.left_out()[0].starts_with("No constriction is open"));
 }
 

@@ -4,7 +4,7 @@ use bitvec::vec::BitVec;
 use voidwalk::constrictions::find;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
-use voidwalk::walk::{Engine, Plan, SizeClasses, State, Walk, WalkControl};
+use voidwalk::walk::{Engine, RunPlan, SizeClasses, State, Walk, WalkControl};
 
 const REPLICATES: u64 = 28;
 const N_BASE: u64 = 120_000;
@@ -60,7 +60,7 @@ fn replicates_of_both_engines_have_the_same_means() {
             let mut blocked: BitVec<u64> = BitVec::repeat(false, network.constrictions());
             for run in 1..=2 {
                 let seed = 1000 + replicate;
-                let plan = Plan::new(engine, &network, &sampler, &blocked, N_BASE / 100);
+                let plan = RunPlan::new(engine, &network, &sampler, &blocked, N_BASE / 100);
                 assert_eq!(plan.engine(), engine);
                 let supply = plan.supply(sampler.clone(), N_BASE, 100, seed, run);
                 let classes = SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), 16);

@@ -6,7 +6,7 @@ use voidwalk::constrictions::find;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
 use voidwalk::outcome::record::Statistic;
-use voidwalk::walk::{Engine, Plan, SizeClasses, State, Walk, WalkControl};
+use voidwalk::walk::{Engine, RunPlan, SizeClasses, State, Walk, WalkControl};
 
 /// Replicates of a cell, as many as a scene has by default.
 const REPLICATES: u64 = 10;
@@ -26,7 +26,7 @@ fn eroded(
     seed: u64,
 ) -> f64 {
     let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
-    let plan = Plan::new(engine, network, sampler, &open, n / increments);
+    let plan = RunPlan::new(engine, network, sampler, &open, n / increments);
     let supply = plan.supply(sampler.clone(), n, increments, seed, 1);
     let classes = SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), 4);
     let mut state = State::new(network, &supply, classes, open, seed, 1);

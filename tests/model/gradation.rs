@@ -129,11 +129,11 @@ fn a_gap_holds_nothing() {
 fn a_tail_is_in_the_mass_and_not_in_the_number() {
     let table = [(0.1, 20.0), (0.4, 100.0)];
     let open = Gradation::from_points(&table, None).unwrap();
-    assert_eq!((open.tail_mass_fraction(), open.d(10.0), open.cu()), (0.2, None, None));
+    assert_eq!((open.pan_fraction(), open.d(10.0), open.cu()), (0.2, None, None));
     assert_eq!((open.d(20.0), open.percent_finer_by_mass(0.01)), (Some(0.1), 20.0));
     assert_eq!((open.percent_finer_by_number(0.0999), open.percent_finer_by_number(0.4)), (0.0, 100.0));
     let ended = Gradation::from_points(&table, Some(0.05)).unwrap();
-    assert_eq!((ended.tail_mass_fraction(), ended.smallest_mm()), (0.0, 0.05));
+    assert_eq!((ended.pan_fraction(), ended.smallest_mm()), (0.0, 0.05));
     close(ended.d(10.0).unwrap(), 0.05 * 2.0f64.sqrt(), 1e-14);
     // The sized part is the same in both.
     let coarse = |g: &Gradation| g.number_fraction_in(0.1, 0.4) * g.particles_per_unit_volume();
@@ -144,7 +144,7 @@ fn a_tail_is_in_the_mass_and_not_in_the_number() {
 #[test]
 fn numbers_agree_with_a_slow_integral() {
     for g in kinds() {
-        let tail = 100.0 * g.tail_mass_fraction();
+        let tail = 100.0 * g.pan_fraction();
         let slices = 1_000_000;
         let limit = g.d(0.5 * (100.0 + tail)).unwrap();
         let (mut all, mut fine, mut fine_mass) = (0.0, 0.0, 0.0);
@@ -273,7 +273,8 @@ fn parts_add_up_to_the_whole() {
         assert_eq!((whole.finer_by_mass(1e30), whole.finer_by_number(1e30)), (Some(1.0), Some(1.0)));
         let threshold = sampler.word_limit((2.0 * g.d_by_number(70.0).unwrap()) as f32);
         let (fine, coarse) = (sampler.part(0..threshold), sampler.part(threshold..ALL));
-        let mass = |p: &voidwalk::gradation::Part| p.mean_cube().map_or(0.0, |m| m * p.number_fraction());
+        let mass =
+            |p: &voidwalk::gradation::SizeRange| p.mean_cube().map_or(0.0, |m| m * p.number_fraction());
         close(mass(&fine) + mass(&coarse), mass(&whole), 1e-12);
         let d = 2.0 * g.d_by_number(30.0).unwrap();
         if g.largest_mm() / g.smallest_mm() > 1.001 {
@@ -392,7 +393,7 @@ proptest! {
     #[test]
     fn percent_and_size_are_inverse(g in any_gradation(), percent in 0.0f64..=100.0) {
         match g.d(percent) {
-            None => prop_assert!(percent < 100.0 * g.tail_mass_fraction() * (1.0 + 1e-12)),
+            None => prop_assert!(percent < 100.0 * g.pan_fraction() * (1.0 + 1e-12)),
             Some(d) => {
                 // A gap in the sizes makes the share at least that percent, and nowhere less.
                 prop_assert!(g.percent_finer_by_mass(d) >= percent - 1e-9);

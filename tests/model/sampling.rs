@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use voidwalk::constrictions::find;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
-use voidwalk::walk::{Engine, Plan, Sampling, SizeClasses, State, Walk, WalkControl};
+use voidwalk::walk::{Engine, RunPlan, Sampling, SizeClasses, State, Walk, WalkControl};
 
 const N_BASE: u64 = 30_000;
 
@@ -20,7 +20,7 @@ fn figures(
     let mut blocked: BitVec<u64> = BitVec::repeat(false, network.constrictions());
     let mut found = [0.0; 6];
     for run in 1..=2u64 {
-        let plan = Plan::new(engine, network, sampler, &blocked, N_BASE / 100).sampled(sampling);
+        let plan = RunPlan::new(engine, network, sampler, &blocked, N_BASE / 100).sampled(sampling);
         let supply = plan.supply(sampler.clone(), N_BASE, 100, seed, run);
         let classes = SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), 16);
         let mut state = State::new(network, &supply, classes, blocked, seed, run);

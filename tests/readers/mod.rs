@@ -20,7 +20,7 @@ use voidwalk::network::Network;
 use voidwalk::packing::Packing;
 use voidwalk::scene::{CurveSource, Scene};
 use voidwalk::store::checkpoint::{Checkpoint, Identity, Label, Section, newest, save};
-use voidwalk::walk::{Engine, Plan, SavedState, SizeClasses, State, Supply, Walk, WalkControl};
+use voidwalk::walk::{Engine, RunPlan, SavedState, SizeClasses, State, Supply, Walk, WalkControl};
 use xxhash_rust::xxh3::xxh3_64;
 
 /// The most memory that a process reading hostile input may hold (bytes).
@@ -34,8 +34,8 @@ pub struct Bounded;
 
 static HELD: AtomicUsize = AtomicUsize::new(0);
 
-// SAFETY: every call is handed on to the system's allocator unchanged, or answered with a null pointer, which says that
-// there is no memory.
+// SAFETY: every call is handed on to the system's allocator unchanged, or answered with a null pointer, which
+// says that there is no memory.
 unsafe impl GlobalAlloc for Bounded {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         if HELD.fetch_add(layout.size(), Ordering::Relaxed) + layout.size() > MOST_BYTES {
@@ -68,7 +68,8 @@ fn shown<T, E: Display>(result: Result<T, E>) -> Option<T> {
 /// A scene: reads, works out, and comes back from the scene that is kept with the results.
 pub fn scene(bytes: &[u8]) {
     let Some(scene) = shown(Scene::parse(bytes, "scene.toml", &[])) else { return };
-    // A lattice that is changed void by void is only built where that is quick; files are other readers' matter.
+    // A lattice that is changed void by void is only built where that is quick; files are other readers'
+    // matter.
     let voids =
         scene.network.source().shape().map(|lengths| lengths.iter().map(|&n| f64::from(n)).product::<f64>());
     let given = matches!(scene.filter.curve, Some(CurveSource::Shipped(_)));
@@ -207,7 +208,7 @@ impl SmallRun {
         let gradation = Gradation::linear_from_dx(85.0, 0.45, 3.0).unwrap();
         let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
         let sampler = SizeSampler::new(&gradation, 1.0).unwrap();
-        let plan = Plan::new(engine, &network, &sampler, &open, 20);
+        let plan = RunPlan::new(engine, &network, &sampler, &open, 20);
         let supply = plan.supply(sampler, 2000, 100, 11, 1);
         Self { network, supply, open }
     }
@@ -244,9 +245,11 @@ impl SmallRun {
     }
 }
 
-/// The file with its length, the sums of its pieces and that of its header made right, as far as it has room for them.
+/// The file with its length, the sums of its pieces and that of its header made right, as far as it has room
+/// for them.
 pub fn with_right_sums(mut bytes: Vec<u8>) -> Vec<u8> {
-    /// Bytes of a piece, of the fixed fields of a header and of a row of its table; where the number of sections is.
+    /// Bytes of a piece, of the fixed fields of a header and of a row of its table; where the number of
+    /// sections is.
     const PIECE: usize = 1 << 20;
     const FIXED: usize = 160;
     const ROW: usize = 56;

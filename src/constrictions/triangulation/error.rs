@@ -53,7 +53,8 @@ pub enum TriangulationError {
     },
     /// A cell in which a grain meets its own image.
     #[error(
-        "the cell is {length_mm} mm along {axis}, but it must be at least twice the largest grain ({largest_mm} mm)"
+        "the cell is {length_mm} mm along {axis}, but it must be at least twice the largest grain \
+         ({largest_mm} mm)"
     )]
     Narrow {
         /// Axis of the cell.

@@ -9,7 +9,7 @@
 use super::insertion::{Builder, normalised};
 use super::mesh::{Mesh, NONE, Positions, Shift, grain};
 use super::order;
-use super::points::{MOST_GRAINS, Point, Points};
+use super::points::{GrainPoint, MOST_GRAINS, Points};
 use super::predicates::volume;
 use super::wide::Wide;
 use std::collections::HashMap;
@@ -48,13 +48,13 @@ pub(super) fn triangulate(points: &Points, cell: [f64; 3], sample: &[u32]) -> Op
 /// Images of grains as columns.
 #[derive(Default)]
 struct Images {
-    at: Vec<Point>,
+    at: Vec<GrainPoint>,
     grain: Vec<u32>,
     shift: Vec<Shift>,
 }
 
 impl Images {
-    fn add(&mut self, grain: u32, mut at: Point, shift: [i32; 3], cell: [f64; 3], margin: f64) {
+    fn add(&mut self, grain: u32, mut at: GrainPoint, shift: [i32; 3], cell: [f64; 3], margin: f64) {
         for axis in 0..3 {
             at[axis] += f64::from(shift[axis]) * cell[axis];
             if at[axis] < -margin * cell[axis] || at[axis] > (1.0 + margin) * cell[axis] {
@@ -157,7 +157,7 @@ pub(super) fn fills(mesh: &Mesh, points: &Points, cell: [f64; 3]) -> bool {
 }
 
 /// Order of insertion for a free triangulation.
-pub(super) fn free_order(at: &[Point]) -> Vec<u32> {
+pub(super) fn free_order(at: &[GrainPoint]) -> Vec<u32> {
     let bound = |axis: usize, low: bool| {
         let values = at.iter().map(|p| p[axis]);
         if low { values.fold(f64::INFINITY, f64::min) } else { values.fold(f64::NEG_INFINITY, f64::max) }

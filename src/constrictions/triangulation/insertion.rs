@@ -6,7 +6,7 @@
 //! own images; that is noticed when it happens ([`Wrapped`]).
 
 use super::mesh::{Corner, INFINITE, Mesh, NONE, Positions, Shift, corner, grain, image};
-use super::points::Point;
+use super::points::GrainPoint;
 use super::predicates::{facets, in_conflict, orientation};
 use std::cmp::Ordering;
 
@@ -122,7 +122,7 @@ impl<'a> Builder<'a> {
 
     /// Whether point `p` at `at` takes tetrahedron `t`, in the translate `shift`, away.
     #[inline(always)]
-    fn conflict<const PERIODIC: bool>(&self, t: u32, shift: Shift, p: u32, at: &Point) -> bool {
+    fn conflict<const PERIODIC: bool>(&self, t: u32, shift: Shift, p: u32, at: &GrainPoint) -> bool {
         let corners = &self.mesh.corners[t as usize];
         let tie = |i: usize, j: usize| -> Ordering {
             let id = |i: usize| self.identity[if i == 4 { p } else { grain(corners[i]) } as usize];
@@ -136,7 +136,7 @@ impl<'a> Builder<'a> {
 
     /// Beyond a facet of the hull; in its plane, what the tetrahedron behind it says.
     #[inline(never)]
-    fn infinite_conflict(&self, t: u32, infinite: usize, p: u32, at: &Point) -> bool {
+    fn infinite_conflict(&self, t: u32, infinite: usize, p: u32, at: &GrainPoint) -> bool {
         let mut corners = self.mesh.corners[t as usize];
         corners[infinite] = p;
         match orientation(&corners.map(|c| self.positions.at[c as usize])) {
@@ -147,7 +147,7 @@ impl<'a> Builder<'a> {
 
     /// Walks to a tetrahedron that holds the point, or to one beyond the hull that sees it.
     #[inline]
-    fn locate<const PERIODIC: bool>(&self, at: &Point) -> (u32, Shift) {
+    fn locate<const PERIODIC: bool>(&self, at: &GrainPoint) -> (u32, Shift) {
         let (mut t, mut shift) = self.last;
         if !PERIODIC && let Some(i) = self.mesh.infinite_corner(t) {
             t = self.mesh.neighbours[t as usize][i] / 4;
@@ -183,7 +183,7 @@ impl<'a> Builder<'a> {
         &mut self,
         start: (u32, Shift),
         p: u32,
-        at: &Point,
+        at: &GrainPoint,
     ) -> Result<(), Wrapped> {
         self.insertion += 1;
         let insertion = self.insertion;
@@ -336,7 +336,7 @@ pub(super) fn normalised(grains: &[u32; 4], images: &[Shift; 4]) -> Option<([Cor
 }
 
 /// Positions in `order`, ascending, of four points that span space.
-fn spanning(at: &[Point], order: &[u32]) -> Option<[usize; 4]> {
+fn spanning(at: &[GrainPoint], order: &[u32]) -> Option<[usize; 4]> {
     let point = |i: usize| at[order[i] as usize];
     let a = point(0);
     let mut chosen = [0; 4];

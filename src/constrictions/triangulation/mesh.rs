@@ -4,7 +4,7 @@
 //! translates; a walk that crosses a facet carries along by how many cells the translate it stands in
 //! is shifted from the stored one. Without a cell all shifts are zero.
 
-use super::points::{MOST_GRAINS, Point, Points};
+use super::points::{GrainPoint, MOST_GRAINS, Points};
 
 /// Whole cells along x, y, z: one signed byte each, x lowest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -129,10 +129,10 @@ impl Mesh {
 /// Where corners are.
 #[derive(Clone, Debug)]
 pub(in crate::constrictions) struct Positions<'a> {
-    pub(super) at: &'a [Point],
+    pub(super) at: &'a [GrainPoint],
     cell: [f64; 3],
     /// Displacement by the six image bits of a corner.
-    images: [Point; 64],
+    images: [GrainPoint; 64],
 }
 
 impl<'a> Positions<'a> {
@@ -154,7 +154,7 @@ impl<'a> Positions<'a> {
 
     /// A corner in the translate `shift`.
     #[inline(always)]
-    pub(super) fn corner(&self, corner: Corner, shift: Shift) -> Point {
+    pub(super) fn corner(&self, corner: Corner, shift: Shift) -> GrainPoint {
         let (at, by) = (&self.at[grain(corner) as usize], self.displacement(shift));
         let image = &self.images[(corner >> GRAIN_BITS) as usize];
         [at[0] + (image[0] + by[0]), at[1] + (image[1] + by[1]), at[2] + (image[2] + by[2]), at[3]]
@@ -162,7 +162,11 @@ impl<'a> Positions<'a> {
 
     /// Corners of a tetrahedron in the translate `shift`.
     #[inline(always)]
-    pub(super) fn corners<const PERIODIC: bool>(&self, corners: &[Corner; 4], shift: Shift) -> [Point; 4] {
+    pub(super) fn corners<const PERIODIC: bool>(
+        &self,
+        corners: &[Corner; 4],
+        shift: Shift,
+    ) -> [GrainPoint; 4] {
         // Written out: the map of an array is not reliably unrolled.
         let [a, b, c, d] = *corners;
         if PERIODIC {

@@ -25,7 +25,7 @@ use crate::packing::Packing;
 use insertion::Builder;
 use mesh::{Mesh, NONE, grain, image};
 pub(super) use mesh::{Positions, Shift};
-pub(super) use points::Point;
+pub(super) use points::GrainPoint;
 use points::Points;
 
 /// Grains of the first sample on the torus; should cavities wrap around the cell, the next is tried.
@@ -81,7 +81,7 @@ impl Triangulation {
         Self::with_samples(packing, &SAMPLES)
     }
 
-    /// The same, with the sizes of the first samples to try.
+    /// [`Triangulation::new`] with the sizes of the first samples to try.
     pub(super) fn with_samples(packing: &Packing, samples: &[usize]) -> Result<Self, TriangulationError> {
         let points = Points::new(packing)?;
         let mesh = match points.cell {
@@ -154,7 +154,7 @@ impl Triangulation {
     }
 
     /// Centre and radius by grain, in grid units.
-    pub(super) fn spheres(&self) -> &[Point] {
+    pub(super) fn spheres(&self) -> &[GrainPoint] {
         &self.points.at
     }
 
@@ -180,12 +180,12 @@ impl Triangulation {
         tetrahedron: usize,
         i: usize,
         shift: Shift,
-    ) -> Point {
+    ) -> GrainPoint {
         positions.corner(self.mesh.corners[tetrahedron][i], shift)
     }
 
     /// Corners of a stored tetrahedron in the translate `shift`, in grid units.
-    pub(super) fn at(&self, positions: &Positions<'_>, tetrahedron: usize, shift: Shift) -> [Point; 4] {
+    pub(super) fn at(&self, positions: &Positions<'_>, tetrahedron: usize, shift: Shift) -> [GrainPoint; 4] {
         positions.corners::<true>(&self.mesh.corners[tetrahedron], shift)
     }
 }
@@ -228,7 +228,7 @@ fn periodic(points: &Points, cell: [f64; 3], samples: &[usize]) -> Result<Mesh, 
 }
 
 /// Pairs of a hidden grain and another with the same centre.
-fn duplicates(at: &[Point], hidden: &[u32]) -> Vec<[u32; 2]> {
+fn duplicates(at: &[GrainPoint], hidden: &[u32]) -> Vec<[u32; 2]> {
     if hidden.is_empty() {
         return Vec::new();
     }

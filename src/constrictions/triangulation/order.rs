@@ -4,7 +4,7 @@
 //! each level is an even sample of the whole, so no cavity grows long (the purpose of the biased
 //! randomised order of Amenta, Choi & Rote, doi:10.1145/777792.777824, without the random numbers).
 
-use super::points::Point;
+use super::points::GrainPoint;
 
 /// Bits per axis of a place on the curve.
 const BITS: u32 = 16;
@@ -51,7 +51,7 @@ fn along_curve(mut x: [u32; 3]) -> u64 {
 }
 
 /// All points along the curve through the box from `low` to `low + extent`.
-pub(super) fn sorted(at: &[Point], low: [f64; 3], extent: f64) -> Vec<u32> {
+pub(super) fn sorted(at: &[GrainPoint], low: [f64; 3], extent: f64) -> Vec<u32> {
     let scale = f64::from(1u32 << BITS) / extent;
     let mut keyed: Vec<(u64, u32)> = at
         .iter()

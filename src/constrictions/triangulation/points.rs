@@ -12,7 +12,7 @@ use super::error::TriangulationError;
 use crate::packing::{Cell, Packing};
 
 /// Centre x, y, z and radius in grid units: integers, exact in f64.
-pub(in crate::constrictions) type Point = [f64; 4];
+pub(in crate::constrictions) type GrainPoint = [f64; 4];
 
 /// Bits of the largest length in grid units.
 const BITS: i32 = 50;
@@ -24,7 +24,7 @@ pub(super) const MOST_GRAINS: usize = (1 << 26) - 1;
 #[derive(Clone, Debug)]
 pub(super) struct Points {
     /// Centre, wrapped into the cell, and radius by grain.
-    pub(super) at: Vec<Point>,
+    pub(super) at: Vec<GrainPoint>,
     /// Cell lengths in grid units; none for free boundaries.
     pub(super) cell: Option<[f64; 3]>,
     /// Length of a grid unit (mm), a power of two.

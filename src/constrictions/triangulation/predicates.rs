@@ -18,7 +18,7 @@
 //! of two points is the same for all their images, so facets pair across the boundary of the cell,
 //! and since only heights are moved no flat tetrahedron ever arises.
 
-use super::points::Point;
+use super::points::GrainPoint;
 use super::wide::Wide;
 use std::cmp::Ordering;
 
@@ -36,7 +36,7 @@ const POWER_BOUND: f64 = 320.0 * U;
 
 /// Differences corner - p.
 #[inline(always)]
-fn differences(corners: &[Point; 4], p: &Point) -> [[f64; 3]; 4] {
+fn differences(corners: &[GrainPoint; 4], p: &GrainPoint) -> [[f64; 3]; 4] {
     [row(&corners[0], p), row(&corners[1], p), row(&corners[2], p), row(&corners[3], p)]
 }
 
@@ -83,7 +83,7 @@ fn exact_minors(d: &[[f64; 3]; 4]) -> [Wide; 4] {
 /// Which facet a walk towards `p` should cross: the opposite corner of one that `p` lies strictly
 /// beyond, or none if the closed tetrahedron holds `p`.
 #[inline]
-pub(super) fn facets(corners: &[Point; 4], p: &Point) -> Option<usize> {
+pub(super) fn facets(corners: &[GrainPoint; 4], p: &GrainPoint) -> Option<usize> {
     let d = differences(corners, p);
     let volume = minors(&d);
     let mut least = 0;
@@ -103,7 +103,7 @@ pub(super) fn facets(corners: &[Point; 4], p: &Point) -> Option<usize> {
 }
 
 /// Orientation of four points: positive, negative, or zero in one plane.
-pub(super) fn orientation(corners: &[Point; 4]) -> i32 {
+pub(super) fn orientation(corners: &[GrainPoint; 4]) -> i32 {
     let p = corners[0];
     let d = [[1.0; 3], row(&corners[1], &p), row(&corners[2], &p), row(&corners[3], &p)];
     // The first difference enters the other three minors only.
@@ -112,20 +112,24 @@ pub(super) fn orientation(corners: &[Point; 4]) -> i32 {
 }
 
 /// Six times the signed volume of four points, exactly.
-pub(super) fn volume(corners: &[Point; 4]) -> Wide {
+pub(super) fn volume(corners: &[GrainPoint; 4]) -> Wide {
     let p = corners[0];
     exact_minors(&[[0.0; 3], row(&corners[1], &p), row(&corners[2], &p), row(&corners[3], &p)])[0]
 }
 
 #[inline(always)]
-fn row(a: &Point, p: &Point) -> [f64; 3] {
+fn row(a: &GrainPoint, p: &GrainPoint) -> [f64; 3] {
     [a[0] - p[0], a[1] - p[1], a[2] - p[2]]
 }
 
 /// Whether `p` takes the positively oriented tetrahedron away. `order` compares corners (0..3) and
 /// `p` (4) where their centres and so their heights are the same.
 #[inline]
-pub(super) fn in_conflict(corners: &[Point; 4], p: &Point, tie: impl Fn(usize, usize) -> Ordering) -> bool {
+pub(super) fn in_conflict(
+    corners: &[GrainPoint; 4],
+    p: &GrainPoint,
+    tie: impl Fn(usize, usize) -> Ordering,
+) -> bool {
     let d = differences(corners, p);
     let volume = minors(&d);
     let mut sum = 0.0;
@@ -149,8 +153,8 @@ pub(super) fn in_conflict(corners: &[Point; 4], p: &Point, tie: impl Fn(usize, u
 #[inline(never)]
 #[cold]
 fn exact_conflict(
-    corners: &[Point; 4],
-    p: &Point,
+    corners: &[GrainPoint; 4],
+    p: &GrainPoint,
     d: &[[f64; 3]; 4],
     tie: impl Fn(usize, usize) -> Ordering,
 ) -> bool {
@@ -171,8 +175,8 @@ fn exact_conflict(
 /// All five on one sphere: the sign of the largest perturbation whose factor is not zero. Raising
 /// corner `i` raises the plane at `p` by the barycentric coordinate of `p`; raising `p` lifts it out.
 fn perturbed_conflict(
-    corners: &[Point; 4],
-    p: &Point,
+    corners: &[GrainPoint; 4],
+    p: &GrainPoint,
     volume: &[Wide; 4],
     tie: impl Fn(usize, usize) -> Ordering,
 ) -> bool {

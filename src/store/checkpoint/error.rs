@@ -15,7 +15,10 @@ pub enum CheckpointError {
         problem: String,
     },
     /// The system fails to read the file, which may be whole.
-    #[error("{}: cannot be read: {source}; it is left as it is, and nothing was taken in its place", file.display())]
+    #[error(
+        "{}: cannot be read: {source}; it is left as it is, and nothing was taken in its place",
+        file.display()
+    )]
     Unreadable {
         /// The file.
         file: PathBuf,
@@ -24,7 +27,8 @@ pub enum CheckpointError {
     },
     /// The file is of another version of the format.
     #[error(
-        "{}: was written by {} version of voidwalk (checkpoint format {found}; this one reads {expected}), which can finish it",
+        "{}: was written by {} version of voidwalk (checkpoint format {found}; this one reads {expected}), \
+         which can finish it",
         file.display(), if found < expected { "an earlier" } else { "a later" }
     )]
     OtherVersion {

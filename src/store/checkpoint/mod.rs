@@ -21,33 +21,40 @@
 //! | 8 | `generation` | which checkpoint of its name, counted from 1 |
 //! | 8 | `sections` | number of sections, at most 64 |
 //! | 24 | `program` | version of the program, as text |
-//! | 56 each | | sections: `name` (32, text), `element` (4, bytes of an element), zero (4), `count` (8, elements), `offset` (8) |
+//! | 56 each | | a row a section, as below |
 //! | 8 each | | XXH3-64 of every piece of 1 MiB of each section, in order |
 //! | 8 | | XXH3-64 of everything before: the end of the header |
-//! | | | zeros up to a multiple of 4096, then the sections, each at a multiple of 64, with zeros between them |
+//! | | | zeros up to a multiple of 4096, then the sections, each at a multiple of 64, zeros between |
 //!
-//! Text is UTF-8 filled up with zeros. A packing leaves `part`, `replicate` and `n_base` 0. The checksums find accidents, not forgers.
+//! A row of the table: `name` (32 bytes, text), `element` (4, bytes of an element), zero (4), `count` (8,
+//! elements), `offset` (8, of its first byte in the file).
 //!
-//! A section is a column of numbers, or a record with named fields as JSON text, in which every floating-point number comes back
-//! bit for bit. Which sections there are:
+//! Text is UTF-8 filled up with zeros. A packing leaves `part`, `replicate` and `n_base` 0. The checksums
+//! find accidents, not forgers.
+//!
+//! A section is a column of numbers, or a record with named fields as JSON text, in which every
+//! floating-point number comes back bit for bit. Which sections there are:
 //!
 //! | checkpoint of | sections |
 //! |---|---|
 //! | a run under way | `done`, and those that `walk::SavedState` names |
 //! | a finished replicate | `done`: a record of its figures and rows, `run::checkpoints::Done` |
-//! | a packing | `state`, which `packing::Compression::to_bytes` describes, and `seconds` (f64), spent so far |
+//! | a packing | `state`, see `packing::Compression::to_bytes`, and `seconds` (f64), spent so far |
 //!
-//! Format 1 (until 2026-11-21) held its scalars as numbered words; it is refused as [`CheckpointError::OtherVersion`].
+//! Format 1 (until 2026-11-21) held its scalars as numbered words; it is refused as
+//! [`CheckpointError::OtherVersion`].
 //!
 //! # Slots
-//! A checkpoint called `x` lives in `x.0` or `x.1`, whichever is older, and is written whole before it has its name. So the
-//! one before stays until the next is on the disk, and is taken when that one turns out to be corrupt. One that the system
-//! fails to read may be whole: nothing is taken in its place, and the program ends with an error instead.
+//! A checkpoint called `x` lives in `x.0` or `x.1`, whichever is older, and is written whole before it has
+//! its name. So the one before stays until the next is on the disk, and is taken when that one turns out to
+//! be corrupt. One that the system fails to read may be whole: nothing is taken in its place, and the program
+//! ends with an error instead.
 //!
 //! # Read, not mapped
-//! A checkpoint is read piece by piece into the columns, each piece checked before it is used. It is not mapped: a mapped file
-//! that somebody cuts short ends the process (SIGBUS), and a mapped page can change after its sum was found right. What
-//! that costs is one copy in memory; `results/robustness-2026-11-21.md` holds the seconds of a whole resume.
+//! A checkpoint is read piece by piece into the columns, each piece checked before it is used. It is not
+//! mapped: a mapped file that somebody cuts short ends the process (SIGBUS), and a mapped page can change
+//! after its sum was found right. What that costs is one copy in memory; `results/robustness-2026-11-21.md`
+//! holds the seconds of a whole resume.
 
 mod error;
 mod header;

@@ -159,7 +159,8 @@ impl Checkpoint {
         read.map_err(|source| CheckpointError::from_io(&self.path, source))
     }
 
-    /// Reads every piece of every section, and what lies between them, and checks it; in order, as the disk likes it.
+    /// Reads every piece of every section, and what lies between them, and checks it; in order, as the disk
+    /// likes it.
     ///
     /// # Errors
     /// The first that is wrong.
@@ -201,7 +202,8 @@ fn gaps(sections: &[Entry], header: u64, length: u64) -> Result<Vec<(u64, usize)
 /// The newest whole checkpoint of this name and of what is expected, and why any newer one was passed over.
 ///
 /// # Errors
-/// There are checkpoints of this name, but none is whole and of what is expected; or the system fails to read one.
+/// There are checkpoints of this name, but none is whole and of what is expected; or the system fails to read
+/// one.
 pub fn newest(
     folder: &Path,
     name: &str,

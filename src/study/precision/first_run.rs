@@ -9,7 +9,7 @@ use crate::network::Network;
 use crate::outcome::eroded_mass_fraction;
 use crate::run::cost::CountedWork;
 use crate::run::error::RunError;
-use crate::walk::{Engine, Plan, Sampling, SizeClasses, State, Walk, WalkControl};
+use crate::walk::{Engine, RunPlan, Sampling, SizeClasses, State, Walk, WalkControl};
 
 /// A first run, up to its network and seed.
 #[derive(Clone)]
@@ -47,7 +47,7 @@ impl FirstRun {
         Self {
             engine: case.scene.walk.engine,
             sampler: case.sampler.clone(),
-            pan_fraction: case.base.tail_mass_fraction(),
+            pan_fraction: case.base.pan_fraction(),
             n_base: case.n_base,
             increments: case.increments(),
             sampling: case.scene.walk.sampling,
@@ -101,7 +101,8 @@ impl FirstRun {
     ) -> Result<Ended, RunError> {
         let walk = || -> Result<(State, u64), RunError> {
             let share = self.n_base / self.increments;
-            let plan = Plan::new(self.engine, network, &self.sampler, &blocked, share).sampled(self.sampling);
+            let plan =
+                RunPlan::new(self.engine, network, &self.sampler, &blocked, share).sampled(self.sampling);
             let supply = plan.supply(self.sampler.clone(), self.n_base, self.increments, seed, run);
             let classes = SizeClasses::logarithmic(self.sampler.smallest(), self.sampler.largest(), 64);
             let mut state = State::new(network, &supply, classes, blocked, seed, run);

@@ -97,8 +97,8 @@ impl Expected {
         self.moving.swap_with_slice(next);
     }
 
-    /// Renews the whole numbers that the state counts, and gives those before and after. With `trapped`, what moves beside so
-    /// many trapped particles is less than half a particle, and is counted as come to rest.
+    /// Renews the whole numbers that the state counts, and gives those before and after. With `trapped`, what
+    /// moves beside so many trapped particles is less than half a particle, and is counted as come to rest.
     pub(super) fn count(&mut self, trapped: Option<f64>, retained_in_voids: &mut [u64]) -> [Counted; 2] {
         let stranded: f64 = self.retained.iter().sum();
         let whole = |x: f64| ((x + 0.5).floor() as u64).min(self.sums.inserted);

@@ -1,11 +1,11 @@
 //! One increment of passive particles kept as counts per void.
 //!
-//! The voids are cut into blocks of fixed size, each with its own stream. Workers take blocks as they come and
-//! add what moves to a column of their own; the columns are then added. Integer sums do not depend on
+//! The voids are cut into blocks of fixed size, each with its own stream. Workers take blocks as they come
+//! and add what moves to a column of their own; the columns are then added. Integer sums do not depend on
 //! their order, so neither do the bits on the number of workers.
 //!
-//! A few particles in a void of three exits choose each by themselves, with one random word for both thresholds. More of them
-//! are split exit by exit, and draws for many voids are made at once.
+//! A few particles in a void of three exits choose each by themselves, with one random word for both
+//! thresholds. More of them are split exit by exit, and draws for many voids are made at once.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -61,8 +61,8 @@ struct Worker {
     batch: Box<SplitBatch>,
 }
 
-/// Counts that are split over the exits of their voids, as columns: a row is a void whose particles are yet to choose
-/// between an exit and those after it.
+/// Counts that are split over the exits of their voids, as columns: a row is a void whose particles are yet
+/// to choose between an exit and those after it.
 struct SplitBatch {
     rows: usize,
     /// The exit, as a constriction.
@@ -99,8 +99,8 @@ impl Flow {
         self.moving
     }
 
-    /// Puts `count` particles on start nodes, each drawn uniformly, or `evenly`: the same number on each, and the rest on nodes of
-    /// as many equal parts of them.
+    /// Puts `count` particles on start nodes, each drawn uniformly, or `evenly`: the same number on each, and
+    /// the rest on nodes of as many equal parts of them.
     pub fn insert(&mut self, network: &Network, count: u64, evenly: bool, key: Key, moving: &mut [u64]) {
         let nodes = network.start();
         let mut draws = Draws::new(Key { chunk: INSERTION, ..key });
@@ -286,8 +286,8 @@ impl SplitBatch {
         Self { rows: 0, exit: [0; BLOCK], count: [0; BLOCK], probability: [0; BLOCK], taken: [0; BLOCK] }
     }
 
-    /// `n` particles face the exits of a void from `exit` on: they are through where the next open one is the last,
-    /// else they are row `row`. Returns the row after them.
+    /// `n` particles face the exits of a void from `exit` on: they are through where the next open one is the
+    /// last, else they are row `row`. Returns the row after them.
     #[inline(always)]
     fn face(
         &mut self,

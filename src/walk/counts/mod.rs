@@ -1,23 +1,23 @@
 //! Passive particles as counts per void (engines `counts` and `expected`).
 //!
-//! A base particle no coarser than any constriction that is open when its run starts is *passive*: it can block
-//! nothing, voids have no capacity, so it influences nobody. The coarser ones are walked one by one as ever;
-//! how many of an increment's share they are is binomial, with the sampler's exact word limit for its
-//! probability. The passive ones move beside them as one count a void: in each increment the share is put
-//! on the start nodes (multinomial), and each void's count is split over the exits that were open when the
-//! increment began (conditional binomials). Which passive particle is which is never known, nor asked.
-//! This is the distribution of the walk one by one, not an approximation of it.
+//! A base particle no coarser than any constriction that is open when its run starts is *passive*: it can
+//! block nothing, voids have no capacity, so it influences nobody. The coarser ones are walked one by one as
+//! ever; how many of an increment's share they are is binomial, with the sampler's exact word limit for its
+//! probability. The passive ones move beside them as one count a void: in each increment the share is put on
+//! the start nodes (multinomial), and each void's count is split over the exits that were open when the
+//! increment began (conditional binomials). Which passive particle is which is never known, nor asked. This
+//! is the distribution of the walk one by one, not an approximation of it.
 //!
 //! # Streams
-//! Increment `t` of run `r` draws the number of coarse particles from (seed, coarse share, `r`, `t`, 0), the start
-//! nodes of the passive ones from (seed, passive, `r`, `t`, 2^64 - 1), the splits of block `b` of voids from (seed,
-//! passive, `r`, `t`, `b`), and sizes of the passive particles that came to rest from (seed, passive size, `r`, `t`, 0).
-//! Threads appear nowhere in this.
+//! Increment `t` of run `r` draws the number of coarse particles from (seed, coarse share, `r`, `t`, 0), the
+//! start nodes of the passive ones from (seed, passive, `r`, `t`, 2^64 - 1), the splits of block `b` of voids
+//! from (seed, passive, `r`, `t`, `b`), and sizes of the passive particles that came to rest from (seed,
+//! passive size, `r`, `t`, 0). Threads appear nowhere in this.
 //!
 //! # Expected
-//! Engine `expected` walks the same coarse particles and moves the expectation of the passive ones given that history: the
-//! same figures without the scatter of the passive ones. Whole numbers are rounded from running sums. Its run ends
-//! when less than half a particle that is not trapped is expected to move.
+//! Engine `expected` walks the same coarse particles and moves the expectation of the passive ones given that
+//! history: the same figures without the scatter of the passive ones. Whole numbers are rounded from running
+//! sums. Its run ends when less than half a particle that is not trapped is expected to move.
 
 mod binomial;
 mod expected;
@@ -44,13 +44,13 @@ pub struct PassiveWalk<'a> {
     shares: Shares,
     mover: Mover,
     trap: Option<Trap>,
-    /// Room for thresholds.
+    /// Buffer for thresholds.
     thresholds: Vec<u64>,
 }
 
 enum Mover {
     Counts(Flow),
-    /// Room for the expectation after the step.
+    /// Buffer for the expectation after the step.
     Expected(Vec<f64>),
 }
 
@@ -80,7 +80,7 @@ impl<'a> PassiveWalk<'a> {
         })
     }
 
-    /// The same with the instructions of `isa`, to the same bits.
+    /// Uses the instructions of `isa`, to the same bits.
     pub fn set_isa(&mut self, isa: Isa) {
         if let Mover::Counts(flow) = &mut self.mover {
             flow.set_isa(isa);
@@ -173,8 +173,8 @@ impl<'a> PassiveWalk<'a> {
         }
     }
 
-    /// Whether every moving passive particle is trapped; to be asked when everything is inserted and nothing can
-    /// block any more.
+    /// Whether every moving passive particle is trapped; to be asked when everything is inserted and nothing
+    /// can block any more.
     pub fn all_trapped(&mut self, network: &Network, state: &mut State) -> bool {
         let trapped = match &state.passive {
             Passive::OneByOne => return true,

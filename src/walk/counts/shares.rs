@@ -6,8 +6,8 @@ use super::binomial::CERTAIN;
 use crate::network::Network;
 use crate::walk::exits;
 
-/// By constriction: the probability that a particle which has not taken an earlier exit of its void takes this one, as
-/// a 64-bit fraction. The last open exit is certain; closed ones have none.
+/// By constriction: the probability that a particle which has not taken an earlier exit of its void takes
+/// this one, as a 64-bit fraction. The last open exit is certain; closed ones have none.
 pub(super) struct Shares {
     probability: Vec<u64>,
     /// By void: whether it has an open exit.
@@ -53,9 +53,9 @@ impl Shares {
         &self.probability
     }
 
-    /// Probabilities of the first two of three exits, and the same two as thresholds for one 64-bit draw: it picks the first
-    /// exit below the first threshold, else the second below the second, else the third. They do not hold beyond an exit that is
-    /// certain.
+    /// Probabilities of the first two of three exits, and the same two as thresholds for one 64-bit draw: it
+    /// picks the first exit below the first threshold, else the second below the second, else the third. They
+    /// do not hold beyond an exit that is certain.
     #[inline(always)]
     pub fn of_three(&self, exit: usize) -> (u64, u64, [u64; 2]) {
         let (first, second) = (self.probability[exit], self.probability[exit + 1]);

@@ -89,8 +89,8 @@ impl<'a> PassiveSizes<'a> {
     }
 }
 
-/// How many of an increment's `share` of base particles are coarse, given that `passive_words` of the sampler's
-/// words draw passive ones.
+/// How many of an increment's `share` of base particles are coarse, given that `passive_words` of the
+/// sampler's words draw passive ones.
 pub(in crate::walk) fn coarse_share(
     share: u64,
     passive_words: u128,

@@ -19,7 +19,8 @@ struct Flowed {
 /// An increment after the last insertion, with much still moving.
 const LOOKED_AT: usize = 70;
 
-/// In the words of the model: areas of the exits that were open when the increment began, afresh for every void.
+/// In the words of the model: areas of the exits that were open when the increment began, afresh for every
+/// void.
 fn expectation(network: &Network, history: &[Blocking], inserted: &[u64], increments: usize) -> Flowed {
     let mut closed = vec![false; network.constrictions()];
     let mut moving = vec![0.0; network.voids()];
@@ -58,7 +59,8 @@ fn expectation(network: &Network, history: &[Blocking], inserted: &[u64], increm
     flowed
 }
 
-/// Chi-square of counts against expectations of independent particles, each unlikely to be in any one cell, as a z score.
+/// Chi-square of counts against expectations of independent particles, each unlikely to be in any one cell,
+/// as a z score.
 fn z_score(found: &[u64], expected: &[f64]) -> f64 {
     let (mut square, mut cells, mut e, mut f) = (0.0, 0.0, 0.0, 0.0);
     for (&found, &expected) in found.iter().zip(expected) {
@@ -79,10 +81,10 @@ fn differences(sums: &[u64]) -> Vec<u64> {
     sums.iter().scan(0, |before, &sum| Some(sum - std::mem::replace(before, sum))).collect()
 }
 
-/// Passive particles of a walk one by one, and counts that are moved through the blocking history of that very walk, both
-/// against its expectation: eroded by increment, moving by void, and for counts retained by void. Bound 4 on seven z scores. With
-/// 1.5e6 particles a total that is off by 1 % shows, and a scatter of 10 % or so over the voids; one void that is wrong by
-/// 20 % would not.
+/// Passive particles of a walk one by one, and counts that are moved through the blocking history of that
+/// very walk, both against its expectation: eroded by increment, moving by void, and for counts retained by
+/// void. Bound 4 on seven z scores. With 1.5e6 particles a total that is off by 1 % shows, and a scatter of
+/// 10 % or so over the voids; one void that is wrong by 20 % would not.
 #[test]
 fn both_engines_follow_one_history() {
     let count = 3 * 12 * 12 * 20;

@@ -83,8 +83,8 @@ fn step_vectors(mut chunk: LatticeChunk) -> usize {
             let able = coarse & !stranded;
             if able != 0 {
                 let constriction = constriction(from, past_first, past_second);
-                // SAFETY: voids are less than the table's length (no lane is outside here) and exits less than
-                // 3, so that constrictions are less than 3 times it, the number of diameters.
+                // SAFETY: voids are less than the table's length (no lane is outside here) and exits less
+                // than 3, so that constrictions are less than 3 times it, the number of diameters.
                 let width = unsafe {
                     _mm512_mask_i32gather_ps::<4>(_mm512_setzero_ps(), able, constriction, diameters.as_ptr())
                 };

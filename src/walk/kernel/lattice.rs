@@ -1,9 +1,9 @@
 //! The step on the cubic lattice: one table word a void, targets by arithmetic. The portable kernel, and
 //! what the vector kernels share with it.
 //!
-//! The fifteen top bits of a sixteen-bit draw stand beside the thresholds in a word as `draw << 16`, with ones below: that is
-//! no less than the word exactly where they are no less than the first threshold, and no less than the
-//! word shifted by fifteen where they are no less than the second. Where fifteen bits equal a
+//! The fifteen top bits of a sixteen-bit draw stand beside the thresholds in a word as `draw << 16`, with
+//! ones below: that is no less than the word exactly where they are no less than the first threshold, and no
+//! less than the word shifted by fifteen where they are no less than the second. Where fifteen bits equal a
 //! threshold, the particle goes the long way ([`LatticeChunk::attempt`]).
 
 use crate::stream::{DRAWS_PER_BLOCK, LANES, Lanes, draw16};
@@ -40,8 +40,8 @@ pub(super) struct LatticeChunk<'a> {
 
 /// Moves the particles of one chunk; returns how many still move.
 ///
-/// Whole blocks in three passes: table words one by one, then arithmetic alone, which compiles to vector code, then
-/// what few particles leave.
+/// Whole blocks in three passes: table words one by one, then arithmetic alone, which compiles to vector
+/// code, then what few particles leave.
 #[inline(never)]
 pub(super) fn step(mut chunk: LatticeChunk) -> usize {
     let mut lanes = chunk.lanes.clone();
@@ -63,8 +63,8 @@ pub(super) fn step(mut chunk: LatticeChunk) -> usize {
     kept
 }
 
-/// Predicts where a block of particles goes if nothing rare happens, and a bit for each particle for which it may:
-/// a tie, no open exit, not passive, leaves.
+/// Predicts where a block of particles goes if nothing rare happens, and a bit for each particle for which it
+/// may: a tie, no open exit, not passive, leaves.
 #[inline]
 fn predict(
     exits: &OpenExits,

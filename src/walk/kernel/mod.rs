@@ -46,7 +46,7 @@ pub(super) fn step(
             return;
         }
         let key = Key { chunk, ..key };
-        events.lend_room(moving + 16);
+        events.lend_buffer(moving + 16);
         let kept = step_chunk(&exits, key, &mut void[..moving], &mut diameter[..moving], events);
         events.moves = (moving - events.stopped.len() - events.stranded.len()) as u64;
         events.sum(classes, exits.passive_limit);

@@ -81,7 +81,8 @@ proptest! {
             vec![1.0f32, 1.5, 2.0], vec![0.0, 1.0, 2.0], vec![1e-6, 1.0, 1e6], vec![1.0], vec![0.0],
         ]),
         sizes in prop::sample::select(vec![
-            vec![0.5f32], vec![0.5, 1.0, 1.5, 2.0, 3.0], vec![0.5, 0.5, 0.5, 0.5, 1.25], vec![9.0], vec![1e-7, 1e7],
+            vec![0.5f32], vec![0.5, 1.0, 1.5, 2.0, 3.0],
+            vec![0.5, 0.5, 0.5, 0.5, 1.25], vec![9.0], vec![1e-7, 1e7],
         ]),
         blocked in prop::sample::select(vec![
             vec![false], vec![false, false, false, true], vec![false, true, true], vec![true],

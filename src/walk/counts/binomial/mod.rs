@@ -3,7 +3,8 @@
 //! A probability is a 64-bit fraction `p / 2^64`; [`CERTAIN`] stands for 1. The methods share the range:
 //!
 //! - *Trials*, for few of them: sixteen random bits each are compared with `p`, more where they are equal.
-//! - *Quantiles*, for a variance from 6 and up to 2^32 trials: one random word is turned into the number of successes.
+//! - *Quantiles*, for a variance from 6 and up to 2^32 trials: one random word is turned into the number of
+//!   successes.
 //! - *Bits*, for more trials with few successes: uniform words are compared with `p` bit by bit, all at
 //!   once. At each bit of `p` a random bit decides about half of the trials that are still open, so `n`
 //!   trials cost some `2 n` random bits.
@@ -13,7 +14,8 @@
 //! Beyond [`LARGEST`] trials, where f64 would lose whole numbers, a draw is the sum of draws.
 //!
 //! [`fill`] draws for many pairs at once, in loops over eight lanes that the compiler turns into vector
-//! instructions. Only `+ - * /`, `sqrt` and the `libm` crate touch a float, so the instruction set changes no bit.
+//! instructions. Only `+ - * /`, `sqrt` and the `libm` crate touch a float, so the instruction set changes no
+//! bit.
 
 mod draws;
 mod normal;

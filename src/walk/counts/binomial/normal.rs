@@ -23,8 +23,8 @@ const FIRST_CELL: u64 = (1023 - 1 - HALVINGS) << CELL_BITS;
 /// Cells, and some beyond them that are never used: an index cut to nine bits needs no check.
 const CELLS: usize = 512;
 
-/// Cubic polynomials for the distance from the middle of a normal distribution beyond which a tail lies, by cells of the tail; the
-/// variable runs from 0 to 1 over a cell.
+/// Cubic polynomials for the distance from the middle of a normal distribution beyond which a tail lies, by
+/// cells of the tail; the variable runs from 0 to 1 over a cell.
 pub(super) struct Normal {
     cells: [[f64; 4]; CELLS],
 }
@@ -57,7 +57,8 @@ impl Normal {
     }
 }
 
-/// The cubic through four values of `f` between 0 and 1, at the places where its error is least (Chebyshev's).
+/// The cubic through four values of `f` between 0 and 1, at the places where its error is least
+/// (Chebyshev's).
 fn cubic(f: impl Fn(f64) -> f64) -> [f64; 4] {
     let x = [
         -0.923_879_532_511_286_7,
@@ -103,7 +104,8 @@ pub(super) fn beyond(t: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The table against Newton's method, at the ends of every cell and between: to less than half of what the margin allows.
+    /// The table against Newton's method, at the ends of every cell and between: to less than half of what
+    /// the margin allows.
     #[test]
     fn the_table_is_the_normal_quantile() {
         let normal = Normal::table();

@@ -1,14 +1,15 @@
 //! Binomial draws by inversion: one random word a draw, and an exact answer for every word.
 //!
-//! The draw for a uniform `t` is the least `k` whose distribution function `F(k)` exceeds `t`. The Cornish-Fisher expansion
-//! (E. A. Cornish and R. A. Fisher 1938, doi:10.2307/1400905) to second order, about the variance less 1/12 as befits whole
-//! numbers, says where `F` crosses `t` to within [`Row::margin`]: it is off by less than half of that for every count and probability
-//! that [`holds`] admits, and the tests look at each. Where the crossing is farther than the margin from the middle between two
-//! whole numbers, the nearer one is the draw. Else, in one draw of a hundred or a thousand, `F` itself decides, summed from
+//! The draw for a uniform `t` is the least `k` whose distribution function `F(k)` exceeds `t`. The
+//! Cornish-Fisher expansion (E. A. Cornish and R. A. Fisher 1938, doi:10.2307/1400905) to second order, about
+//! the variance less 1/12 as befits whole numbers, says where `F` crosses `t` to within [`Row::margin`]: it
+//! is off by less than half of that for every count and probability that [`holds`] admits, and the tests look
+//! at each. Where the crossing is farther than the margin from the middle between two whole numbers, the
+//! nearer one is the draw. Else, in one draw of a hundred or a thousand, `F` itself decides, summed from
 //! [`super::saddle`]. So the draw follows from `F` alone, not from the expansion.
 //!
-//! Only `+ - * /` and `sqrt` touch a float before `F` is asked, in loops over eight lanes that the compiler turns into vector
-//! instructions, and they round alike everywhere.
+//! Only `+ - * /` and `sqrt` touch a float before `F` is asked, in loops over eight lanes that the compiler
+//! turns into vector instructions, and they round alike everywhere.
 
 use super::draws::{CERTAIN, TWO_TO_MINUS_64, as_unit, rarer, turned};
 use super::normal::{FAR, MANTISSA, Normal, ROUNDER};
@@ -120,8 +121,8 @@ impl Row {
         }
     }
 
-    /// About where the distribution function crosses the normal one's value at `z`, on a scale on which outcome `k` begins at
-    /// `k - 1/2`.
+    /// About where the distribution function crosses the normal one's value at `z`, on a scale on which
+    /// outcome `k` begins at `k - 1/2`.
     #[inline(always)]
     fn crossing(&self, z: f64) -> f64 {
         let zz = z * z;
@@ -223,9 +224,9 @@ mod tests {
         probabilities.into_iter().flat_map(|p| variances.map(|v| row(p, v))).collect()
     }
 
-    /// Every place where the distribution function jumps: the expansion is off by less than half of the margin there, and rises in
-    /// between. 140 distributions, to 4.1 standard deviations, from the least variance on; the error falls as the variance
-    /// grows, faster than the margin does.
+    /// Every place where the distribution function jumps: the expansion is off by less than half of the
+    /// margin there, and rises in between. 140 distributions, to 4.1 standard deviations, from the least
+    /// variance on; the error falls as the variance grows, faster than the margin does.
     #[test]
     fn the_expansion_keeps_to_half_of_its_margin() {
         let mut jumps = 0;

@@ -1,5 +1,5 @@
-//! Transformed rejection (BTRS; W. Hoermann 1993, doi:10.1080/00949659308811496), for counts too large for anything else: most draws
-//! are accepted by a squeeze, the others by [`super::saddle`].
+//! Transformed rejection (BTRS; W. Hoermann 1993, doi:10.1080/00949659308811496), for counts too large for
+//! anything else: most draws are accepted by a squeeze, the others by [`super::saddle`].
 
 use super::draws::{Draws, as_unit, rarer};
 use super::normal::ROUNDER;
@@ -54,7 +54,8 @@ impl Hat {
         (2.0 * self.a / us + self.b) * u + self.mean
     }
 
-    /// What `v` is multiplied by before it is compared with the probability of the proposal over that of the mode.
+    /// What `v` is multiplied by before it is compared with the probability of the proposal over that of the
+    /// mode.
     pub fn scale(&self, u: f64) -> f64 {
         let us = 0.5 - u.abs();
         let square = us * us;

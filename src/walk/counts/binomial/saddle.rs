@@ -6,7 +6,8 @@
 /// Half of `ln(2 pi)`.
 const HALF_LN_TWO_PI: f64 = 0.918_938_533_204_672_8;
 
-/// `ln k! - ((k + 1/2) ln k - k + ln(2 pi) / 2)`, the error of Stirling's formula; `k` is whole and at least 1.
+/// `ln k! - ((k + 1/2) ln k - k + ln(2 pi) / 2)`, the error of Stirling's formula; `k` is whole and at least
+/// 1.
 fn stirling_error(k: f64) -> f64 {
     if k < 16.0 {
         return libm::lgamma(k + 1.0) - ((k + 0.5) * libm::log(k) - k + HALF_LN_TWO_PI);
@@ -72,7 +73,8 @@ mod tests {
         }
     }
 
-    /// Neighbouring probabilities of huge `n` keep their exact ratio, which a difference of `ln n!` would lose.
+    /// Neighbouring probabilities of huge `n` keep their exact ratio, which a difference of `ln n!` would
+    /// lose.
     #[test]
     fn neighbours_of_huge_counts_keep_their_ratio() {
         for n in [1e6f64, 1e9, 1e12, 1e15] {

@@ -24,9 +24,11 @@ fn z_of_chi_square(square: f64, freedom: f64) -> f64 {
 /// About this many cells a test; the more, the finer a fault that shows and the weaker it shows.
 const CELLS: f64 = 24.0;
 
-/// Draws from Binomial(n, p) against its exact probabilities in cells about a quarter of a standard deviation wide.
+/// Draws from Binomial(n, p) against its exact probabilities in cells about a quarter of a standard deviation
+/// wide.
 ///
-/// Above a million trials a cell's probability is summed over `k` in steps, which the density is smooth enough for.
+/// Above a million trials a cell's probability is summed over `k` in steps, which the density is smooth
+/// enough for.
 fn z_score(n: u64, p: u64, sample: &[u64]) -> f64 {
     let (probability, q) = (as_unit(p), as_unit(p.wrapping_neg()));
     let mean = n as f64 * probability;
@@ -125,8 +127,8 @@ fn pairs() -> Vec<(u64, f64)> {
     ]
 }
 
-/// Both ways to draw. 70 tests, bound 4 on each: a false alarm in 0.2 % of seeds, and this seed is fixed. With
-/// 20,000 draws a shift of 4 % of a standard deviation, or 4 % in its size, would show; less would not.
+/// Both ways to draw. 70 tests, bound 4 on each: a false alarm in 0.2 % of seeds, and this seed is fixed.
+/// With 20,000 draws a shift of 4 % of a standard deviation, or 4 % in its size, would show; less would not.
 #[test]
 fn draws_follow_the_binomial_law() {
     for (i, (n, p)) in pairs().into_iter().enumerate() {
@@ -157,7 +159,8 @@ fn planted_faults_are_caught() {
     // A trial too few moves the mean by p, which 20,000 draws show up to n of about 50.
     assert!(caught(7, 0.4, &|w, n, p| one(w, n - 1, p)));
     assert!(caught(33, 0.7, &|w, n, p| one(w, n - 1, p)));
-    // One too many is 3 % of a standard deviation for n = 3750: half of one in each draw's rounding is not seen, this is.
+    // One too many is 3 % of a standard deviation for n = 3750: half of one in each draw's rounding is not
+    // seen, this is.
     assert!(caught(500, 0.3, &|w, n, p| one(w, n, p) + 1));
     assert!(caught(1_000_000_000_000, 0.3, &|w, n, p| one(w, n, p - (1 << 45))));
 }
@@ -177,9 +180,9 @@ fn never_and_always_are_exact() {
     assert_eq!(one(&mut words, 1_000_000, CERTAIN - 1), 1_000_000);
 }
 
-/// BTRS is exact only if the squeeze lies below, and 1 above, what the exact test accepts: for every `u` the largest
-/// acceptable `v` is at least the squeeze's where that is used, and at most 1. Scanned at 4,000 values of `u` for each of
-/// some 60 pairs.
+/// BTRS is exact only if the squeeze lies below, and 1 above, what the exact test accepts: for every `u` the
+/// largest acceptable `v` is at least the squeeze's where that is used, and at most 1. Scanned at 4,000
+/// values of `u` for each of some 60 pairs.
 #[test]
 fn the_squeeze_lies_inside_and_the_hat_outside() {
     let counts =
@@ -207,9 +210,9 @@ fn the_squeeze_lies_inside_and_the_hat_outside() {
     assert!(scanned > 50, "{scanned}");
 }
 
-/// Both counts of one call against the joint distribution of three outcomes, ties of sixteen bits included: the thresholds share their top
-/// sixteen bits in two cases. Each of the three numbers, and so their dependence, is binomial. Bound 4 on 12 tests; what shows
-/// is as above.
+/// Both counts of one call against the joint distribution of three outcomes, ties of sixteen bits included:
+/// the thresholds share their top sixteen bits in two cases. Each of the three numbers, and so their
+/// dependence, is binomial. Bound 4 on 12 tests; what shows is as above.
 #[test]
 fn two_thresholds_are_compared_with_the_same_words() {
     let tied = 0x5555_4000_0000_0000;
