@@ -16,7 +16,8 @@ use crate::scene::SceneError;
 pub struct Input {
     /// The setting that names it.
     pub setting: &'static str,
-    /// Its path as the user gave it first: a run that continues from the files in its folder says what the user called them.
+    /// Its path as the user gave it first: a run that continues from the files in its folder says what the
+    /// user called them.
     pub name: String,
     /// Name inside the run folder.
     pub kept_as: String,

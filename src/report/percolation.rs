@@ -13,7 +13,8 @@ use super::table::Table;
 use super::written::{Written, write_page};
 use crate::outcome::percolation::{NU_PARALLEL, PercolationStudy, Z};
 
-/// Writes `report.html` and its figures into the folder of a percolation study, from `percolation.json` there.
+/// Writes `report.html` and its figures into the folder of a percolation study, from `percolation.json`
+/// there.
 ///
 /// # Errors
 /// What the folder says.

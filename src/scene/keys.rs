@@ -57,8 +57,8 @@ section! {
             any("\"dense\" (friction 0), \"intermediate\" (0.1) or \"loose\" (0.3)");
         /// Instead of a word for the density: friction between grains while they are compressed.
         pub friction: Option<f64> = None, off "0.3", within(0.0..=10.0, "a number from 0 to 10");
-        /// Written by a run whose filter was packed: the constriction curve measured on that packing, so that it is not packed
-        /// again.
+        /// Written by a run whose filter was packed: the constriction curve measured on that packing, so that
+        /// it is not packed again.
         pub measured: Option<PathBuf> = None, off "\"inputs/filter-curve.csv\"", any("a file name in quotes");
         /// Instead of a curve or a packing: constrictions estimated from the gradation by inscribed circles,
         /// at a relative density from 0 (loose) to 1 (dense).

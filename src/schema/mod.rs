@@ -183,8 +183,8 @@ pub fn in_toml(value: &impl Serialize) -> String {
 ///     pub struct Base in "base" {
 ///         /// What the setting means: for the docs and for `voidwalk init`.
 ///         pub cu: Option<f64> = None, set "1.5", within(1.0..=1000.0, "a number from 1 to 1000");
-///         /// `name: type = default`; then how `init` shows it: `set` as in the built-in scene, or `off` in a
-///         /// comment, with a value where the default has none; then what is allowed.
+///         /// `name: type = default`; then how `init` shows it: `set` as in the built-in scene, or `off` in
+///         /// a comment, with a value where the default has none; then what is allowed.
 ///         pub cap: Option<u64> = None, off "2e8", whole(1..=u64::MAX);
 ///     }
 ///     // Fields that only a program sets, not a scene.
