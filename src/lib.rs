@@ -1,13 +1,34 @@
 //! *Will this filter hold this soil?* Two sieve curves in; packing, constrictions, void network and
 //! walking base particles in between; a verdict with its uncertainty out.
 //!
-//! The modules stand in the order in which data flows, and each uses only those before it:
+//! ```
+//! use voidwalk::{Callbacks, Case, Scene, walk_case};
 //!
-//! ```text
-//! sieve curves -> Packing -> Constrictions -> Network -> Walk -> Outcome -> Report
+//! // The built-in scene on a network of 10 x 10 x 20 voids, with a wider base.
+//! let changes = ["base.cu=3", "network.nx=10", "network.ny=10", "network.nz=20", "record.sensitivity=[]"];
+//! let scene = Scene::built_in(&changes.map(String::from))?;
+//! let case = Case::new(scene)?;
+//! let outcome = walk_case(&case, &Callbacks::default())?;
+//! let first = &outcome.summary[0].eroded_mass_fraction;
+//! println!("{}: {:.1} % eroded in the first run", outcome.verdict.words(), 100.0 * first.mean);
+//! # assert!(first.mean > 0.0 && first.mean < 1.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The model is that of Shire & O'Sullivan, *A network model to assess base-filter combinations*.
+//! The rooms stand in the order in which data flows, and each uses only those before it:
+//!
+//! ```text
+//! sieve curves -> Packing -> Constrictions -> Network -> Walk -> Outcome      the stages, each usable alone
+//! Scene -> Case -> run, campaign, study                                       the application
+//! report, cli                                                                 its faces
+//! ```
+//!
+//! [`docs`] has the pages for users, `CONTRIBUTING.md` the map for those who extend it. The model is that of
+//! Shire & O'Sullivan, *A network model to assess base-filter combinations*.
+//!
+//! # Features
+//! `report`: pages and figures. `cli`: the command line. Both are on by default; the rest is the library that
+//! every face calls.
 
 pub mod stream;
 
@@ -42,3 +63,15 @@ pub mod report;
 
 #[cfg(feature = "cli")]
 pub mod cli;
+
+pub mod docs;
+
+pub use case::Case;
+pub use constrictions::Constrictions;
+pub use gradation::Gradation;
+pub use network::Network;
+pub use outcome::record::{Outcome, Statistic, Verdict};
+pub use packing::Packing;
+pub use run::{Callbacks, RunError, RunOptions, resume, walk_case, walk_scene};
+pub use scene::Scene;
+pub use walk::Walk;

@@ -1,0 +1,16 @@
+//! Pages for users: what the front page of the repository has no room for.
+
+#[doc = include_str!("soils.md")]
+pub mod soils {}
+
+#[doc = include_str!("campaigns.md")]
+pub mod campaigns {}
+
+#[doc = include_str!("uncertainty.md")]
+pub mod uncertainty {}
+
+#[doc = include_str!("long_runs.md")]
+pub mod long_runs {}
+
+#[doc = include_str!("files.md")]
+pub mod files {}
