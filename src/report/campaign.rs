@@ -173,7 +173,7 @@ fn cases(about: &Campaign, ledger: &[LedgerLine]) -> Markup {
             interval(statistic).map(|(low, high)| format!(" ({} to {})", percent(low), percent(high)));
         format!("{}{}", percent(statistic.mean), around.unwrap_or_default())
     };
-    let mut table = Table::of(ledger.iter().take(LISTED));
+    let mut table = Table::of(ledger.iter().take(LISTED)).class("cases");
     for factor in &about.factors {
         table = table.text(clean(factor), move |line| match line.levels.get(factor) {
             Some(serde_json::Value::String(level)) => clean(level),

@@ -323,7 +323,7 @@ pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
         tick.rank = u8::from(case.factor != 1.0);
         tick
     });
-    let x = Axis::log("Multiple of N_base, and below it the grains per void that this is", least, most)
+    let x = Axis::log("Multiple of N_base, and below it grains per void", least, most)
         .with_ticks(ticks.collect())
         .within(least / 1.25, most * 1.25);
     let highest = 100.0 * cases.iter().flat_map(|case| &case.runs).map(upper).fold(0.0, f64::max);
