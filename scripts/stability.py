@@ -446,12 +446,12 @@ by_tests("Machine", "kill at any instant, also during a resume", "final results 
          ("pack_command", "a_packing_goes_on_after_stops_and_kills_with_the_same_bits"),
          ("campaign_command", "a_campaign_that_is_killed_again_and_again_gives_the_same_ledger"))
 by_tests("Machine", "checkpoint cut, flipped, newer, of another program or scene", "refused, or the older slot taken and said",
-         ("torn_checkpoints", "no_harm_goes_unnoticed"), ("checkpoints", "a_harmed_checkpoint_is_passed_over_or_refused_and_never_lost"))
+         ("torn_checkpoints", "no_corruption_goes_unnoticed"), ("checkpoints", "a_corrupt_checkpoint_is_passed_over_or_refused_and_never_lost"))
 by_tests("Machine", "disk full at the start or in between; read-only disk", "clear error, last checkpoint intact, no SIGBUS; refused",
          ("full_disk", "a_run_on_a_full_disk_ends_with_an_error_and_goes_on_when_there_is_room"),
          ("full_disk", "a_folder_on_a_disk_that_is_read_only_is_refused"))
 by_tests("Machine", "checkpoint of an older version", "is read, and gone on from to the same answer",
-         ("golden", "old_checkpoints_are_gone_on_from_to_the_same_answer"))
+         ("golden", "saved_walks_are_continued_to_the_same_answer"))
 by_tests("Machine", "symlinked folder, hostile names", "refused; inert", ("hostile_names", "no_link_leads_out_of_a_folder"),
          ("hostile_names", "an_error_of_any_reader_says_the_name_and_leaves_the_terminal_alone"))
 
