@@ -70,7 +70,7 @@ BUGS = {
                 "below_both(draws, n - u64::from(n == FEW), [p, p])[0]",
             )
         ],
-        [("lib", "walk::counts::binomial::tests::draws_follow_the_binomial_law")],
+        [("lib", "walk::counts::binomial::tests::draws_follow_the_binomial_distribution")],
     ),
     "weak-permutation": (
         "strata are shuffled by too few rounds",

@@ -102,8 +102,8 @@ def _(folder):
 
 
 by_tests("Walk", "moves of passive particles", "mean 3 nz, variance 6 nz on a wide lattice; the linear solve on narrow ones",
-         ("exact_answers", "passive_particles_take_three_moves_a_layer"), ("exact_answers", "narrow_lattices_take_longer"),
-         ("counts", "moves_of_passive_particles_have_their_exact_moments"))
+         ("model", "exact_answers::passive_particles_take_three_moves_a_layer"), ("model", "exact_answers::narrow_lattices_take_longer"),
+         ("model", "counts::moves_of_passive_particles_have_their_exact_moments"))
 
 
 @case("Walk", "every base particle coarser than every constriction, large supply",
@@ -115,16 +115,16 @@ def _(folder):
 
 
 by_tests("Walk", "one size, large supply", "the blocked set is the breadth-first answer, whatever the seed",
-         ("exact_answers", "one_size_blocks_what_a_breadth_first_search_finds"))
+         ("model", "exact_answers::one_size_blocks_what_a_breadth_first_search_finds"))
 by_tests("Walk", "d equal to D", "passes, in every engine and kernel",
-         ("exact_answers", "a_particle_as_coarse_as_the_constriction_passes"),
-         ("walk_against_reference", "kernel_and_reference_agree_particle_by_particle"))
+         ("model", "exact_answers::a_particle_as_coarse_as_the_constriction_passes"),
+         ("model", "walk_against_reference::kernel_and_reference_agree_particle_by_particle"))
 
 
 @case("Walk", "1 x 1 x 1, only z passable for this particle", "eroded with probability Az / (Ax + Ay + Az)")
 def _(folder):
     sizes = write(folder, "curve.csv", "percent_smaller,diameter_mm\n0,0.3\n100,0.3\n")
-    by_test = passed([("exact_answers", "one_void_is_left_with_the_share_of_its_area")])
+    by_test = passed([("model", "exact_answers::one_void_is_left_with_the_share_of_its_area")])
     # One particle at a time: the first that stops would close its exit for the next.
     outcome = call(folder, "run", network(folder, ["0,0,0.3", "0,0,0.4", "0,end,0.7"]), f"filter.curve={sizes}",
                    "filter.cu=1.5", "base.single_mm=0.5", "base.n_base=1", "inject_share=1", "replicates=4000", "runs=1",
@@ -137,14 +137,14 @@ def _(folder):
 
 
 by_tests("Walk", "1 x 1 x 1, z blocked, x or y open", "trapped: counted, the run ends",
-         ("exact_answers", "a_particle_that_circles_for_ever_is_trapped_and_ends_the_run"),
-         ("counts", "passive_particles_are_trapped_like_any_other"))
+         ("model", "exact_answers::a_particle_that_circles_for_ever_is_trapped_and_ends_the_run"),
+         ("model", "counts::passive_particles_are_trapped_like_any_other"))
 
 
 @case("Walk", "one exit with 1e12 times the area of the others", "the others about 1e-12; once it is blocked the others keep their exact ratio")
 def _(folder):
     by_test = passed([("lib", "walk::counts::shares::tests::a_giant_is_not_certain"),
-                      ("walk_against_reference", "kernel_and_reference_agree_particle_by_particle")])
+                      ("model", "walk_against_reference::kernel_and_reference_agree_particle_by_particle")])
     rows = ["0,1,1e6", "0,2,1", "0,3,2", "1,end,5e5", "2,end,9", "3,end,9"]
     curve = write(folder, "curve.csv", "percent_smaller,diameter_mm\n0,1\n100,2\n")
     outcome = call(folder, "run", network(folder, rows), f"filter.curve={curve}", "filter.cu=1.5", "base.single_mm=0.5",
@@ -155,7 +155,7 @@ def _(folder):
 
 
 by_tests("Walk", "diameters from 1e-6 to 1e6 of each other", "no overflow, underflow or NaN; scaling by 2^k gives the same bits",
-         ("exact_answers", "scaling_by_two_changes_no_bit"), ("gradation", "a_factor_of_two_on_every_length_changes_no_bit"))
+         ("model", "exact_answers::scaling_by_two_changes_no_bit"), ("model", "gradation::a_factor_of_two_on_every_length_changes_no_bit"))
 
 
 @case("Walk", "size ratio of 1e12 between constrictions, and of the base", "finite results, everything accounted for, in every engine")
@@ -187,7 +187,7 @@ def _(folder):
 
 by_tests("Walk", "everything blocked from the start; second run on a fully blocked network",
          "0 eroded, all retained on the start nodes, verdict printed",
-         ("exact_answers", "closed_and_blocked_networks_retain_everything_where_it_starts"), ("counts", "nothing_leaves_closed_voids"))
+         ("model", "exact_answers::closed_and_blocked_networks_retain_everything_where_it_starts"), ("model", "counts::nothing_leaves_closed_voids"))
 
 
 @case("Walk", "N_base = 0, 1, 99, 100, 101", "refused for 0, else exactly N inserted")
@@ -211,8 +211,8 @@ def _(folder):
 
 
 by_tests("Walk", "1e6 layers of 1 x 1; 1 layer of 1000 x 1000; 2 x 2 x 2", "run, and match the linear solve",
-         ("exact_answers", "very_long_and_very_wide_networks_run"), ("exact_answers", "narrow_lattices_take_longer"),
-         ("exact_answers", "the_first_particle_passes_a_given_network_as_the_linear_solve_says"))
+         ("model", "exact_answers::very_long_and_very_wide_networks_run"), ("model", "exact_answers::narrow_lattices_take_longer"),
+         ("model", "exact_answers::the_first_particle_passes_a_given_network_as_the_linear_solve_says"))
 
 
 @case("Walk", "curve of one point; repeated sizes; vertical step; plateau", "one size; merged; allowed; allowed")
@@ -273,7 +273,7 @@ def _(folder):
         assert "bad.csv" in message, message
     assert slowest < 1
     return (f"{len(good)} unusual tables give one and the same answer, {len(rows)} bad ones refused (slowest {slowest * 1000:.0f} ms); "
-            + passed([("bad_tables", "bad_sieve_tables_are_refused"), ("bad_tables", "bad_curves_are_refused")]))
+            + passed([("files", "bad_tables::bad_sieve_tables_are_refused"), ("files", "bad_tables::bad_curves_are_refused")]))
 
 
 @case("Walk", "unknown key, wrong unit, missing file, folder instead of file", "refused, nearest valid key named")
@@ -350,14 +350,14 @@ def _(folder):
         rows.append(f"{friction}: e {e:.4f}, {seconds:.0f} s")
         assert e > last - 0.02, rows
         last = e
-    return table_of(rows) + "; " + passed([("packing", "friction_sets_the_density_and_none_makes_no_torque")])
+    return table_of(rows) + "; " + passed([("model", "packing::friction_sets_the_density_and_none_makes_no_torque")])
 
 
 by_tests("Packing", "half the compression rate", "the void ratio hardly moves (study: results/packing-2026-11-21.md)",
-         ("packing", "half_the_rate_gives_the_same_void_ratio"))
+         ("model", "packing::half_the_rate_gives_the_same_void_ratio"))
 by_tests("Packing", "size ratios 10, 36, 100 with friction", "no energy from nowhere; a small grain between large ones is expelled",
          ("lib", CHECKS + "friction_makes_no_energy_at_any_size_ratio"), ("lib", CHECKS + "a_small_grain_between_large_ones_is_expelled"),
-         ("packing", "a_wide_grading_gives_way_to_lower_friction"))
+         ("model", "packing::a_wide_grading_gives_way_to_lower_friction"))
 
 
 @case("Packing", "a whole packing with size ratio 100", "settles, or says why not; neighbour search and triangulation hold")
@@ -374,10 +374,10 @@ def _(folder):
 
 by_tests("Packing", "one grain; coincident centres; overlapping start", "no contact with itself; refused with the ids; relaxed at a capped speed",
          ("lib", CHECKS + "one_grain_touches_nothing"), ("lib", CHECKS + "coincident_centres_are_named"),
-         ("lib", CHECKS + "an_overlapping_start_relaxes_at_a_capped_speed"), ("packing", "a_cell_too_narrow_for_its_largest_grain_is_refused"))
+         ("lib", CHECKS + "an_overlapping_start_relaxes_at_a_capped_speed"), ("model", "packing::a_cell_too_narrow_for_its_largest_grain_is_refused"))
 by_tests("Packing", "undamped gas, 1e6 steps", "energy drift at most 1e-5, momentum 1e-12", ("lib", CHECKS + "undamped_gas_keeps_energy_and_momentum"))
 by_tests("Packing", "resumed compression", "same bits, tangential history included",
-         ("packing", "a_resumed_compression_gives_the_same_bits_with_any_threads"))
+         ("model", "packing::a_resumed_compression_gives_the_same_bits_with_any_threads"))
 
 # Triangulation
 
@@ -442,19 +442,19 @@ by_tests("Triangulation", "random small sets against brute force in exact arithm
 # Machine: what is small enough for here; kills, faults and fuzzing at length have their own report.
 
 by_tests("Machine", "kill at any instant, also during a resume", "final results identical to the unbroken run",
-         ("checkpoints", "a_run_goes_on_after_stops_and_kills_with_the_same_bits"),
-         ("pack_command", "a_packing_goes_on_after_stops_and_kills_with_the_same_bits"),
-         ("campaign_command", "a_campaign_that_is_killed_again_and_again_gives_the_same_ledger"))
+         ("commands", "checkpoints::a_run_goes_on_after_stops_and_kills_with_the_same_bits"),
+         ("commands", "pack::a_packing_goes_on_after_stops_and_kills_with_the_same_bits"),
+         ("commands", "campaign::a_campaign_that_is_killed_again_and_again_gives_the_same_ledger"))
 by_tests("Machine", "checkpoint cut, flipped, newer, of another program or scene", "refused, or the older slot taken and said",
-         ("torn_checkpoints", "no_corruption_goes_unnoticed"),
-         ("checkpoints", "a_corrupt_checkpoint_is_passed_over_or_refused_and_never_lost"))
+         ("files", "torn_checkpoints::no_corruption_goes_unnoticed"),
+         ("commands", "checkpoints::a_corrupt_checkpoint_is_passed_over_or_refused_and_never_lost"))
 by_tests("Machine", "disk full at the start or in between; read-only disk", "clear error, last checkpoint intact, no SIGBUS; refused",
-         ("full_disk", "a_run_on_a_full_disk_ends_with_an_error_and_goes_on_when_there_is_room"),
-         ("full_disk", "a_folder_on_a_disk_that_is_read_only_is_refused"))
+         ("commands", "full_disk::a_run_on_a_full_disk_ends_with_an_error_and_goes_on_when_there_is_room"),
+         ("commands", "full_disk::a_folder_on_a_disk_that_is_read_only_is_refused"))
 by_tests("Machine", "checkpoint of this version, and of an older one", "continued to the same answer; refused with a sentence that says so",
-         ("golden", "saved_walks_are_continued_to_the_same_answer"), ("golden", "checkpoints_of_earlier_versions_are_refused_by_name"))
-by_tests("Machine", "symlinked folder, hostile names", "refused; inert", ("hostile_names", "no_link_leads_out_of_a_folder"),
-         ("hostile_names", "an_error_of_any_reader_says_the_name_and_leaves_the_terminal_alone"))
+         ("files", "golden::saved_walks_are_continued_to_the_same_answer"), ("files", "golden::checkpoints_of_earlier_versions_are_refused_by_name"))
+by_tests("Machine", "symlinked folder, hostile names", "refused; inert", ("commands", "hostile_names::no_link_leads_out_of_a_folder"),
+         ("commands", "hostile_names::an_error_of_any_reader_says_the_name_and_leaves_the_terminal_alone"))
 
 
 @case("Machine", "every n-th write, sync, rename or allocation fails (EIO, ENOSPC, EINTR); power cuts (the fixed part; all of them: results/robustness-*.md)",
@@ -465,10 +465,10 @@ def _(_):
     return "; ".join(line.strip() for line in (done.stdout + done.stderr).splitlines() if "other results" in line)
 
 
-by_tests("Machine", "another thread count on resume", "same bits", ("checkpoints", "a_walk_goes_on_from_every_increment_with_every_engine_on_any_threads"))
+by_tests("Machine", "another thread count on resume", "same bits", ("commands", "checkpoints::a_walk_goes_on_from_every_increment_with_every_engine_on_any_threads"))
 by_tests("Machine", "two processes on one folder; folders that are not ours; closed stdout", "the second leaves and names the first; left alone; no panic",
          ("lib", "store::folder::tests::a_second_writer_is_told_who_holds_the_folder"), ("lib", "store::folder::tests::what_is_not_ours_is_left_alone"),
-         ("command_line", "a_closed_pipe_is_no_panic"))
+         ("commands", "scene::a_closed_pipe_is_no_panic"))
 
 
 def build():

@@ -20,7 +20,7 @@ pub use inscribed::inscribed;
 pub use measure::{Constrictions, ConstrictionsError, DEFAULT_MERGE_OVERLAP, Facets};
 pub use shipped::{ShippedFilter, find, shipped};
 pub use summary::{SUMMARY_PERCENT, Summary};
-pub use triangulation::{Insane, Triangulation, TriangulationError};
+pub use triangulation::{SanityError, Triangulation, TriangulationError};
 
 #[cfg(test)]
 mod lattice_tests;

@@ -19,7 +19,7 @@ mod tests;
 mod wide;
 
 pub use error::TriangulationError;
-pub use sanity::Insane;
+pub use sanity::SanityError;
 
 use crate::packing::Packing;
 use insertion::Builder;

@@ -10,7 +10,7 @@ use thiserror::Error;
 
 /// An identity of triangulations that does not hold.
 #[derive(Clone, Debug, Error, PartialEq)]
-pub enum Insane {
+pub enum SanityError {
     /// Two tetrahedra disagree about the facet they share, or a facet has no partner.
     #[error("facet {facet} of tetrahedron {tetrahedron} is not shared by exactly two")]
     Facet {
@@ -64,12 +64,12 @@ impl Triangulation {
     ///
     /// # Errors
     /// The first identity that does not hold.
-    pub fn sanity_check(&self) -> Result<(), Insane> {
+    pub fn sanity_check(&self) -> Result<(), SanityError> {
         let mesh = &self.mesh;
         let mut hull = 0;
         for tetrahedron in 0..self.tetrahedra() {
             for facet in 0..4 {
-                let broken = Err(Insane::Facet { tetrahedron, facet });
+                let broken = Err(SanityError::Facet { tetrahedron, facet });
                 if mesh.neighbours[tetrahedron][facet] == NONE {
                     hull += 1;
                     if self.is_periodic() {
@@ -87,18 +87,18 @@ impl Triangulation {
         let (edges, tetrahedra) = (edges(mesh), self.tetrahedra());
         let expected = i64::from(!self.is_periodic());
         if vertices as i64 - edges as i64 + facets as i64 - tetrahedra as i64 != expected {
-            return Err(Insane::Euler { vertices, edges, facets, tetrahedra, expected });
+            return Err(SanityError::Euler { vertices, edges, facets, tetrahedra, expected });
         }
         Ok(())
     }
 
-    fn volumes(&self) -> Result<(), Insane> {
+    fn volumes(&self) -> Result<(), SanityError> {
         let positions = self.positions();
         let mut sum = Wide::ZERO;
         for tetrahedron in 0..self.tetrahedra() {
             let six = volume(&self.at(&positions, tetrahedron, Shift::ZERO));
             if six.sign() <= 0 {
-                return Err(Insane::Orientation { tetrahedron });
+                return Err(SanityError::Orientation { tetrahedron });
             }
             sum = sum + six;
         }
@@ -106,12 +106,12 @@ impl Triangulation {
             && !images::fills(&self.mesh, &self.points, cell)
         {
             let whole = 6.0 * cell[0] * cell[1] * cell[2];
-            return Err(Insane::Volume { relative_error: sum.to_f64() / whole - 1.0 });
+            return Err(SanityError::Volume { relative_error: sum.to_f64() / whole - 1.0 });
         }
         Ok(())
     }
 
-    fn regularity(&self) -> Result<(), Insane> {
+    fn regularity(&self) -> Result<(), SanityError> {
         let positions = self.positions();
         for tetrahedron in 0..self.tetrahedra() {
             let corners = self.at(&positions, tetrahedron, Shift::ZERO);
@@ -125,7 +125,7 @@ impl Triangulation {
                 let p = self.at(&positions, u, self.mesh.shifts[tetrahedron][facet])[j];
                 let id = |i: usize| if i == 4 { self.corners(u)[j] } else { grains[i] };
                 if in_conflict(&corners, &p, |a, b| id(a).cmp(&id(b))) {
-                    return Err(Insane::Irregular { tetrahedron, facet });
+                    return Err(SanityError::Irregular { tetrahedron, facet });
                 }
             }
         }

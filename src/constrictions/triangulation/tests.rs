@@ -1,6 +1,6 @@
 //! The triangulation against brute force in exact arithmetic, against itself, and on lattices.
 
-use super::{Insane, Triangulation, TriangulationError};
+use super::{SanityError, Triangulation, TriangulationError};
 use crate::packing::{Cell, Packing};
 use crate::stream::{Key, Purpose, unit};
 use num_bigint::{BigInt, Sign};
@@ -305,8 +305,8 @@ fn a_broken_triangulation_is_noticed() {
     assert!(turned.sanity_check().is_err());
     let mut lost = good.clone();
     lost.mesh.neighbours[8][2] = 0;
-    assert_eq!(lost.sanity_check(), Err(Insane::Facet { tetrahedron: 8, facet: 2 }));
+    assert_eq!(lost.sanity_check(), Err(SanityError::Facet { tetrahedron: 8, facet: 2 }));
     let mut heavy = good.clone();
     heavy.points.at[3][3] *= 40.0;
-    assert!(matches!(heavy.sanity_check(), Err(Insane::Irregular { .. })));
+    assert!(matches!(heavy.sanity_check(), Err(SanityError::Irregular { .. })));
 }

@@ -130,7 +130,7 @@ fn pairs() -> Vec<(u64, f64)> {
 /// Both ways to draw. 70 tests, bound 4 on each: a false alarm in 0.2 % of seeds, and this seed is fixed.
 /// With 20,000 draws a shift of 4 % of a standard deviation, or 4 % in its size, would show; less would not.
 #[test]
-fn draws_follow_the_binomial_law() {
+fn draws_follow_the_binomial_distribution() {
     for (i, (n, p)) in pairs().into_iter().enumerate() {
         let p = fraction(p);
         let mut words = draws(2 * i as u64);
