@@ -76,7 +76,7 @@ fn harm() -> impl Strategy<Value = Harm> {
     ]
 }
 
-fn harmed(mut bytes: Vec<u8>, harms: &[Harm]) -> Vec<u8> {
+fn damaged(mut bytes: Vec<u8>, harms: &[Harm]) -> Vec<u8> {
     for harm in harms {
         let place = |at: usize| at % (bytes.len() + 1);
         match *harm {
@@ -103,7 +103,7 @@ fn harmed(mut bytes: Vec<u8>, harms: &[Harm]) -> Vec<u8> {
     bytes
 }
 
-/// Every seed as it is, then `cases` harmed ones, from a fixed seed; with `VOIDWALK_FAULTS=all` thirty times as many.
+/// Every seed as it is, then `cases` damaged ones, from a fixed seed; with `VOIDWALK_FAULTS=all` thirty times as many.
 fn check(name: &str, more: &[&str], cases: u32, read: fn(&[u8])) {
     let all = std::env::var("VOIDWALK_FAULTS").is_ok_and(|value| value == "all");
     let cases = if all { 30 * cases } else { cases };
@@ -115,7 +115,7 @@ fn check(name: &str, more: &[&str], cases: u32, read: fn(&[u8])) {
     let strategy = (0..seeds.len(), prop::collection::vec(harm(), 1..6));
     runner
         .run(&strategy, |(seed, harms)| {
-            read(&harmed(seeds[seed].clone(), &harms));
+            read(&damaged(seeds[seed].clone(), &harms));
             Ok(())
         })
         .unwrap();
