@@ -45,7 +45,7 @@ struct Source {
 fn sources() -> Vec<Source> {
     let mut found = Vec::new();
     collect(Path::new("src"), &mut found);
-    let tests: BTreeSet<PathBuf> = found.iter().flat_map(|source| test_files(source)).collect();
+    let tests: BTreeSet<PathBuf> = found.iter().flat_map(test_files).collect();
     for source in &mut found {
         source.code = code(&fs::read_to_string(&source.path).unwrap());
     }

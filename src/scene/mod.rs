@@ -1,9 +1,9 @@
 //! A scene: one base-filter combination and how it is to be walked, as the user states it.
 //!
-//! Every setting is declared once, in [`keys`] or by the stage that it belongs to ([`StopRule`], packing's
+//! Every setting is declared once, in `keys` or by the stage that it belongs to ([`StopRule`], packing's
 //! [`Settings`](crate::packing::Settings)); a [`Scene`] holds them all. From those declarations follow the
 //! commented text of [`Scene::init_text`], what may be set, what is refused, and the resolved scene that a
-//! run writes and is known by. Which settings exclude each other stands in [`groups`]. The names are a
+//! run writes and is known by. Which settings exclude each other stands in `groups`. The names are a
 //! contract.
 
 mod groups;

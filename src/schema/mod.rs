@@ -1,7 +1,7 @@
 //! Settings, each declared once: its name, type, default, what is allowed, and what a user is told of
 //! it.
 //!
-//! A stage declares what it can be told with [`section!`]; from that one declaration follow the struct with
+//! A stage declares what it can be told with `section!`; from that one declaration follow the struct with
 //! its fields, the reading of a TOML file and of `--set` with errors that name the line ([`GivenSettings`]),
 //! the commented text that `voidwalk init` writes ([`KeyInfo`]), the check of values that a program gave, and
 //! what is written back ([`serde::Serialize`]). So a setting cannot be forgotten in one of these places.

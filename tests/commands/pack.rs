@@ -132,7 +132,7 @@ fn an_unfinished_packing_of_another_recipe_is_left_alone() {
     done(&call(&at, &["pack", "filter.toml", "--out", "out"]));
     fs::remove_file(at.join("out/packing.json")).unwrap();
     fs::write(at.join("out/compression.1"), b"not a state at all").unwrap();
-    refused(&call(&at, &["pack", "filter.toml", "--out", "out"]), "cannot go on");
+    refused(&call(&at, &["pack", "filter.toml", "--out", "out"]), "cannot be continued");
     assert_eq!(fs::read(at.join("out/compression.1")).unwrap(), b"not a state at all");
     done(&call(&at, &["pack", "filter.toml", "--out", "out", "--overwrite"]));
     assert!(!at.join("out/compression.1").exists());
@@ -282,18 +282,7 @@ fn a_guess_by_inscribed_circles_walks_without_a_packing_and_says_so() {
     done(&call(&at.join("r1"), &["run", "scene.toml", "--out", "../r2"]));
     let read = |r: &str| fs::read(at.join(r).join("series.csv")).unwrap();
     assert_eq!(read("r1"), read("r2"));
-    let clash = call(
-        &at,
-        &[
-            "run",
-            "filter.toml",
-            "--set",
-            "filter.grains_per_void=1",
-            "--out",
-            "r3",
-            "--set",
-            "network.file=n.csv",
-        ],
-    );
+    fs::write(at.join("both.toml"), text.replace("nx = 6\nny = 6\nnz = 8", "file = \"n.csv\"")).unwrap();
+    let clash = call(&at, &["run", "both.toml", "--out", "r3"]);
     refused(&clash, "keep one");
 }
