@@ -174,7 +174,7 @@ impl Case {
             (None, Some((curve, _))) => {
                 if curve.unit() == CurveUnit::D0f && filter.pan_fraction() > 0.0 {
                     let problem = "this constriction curve is in units of D0F, but the filter's finest \
-                     sieve leaves a tail of unknown size: give filter.d0_mm";
+                     sieve leaves a pan fraction (finer than that sieve): give filter.d0_mm";
                     return Err(scene.clash(problem).into());
                 }
                 curve.in_mm(unit_mm)?
@@ -201,7 +201,7 @@ impl Case {
         if base.pan_fraction() > 0.0 && base.smallest_mm() > curve.smallest() && !is_guess {
             let problem = format!(
                 "the base's finest sieve, {} mm, is coarser than the finest constriction, {:.4} mm: its \
-                 tail of unknown size may not be passive; give base.d0_mm or a finer sieve",
+                 pan fraction may not be passive; give base.d0_mm or a finer sieve",
                 base.smallest_mm(),
                 curve.smallest()
             );
@@ -211,7 +211,7 @@ impl Case {
         for (name, gradation, percent) in [("filter", &filter, 15.0), ("base", &base, 85.0)] {
             if gradation.d(percent).is_none() {
                 let problem = format!(
-                    "the {name}'s D{percent} lies in a finest tail of unknown size: add finer sieves, or \
+                    "the {name}'s D{percent} lies in the pan fraction (finer than the finest sieve): add finer sieves, or \
                      {name}.d0_mm"
                 );
                 return Err(scene.clash(problem).into());

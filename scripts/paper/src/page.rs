@@ -73,11 +73,11 @@ fn page(study: &Study, judged: &[Judged], sections: &[(&Section, Vec<Drawn>)]) -
                 p.lead {
                     "Of " (judged.len()) " statements, " b { (agree) " agree" } ", "
                     b { (differ) " differ" } ", and "
-                    b { (judged.len() - agree - differ) } " cannot be told."
+                    b { (judged.len() - agree - differ) } " inconclusive."
                 }
                 p {
                     "A statement agrees when our value lies within what the paper states and its tolerance, \
-                     or when our 95 % interval covers the stated value; it cannot be told when nothing was \
+                     or when our 95 % interval covers the stated value; inconclusive when nothing was \
                      walked or when the interval lies on both sides of what decides; it differs otherwise. \
                      No judgement is typed in, and nothing is tuned to the paper case by case. Where a \
                      number differs, the same is measured in campaigns that change one thing each: grains \
@@ -103,7 +103,7 @@ fn page(study: &Study, judged: &[Judged], sections: &[(&Section, Vec<Drawn>)]) -
         h2 { "Every statement in every campaign" }
         p.small {
             "The first column of ours is the one judged above. Empty: the campaign cannot say, or nothing \
-             changes for it. ✗ differs, ? cannot tell."
+             changes for it. ✗ differs, ? inconclusive."
         }
         (matrix(study, judged))
         h2 { "Every combination" }
@@ -147,7 +147,7 @@ fn statements_of(judged: &[Judged], key: &str) -> Markup {
     let class = |judgement| match judgement {
         Judgement::Agrees => "keeps",
         Judgement::Differs(_) => "breaks",
-        Judgement::CannotTell => "small",
+        Judgement::Inconclusive => "small",
     };
     html! {
         div.scroll { table {
@@ -180,7 +180,7 @@ fn matrix(study: &Study, judged: &[Judged]) -> Markup {
         let sign = match judgement {
             Judgement::Agrees => "",
             Judgement::Differs(_) => " ✗",
-            Judgement::CannotTell => " ?",
+            Judgement::Inconclusive => " ?",
         };
         format!("{}{sign}", judged.statement.show(measured.value))
     };

@@ -46,7 +46,7 @@ pub enum Judgement {
     /// Outside, by so much, above or below.
     Differs(f64),
     /// Not walked, or left open by the replicates.
-    CannotTell,
+    Inconclusive,
 }
 
 impl Statement {
@@ -59,11 +59,11 @@ impl Statement {
     }
 
     /// The rule: agrees when our value lies within what is stated, or our 95 % interval covers the stated
-    /// value; cannot tell when nothing was walked, or when the interval lies on both sides of what decides;
+    /// value; inconclusive when nothing was walked, or when the interval lies on both sides of what decides;
     /// differs otherwise, by the distance to the nearest end.
     pub fn judge(&self, ours: Option<&Measured>) -> Judgement {
         let Some(ours) = ours.filter(|ours| !ours.open && !ours.value.is_nan()) else {
-            return Judgement::CannotTell;
+            return Judgement::Inconclusive;
         };
         let ((low, high), (from, to)) = (self.allowed(), ours.interval.unwrap_or((ours.value, ours.value)));
         // Rounding of decimal fractions decides nothing.
@@ -73,7 +73,7 @@ impl Statement {
             return Judgement::Agrees;
         }
         if from <= high && to >= low {
-            return Judgement::CannotTell;
+            return Judgement::Inconclusive;
         }
         Judgement::Differs(if ours.value > high { ours.value - high } else { ours.value - low })
     }
@@ -116,15 +116,15 @@ impl Judged {
     pub fn ours(&self) -> (Option<&Measured>, Judgement) {
         self.variants
             .first()
-            .map_or((None, Judgement::CannotTell), |(_, ours, judgement)| (ours.as_ref(), *judgement))
+            .map_or((None, Judgement::Inconclusive), |(_, ours, judgement)| (ours.as_ref(), *judgement))
     }
 
     /// A sentence of judgement, with the experiments that explain a difference.
     pub fn sentence(&self) -> String {
         match self.ours() {
             (_, Judgement::Agrees) => "agrees".into(),
-            (None, _) => "cannot tell: not walked".into(),
-            (Some(_), Judgement::CannotTell) => "cannot tell: the replicates leave both possible".into(),
+            (None, _) => "inconclusive: not walked".into(),
+            (Some(_), Judgement::Inconclusive) => "inconclusive: the replicates leave both possible".into(),
             (Some(ours), Judgement::Differs(by)) => {
                 format!("differs {}{}", self.statement.difference(ours.value, by), self.explained())
             }
@@ -210,7 +210,7 @@ pub fn table(all: &[Judged]) -> String {
             let (word, by) = match judgement {
                 Judgement::Agrees => ("agrees", None),
                 Judgement::Differs(by) => ("differs", Some(*by)),
-                Judgement::CannotTell => ("cannot tell", None),
+                Judgement::Inconclusive => ("inconclusive", None),
             };
             let interval = ours.as_ref().and_then(|ours| ours.interval);
             let mut row: Vec<String> =
@@ -266,10 +266,10 @@ mod tests {
         let of = |value, interval| Measured { interval, ..Measured::exact(value) };
         assert_eq!(s.judge(Some(&of(47.9, None))), Judgement::Agrees);
         assert_eq!(s.judge(Some(&of(50.0, Some((42.0, 58.0))))), Judgement::Agrees);
-        assert_eq!(s.judge(Some(&of(50.0, Some((47.0, 53.0))))), Judgement::CannotTell);
+        assert_eq!(s.judge(Some(&of(50.0, Some((47.0, 53.0))))), Judgement::Inconclusive);
         assert_eq!(s.judge(Some(&of(50.0, Some((49.0, 51.0))))), Judgement::Differs(2.0));
         assert_eq!(s.judge(Some(&of(36.0, None))), Judgement::Differs(-2.0));
-        assert_eq!(s.judge(None), Judgement::CannotTell);
-        assert_eq!(s.judge(Measured::exceptions(0, 2, 9).as_ref()), Judgement::CannotTell);
+        assert_eq!(s.judge(None), Judgement::Inconclusive);
+        assert_eq!(s.judge(Measured::exceptions(0, 2, 9).as_ref()), Judgement::Inconclusive);
     }
 }
