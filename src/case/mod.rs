@@ -211,8 +211,8 @@ impl Case {
         for (name, gradation, percent) in [("filter", &filter, 15.0), ("base", &base, 85.0)] {
             if gradation.d(percent).is_none() {
                 let problem = format!(
-                    "the {name}'s D{percent} lies in the pan fraction (finer than the finest sieve): add finer sieves, or \
-                     {name}.d0_mm"
+                    "the {name}'s D{percent} lies in the pan fraction (finer than the finest sieve): add \
+                     finer sieves, or {name}.d0_mm"
                 );
                 return Err(scene.clash(problem).into());
             }
