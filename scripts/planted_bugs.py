@@ -21,7 +21,7 @@ ENVIRONMENT = dict(os.environ, CARGO_TARGET_DIR=str(ROOT / "target" / "planted-b
 BUGS = {
     "biased-exit": (
         "the first exit of every void is 1 % too likely",
-        [("src/walk/exits.rs", "sum += area(c);", "sum += area(c) * if c == exits.start { 1.01 } else { 1.0 };")],
+        [("src/walk/exits.rs", "sum += weight(c);", "sum += weight(c) * if c == exits.start { 1.01 } else { 1.0 };")],
         [
             ("model", "exact_answers::passive_particles_take_three_moves_a_layer"),
             ("model", "walk_against_reference::kernel_and_reference_agree_particle_by_particle"),

@@ -36,6 +36,9 @@ const LOST: &str = "its results were overwritten by another process; is another 
 /// How often a process looks whether others are done: at first, and after some waiting.
 const LOOK: (Duration, Duration) = (Duration::from_millis(300), Duration::from_secs(10));
 
+/// How long another process may take to replace the files of a case with the same ones.
+const REPLACING: Duration = Duration::from_secs(5);
+
 /// How often results that could not be written are tried again.
 const TRIES: u32 = 3;
 
@@ -111,9 +114,10 @@ impl CaseRunner<'_> {
             // A case that this process has finished and that is not there any more was overwritten: by
             // another plan, or by a plan that was changed meanwhile.
             open.retain(|case| !self.is_done(case));
-            let lost = open.iter().filter(|case| tally.has_finished(&case.planned.name));
+            let lost =
+                open.iter().filter(|case| tally.has_finished(&case.planned.name) && self.is_lost(case));
             lost.for_each(|case| tally.fail(self.callbacks, &case.planned.name, LOST.into()));
-            open.retain(|case| !tally.has_failed(&case.planned.name));
+            open.retain(|case| !tally.has_failed(&case.planned.name) && !self.is_done(case));
             if self.is_stopped() && !open.is_empty() {
                 return Err(RunError::Stopped(format!(
                     "progress saved; continue with the same command on {}",
@@ -131,6 +135,19 @@ impl CaseRunner<'_> {
             }
         }
         Ok(tally.failed.into_inner().unwrap_or_default())
+    }
+
+    /// Whether a case that was finished stays gone: where locks reach one machine only, another process may be
+    /// replacing its files with the same ones at this moment.
+    fn is_lost(&self, case: &PreparedCase) -> bool {
+        let until = Instant::now() + REPLACING;
+        while !self.is_done(case) {
+            if Instant::now() >= until {
+                return true;
+            }
+            std::thread::sleep(LOOK.0);
+        }
+        false
     }
 
     fn is_done(&self, case: &PreparedCase) -> bool {

@@ -55,17 +55,14 @@ impl Network {
     /// # Ok::<(), voidwalk::network::NetworkError>(())
     /// ```
     pub fn first_passage(&self, d: f32, closed: impl Fn(usize) -> bool) -> FirstPassage {
-        let area = |c: usize| {
-            let diameter = f64::from(self.diameter[c]);
-            if closed(c) { 0.0 } else { diameter * diameter }
-        };
+        let weight = |c: usize| if closed(c) { 0.0 } else { self.exit_weight(c) };
         let mut share = vec![0.0; self.constrictions()];
         let mut ends = vec![false; self.voids()];
         for void in 0..self.voids() as u32 {
-            let total: f64 = self.exits(void).map(area).sum();
-            for c in self.exits(void).filter(|&c| area(c) > 0.0) {
+            let total: f64 = self.exits(void).map(weight).sum();
+            for c in self.exits(void).filter(|&c| weight(c) > 0.0) {
                 if self.diameter[c] >= d {
-                    share[c] = area(c) / total;
+                    share[c] = weight(c) / total;
                 }
                 // It may leave or be stopped here.
                 ends[void as usize] |= self.diameter[c] < d || self.target[c] == END;

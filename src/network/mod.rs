@@ -54,6 +54,30 @@ pub struct Network {
 }
 
 impl Network {
+    /// How a constriction weighs in the choice among the open exits of its void: its area, but for a factor
+    /// that all have (the paper's Fig. 4). One that is closed from the start weighs nothing.
+    ///
+    /// Engines, first passage and Eq. (1) all take it from here; the slow reference of the walk works it out
+    /// by itself, on purpose.
+    #[inline]
+    pub fn exit_weight(&self, constriction: usize) -> f64 {
+        let diameter = f64::from(self.diameter[constriction]);
+        diameter * diameter
+    }
+
+    /// Fingerprint of everything that a walk takes from the network: a new column must say here what it is.
+    pub fn fingerprint(&self) -> u64 {
+        let Self { exit_begin, target, diameter, start, layer, unit_mm, shape: _ } = self;
+        let mut hash = xxhash_rust::xxh3::Xxh3::new();
+        hash.update(bytemuck::cast_slice(exit_begin));
+        hash.update(bytemuck::cast_slice(target));
+        hash.update(bytemuck::cast_slice(diameter));
+        hash.update(bytemuck::cast_slice(start));
+        hash.update(bytemuck::cast_slice(layer));
+        hash.update(&unit_mm.to_bits().to_le_bytes());
+        hash.digest()
+    }
+
     /// Number of voids.
     pub fn voids(&self) -> usize {
         self.exit_begin.len() - 1

@@ -204,7 +204,7 @@ impl Checkpoints {
         let mut sections = saved.sections();
         sections.push(Section::new("done", &text));
         let label = Label {
-            network: network_fingerprint(network),
+            network: network.fingerprint(),
             run: state.run,
             increment: state.increment,
             ..self.next_label(walk)
@@ -264,15 +264,6 @@ impl Checkpoints {
 /// What the system says.
 pub fn discard(folder: &Path) -> Result<(), StoreError> {
     remove_folder(&folder.join(FOLDER))
-}
-
-/// Fingerprint of everything that a walk takes from its network.
-pub fn network_fingerprint(network: &Network) -> u64 {
-    let mut hash = xxhash_rust::xxh3::Xxh3::new();
-    hash.update(bytemuck::cast_slice(network.diameters()));
-    hash.update(bytemuck::cast_slice(network.targets()));
-    hash.update(bytemuck::cast_slice(network.start()));
-    hash.digest()
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use bitvec::vec::BitVec;
 use rayon::prelude::*;
 
 use super::callbacks::{Callbacks, Event};
-use super::checkpoints::{Checkpoints, Done, WalkId, network_fingerprint};
+use super::checkpoints::{Checkpoints, Done, WalkId};
 use super::error::RunError;
 use crate::case::{Case, replicate_seed};
 use crate::network::Network;
@@ -213,7 +213,7 @@ impl RunContext<'_> {
         let state = State::placed(&case.placement, network, &supply, classes, blocked, seed, of.run);
         let mut state = state.map_err(|source| RunError::Room { particles: supply.total(), source })?;
         if let Some(saved) = saved {
-            if saved.label.network != network_fingerprint(network) {
+            if saved.label.network != network.fingerprint() {
                 return Err(RunError::Checkpoint(CheckpointError::OtherNetwork {
                     file: saved.path().to_owned(),
                 }));

@@ -14,19 +14,16 @@ pub(super) fn thresholds(
     thresholds: &mut Vec<u64>,
 ) -> Option<usize> {
     let exits = network.exits(void);
-    let area = |c: usize| {
-        let diameter = f64::from(network.diameters()[c]);
-        if blocked[c] { 0.0 } else { diameter * diameter }
-    };
-    let total: f64 = exits.clone().map(area).sum();
+    let weight = |c: usize| if blocked[c] { 0.0 } else { network.exit_weight(c) };
+    let total: f64 = exits.clone().map(weight).sum();
     let mut sum = 0.0;
     thresholds.clear();
     thresholds.extend(exits.clone().map(|c| {
-        sum += area(c);
+        sum += weight(c);
         // A float beyond the range of the integer becomes the largest integer.
         (sum / total * TWO_TO_64) as u64
     }));
-    exits.clone().rev().find(|&c| area(c) > 0.0).map(|c| c - exits.start)
+    exits.clone().rev().find(|&c| weight(c) > 0.0).map(|c| c - exits.start)
 }
 
 const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
