@@ -384,3 +384,20 @@ fn no_line_is_wider_than_the_form_asks_for() {
     }
     assert!(wide.is_empty(), "{} lines\n{}", wide.len(), wide.join("\n"));
 }
+
+#[test]
+fn the_readme_shows_the_example_of_the_front_page() {
+    let between = |text: &str, fence: &str| {
+        let (_, rest) = text.split_once(fence).unwrap();
+        rest.split_once("```").unwrap().0.to_owned()
+    };
+    let library = fs::read_to_string("src/lib.rs").unwrap();
+    let documented: String = library
+        .lines()
+        .filter_map(|line| line.strip_prefix("//!"))
+        .map(|line| format!("{}\n", line.strip_prefix(' ').unwrap_or(line)))
+        .filter(|line| !line.starts_with("# "))
+        .collect();
+    let readme = fs::read_to_string("README.md").unwrap();
+    assert_eq!(between(&readme, "```rust\n"), between(&documented, "```\n"));
+}

@@ -137,8 +137,8 @@ impl CaseRunner<'_> {
         Ok(tally.failed.into_inner().unwrap_or_default())
     }
 
-    /// Whether a case that was finished stays gone: where locks reach one machine only, another process may be
-    /// replacing its files with the same ones at this moment.
+    /// Whether a case that was finished stays gone: where locks reach one machine only, another process may
+    /// be replacing its files with the same ones at this moment.
     fn is_lost(&self, case: &PreparedCase) -> bool {
         let until = Instant::now() + REPLACING;
         while !self.is_done(case) {
