@@ -10,6 +10,7 @@ use crate::gradation::Gradation;
 use crate::network::Network;
 use crate::scene::CurveSource;
 use crate::scene::SceneError;
+use crate::store::read_regular;
 
 /// A file that was read, and the name under which a run folder keeps it.
 #[derive(Clone, Debug)]
@@ -40,7 +41,7 @@ pub const INPUT_NAMES: &str = "inputs/names.json";
 fn first_name(path: &Path) -> String {
     let kept = || {
         let folder = path.parent().filter(|folder| folder.ends_with(INPUTS))?;
-        let text = std::fs::read(folder.parent()?.join(INPUT_NAMES)).ok()?;
+        let text = read_regular(&folder.parent()?.join(INPUT_NAMES), LARGEST_TABLE).ok()??;
         let mut names: BTreeMap<String, String> = serde_json::from_slice(&text).ok()?;
         names.remove(path.file_name()?.to_str()?)
     };
@@ -62,12 +63,10 @@ impl Files {
     ) -> Result<(String, &[u8]), CaseError> {
         let file = path.display().to_string();
         let io = |source| SceneError::File { file: file.clone(), source };
-        let meta = std::fs::metadata(path).map_err(io)?;
-        if !meta.is_file() || meta.len() > largest {
+        let Some(bytes) = read_regular(path, largest).map_err(io)? else {
             let problem = format!("must be a regular file of at most {largest} bytes");
             return Err(SceneError::Syntax { file, at: String::new(), problem }.into());
-        }
-        let bytes = std::fs::read(path).map_err(io)?;
+        };
         self.keep(setting, path, kept_as, bytes);
         Ok((file, &self.0[self.0.len() - 1].bytes))
     }

@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use toml::de::{DeTable, DeValue};
 
 use super::{Allowed, Leaf, Value};
+use crate::store::read_regular;
 
 /// A scene that is refused.
 #[derive(Debug, thiserror::Error)]
@@ -152,12 +153,10 @@ impl GivenSettings {
     pub fn read(path: &Path, names: &Names) -> Result<Self, SceneError> {
         let file = path.display().to_string();
         let io = |source| SceneError::File { file: file.clone(), source };
-        let meta = std::fs::metadata(path).map_err(io)?;
-        if !meta.is_file() || meta.len() > LARGEST_FILE {
+        let Some(bytes) = read_regular(path, LARGEST_FILE).map_err(io)? else {
             let problem = format!("must be a regular file of at most {LARGEST_FILE} bytes");
             return Err(SceneError::Syntax { file, at: String::new(), problem });
-        }
-        let bytes = std::fs::read(path).map_err(io)?;
+        };
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         Self::parse(&bytes, &file, folder, names)
     }

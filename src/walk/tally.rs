@@ -42,13 +42,8 @@ impl Tally {
 
     /// Every particle inserted is somewhere.
     pub(super) fn check(&self, increment: u64) -> Result<(), WalkError> {
-        let all = [
-            self.moving,
-            self.eroded,
-            self.retained_in_constrictions,
-            self.retained_in_voids,
-            self.trapped,
-        ];
+        let all =
+            [self.moving, self.eroded, self.retained_in_constrictions, self.retained_in_voids, self.trapped];
         // Sums that something has spoilt may be beyond 64 bits.
         let accounted = all.into_iter().fold(0u64, u64::saturating_add);
         match all.into_iter().map(u128::from).sum::<u128>() == u128::from(self.inserted) {

@@ -106,8 +106,7 @@ fn a_state_of_another_run_is_refused() {
     save(root.path(), "x", &Label::default(), &SavedState::new(&state).sections()).unwrap();
     let counts = supply(Engine::Counts, 40_000);
     let fewer = supply(Engine::Particles, 20_000);
-    for (other_supply, seed, run) in
-        [(&particles, 2, 1), (&particles, 1, 2), (&counts, 1, 1), (&fewer, 1, 1)]
+    for (other_supply, seed, run) in [(&particles, 2, 1), (&particles, 1, 2), (&counts, 1, 1), (&fewer, 1, 1)]
     {
         let mut other = fresh(&network, other_supply, &open, seed, run);
         let saved = newest(root.path(), "x", &Identity::default()).unwrap().0.unwrap();
