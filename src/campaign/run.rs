@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::cases::{CASES, CasePart, CaseState, Drafts, FailedCase, PreparedCase, named, wanted};
+use super::changed;
 use super::ledger;
 use super::plan::CampaignPlan;
 use super::run_cases::{CampaignCallbacks, CaseRunner};
@@ -133,6 +134,9 @@ pub fn run(
     )?;
     if cases.is_empty() && drafts.packings().is_empty() {
         return Err(RunError::Refused(named(&failed)));
+    }
+    if options.part == CasePart::All {
+        changed::sentences(plan, &cases, out).iter().for_each(|sentence| (callbacks.run.warn)(sentence));
     }
     (callbacks.on_cases)(cases.len(), cases.iter().filter(|case| case.line(out).is_some()).count());
     let runner = CaseRunner {
