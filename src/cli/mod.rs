@@ -46,7 +46,8 @@ pub fn main() -> ExitCode {
         Exit::Failed => "error",
     };
     // Messages name files and values that may hold anything.
-    let lines: Vec<String> = error.to_string().lines().map(print::plain).collect();
+    let text = error.advice().map_or_else(|| error.to_string(), |advice| format!("{error}\n{advice}"));
+    let lines: Vec<String> = text.lines().map(print::plain).collect();
     print::to_stderr(&format!("{kind}: {}\n", lines.join("\n")));
     ExitCode::from(exit.code())
 }

@@ -75,8 +75,8 @@ pub enum StoreError {
 impl StoreError {
     /// Whether the user can fix it by naming another folder, before any work is done.
     pub fn is_refusal(&self) -> bool {
-        use io::ErrorKind::{NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem};
-        let by_name = [NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem];
+        use io::ErrorKind::{InvalidFilename, NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem};
+        let by_name = [InvalidFilename, NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem];
         !matches!(self, Self::Io { source, .. } if !by_name.contains(&source.kind()))
     }
 }
