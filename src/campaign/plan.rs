@@ -31,7 +31,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use crate::scene::{Origin, Scene, SceneError};
-use crate::schema::is_hidden;
+use crate::schema::{hints, is_hidden};
 use crate::store::read_regular;
 
 /// More cases than this are a mistake.
@@ -39,6 +39,15 @@ const MOST_CASES: usize = 100_000;
 
 /// A larger plan is refused (bytes).
 const LARGEST_FILE: u64 = 1 << 20;
+
+/// What a scene has at its top, and a plan only inside `set`.
+const OF_A_SCENE: [&str; 9] =
+    ["filter", "base", "network", "packing", "record", "stop", "replicates", "runs", "engine"];
+
+const SCENE: &str = "is a scene, not the plan of a campaign; walk it by `voidwalk run`, or name it in a plan by \
+    scene = \"FILE\" above its [[factor]] and [[case]]; settings of all cases go under [set]";
+
+const NO_PLAN: &str = "is a table of numbers, not the plan of a campaign";
 
 /// A plan as it is written.
 #[derive(Debug, Deserialize)]
@@ -138,10 +147,19 @@ impl CampaignPlan {
                 format!("must be a regular file of at most {LARGEST_FILE} bytes"),
             ));
         };
-        let text = String::from_utf8(bytes).map_err(|_| syntax(String::new(), "is not UTF-8 text".into()))?;
-        let written: Written = toml::from_str(&text).map_err(|e| {
+        let text = hints::as_text(&bytes).map_err(|problem| syntax(String::new(), problem))?;
+        let written: Written = toml::from_str(text).map_err(|e| {
             let line = e.span().map(|span| text[..span.start.min(text.len())].matches('\n').count() + 1);
-            syntax(line.map_or(String::new(), |n| format!(", line {n}")), e.message().to_string())
+            let hint = line.and_then(|line| hints::of_line(text, line));
+            match toml::from_str::<toml::Table>(text) {
+                Ok(table) if OF_A_SCENE.iter().any(|key| table.contains_key(*key)) => {
+                    return syntax(String::new(), SCENE.into());
+                }
+                Err(_) if hints::is_table(text) => return syntax(String::new(), NO_PLAN.into()),
+                _ => {}
+            }
+            let problem = hint.unwrap_or_else(|| e.message().to_string());
+            syntax(line.map_or(String::new(), |n| format!(", line {n}")), problem)
         })?;
         Self::expand(file.clone(), path, written)
     }

@@ -48,6 +48,16 @@ fn first_name(path: &Path) -> String {
     kept().unwrap_or_else(|| path.display().to_string())
 }
 
+/// What there is to say of a path in which a backslash, or what one and the letter after it become in double
+/// quotes, stands for a folder.
+fn of_windows(path: &Path) -> &'static str {
+    let text = path.to_string_lossy();
+    match text.contains(['\\', '\t', '\n', '\r', '\u{8}', '\u{c}', '\u{1b}']) {
+        true => " (write / between folders, not a backslash)",
+        false => "",
+    }
+}
+
 /// Reads the files of a scene, and remembers them.
 #[derive(Default)]
 pub struct Files(pub Vec<Input>);
@@ -62,10 +72,11 @@ impl Files {
         largest: u64,
     ) -> Result<(String, &[u8]), CaseError> {
         let file = path.display().to_string();
-        let io = |source| SceneError::File { file: file.clone(), source };
+        let named = format!("{file}, named by {setting}{}", of_windows(path));
+        let io = |source| SceneError::File { file: named.clone(), source };
         let Some(bytes) = read_regular(path, largest).map_err(io)? else {
             let problem = format!("must be a regular file of at most {largest} bytes");
-            return Err(SceneError::Syntax { file, at: String::new(), problem }.into());
+            return Err(SceneError::Syntax { file: named, at: String::new(), problem }.into());
         };
         self.keep(setting, path, kept_as, bytes);
         Ok((file, &self.0[self.0.len() - 1].bytes))

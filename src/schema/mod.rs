@@ -8,6 +8,8 @@
 //! Which settings exclude each other is declared by [`Group`]s.
 
 mod hidden;
+pub mod hints;
+mod nearest;
 mod settings;
 mod value;
 
