@@ -32,9 +32,10 @@ impl Machine {
         Self {
             host: name.nodename().to_string_lossy().into_owned(),
             description: format!(
-                "{} {}, {model}, {cores} cores, {total} of memory",
+                "{} {}, {model}, {cores} {}, {total} of memory",
                 name.sysname().to_string_lossy(),
-                name.machine().to_string_lossy()
+                name.machine().to_string_lossy(),
+                if cores == 1 { "core" } else { "cores" }
             ),
             // Without word from the system, nothing is refused. A cluster's job has its share of the
             // machine, and so has a container.
