@@ -65,7 +65,7 @@ fn main() {
         let ([resume, cpu], state) = timed(|| {
             let saved = newest(folder.path(), "x", &Identity::default()).unwrap().0.unwrap();
             let mut state = fresh();
-            state.restore(&network, &saved).unwrap();
+            state.restore(&network, &supply, &saved).unwrap();
             state
         });
         assert_eq!((state.tally.moving, state.increment), (moving, increment));

@@ -13,7 +13,7 @@ use crate::run::checkpoints::Checkpoints;
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::shown;
 use crate::run::prepare::Draft;
-use crate::store::{Folder, StoreError, read_whole};
+use crate::store::{Folder, StoreError, read_regular, read_whole};
 
 /// A finished case.
 pub(super) const LINE: &str = "case.json";
@@ -23,6 +23,9 @@ pub(super) const CASES: &str = "cases";
 
 /// Why a case could not be walked, where it was tried last.
 pub(super) const PROBLEM: &str = "problem.txt";
+
+/// A larger list of tasks is none (bytes).
+const LARGEST_LIST: u64 = 1 << 26;
 
 /// A message names no more cases than this.
 const NAMED: usize = 30;
@@ -89,8 +92,10 @@ pub fn wanted<'a>(plan: &'a CampaignPlan, part: &CasePart) -> Result<Vec<&'a Pla
         },
         CasePart::Task(file, number) => {
             let shown = shown(file);
-            let text =
-                std::fs::read_to_string(file).map_err(|e| RunError::refused(format!("{shown}: {e}")))?;
+            let refused = |problem: &dyn std::fmt::Display| RunError::Refused(format!("{shown}: {problem}"));
+            let bytes = read_regular(file, LARGEST_LIST).map_err(|error| refused(&error))?;
+            let bytes = bytes.ok_or_else(|| refused(&"is no list of tasks that --slurm wrote"))?;
+            let text = String::from_utf8_lossy(&bytes);
             let names = tasks::read(&shown, &text, *number).map_err(RunError::refused)?;
             let find = |name: &&str| {
                 plan.case(name).ok_or_else(|| {

@@ -8,6 +8,7 @@
 //!   take.
 
 pub mod cases;
+mod changed;
 pub mod cluster;
 pub mod ledger;
 pub mod plan;

@@ -26,18 +26,28 @@
 //! that name alone: a case that is added, left out or changed changes no other.
 
 use std::collections::BTreeMap;
-use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
 use crate::scene::{Origin, Scene, SceneError};
+use crate::schema::{hints, is_hidden};
+use crate::store::read_regular;
 
 /// More cases than this are a mistake.
 const MOST_CASES: usize = 100_000;
 
 /// A larger plan is refused (bytes).
 const LARGEST_FILE: u64 = 1 << 20;
+
+/// What a scene has at its top, and a plan only inside `set`.
+const OF_A_SCENE: [&str; 9] =
+    ["filter", "base", "network", "packing", "record", "stop", "replicates", "runs", "engine"];
+
+const SCENE: &str = "is a scene, not the plan of a campaign; walk it by `voidwalk run`, or name it in a plan by \
+    scene = \"FILE\" above its [[factor]] and [[case]]; settings of all cases go under [set]";
+
+const NO_PLAN: &str = "is a table of numbers, not the plan of a campaign";
 
 /// A plan as it is written.
 #[derive(Debug, Deserialize)]
@@ -130,19 +140,26 @@ impl CampaignPlan {
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         let file = path.display().to_string();
         let io = |source| SceneError::File { file: file.clone(), source };
-        let meta = std::fs::metadata(path).map_err(io)?;
         let syntax = |at: String, problem: String| SceneError::Syntax { file: file.clone(), at, problem };
-        if !meta.is_file() || meta.len() > LARGEST_FILE {
+        let Some(bytes) = read_regular(path, LARGEST_FILE).map_err(io)? else {
             return Err(syntax(
                 String::new(),
                 format!("must be a regular file of at most {LARGEST_FILE} bytes"),
             ));
-        }
-        let bytes = std::fs::read(path).map_err(io)?;
-        let text = String::from_utf8(bytes).map_err(|_| syntax(String::new(), "is not UTF-8 text".into()))?;
-        let written: Written = toml::from_str(&text).map_err(|e| {
+        };
+        let text = hints::as_text(&bytes).map_err(|problem| syntax(String::new(), problem))?;
+        let written: Written = toml::from_str(text).map_err(|e| {
             let line = e.span().map(|span| text[..span.start.min(text.len())].matches('\n').count() + 1);
-            syntax(line.map_or(String::new(), |n| format!(", line {n}")), e.message().to_string())
+            let hint = line.and_then(|line| hints::of_line(text, line));
+            match toml::from_str::<toml::Table>(text) {
+                Ok(table) if OF_A_SCENE.iter().any(|key| table.contains_key(*key)) => {
+                    return syntax(String::new(), SCENE.into());
+                }
+                Err(_) if hints::is_table(text) => return syntax(String::new(), NO_PLAN.into()),
+                _ => {}
+            }
+            let problem = hint.unwrap_or_else(|| e.message().to_string());
+            syntax(line.map_or(String::new(), |n| format!(", line {n}")), problem)
         })?;
         Self::expand(file.clone(), path, written)
     }
@@ -270,16 +287,12 @@ fn folder_name(name: &str) -> String {
 
 /// A name that can stand in a file name, a table and a page.
 fn check_name(what: &str, name: &str) -> Result<(), String> {
-    // Characters without a width, of other line ends, and those that turn the direction of writing.
-    const HIDDEN: [RangeInclusive<char>; 4] =
-        ['\u{200b}'..='\u{200f}', '\u{2028}'..='\u{202e}', '\u{2060}'..='\u{2069}', '\u{feff}'..='\u{feff}'];
-    let hidden = |c: char| HIDDEN.iter().any(|range| range.contains(&c));
-    let bad = |c: char| c.is_control() || hidden(c) || "=,/\\\"'".contains(c);
+    let bad = |c: char| is_hidden(c) || "=,/\\\"'".contains(c);
     if name.is_empty() || name.len() > 100 || name.starts_with('.') || name.chars().any(bad) {
         return Err(format!(
             "{what} name `{}` is not allowed; 1 to 100 characters, none of = , / \\ and quotes, no dot in \
              front",
-            name.chars().filter(|c| !c.is_control()).take(100).collect::<String>()
+            name.chars().filter(|c| !is_hidden(*c)).take(100).collect::<String>()
         ));
     }
     Ok(())

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::cases::{CASES, CasePart, CaseState, Drafts, FailedCase, PreparedCase, named, wanted};
+use super::changed;
 use super::ledger;
 use super::plan::CampaignPlan;
 use super::run_cases::{CampaignCallbacks, CaseRunner};
@@ -51,14 +52,24 @@ impl Default for CampaignOptions {
 }
 
 impl CampaignOptions {
-    /// Folder of the packings.
-    pub(super) fn packings(&self) -> PathBuf {
-        self.packings.clone().unwrap_or_else(|| self.out.join("packings"))
+    /// Folder of the packings; the campaign's own is no link to one elsewhere, which then would be written to.
+    pub(super) fn packings(&self) -> Result<PathBuf, RunError> {
+        if let Some(packings) = &self.packings {
+            return Ok(packings.clone());
+        }
+        let path = self.out.join("packings");
+        match path.symlink_metadata() {
+            Ok(meta) if meta.is_symlink() => {
+                let problem = "is a symbolic link, which is not followed; name that folder by --packings";
+                Err(RunError::Refused(format!("{}: {problem}", shown(&path))))
+            }
+            _ => Ok(path),
+        }
     }
 
     /// The filter of a packing that is there.
     pub(super) fn packed(&self, plan: &PackingPlan) -> Result<Option<PackedFilter>, RunError> {
-        Ok(PackedFilter::read(&self.packings().join(plan.folder_name()), plan)?)
+        Ok(PackedFilter::read(&self.packings()?.join(plan.folder_name()), plan)?)
     }
 }
 
@@ -114,7 +125,7 @@ pub fn run(
     let pool = threads(options.threads)?;
     let threads = pool.current_num_threads();
     let folder = claim(&options.out, FolderKind::Campaign, false)?;
-    let (out, packings) = (folder.path(), options.packings());
+    let (out, packings) = (folder.path(), options.packings()?);
     let prepare = PrepareOptions { packings, memory: options.memory, threads: options.threads };
     let limits = prepare.limits(out);
     let (cases, mut failed) = drafts.finish(
@@ -123,6 +134,9 @@ pub fn run(
     )?;
     if cases.is_empty() && drafts.packings().is_empty() {
         return Err(RunError::Refused(named(&failed)));
+    }
+    if options.part == CasePart::All {
+        changed::sentences(plan, &cases, out).iter().for_each(|sentence| (callbacks.run.warn)(sentence));
     }
     (callbacks.on_cases)(cases.len(), cases.iter().filter(|case| case.line(out).is_some()).count());
     let runner = CaseRunner {
@@ -212,5 +226,6 @@ pub fn make_packing(
     let packing = found.ok_or_else(|| {
         RunError::refused(format!("there is no packing {number}: the plan needs {}", all.len()))
     })?;
-    on_threads(options.threads, || provide(packing, &options.packings(), callbacks)).map(drop)
+    let packings = options.packings()?;
+    on_threads(options.threads, || provide(packing, &packings, callbacks)).map(drop)
 }

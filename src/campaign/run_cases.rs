@@ -231,11 +231,16 @@ impl CaseRunner<'_> {
             }
             // Of what the case was before the plan was changed, or corrupt: it is walked from its start.
             Err(error @ RunError::Checkpoint(_)) if error.exit() == Exit::Refused => {
+                let begun = "its checkpoints are left, and it is walked from its start";
+                (self.callbacks.run.warn)(&format!("case {name}: {error}; {begun}"));
                 checkpoints.clear()?;
                 return Ok(false);
             }
             other => other?,
         };
+        for problem in checkpoints.passed_over() {
+            (self.callbacks.run.warn)(&format!("case {name}: {problem}; the checkpoint before it was taken"));
+        }
         if self.is_done(prepared) {
             checkpoints.clear()?;
             return Ok(false);

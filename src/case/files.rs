@@ -10,6 +10,7 @@ use crate::gradation::Gradation;
 use crate::network::Network;
 use crate::scene::CurveSource;
 use crate::scene::SceneError;
+use crate::store::read_regular;
 
 /// A file that was read, and the name under which a run folder keeps it.
 #[derive(Clone, Debug)]
@@ -40,11 +41,21 @@ pub const INPUT_NAMES: &str = "inputs/names.json";
 fn first_name(path: &Path) -> String {
     let kept = || {
         let folder = path.parent().filter(|folder| folder.ends_with(INPUTS))?;
-        let text = std::fs::read(folder.parent()?.join(INPUT_NAMES)).ok()?;
+        let text = read_regular(&folder.parent()?.join(INPUT_NAMES), LARGEST_TABLE).ok()??;
         let mut names: BTreeMap<String, String> = serde_json::from_slice(&text).ok()?;
         names.remove(path.file_name()?.to_str()?)
     };
     kept().unwrap_or_else(|| path.display().to_string())
+}
+
+/// What there is to say of a path in which a backslash, or what one and the letter after it become in double
+/// quotes, stands for a folder.
+fn of_windows(path: &Path) -> &'static str {
+    let text = path.to_string_lossy();
+    match text.contains(['\\', '\t', '\n', '\r', '\u{8}', '\u{c}', '\u{1b}']) {
+        true => " (write / between folders, not a backslash)",
+        false => "",
+    }
 }
 
 /// Reads the files of a scene, and remembers them.
@@ -61,13 +72,12 @@ impl Files {
         largest: u64,
     ) -> Result<(String, &[u8]), CaseError> {
         let file = path.display().to_string();
-        let io = |source| SceneError::File { file: file.clone(), source };
-        let meta = std::fs::metadata(path).map_err(io)?;
-        if !meta.is_file() || meta.len() > largest {
+        let named = format!("{file}, named by {setting}{}", of_windows(path));
+        let io = |source| SceneError::File { file: named.clone(), source };
+        let Some(bytes) = read_regular(path, largest).map_err(io)? else {
             let problem = format!("must be a regular file of at most {largest} bytes");
-            return Err(SceneError::Syntax { file, at: String::new(), problem }.into());
-        }
-        let bytes = std::fs::read(path).map_err(io)?;
+            return Err(SceneError::Syntax { file: named, at: String::new(), problem }.into());
+        };
         self.keep(setting, path, kept_as, bytes);
         Ok((file, &self.0[self.0.len() - 1].bytes))
     }

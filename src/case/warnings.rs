@@ -1,6 +1,12 @@
 //! Where a case leaves the range in which the model was checked, and what else a reader must know.
 
-use super::Case;
+use super::{Case, replicate_seed};
+
+/// More moves than these of a particle that nothing stops are worth a word.
+const MANY_MOVES: f64 = 1e5;
+
+/// Constrictions that are looked at to find that out, each as often as it is looked at.
+const LOOKED_AT: u64 = 50_000_000;
 
 impl Case {
     /// Where the inputs leave the range in which the model was checked, and what else a reader must know.
@@ -64,6 +70,29 @@ impl Case {
                 self.n_base
             ));
         }
+        if let Some(moves) = self.moves_to_an_end().filter(|moves| *moves > MANY_MOVES) {
+            let about = if moves < 1e15 { format!("about {moves:.1e}") } else { "more than 1e15".into() };
+            warnings.push(format!(
+                "a base particle that nothing stops makes {about} moves before it leaves: the network has \
+                 loops whose way out is very narrow, and a walk makes one move an increment, so it may not \
+                 end in a lifetime. Give those ways out a diameter of 0, so that what circles counts as \
+                 trapped, or a wider one"
+            ));
+        }
         warnings
+    }
+
+    /// About how many moves a particle makes that nothing stops, where loops may hold it for long: on a given
+    /// network, or where one constriction is very much wider than another.
+    fn moves_to_an_end(&self) -> Option<f64> {
+        let widest = self.curve.largest() / self.curve.smallest();
+        match &self.network_file {
+            Some(network) => Some(network.moves_to_an_end(LOOKED_AT)),
+            None if widest * widest > MANY_MOVES => {
+                let network = self.network(replicate_seed(self.scene.walk.seed, 1)).ok()?;
+                Some(network.moves_to_an_end(LOOKED_AT))
+            }
+            None => None,
+        }
     }
 }

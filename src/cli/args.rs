@@ -1,5 +1,6 @@
 //! Arguments and what they mean to a user.
 
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -56,7 +57,7 @@ pub enum Command {
 #[derive(Debug, Args)]
 pub struct WalkArgs {
     /// Worker threads [default: one per core]; they change no bit of the result
-    #[arg(long, value_name = "N", value_parser = threads)]
+    #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,
     /// Save the walks this often, as 10min or 50increments, so that a run that is killed continues from
     /// there; a stop (Ctrl-C, SIGTERM) always saves them
@@ -73,24 +74,24 @@ pub struct SceneArgs {
     /// Scene (TOML); without one the built-in scene: the loose Cu 1.5 filter, a base with Cu 1.5 at Dc5
     pub scene: Option<PathBuf>,
     /// Replace a setting, as in --set base.cu=3; can be given again
-    #[arg(long = "set", value_name = "KEY=VALUE")]
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
     pub settings: Vec<String>,
     /// Seed; the same seed gives the same bits
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
     pub seed: Option<u64>,
     /// Add replicates until the 95 % interval of the eroded mass reaches no further than this to either side,
     /// as 0.1pp (percentage points)
-    #[arg(long, value_name = "ERROR", value_parser = |text: &str| number_with(text, "pp"))]
+    #[arg(long, value_name = "ERROR", value_parser = target_error, allow_hyphen_values = true)]
     pub target_error: Option<f64>,
     /// Add replicates until the verdict is right with this probability, as 99.9%
-    #[arg(long, value_name = "PERCENT", value_parser = |text: &str| number_with(text, "%"))]
+    #[arg(long, value_name = "PERCENT", value_parser = decide, allow_hyphen_values = true)]
     pub decide: Option<f64>,
     /// Folder in which packings that scenes ask for are kept, so that each is made once
     #[arg(long, value_name = "DIR", default_value = "voidwalk-packings")]
     pub packings: PathBuf,
     /// Memory that the walks may take, as 4GB: base particles that do not fit live in files in the run
     /// folder, mapped into memory [default: 80 % of what is available]; it changes no bit of the result
-    #[arg(long, value_name = "SIZE", value_parser = bytes_from_words)]
+    #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
     pub memory: Option<u64>,
     /// Print JSON
     #[arg(long)]
@@ -122,7 +123,7 @@ pub struct ResumeArgs {
     pub folder: PathBuf,
     /// Memory that the walks may take, as 4GB: base particles that do not fit live in files in the run
     /// folder, mapped into memory [default: 80 % of what is available]; it changes no bit of the result
-    #[arg(long, value_name = "SIZE", value_parser = bytes_from_words)]
+    #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
     pub memory: Option<u64>,
     /// How it is walked.
     #[command(flatten)]
@@ -170,7 +171,7 @@ pub struct CampaignArgs {
     pub packings: Option<PathBuf>,
     /// Memory that the walks may take, as 4GB: base particles that do not fit live in files in the run
     /// folder, mapped into memory [default: 80 % of what is available]; it changes no bit of the result
-    #[arg(long, value_name = "SIZE", value_parser = bytes_from_words)]
+    #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
     pub memory: Option<u64>,
     /// How it is walked.
     #[command(flatten)]
@@ -184,10 +185,10 @@ pub struct PackArgs {
     /// wanted. A scene will do
     pub filter: PathBuf,
     /// Replace a setting, as in --set packing.grains=20000; can be given again
-    #[arg(long = "set", value_name = "KEY=VALUE")]
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
     pub settings: Vec<String>,
     /// Seed of the grains' sizes and places
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
     pub seed: Option<u64>,
     /// Folder for the packing: new, empty, or with a packing that was stopped, which continues [default: one
     /// of its own in voidwalk-packings]
@@ -197,7 +198,7 @@ pub struct PackArgs {
     #[arg(long)]
     pub overwrite: bool,
     /// Worker threads [default: one per core]; they change no bit of the result
-    #[arg(long, value_name = "N", value_parser = threads)]
+    #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,
     /// Save the state this often, so that a packing that is killed continues from there
     #[arg(long, value_name = "TIME", default_value = "1min", value_parser = time)]
@@ -242,7 +243,7 @@ pub struct PercolationArgs {
           value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub realisations: u64,
     /// Seed; the same seed gives the same bits
-    #[arg(long, value_name = "S", default_value_t = 1)]
+    #[arg(long, value_name = "S", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub seed: u64,
     /// Folder for the results
     #[arg(long, value_name = "DIR", default_value = "voidwalk-percolation")]
@@ -251,7 +252,7 @@ pub struct PercolationArgs {
     #[arg(long)]
     pub overwrite: bool,
     /// Worker threads [default: one per core]; they change no bit of the result
-    #[arg(long, value_name = "N", value_parser = threads)]
+    #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,
     /// Print percolation.json
     #[arg(long)]
@@ -278,17 +279,30 @@ pub struct PrecisionArgs {
     #[arg(long, value_name = "TIME", default_value = "4min", value_parser = time)]
     pub budget: Duration,
     /// Runs side by side [default: one per core]; they change no bit of the result
-    #[arg(long, value_name = "N", value_parser = threads)]
+    #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,
     /// No progress and no summary
     #[arg(long, short)]
     pub quiet: bool,
 }
 
+/// A setting and its value.
+fn assignment(text: &str) -> Result<String, String> {
+    match text.split_once('=') {
+        Some((name, _)) if !name.trim().is_empty() => Ok(text.to_owned()),
+        _ => Err("write KEY=VALUE, as --set filter.cu=3".into()),
+    }
+}
+
+/// A seed.
+fn seed(text: &str) -> Result<u64, String> {
+    text.trim().parse().map_err(|_| format!("write a whole number from 0 to {}", u64::MAX))
+}
+
 /// A number of threads.
 fn threads(text: &str) -> Result<usize, String> {
     let number = text.parse().ok().filter(|number| (1..=1024).contains(number));
-    number.ok_or_else(|| format!("{text} is not in 1..=1024"))
+    number.ok_or_else(|| "write a whole number from 1 to 1024".into())
 }
 
 /// A span of time.
@@ -296,24 +310,39 @@ fn time(text: &str) -> Result<Duration, String> {
     humantime::parse_duration(text).map_err(|e| format!("{e}; write a time as 30s, 4min or 1h"))
 }
 
-/// A number with its unit.
-fn number_with(text: &str, unit: &str) -> Result<f64, String> {
+/// How far the interval may reach, in percentage points.
+fn target_error(text: &str) -> Result<f64, String> {
+    let allowed = "write percentage points above 0 and below 100 with their unit, as 0.5pp";
+    number_with(text, "pp", f64::MIN_POSITIVE..=99.999_999, allowed)
+}
+
+/// The probability with which the verdict is to be right, in percent.
+fn decide(text: &str) -> Result<f64, String> {
+    let allowed = "write a probability from 50% to 99.999% with its sign, as 99.9%";
+    number_with(text, "%", 50.0..=99.999, allowed)
+}
+
+/// A number of a range, with its unit.
+fn number_with(text: &str, unit: &str, range: RangeInclusive<f64>, allowed: &str) -> Result<f64, String> {
     let number = text.trim().strip_suffix(unit).and_then(|digits| digits.trim().parse::<f64>().ok());
-    number
-        .filter(|n| n.is_finite())
-        .ok_or_else(|| format!("write a number with its unit, {unit}, as 0.5{unit}"))
+    number.filter(|n| range.contains(n)).ok_or_else(|| allowed.to_owned())
 }
 
 #[cfg(test)]
 mod tests {
-    use super::number_with;
+    use super::{assignment, decide, seed, target_error};
 
     #[test]
-    fn numbers_carry_their_unit() {
-        assert_eq!(number_with("0.1pp", "pp"), Ok(0.1));
-        assert_eq!(number_with(" 99.9 %", "%"), Ok(99.9));
-        for text in ["0.1", "pp", "nanpp", "0.1%", "1e400pp"] {
-            assert!(number_with(text, "pp").is_err(), "{text}");
+    fn numbers_carry_their_unit_and_lie_in_their_range() {
+        assert_eq!(target_error("0.1pp"), Ok(0.1));
+        assert_eq!(decide(" 99.9 %"), Ok(99.9));
+        for text in ["0.1", "pp", "nanpp", "0.1%", "1e400pp", "0pp", "-1pp", "100pp"] {
+            assert!(target_error(text).unwrap_err().contains("as 0.5pp"), "{text}");
         }
+        for text in ["99", "150%", "100%", "0.999", "%", "nan%", "-99%"] {
+            assert!(decide(text).unwrap_err().contains("from 50% to 99.999%"), "{text}");
+        }
+        assert!(seed("-1").is_err() && seed("18446744073709551615") == Ok(u64::MAX));
+        assert!(assignment("filter.cu").is_err() && assignment("=3").is_err() && assignment("a=").is_ok());
     }
 }

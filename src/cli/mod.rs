@@ -25,6 +25,7 @@ use args::{Arguments, Command};
 
 /// Runs the program with the arguments of this process.
 pub fn main() -> ExitCode {
+    progress::outlive_large_files();
     let done = match Arguments::parse().command {
         Command::Run(args) => run::run(&args),
         Command::Resume(args) => run::resume(&args),
@@ -45,7 +46,8 @@ pub fn main() -> ExitCode {
         Exit::Failed => "error",
     };
     // Messages name files and values that may hold anything.
-    let lines: Vec<String> = error.to_string().lines().map(print::plain).collect();
+    let text = error.advice().map_or_else(|| error.to_string(), |advice| format!("{error}\n{advice}"));
+    let lines: Vec<String> = text.lines().map(print::plain).collect();
     print::to_stderr(&format!("{kind}: {}\n", lines.join("\n")));
     ExitCode::from(exit.code())
 }

@@ -42,6 +42,11 @@ pub fn count(n: u64) -> String {
     groups.join(" ")
 }
 
+/// A count and what is counted, one or many: `1 replicate`.
+pub fn counted(n: u64, one: &str, many: &str) -> String {
+    format!("{} {}", count(n), if n == 1 { one } else { many })
+}
+
 /// A percentage with digits that mean something.
 pub fn percent(fraction: f64) -> String {
     let p = 100.0 * fraction;

@@ -40,19 +40,37 @@ pub fn unfollowed() -> Callbacks<'static> {
     }
 }
 
-/// A flag that the first SIGINT or SIGTERM sets; a SIGINT after that ends the program at once.
+/// A flag that the first signal to end sets: SIGINT, SIGTERM, SIGHUP where the terminal is closed (but not
+/// under `nohup`), or SIGXCPU where the processor time is used up. A SIGINT after that ends the program at
+/// once.
 ///
 /// SIGTERM may come several times: a cluster's scheduler sends it to a job's script, which hands it on, and
 /// to all of the job's processes.
 fn stop_on_signals() -> Result<Arc<AtomicBool>, RunError> {
-    use signal_hook::consts::{SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXCPU};
     let stop = Arc::new(AtomicBool::new(false));
     signal_hook::flag::register_conditional_shutdown(SIGINT, 1, Arc::clone(&stop))
         .map_err(RunError::failed)?;
-    for signal in [SIGINT, SIGTERM] {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = |signal| signal == SIGHUP && is_ignored(&status, signal);
+    for signal in [SIGINT, SIGTERM, SIGHUP, SIGXCPU].into_iter().filter(|signal| !ignored(*signal)) {
         signal_hook::flag::register(signal, Arc::clone(&stop)).map_err(RunError::failed)?;
     }
     Ok(stop)
+}
+
+/// Whether whoever started the process had it ignore a signal, by `/proc/self/status`.
+fn is_ignored(status: &str, signal: i32) -> bool {
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    mask.is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
+}
+
+/// A write beyond the largest file that is allowed fails then with an error, and does not end the program.
+pub fn outlive_large_files() {
+    let noticed = Arc::new(AtomicBool::new(false));
+    // Without it, the program ends as before.
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, noticed);
 }
 
 /// A bar of this length on a terminal; none elsewhere.
@@ -82,6 +100,9 @@ struct Shown {
     last: Instant,
     of: Work,
 }
+
+/// Where runs take longer than this, it is said how far one is.
+const BETWEEN_INCREMENTS: Duration = Duration::from_secs(30);
 
 enum Work {
     /// Steps that it usually takes, and that were done when this start of the program began.
@@ -162,10 +183,10 @@ impl Shown {
             }
             (Work::Walk { .. }, Event::Increment { replicate, run, increment, moving }) => {
                 if let Some(bar) = &self.bar {
-                    bar.set_message(format!(
-                        "replicate {replicate}, run {run}, increment {increment}: {} moving",
-                        count(moving)
-                    ));
+                    bar.set_message(increment_line(replicate, run, increment, moving));
+                } else if self.last.elapsed() >= BETWEEN_INCREMENTS {
+                    self.last = Instant::now();
+                    to_stderr(&(increment_line(replicate, run, increment, moving) + "\n"));
                 }
             }
             (Work::Walk { runs, .. }, Event::MoreRuns { runs: more }) => {
@@ -187,6 +208,10 @@ impl Shown {
             _ => {}
         }
     }
+}
+
+fn increment_line(replicate: u64, run: u64, increment: u64, moving: u64) -> String {
+    format!("replicate {replicate}, run {run}, increment {}: {} moving", count(increment), count(moving))
 }
 
 fn packing_begun(plan: &PackingPlan) -> String {
@@ -223,4 +248,18 @@ fn packing_line(progress: &CompressionProgress, usual: u64, here: u64, seconds: 
         progress.coordination,
         progress.unbalanced,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_ignored;
+
+    #[test]
+    fn what_the_parent_ignores_is_known() {
+        let nohup = "Name:\tvoidwalk\nSigBlk:\t0000000000000000\nSigIgn:\t0000000000001001\n";
+        assert!(is_ignored(nohup, 1) && is_ignored(nohup, 13) && !is_ignored(nohup, 15));
+        for other in ["", "SigIgn:\tx\n", "SigIgn:\t0000000000000000\n"] {
+            assert!(!is_ignored(other, 1), "{other}");
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::args::{ResumeArgs, RunArgs};
-use super::print::{count, json, percent, shown, to_stdout};
+use super::print::{count, counted, json, percent, shown, to_stdout};
 use super::progress::followed;
 use crate::outcome::record::RunSummary;
 use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
@@ -62,6 +62,12 @@ fn summary(run: &FinishedRun) -> String {
     for run in &outcome.summary {
         line(format!("  {}", run_line(run)));
     }
+    if outcome.replicates.len() == 1 {
+        line(
+            "  one replicate: the scatter is unknown; walk more before relying on this (replicates = 10)"
+                .into(),
+        );
+    }
     if let Some(sentence) = outcome.stopping.as_ref().and_then(|stopping| stopping.sentence.as_ref()) {
         line(format!("  {sentence}"));
     }
@@ -77,8 +83,8 @@ fn summary(run: &FinishedRun) -> String {
         line(format!("  modelled filter thickness: {thickness:.1} {unit} along the flow"));
     }
     line(format!(
-        "  {} replicates of {} base particles, {} voids; D15F/D85B {:.2}, D15F/D95B {:.2}, {}",
-        outcome.replicates.len(),
+        "  {} of {} base particles, {} voids; D15F/D85B {:.2}, D15F/D95B {:.2}, {}",
+        counted(outcome.replicates.len() as u64, "replicate", "replicates"),
         count(outcome.n_base),
         count(inputs.network.voids),
         outcome.ratios.d15f_over_d85b,

@@ -6,7 +6,7 @@
 //! A row is the header when it is the first and none of its fields is a number.
 
 use super::error::{NumberError, Position, TableError, shortened};
-use std::io::Read;
+use crate::store::read_regular;
 use std::path::Path;
 
 /// Smallest size that an input may hold (mm).
@@ -73,10 +73,13 @@ impl Table {
         if std::fs::metadata(path).map_err(read)?.is_dir() {
             return Err(TableError::Folder { file });
         }
-        let mut bytes = Vec::new();
-        let handle = std::fs::File::open(path).map_err(read)?;
-        handle.take(FILE_LIMIT_BYTES + 1).read_to_end(&mut bytes).map_err(read)?;
-        Table::parse(&file, &bytes)
+        match read_regular(path, FILE_LIMIT_BYTES).map_err(read)? {
+            Some(bytes) => Table::parse(&file, &bytes),
+            None if std::fs::metadata(path).is_ok_and(|meta| !meta.is_file()) => {
+                Err(read(std::io::Error::other("is no regular file")))
+            }
+            None => Err(TableError::TooLarge { file, limit: FILE_LIMIT_BYTES }),
+        }
     }
 
     /// The table in `bytes`, called `file` in messages.

@@ -13,7 +13,7 @@
 
 use super::grains::{Cell, Packing};
 use crate::gradation::{Position, shortened};
-use std::io::Read;
+use crate::store::read_regular;
 use std::path::Path;
 
 /// Largest packing file that is read, in bytes.
@@ -89,13 +89,13 @@ impl Packing {
         if std::fs::metadata(path).map_err(failed)?.is_dir() {
             return Err(ImportError::Folder { file });
         }
-        let mut bytes = Vec::new();
-        let handle = std::fs::File::open(path).map_err(failed)?;
-        handle.take(PACKING_FILE_LIMIT_BYTES + 1).read_to_end(&mut bytes).map_err(failed)?;
-        if bytes.len() as u64 > PACKING_FILE_LIMIT_BYTES {
-            return Err(ImportError::TooLarge { file, limit: PACKING_FILE_LIMIT_BYTES });
+        match read_regular(path, PACKING_FILE_LIMIT_BYTES).map_err(failed)? {
+            Some(bytes) => Packing::parse(&file, &bytes),
+            None if std::fs::metadata(path).is_ok_and(|meta| !meta.is_file()) => {
+                Err(failed(std::io::Error::other("is no regular file")))
+            }
+            None => Err(ImportError::TooLarge { file, limit: PACKING_FILE_LIMIT_BYTES }),
         }
-        Packing::parse(&file, &bytes)
     }
 
     /// [`Packing::read`] on the content of a file, called `name` in messages.

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::error::RunError;
+use super::machine::number_of_threads;
 use super::prepare::{Draft, PrepareOptions};
 use super::replicates::{left_out_of_first_run, runs_to_walk};
 use crate::case::{CaseError, PackedFilter, PackingPlan};
@@ -94,8 +95,7 @@ pub fn check(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError> 
         }
     }
     let here = Path::new(".");
-    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = options.threads.unwrap_or_else(cores) as u64;
+    let threads = number_of_threads(options.threads) as u64;
     let refusal = case.place(&options.limits(here), threads, here).err();
     let mut left_out = case.left_out();
     if refusal.is_none() {
@@ -110,9 +110,9 @@ pub fn check(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError> 
         one_by_one: case.one_by_one(case.n_base),
         runs_to_walk: runs_to_walk(&case),
         increments: case.increments(),
-        bytes: case.bytes(case.n_base),
+        bytes: case.bytes(case.n_base, threads),
         bytes_allowed: case.memory,
-        memory: case.memory_in_words(),
+        memory: case.memory_in_words(threads),
         core_seconds: case.core_seconds(),
         particles_on_disk: case.placement != Placement::Memory,
         ratios: case.ratios(),

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::error::RunError;
-use super::folder::{FolderKind, claim};
+use super::folder::{FolderKind, claim, shown};
 use crate::constrictions::{Constrictions, DEFAULT_MERGE_OVERLAP, Summary};
 use crate::packing::Packing;
 
@@ -30,9 +30,18 @@ impl Default for ConstrictionsOptions {
 /// # Errors
 /// Grains that are refused, a folder that cannot be claimed or written.
 pub fn measure_constrictions(packing: &Path, options: &ConstrictionsOptions) -> Result<Summary, RunError> {
+    let file = shown(packing);
     let packing = Packing::read(packing)?;
-    let found = Constrictions::measure(&packing, options.merge_overlap).map_err(RunError::refused)?;
-    let summary = found.summary()?;
+    let found = Constrictions::measure(&packing, options.merge_overlap)
+        .map_err(|error| RunError::Refused(format!("{file}: {error}")))?;
+    // Those near the outside of grains without a cell are no part of the curve.
+    let summary = found.summary().map_err(|_| {
+        RunError::Refused(format!(
+            "{file}: {} grains are too few: no constriction lies between two voids inside the packing. At \
+             least 5 grains that do not lie in one plane are needed for one, some thousands for a curve",
+            packing.diameter.len()
+        ))
+    })?;
     let folder = claim(&options.out, FolderKind::Constrictions, options.overwrite)?;
     folder.write("grains.vtp", packing.to_vtp().as_bytes())?;
     for (name, text) in found.files()? {

@@ -123,6 +123,44 @@ impl RunError {
         }
     }
 
+    /// What is kept of the work, and what to do next, where the disk is what is wrong.
+    pub fn advice(&self) -> Option<&'static str> {
+        use std::io::ErrorKind::{
+            FileTooLarge, InvalidFilename, PermissionDenied, QuotaExceeded, ReadOnlyFilesystem, StorageFull,
+        };
+        let mut error: &(dyn std::error::Error + 'static) = match self {
+            Self::Claim(error) | Self::Save(error) | Self::Store(error) => error,
+            Self::Room { source, .. } => source,
+            Self::Results(error) => &**error,
+            _ => return None,
+        };
+        let kind = loop {
+            if let Some(StoreError::Io { action: "read" | "read the folder", .. }) = error.downcast_ref() {
+                return None;
+            }
+            match error.downcast_ref::<std::io::Error>() {
+                Some(error) => break error.kind(),
+                None => error = error.source()?,
+            }
+        };
+        Some(match kind {
+            StorageFull | QuotaExceeded => {
+                "what is in its folder under its own name is whole and kept; make room on that disk, then `voidwalk \
+                 resume FOLDER` continues a run, and the same command a packing or a campaign"
+            }
+            FileTooLarge => {
+                "a larger file than is allowed here (ulimit -f); what is in its folder under its own name is whole \
+                 and kept; allow larger files, then `voidwalk resume FOLDER` continues a run, and the same command a \
+                 packing or a campaign"
+            }
+            PermissionDenied | ReadOnlyFilesystem => {
+                "nothing may be written there; name a folder of your own by --out, or have somebody give you leave"
+            }
+            InvalidFilename => "name a folder with a shorter name by --out",
+            _ => return None,
+        })
+    }
+
     /// Whether the same work may succeed a little later: another process was replacing the same files.
     pub(crate) fn is_of_files(&self) -> bool {
         matches!(self, Self::Store(_) | Self::Claim(_) | Self::Format { .. } | Self::Results(_))
@@ -183,6 +221,29 @@ mod tests {
         ];
         for (error, code) in codes {
             assert_eq!(error.exit().code(), code, "{error:?}");
+        }
+    }
+
+    #[test]
+    fn a_disk_that_is_full_or_closed_has_a_way_out() {
+        let io = |kind: std::io::ErrorKind, action| StoreError::Io {
+            path: "x/y".into(),
+            action,
+            source: kind.into(),
+        };
+        use std::io::ErrorKind::{FileTooLarge, NotFound, PermissionDenied, StorageFull};
+        let advice = |error: RunError| error.advice().unwrap_or_default();
+        assert!(advice(RunError::Store(io(StorageFull, "write"))).contains("make room"));
+        assert!(advice(RunError::Save(io(FileTooLarge, "write"))).contains("ulimit"));
+        let of_page = crate::run::error::AnyError::from(io(StorageFull, "write"));
+        assert!(advice(RunError::Results(of_page)).contains("make room"));
+        assert!(advice(RunError::Claim(io(PermissionDenied, "make the folder"))).contains("--out"));
+        for other in [
+            RunError::Store(io(PermissionDenied, "read")),
+            RunError::Store(io(NotFound, "write")),
+            RunError::refused("no"),
+        ] {
+            assert_eq!(other.advice(), None);
         }
     }
 

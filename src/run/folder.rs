@@ -5,6 +5,7 @@ use std::path::Path;
 use super::checkpoints::Checkpoints;
 use super::error::RunError;
 use crate::case::RECORD;
+use crate::schema::is_hidden;
 use crate::store::{Folder, StoreError};
 
 /// The files of the checkpoint of a compression that is not finished.
@@ -141,7 +142,7 @@ fn no_locks(error: StoreError) -> RunError {
 
 /// A path in one line.
 pub(crate) fn shown(path: &Path) -> String {
-    path.display().to_string().chars().map(|c| if c.is_control() { '?' } else { c }).collect()
+    path.display().to_string().chars().map(|c| if is_hidden(c) { '?' } else { c }).collect()
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! What machine a case runs on, on how many threads, and how much memory it may use.
 
 use super::allocation::Allocation;
+use super::cgroup;
 use super::error::RunError;
 
 /// The machine, in words.
@@ -31,14 +32,17 @@ impl Machine {
         Self {
             host: name.nodename().to_string_lossy().into_owned(),
             description: format!(
-                "{} {}, {model}, {cores} cores, {total} of memory",
+                "{} {}, {model}, {cores} {}, {total} of memory",
                 name.sysname().to_string_lossy(),
-                name.machine().to_string_lossy()
+                name.machine().to_string_lossy(),
+                if cores == 1 { "core" } else { "cores" }
             ),
-            // Without word from the system, nothing is refused. A cluster's job has its share of the machine.
+            // Without word from the system, nothing is refused. A cluster's job has its share of the
+            // machine, and so has a container.
             available: kib("MemAvailable:")
                 .map_or(u64::MAX, |k| k * 1024)
-                .min(Allocation::here().and_then(|job| job.memory).unwrap_or(u64::MAX)),
+                .min(Allocation::here().and_then(|job| job.memory).unwrap_or(u64::MAX))
+                .min(cgroup::memory_left().unwrap_or(u64::MAX)),
         }
     }
 }
@@ -49,9 +53,14 @@ impl Machine {
 /// # Errors
 /// The system gives no threads.
 pub fn threads(asked: Option<usize>) -> Result<rayon::ThreadPool, RunError> {
+    Ok(rayon::ThreadPoolBuilder::new().num_threads(number_of_threads(asked)).build()?)
+}
+
+/// How many these are.
+pub fn number_of_threads(asked: Option<usize>) -> usize {
     let allocated = || Allocation::here().and_then(|job| job.threads());
-    let number = asked.or_else(allocated).unwrap_or(0);
-    Ok(rayon::ThreadPoolBuilder::new().num_threads(number).build()?)
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+    asked.or_else(allocated).unwrap_or_else(cores)
 }
 
 /// Does some work on such threads.

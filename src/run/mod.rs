@@ -11,7 +11,8 @@
 
 pub mod allocation;
 pub mod callbacks;
-pub mod check;
+pub mod cgroup;
+mod check;
 pub mod checkpoints;
 pub mod constrictions;
 pub mod cost;

@@ -218,7 +218,7 @@ impl RunContext<'_> {
                     file: saved.path().to_owned(),
                 }));
             }
-            state.restore(network, &saved).map_err(RunError::Checkpoint)?;
+            state.restore(network, &supply, &saved).map_err(RunError::Checkpoint)?;
         }
         if state.finished {
             return Ok(state);

@@ -132,9 +132,7 @@ impl Scene {
     }
 
     fn assigned(mut s: GivenSettings, assignments: &[String]) -> Result<Self, SceneError> {
-        for assignment in assignments {
-            s.set(assignment, &NAMES)?;
-        }
+        s.set_together(assignments, &NAMES, &Origin::CommandLine)?;
         Self::of(&s)
     }
 
@@ -161,9 +159,7 @@ impl Scene {
     /// As [`Scene::read`], or neither density nor friction is given.
     pub fn read_packing(path: &Path, assignments: &[String]) -> Result<PackingSpec, SceneError> {
         let mut s = GivenSettings::read(path, &NAMES)?;
-        for assignment in assignments {
-            s.set(assignment, &NAMES)?;
-        }
+        s.set_together(assignments, &NAMES, &Origin::CommandLine)?;
         s.check_groups(groups::GROUPS)?;
         let (mut filter, packing) = (Filter::read(&s)?, packing_keys(&s)?);
         filter.fill_in();
@@ -278,18 +274,49 @@ mod tests {
         assert_eq!(base(&["base.single_mm=0.2"]), BaseGradation::Single(0.2));
         assert_eq!(base(&["base.sieve=b.csv"]), BaseGradation::Sieve("b.csv".into(), None));
         assert_eq!(
-            base(&["base.single_mm=0.2", "base.cu=3", "base.d15f_over_d85b=6.5"]),
+            base(&["base.cu=3", "base.d15f_over_d85b=6.5"]),
             BaseGradation::Linear { cu: 3.0, d85: D85::Ratio(6.5) }
         );
         assert_eq!(built_in(&["base.n_base=2e8"]).unwrap().base.amount(), Amount::Number(200_000_000));
         let network = |set: &[&str]| built_in(set).unwrap().network.source();
         assert_eq!(network(&["network.file=n.csv"]), NetworkSource::File("n.csv".into()));
         let table_3 = NetworkSource::Connected([8, 40, 60], Connectivity::table_3());
-        assert_eq!(network(&["network.file=n.csv", "network.connectivity=table3", "network.nx=8"]), table_3);
-        assert_eq!(
-            network(&["network.connectivity={6=100}", "network.file=n.csv"]),
-            NetworkSource::File("n.csv".into())
-        );
+        assert_eq!(network(&["network.connectivity=table3", "network.nx=8"]), table_3);
+    }
+
+    /// What is said in one breath does not replace itself.
+    #[test]
+    fn alternatives_that_are_set_together_are_refused() {
+        for (set, message) in [
+            (
+                ["base.single_mm=0.2", "base.cu=3"],
+                "--set: base.cu and base.single_mm both give the base: keep one",
+            ),
+            (
+                ["base.d85_mm=1", "base.d85_at_dc=5"],
+                "--set: base.d85_mm and base.d85_at_dc both set D85B: keep one",
+            ),
+            (
+                ["base.d85_at_dc=5", "base.d85_mm=1"],
+                "--set: base.d85_mm and base.d85_at_dc both set D85B: keep one",
+            ),
+            (
+                ["network.nx=8", "network.file=n.csv"],
+                "network.nx and network.file both give the network: keep one",
+            ),
+        ] {
+            assert!(
+                built_in(&set).unwrap_err().to_string().contains(message),
+                "{set:?}: {:?}",
+                built_in(&set)
+            );
+        }
+        // The file's are replaced all the same, and the same setting twice is as on any command line.
+        let text = b"[filter]\ncurve = \"a.csv\"\nd0_mm = 2\n[base]\ncu = 2\nd85_mm = 1\n";
+        let set = ["base.d15f_over_d85b=3", "filter.sieve=f.csv", "base.d15f_over_d85b=4"].map(String::from);
+        let scene = Scene::parse(text, "s.toml", &set).unwrap();
+        assert_eq!(scene.base.gradation(), BaseGradation::Linear { cu: 2.0, d85: D85::Ratio(4.0) });
+        assert_eq!(scene.filter.d0_mm, None);
     }
 
     #[test]

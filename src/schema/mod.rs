@@ -7,6 +7,9 @@
 //! what is written back ([`serde::Serialize`]). So a setting cannot be forgotten in one of these places.
 //! Which settings exclude each other is declared by [`Group`]s.
 
+mod hidden;
+pub mod hints;
+mod nearest;
 mod settings;
 mod value;
 
@@ -16,6 +19,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+pub use hidden::{is_hidden, turns_direction};
 pub use settings::{Alternative, GivenSettings, Group, Names, Origin, SceneError};
 pub use value::Value;
 

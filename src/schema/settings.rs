@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 
 use toml::de::{DeTable, DeValue};
 
-use super::{Allowed, Leaf, Value};
+use super::{Allowed, Leaf, Value, hints, nearest};
+use crate::store::read_regular;
 
 /// A scene that is refused.
 #[derive(Debug, thiserror::Error)]
@@ -33,14 +34,14 @@ pub enum SceneError {
         problem: String,
     },
     /// No setting has this name.
-    #[error("{origin}: there is no setting `{name}`; did you mean `{nearest}`?")]
+    #[error("{origin}: there is no setting `{name}`; {instead}")]
     Unknown {
         /// Where it stands.
         origin: Origin,
         /// The name.
         name: String,
-        /// The most similar valid name.
-        nearest: String,
+        /// A valid name that is much like it, or else those of its section.
+        instead: String,
     },
     /// A setting has a value that it cannot have.
     #[error("{origin}, {name}: `{value}` is not allowed; {allowed}")]
@@ -144,6 +145,11 @@ pub struct GivenSettings {
 /// A larger settings file is refused (bytes).
 const LARGEST_FILE: u64 = 1 << 20;
 
+const NO_SCENE: &str = "is a table of numbers, not a scene; a scene names it, as in base.sieve = \"sand.csv\" \
+    (`voidwalk init` writes one to start from)";
+
+const PLAN: &str = "is the plan of a campaign, not a scene; walk it by `voidwalk campaign`";
+
 impl GivenSettings {
     /// Reads a TOML file.
     ///
@@ -152,12 +158,10 @@ impl GivenSettings {
     pub fn read(path: &Path, names: &Names) -> Result<Self, SceneError> {
         let file = path.display().to_string();
         let io = |source| SceneError::File { file: file.clone(), source };
-        let meta = std::fs::metadata(path).map_err(io)?;
-        if !meta.is_file() || meta.len() > LARGEST_FILE {
+        let Some(bytes) = read_regular(path, LARGEST_FILE).map_err(io)? else {
             let problem = format!("must be a regular file of at most {LARGEST_FILE} bytes");
             return Err(SceneError::Syntax { file, at: String::new(), problem });
-        }
-        let bytes = std::fs::read(path).map_err(io)?;
+        };
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         Self::parse(&bytes, &file, folder, names)
     }
@@ -168,14 +172,20 @@ impl GivenSettings {
     /// As [`GivenSettings::read`].
     pub fn parse(bytes: &[u8], file: &str, folder: PathBuf, names: &Names) -> Result<Self, SceneError> {
         let syntax = |at, problem| SceneError::Syntax { file: file.into(), at, problem };
-        let text =
-            std::str::from_utf8(bytes).map_err(|_| syntax(String::new(), "is not UTF-8 text".into()))?;
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let text = hints::as_text(bytes).map_err(|problem| syntax(String::new(), problem))?;
         let line_of = |at: usize| text[..at.min(text.len())].matches('\n').count() + 1;
         let table = DeTable::parse(text).map_err(|e| {
-            let at = e.span().map_or(String::new(), |span| format!(", line {}", line_of(span.start)));
-            syntax(at, e.message().to_string())
+            if hints::is_table(text) {
+                return syntax(String::new(), NO_SCENE.into());
+            }
+            let line = e.span().map(|span| line_of(span.start));
+            let hint = line.and_then(|line| hints::of_line(text, line));
+            let at = line.map_or(String::new(), |line| format!(", line {line}"));
+            syntax(at, hint.unwrap_or_else(|| e.message().to_string()))
         })?;
+        if hints::is_plan(table.get_ref()) {
+            return Err(syntax(String::new(), PLAN.into()));
+        }
         let mut settings = Self { file: file.into(), folder, values: BTreeMap::new() };
         let mut add = |name: String, at: usize, value: &DeValue| {
             let origin = Origin::Line(file.into(), line_of(at));
@@ -304,7 +314,13 @@ impl GivenSettings {
         let said: Vec<&str> = group.alternatives.iter().filter_map(|way| given(way.by)).collect();
         if said.len() > 1 {
             let all = if said.len() == 2 { "both" } else { "all" };
-            return Err(self.clash(format!("{} {all} {}: keep one", said.join(" and "), group.says)));
+            let problem = format!("{} {all} {}: keep one", said.join(" and "), group.says);
+            let by_hand =
+                |name: &&str| self.values.get(*name).is_some_and(|(_, o)| *o == Origin::CommandLine);
+            return Err(match said.iter().all(by_hand) {
+                true => SceneError::Clash { file: Origin::CommandLine.to_string(), problem },
+                false => self.clash(problem),
+            });
         }
         let Some(name) = said.first() else { return Ok(()) };
         for way in group.alternatives.iter().filter(|way| !way.by.contains(name)) {
@@ -335,14 +351,9 @@ impl Names {
     }
 
     fn unknown(&self, name: &str, origin: &Origin) -> SceneError {
-        let distance = |known: &&String| {
-            let last = |n: &str| n.rsplit('.').next().unwrap_or_default().to_string();
-            let whole = strsim::damerau_levenshtein(known, name);
-            (whole.min(strsim::damerau_levenshtein(&last(known), &last(name)) + 1), whole)
-        };
-        let nearest = self.known.iter().min_by_key(distance).cloned().unwrap_or_default();
+        let instead = nearest::instead_of(name, &self.known);
         let name = Value::Text(name.into()).to_string();
-        SceneError::Unknown { origin: origin.clone(), name, nearest }
+        SceneError::Unknown { origin: origin.clone(), name, instead }
     }
 }
 

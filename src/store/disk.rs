@@ -106,6 +106,9 @@ pub(super) fn ask<T>(call: Call<'_>, mut act: impl FnMut() -> io::Result<T>) -> 
 /// Opening what is a link fails.
 pub(super) const NO_LINK: i32 = rustix::fs::OFlags::NOFOLLOW.bits() as i32;
 
+/// Opening what is no file of its own, as a pipe, does not wait for somebody at its other end.
+const NO_WAIT: i32 = rustix::fs::OFlags::NONBLOCK.bits() as i32;
+
 /// What the names of files begin with that are not whole yet; one that a killed process left is removed when
 /// its folder is next taken.
 pub(super) const PART: &str = ".voidwalk-part-";
@@ -212,10 +215,60 @@ pub(super) fn sync_folder(folder: &Path) -> io::Result<()> {
 /// A whole file, which is no link to one elsewhere.
 pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
     ask(Call::Read(path), || {
-        let mut options = File::options();
-        OpenOptionsExt::custom_flags(options.read(true), NO_LINK);
         let mut bytes = Vec::new();
-        options.open(path)?.read_to_end(&mut bytes)?;
+        open_own(path)?.read_to_end(&mut bytes)?;
         Ok(bytes)
     })
+}
+
+/// Opens a file of the program's own for reading: a regular one, and no link to one elsewhere.
+pub(super) fn open_own(path: &Path) -> io::Result<File> {
+    open(path, NO_LINK | NO_WAIT)?
+        .ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "is no regular file"))
+}
+
+/// Opens a file for reading; `None` where it is a folder, a pipe, a socket or a device.
+fn open(path: &Path, flags: i32) -> io::Result<Option<File>> {
+    let mut options = File::options();
+    OpenOptionsExt::custom_flags(options.read(true), flags);
+    let file = options.open(path)?;
+    Ok(file.metadata()?.is_file().then_some(file))
+}
+
+/// What a file of a user holds; `None` where it is no regular file, or has more bytes than `largest`. A pipe
+/// is not waited for.
+///
+/// # Errors
+/// What the system says.
+pub fn read_regular(path: &Path, largest: u64) -> io::Result<Option<Vec<u8>>> {
+    let Some(file) = open(path, NO_WAIT)? else { return Ok(None) };
+    let mut bytes = Vec::new();
+    file.take(largest.saturating_add(1)).read_to_end(&mut bytes)?;
+    Ok((bytes.len() as u64 <= largest).then_some(bytes))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whoever reads a pipe with nobody at its other end waits for ever.
+    #[test]
+    fn what_is_no_regular_file_is_not_read_and_not_waited_for() {
+        let root = tempfile::tempdir().unwrap();
+        let (pipe, text) = (root.path().join("pipe"), root.path().join("text"));
+        let made = std::process::Command::new("mkfifo").arg(&pipe).status().unwrap();
+        assert!(made.success());
+        std::fs::write(&text, "abc").unwrap();
+        for (path, largest, found) in [
+            (text.as_path(), 3, Some(b"abc".to_vec())),
+            (&text, 2, None),
+            (&pipe, 3, None),
+            (root.path(), 3, None),
+            (Path::new("/dev/zero"), u64::MAX, None),
+        ] {
+            assert_eq!(read_regular(path, largest).unwrap(), found, "{}", path.display());
+        }
+        assert_eq!(read(&text).unwrap(), b"abc");
+        assert_eq!(read(&pipe).unwrap_err().to_string(), "is no regular file");
+    }
 }

@@ -11,6 +11,7 @@
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};
+use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -42,6 +43,15 @@ pub enum StoreError {
         /// What it is instead.
         what: &'static str,
     },
+    /// Under the name of the lock file there is something else.
+    #[error(
+        "{path}: is no lock file of voidwalk: another name of some other file, or no file at all; remove it, \
+         or name another folder"
+    )]
+    NotALock {
+        /// The path.
+        path: PathBuf,
+    },
     /// Somebody else is writing.
     #[error("{path}: another run writes to this folder ({holder})")]
     Held {
@@ -65,8 +75,8 @@ pub enum StoreError {
 impl StoreError {
     /// Whether the user can fix it by naming another folder, before any work is done.
     pub fn is_refusal(&self) -> bool {
-        use io::ErrorKind::{NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem};
-        let by_name = [NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem];
+        use io::ErrorKind::{InvalidFilename, NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem};
+        let by_name = [InvalidFilename, NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem];
         !matches!(self, Self::Io { source, .. } if !by_name.contains(&source.kind()))
     }
 }
@@ -203,6 +213,11 @@ fn lock(path: &Path, way: impl Fn(&File) -> Result<(), TryLockError>) -> Result<
     // A lock file that is a link would have the file it leads to emptied.
     std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, disk::NO_LINK);
     let file = ask(Call::Lock(path), || options.open(path)).map_err(failed)?;
+    let meta = file.metadata().map_err(failed)?;
+    // So would another name of a file that somebody else needs.
+    if !meta.is_file() || meta.nlink() > 1 {
+        return Err(StoreError::NotALock { path: path.to_owned() });
+    }
     match way(&file) {
         Ok(()) => Ok(file),
         Err(TryLockError::WouldBlock) => {
@@ -218,7 +233,8 @@ fn lock(path: &Path, way: impl Fn(&File) -> Result<(), TryLockError>) -> Result<
 fn holder(path: &Path) -> String {
     let begun = Instant::now();
     loop {
-        let text = fs::read_to_string(path).unwrap_or_default();
+        let text = disk::read(path).unwrap_or_default();
+        let text = String::from_utf8_lossy(&text);
         match text.lines().next() {
             Some(line) => return line.chars().take(200).collect(),
             None if begun.elapsed() > SIGNS_WITHIN => return "which has not said who it is".into(),
@@ -435,6 +451,14 @@ mod tests {
         let link = root.path().join("link");
         std::os::unix::fs::symlink("/tmp", &link).unwrap();
         assert!(matches!(Folder::open(&link), Err(StoreError::NotAFolder { what: "a symbolic link", .. })));
+        let linked = root.path().join("linked");
+        fs::create_dir(&linked).unwrap();
+        fs::hard_link(root.path().join("thesis.txt"), linked.join(LOCK_FILE)).unwrap();
+        for opened in [Folder::open(&linked), Folder::open_shared(&linked)] {
+            assert!(matches!(opened, Err(StoreError::NotALock { .. })));
+        }
+        fs::remove_dir_all(&linked).unwrap();
+        assert_eq!(fs::read_to_string(root.path().join("thesis.txt")).unwrap(), "years of work");
         let with_slash = root.path().join("link/");
         assert!(matches!(Folder::open(&with_slash), Err(StoreError::NotAFolder { .. })));
         assert_eq!(fs::read_dir(root.path()).unwrap().count(), 2);

@@ -6,6 +6,7 @@ pub mod disk;
 mod folder;
 
 pub use column::{Column, Placement};
+pub use disk::read_regular;
 pub use folder::{
     Folder, LOCK_FILE, StoreError, files_in, make_folder, read_whole, remove_folder, write_whole,
 };

@@ -170,10 +170,19 @@ fn left_out(engine: Engine, limit: f32, passive_words: u128, unit_mm: f64) -> Ve
         }
     } else {
         sentences.push(format!(
-            "All but {coarse_percent:.3e} % of the base particles by number are no coarser than the finest \
+            "All but {} % of the base particles by number are no coarser than the finest \
              open constriction ({size_mm:.4} mm) and can block nothing: {how}, and their sizes are drawn \
-            where they come to rest."
+            where they come to rest.",
+            digits(coarse_percent)
         ));
     }
     sentences
+}
+
+/// A number of percent with four digits that mean something: `19.65`, `0.002500`, `3.000e-7`.
+fn digits(percent: f64) -> String {
+    match percent {
+        few if few < 1e-3 => format!("{few:.3e}"),
+        many => format!("{many:.*}", (3.0 - libm::log10(many).floor()).max(0.0) as usize),
+    }
 }

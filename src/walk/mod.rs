@@ -57,6 +57,7 @@ mod kernel;
 mod merge;
 pub mod reference;
 mod saved;
+mod saved_checks;
 mod sizes;
 mod state;
 mod strata;

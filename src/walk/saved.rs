@@ -6,7 +6,8 @@ use bitvec::vec::BitVec;
 use bytemuck::Pod;
 use serde::{Deserialize, Serialize};
 
-use super::{Blocking, CHUNK, Expected, ExpectedSums, Passive, SizeCounts, State, Tally};
+use super::saved_checks::Forgery;
+use super::{Blocking, CHUNK, Expected, ExpectedSums, Passive, SizeCounts, State, Supply, Tally};
 use crate::network::Network;
 use crate::store::checkpoint::{Checkpoint, CheckpointError, Section};
 
@@ -134,13 +135,20 @@ impl<'a> SavedState<'a> {
 
 impl State {
     /// Takes a state from a checkpoint into this one, which is that of the same run before its first
-    /// increment.
+    /// increment. Whatever a walk relies on is checked, so that a forged checkpoint with right checksums
+    /// brings no panic and no walk without an end.
     ///
     /// # Errors
     /// A checkpoint that is corrupt, or of another run.
-    pub fn restore(&mut self, network: &Network, saved: &Checkpoint) -> Result<(), CheckpointError> {
+    pub fn restore(
+        &mut self,
+        network: &Network,
+        supply: &Supply,
+        saved: &Checkpoint,
+    ) -> Result<(), CheckpointError> {
         let wrong = |what: &str| saved.corrupt(format!("{what} cannot be of this run"));
         let record: Record = saved.read_record("state")?;
+        let forgery = Forgery { supply, increment: record.increment, tally: &record.tally };
         let other = |found: String, expected: String| CheckpointError::OtherWalk {
             file: saved.path().to_owned(),
             found,
@@ -158,7 +166,7 @@ impl State {
             return Err(CheckpointError::OtherNetwork { file: saved.path().to_owned() });
         }
         let live: Vec<u32> = saved.read_exact("live", self.particles.live.len())?;
-        if live.iter().any(|&n| n as usize > CHUNK) {
+        if !forgery.live_can_be(&live) {
             return Err(wrong("particles of a chunk"));
         }
         let total: usize = live.iter().map(|&n| n as usize).sum();
@@ -167,7 +175,7 @@ impl State {
                 return Err(wrong("number of particles"));
             }
         }
-        let (mut voids, mut place) = (true, Place::new(&live));
+        let (mut voids, mut sizes, mut place) = (true, true, Place::new(&live));
         let column = &mut self.particles.void;
         saved.read_pieces::<u32>("void", |piece| {
             voids &= piece.iter().all(|&v| (v as usize) < network.voids());
@@ -177,10 +185,13 @@ impl State {
         if !self.particles.has_one_size() {
             let mut place = Place::new(&live);
             let column = &mut self.particles.diameter;
-            saved.read_pieces::<f32>("diameter", |piece| place.put(piece, column))?;
+            saved.read_pieces::<f32>("diameter", |piece| {
+                sizes &= piece.iter().all(|d| d.is_finite() && *d > 0.0);
+                place.put(piece, column);
+            })?;
         }
-        if !voids {
-            return Err(wrong("void of a particle"));
+        if !voids || !sizes {
+            return Err(wrong(if voids { "diameter of a particle" } else { "void of a particle" }));
         }
         self.particles.live = live;
         self.passive = match &self.passive {
@@ -221,11 +232,11 @@ impl State {
         {
             return Err(wrong("sums"));
         }
-        Ok(())
+        forgery.of(self).map_or(Ok(()), |what| Err(wrong(what)))
     }
 }
 
-/// Where the next moving particle of a column goes.
+/// Where the next moving particle of a column goes; no more come than `live` says.
 struct Place<'a> {
     live: &'a [u32],
     chunk: usize,

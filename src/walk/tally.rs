@@ -42,12 +42,11 @@ impl Tally {
 
     /// Every particle inserted is somewhere.
     pub(super) fn check(&self, increment: u64) -> Result<(), WalkError> {
-        let accounted = self.moving
-            + self.eroded
-            + self.retained_in_constrictions
-            + self.retained_in_voids
-            + self.trapped;
-        match accounted == self.inserted {
+        let all =
+            [self.moving, self.eroded, self.retained_in_constrictions, self.retained_in_voids, self.trapped];
+        // Sums that something has spoilt may be beyond 64 bits.
+        let accounted = all.into_iter().fold(0u64, u64::saturating_add);
+        match all.into_iter().map(u128::from).sum::<u128>() == u128::from(self.inserted) {
             true => Ok(()),
             false => Err(WalkError::NotConserved { increment, inserted: self.inserted, accounted }),
         }
@@ -64,5 +63,7 @@ mod tests {
         let error = tally.check(3).unwrap_err().to_string();
         assert_eq!(error, "increment 3: 5 base particles inserted, but 4 accounted for");
         assert!(Tally { retained_in_voids: 1, ..tally }.check(3).is_ok());
+        // 2^64 and 5 particles are not 5.
+        assert!(Tally { retained_in_voids: u64::MAX, trapped: 4, ..tally }.check(3).is_err());
     }
 }

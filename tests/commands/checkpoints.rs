@@ -78,7 +78,7 @@ fn a_walk_goes_on_from_every_increment_with_every_engine_on_any_threads() {
             }
             let saved = newest(&folder, "x", &Identity::default()).unwrap().0.unwrap();
             let mut state = fresh(&network, &supply, &first.blocked, seed, 2);
-            state.restore(&network, &saved).unwrap();
+            state.restore(&network, &supply, &saved).unwrap();
             let threads = [1, 2, 3, 8][increment as usize % 4];
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
@@ -105,14 +105,12 @@ fn a_state_of_another_run_is_refused() {
     let state = fresh(&network, &particles, &open, 1, 1);
     save(root.path(), "x", &Label::default(), &SavedState::new(&state).sections()).unwrap();
     let counts = supply(Engine::Counts, 40_000);
-    for mut other in [
-        fresh(&network, &particles, &open, 2, 1),
-        fresh(&network, &particles, &open, 1, 2),
-        fresh(&network, &counts, &open, 1, 1),
-        fresh(&network, &supply(Engine::Particles, 20_000), &open, 1, 1),
-    ] {
+    let fewer = supply(Engine::Particles, 20_000);
+    for (other_supply, seed, run) in [(&particles, 2, 1), (&particles, 1, 2), (&counts, 1, 1), (&fewer, 1, 1)]
+    {
+        let mut other = fresh(&network, other_supply, &open, seed, run);
         let saved = newest(root.path(), "x", &Identity::default()).unwrap().0.unwrap();
-        assert!(other.restore(&network, &saved).is_err());
+        assert!(other.restore(&network, other_supply, &saved).is_err());
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod campaign;
 mod checkpoints;
+mod first_hour;
 mod full_disk;
 mod hostile_names;
 mod pack;

@@ -49,7 +49,7 @@ fn saved_walks_are_continued_to_the_same_answer() {
         assert_eq!(saved.read::<u8>("done").unwrap(), b"{\"complete\":false}");
         let run = SmallRun::new(engine);
         let mut state = run.fresh();
-        state.restore(&run.network, &saved).unwrap();
+        state.restore(&run.network, &run.supply, &saved).unwrap();
         assert_eq!(state.increment, 50);
         run.walk(&mut state, None);
         let answer =

@@ -20,7 +20,7 @@ use voidwalk::network::Network;
 use voidwalk::packing::Packing;
 use voidwalk::scene::{CurveSource, Scene};
 use voidwalk::store::checkpoint::{Checkpoint, Identity, Label, Section, newest, save};
-use voidwalk::walk::{Engine, RunPlan, SavedState, SizeClasses, State, Supply, Walk, WalkControl};
+use voidwalk::walk::{Engine, RunPlan, SavedState, SizeClasses, State, Supply, Walk, WalkControl, WalkError};
 use xxhash_rust::xxh3::xxh3_64;
 
 /// The most memory that a process reading hostile input may hold (bytes).
@@ -143,7 +143,7 @@ pub fn checkpoint(bytes: &[u8]) {
         SMALL_RUNS.with_borrow(|runs| {
             for run in runs {
                 let mut state = run.fresh();
-                shown(state.restore(&run.network, &saved));
+                shown(state.restore(&run.network, &run.supply, &saved));
             }
         });
         for name in ["counts", "history_increment", "blocked"] {
@@ -191,7 +191,8 @@ fn folder() -> PathBuf {
 pub struct SmallRun {
     /// Its network.
     pub network: Network,
-    supply: Supply,
+    /// What it inserts.
+    pub supply: Supply,
     open: BitVec<u64>,
 }
 
@@ -227,8 +228,7 @@ impl SmallRun {
     /// Walks on from `state`, and saves it in `folder` once, after this increment.
     pub fn walk(&self, state: &mut State, kept: Option<(&Path, u64)>) {
         let done = br#"{"complete":false}"#;
-        let mut walk = Walk::new(&self.network, &self.supply, state);
-        let result = walk.run(state, &mut |state| {
+        let result = self.walk_while(state, |state| {
             if let Some((folder, increment)) = kept
                 && state.increment == increment
             {
@@ -242,6 +242,15 @@ impl SmallRun {
             WalkControl::Continue
         });
         result.unwrap();
+    }
+
+    /// Walks on from `state` until its end or until `observe` stops it.
+    pub fn walk_while(
+        &self,
+        state: &mut State,
+        mut observe: impl FnMut(&State) -> WalkControl + Send,
+    ) -> Result<(), WalkError> {
+        Walk::new(&self.network, &self.supply, state).run(state, &mut observe)
     }
 }
 

@@ -12,6 +12,8 @@ const TICK_TEXT: f64 = 13.0;
 const LABEL_TEXT: f64 = 14.0;
 const LINE_HEIGHT: f64 = 17.0;
 const SYMBOL: f64 = 4.5;
+/// The narrowest and lowest frame.
+const LEAST: f64 = 60.0;
 
 /// Where values fall in pixels.
 struct Frame<'a> {
@@ -71,10 +73,10 @@ fn draw(figure: &Figure, size: Size, id: &str, namespace: &str) -> String {
         Naming::Direct => Vec::new(),
     };
     // Marks whose names find no room are named above the frame; that moves the frame, so all is drawn again.
-    let body = loop {
-        let (body, homeless) = body(figure, width, height, id, &above);
+    let (body, height) = loop {
+        let (body, height, homeless) = body(figure, width, height, id, &above);
         if homeless.is_empty() {
-            break body;
+            break (body, height);
         }
         above.extend(homeless);
         above.sort_unstable();
@@ -110,8 +112,9 @@ fn label_of(mark: &Mark) -> Option<(&str, Colour)> {
     label.as_deref().map(|label| (label, colour))
 }
 
-/// Everything inside the element, and the marks whose names found no room. `above` are named above the frame.
-fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> (String, Vec<usize>) {
+/// Everything inside the element, how high it is, and the marks whose names found no room. `above` are named
+/// above the frame.
+fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> (String, f64, Vec<usize>) {
     let mut svg = Svg::default();
     let mut top = 12.0;
     if !figure.heading.is_empty() {
@@ -122,7 +125,7 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
         top += 6.0;
     }
     top = key(&mut svg, figure, above, width, top);
-    let frame = frame(figure, width, height, top);
+    let (frame, height) = roomy(figure, width, height, top);
     grid(&mut svg, &frame);
     axis_labels(&mut svg, &frame, height);
 
@@ -183,7 +186,7 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
             }
         }
     }
-    (svg.finish(), homeless)
+    (svg.finish(), height, homeless)
 }
 
 /// Text that stands left of its curve ends there, so that a narrower font leaves no gap.
@@ -238,6 +241,19 @@ fn key(svg: &mut Svg, figure: &Figure, above: &[usize], width: f64, top: f64) ->
     if above.is_empty() { top } else { row + LINE_HEIGHT + 8.0 }
 }
 
+/// A frame that is not too low for anything to be seen, whatever stands above and below it: the figure grows.
+fn roomy(figure: &Figure, width: f64, height: f64, top: f64) -> (Frame<'_>, f64) {
+    let first = frame(figure, width, height, top);
+    let high = first.area.bottom - first.area.top;
+    if high >= LEAST {
+        return (first, height);
+    }
+    // The label beside the frame breaks into fewer lines where the frame is higher, which makes it wider: at
+    // most the labels below then need fewer lines.
+    let height = height + LEAST - high;
+    (frame(figure, width, height, top), height)
+}
+
 fn frame(figure: &Figure, width: f64, height: f64, top: f64) -> Frame<'_> {
     let widest = |axis: &Axis| {
         let texts = axis.ticks.iter().flat_map(|tick| &tick.text);
@@ -250,11 +266,12 @@ fn frame(figure: &Figure, width: f64, height: f64, top: f64) -> Frame<'_> {
     } else {
         wrap(&figure.y.label, LABEL_TEXT, height - top - 90.0).len()
     };
-    let left = 12.0 + y_lines as f64 * LINE_HEIGHT + widest(&figure.y) + 12.0;
+    // What is too long to stand beside the frame is cut off at the figure's edge.
+    let left = (12.0 + y_lines as f64 * LINE_HEIGHT + widest(&figure.y) + 12.0).min(right - LEAST);
     let x_lines = wrap(&figure.x.label, LABEL_TEXT, right - left).len() as f64;
     let bottom = height - 10.0 - (x_lines + rows) * LINE_HEIGHT - 6.0;
     let top = top + 4.0;
-    let side = if figure.square { (right - left).min(bottom - top) } else { f64::INFINITY };
+    let side = if figure.square { (right - left).min(bottom - top).max(0.0) } else { f64::INFINITY };
     let (right, bottom) = (right.min(left + side), bottom.min(top + side));
     Frame { x: &figure.x, y: &figure.y, area: Rect { left, top, right, bottom } }
 }

@@ -89,4 +89,42 @@ mod tests {
         figure.add(Line::new(points, BLUE));
         assert!(figure.file().len() < 20_000);
     }
+
+    proptest::proptest! {
+        #![proptest_config(proptest::prelude::ProptestConfig::with_cases(60))]
+        /// Names of any length, in any number, on figures of any size, beside the frame, above it and as ticks.
+        #[test]
+        fn no_name_and_no_size_is_too_much(
+            names in proptest::collection::vec("(?s).{0,120}", 0..12),
+            width in 0.0f64..800.0,
+            height in 0.0f64..500.0,
+            above in proptest::bool::ANY,
+            square in proptest::bool::ANY,
+            low in -1e3f64..1e3,
+        ) {
+            let label = names.join(" ");
+            let mut figure =
+                Figure::new(&label, "", &label, Axis::linear(&label, 0.0, 9.0), Axis::rows(names.clone()));
+            for (row, name) in names.iter().enumerate() {
+                let at = row as f64;
+                let interval = Some((low, low + 5.0));
+                figure.add(Line::new(vec![(at, low), (at + 1.0, at)], BLUE).label(name));
+                figure.add(
+                    Point::new(at, at, BLACK, Shape::Circle).x_interval(interval).y_interval(interval).label(name),
+                );
+                figure.add(Rule::new(Across::X, at, GREY).label(name));
+                figure.add(Area::new(vec![(at, 0.0), (low, at), (at, at)], GREEN, 0.2).label(name));
+            }
+            let mut figure = figure.sizes((width, height), (width, height));
+            if above {
+                figure = figure.names_above();
+            }
+            if square {
+                figure = figure.square();
+            }
+            for text in [figure.file(), figure.inline("n", Size::Narrow)] {
+                proptest::prop_assert!(!text.contains("NaN") && !text.contains("inf "));
+            }
+        }
+    }
 }

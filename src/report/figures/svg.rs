@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use crate::schema::turns_direction;
+
 /// Generic families only: a figure looks alike as a file and in a page, and fetches nothing.
 pub(super) const FONT: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
 
@@ -44,13 +46,8 @@ pub fn escape(text: &str) -> String {
 pub fn visible(character: char) -> char {
     match character {
         '\t' | '\n' => character,
-        c if c.is_control() => '\u{fffd}',
-        '\u{200e}'
-        | '\u{200f}'
-        | '\u{202a}'..='\u{202e}'
-        | '\u{2066}'..='\u{2069}'
-        | '\u{fffe}'
-        | '\u{ffff}' => '\u{fffd}',
+        c if c.is_control() || turns_direction(c) => '\u{fffd}',
+        '\u{fffe}' | '\u{ffff}' => '\u{fffd}',
         c => c,
     }
 }
@@ -160,6 +157,7 @@ mod tests {
     #[test]
     fn markup_and_control_characters_become_inert() {
         assert_eq!(escape("<script>\"&'\u{0}\u{202e}"), "&lt;script&gt;&quot;&amp;&#39;\u{fffd}\u{fffd}");
+        assert_eq!(escape("a\u{61c}b\u{2067}c"), "a\u{fffd}b\u{fffd}c");
         assert_eq!(escape("Sand 0–2 mm, größer"), "Sand 0–2 mm, größer");
     }
 

@@ -15,7 +15,7 @@ use super::header::{self, Entry};
 use super::label::{Identity, Label};
 use super::section::PIECE;
 use super::write::slot;
-use crate::store::disk::{Call, ask};
+use crate::store::disk::{Call, ask, open_own};
 
 /// A checkpoint whose header has been checked; its sections are as they are read.
 #[derive(Debug)]
@@ -44,7 +44,7 @@ impl Checkpoint {
         if !is_file {
             return Err(CheckpointError::corrupt(path, "is no regular file"));
         }
-        let mut file = ask(Call::Read(path), || File::open(path)).map_err(unreadable)?;
+        let mut file = ask(Call::Read(path), || open_own(path)).map_err(unreadable)?;
         let length = file.metadata().map_err(unreadable)?.len();
         let (label, sections, header) = header::read(path, &mut file, length)?;
         let gaps =

@@ -114,7 +114,7 @@ impl Expected {
                 sum += n;
                 let upto = whole(sum).clamp(last, at_rest);
                 retained_in_voids[void] =
-                    retained_in_voids[void] + (upto - last) - self.counted_retained[void];
+                    retained_in_voids[void] - self.counted_retained[void] + (upto - last);
                 self.counted_retained[void] = upto - last;
                 last = upto;
             }

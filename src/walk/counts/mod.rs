@@ -155,10 +155,11 @@ impl<'a> PassiveWalk<'a> {
         let [retained, retained_now] = [before, now].map(|counted| counted.at_rest - counted.eroded);
         let tally = &mut state.tally;
         tally.particle_moves = tally.particle_moves.saturating_add(now.moves - before.moves);
-        tally.eroded = tally.eroded + now.eroded - before.eroded;
+        // What was counted before is taken off first: the sums may come near 2^64.
+        tally.eroded = tally.eroded - before.eroded + now.eroded;
         tally.passive_eroded = now.eroded;
         tally.eroded_mass += self.sizes.mass(now.eroded) - self.sizes.mass(before.eroded);
-        tally.retained_in_voids = tally.retained_in_voids + retained_now - retained;
+        tally.retained_in_voids = tally.retained_in_voids - retained + retained_now;
         tally.moving = tally.moving + before.at_rest - now.at_rest;
         self.sizes.expect(before.eroded, now.eroded, &mut state.eroded_sizes);
         self.sizes.expect(retained, retained_now, &mut state.retained_sizes);

@@ -60,7 +60,9 @@ impl Shares {
     pub fn of_three(&self, exit: usize) -> (u64, u64, [u64; 2]) {
         let (first, second) = (self.probability[exit], self.probability[exit + 1]);
         let of_rest = second - ((u128::from(second) * u128::from(first)) >> 64) as u64;
-        (first, second, [first, first + of_rest])
+        // The sum is a probability and stays below 1, except beside an exit that is certain: what it wraps to
+        // there is the threshold that does not hold.
+        (first, second, [first, first.wrapping_add(of_rest)])
     }
 
     /// Whether a void has an open exit.
@@ -93,6 +95,23 @@ mod tests {
         assert_eq!(of([1.0; 3], [false, true, false]).0[..2], [1 << 63, 0]);
         assert!(!of([1.0; 3], [true; 3]).1);
         assert!(!of([0.0; 3], [false; 3]).1);
+    }
+
+    /// Up to the last exit the thresholds are those of the walk one by one, to a unit; what stands beside a
+    /// certain exit is not used.
+    #[test]
+    fn thresholds_of_three_exits_never_wrap_where_they_hold() {
+        let sizes = [0.0f32, 1e-12, 1e-3, 0.7, 1.0, 3.0, 1e9, 1e19];
+        let all = || sizes.into_iter();
+        for d in all().flat_map(|x| all().flat_map(move |y| all().map(move |z| [x, y, z]))) {
+            let network = Network::cubic_from_diameters([1, 1, 1], d.to_vec(), 1.0).unwrap();
+            let blocked: BitVec<u64> = BitVec::repeat(false, 3);
+            let (first, second, [to_first, to_second]) = Shares::new(&network, &blocked).of_three(0);
+            assert_eq!(to_first, first);
+            if first != CERTAIN && second != CERTAIN {
+                assert!(to_second >= to_first, "{d:?}");
+            }
+        }
     }
 
     /// An exit with 1e24 times the area leaves the others possible.

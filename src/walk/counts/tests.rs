@@ -173,3 +173,18 @@ fn both_engines_follow_one_history() {
         assert!((a - b).abs() < 1e-9 * b + 1e-9);
     }
 }
+
+/// As many particles as a number holds are counted to the last one, and no sum on the way is larger.
+#[test]
+fn the_most_particles_that_can_be_are_conserved() {
+    let network = Network::cubic_from_diameters([3, 3, 4], vec![1.0; 108], 1.0).unwrap();
+    let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.2, 1.5).unwrap(), 1.0).unwrap();
+    let classes = SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), 4);
+    for expected in [false, true] {
+        let supply = Supply::new(sampler.clone(), u64::MAX, 4).with_passive_part(1 << 64, expected, 5, 1);
+        let open = BitVec::repeat(false, network.constrictions());
+        let mut state = State::new(&network, &supply, classes.clone(), open, 5, 1);
+        Walk::new(&network, &supply, &state).run(&mut state, &mut |_| WalkControl::Continue).unwrap();
+        assert_eq!((state.tally.inserted, state.tally.eroded), (u64::MAX, u64::MAX), "{expected}");
+    }
+}

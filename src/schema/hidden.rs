@@ -1,0 +1,53 @@
+//! Characters that are not seen, or that change how others are seen: no name may hold them, and no page or
+//! terminal gets them.
+
+use std::ops::RangeInclusive;
+
+/// Those that turn the direction of writing.
+const TURNING: [RangeInclusive<char>; 4] =
+    ['\u{061c}'..='\u{061c}', '\u{200e}'..='\u{200f}', '\u{202a}'..='\u{202e}', '\u{2066}'..='\u{2069}'];
+
+/// Those without a width, of other line ends, and tags. Some scripts join letters by them.
+const WITHOUT_WIDTH: [RangeInclusive<char>; 10] = [
+    '\u{00ad}'..='\u{00ad}',
+    '\u{034f}'..='\u{034f}',
+    '\u{115f}'..='\u{1160}',
+    '\u{180b}'..='\u{180f}',
+    '\u{200b}'..='\u{200d}',
+    '\u{2028}'..='\u{2029}',
+    '\u{2060}'..='\u{2065}',
+    '\u{206a}'..='\u{206f}',
+    '\u{feff}'..='\u{feff}',
+    '\u{e0000}'..='\u{e0fff}',
+];
+
+/// Whether a character turns the direction of writing of those around it.
+pub fn turns_direction(character: char) -> bool {
+    TURNING.iter().any(|range| range.contains(&character))
+}
+
+/// Whether a character is not seen where it stands: control characters, those without a width, and those that
+/// turn the direction of writing.
+pub fn is_hidden(character: char) -> bool {
+    let without_width = || WITHOUT_WIDTH.iter().any(|range| range.contains(&character));
+    character.is_control() || turns_direction(character) || without_width()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Bidi_Control of Unicode: all twelve.
+    #[test]
+    fn every_character_that_turns_the_direction_is_known() {
+        let turning: Vec<char> = ('\u{0}'..=char::MAX).filter(|c| turns_direction(*c)).collect();
+        let unicode =
+            "\u{61c}\u{200e}\u{200f}\u{202a}\u{202b}\u{202c}\u{202d}\u{202e}\u{2066}\u{2067}\u{2068}\u{2069}";
+        assert_eq!(turning, unicode.chars().collect::<Vec<_>>());
+        assert!(turning.into_iter().all(is_hidden));
+        for hidden in ['\u{0}', '\u{9b}', '\u{200b}', '\u{2028}', '\u{2060}', '\u{feff}', '\u{e0041}'] {
+            assert!(is_hidden(hidden), "{hidden:?}");
+        }
+        assert!(!"größer, µm, Å, ≤ 5 %, 砂, رمل, नदी".chars().any(is_hidden));
+    }
+}

@@ -1,0 +1,90 @@
+//! What a text that is no settings file looks like, and what to write instead.
+
+use toml::de::DeTable;
+
+/// Sections and keys that only a plan of a campaign has.
+const OF_A_PLAN: [&str; 6] = ["factor", "case", "leave_out", "seeds", "title", "set"];
+
+/// Bytes as text; a byte order mark is left out.
+///
+/// # Errors
+/// What the bytes look like instead.
+pub fn as_text(bytes: &[u8]) -> Result<&str, String> {
+    let utf_16 = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]);
+    let zeros = bytes.iter().take(64).filter(|byte| **byte == 0).count();
+    if utf_16 || (zeros > 0 && 3 * zeros >= bytes.len().min(64)) {
+        return Err("is UTF-16 text, as some editors save it; save it as UTF-8".into());
+    }
+    let text = std::str::from_utf8(bytes).map_err(|error| {
+        let line = 1 + bytes[..error.valid_up_to()].iter().filter(|byte| **byte == b'\n').count();
+        format!("is not UTF-8 text (line {line}); save it as UTF-8")
+    })?;
+    Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
+}
+
+/// What is wrong with a line that is no TOML, where it is one of the usual mistakes: `line` counts from 1.
+pub fn of_line(text: &str, line: usize) -> Option<String> {
+    let (key, value) = text.lines().nth(line.checked_sub(1)?)?.split_once('=')?;
+    let (key, value) = (key.trim(), value.split('#').next().unwrap_or_default().trim());
+    let is_number = |part: &str| !part.is_empty() && part.chars().all(|c| c.is_ascii_digit());
+    if let Some((whole, part)) = value.split_once(',')
+        && is_number(whole.trim_start_matches(['+', '-']))
+        && is_number(part)
+    {
+        return Some(format!("`{value}` has a decimal comma; write {key} = {whole}.{part}"));
+    }
+    if value.contains('\\') {
+        let path = value.trim_matches(['"', '\'']).replace("\\\\", "/").replace('\\', "/");
+        return Some(format!(
+            "`{value}` looks like a path with backslashes; write {key} = \"{path}\", or the path as it is between \
+             single quotes"
+        ));
+    }
+    None
+}
+
+/// Whether a text that is no TOML is a table of numbers.
+pub fn is_table(text: &str) -> bool {
+    let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
+    let fields = |line: &str| line.split([',', ';', '\t']).filter(|field| !field.is_empty()).count();
+    let is_row = |line: &str| fields(line) >= 2 && line.starts_with(|c: char| c.is_ascii_digit() || c == '"');
+    lines.clone().all(|line| !line.contains('=')) && lines.any(is_row)
+}
+
+/// Whether a table is a campaign's plan.
+pub fn is_plan(table: &DeTable) -> bool {
+    table.keys().any(|key| OF_A_PLAN.contains(&&**key.get_ref()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn usual_mistakes_are_known() {
+        let hint = |line: &str| of_line(&format!("seed = 1\n{line}\n"), 2);
+        assert_eq!(hint("cu = 1,5 # wide").unwrap(), "`1,5` has a decimal comma; write cu = 1.5");
+        assert_eq!(hint("cu = -1,5").unwrap(), "`-1,5` has a decimal comma; write cu = -1.5");
+        for line in ["sieve = \"csv\\sand.csv\"", "sieve = csv\\sand.csv"] {
+            assert!(hint(line).unwrap().contains("write sieve = \"csv/sand.csv\""), "{line}");
+        }
+        for line in ["cu = ", "cu = 1,5,6", "cu = a,b", "[filter", "cu"] {
+            assert_eq!(hint(line), None, "{line}");
+        }
+        assert_eq!(of_line("", 0), None);
+    }
+
+    #[test]
+    fn texts_are_told_apart() {
+        let utf_16: Vec<u8> = "seed = 1\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+        assert!(as_text(&utf_16).unwrap_err().contains("UTF-16"));
+        assert!(as_text(&[&[0xff, 0xfe], &utf_16[..]].concat()).unwrap_err().contains("UTF-16"));
+        assert_eq!(
+            as_text(b"a = 1\nb = \"\xe4\"").unwrap_err(),
+            "is not UTF-8 text (line 2); save it as UTF-8"
+        );
+        assert_eq!(as_text("\u{feff}a".as_bytes()), Ok("a"));
+        assert!(is_table("# sand\nopening_mm,percent\n2,100\n") && is_table("2;100\n1;50\n"));
+        assert!(!is_table("seed = 1\n") && !is_table("") && !is_table("some words, and more\n"));
+    }
+}

@@ -1,0 +1,232 @@
+//! The mistakes of a first hour: what a command line is answered with, and with which exit code.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+fn voidwalk(folder: &Path, words: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_voidwalk"))
+        .current_dir(folder)
+        .args(words)
+        .stdin(Stdio::null())
+        .output()
+        .unwrap()
+}
+
+/// A scene of a second.
+const SMALL: &str = "replicates = 1\nruns = 1\n[filter]\ncurve = \"shire2016-cu1.5-loose\"\n[base]\ncu = 1.5\nd85_at_dc = 5\n\
+    n_base = 500\n[network]\nnx = 5\nny = 5\nnz = 5\n[record]\nsensitivity = []\n";
+
+const PLAN: &str = "[set]\nreplicates = 1\nruns = 1\nnetwork = { nx = 5, ny = 5, nz = 5 }\nrecord = { sensitivity = [] }\n\
+    base = { cu = 1.5, d85_at_dc = 5, n_base = 500 }\n[[case]]\nname = \"x\"\n[[case]]\nname = \"y\"\n";
+
+/// The files that the command lines name.
+fn files(folder: &Path) {
+    let write = |name: &str, text: &[u8]| fs::write(folder.join(name), text).unwrap();
+    write("small.toml", SMALL.as_bytes());
+    write("plan.toml", PLAN.as_bytes());
+    write("sand.csv", b"opening_mm,percent_finer\n2,100\n0.5,40\n0.1,0\n");
+    write("comma.toml", b"[base]\ncu = 1,5\n");
+    write("windows.toml", b"[base]\nsieve = \"csv\\sand.csv\"\n");
+    let sieve = |path: &str| {
+        format!("[filter]\ncurve = \"shire2016-cu1.5-loose\"\n[base]\nsieve = {path}\nn_base = 5\n")
+    };
+    write("tab.toml", sieve("\"csv\\table.csv\"").as_bytes());
+    write("missing.toml", sieve("\"nosuch.csv\"").as_bytes());
+    let utf_16: Vec<u8> = SMALL.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    write("utf16.toml", &[&[0xff, 0xfe], &utf_16[..]].concat());
+    write("latin.toml", b"# gr\xf6\xdfer\nseed = 1\n");
+    write("key.toml", b"[walk]\nbias = 1\n");
+    write("table.toml", b"[filtre]\ncu = 1\n");
+    let grains = "# cell = none\nx_mm,y_mm,z_mm,diameter_mm\n0,0,0,1\n1,0,0,1\n0,1,0,1\n";
+    write("three.csv", grains.as_bytes());
+    write("four.csv", format!("{grains}0,0,1,1\n").as_bytes());
+    write("flat.csv", format!("{grains}1,1,0,1\n2,1,0,1\n").as_bytes());
+    fs::create_dir(folder.join("thesis")).unwrap();
+    write("thesis.txt", b"years of work");
+    fs::hard_link(folder.join("thesis.txt"), folder.join("thesis/.voidwalk.lock")).unwrap();
+    let made = Command::new("mkfifo").arg(folder.join("pipe")).status().unwrap();
+    assert!(made.success());
+}
+
+#[test]
+fn every_mistake_is_answered_with_a_way_out() {
+    let root = tempfile::tempdir().unwrap();
+    files(root.path());
+    // The command line, its exit code, and what it must say on stderr.
+    let table: &[(&str, i32, &[&str])] = &[
+        ("check --seed -1", 2, &["--seed", "a whole number from 0 to 18446744073709551615"]),
+        ("pack small.toml --seed -1", 2, &["--seed", "a whole number from 0"]),
+        ("percolation --seed 1.5", 2, &["--seed", "a whole number from 0"]),
+        ("run --threads -2", 2, &["--threads", "a whole number from 1 to 1024"]),
+        ("run --memory -2GB", 2, &["--memory", "a size above 0 as 4GB"]),
+        ("check --set filter.cu 3", 2, &["--set", "write KEY=VALUE, as --set filter.cu=3"]),
+        ("check --decide 150%", 2, &["from 50% to 99.999%", "as 99.9%"]),
+        ("check --decide 99", 2, &["from 50% to 99.999% with its sign", "as 99.9%"]),
+        ("check --target-error 0.5", 2, &["with their unit, as 0.5pp"]),
+        ("check comma.toml", 2, &["comma.toml, line 2: `1,5` has a decimal comma; write cu = 1.5"]),
+        ("check windows.toml", 2, &["windows.toml, line 2", "backslashes; write sieve = \"csv/sand.csv\""]),
+        ("check tab.toml", 2, &["named by base.sieve", "write / between folders, not a backslash"]),
+        ("check missing.toml", 2, &["nosuch.csv, named by base.sieve: No such file"]),
+        ("check utf16.toml", 2, &["utf16.toml: is UTF-16 text", "save it as UTF-8"]),
+        ("campaign utf16.toml", 2, &["utf16.toml: is UTF-16 text", "save it as UTF-8"]),
+        ("check latin.toml", 2, &["latin.toml: is not UTF-8 text (line 1); save it as UTF-8"]),
+        ("check key.toml", 2, &["line 1: there is no setting `walk`; there are [stop], [filter]", "seed, "]),
+        ("check table.toml", 2, &["line 1: there is no setting `filtre`; did you mean [filter]?"]),
+        (
+            "check --set stop.bias=1",
+            2,
+            &["no setting `stop.bias`; [stop] has target_error_pp, decide_percent"],
+        ),
+        ("check --set record.foo=1", 2, &["no setting `record.foo`; [record] has "]),
+        (
+            "check --set base.d85_mm=1 --set base.d85_at_dc=5",
+            2,
+            &["--set: base.d85_mm and base.d85_at_dc both set D85B: keep one"],
+        ),
+        ("run sand.csv", 2, &["sand.csv: is a table of numbers, not a scene", "base.sieve ="]),
+        ("run plan.toml", 2, &["plan.toml: is the plan of a campaign, not a scene", "voidwalk campaign"]),
+        ("campaign small.toml", 2, &["small.toml: is a scene, not the plan of a campaign", "voidwalk run"]),
+        ("campaign sand.csv", 2, &["sand.csv: is a table of numbers, not the plan of a campaign"]),
+        ("run pipe", 2, &["pipe: must be a regular file"]),
+        ("campaign pipe", 2, &["pipe: must be a regular file"]),
+        ("constrictions pipe", 2, &["pipe: cannot be read: is no regular file"]),
+        ("check --set base.sieve=pipe", 2, &["pipe, named by base.sieve: must be a regular file"]),
+        ("check --set filter.curve=pipe.csv", 2, &["pipe.csv, named by filter.curve: No such file"]),
+        ("constrictions three.csv --out c", 2, &["three.csv: 3 grains: a triangulation needs at least 4"]),
+        (
+            "constrictions four.csv --out c",
+            2,
+            &["four.csv: 4 grains are too few", "least 5 grains", "in one plane"],
+        ),
+        ("constrictions flat.csv --out c", 2, &["flat.csv: the centres of all 5 grains lie in one plane"]),
+        (
+            "run small.toml --out thesis",
+            2,
+            &["thesis/.voidwalk.lock: is no lock file", "name another folder"],
+        ),
+    ];
+    let before = fs::read_dir(root.path()).unwrap().count();
+    for (line, code, messages) in table {
+        let output = voidwalk(root.path(), &line.split(' ').collect::<Vec<_>>());
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(*code), "{line}: {stderr}");
+        for message in *messages {
+            assert!(stderr.contains(message), "{line}: {stderr:?} lacks {message:?}");
+        }
+    }
+    assert_eq!(fs::read_dir(root.path()).unwrap().count(), before, "a refusal writes nothing");
+    assert_eq!(fs::read_to_string(root.path().join("thesis.txt")).unwrap(), "years of work");
+}
+
+#[test]
+fn one_replicate_is_said_to_have_no_scatter() {
+    let root = tempfile::tempdir().unwrap();
+    files(root.path());
+    let one = voidwalk(root.path(), &["run", "small.toml", "--out", "one"]);
+    let text = String::from_utf8_lossy(&one.stdout);
+    assert!(
+        text.contains("one replicate: the scatter is unknown") && text.contains(" 1 replicate of 500"),
+        "{text}"
+    );
+    let two = voidwalk(root.path(), &["run", "small.toml", "--set", "replicates=2", "--out", "two"]);
+    let text = String::from_utf8_lossy(&two.stdout);
+    assert!(!text.contains("scatter is unknown") && text.contains(" 2 replicates of 500"), "{text}");
+}
+
+#[test]
+fn what_a_changed_plan_does_to_finished_cases_is_said() {
+    let root = tempfile::tempdir().unwrap();
+    files(root.path());
+    let stderr = |text: &str| {
+        fs::write(root.path().join("plan.toml"), text).unwrap();
+        let output = voidwalk(root.path(), &["campaign", "plan.toml", "--out", "c", "-q"]);
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{stderr}");
+        stderr
+    };
+    assert_eq!(stderr(PLAN), "");
+    assert_eq!(stderr(PLAN), "");
+    let more = stderr(&PLAN.replace("replicates = 1", "replicates = 2"));
+    assert!(
+        more.contains("2 finished cases (x; y): settings or files have changed since; walked again"),
+        "{more}"
+    );
+    let fewer =
+        stderr(&PLAN.replace("replicates = 1", "replicates = 2").replace("[[case]]\nname = \"y\"\n", ""));
+    assert!(fewer.contains("1 finished case (y): not in the plan any more; left out of ledger"), "{fewer}");
+    assert!(root.path().join("c/cases/y/case.json").exists());
+}
+
+/// A loop with a way out that is taken once in a million million moves.
+#[test]
+fn a_walk_that_may_not_end_is_warned_of_before_it_begins() {
+    let root = tempfile::tempdir().unwrap();
+    fs::write(root.path().join("leak.csv"), "from,to,diameter_mm\nstart,0,\n0,0,1000\n0,end,0.001\n")
+        .unwrap();
+    let scene = "replicates = 1\nruns = 1\n[filter]\nd0_mm = 1\ncu = 1.5\ngrains_per_void = 0.6\n[base]\n\
+        single_mm = 0.0005\nn_base = 10\n[network]\nfile = \"leak.csv\"\n[record]\nsensitivity = []\n";
+    fs::write(root.path().join("n.toml"), scene).unwrap();
+    let check = voidwalk(root.path(), &["check", "n.toml"]);
+    let text = String::from_utf8_lossy(&check.stdout);
+    assert!(text.contains("loops whose way out is very narrow"), "{text}");
+}
+
+/// A file where the program wants to read one of its own, or to write where a link leads, ends nothing.
+#[test]
+fn pipes_and_links_inside_a_folder_are_no_trap() {
+    let root = tempfile::tempdir().unwrap();
+    files(root.path());
+    let campaign = |more: &[&str]| {
+        voidwalk(root.path(), &[&["campaign", "plan.toml", "--out", "c", "-q"], more].concat())
+    };
+    assert!(campaign(&[]).status.success());
+    let line = root.path().join("c/cases/x/case.json");
+    fs::remove_file(&line).unwrap();
+    assert!(Command::new("mkfifo").arg(&line).status().unwrap().success());
+    // It is no finished case: walked again, and the pipe is replaced.
+    let again = campaign(&[]);
+    assert!(again.status.success(), "{}", String::from_utf8_lossy(&again.stderr));
+    assert!(line.is_file());
+
+    let packed = PLAN.replace("[[case]]\nname = \"y\"\n", "").replace(
+        "[[case]]",
+        "filter = { cu = 1.5, density = \"loose\" }\npacking = { grains = 100 }\n[[case]]",
+    );
+    fs::write(root.path().join("packed.toml"), packed).unwrap();
+    fs::create_dir(root.path().join("elsewhere")).unwrap();
+    std::os::unix::fs::symlink("../elsewhere", root.path().join("c/packings")).unwrap();
+    let refused = voidwalk(root.path(), &["campaign", "packed.toml", "--out", "c", "-q"]);
+    let stderr = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(2), "{stderr}");
+    assert!(stderr.contains("c/packings: is a symbolic link, which is not followed"), "{stderr}");
+    assert_eq!(fs::read_dir(root.path().join("elsewhere")).unwrap().count(), 0);
+}
+
+/// The shell says how large a file may be, and how much processor time there is.
+#[test]
+fn limits_of_the_system_end_a_run_with_a_word_or_a_checkpoint() {
+    let root = tempfile::tempdir().unwrap();
+    files(root.path());
+    let shell = |script: &str| {
+        let program = env!("CARGO_BIN_EXE_voidwalk");
+        Command::new("bash").current_dir(root.path()).args(["-c", script, "bash", program]).output().unwrap()
+    };
+    let small = shell("ulimit -c 0; ulimit -f 4; \"$1\" run small.toml --out small -q");
+    let stderr = String::from_utf8_lossy(&small.stderr);
+    assert_eq!(small.status.code(), Some(1), "{stderr}");
+    assert!(stderr.contains("small/") && stderr.contains("ulimit -f"), "{stderr}");
+
+    let long = SMALL.replace("n_base = 500", "n_base = 30000000").replace("nz = 5", "nz = 200");
+    fs::write(root.path().join("long.toml"), long.replace("runs = 1", "runs = 1\nengine = \"particles\""))
+        .unwrap();
+    for signal in ["HUP", "XCPU", "TERM"] {
+        let script =
+            format!("\"$1\" run long.toml --out {signal} -q & sleep 1.5; kill -{signal} $!; wait $!");
+        let output = shell(&script);
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(3), "{signal}: {stderr}");
+        assert!(stderr.contains("progress saved; continue with `voidwalk resume"), "{signal}: {stderr}");
+        assert!(fs::read_dir(root.path().join(signal).join("checkpoint")).unwrap().count() > 0);
+    }
+}
