@@ -28,7 +28,7 @@ pub(super) fn rules(outcome: &Outcome) -> Markup {
             let sign = if rule.at_least { "≥" } else { "≤" };
             rule.limit.map_or_else(|| "–".to_owned(), |limit| format!("{sign} {}", trimmed(limit)))
         })
-        .text("", |rule| match rule.meets {
+        .text("", |rule| match rule.met {
             Some(true) => html! { span.keeps { "✓ met" } },
             Some(false) => html! { span.breaks { "✗ not met" } },
             None => html! { "no result" },
