@@ -7,12 +7,14 @@
 //! - [`verdict`] classifies, by mass eroded, one replicate or many; [`stopping`] says how many are enough.
 //! - [`paper`] holds what the paper states.
 //! - [`rules`] applies the rules of filter practice to the same two curves; [`PairRules`] without a walk.
+//! - [`confidence`] says how far a verdict can be relied on, and why no further.
 //! - [`infiltration()`] is Eq. (1) beside the walk.
 //! - [`percolation`] fits percolation thresholds of several lattice sizes.
 //! - [`precision`] is error against run time.
 
 mod applied;
 pub mod by_connectivity;
+pub mod confidence;
 mod infiltration;
 mod least_squares;
 pub mod ledger;

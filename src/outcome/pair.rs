@@ -97,7 +97,10 @@ impl PairRules {
                 cc: base.cc(),
             },
             rules: apply(&inputs),
-            warnings: Mistake::find(filter, base).into_iter().map(|mistake| mistake.sentence).collect(),
+            warnings: Mistake::find(filter, base, false)
+                .into_iter()
+                .map(|mistake| mistake.sentence)
+                .collect(),
         }
     }
 }
@@ -113,13 +116,15 @@ pub struct Mistake {
 
 impl Mistake {
     /// Looks for exchanged tables, and for micrometres where mm are meant.
-    pub fn find(filter: &Gradation, base: &Gradation) -> Option<Self> {
+    ///
+    /// Sizes that are multiples of D0F (`scale_free`) have no unit that could be wrong.
+    pub fn find(filter: &Gradation, base: &Gradation, scale_free: bool) -> Option<Self> {
         /// No soil is so much coarser than its filter (D50).
         const HOPELESS: f64 = 50.0;
         /// No filter is coarser than this (D50, mm).
         const BOULDERS_MM: f64 = 300.0;
         let (f, b) = (filter.d(50.0)?, base.d(50.0)?);
-        if b > HOPELESS * f {
+        if b > HOPELESS * f && !scale_free {
             let sentence = format!(
                 "the base (D50 {b:.3} mm) is {:.0} times as coarse as the filter (D50 {f:.3} mm): are its \
                  sizes micrometres under a header in mm, or are the two files exchanged?",
@@ -134,7 +139,7 @@ impl Mistake {
             );
             return Some(Self { sentence, is_certain: false });
         }
-        (f > BOULDERS_MM).then(|| Self {
+        (f > BOULDERS_MM && !scale_free).then(|| Self {
             sentence: format!(
                 "the filter's D50 is {f:.0} mm: are its sizes micrometres under a header in mm?"
             ),
@@ -153,7 +158,7 @@ mod tests {
 
     #[test]
     fn exchanged_tables_and_micrometres_are_recognised() {
-        let said = |filter: f64, base: f64| Mistake::find(&linear(filter), &linear(base));
+        let said = |filter: f64, base: f64| Mistake::find(&linear(filter), &linear(base), false);
         assert_eq!(said(2.0, 0.2), None);
         let exchanged = said(0.2, 2.0).unwrap();
         assert!(exchanged.sentence.contains("files exchanged") && !exchanged.is_certain);

@@ -22,6 +22,12 @@ pub use super::applied::{AppliedRule, Confidence, RuleRole};
 pub struct Outcome {
     /// The class that the replicates together support.
     pub verdict: Verdict,
+    /// How far it can be relied on; folders of earlier versions do not say, and are outside.
+    #[serde(default)]
+    pub confidence: Confidence,
+    /// Why no further: sentences, the weightiest first.
+    #[serde(default)]
+    pub reasons: Vec<String>,
     /// The user's seed.
     pub seed: u64,
     /// Base particles inserted in each run.

@@ -10,7 +10,7 @@ use super::replicates::{ReplicateResult, as_it_is, stopping, summarise};
 use crate::case::{Case, INPUT_NAMES};
 use crate::outcome::record::{Manifest, Outcome, Sensitivity, Statistic};
 use crate::outcome::rules::{BaseSoil, RuleInputs};
-use crate::outcome::{MODEL_LEAVES_OUT, Recorded, infiltration, rules, verdict};
+use crate::outcome::{MODEL_LEAVES_OUT, Recorded, confidence, infiltration, rules, verdict};
 use crate::scene::NetworkSource;
 use crate::store::{Folder, StoreError};
 
@@ -29,9 +29,12 @@ pub fn outcome(
         sensitivity.push(as_it_is(case, walked));
         sensitivity.sort_by(|a, b| a.factor.total_cmp(&b.factor));
     }
-    let ratios = case.ratios();
+    let rules = rules::apply(&rule_inputs(case, walked));
+    let (confidence, reasons) = confidence::judge(verdict, &rules, case.doubts());
     Outcome {
         verdict,
+        confidence,
+        reasons,
         seed: case.scene.walk.seed,
         n_base: case.n_base,
         n_base_eq2: case.n_base_eq2,
@@ -46,8 +49,8 @@ pub fn outcome(
         left_out: left_out(case, walked),
         model_leaves_out: MODEL_LEAVES_OUT.map(String::from).to_vec(),
         inputs: case.record(),
-        ratios,
-        rules: rules::apply(&rule_inputs(case, walked)),
+        ratios: case.ratios(),
+        rules,
         infiltration: match case.scene.network.source() {
             NetworkSource::Cubic(_) => Some(infiltration(&case.curve, &case.base, case.counts[3])),
             _ => None,

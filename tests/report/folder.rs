@@ -109,6 +109,8 @@ pub fn outcome(replicates: u64) -> Outcome {
         });
     Outcome {
         verdict: Verdict::Some,
+        confidence: Confidence::Within,
+        reasons: Vec::new(),
         seed: 2016,
         n_base: 21_443_871,
         n_base_eq2: Some(21_443_871),

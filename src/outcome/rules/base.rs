@@ -96,9 +96,9 @@ fn regrading(base: &Gradation) -> (Option<f64>, String) {
         return (None, "less than 15 % fines and not broadly graded".into());
     }
     let why = match broad {
+        _ if fines(base).1 >= FEW_FINES => "grains coarser than No. 4 (4.75 mm) and 15 % fines or more",
         Some(true) => "broadly graded, with grains coarser than No. 4 (4.75 mm)",
-        Some(false) => "15 % fines or more, with grains coarser than No. 4 (4.75 mm)",
-        None => "grains coarser than No. 4 (4.75 mm), and Cu is not known: taken as broadly graded",
+        _ => "grains coarser than No. 4 (4.75 mm), and Cu is not known: taken as broadly graded",
     };
     (Some(SAND_MM), why.into())
 }
