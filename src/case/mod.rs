@@ -18,6 +18,7 @@ pub use packing_plan::PackingPlan;
 use crate::constrictions::{Curve, CurveError, CurveUnit, ShippedFilter, inscribed};
 use crate::gradation::{BaseSupply, Gradation, GradationError, NumberError, SizeSampler, base_particles};
 use crate::network::{Network, NetworkError};
+use crate::outcome::Mistake;
 use crate::outcome::record::Ratios;
 use crate::scene::{Amount, BaseGradation, D85, FilterGradation, NetworkSource, Scene, SceneError};
 use crate::store::Placement;
@@ -182,6 +183,14 @@ impl Case {
             (None, None) => return Err(scene.clash("filter.curve is missing").into()),
         };
         let base = base_gradation(&scene, &filter, &curve, unit_mm, &mut files)?;
+        // A sieve table alone can be in another unit, or the filter's.
+        let mistake = match scene.base.gradation() {
+            BaseGradation::Sieve(..) => Mistake::find(&filter, &base, false),
+            _ => None,
+        };
+        if let Some(mistake) = mistake.as_ref().filter(|mistake| mistake.is_certain) {
+            return Err(scene.clash(&mistake.sentence).into());
+        }
         let (counts, connectivity) = match (&network_file, &scene.network.source()) {
             (Some(n), _) => (sizes::of_network(n), sizes::connectivity_of(n)),
             (None, NetworkSource::Connected(shape, wanted)) => {
@@ -196,7 +205,11 @@ impl Case {
         let of_shipped = shipped.filter(|_| network_file.is_none()).map(|s| s.grains_per_void);
         let of_packing = packed.as_ref().map(|packed| packed.grains_per_void).or(of_shipped);
         let grains_per_void = scene.filter.grains_per_void.or(of_packing);
-        let (supply, mass_ratio) = supply(&scene, grains_per_void, counts[0], &base, &filter)?;
+        let (supply, mass_ratio) =
+            supply(&scene, grains_per_void, counts[0], &base, &filter).map_err(|error| match mistake {
+                Some(mistake) => CaseError::from(scene.clash(mistake.sentence)),
+                None => error,
+            })?;
         let is_guess = packed.as_ref().is_some_and(|packed| packed.files.is_none());
         if base.pan_fraction() > 0.0 && base.smallest_mm() > curve.smallest() && !is_guess {
             let problem = format!(

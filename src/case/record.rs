@@ -124,6 +124,11 @@ impl Case {
         }
     }
 
+    /// Whether the filter's gradation is a sieve curve, and not a straight line.
+    pub fn filter_is_measured(&self) -> bool {
+        matches!(self.scene.filter.gradation(), FilterGradation::Sieve(..))
+    }
+
     /// Whether lengths are in units of the smallest filter grain: a scale-free curve with d0_mm = 1.
     pub fn is_scale_free(&self) -> bool {
         matches!(self.scene.filter.gradation(), FilterGradation::Linear { d0_mm, .. } if d0_mm == 1.0)

@@ -1,6 +1,8 @@
 //! Where a case leaves the range in which the model was checked, and what else a reader must know.
 
 use super::{Case, replicate_seed};
+use crate::outcome::Mistake;
+use crate::outcome::rules::{FEW_FINES, FINES_MM};
 
 /// More moves than these of a particle that nothing stops are worth a word.
 const MANY_MOVES: f64 = 1e5;
@@ -9,30 +11,30 @@ const MANY_MOVES: f64 = 1e5;
 const LOOKED_AT: u64 = 50_000_000;
 
 impl Case {
-    /// Where the inputs leave the range in which the model was checked, and what else a reader must know.
-    pub fn warnings(&self) -> Vec<String> {
-        let mut warnings = Vec::new();
-        let mut cu = |whose: &str, cu: Option<f64>, low: f64, high: f64| match cu {
-            Some(cu) if cu < low - 1e-9 || cu > high + 1e-9 => warnings
-                .push(format!("Cu of the {whose} is {cu:.2}: the model was checked for {low} to {high}")),
-            _ => {}
-        };
-        cu("filter", self.filter.cu(), 1.2, 6.0);
-        cu("base", self.base.cu(), 1.2, 4.5);
-        if !self.is_scale_free() {
-            let fines = self.base.percent_finer_by_mass(0.075).max(100.0 * self.base.pan_fraction());
-            if self.base.smallest_mm() < 0.075 && fines > 15.0 {
-                warnings.push(format!(
-                    "{fines:.0} % of the base is finer than 0.075 mm: cohesion may govern, which the model \
-                     does not know"
-                ));
+    /// Where the inputs leave the range in which the model was checked: no verdict on them stands in green.
+    pub fn doubts(&self) -> Vec<String> {
+        let mut doubts = Vec::new();
+        doubts.extend(self.fines());
+        for (whose, soil, low, high) in [("filter", &self.filter, 1.2, 6.0), ("base", &self.base, 1.2, 4.5)] {
+            match soil.cu() {
+                Some(cu) if cu < low - 1e-9 || cu > high + 1e-9 => doubts
+                    .push(format!("Cu of the {whose} is {cu:.2}: the model was checked for {low} to {high}")),
+                Some(_) => {}
+                None => doubts.push(format!(
+                    "Cu of the {whose} is not known, as its D10 is finer than its finest sieve: the model was \
+                     checked for {low} to {high}"
+                )),
             }
         }
-        if self.base.d(50.0).zip(self.filter.d(50.0)).is_some_and(|(b, f)| b > f) {
-            warnings.push("the base is coarser than the filter (D50): are the two files exchanged?".into());
+        if let Some(gap) = self.filter.gap(0.0).filter(|_| self.filter_is_measured()) {
+            doubts.push(format!(
+                "the filter is gap-graded: only {:.1} % of it is between {:.3} mm and four times that. The \
+                 constrictions between its fines, which it may lose, were walked",
+                gap.within, gap.from_mm
+            ));
         }
         if self.base.pan_fraction() > 0.0 {
-            warnings.push(format!(
+            doubts.push(format!(
                 "{:.1} % of the base is finer than its finest sieve: taken as passive and counted by mass \
                  only",
                 100.0 * self.base.pan_fraction()
@@ -42,19 +44,51 @@ impl Case {
             && let Some(cu) = self.filter.cu()
             && (cu / shipped.cu - 1.0).abs() > 0.05
         {
-            warnings.push(format!(
+            doubts.push(format!(
                 "the filter's Cu is {cu:.2}, but its constriction curve {} belongs to Cu {}: constrictions \
                  of another filter",
                 shipped.name, shipped.cu
             ));
         }
         if self.scene.filter.estimate.is_some() {
-            warnings.push(
+            doubts.push(
                 "the constriction curve is a guess from circles inscribed between three or four grains; the \
                  wider the filter's gradation, the more it is off. filter.density packs the grains and \
                  measures it"
                     .into(),
             );
+        }
+        doubts
+    }
+
+    /// Fines of the base that may be cohesive, or that are not known.
+    fn fines(&self) -> Option<String> {
+        if self.is_scale_free() {
+            return None;
+        }
+        let base = &self.base;
+        let fines = base.percent_finer_by_mass(FINES_MM);
+        if fines <= FEW_FINES {
+            return None;
+        }
+        Some(match base.smallest_mm() <= FINES_MM || base.pan_fraction() == 0.0 {
+            true => format!(
+                "{fines:.0} % of the base is finer than 0.075 mm: cohesion may govern, which the model does \
+                 not know"
+            ),
+            false => format!(
+                "up to {fines:.0} % of the base may be finer than 0.075 mm, as its finest sieve is {} mm: \
+                 cohesion may govern, which the model does not know",
+                base.smallest_mm()
+            ),
+        })
+    }
+
+    /// Where the inputs leave the range in which the model was checked, and what else a reader must know.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = self.doubts();
+        if let Some(mistake) = Mistake::find(&self.filter, &self.base, self.is_scale_free()) {
+            warnings.insert(0, mistake.sentence);
         }
         if self.filter.pan_fraction() > 0.0 {
             warnings.push(format!(
@@ -65,7 +99,7 @@ impl Case {
         }
         if let Some(eq2) = self.n_base_eq2.filter(|_| self.capped) {
             warnings.push(format!(
-                "the cap of {} base particles bit: Eq. (2) asks for {eq2}. Fewer particles are a bias, not \
+                "capped at {} base particles; Eq. (2) requires {eq2}. Fewer particles are a bias, not \
                  noise, and its sign depends on the case",
                 self.n_base
             ));

@@ -30,6 +30,8 @@ pub enum Command {
     Resume(ResumeArgs),
     /// Say what a run would do: number of base particles, memory, parts that are needed
     Check(SceneArgs),
+    /// Apply every rule of filter practice to two sieve tables, without a walk
+    Rules(RulesArgs),
     /// Write the built-in scene, commented, as a start for your own
     Init {
         /// File to write; the scene goes to stdout without one
@@ -51,6 +53,18 @@ pub enum Command {
         /// The folder
         folder: PathBuf,
     },
+}
+
+/// Which two soils.
+#[derive(Debug, Args)]
+pub struct RulesArgs {
+    /// The filter: a sieve table, as filter.sieve in a scene
+    pub filter: PathBuf,
+    /// The base: a sieve table, as base.sieve in a scene
+    pub base: PathBuf,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// How a walk is done.

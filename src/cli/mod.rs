@@ -14,6 +14,7 @@ mod precision;
 mod print;
 mod progress;
 mod report;
+mod rules;
 mod run;
 
 use std::process::ExitCode;
@@ -34,6 +35,7 @@ pub fn main() -> ExitCode {
         Command::Campaign(args) => campaign::campaign(&args),
         Command::Pack(args) => pack::pack(&args),
         Command::Constrictions(args) => constrictions::constrictions(&args),
+        Command::Rules(args) => rules::rules(&args),
         Command::Percolation(args) => percolation::percolation(&args),
         Command::Precision(args) => precision::precision(&args),
         Command::Report { folder } => report::report(&folder),

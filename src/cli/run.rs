@@ -58,7 +58,10 @@ fn summary(run: &FinishedRun) -> String {
     let mut line = |s: String| {
         let _ = writeln!(text, "{s}");
     };
-    line(format!("Verdict: {}", outcome.verdict.words()));
+    line(format!("Verdict: {}", outcome.headline()));
+    for reason in outcome.reasons.iter().skip(1) {
+        line(format!("  also: {reason}"));
+    }
     for run in &outcome.summary {
         line(format!("  {}", run_line(run)));
     }

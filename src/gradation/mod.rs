@@ -4,7 +4,8 @@
 //!   between its points. "Linear" in the paper is one such straight line:
 //!   `D_x = D_0 Cu^(x / 50)`, so `D_60 / D_10 = Cu` and `D_100 / D_0 = Cu^2`.
 //! - [`SizeSampler`] draws diameters from it by number.
-//! - [`Gradation::kenney_lau`] and [`Gradation::kezdi`] say whether a soil holds its own fines.
+//! - [`Gradation::kenney_lau`] and [`Gradation::kezdi`] say whether a soil holds its own fines,
+//!   with [`Gradation::li_fannin`]; [`Gradation::gap`] whether sizes are missing.
 //! - [`base_particles`] is Eq. (2) of the paper: how many base particles a test inserts.
 //!
 //! # By mass and by number
@@ -25,6 +26,7 @@ mod numbers;
 mod root;
 mod sampler;
 mod segments;
+mod shape;
 mod sieve;
 mod stability;
 mod supply;
@@ -33,8 +35,9 @@ mod table;
 pub(crate) use error::shortened;
 pub use error::{GradationError, NumberError, Position, TableError};
 pub use sampler::{SizeRange, SizeSampler};
+pub use shape::Gap;
 pub use sieve::Gradation;
-pub use stability::ShapeIndex;
+pub use stability::{KEZDI_RANGE, ShapeIndex};
 pub use supply::{BaseSupply, base_particles};
 pub(crate) use table::{Direction, Row, Table, check_size, rising};
 pub use table::{FILE_LIMIT_BYTES, SIZE_MAX_MM, SIZE_MIN_MM};

@@ -111,7 +111,7 @@ impl Gradation {
     }
 
     /// A curve from checked points.
-    fn new(size_mm: Vec<f64>, percent: Vec<f64>) -> Gradation {
+    pub(super) fn new(size_mm: Vec<f64>, percent: Vec<f64>) -> Gradation {
         let log_ratio: Vec<f64> = size_mm.windows(2).map(|w| libm::log(w[1] / w[0])).collect();
         let number = cumulative(&size_mm, &percent, &log_ratio);
         Gradation { size_mm, percent, log_ratio, number }

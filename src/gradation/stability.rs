@@ -3,9 +3,14 @@
 //! - Kenney and Lau (1985, 1986): F is the mass finer than D, H the mass between D and 4 D. Where H is less
 //!   than F, the coarse part does not hold the fine part. Only the part of a curve that can be loose counts:
 //!   F up to 20 % where Cu > 3, up to 30 % otherwise. The limit of 1986 is H / F = 1 (1985: 1.3).
-//! - Kezdi (1979): the curve is split at every size; Terzaghi's ratio of the coarser part over the finer,
+//! - Kezdi (1979): the curve is split in two; Terzaghi's ratio of the coarser part over the finer,
 //!   D'15 / d'85, is not to be more than 4. Whatever the split, 15 % of the whole mass lie between the two
-//!   sizes.
+//!   sizes: H is to be at least 15 % in the words of Kenney and Lau. Splits near the ends say nothing: below
+//!   F = 15 % the limit of Kenney and Lau is the better one (Li and Fannin), and where the coarser part is
+//!   small its grains float in the finer part and are no filter for it. Judged are splits with d'85 at
+//!   F = 15 % to 55 %; the second limit is ours.
+//! - Li and Fannin (2008): both together. H / F of at least 1 for F up to 15 %, H of at least 15 % from there
+//!   to the F of Kenney and Lau; so the least H / min(F, 15 %) is to be at least 1.
 //!
 //! Definitions and limits as in the technical manual of the U.S. Army Corps of Engineers' Internal
 //! Instability Toolbox (Risk Management Center, RMC-CPD-2023-10, "Modified Kenney and Lau method"), which
@@ -18,6 +23,12 @@ use super::Gradation;
 
 /// Largest Cu of a narrowly graded soil.
 const NARROW_CU: f64 = 3.0;
+
+/// Percent finer than d'85 over which Kezdi's ratio is judged.
+pub const KEZDI_RANGE: [f64; 2] = [15.0, 55.0];
+
+/// Percent of the mass between d'85 and D'15, and F from which Kezdi's limit is the better one.
+const BETWEEN: f64 = 15.0;
 
 /// An extreme of a shape index.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,13 +59,35 @@ impl Gradation {
     /// # Ok::<(), voidwalk::gradation::GradationError>(())
     /// ```
     pub fn kenney_lau(&self) -> Option<ShapeIndex> {
+        self.least_of_next(|finer| finer)
+    }
+
+    /// Li and Fannin: the least H / min(F, 15 %) over F up to [`Gradation::loose_percent`].
+    ///
+    /// `None` as for [`Gradation::kenney_lau`].
+    ///
+    /// ```
+    /// use voidwalk::gradation::Gradation;
+    /// // At F = 20 % only 17 % lie between D and 4 D: less than F, but more than 15 %.
+    /// let broad = Gradation::linear_from_d0(0.1, 60.0)?;
+    /// assert!(broad.kenney_lau().unwrap().value < 1.0 && broad.li_fannin().unwrap().value > 1.0);
+    /// # Ok::<(), voidwalk::gradation::GradationError>(())
+    /// ```
+    pub fn li_fannin(&self) -> Option<ShapeIndex> {
+        self.least_of_next(|finer| finer.min(BETWEEN))
+    }
+
+    /// The least H / `over(F)` for F up to [`Gradation::loose_percent`].
+    fn least_of_next(&self, over: impl Fn(f64) -> f64) -> Option<ShapeIndex> {
         let limit = self.loose_percent()?;
         let last = self.highest_size_at(limit)?;
-        let candidates = self.size_mm.iter().flat_map(|&d| [d, d / 4.0]).chain([last]);
+        let between = self.highest_size_at(BETWEEN);
+        let candidates = self.size_mm.iter().flat_map(|&d| [d, d / 4.0]).chain([last]).chain(between);
         let index = |d: f64| {
             let finer = self.percent_finer_by_mass(d);
             let next = self.percent_finer_by_mass(4.0 * d) - finer;
-            (finer > 0.0 && finer <= limit).then_some(ShapeIndex { value: next / finer, percent: finer })
+            let of = over(finer);
+            (finer > 0.0 && finer <= limit).then_some(ShapeIndex { value: next / of, percent: finer })
         };
         candidates
             .filter(|d| (self.smallest_mm()..=last).contains(d))
@@ -62,23 +95,22 @@ impl Gradation {
             .min_by(|a, b| a.value.total_cmp(&b.value))
     }
 
-    /// Kezdi: the greatest D'15 / d'85 over all splits of the curve.
+    /// Kezdi: the greatest D'15 / d'85 over splits with d'85 within [`KEZDI_RANGE`].
     ///
-    /// `None` for a single size, or where more than 85 % of the mass is in a pan fraction.
+    /// `None` for a single size, or where a pan fraction hides all of that range.
     pub fn kezdi(&self) -> Option<ShapeIndex> {
         // A split at n % has d'85 at 0.85 n % and D'15 at 15 % more of the whole mass.
-        const BETWEEN: f64 = 15.0;
         if self.size_mm.len() < 2 {
             return None;
         }
-        let tail = self.percent[0];
-        let candidates = self.percent.iter().flat_map(|&p| [p, p - BETWEEN]).chain([100.0 - BETWEEN]);
+        let [low, high] = [KEZDI_RANGE[0].max(self.percent[0]), KEZDI_RANGE[1]];
+        let candidates = self.percent.iter().flat_map(|&p| [p, p - BETWEEN]).chain([low, high]);
         let index = |finer: f64| {
             let value = self.highest_size_at(finer + BETWEEN)? / self.d(finer)?;
             Some(ShapeIndex { value, percent: finer / 0.85 })
         };
         candidates
-            .filter(|&finer| (tail..=100.0 - BETWEEN).contains(&finer))
+            .filter(|&finer| (low..=high).contains(&finer))
             .filter_map(index)
             .max_by(|a, b| a.value.total_cmp(&b.value))
     }
@@ -124,11 +156,11 @@ mod tests {
         let fine = 0.1 * libm::pow(2.0, 21.25 / 25.0);
         let coarse = 2.0 * libm::pow(10.0, 11.25 / 75.0);
         assert!(gap.kezdi().unwrap().value >= coarse / fine - 1e-12);
-        // The widest window of 15 % begins where the other end has just passed the gap: D(25+) over D(10), or
-        // D(40) over D(25).
+        // The widest window of 15 % ends where it begins in the gap: D(40) over D(25); or it begins at the
+        // first F that is judged: D(30) over D(15).
         let d_40 = 2.0 * libm::pow(10.0, 15.0 / 75.0);
-        let d_10 = 0.1 * libm::pow(2.0, 0.4);
-        let widest = (d_40 / 0.2).max(2.0 / d_10);
+        let (d_15, d_30) = (0.1 * libm::pow(2.0, 0.6), 2.0 * libm::pow(10.0, 5.0 / 75.0));
+        let widest = (d_40 / 0.2).max(d_30 / d_15);
         assert!((gap.kezdi().unwrap().value - widest).abs() < 1e-9);
         // At F = 20 %, D = 0.1 * 2^0.8, 4 D lies in the gap: H = 5 %.
         assert!((gap.kenney_lau().unwrap().value - 0.25).abs() < 1e-9);
@@ -152,12 +184,38 @@ mod tests {
             let percent = f64::from(i) / 20_000.0 * limit;
             let d = g.d(percent).unwrap();
             least = least.min((g.percent_finer_by_mass(4.0 * d) - percent) / percent);
-            let finer = f64::from(i) / 20_000.0 * 85.0;
+            let finer = 15.0 + f64::from(i) / 20_000.0 * 40.0;
             most = most.max(g.d(finer + 15.0).unwrap() / g.d(finer).unwrap());
         }
         let (kenney_lau, kezdi) = (g.kenney_lau().unwrap().value, g.kezdi().unwrap().value);
         assert!(kenney_lau <= least && least - kenney_lau < 1e-3 * least, "{kenney_lau} {least}");
         assert!(kezdi >= most * (1.0 - 1e-12) && kezdi - most < 1e-3 * most, "{kezdi} {most}");
+    }
+
+    /// A filter with 0.5 % of fines, and the middle of the limits of ASTM C33 fine aggregate: D'15 / d'85 is
+    /// above 4 where next to nothing is finer, or next to nothing coarser, and both hold their fines.
+    #[test]
+    fn ends_of_a_curve_raise_no_alarm() {
+        let clean = points(&[(0.075, 0.5), (0.3, 2.0), (0.6, 10.0), (1.2, 40.0), (4.0, 100.0)]);
+        let c33 = points(&[
+            (0.075, 1.5),
+            (0.15, 5.0),
+            (0.3, 17.5),
+            (0.6, 37.5),
+            (1.18, 67.5),
+            (2.36, 90.0),
+            (4.75, 97.5),
+            (9.5, 100.0),
+        ]);
+        assert!(clean.d(15.5).unwrap() / clean.d(0.5).unwrap() > 4.0);
+        assert!(c33.d(100.0).unwrap() / c33.d(85.0).unwrap() > 4.0);
+        for soil in [clean, c33] {
+            assert!(soil.kezdi().unwrap().value < 4.0);
+            assert!(soil.kenney_lau().unwrap().value > 1.0 && soil.li_fannin().unwrap().value > 1.0);
+        }
+        // The gap-graded filter of 40 % fine sand under gravel stays unstable.
+        let gap = points(&[(0.1, 0.0), (0.5, 40.0), (5.0, 40.0), (20.0, 100.0)]);
+        assert!(gap.kezdi().unwrap().value > 10.0);
     }
 
     #[test]

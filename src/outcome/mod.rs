@@ -6,17 +6,21 @@
 //! - [`by_connectivity`] splits what a run retained by the connectivity of the voids (Table 3).
 //! - [`verdict`] classifies, by mass eroded, one replicate or many; [`stopping`] says how many are enough.
 //! - [`paper`] holds what the paper states.
-//! - [`rules`] applies the empirical filter rules to the same two curves.
+//! - [`rules`] applies the rules of filter practice to the same two curves; [`PairRules`] without a walk.
+//! - [`confidence`] says how far a verdict can be relied on, and why no further.
 //! - [`infiltration()`] is Eq. (1) beside the walk.
 //! - [`percolation`] fits percolation thresholds of several lattice sizes.
 //! - [`precision`] is error against run time.
 
+mod applied;
 pub mod by_connectivity;
+pub mod confidence;
 mod infiltration;
 mod least_squares;
 pub mod ledger;
 mod metrics;
 pub mod packing;
+mod pair;
 pub mod paper;
 pub mod percolation;
 pub mod precision;
@@ -32,6 +36,7 @@ pub use infiltration::infiltration;
 pub(crate) use least_squares::log_log_slope;
 pub(crate) use metrics::eroded_mass_fraction;
 pub use metrics::{Recorded, RunId, RunMetrics};
+pub use pair::{BaseSizes, FilterSizes, Mistake, PairRules};
 pub use recorder::{Recorder, Wanted};
 
 /// What the model does not contain, for any scene; shown next to every verdict.

@@ -15,11 +15,19 @@
 
 use serde::{Deserialize, Serialize};
 
+pub use super::applied::{AppliedRule, Confidence, RuleRole};
+
 /// The whole of `outcome.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
     /// The class that the replicates together support.
     pub verdict: Verdict,
+    /// How far it can be relied on; folders of earlier versions do not say, and are outside.
+    #[serde(default)]
+    pub confidence: Confidence,
+    /// Why no further: sentences, the weightiest first.
+    #[serde(default)]
+    pub reasons: Vec<String>,
     /// The user's seed.
     pub seed: u64,
     /// Base particles inserted in each run.
@@ -354,32 +362,6 @@ pub struct Ratios {
     pub d15f_over_d85b: f64,
     /// D15F / D95B.
     pub d15f_over_d95b: f64,
-}
-
-/// An empirical filter rule, applied.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct AppliedRule {
-    /// Whose rule it is.
-    pub name: String,
-    /// What it limits, as `D15F/D85B`.
-    pub quantity: String,
-    /// Its value for these inputs; `None` where they do not give it.
-    pub value: Option<f64>,
-    /// The most, or the least, that the rule allows; `None` where no number is known.
-    pub limit: Option<f64>,
-    /// Whether `limit` is the least that the rule allows instead of the most.
-    #[serde(default)]
-    pub at_least: bool,
-    /// Whether the value keeps the limit; `None` where the rule has no result.
-    pub meets: Option<bool>,
-    /// What the rule was made for.
-    #[serde(default)]
-    pub applies_to: String,
-    /// What the rule needs, or where its value is; may be empty.
-    #[serde(default)]
-    pub note: String,
-    /// Where the rule is published.
-    pub source: String,
 }
 
 /// Eq. (1) of the paper: how far single particles come in the clean filter.

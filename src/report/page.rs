@@ -21,7 +21,7 @@ use super::written::{Written, write_page};
 use super::{packing, shell::leaves_out};
 use crate::outcome::packing::PackingRecord;
 use crate::outcome::record::{
-    NetworkKind, Outcome, Replicate, Run, RunSummary, Sensitivity, Statistic, Stopping, Verdict,
+    Confidence, NetworkKind, Outcome, Replicate, Run, RunSummary, Sensitivity, Statistic, Stopping, Verdict,
 };
 
 /// Replicates listed one by one; all are in `outcome.json`.
@@ -82,6 +82,7 @@ fn page(folder: &RunFolder, verdict: &Drawn, figures: &[Drawn]) -> String {
                      judgement." }
             }))
         }
+        (reasons(outcome))
         (warnings(outcome))
         h2 { "Figures" }
         (shell::figures(figures))
@@ -99,7 +100,10 @@ fn page(folder: &RunFolder, verdict: &Drawn, figures: &[Drawn]) -> String {
 }
 
 fn verdict_box(outcome: &Outcome, verdict: &Drawn) -> Markup {
+    let doubted = outcome.confidence != Confidence::Within;
     let class = match outcome.verdict {
+        // Never in green where the model was not checked, or practice does not agree.
+        Verdict::None if doubted => "doubted",
         Verdict::None => "none",
         Verdict::Some => "some",
         Verdict::Continuing => "continuing",
@@ -114,7 +118,8 @@ fn verdict_box(outcome: &Outcome, verdict: &Drawn) -> Markup {
         });
     html! {
         section.verdict.(class) {
-            p.word { (capital(outcome.verdict.words())) }
+            p.word.long[doubted] { (clean(&capital(&outcome.headline()))) "." }
+            @if doubted { p { "Confidence: " b { (outcome.confidence.words()) } "." } }
             p.lead { (in_words(outcome)) }
             div { (drawing(verdict)) }
             (table)
@@ -206,9 +211,23 @@ fn tally(outcome: &Outcome) -> String {
     format!("{count} replicates, each a new network and a new walk: {classes}.")
 }
 
-fn warnings(outcome: &Outcome) -> Markup {
+/// Why the verdict cannot be relied on as it stands.
+fn reasons(outcome: &Outcome) -> Markup {
     html! {
-        @if !outcome.warnings.is_empty() || outcome.capped {
+        @if outcome.reasons.len() > 1 {
+            section.warnings {
+                h2 { "Why this verdict is in doubt" }
+                ul { @for reason in &outcome.reasons { li { (clean(reason)) } } }
+            }
+        }
+    }
+}
+
+fn warnings(outcome: &Outcome) -> Markup {
+    let said = |warning: &&String| !outcome.reasons.contains(warning);
+    let warnings: Vec<&String> = outcome.warnings.iter().filter(said).collect();
+    html! {
+        @if !warnings.is_empty() || outcome.capped {
             section.warnings {
                 h2 { "Before you rely on this" }
                 ul {
@@ -218,7 +237,7 @@ fn warnings(outcome: &Outcome) -> Markup {
                             "Eq. (2) requires " (known(outcome.n_base_eq2, whole)) "."
                         }
                     }
-                    @for warning in &outcome.warnings { li { (clean(warning)) } }
+                    @for warning in warnings { li { (clean(warning)) } }
                 }
             }
         }

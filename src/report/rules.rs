@@ -5,43 +5,102 @@ use maud::{Markup, html};
 use super::numbers::{significant, trimmed};
 use super::shell::clean;
 use super::table::Table;
-use crate::outcome::record::Outcome;
+use crate::outcome::record::{AppliedRule, Outcome, RuleRole, Verdict};
 
 /// Every rule with its value, limit, result, source and what it was made for.
 pub(super) fn rules(outcome: &Outcome) -> Markup {
-    let table = Table::of(&outcome.rules)
+    let (walk, practice): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
+        outcome.rules.iter().partition(|rule| rule.role == RuleRole::Walk);
+    html! {
+        h2 { "Filter rules beside the verdict" }
+        @if outcome.rules.is_empty() { p { "No rule was applied." } } @else {
+            p { (compared(outcome)) }
+            (table(&practice))
+            @if !walk.is_empty() {
+                h3 { "What the walk itself is compared with" }
+                p.small { "These say whether the walk agrees with tests and with the paper; no filter fails by \
+                           them." }
+                (table(&walk))
+            }
+        }
+    }
+}
+
+/// Rules as a table.
+fn table(rules: &[&AppliedRule]) -> Markup {
+    let table = Table::of(rules)
         .class("rules")
         .name("Rule, what it is for, source", |rule| {
             html! {
                 (clean(&rule.name))
                 @if !rule.applies_to.is_empty() { br; span.small { "For " (clean(&rule.applies_to)) "." } }
-                @if !rule.note.is_empty() { br; span.small { b { (clean(&rule.note)) } } }
+                @for text in [&rule.note, &rule.needs] {
+                    @if !text.is_empty() { br; span.small { b { (clean(text)) } } }
+                }
                 br; span.small { (clean(&rule.source)) }
             }
         })
         .number("Here", |rule| {
-            let value =
-                rule.value.map_or_else(|| "–".to_owned(), |value| format!("= {}", significant(value)));
-            html! { (clean(&rule.quantity)) " " br; (value) }
+            let value = rule
+                .value
+                .map_or_else(|| "–".to_owned(), |value| format!("= {} {}", significant(value), rule.unit));
+            html! { (clean(&rule.quantity)) " " br; (clean(value.trim_end())) }
         })
         .number("Limit", |rule| {
             let sign = if rule.at_least { "≥" } else { "≤" };
-            rule.limit.map_or_else(|| "–".to_owned(), |limit| format!("{sign} {}", trimmed(limit)))
+            let limit = |limit: f64| format!("{sign} {} {}", trimmed((limit * 1e4).round() / 1e4), rule.unit);
+            clean(rule.limit.map_or_else(|| "–".to_owned(), limit).trim_end())
         })
-        .text("", |rule| match rule.meets {
-            Some(true) => html! { span.keeps { "✓ met" } },
-            Some(false) => html! { span.breaks { "✗ not met" } },
-            None => html! { "no result" },
+        .text("", |rule| match (rule.role, rule.met) {
+            (RuleRole::Walk, Some(true)) => html! { "within" },
+            (RuleRole::Walk, Some(false)) => html! { "beyond" },
+            (_, Some(true)) => html! { span.keeps { "✓ met" } },
+            (_, Some(false)) => html! { span.breaks { "✗ not met" } },
+            (_, None) if !rule.applies && rule.needs.is_empty() => html! { "not made for it" },
+            (_, None) => html! { "no result" },
         });
-    html! {
-        h2 { "Filter rules beside the verdict" }
-        @if outcome.rules.is_empty() { p { "No rule was applied." } } @else {
-            p {
-                "Empirical rules on the same two curves. They draw their lines by experience with tests; the \
-                 verdict above "
-                "is “" (outcome.verdict.words()) "”. Where they differ, neither is proof."
-            }
-            (table)
+    html! { (table) }
+}
+
+/// Where walk, rules and tests disagree for this pair, and which way each errs.
+fn compared(outcome: &Outcome) -> String {
+    let met = |id: &str| outcome.rules.iter().find(|rule| rule.id == id && rule.applies)?.met;
+    let tests = match (met("foster-fell-no-erosion"), met("foster-fell-continuing")) {
+        (Some(true), _) => Some((0, "no erosion")),
+        (Some(false), Some(true)) => Some((1, "some or excessive erosion")),
+        (Some(false), Some(false)) => Some((2, "continuing erosion")),
+        _ => None,
+    };
+    let walked = match outcome.verdict {
+        Verdict::None => Some(0),
+        Verdict::Some => Some(1),
+        Verdict::Continuing => Some(2),
+        Verdict::Undecided => None,
+    };
+    let mut text = format!("The walk says “{}”. ", outcome.verdict.words());
+    text += &match tests {
+        Some((_, class)) => format!("The boundaries that Foster and Fell saw in tests say “{class}”. "),
+        None => "The boundaries that Foster and Fell saw in tests give no class for this pair. ".into(),
+    };
+    text += match met("sherard-dunnigan") {
+        Some(true) => "The limit of design (Sherard and Dunnigan) is kept. ",
+        Some(false) => "The limit of design (Sherard and Dunnigan) is not kept. ",
+        None => "The limit of design (Sherard and Dunnigan) has no result. ",
+    };
+    text += match walked.zip(tests.map(|(class, _)| class)) {
+        Some((walked, tests)) if walked > tests => {
+            "So the walk is stricter than the tests here: for uniform sands it errs on the safe side. "
         }
-    }
+        Some((walked, tests)) if walked < tests => {
+            "So the walk is more favourable than the tests here, and that is the unsafe side: rely on the tests. "
+        }
+        Some(_) => "So walk and tests agree here. ",
+        None => "",
+    };
+    text += "Which way each errs: for clean sands tests put the end of no erosion at a D15F/D85B of 6.8 to 10, the \
+             limits of Terzaghi and of design at 4, with a margin, and this network near 5. For uniform sands the \
+             model is therefore stricter than tests. For broadly graded bases it is unsafe: a few coarse grains \
+             block for all the rest; and of cohesive fines it knows nothing. (Tests: Foster and Fell, as given by \
+             Fell et al., Geotechnical Engineering of Dams, Table 9.2.)";
+    text
 }

@@ -9,9 +9,9 @@ use super::machine::Machine;
 use super::replicates::{ReplicateResult, as_it_is, stopping, summarise};
 use crate::case::{Case, INPUT_NAMES};
 use crate::outcome::record::{Manifest, Outcome, Sensitivity, Statistic};
-use crate::outcome::rules::RuleInputs;
-use crate::outcome::{MODEL_LEAVES_OUT, Recorded, infiltration, rules, verdict};
-use crate::scene::{FilterGradation, NetworkSource};
+use crate::outcome::rules::{BaseSoil, RuleInputs};
+use crate::outcome::{MODEL_LEAVES_OUT, Recorded, confidence, infiltration, rules, verdict};
+use crate::scene::NetworkSource;
 use crate::store::{Folder, StoreError};
 
 /// The outcome of a case that has been walked.
@@ -29,9 +29,12 @@ pub fn outcome(
         sensitivity.push(as_it_is(case, walked));
         sensitivity.sort_by(|a, b| a.factor.total_cmp(&b.factor));
     }
-    let ratios = case.ratios();
+    let rules = rules::apply(&rule_inputs(case, walked));
+    let (confidence, reasons) = confidence::judge(verdict, &rules, case.doubts());
     Outcome {
         verdict,
+        confidence,
+        reasons,
         seed: case.scene.walk.seed,
         n_base: case.n_base,
         n_base_eq2: case.n_base_eq2,
@@ -46,8 +49,8 @@ pub fn outcome(
         left_out: left_out(case, walked),
         model_leaves_out: MODEL_LEAVES_OUT.map(String::from).to_vec(),
         inputs: case.record(),
-        ratios,
-        rules: rules::apply(&rule_inputs(case, walked)),
+        ratios: case.ratios(),
+        rules,
         infiltration: match case.scene.network.source() {
             NetworkSource::Cubic(_) => Some(infiltration(&case.curve, &case.base, case.counts[3])),
             _ => None,
@@ -94,12 +97,11 @@ fn rule_inputs<'a>(case: &'a Case, walked: &[ReplicateResult]) -> RuleInputs<'a>
     let first = |w: &ReplicateResult| w.replicate.runs.first()?.largest_eroded_over_d15f;
     let largest: Vec<f64> = walked.iter().filter_map(first).collect();
     RuleInputs {
-        ratios: case.ratios(),
-        filter_sieve: match case.scene.filter.gradation() {
-            FilterGradation::Sieve(..) => Some(&case.filter),
-            FilterGradation::Linear { .. } => None,
-        },
-        base_mm: (!case.is_scale_free()).then_some(&case.base),
+        filter: &case.filter,
+        filter_is_measured: case.filter_is_measured(),
+        base: &case.base,
+        base_soil: BaseSoil::of(&case.base, case.is_scale_free()),
+        scale_free: case.is_scale_free(),
         largest_eroded_over_d15f: (!largest.is_empty()).then(|| Statistic::of(&largest).mean),
     }
 }

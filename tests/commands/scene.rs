@@ -606,8 +606,8 @@ fn filter_rules_and_equation_one_stand_in_the_outcome() {
         let rules = value["rules"].as_array().unwrap();
         rules.iter().find(|r| r["name"].as_str().unwrap().starts_with(name)).unwrap().clone()
     };
-    assert_eq!(rule("Kézdi")["meets"], true);
-    assert_eq!(rule("Kenney and Lau")["meets"], true);
+    assert_eq!(rule("Kézdi")["met"], true);
+    assert_eq!(rule("Kenney and Lau")["met"], true);
     assert!(rule("Foster and Fell: no")["note"].as_str().unwrap().contains("20 % of it is finer"));
     let found = &value["infiltration"];
     assert_eq!(found["layers"], 10);

@@ -109,6 +109,8 @@ pub fn outcome(replicates: u64) -> Outcome {
         });
     Outcome {
         verdict: Verdict::Some,
+        confidence: Confidence::Within,
+        reasons: Vec::new(),
         seed: 2016,
         n_base: 21_443_871,
         n_base_eq2: Some(21_443_871),
@@ -203,9 +205,23 @@ pub fn outcome(replicates: u64) -> Outcome {
         .map(|(name, quantity, limit, source)| {
             let value = filter_at(15.0) / base_at(if quantity == "D15F/D85B" { 85.0 } else { 95.0 });
             let (name, quantity, source) = (name.into(), quantity.into(), source.into());
-            let (applies_to, note) = ("bases in general".into(), String::new());
-            let (meets, value, limit) = (Some(value <= limit), Some(value), Some(limit));
-            AppliedRule { name, quantity, value, limit, at_least: false, meets, applies_to, note, source }
+            AppliedRule {
+                id: String::new(),
+                name,
+                role: RuleRole::Retention,
+                applies: true,
+                quantity,
+                value: Some(value),
+                limit: Some(limit),
+                unit: String::new(),
+                at_least: false,
+                met: Some(value <= limit),
+                needs: String::new(),
+                note: String::new(),
+                applies_to: "bases in general".into(),
+                formula: String::new(),
+                source,
+            }
         })
         .into(),
         infiltration: Some(Infiltration {

@@ -366,7 +366,7 @@ fn the_names_of_the_folder_are_a_contract() {
 fn a_rule_says_what_it_is_for_and_what_it_needs() {
     let mut plan = Plan::usual();
     plan.outcome.rules[0].value = None;
-    plan.outcome.rules[0].meets = None;
+    plan.outcome.rules[0].met = None;
     plan.outcome.rules[0].note = "needs the filter's <sieve> curve".into();
     plan.outcome.rules[1].at_least = true;
     plan.outcome.rules[2].limit = None;

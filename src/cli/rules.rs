@@ -1,0 +1,128 @@
+//! `voidwalk rules`: what filter practice says of two soils, without a walk.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use super::args::RulesArgs;
+use super::print::{json, plain, to_stdout};
+use crate::gradation::Gradation;
+use crate::outcome::PairRules;
+use crate::outcome::record::{AppliedRule, RuleRole};
+use crate::run::RunError;
+
+/// Widest line (characters).
+const WIDTH: usize = 100;
+
+/// Applies every rule to two sieve tables.
+pub fn rules(args: &RulesArgs) -> Result<(), RunError> {
+    let read = |path: &Path| Gradation::from_sieve_csv(path, None).map_err(RunError::refused);
+    let pair = PairRules::of(&read(&args.filter)?, &read(&args.base)?);
+    to_stdout(&if args.json { json(&pair)? } else { words(&pair, args) });
+    Ok(())
+}
+
+fn words(pair: &PairRules, args: &RulesArgs) -> String {
+    let (filter, base) = (&pair.filter, &pair.base);
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let mut line = |s: String| {
+        let _ = writeln!(text, "{}", plain(&s));
+    };
+    line(format!(
+        "filter  {}: D15 {}, D85 {} mm, Cu {}",
+        args.filter.display(),
+        number(filter.d15_mm),
+        number(filter.d85_mm),
+        number(filter.cu)
+    ));
+    line(format!(
+        "base    {}: D15 {}, D85 {}, D95 {} mm, Cu {}",
+        args.base.display(),
+        number(base.d15_mm),
+        number(base.d85_mm),
+        number(base.d95_mm),
+        number(base.cu)
+    ));
+    let category = base.category.map_or("category not known".into(), |of| format!("category {of}"));
+    let fines = base.fines_percent.map_or("fines not known".into(), |of| format!("{of:.1} % fines"));
+    let regraded = match base.regraded_at_mm {
+        Some(at) => format!("D85, D95 and fines after regrading on {at:.3} mm ({})", base.why),
+        None => format!("not regraded ({})", base.why),
+    };
+    line(format!("        {category}, {fines}; {regraded}"));
+    for warning in &pair.warnings {
+        line(format!("warning {warning}"));
+    }
+    for (role, heading) in [
+        (RuleRole::Retention, "The filter retains the base"),
+        (RuleRole::Continuation, "Coarser filters: where erosion still ends"),
+        (RuleRole::Drainage, "The filter drains and can be placed"),
+        (RuleRole::Stability, "The filter holds its own fines"),
+    ] {
+        line(String::new());
+        line(heading.into());
+        for rule in pair.rules.iter().filter(|rule| rule.role == role) {
+            line(row(rule));
+            let more = [&rule.note, &rule.needs].map(String::as_str);
+            for text in more.into_iter().filter(|text| !text.is_empty()) {
+                wrapped(text).into_iter().for_each(&mut line);
+            }
+            wrapped(&rule.source).into_iter().for_each(&mut line);
+        }
+    }
+    text
+}
+
+/// Result, name, value and limit of a rule.
+fn row(rule: &AppliedRule) -> String {
+    let result = match (rule.met, rule.applies) {
+        (Some(true), _) => "met",
+        (Some(false), _) => "NOT MET",
+        (None, true) => "no result",
+        (None, false) => "not for it",
+    };
+    let sign = if rule.at_least { ">=" } else { "<=" };
+    let unit = if rule.unit.is_empty() { String::new() } else { format!(" {}", rule.unit) };
+    let limit = rule.limit.map_or(String::new(), |limit| format!(", {sign} {}{unit}", number(Some(limit))));
+    format!("  {result:<11}{}: {} = {}{unit}{limit}", rule.name, rule.quantity, number(rule.value))
+}
+
+/// Four digits that mean something.
+fn number(value: Option<f64>) -> String {
+    let Some(value) = value else { return "not known".into() };
+    let decimals = if value == 0.0 { 0 } else { (2 - value.abs().log10().floor() as i32).clamp(0, 6) };
+    format!("{value:.*}", decimals as usize)
+}
+
+/// A text in lines below a row.
+fn wrapped(text: &str) -> Vec<String> {
+    let indent = " ".repeat(13);
+    let mut lines = vec![indent.clone()];
+    for word in text.split_whitespace() {
+        let last = lines.last().expect("there is a line");
+        if last.chars().count() + word.chars().count() >= WIDTH && last.len() > indent.len() {
+            lines.push(indent.clone());
+        }
+        let last = lines.last_mut().expect("there is a line");
+        if last.len() > indent.len() {
+            last.push(' ');
+        }
+        last.push_str(word);
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_three_digits_and_lines_end() {
+        assert_eq!(
+            [1.1202, 0.012_34, 62.51, 340.0].map(|v| number(Some(v))),
+            ["1.12", "0.0123", "62.5", "340"]
+        );
+        assert_eq!(number(None), "not known");
+        assert!(wrapped(&"word ".repeat(60)).iter().all(|line| line.len() < WIDTH));
+    }
+}

@@ -1,0 +1,98 @@
+//! What a rule of practice says of two soils, and how far a verdict can be relied on; as they are recorded.
+
+use serde::{Deserialize, Serialize};
+
+/// A filter rule, applied.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AppliedRule {
+    /// Its name for programs, as `sherard-dunnigan`.
+    #[serde(default)]
+    pub id: String,
+    /// Whose rule it is, and what it says.
+    pub name: String,
+    /// What it is a rule of.
+    #[serde(default)]
+    pub role: RuleRole,
+    /// Whether it was made for these soils.
+    #[serde(default)]
+    pub applies: bool,
+    /// What it limits, as `D15F/D85B`.
+    pub quantity: String,
+    /// Its value for these inputs; `None` where they do not give it.
+    pub value: Option<f64>,
+    /// The most, or the least, that the rule allows; `None` where no number is known.
+    pub limit: Option<f64>,
+    /// Unit of value and limit: `mm`, `D0F`, `%`; empty for a ratio.
+    #[serde(default)]
+    pub unit: String,
+    /// Whether `limit` is the least that the rule allows instead of the most.
+    #[serde(default)]
+    pub at_least: bool,
+    /// Whether the value keeps the limit; `None` where the rule has no result.
+    #[serde(alias = "meets")]
+    pub met: Option<bool>,
+    /// What is missing for a result; may be empty.
+    #[serde(default)]
+    pub needs: String,
+    /// Where the value is, why the rule was not made for these soils; may be empty.
+    #[serde(default)]
+    pub note: String,
+    /// What the rule was made for.
+    #[serde(default)]
+    pub applies_to: String,
+    /// Its limit in words.
+    #[serde(default)]
+    pub formula: String,
+    /// Where the rule is published.
+    pub source: String,
+}
+
+impl AppliedRule {
+    /// Whether it is a rule of practice that was made for these soils and is not kept.
+    pub fn is_broken(&self) -> bool {
+        self.applies && self.met == Some(false) && self.role != RuleRole::Walk
+    }
+}
+
+/// What a rule is a rule of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RuleRole {
+    /// The filter retains the base without erosion.
+    #[default]
+    Retention,
+    /// A coarser filter: erosion ends.
+    Continuation,
+    /// The filter drains.
+    Drainage,
+    /// The filter holds its own fines.
+    Stability,
+    /// The walk itself: it is checked by this, not the filter.
+    Walk,
+}
+
+/// How far a verdict can be relied on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Confidence {
+    /// The model was checked for such soils, and no rule of practice speaks against the verdict.
+    #[serde(rename = "within checked range")]
+    Within,
+    /// The model was not checked for such soils.
+    #[default]
+    #[serde(rename = "outside checked range")]
+    Outside,
+    /// A rule of practice that was made for these soils speaks against it.
+    #[serde(rename = "contradicted by practice")]
+    Contradicted,
+}
+
+impl Confidence {
+    /// Its name in `outcome.json`.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Within => "within checked range",
+            Self::Outside => "outside checked range",
+            Self::Contradicted => "contradicted by practice",
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! How far a verdict can be relied on: what rules of practice say against it, and where the model was not
+//! checked.
+
+use super::record::{AppliedRule, Confidence, Outcome, RuleRole, Verdict};
+
+/// How far a verdict can be relied on, and why no further: sentences, the weightiest first.
+///
+/// `doubts` say where the inputs leave the range in which the model was checked.
+///
+/// Rules of retention speak against "no erosion", the boundary of continuing erosion against "some erosion" too;
+/// a rule of drainage that is not kept is a reason whatever the verdict, and said as such; a filter that does
+/// not hold its own fines is not the filter that was walked.
+pub fn judge(verdict: Verdict, rules: &[AppliedRule], doubts: Vec<String>) -> (Confidence, Vec<String>) {
+    let broken = |role: RuleRole| rules.iter().filter(move |rule| rule.is_broken() && rule.role == role);
+    let favourable = match verdict {
+        Verdict::None => [true, true],
+        Verdict::Some => [false, true],
+        Verdict::Continuing | Verdict::Undecided => [false, false],
+    };
+    let retention = broken(RuleRole::Retention).filter(|_| favourable[0]);
+    let continuation = broken(RuleRole::Continuation).filter(|_| favourable[1]);
+    let against: Vec<String> =
+        retention.chain(continuation).chain(broken(RuleRole::Drainage)).map(sentence).collect();
+    let unstable: Vec<String> = broken(RuleRole::Stability).map(sentence).collect();
+    let confidence = match (against.is_empty(), unstable.is_empty() && doubts.is_empty()) {
+        (false, _) => Confidence::Contradicted,
+        (true, false) => Confidence::Outside,
+        (true, true) => Confidence::Within,
+    };
+    (confidence, [against, unstable, doubts].concat())
+}
+
+/// What a rule that is not kept says, in a sentence.
+fn sentence(rule: &AppliedRule) -> String {
+    let size = |value: Option<f64>| {
+        let number = value.map_or("unknown".into(), short);
+        if rule.unit.is_empty() { number } else { format!("{number} {}", rule.unit) }
+    };
+    let (value, limit, quantity) = (size(rule.value), size(rule.limit), &rule.quantity);
+    let whose = rule.name.split(':').next().unwrap_or_default();
+    match rule.id.as_str() {
+        "sherard-dunnigan" => {
+            format!("practice allows D15F {limit}, this is {value} (Sherard and Dunnigan's limit of design)")
+        }
+        "foster-fell-no-erosion" => {
+            format!("tests found no erosion up to D15F {limit}, this is {value} (Foster and Fell)")
+        }
+        "foster-fell-continuing" => {
+            format!("tests found continuing erosion beyond D15F {limit}, this is {value} (Foster and Fell)")
+        }
+        "permeability" => format!(
+            "the filter may be too fine to drain the base: D15F {value}, practice asks for {limit} or more; that \
+             says nothing of retention"
+        ),
+        _ if rule.role == RuleRole::Stability => format!(
+            "the filter may lose its own fines, and with them the constrictions that were walked: {quantity} is \
+             {value}, the limit {limit} ({whose})"
+        ),
+        _ => format!("practice allows {quantity} {limit}, this is {value} ({whose})"),
+    }
+}
+
+/// Two digits that mean something, or three from 100 on.
+fn short(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let decimals = (1 - value.abs().log10().floor() as i32).clamp(0, 6);
+    format!("{value:.*}", decimals as usize)
+}
+
+impl Outcome {
+    /// The verdict in a line, with the first reason why it cannot be relied on as it stands.
+    pub fn headline(&self) -> String {
+        let verdict = self.verdict.words();
+        match (self.confidence, self.reasons.first()) {
+            (Confidence::Within, _) => verdict.to_owned(),
+            (_, Some(reason)) => format!("{verdict} in the model; {reason}"),
+            (_, None) => format!("{verdict} in the model"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gradation::Gradation;
+    use crate::outcome::PairRules;
+
+    fn rules(filter: &[(f64, f64)], base: &[(f64, f64)]) -> Vec<AppliedRule> {
+        let soil = |points| Gradation::from_points(points, None).unwrap();
+        PairRules::of(&soil(filter), &soil(base)).rules
+    }
+
+    const TILL: [(f64, f64); 5] = [(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)];
+    const GRAVEL: [(f64, f64); 3] = [(5.0, 0.0), (6.5, 15.0), (20.0, 100.0)];
+    const SAND: [(f64, f64); 2] = [(0.2, 0.0), (0.6, 100.0)];
+
+    #[test]
+    fn a_favourable_verdict_that_practice_does_not_share_is_contradicted() {
+        let all = rules(&GRAVEL, &TILL);
+        let (confidence, reasons) = judge(Verdict::None, &all, vec!["35 % fines".into()]);
+        assert_eq!(confidence, Confidence::Contradicted);
+        assert!(reasons[0].starts_with("practice allows D15F 1.1 mm, this is 6.5 mm"), "{}", reasons[0]);
+        assert_eq!(reasons.last().unwrap(), "35 % fines");
+        // The same rules share an unfavourable one.
+        assert_eq!(judge(Verdict::Continuing, &all, Vec::new()), (Confidence::Within, Vec::new()));
+    }
+
+    /// No pair of soils of which an applicable rule of retention is not kept is within the checked range.
+    #[test]
+    fn none_is_green_where_an_applicable_retention_rule_fails() {
+        let mut failed = 0;
+        for filter in 1..40 {
+            for fines in [0.0, 5.0, 20.0, 38.0, 60.0] {
+                let d = 0.1 * 1.2f64.powi(filter);
+                let all = rules(
+                    &[(d, 0.0), (2.0 * d, 100.0)],
+                    &[(0.01, 0.0), (0.074, fines), (0.3, 85.0), (0.6, 100.0)],
+                );
+                let fails = all
+                    .iter()
+                    .any(|rule| rule.role == RuleRole::Retention && rule.applies && rule.met == Some(false));
+                failed += u32::from(fails);
+                let (confidence, reasons) = judge(Verdict::None, &all, Vec::new());
+                assert!(!fails || confidence == Confidence::Contradicted && !reasons.is_empty());
+            }
+        }
+        assert!((20..175).contains(&failed), "{failed}");
+    }
+
+    #[test]
+    fn a_clean_sand_within_every_rule_is_within() {
+        let good = rules(&[(1.0, 0.0), (3.0, 100.0)], &SAND);
+        assert_eq!(judge(Verdict::None, &good, Vec::new()), (Confidence::Within, Vec::new()));
+        let (confidence, reasons) = judge(Verdict::None, &good, vec!["a guess".into()]);
+        assert_eq!((confidence, reasons.len()), (Confidence::Outside, 1));
+    }
+
+    #[test]
+    fn too_fine_and_unstable_filters_are_reasons() {
+        let (confidence, reasons) = judge(Verdict::None, &rules(&SAND, &SAND), Vec::new());
+        assert_eq!(confidence, Confidence::Contradicted);
+        assert!(reasons[0].contains("too fine to drain") && reasons[0].contains("nothing of retention"));
+        let gap = [(1.0, 0.0), (1.2, 15.0), (8.0, 15.0), (20.0, 100.0)];
+        let (confidence, reasons) = judge(Verdict::None, &rules(&gap, &SAND), Vec::new());
+        assert_eq!(confidence, Confidence::Outside, "{reasons:?}");
+        assert!(reasons[0].contains("lose its own fines"), "{reasons:?}");
+    }
+
+    #[test]
+    fn continuing_erosion_of_tests_speaks_against_some_erosion() {
+        let all = rules(&[(8.0, 0.0), (16.0, 100.0)], &SAND);
+        let (confidence, reasons) = judge(Verdict::Some, &all, Vec::new());
+        assert_eq!((confidence, reasons.len()), (Confidence::Contradicted, 1));
+        assert!(reasons[0].starts_with("tests found continuing erosion beyond D15F 5.1 mm"), "{reasons:?}");
+    }
+}

@@ -1,0 +1,186 @@
+//! Two soils as filter practice sees them, without a walk.
+
+use serde::Serialize;
+
+use super::applied::AppliedRule;
+use super::rules::{BaseSoil, RuleInputs, apply};
+use crate::gradation::Gradation;
+
+/// What is said of two sieve curves by the rules of practice alone.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PairRules {
+    /// The filter.
+    pub filter: FilterSizes,
+    /// The base after regrading.
+    pub base: BaseSizes,
+    /// Every rule.
+    pub rules: Vec<AppliedRule>,
+    /// What may be wrong with the two tables.
+    pub warnings: Vec<String>,
+}
+
+/// Sizes of a filter (mm); `None` where they lie in a finest tail of unknown size.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FilterSizes {
+    /// 15 % finer.
+    pub d15_mm: Option<f64>,
+    /// 50 % finer.
+    pub d50_mm: Option<f64>,
+    /// 85 % finer.
+    pub d85_mm: Option<f64>,
+    /// D60 / D10.
+    pub cu: Option<f64>,
+    /// D30^2 / (D10 D60).
+    pub cc: Option<f64>,
+}
+
+/// A base as practice describes it (mm); `None` where a size lies in a finest tail of unknown size.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BaseSizes {
+    /// Category of NRCS, 1 to 4; `None` where the fines are not known closely enough.
+    pub category: Option<u8>,
+    /// Percent finer than 0.075 mm after regrading.
+    pub fines_percent: Option<f64>,
+    /// Whether it was regraded.
+    pub regraded: bool,
+    /// The size on which it was regraded.
+    pub regraded_at_mm: Option<f64>,
+    /// Why it was regraded, or not.
+    pub why: String,
+    /// 15 % finer, before regrading.
+    pub d15_mm: Option<f64>,
+    /// 85 % finer, after regrading.
+    pub d85_mm: Option<f64>,
+    /// 95 % finer, after regrading.
+    pub d95_mm: Option<f64>,
+    /// D60 / D10, before regrading.
+    pub cu: Option<f64>,
+    /// D30^2 / (D10 D60), before regrading.
+    pub cc: Option<f64>,
+}
+
+impl PairRules {
+    /// Every rule on a filter and a base, both in mm.
+    ///
+    /// ```
+    /// use voidwalk::{Gradation, outcome::PairRules};
+    /// let filter = Gradation::from_points(&[(0.5, 0.0), (2.0, 100.0)], None)?;
+    /// let base = Gradation::from_points(&[(0.08, 0.0), (0.3, 100.0)], None)?;
+    /// let pair = PairRules::of(&filter, &base);
+    /// assert_eq!(pair.base.category, Some(4));
+    /// let rule = pair.rules.iter().find(|rule| rule.id == "sherard-dunnigan").unwrap();
+    /// assert_eq!(rule.met, Some(true));
+    /// # Ok::<(), voidwalk::gradation::GradationError>(())
+    /// ```
+    pub fn of(filter: &Gradation, base: &Gradation) -> Self {
+        let inputs = RuleInputs::of_soils(filter, base);
+        let BaseSoil { gradation, regraded, regraded_at_mm, why, fines_percent, category } =
+            inputs.base_soil.clone();
+        Self {
+            filter: FilterSizes {
+                d15_mm: filter.d(15.0),
+                d50_mm: filter.d(50.0),
+                d85_mm: filter.d(85.0),
+                cu: filter.cu(),
+                cc: filter.cc(),
+            },
+            base: BaseSizes {
+                category,
+                fines_percent,
+                regraded,
+                regraded_at_mm,
+                why,
+                d15_mm: base.d(15.0),
+                d85_mm: gradation.d(85.0),
+                d95_mm: gradation.d(95.0),
+                cu: base.cu(),
+                cc: base.cc(),
+            },
+            rules: apply(&inputs),
+            warnings: Mistake::find(filter, base, false)
+                .into_iter()
+                .map(|mistake| mistake.sentence)
+                .collect(),
+        }
+    }
+}
+
+/// Two tables that can hardly be a filter and its base.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mistake {
+    /// What is wrong, in words.
+    pub sentence: String,
+    /// Whether sizes are so far apart that a unit must be wrong.
+    pub is_certain: bool,
+}
+
+impl Mistake {
+    /// Looks for exchanged tables, and for micrometres where mm are meant.
+    ///
+    /// Sizes that are multiples of D0F (`scale_free`) have no unit that could be wrong.
+    pub fn find(filter: &Gradation, base: &Gradation, scale_free: bool) -> Option<Self> {
+        /// No soil is so much coarser than its filter (D50).
+        const HOPELESS: f64 = 50.0;
+        /// No filter is coarser than this (D50, mm).
+        const BOULDERS_MM: f64 = 300.0;
+        let (f, b) = (filter.d(50.0)?, base.d(50.0)?);
+        if b > HOPELESS * f && !scale_free {
+            let sentence = format!(
+                "the base (D50 {b:.3} mm) is {:.0} times as coarse as the filter (D50 {f:.3} mm): are its \
+                 sizes micrometres under a header in mm, or are the two files exchanged?",
+                b / f
+            );
+            return Some(Self { sentence, is_certain: true });
+        }
+        if b > f {
+            let sentence = format!(
+                "the base is coarser than the filter (D50 {b:.3} mm against {f:.3} mm): are the two files \
+                 exchanged?"
+            );
+            return Some(Self { sentence, is_certain: false });
+        }
+        (f > BOULDERS_MM && !scale_free).then(|| Self {
+            sentence: format!(
+                "the filter's D50 is {f:.0} mm: are its sizes micrometres under a header in mm?"
+            ),
+            is_certain: false,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn linear(d0_mm: f64) -> Gradation {
+        Gradation::linear_from_d0(d0_mm, 2.0).unwrap()
+    }
+
+    #[test]
+    fn exchanged_tables_and_micrometres_are_recognised() {
+        let said = |filter: f64, base: f64| Mistake::find(&linear(filter), &linear(base), false);
+        assert_eq!(said(2.0, 0.2), None);
+        let exchanged = said(0.2, 2.0).unwrap();
+        assert!(exchanged.sentence.contains("files exchanged") && !exchanged.is_certain);
+        // 318 um as if they were mm.
+        let micrometres = said(2.0, 200.0).unwrap();
+        assert!(micrometres.sentence.contains("micrometres under a header in mm") && micrometres.is_certain);
+        assert!(said(400.0, 0.2).unwrap().sentence.contains("the filter's D50 is 800 mm"));
+    }
+
+    /// The till with 35 % fines on a gravel with D15 6.3 mm, of the first trial.
+    #[test]
+    fn a_till_on_a_gravel_is_not_retained() {
+        let till = [(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)];
+        let till = Gradation::from_points(&till, None).unwrap();
+        let gravel = Gradation::linear_from_dx(15.0, 6.3, 1.5).unwrap();
+        let pair = PairRules::of(&gravel, &till);
+        assert_eq!((pair.base.category, pair.base.regraded), (Some(3), true));
+        let met = |id: &str| pair.rules.iter().find(|rule| rule.id == id).unwrap().met;
+        assert_eq!(met("sherard-dunnigan"), Some(false));
+        assert_eq!(met("foster-fell-no-erosion"), Some(false));
+        assert_eq!(met("foster-fell-continuing"), Some(true));
+        assert_eq!(met("permeability"), Some(true));
+        assert!(pair.warnings.is_empty());
+    }
+}

@@ -1,0 +1,51 @@
+//! Rules by which a filter drains.
+
+use super::base::FINES_MM;
+use super::rule::{Judged, RuleInputs};
+
+/// Times D15B that D15F is at least.
+const TIMES: f64 = 5.0;
+
+/// The least D15F whatever the base (mm).
+const LEAST_MM: f64 = 0.1;
+
+/// The filter is coarse enough to drain the base, as it is before regrading.
+pub fn permeability(inputs: &RuleInputs) -> Judged {
+    let least = if inputs.scale_free { 0.0 } else { LEAST_MM };
+    let d15f = inputs.d15f();
+    if let Some(d15b) = inputs.base.d(15.0) {
+        return Judged::of(d15f, Some((TIMES * d15b).max(least))).noted("base before regrading");
+    }
+    // D15B is finer than the finest sieve: the limit is at most this.
+    let at_most = (TIMES * inputs.base.smallest_mm()).max(least);
+    match d15f {
+        Some(d15f) if d15f >= at_most => Judged {
+            met: Some(true),
+            ..Judged::of(Some(d15f), Some(at_most))
+                .noted("D15B is finer than the finest sieve: the limit is at most this")
+        },
+        _ => Judged::of(d15f, None).lacking("needs the base's D15: finer sieves, or base.d0_mm"),
+    }
+}
+
+/// The filter has few fines.
+pub fn fines(inputs: &RuleInputs) -> Judged {
+    const MOST: Option<f64> = Some(5.0);
+    if inputs.scale_free || !inputs.filter_is_measured {
+        return Judged { limit: MOST, ..Judged::default() }.lacking("needs the filter's sieve curve in mm");
+    }
+    let (filter, finer) = (inputs.filter, inputs.filter.percent_finer_by_mass(FINES_MM));
+    match filter.pan_fraction() == 0.0 || filter.smallest_mm() <= FINES_MM || finer <= 5.0 {
+        true => Judged::of(Some(finer), MOST),
+        false => Judged::of(None, MOST).lacking("needs finer sieves of the filter, down to 0.075 mm"),
+    }
+}
+
+/// The filter has no cobbles.
+pub fn greatest_size(inputs: &RuleInputs) -> Judged {
+    const MOST: Option<f64> = Some(75.0);
+    match inputs.scale_free || !inputs.filter_is_measured {
+        true => Judged { limit: MOST, ..Judged::default() }.lacking("needs the filter's sieve curve in mm"),
+        false => Judged::of(Some(inputs.filter.largest_mm()), MOST),
+    }
+}

@@ -1,0 +1,143 @@
+//! What a rule is, and what it reads.
+
+use super::base::BaseSoil;
+use crate::gradation::Gradation;
+use crate::outcome::record::RuleRole;
+
+/// A rule of practice, as it stands in the table of [`super::RULES`].
+pub struct FilterRule {
+    /// Its name in `outcome.json` and in `voidwalk rules --json`.
+    pub id: &'static str,
+    /// Its name for a reader: whose it is, and what it says.
+    pub name: &'static str,
+    /// What it is a rule of.
+    pub role: RuleRole,
+    /// What it was made for.
+    pub applies_to: &'static str,
+    /// What it limits.
+    pub quantity: &'static str,
+    /// Its limit in words.
+    pub formula: &'static str,
+    /// Whether the limit is the least that it allows, and not the most.
+    pub at_least: bool,
+    /// The unit of value and limit.
+    pub unit: RuleUnit,
+    /// Where it is published.
+    pub source: &'static str,
+    /// Works it out.
+    pub judge: fn(&RuleInputs) -> Judged,
+}
+
+/// The unit of a rule's value and limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RuleUnit {
+    /// Sizes: mm, or multiples of D0F.
+    Size,
+    /// A ratio.
+    One,
+    /// Percent of the mass.
+    Percent,
+}
+
+/// What a rule finds for two soils.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Judged {
+    /// Whether the rule was made for these soils.
+    pub applies: bool,
+    /// Its value here.
+    pub value: Option<f64>,
+    /// Its limit here.
+    pub limit: Option<f64>,
+    /// The result where it does not follow from value and limit.
+    pub met: Option<bool>,
+    /// What is missing for a result.
+    pub needs: String,
+    /// What else a reader must know.
+    pub note: String,
+}
+
+impl Judged {
+    /// A rule that applies, with its value and limit where they are known.
+    pub fn of(value: Option<f64>, limit: Option<f64>) -> Self {
+        Self { applies: true, value, limit, ..Self::default() }
+    }
+
+    /// The same with a note.
+    pub fn noted(self, note: impl Into<String>) -> Self {
+        Self { note: note.into(), ..self }
+    }
+
+    /// The same for a rule that was not made for these soils.
+    pub fn not_for(self, why: impl Into<String>) -> Self {
+        Self { applies: false, note: why.into(), ..self }
+    }
+
+    /// The same for a rule that lacks an input.
+    pub fn lacking(self, needs: impl Into<String>) -> Self {
+        Self { needs: needs.into(), ..self }
+    }
+}
+
+/// What the rules read.
+pub struct RuleInputs<'a> {
+    /// The filter.
+    pub filter: &'a Gradation,
+    /// Whether the filter's curve is a sieve curve, and not a straight line that was assumed.
+    pub filter_is_measured: bool,
+    /// The base as it is.
+    pub base: &'a Gradation,
+    /// The base as practice describes it.
+    pub base_soil: BaseSoil,
+    /// Whether sizes are multiples of D0F and not mm.
+    pub scale_free: bool,
+    /// Largest particle eroded in the first run over D15F, mean over replicates; `None` where nothing eroded,
+    /// or nothing was walked.
+    pub largest_eroded_over_d15f: Option<f64>,
+}
+
+impl<'a> RuleInputs<'a> {
+    /// Two sieve curves in mm, without a walk.
+    pub fn of_soils(filter: &'a Gradation, base: &'a Gradation) -> Self {
+        Self {
+            filter,
+            filter_is_measured: true,
+            base,
+            base_soil: BaseSoil::of(base, false),
+            scale_free: false,
+            largest_eroded_over_d15f: None,
+        }
+    }
+
+    /// D15 of the filter.
+    pub fn d15f(&self) -> Option<f64> {
+        self.filter.d(15.0)
+    }
+
+    /// D85 of the base after regrading.
+    pub fn d85b(&self) -> Option<f64> {
+        self.base_soil.gradation.d(85.0)
+    }
+
+    /// The category of the base; sizes without a unit are those of a sand without fines.
+    pub fn fines(&self) -> Fines {
+        match (self.scale_free, self.base_soil.fines_percent) {
+            (true, _) => Fines::Assumed,
+            (_, Some(percent)) => Fines::Percent(percent),
+            (_, None) if self.base_soil.category == Some(4) => Fines::Few,
+            _ => Fines::Unknown,
+        }
+    }
+}
+
+/// What is known of the fines of a base.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fines {
+    /// Their share (%).
+    Percent(f64),
+    /// Less than 15 %, however much exactly.
+    Few,
+    /// Sizes have no unit: a sand without fines is assumed.
+    Assumed,
+    /// Not known: the finest sieve is too coarse.
+    Unknown,
+}
