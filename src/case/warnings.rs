@@ -1,11 +1,14 @@
 //! Where a case leaves the range in which the model was checked, and what else a reader must know.
 
-use super::Case;
+use super::{Case, Input};
 
 impl Case {
     /// Where the inputs leave the range in which the model was checked, and what else a reader must know.
     pub fn warnings(&self) -> Vec<String> {
-        let mut warnings = Vec::new();
+        let of_file = |input: &Input| -> Vec<String> {
+            input.notes.iter().map(|note| format!("{}: {note}", input.name)).collect()
+        };
+        let mut warnings: Vec<String> = self.inputs.iter().flat_map(of_file).collect();
         let mut cu = |whose: &str, cu: Option<f64>, low: f64, high: f64| match cu {
             Some(cu) if cu < low - 1e-9 || cu > high + 1e-9 => warnings
                 .push(format!("Cu of the {whose} is {cu:.2}: the model was checked for {low} to {high}")),

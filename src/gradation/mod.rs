@@ -3,6 +3,7 @@
 //! - [`Gradation`] is a sieve curve, percent finer by mass, straight in percent against ln(size)
 //!   between its points. "Linear" in the paper is one such straight line:
 //!   `D_x = D_0 Cu^(x / 50)`, so `D_60 / D_10 = Cu` and `D_100 / D_0 = Cu^2`.
+//! - [`Soil`] is a table as it stands in a file: CSV, workbook or AGS4, as laboratories write them.
 //! - [`SizeSampler`] draws diameters from it by number.
 //! - [`Gradation::kenney_lau`] and [`Gradation::kezdi`] say whether a soil holds its own fines.
 //! - [`base_particles`] is Eq. (2) of the paper: how many base particles a test inserts.
@@ -26,6 +27,7 @@ mod root;
 mod sampler;
 mod segments;
 mod sieve;
+mod soil;
 mod stability;
 mod supply;
 mod table;
@@ -34,6 +36,8 @@ pub(crate) use error::shortened;
 pub use error::{GradationError, NumberError, Position, TableError};
 pub use sampler::{SizeRange, SizeSampler};
 pub use sieve::Gradation;
+pub(crate) use soil::file_and_soil;
+pub use soil::{FINES_MM, Soil, SoilSummary, soils_in_file};
 pub use stability::ShapeIndex;
 pub use supply::{BaseSupply, base_particles};
 pub(crate) use table::{Direction, Row, Table, check_size, rising};

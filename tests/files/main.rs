@@ -4,4 +4,5 @@ mod bad_tables;
 mod golden;
 #[path = "../readers/mod.rs"]
 mod readers;
+mod soils;
 mod torn_checkpoints;
