@@ -6,7 +6,7 @@ use std::path::Path;
 use super::CaseError;
 use super::packed_filter::{PackedFilter, RECORD};
 use crate::constrictions::{Curve, ShippedFilter, find};
-use crate::gradation::Gradation;
+use crate::gradation::{Gradation, Soil, file_and_soil};
 use crate::network::Network;
 use crate::scene::CurveSource;
 use crate::scene::SceneError;
@@ -24,6 +24,10 @@ pub struct Input {
     pub kept_as: String,
     /// Its bytes.
     pub bytes: Vec<u8>,
+    /// Which of its soils is meant, where it holds several.
+    pub soil: Option<String>,
+    /// What was assumed to understand it.
+    pub notes: Vec<String>,
 }
 
 /// A larger sieve table or curve is refused before it is read (bytes).
@@ -38,14 +42,24 @@ const INPUTS: &str = "inputs";
 pub const INPUT_NAMES: &str = "inputs/names.json";
 
 /// What the user called a file: what is written beside it in a run's folder, or else its path.
-fn first_name(path: &Path) -> String {
+fn first_name(path: &Path, soil: Option<&str>) -> String {
     let kept = || {
         let folder = path.parent().filter(|folder| folder.ends_with(INPUTS))?;
         let text = read_regular(&folder.parent()?.join(INPUT_NAMES), LARGEST_TABLE).ok()??;
         let mut names: BTreeMap<String, String> = serde_json::from_slice(&text).ok()?;
         names.remove(path.file_name()?.to_str()?)
     };
-    kept().unwrap_or_else(|| path.display().to_string())
+    let part = soil.map(|soil| format!("#{soil}")).unwrap_or_default();
+    kept().unwrap_or_else(|| format!("{}{part}", path.display()))
+}
+
+/// The name under which a run keeps a table: with the ending of a workbook where it is one.
+fn kept_name(kept_as: &str, path: &Path) -> String {
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    match (["xlsx", "ods", "ags"].contains(&ending.as_str()), kept_as.rsplit_once('.')) {
+        (true, Some((stem, _))) => format!("{stem}.{ending}"),
+        _ => kept_as.to_owned(),
+    }
 }
 
 /// What there is to say of a path in which a backslash, or what one and the letter after it become in double
@@ -83,8 +97,8 @@ impl Files {
     }
 
     fn keep(&mut self, setting: &'static str, path: &Path, kept_as: &str, bytes: Vec<u8>) {
-        let (name, kept_as) = (first_name(path), format!("{INPUTS}/{kept_as}"));
-        self.0.push(Input { setting, name, kept_as, bytes });
+        let (name, kept_as) = (first_name(path, None), format!("{INPUTS}/{kept_as}"));
+        self.0.push(Input { setting, name, kept_as, bytes, soil: None, notes: Vec::new() });
     }
 
     pub fn curve(
@@ -125,8 +139,16 @@ impl Files {
         setting: &'static str,
         kept_as: &str,
     ) -> Result<Gradation, CaseError> {
-        let (name, bytes) = self.read(setting, path, kept_as, LARGEST_TABLE)?;
-        Ok(Gradation::from_sieve_text(&name, bytes, d0_mm)?)
+        let (path, soil) = file_and_soil(path);
+        let (name, bytes) = self.read(setting, &path, &kept_name(kept_as, &path), LARGEST_TABLE)?;
+        let read = Soil::one(&name, bytes, soil.as_deref())?;
+        let gradation = read.gradation(d0_mm)?;
+        if let Some(input) = self.0.last_mut() {
+            input.name = first_name(&path, soil.as_deref());
+            input.soil = soil;
+            input.notes = read.notes().to_vec();
+        }
+        Ok(gradation)
     }
 
     pub fn network(&mut self, path: &Path, unit_mm: f64) -> Result<Network, CaseError> {

@@ -16,7 +16,10 @@ impl Case {
         let mut scene = self.scene.clone();
         let kept = |setting: &str| {
             let input = self.inputs.iter().find(|input| input.setting == setting);
-            input.map(|input| PathBuf::from(&input.kept_as))
+            input.map(|input| match &input.soil {
+                Some(soil) => PathBuf::from(format!("{}#{soil}", input.kept_as)),
+                None => PathBuf::from(&input.kept_as),
+            })
         };
         let kept_curve = |source: Option<CurveSource>, setting: &str| match source {
             Some(CurveSource::File(_)) => kept(setting).map(CurveSource::File),

@@ -1,8 +1,9 @@
 //! Where a case leaves the range in which the model was checked, and what else a reader must know.
 
-use super::{Case, replicate_seed};
+use super::{Case, Input, replicate_seed};
+use crate::gradation::FINES_MM;
 use crate::outcome::Mistake;
-use crate::outcome::rules::{FEW_FINES, FINES_MM};
+use crate::outcome::rules::FEW_FINES;
 
 /// More moves than these of a particle that nothing stops are worth a word.
 const MANY_MOVES: f64 = 1e5;
@@ -87,6 +88,10 @@ impl Case {
     /// Where the inputs leave the range in which the model was checked, and what else a reader must know.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = self.doubts();
+        let of_file = |input: &Input| -> Vec<String> {
+            input.notes.iter().map(|note| format!("{}: {note}", input.name)).collect()
+        };
+        warnings.extend(self.inputs.iter().flat_map(of_file));
         if let Some(mistake) = Mistake::find(&self.filter, &self.base, self.is_scale_free()) {
             warnings.insert(0, mistake.sentence);
         }

@@ -32,6 +32,8 @@ pub enum Command {
     Check(SceneArgs),
     /// Apply every rule of filter practice to two sieve tables, without a walk
     Rules(RulesArgs),
+    /// Show what is understood of a file of soils: tables, sizes, class
+    Soil(SoilArgs),
     /// Write the built-in scene, commented, as a start for your own
     Init {
         /// File to write; the scene goes to stdout without one
@@ -107,6 +109,19 @@ pub struct SceneArgs {
     /// folder, mapped into memory [default: 80 % of what is available]; it changes no bit of the result
     #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
     pub memory: Option<u64>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Which soils.
+#[derive(Debug, Args)]
+pub struct SoilArgs {
+    /// Sieve tables: CSV, .xlsx, .ods or AGS4; FILE#NAME for one of several soils
+    pub file: PathBuf,
+    /// Where an open finest tail ends (mm)
+    #[arg(long, value_name = "MM")]
+    pub d0_mm: Option<f64>,
     /// Print JSON
     #[arg(long)]
     pub json: bool,

@@ -16,6 +16,7 @@ mod progress;
 mod report;
 mod rules;
 mod run;
+mod soil;
 
 use std::process::ExitCode;
 
@@ -30,6 +31,7 @@ pub fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         Command::Run(args) => run::run(&args),
         Command::Resume(args) => run::resume(&args),
+        Command::Soil(args) => soil::soil(&args),
         Command::Check(args) => check::check(&args),
         Command::Init { path } => init::init(path.as_deref()),
         Command::Campaign(args) => campaign::campaign(&args),

@@ -11,11 +11,16 @@ pub struct Position {
     pub line: usize,
     /// Name of the column.
     pub field: &'static str,
+    /// Its cell, in a sheet: `B7`.
+    pub cell: Option<String>,
 }
 
 impl fmt::Display for Position {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}, line {}, {}", self.file, self.line, self.field)
+        match &self.cell {
+            Some(cell) => write!(f, "{}, cell {cell}, {}", self.file, self.field),
+            None => write!(f, "{}, line {}, {}", self.file, self.line, self.field),
+        }
     }
 }
 
@@ -53,6 +58,34 @@ pub enum TableError {
         line: usize,
         /// The first byte that does not belong.
         byte: u8,
+    },
+    /// A file of another kind.
+    #[error("{file} is {is}; allowed: a table as CSV, .xlsx, .ods or AGS4")]
+    Format {
+        /// File as the user named it.
+        file: String,
+        /// What it is.
+        is: String,
+    },
+    /// Several soils, and none of them named.
+    #[error("{file} holds several soils: {soils}; name one of them, as in \"{file}#{first}\"")]
+    SeveralSoils {
+        /// File as the user named it.
+        file: String,
+        /// Their names.
+        soils: String,
+        /// The first of them.
+        first: String,
+    },
+    /// No soil of the name that is asked for.
+    #[error("{file} holds no soil called \"{name}\"; it holds {soils}")]
+    NoSuchSoil {
+        /// File as the user named it.
+        file: String,
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        soils: String,
     },
     /// No row of numbers.
     #[error("{file} has no row of numbers{}; allowed: at least one row of two numbers",
@@ -99,6 +132,16 @@ pub enum TableError {
         /// What is allowed there.
         allowed: String,
     },
+}
+
+impl TableError {
+    /// The same with the cell of a sheet in place of the line, where it is one of the two columns `cells`.
+    pub(super) fn in_sheet(self, cells: &[String; 2]) -> TableError {
+        let TableError::Value { mut at, value, allowed } = self else { return self };
+        let column = &cells[usize::from(at.field.starts_with("percent"))];
+        at.cell = Some(format!("{column}{}", at.line));
+        TableError::Value { at, value, allowed: allowed.replace("line ", "row ") }
+    }
 }
 
 /// A gradation, or a number of base particles, that cannot be.

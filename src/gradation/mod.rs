@@ -3,6 +3,7 @@
 //! - [`Gradation`] is a sieve curve, percent finer by mass, straight in percent against ln(size)
 //!   between its points. "Linear" in the paper is one such straight line:
 //!   `D_x = D_0 Cu^(x / 50)`, so `D_60 / D_10 = Cu` and `D_100 / D_0 = Cu^2`.
+//! - [`Soil`] is a table as it stands in a file: CSV, workbook or AGS4, as laboratories write them.
 //! - [`SizeSampler`] draws diameters from it by number.
 //! - [`Gradation::kenney_lau`] and [`Gradation::kezdi`] say whether a soil holds its own fines,
 //!   with [`Gradation::li_fannin`]; [`Gradation::gap`] whether sizes are missing.
@@ -28,6 +29,7 @@ mod sampler;
 mod segments;
 mod shape;
 mod sieve;
+mod soil;
 mod stability;
 mod supply;
 mod table;
@@ -37,6 +39,8 @@ pub use error::{GradationError, NumberError, Position, TableError};
 pub use sampler::{SizeRange, SizeSampler};
 pub use shape::Gap;
 pub use sieve::Gradation;
+pub(crate) use soil::file_and_soil;
+pub use soil::{FINES_MM, Soil, SoilSummary, soils_in_file};
 pub use stability::{KEZDI_RANGE, ShapeIndex};
 pub use supply::{BaseSupply, base_particles};
 pub(crate) use table::{Direction, Row, Table, check_size, rising};

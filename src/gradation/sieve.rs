@@ -1,12 +1,12 @@
 //! A sieve curve: how it is made, checked and read.
 
 use super::error::Position;
-use super::error::{GradationError, NumberError, TableError, shortened};
+use super::error::{GradationError, NumberError, TableError};
 use super::segments::cumulative;
-use super::table::{Direction, Row, Table, check_percent, check_size, rising};
-use std::path::Path;
+use super::table::{Direction, Row, check_percent, check_size, rising};
 
-const FIELDS: [&str; 2] = ["opening_mm", "percent_finer"];
+/// Names of the two columns in messages.
+pub(super) const FIELDS: [&str; 2] = ["opening_mm", "percent_finer"];
 
 /// A sieve curve: percent finer by mass against size, straight in percent against ln(size).
 ///
@@ -76,38 +76,10 @@ impl Gradation {
     /// without it the pan fraction is counted by mass only.
     ///
     /// # Errors
-    /// What [`Gradation::from_sieve_csv`] refuses, with the point's place in the list as the line.
+    /// What [`Gradation::from_sieve_csv`] refuses of a table's rows, with the point's place in the list as the line.
     pub fn from_points(points: &[(f64, f64)], d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
         let rows = points.iter().enumerate().map(|(i, &(size, percent))| Row { line: i + 1, size, percent });
         from_rows("points", Row::checked("points", rows.collect(), FIELDS)?, d0_mm)
-    }
-
-    /// A sieve table from a CSV file: opening in mm and percent finer by mass.
-    ///
-    /// The header is optional; where it names the columns (`opening_mm,percent_finer`; `size`, `sieve`,
-    /// `diameter`; `passing`) they may stand in either order. Comma, semicolon or tab between the
-    /// columns, decimal commas in the latter two, `#` comments, ascending or descending.
-    ///
-    /// # Errors
-    /// A file that cannot be read, is a folder, is larger than [`super::FILE_LIMIT_BYTES`] or no UTF-8;
-    /// no rows; a row without exactly two fields; a value that is no finite number in range; sizes
-    /// that repeat or go both ways; percent that falls as size rises; a coarsest size below 100 %; a single
-    /// row without `d0_mm` (all of its mass is of unknown size); a header in another unit than mm or of
-    /// percent retained; a `d0_mm` that is not below the finest opening, or that nothing is left for.
-    pub fn from_sieve_csv(path: impl AsRef<Path>, d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
-        from_table(&Table::open(path.as_ref())?, d0_mm)
-    }
-
-    /// [`Gradation::from_sieve_csv`] on the content of a file, called `name` in messages.
-    ///
-    /// # Errors
-    /// As [`Gradation::from_sieve_csv`].
-    pub fn from_sieve_text(
-        name: &str,
-        content: &[u8],
-        d0_mm: Option<f64>,
-    ) -> Result<Gradation, GradationError> {
-        from_table(&Table::parse(name, content)?, d0_mm)
     }
 
     /// A curve from checked points.
@@ -202,13 +174,8 @@ fn check_cu(value: f64) -> Result<(), NumberError> {
     }
 }
 
-fn from_table(table: &Table, d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
-    let size_column = size_column(table)?;
-    let rows = table.rows(size_column, FIELDS[0], FIELDS[1])?;
-    from_rows(&table.file, rows, d0_mm)
-}
-
-fn from_rows(file: &str, rows: Vec<Row>, d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
+/// A curve from the rows of a table, in any order that goes one way.
+pub(super) fn from_rows(file: &str, rows: Vec<Row>, d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
     let rows = rising(file, rows, FIELDS, Direction::Strict)?;
     let (finest, single) = (rows[0], rows.len() == 1);
     let mut size_mm: Vec<f64> = rows.iter().map(|r| r.size).collect();
@@ -229,7 +196,7 @@ fn from_rows(file: &str, rows: Vec<Row>, d0_mm: Option<f64>) -> Result<Gradation
         }
         None if single => {
             return Err(TableError::Value {
-                at: Position { file: file.into(), line: finest.line, field: FIELDS[0] },
+                at: Position { file: file.into(), line: finest.line, field: FIELDS[0], cell: None },
                 value: finest.size.to_string(),
                 allowed: "at least two openings, or one and the smallest size (d0_mm); \
                           one row alone leaves all of the mass of unknown size"
@@ -246,7 +213,7 @@ fn from_rows(file: &str, rows: Vec<Row>, d0_mm: Option<f64>) -> Result<Gradation
     let start = percent.partition_point(|&p| p <= 0.0).saturating_sub(1);
     if end == start + 1 {
         return Err(TableError::Value {
-            at: Position { file: file.into(), line: finest.line, field: FIELDS[1] },
+            at: Position { file: file.into(), line: finest.line, field: FIELDS[1], cell: None },
             value: finest.percent.to_string(),
             allowed: "less than 100 at the finest opening (all of the mass is of unknown size), \
                       or the smallest size (d0_mm)"
@@ -255,51 +222,4 @@ fn from_rows(file: &str, rows: Vec<Row>, d0_mm: Option<f64>) -> Result<Gradation
         .into());
     }
     Ok(Gradation::new(size_mm.split_off(start), percent.split_off(start)))
-}
-
-/// Which column of a sieve table holds the openings, by its header; the first where there is none,
-/// or none that says.
-fn size_column(table: &Table) -> Result<usize, TableError> {
-    let Some((line, names)) = &table.header else { return Ok(0) };
-    let refused = |value: &str, allowed: &str| TableError::Header {
-        file: table.file.clone(),
-        line: *line,
-        value: shortened(value),
-        allowed: allowed.into(),
-    };
-    let words = names.each_ref().map(|name| words(name));
-    let any = |column: usize, list: &[&str]| words[column].iter().any(|word| list.contains(&word.as_str()));
-    const PERCENT: [&str; 7] = ["percent", "finer", "passing", "pct", "percentage", "pass", "cumulative"];
-    const SIZE: [&str; 8] = ["opening", "size", "sieve", "diameter", "mm", "d", "openings", "aperture"];
-    let percent = [0, 1].map(|c| any(c, &PERCENT) || names[c].contains('%'));
-    let size = [0, 1].map(|c| any(c, &SIZE) && !percent[c]);
-    let column = usize::from(size[1] && !size[0] || percent[0] && !percent[1]);
-    const OTHER_UNITS: [&str; 14] = [
-        "um",
-        "µm",
-        "μm",
-        "micron",
-        "microns",
-        "micrometre",
-        "micrometer",
-        "inch",
-        "inches",
-        "cm",
-        "m",
-        "phi",
-        "mesh",
-        "nm",
-    ];
-    if any(column, &OTHER_UNITS) && !any(column, &["mm"]) {
-        return Err(refused(&names[column], "openings in mm (opening_mm)"));
-    }
-    if any(1 - column, &["retained", "coarser", "number"]) {
-        return Err(refused(&names[1 - column], "percent finer by mass (percent_finer)"));
-    }
-    Ok(column)
-}
-
-/// The words of a column's name, in small letters.
-fn words(name: &str) -> Vec<String> {
-    name.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty()).map(str::to_lowercase).collect()
 }

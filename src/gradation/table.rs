@@ -38,7 +38,7 @@ impl Row {
     ) -> Result<Vec<Row>, TableError> {
         for row in &mut rows {
             let refused = |field, value: f64, allowed| TableError::Value {
-                at: Position { file: file.into(), line: row.line, field },
+                at: Position { file: file.into(), line: row.line, field, cell: None },
                 value: value.to_string(),
                 allowed,
             };
@@ -68,18 +68,7 @@ pub(crate) struct Table {
 impl Table {
     /// The table in the file at `path`.
     pub(crate) fn open(path: &Path) -> Result<Table, TableError> {
-        let file = path.display().to_string();
-        let read = |source| TableError::Read { file: file.clone(), source };
-        if std::fs::metadata(path).map_err(read)?.is_dir() {
-            return Err(TableError::Folder { file });
-        }
-        match read_regular(path, FILE_LIMIT_BYTES).map_err(read)? {
-            Some(bytes) => Table::parse(&file, &bytes),
-            None if std::fs::metadata(path).is_ok_and(|meta| !meta.is_file()) => {
-                Err(read(std::io::Error::other("is no regular file")))
-            }
-            None => Err(TableError::TooLarge { file, limit: FILE_LIMIT_BYTES }),
-        }
+        Table::parse(&path.display().to_string(), &bytes_of(path)?)
     }
 
     /// The table in `bytes`, called `file` in messages.
@@ -146,7 +135,7 @@ impl Table {
         };
         match (with('.'), with(',')) {
             (Some((dot_line, _)), Some((line, value))) => Err(TableError::Value {
-                at: Position { file: self.file.clone(), line, field: "number" },
+                at: Position { file: self.file.clone(), line, field: "number", cell: None },
                 value: shortened(value),
                 allowed: format!(
                     "one decimal sign in the whole file (line {dot_line} has a decimal point), no \
@@ -170,7 +159,7 @@ impl Table {
         percent_field: &'static str,
     ) -> Result<Vec<Row>, TableError> {
         let refused = |line, field, value: &str, allowed: String| TableError::Value {
-            at: Position { file: self.file.clone(), line, field },
+            at: Position { file: self.file.clone(), line, field, cell: None },
             value: shortened(value),
             allowed,
         };
@@ -187,6 +176,22 @@ impl Table {
             rows.push(Row { line: *line, size, percent: percent + 0.0 });
         }
         Ok(rows)
+    }
+}
+
+/// The bytes of a file, of which no more than a table can have are read.
+pub(super) fn bytes_of(path: &Path) -> Result<Vec<u8>, TableError> {
+    let file = path.display().to_string();
+    let read = |source| TableError::Read { file: file.clone(), source };
+    if std::fs::metadata(path).map_err(read)?.is_dir() {
+        return Err(TableError::Folder { file });
+    }
+    match read_regular(path, FILE_LIMIT_BYTES).map_err(read)? {
+        Some(bytes) => Ok(bytes),
+        None if std::fs::metadata(path).is_ok_and(|meta| !meta.is_file()) => {
+            Err(read(std::io::Error::other("is no regular file")))
+        }
+        None => Err(TableError::TooLarge { file, limit: FILE_LIMIT_BYTES }),
     }
 }
 
@@ -207,22 +212,22 @@ pub(super) fn check_percent(name: &'static str, value: f64) -> Result<(), Number
 }
 
 /// A size may be this.
-fn size_is_allowed(size: f64) -> bool {
+pub(super) fn size_is_allowed(size: f64) -> bool {
     (SIZE_MIN_MM..=SIZE_MAX_MM).contains(&size)
 }
 
 /// A percentage may be this.
-fn percent_is_allowed(percent: f64) -> bool {
+pub(super) fn percent_is_allowed(percent: f64) -> bool {
     (0.0..=100.0).contains(&percent)
 }
 
 /// What a size may be.
-fn allowed_size() -> String {
+pub(super) fn allowed_size() -> String {
     format!("a number from {SIZE_MIN_MM:e} to {SIZE_MAX_MM:e}")
 }
 
 /// What a percentage may be.
-fn allowed_percent() -> String {
+pub(super) fn allowed_percent() -> String {
     "a number from 0 to 100".into()
 }
 
@@ -244,7 +249,7 @@ pub(crate) fn rising(
     direction: Direction,
 ) -> Result<Vec<Row>, TableError> {
     let refused = |line, field, value: f64, allowed: String| TableError::Value {
-        at: Position { file: file.to_string(), line, field },
+        at: Position { file: file.to_string(), line, field, cell: None },
         value: value.to_string(),
         allowed,
     };
@@ -317,7 +322,7 @@ fn split(line: &str, delimiter: char) -> Vec<String> {
 
 /// A field as a number: what Rust reads (so also `nan`, `inf` and `1e400`, for the caller to refuse),
 /// with a decimal comma in place of the point.
-fn number(field: &str) -> Option<f64> {
+pub(super) fn number(field: &str) -> Option<f64> {
     match (field.matches(',').count(), field.contains('.')) {
         (0, _) => field.parse().ok(),
         (1, false) => field.replace(',', ".").parse().ok(),

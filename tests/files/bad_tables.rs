@@ -28,7 +28,7 @@ fn check(folder: &str, least: usize, read: impl Fn(&Path) -> String) {
 
 #[test]
 fn bad_sieve_tables_are_refused() {
-    check("sieve", 49, |path| match Gradation::from_sieve_csv(path, None) {
+    check("sieve", 42, |path| match Gradation::from_sieve_csv(path, None) {
         Ok(gradation) => format!("{gradation:?}"),
         Err(error) => error.to_string(),
     });

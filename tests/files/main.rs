@@ -5,4 +5,5 @@ mod forged_checkpoints;
 mod golden;
 #[path = "../readers/mod.rs"]
 mod readers;
+mod soils;
 mod torn_checkpoints;

@@ -1,9 +1,6 @@
 //! The base as practice describes it: regraded where it is broad, and its category by fines.
 
-use crate::gradation::{Gap, Gradation};
-
-/// Largest size of fines (mm): the No. 200 sieve.
-pub const FINES_MM: f64 = 0.075;
+use crate::gradation::{FINES_MM, Gap, Gradation};
 
 /// Largest size of sand (mm): the No. 4 sieve.
 pub const SAND_MM: f64 = 4.75;

@@ -1,7 +1,7 @@
 //! Rules by which a filter drains.
 
-use super::base::FINES_MM;
 use super::rule::{Judged, RuleInputs};
+use crate::gradation::FINES_MM;
 
 /// Times D15B that D15F is at least.
 const TIMES: f64 = 5.0;

@@ -10,7 +10,7 @@ mod rule;
 mod stability;
 mod walk;
 
-pub use base::{BaseSoil, FEW_FINES, FINES_MM};
+pub use base::{BaseSoil, FEW_FINES};
 pub use rule::{FilterRule, Fines, Judged, RuleInputs, RuleUnit};
 
 use super::applied::{AppliedRule, RuleRole};

@@ -1,0 +1,94 @@
+//! `voidwalk soil`: what is understood of a file of soils.
+
+use std::fmt::Write;
+
+use serde::Serialize;
+
+use super::args::SoilArgs;
+use super::print::{json, plain, to_stdout};
+use crate::case::CaseError;
+use crate::gradation::{SoilSummary, soils_in_file};
+use crate::run::RunError;
+
+/// The soils of a file.
+#[derive(Serialize)]
+struct Soils {
+    soils: Vec<SoilSummary>,
+}
+
+/// Shows the soils of a file.
+pub fn soil(args: &SoilArgs) -> Result<(), RunError> {
+    let soils = soils_in_file(&args.file, args.d0_mm).map_err(CaseError::from)?;
+    let soils = Soils { soils };
+    to_stdout(&if args.json { json(&soils)? } else { words(&soils.soils) });
+    Ok(())
+}
+
+fn words(soils: &[SoilSummary]) -> String {
+    let mut text = String::new();
+    for (index, soil) in soils.iter().enumerate() {
+        if index > 0 {
+            text.push('\n');
+        }
+        // Writing to a string cannot fail.
+        let mut line = |name: &str, value: String| {
+            let _ = writeln!(text, "{name:<22}{}", plain(&value));
+        };
+        line("soil", soil.name.clone());
+        line("opening, mm", "percent finer by mass".into());
+        for [size, percent] in soil.points.iter().rev() {
+            line(&format!("  {}", digits(*size)), digits(*percent));
+        }
+        let sizes = [
+            ("D5", soil.d5_mm),
+            ("D10", soil.d10_mm),
+            ("D15", soil.d15_mm),
+            ("D30", soil.d30_mm),
+            ("D50", soil.d50_mm),
+            ("D60", soil.d60_mm),
+            ("D85", soil.d85_mm),
+            ("D90", soil.d90_mm),
+            ("D95", soil.d95_mm),
+            ("D100", soil.d100_mm),
+        ];
+        let known = sizes.iter().filter_map(|(name, size)| Some(format!("{name} {}", digits((*size)?))));
+        line("sizes, mm", known.collect::<Vec<_>>().join(", "));
+        let unknown: Vec<&str> = sizes.iter().filter(|size| size.1.is_none()).map(|size| size.0).collect();
+        if !unknown.is_empty() {
+            line("  not known", format!("{}: finer than the finest opening", unknown.join(", ")));
+        }
+        let number = |value: Option<f64>| value.map_or("not known".to_owned(), digits);
+        line("Cu, Cc", format!("{}, {}", number(soil.cu), number(soil.cc)));
+        let percent = |value: Option<f64>| value.map_or("not known".to_owned(), |v| format!("{v:.1} %"));
+        line("fines", format!("{} finer than 0.075 mm", percent(soil.fines_percent)));
+        line("gravel", format!("{} coarser than 4.75 mm", percent(soil.gravel_percent)));
+        if let Some(class) = &soil.class {
+            line("class (ASTM D2487)", class.clone());
+        }
+        for note in &soil.notes {
+            line("note", note.clone());
+        }
+    }
+    text
+}
+
+/// A number with four digits that mean something.
+fn digits(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let decimals = (3 - value.abs().log10().floor() as i32).clamp(0, 12) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::digits;
+
+    #[test]
+    fn numbers_have_four_digits() {
+        let all = [0.075, 4.75, 100.0, 12.3456, 0.000_123_456, 0.0, 318.4].map(digits);
+        assert_eq!(all, ["0.075", "4.75", "100", "12.35", "0.0001235", "0", "318.4"]);
+    }
+}

@@ -1,0 +1,201 @@
+//! What the heading of a column says it holds.
+
+use super::size::Unit;
+
+/// What a column holds, by its heading.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Role {
+    /// Openings.
+    Size,
+    /// Percent (or fraction) finer.
+    Finer,
+    /// Retained, in percent or by mass.
+    Retained(Retained),
+    /// Anything else.
+    Other,
+}
+
+/// How what is retained is given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Retained {
+    /// Percents, whose total is 100; masses otherwise.
+    pub(super) percent: bool,
+    /// On this sieve and all coarser ones, or on this one alone; `None` where the heading does not say.
+    pub(super) cumulative: Option<bool>,
+}
+
+const FINER: [&str; 24] = [
+    "percent",
+    "finer",
+    "passing",
+    "pct",
+    "percentage",
+    "pass",
+    "cumulative",
+    "smaller",
+    "durchgang",
+    "siebdurchgang",
+    "passant",
+    "passants",
+    "tamisat",
+    "pasa",
+    "pasante",
+    "passed",
+    "massendurchgang",
+    "perp",
+    "undersize",
+    "massenanteil",
+    "doorval",
+    "przesiew",
+    "passa",
+    "passing%",
+];
+const RETAINED: [&str; 14] = [
+    "retained",
+    "coarser",
+    "rückstand",
+    "siebrückstand",
+    "rueckstand",
+    "refus",
+    "retenido",
+    "retenu",
+    "oversize",
+    "retain",
+    "ret",
+    "rest",
+    "zeefrest",
+    "trattenuto",
+];
+const SIZE: [&str; 33] = [
+    "opening",
+    "size",
+    "sieve",
+    "diameter",
+    "mm",
+    "d",
+    "openings",
+    "aperture",
+    "siebgröße",
+    "sieböffnung",
+    "korngröße",
+    "korndurchmesser",
+    "maschenweite",
+    "tamis",
+    "ouverture",
+    "diamètre",
+    "diametre",
+    "tamiz",
+    "abertura",
+    "particle",
+    "phi",
+    "φ",
+    "screen",
+    "mesh",
+    "sieves",
+    "sizes",
+    "korndurchm",
+    "siebweite",
+    "um",
+    "µm",
+    "μm",
+    "micron",
+    "microns",
+];
+const MASS: [&str; 11] =
+    ["mass", "weight", "masse", "gewicht", "wt", "peso", "g", "gram", "grams", "kg", "grammes"];
+const CUMULATIVE: [&str; 7] = ["cumulative", "cum", "cumul", "accumulated", "total", "coarser", "cumulated"];
+const INDIVIDUAL: [&str; 8] = ["individual", "each", "single", "partial", "on", "interval", "per", "ind"];
+const MICROMETRE: [&str; 9] =
+    ["um", "µm", "μm", "micron", "microns", "micrometre", "micrometer", "micrometres", "micrometers"];
+
+/// The words of a column's name, in small letters.
+pub(super) fn words(name: &str) -> Vec<String> {
+    name.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty()).map(str::to_lowercase).collect()
+}
+
+fn any(words: &[String], list: &[&str]) -> bool {
+    words.iter().any(|word| list.contains(&word.as_str()))
+}
+
+/// What a column of this name holds.
+pub(super) fn role(name: &str) -> Role {
+    let words = words(name);
+    let percent = name.contains('%') || any(&words, &["percent", "pct", "percentage", "prozent"]);
+    let mass = any(&words, &MASS);
+    let size = any(&words, &SIZE);
+    let cumulative = match (any(&words, &CUMULATIVE), any(&words, &INDIVIDUAL)) {
+        (true, _) => Some(true),
+        (false, true) => Some(false),
+        (false, false) => None,
+    };
+    if any(&words, &RETAINED) {
+        let percent = percent || !mass;
+        return Role::Retained(Retained { percent, cumulative });
+    }
+    if percent || any(&words, &FINER) || any(&words, &["fraction", "ratio"]) && !size {
+        return Role::Finer;
+    }
+    match (size, mass) {
+        (true, _) => Role::Size,
+        (false, true) => Role::Retained(Retained { percent: false, cumulative }),
+        _ => Role::Other,
+    }
+}
+
+/// The unit that the heading of a column of openings names; an error where it is none that is understood.
+pub(super) fn unit(name: &str) -> Result<Option<Unit>, ()> {
+    let words = words(name);
+    let last_is_in = words.last().is_some_and(|word| word == "in") || name.contains("(in");
+    Ok(Some(if any(&words, &["mm", "millimetre", "millimeter", "millimetres", "millimeters"]) {
+        Unit::Mm
+    } else if any(&words, &MICROMETRE) {
+        Unit::Micrometre
+    } else if any(&words, &["inch", "inches", "zoll"]) || last_is_in || name.contains('"') {
+        Unit::Inch
+    } else if any(&words, &["phi", "φ", "ϕ", "krumbein"]) {
+        Unit::Phi
+    } else if any(&words, &["cm"]) {
+        Unit::Cm
+    } else if any(&words, &["m", "nm"]) {
+        return Err(());
+    } else if any(&words, &["no", "number", "nr", "mesh"]) || name.contains('#') {
+        Unit::SieveNumber
+    } else {
+        return Ok(None);
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn headings_are_told_apart() {
+        let retained = |percent, cumulative| Role::Retained(Retained { percent, cumulative });
+        for (name, expected) in [
+            ("opening_mm", Role::Size),
+            ("Sieve No.", Role::Size),
+            ("D (µm)", Role::Size),
+            ("% passing", Role::Finer),
+            ("percent finer by mass", Role::Finer),
+            ("Durchgang", Role::Finer),
+            ("Fraction finer", Role::Finer),
+            ("Mass retained (g)", retained(false, None)),
+            ("Mass (g)", retained(false, None)),
+            ("Retained on each sieve, g", retained(false, Some(false))),
+            ("% retained", retained(true, None)),
+            ("Cumulative % retained", retained(true, Some(true))),
+            ("Cum. mass retained", retained(false, Some(true))),
+            ("percent coarser", retained(true, Some(true))),
+            ("Filter A", Role::Other),
+        ] {
+            assert_eq!(role(name), expected, "{name}");
+        }
+        assert_eq!(unit("opening_mm"), Ok(Some(Unit::Mm)));
+        assert_eq!(unit("opening (inch)"), Ok(Some(Unit::Inch)));
+        assert_eq!(unit("Opening in mm"), Ok(Some(Unit::Mm)));
+        assert_eq!(unit("Sieve No."), Ok(Some(Unit::SieveNumber)));
+        assert_eq!(unit("size"), Ok(None));
+        assert_eq!(unit("size, m"), Err(()));
+    }
+}

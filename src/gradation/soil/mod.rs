@@ -1,0 +1,22 @@
+//! Soils as laboratories write them down: from the bytes of a file to tables of openings and percents finer.
+//!
+//! Bytes become text or sheets (`text`, `csv`), those become rows of cells (`grid`), in which the table is
+//! found (`layout`, by `heading`) and read (`points`, `size`, `retained`). `read` is the way through. What is taken for something
+//! that the file does not spell out becomes a note; what could be two things is refused.
+
+mod csv;
+mod grid;
+mod heading;
+mod layout;
+mod points;
+mod read;
+mod retained;
+mod size;
+mod summary;
+mod table;
+mod text;
+
+pub(crate) use read::file_and_soil;
+pub use read::soils_in_file;
+pub use summary::{FINES_MM, SoilSummary};
+pub use table::Soil;

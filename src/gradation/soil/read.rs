@@ -1,0 +1,173 @@
+//! The way from a file to its soils.
+
+use std::path::{Path, PathBuf};
+
+use super::grid::{Grid, letters};
+use super::summary::SoilSummary;
+use super::table::Soil;
+use super::{csv, layout, points, text};
+use crate::gradation::error::{GradationError, TableError, shortened};
+use crate::gradation::sieve::Gradation;
+use crate::gradation::table::{FILE_LIMIT_BYTES, bytes_of};
+
+impl Soil {
+    /// Every soil in a file, called `file` in messages.
+    ///
+    /// # Errors
+    /// No table, or one that cannot be understood or could be understood in two ways.
+    pub fn all(file: &str, bytes: &[u8]) -> Result<Vec<Soil>, GradationError> {
+        let soils = tables(file, bytes)?;
+        Ok(soils.into_iter().map(|(_, soil)| soil).collect::<Result<_, _>>()?)
+    }
+
+    /// The only soil in a file, or the one of this name: that of a sheet, of a column, or both as
+    /// `sheet/column`.
+    ///
+    /// # Errors
+    /// As [`Soil::all`], for this soil; several soils, or none of this name.
+    pub fn one(file: &str, bytes: &[u8], name: Option<&str>) -> Result<Soil, GradationError> {
+        let mut soils = tables(file, bytes)?;
+        if let Some(name) = name {
+            let wanted = folded(name);
+            let all: Vec<String> = soils.iter().map(|(names, _)| names[0].clone()).collect();
+            soils.retain(|(names, _)| names.iter().any(|name| folded(name) == wanted));
+            if soils.is_empty() {
+                let (file, name, soils) = (file.to_owned(), shortened(name), listed(&all));
+                return Err(TableError::NoSuchSoil { file, name, soils }.into());
+            }
+        }
+        if soils.len() > 1 {
+            let all: Vec<String> = soils.iter().map(|(names, _)| names[0].clone()).collect();
+            let (soils, first) = (listed(&all), shortened(&all[0]));
+            return Err(TableError::SeveralSoils { file: file.to_owned(), soils, first }.into());
+        }
+        match soils.pop() {
+            Some((_, soil)) => Ok(soil?),
+            None => Err(TableError::NoRows { file: file.into(), header: false }.into()),
+        }
+    }
+}
+
+/// The file that a scene's `path` names, and which of its soils: `site.xlsx#Filter A`.
+pub(crate) fn file_and_soil(path: &Path) -> (PathBuf, Option<String>) {
+    let Some(text) = path.to_str().filter(|_| !path.exists()) else { return (path.to_owned(), None) };
+    match text.rsplit_once('#') {
+        Some((file, soil)) if !file.is_empty() && !soil.trim().is_empty() => {
+            (PathBuf::from(file), Some(soil.trim().to_owned()))
+        }
+        _ => (path.to_owned(), None),
+    }
+}
+
+fn listed(names: &[String]) -> String {
+    const MOST: usize = 12;
+    let mut shown: Vec<String> = names.iter().take(MOST).map(|name| shortened(name)).collect();
+    if names.len() > MOST {
+        shown.push(format!("and {} more", names.len() - MOST));
+    }
+    shown.join(", ")
+}
+
+/// A name without what two writings of it may differ in.
+fn folded(name: &str) -> String {
+    name.split_whitespace().collect::<Vec<_>>().join(" ").to_lowercase()
+}
+
+/// A soil's names, its full one first, and what was read.
+type Named = (Vec<String>, Result<Soil, TableError>);
+
+/// Every table that looks like a soil's.
+fn tables(file: &str, bytes: &[u8]) -> Result<Vec<Named>, TableError> {
+    if bytes.len() as u64 > FILE_LIMIT_BYTES {
+        return Err(TableError::TooLarge { file: file.into(), limit: FILE_LIMIT_BYTES });
+    }
+    let (text, note) = text::decoded(file, bytes)?;
+    let mut refusal = None;
+    for delimiter in csv::separators(&text) {
+        let mut grid = csv::grid(file, &text, delimiter);
+        grid.notes.extend(note.clone());
+        if grid.rows.is_empty() {
+            return Err(TableError::NoRows { file: file.into(), header: false });
+        }
+        // What the first separator cannot make a table of may be one by another.
+        match soils_of(&grid) {
+            Ok(soils) if soils.iter().any(|(_, soil)| soil.is_ok()) => return Ok(soils),
+            Ok(mut soils) => refusal = refusal.or(soils.pop().and_then(|(_, soil)| soil.err())),
+            Err(error) => refusal = refusal.or(Some(error)),
+        }
+    }
+    Err(refusal.unwrap_or(TableError::NoRows { file: file.into(), header: false }))
+}
+
+/// The soils of one grid.
+fn soils_of(grid: &Grid) -> Result<Vec<Named>, TableError> {
+    let layout = layout::find(grid)?;
+    let single = layout.soils.len() == 1;
+    let mut soils = Vec::new();
+    for column in &layout.soils {
+        let mut name = column.heading.clone();
+        if name.is_empty() || layout.soils.iter().filter(|other| other.heading == name).count() > 1 {
+            name = format!("{name} (column {})", letters(column.column)).trim().to_owned();
+        }
+        let mut names = vec![name.clone()];
+        if let Some(sheet) = &grid.sheet {
+            names = if single {
+                vec![sheet.clone(), name.clone()]
+            } else {
+                vec![format!("{sheet}/{name}"), name.clone()]
+            };
+        }
+        let soil = points::soil(grid, &layout, column).map(|soil| Soil { name: names[0].clone(), ..soil });
+        soils.push((names, soil));
+    }
+    Ok(soils)
+}
+
+/// What there is to say of the soils of a file, or of the one that `path` names after a `#`.
+///
+/// # Errors
+/// As [`Gradation::from_sieve_csv`], for each of them.
+pub fn soils_in_file(path: &Path, d0_mm: Option<f64>) -> Result<Vec<SoilSummary>, GradationError> {
+    let (path, name) = file_and_soil(path);
+    let (file, bytes) = (path.display().to_string(), bytes_of(&path)?);
+    let mut soils = match name {
+        Some(name) => vec![Soil::one(&file, &bytes, Some(&name))?],
+        None => Soil::all(&file, &bytes)?,
+    };
+    if let [soil] = &mut soils[..]
+        && soil.name.is_empty()
+    {
+        soil.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    }
+    soils.iter().map(|soil| SoilSummary::of(soil, d0_mm)).collect()
+}
+
+impl Gradation {
+    /// A sieve table from a file: `site.csv`, or `site.xlsx#Filter A` where it holds several soils.
+    ///
+    /// See [`Soil`] for what is understood; of a plain table, `opening_mm,percent_finer`, the header may be left
+    /// out, the columns may stand in either order, sizes may rise or fall.
+    ///
+    /// # Errors
+    /// A file that cannot be read, is a folder, is larger than [`FILE_LIMIT_BYTES`] or no table; no rows; a row
+    /// that cannot be read; a value that is no finite number in range; sizes that repeat or go both ways;
+    /// percent that falls as size rises; a coarsest size below 100 %; a single row without `d0_mm` (all of its
+    /// mass is of unknown size); a `d0_mm` that is not below the finest opening, or that nothing is left for.
+    pub fn from_sieve_csv(path: impl AsRef<Path>, d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
+        let (path, name) = file_and_soil(path.as_ref());
+        let (file, bytes) = (path.display().to_string(), bytes_of(&path)?);
+        Soil::one(&file, &bytes, name.as_deref())?.gradation(d0_mm)
+    }
+
+    /// [`Gradation::from_sieve_csv`] on the content of a file, called `name` in messages.
+    ///
+    /// # Errors
+    /// As [`Gradation::from_sieve_csv`].
+    pub fn from_sieve_text(
+        name: &str,
+        content: &[u8],
+        d0_mm: Option<f64>,
+    ) -> Result<Gradation, GradationError> {
+        Soil::one(name, content, None)?.gradation(d0_mm)
+    }
+}

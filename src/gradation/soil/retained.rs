@@ -1,0 +1,118 @@
+//! What stays on the sieves, by mass or in percent, turned into percent finer.
+
+use super::grid::Grid;
+use super::heading::Retained;
+use super::size::{Entry, Opening};
+use crate::gradation::error::TableError;
+use crate::gradation::sieve::FIELDS;
+use crate::gradation::table::Row;
+
+/// Percents that are weighed one by one sum to 100 within this.
+const ROUNDED: f64 = 0.6;
+
+/// A column of what is retained.
+pub(super) struct Weighed<'a> {
+    pub(super) grid: &'a Grid,
+    pub(super) column: usize,
+    pub(super) retained: Retained,
+}
+
+impl Weighed<'_> {
+    fn refused(&self, line: usize, value: f64, allowed: &str) -> TableError {
+        self.grid.refused(line, self.column, FIELDS[1], &value.to_string(), allowed)
+    }
+}
+
+/// The rows in percent finer.
+pub(super) fn percents_finer(
+    weighed: &Weighed,
+    entries: &[Entry],
+    notes: &mut Vec<String>,
+) -> Result<Vec<Row>, TableError> {
+    let mut sieves: Vec<(usize, f64, f64)> = Vec::new();
+    let (mut pan, mut total) = (None, None);
+    for entry in entries {
+        match entry.opening {
+            Opening::Mm(size) => sieves.push((entry.line, size, entry.value)),
+            Opening::Total => total = Some(entry.value),
+            _ if pan.is_none() => pan = Some((entry.line, entry.value)),
+            _ => return Err(weighed.refused(entry.line, entry.value, "one row for the pan")),
+        }
+    }
+    sieves.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let Some(&(first_line, _, first)) = sieves.first() else { return Ok(Vec::new()) };
+    if let Some(pair) = sieves.windows(2).find(|pair| pair[0].1 == pair[1].1) {
+        let allowed = format!("every size once (it is also in line {})", pair[0].0);
+        return Err(weighed.grid.refused(
+            pair[1].0,
+            weighed.column,
+            FIELDS[0],
+            &pair[1].1.to_string(),
+            allowed,
+        ));
+    }
+    let on_sieves: f64 = sieves.iter().map(|sieve| sieve.2).sum();
+    let all = on_sieves + pan.map_or(0.0, |(_, mass)| mass);
+    let last = pan.map_or(sieves[sieves.len() - 1].2, |(_, mass)| mass);
+    let rises = sieves.windows(2).all(|w| w[0].2 <= w[1].2)
+        && pan.is_none_or(|(_, mass)| mass >= sieves[sieves.len() - 1].2);
+    let percent = weighed.retained.percent;
+    let near = |a: f64, b: f64| (a - b).abs() <= ROUNDED / 100.0 * b.abs().max(1e-12);
+    let whole = if percent { Some(100.0) } else { total };
+    let can_be_single = match whole {
+        Some(whole) if pan.is_some() => near(all, whole),
+        Some(whole) => all <= whole * (1.0 + ROUNDED / 100.0),
+        None => pan.is_some(),
+    };
+    let can_be_cumulative = rises
+        && match whole {
+            Some(whole) if pan.is_some() => near(last, whole),
+            Some(whole) => last <= whole * (1.0 + ROUNDED / 100.0),
+            None => pan.is_some(),
+        };
+    let cumulative = match (weighed.retained.cumulative, can_be_single, can_be_cumulative) {
+        (Some(true), _, true) | (None, false, true) => true,
+        (Some(false), true, _) | (None, true, false) => false,
+        (None, true, true) => {
+            let allowed =
+                "a heading that says whether each value is `cumulative` or `individual`: both would do";
+            return Err(weighed.refused(first_line, first, allowed));
+        }
+        _ if whole.is_none() && pan.is_none() => {
+            let allowed = "masses with that in the pan, or their total, without which percents are not known";
+            return Err(weighed.refused(sieves[sieves.len() - 1].0, last, allowed));
+        }
+        (Some(true), _, false) => {
+            let allowed = "values retained that rise towards the finer sieves, to 100 % at most, as the heading says cumulative";
+            return Err(weighed.refused(first_line, first, allowed));
+        }
+        _ => {
+            let allowed = format!(
+                "values retained that sum to the whole with the pan (these sum to {}), or cumulative ones that \
+                 rise towards the finer sieves",
+                (all * 1e6).round() / 1e6
+            );
+            return Err(weighed.refused(first_line, first, &allowed));
+        }
+    };
+    let whole = match (cumulative, pan) {
+        (false, Some(_)) => all,
+        (true, Some(_)) if whole.is_none() || percent => last,
+        _ => whole.unwrap_or(all),
+    };
+    if whole <= 0.0 {
+        return Err(weighed.refused(first_line, first, "masses of which any is above 0"));
+    }
+    let mut coarser = 0.0;
+    let mut rows = Vec::new();
+    for (line, size, value) in sieves {
+        coarser = if cumulative { value } else { coarser + value };
+        // A sum of decimals is rounded to what it was meant to be.
+        let finer = (100.0 * (1.0 - coarser / whole) * 1e9).round() / 1e9;
+        rows.push(Row { line, size, percent: finer.clamp(0.0, 100.0) + 0.0 });
+    }
+    let what = if percent { "percents" } else { "masses" };
+    let how = if cumulative { "cumulative " } else { "" };
+    notes.push(format!("{how}{what} retained turned into percent finer"));
+    Ok(rows)
+}

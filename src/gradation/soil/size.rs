@@ -1,0 +1,319 @@
+//! A cell that says an opening: a number, a number with its unit, a US sieve, the pan.
+
+use crate::gradation::table::number;
+
+/// US sieves by number, and their openings in mm (ASTM E11).
+const BY_NUMBER: [(&str, f64); 34] = [
+    ("3 1/2", 5.6),
+    ("3.5", 5.6),
+    ("4", 4.75),
+    ("5", 4.0),
+    ("6", 3.35),
+    ("7", 2.8),
+    ("8", 2.36),
+    ("10", 2.0),
+    ("12", 1.7),
+    ("14", 1.4),
+    ("16", 1.18),
+    ("18", 1.0),
+    ("20", 0.85),
+    ("25", 0.71),
+    ("30", 0.6),
+    ("35", 0.5),
+    ("40", 0.425),
+    ("45", 0.355),
+    ("50", 0.3),
+    ("60", 0.25),
+    ("70", 0.212),
+    ("80", 0.18),
+    ("100", 0.15),
+    ("120", 0.125),
+    ("140", 0.106),
+    ("170", 0.09),
+    ("200", 0.075),
+    ("230", 0.063),
+    ("270", 0.053),
+    ("325", 0.045),
+    ("400", 0.038),
+    ("450", 0.032),
+    ("500", 0.025),
+    ("635", 0.02),
+];
+
+/// US sieves by inches, and their openings in mm (ASTM E11).
+const BY_INCHES: [(f64, f64); 19] = [
+    (5.0, 125.0),
+    (4.0, 100.0),
+    (3.5, 90.0),
+    (3.0, 75.0),
+    (2.5, 63.0),
+    (2.0, 50.0),
+    (1.75, 45.0),
+    (1.5, 37.5),
+    (1.25, 31.5),
+    (1.0, 25.0),
+    (0.875, 22.4),
+    (0.75, 19.0),
+    (0.625, 16.0),
+    (0.5, 12.5),
+    (0.4375, 11.2),
+    (0.375, 9.5),
+    (0.3125, 8.0),
+    (0.25, 6.3),
+    (12.0, 300.0),
+];
+
+/// Millimetres of an inch.
+const INCH_MM: f64 = 25.4;
+
+/// What numbers without a unit mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Unit {
+    Mm,
+    Cm,
+    Micrometre,
+    Inch,
+    Phi,
+    /// Numbers of US sieves.
+    SieveNumber,
+}
+
+/// What an opening's cell says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Opening {
+    /// An opening in mm.
+    Mm(f64),
+    /// A number whose unit is the column's.
+    Bare(f64),
+    /// Finer than this opening (mm), as in `< 0.075`: the pan below it, or the share that passes it.
+    Below(f64),
+    /// What passed the finest sieve.
+    Pan,
+    /// The sum of all.
+    Total,
+}
+
+/// A row of the table, not yet in percent finer.
+pub(super) struct Entry {
+    pub(super) line: usize,
+    pub(super) opening: Opening,
+    /// The opening as it is written.
+    pub(super) text: String,
+    pub(super) said: Said,
+    pub(super) value: f64,
+}
+
+/// What was understood of an opening beyond its number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Said {
+    /// A number.
+    Plain,
+    /// A number with a unit that is not inches.
+    WithUnit,
+    /// A US sieve by its number.
+    UsNumber,
+    /// Inches.
+    Inches,
+}
+
+/// What a cell says of an opening; `None` for anything else.
+pub(super) fn opening(text: &str) -> Option<(Opening, Said)> {
+    if let Some(value) = number(text) {
+        return Some((Opening::Bare(value), Said::Plain));
+    }
+    let text = text.to_lowercase().replace('\u{a0}', " ");
+    let text = text.trim();
+    const PAN: [&str; 12] = [
+        "pan",
+        "the pan",
+        "bottom",
+        "receiver",
+        "rest",
+        "schale",
+        "boden",
+        "fond",
+        "fondo",
+        "tray",
+        "base pan",
+        "bottom pan",
+    ];
+    if PAN.contains(&text) {
+        return Some((Opening::Pan, Said::Plain));
+    }
+    if ["total", "totals", "sum", "summe", "gesamt", "somme", "suma", "total mass"].contains(&text) {
+        return Some((Opening::Total, Said::Plain));
+    }
+    if let Some(rest) =
+        ["<", "pass ", "passing ", "finer than ", "minus "].iter().find_map(|p| text.strip_prefix(p))
+    {
+        return match opening(rest.trim())? {
+            (Opening::Mm(mm) | Opening::Bare(mm), said) => Some((Opening::Below(mm), said)),
+            _ => None,
+        };
+    }
+    metric(text).map(|mm| (Opening::Mm(mm), Said::WithUnit)).or_else(|| us(text))
+}
+
+/// `9.5 mm`, also within `No. 4 (4.75 mm)`; `75 um`.
+fn metric(text: &str) -> Option<f64> {
+    const UNITS: [(&str, f64); 12] = [
+        ("mm", 1.0),
+        ("millimet", 1.0),
+        ("um", 1e3),
+        ("µm", 1e3),
+        ("μm", 1e3),
+        ("micron", 1e3),
+        ("micromet", 1e3),
+        ("mikrom", 1e3),
+        ("mym", 1e3),
+        ("µ", 1e3),
+        ("μ", 1e3),
+        ("cm", 0.1),
+    ];
+    UNITS.iter().find_map(|(unit, per_mm)| {
+        let (before, after) = text.split_once(unit)?;
+        let digits_from = before.trim_end().rfind(|c: char| !(c.is_ascii_digit() || ".,".contains(c)));
+        let from = digits_from.map_or(0, |at| at + before[at..].chars().next().map_or(1, char::len_utf8));
+        let lead = before[..from].trim();
+        let good_lead = lead.is_empty() || lead.ends_with('(') || lead.ends_with('=') || lead.ends_with('/');
+        let rest = after.trim_start_matches(|c: char| c.is_alphabetic()).trim();
+        let good_rest = rest.is_empty() || rest == ")" || rest.starts_with('(') || rest == "sieve";
+        if !good_lead || !good_rest {
+            return None;
+        }
+        number(before[from..].trim()).map(|value| value / per_mm)
+    })
+}
+
+/// `No. 4`, `#200`, `200 mesh`, `3/8"`, `1 1/2 in`.
+fn us(text: &str) -> Option<(Opening, Said)> {
+    let mut text = text;
+    for lead in ["u.s. ", "us ", "u.s.", "astm ", "sieve ", "standard ", "std ", "std. "] {
+        text = text.strip_prefix(lead).unwrap_or(text).trim();
+    }
+    text = text.strip_suffix("sieve").unwrap_or(text).trim();
+    for lead in ["no.", "no ", "nº", "n°", "№", "nr.", "nr ", "num.", "number ", "#", "mesh "] {
+        if let Some(mm) = text.strip_prefix(lead).and_then(|rest| us_sieve_number(rest.trim())) {
+            return Some((Opening::Mm(mm), Said::UsNumber));
+        }
+    }
+    for (lead, end) in [("no", ""), ("", "mesh"), ("", "#")] {
+        let inner = text.strip_prefix(lead).and_then(|rest| rest.strip_suffix(end)).map(str::trim);
+        if let Some(mm) = inner.filter(|inner| *inner != text).and_then(us_sieve_number) {
+            return Some((Opening::Mm(mm), Said::UsNumber));
+        }
+    }
+    const MARKS: [&str; 13] =
+        ["\"", "''", "″", "”", "“", "’’", "inches", "inch", "in.", "in", "zoll", "pouces", "-in."];
+    let marked =
+        MARKS.iter().find_map(|mark| text.strip_suffix(mark)).map(|rest| rest.trim_end_matches('-').trim());
+    let inches = match marked {
+        Some(rest) => fraction(rest)?,
+        None if text.contains(['/', '½', '¼', '¾', '⅜', '⅝', '⅞', '⅛']) => fraction(text)?,
+        None => return None,
+    };
+    Some((Opening::Mm(of_inches(inches)), Said::Inches))
+}
+
+/// Opening (mm) of the US sieve of this number.
+pub(super) fn us_sieve_number(text: &str) -> Option<f64> {
+    BY_NUMBER.iter().find(|(name, _)| *name == text).map(|(_, mm)| *mm)
+}
+
+/// Opening (mm) of a sieve named by inches: the standard one where there is one.
+fn of_inches(inches: f64) -> f64 {
+    let standard = BY_INCHES.iter().find(|(named, _)| (named - inches).abs() < 1e-9);
+    standard.map_or(inches * INCH_MM, |(_, mm)| *mm)
+}
+
+/// `3/8`, `1 1/2`, `1-1/2`, `1½`, `0.375`.
+fn fraction(text: &str) -> Option<f64> {
+    let mut plain = text.replace('-', " ");
+    for (sign, words) in [
+        ('½', " 1/2"),
+        ('¼', " 1/4"),
+        ('¾', " 3/4"),
+        ('⅛', " 1/8"),
+        ('⅜', " 3/8"),
+        ('⅝', " 5/8"),
+        ('⅞', " 7/8"),
+    ] {
+        plain = plain.replace(sign, words);
+    }
+    plain = plain.replace('⁄', "/");
+    let parts: Vec<&str> = plain.split_whitespace().collect();
+    let whole = |text: &str| text.parse::<u32>().ok().filter(|n| *n <= 1000).map(f64::from);
+    let broken = |text: &str| {
+        let (above, below) = text.split_once('/')?;
+        let (above, below) = (whole(above)?, whole(below)?);
+        (above > 0.0 && below > 0.0).then_some(above / below)
+    };
+    match parts[..] {
+        [one] => broken(one).or_else(|| number(one)),
+        [first, second] => Some(whole(first)? + broken(second).filter(|part| *part < 1.0)?),
+        _ => None,
+    }
+}
+
+impl Unit {
+    /// What a number without a unit is in mm.
+    pub(super) fn mm(self, value: f64) -> Option<f64> {
+        match self {
+            Unit::Mm => Some(value),
+            Unit::Cm => Some(value * 10.0),
+            Unit::Micrometre => Some(value / 1e3),
+            Unit::Inch => Some(of_inches(value)),
+            Unit::Phi => Some(libm::exp2(-value)),
+            Unit::SieveNumber => us_sieve_number(&value.to_string()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn openings_are_read_as_laboratories_write_them() {
+        for (text, mm) in [
+            ("No. 4", 4.75),
+            ("No.200", 0.075),
+            ("no 40", 0.425),
+            ("#200", 0.075),
+            ("# 10", 2.0),
+            ("200 mesh", 0.075),
+            ("US No. 60", 0.25),
+            ("3\"", 75.0),
+            ("1 1/2\"", 37.5),
+            ("1-1/2 in.", 37.5),
+            ("1½\"", 37.5),
+            ("¾ in", 19.0),
+            ("3/8", 9.5),
+            ("3/8 inch", 9.5),
+            ("3/8-in.", 9.5),
+            ("0.375\"", 9.5),
+            ("6 in", 152.39999999999998),
+            ("9.5 mm", 9.5),
+            ("9,5mm", 9.5),
+            ("75 µm", 0.075),
+            ("75um", 0.075),
+            ("63 microns", 0.063),
+            ("No. 4 (4.75 mm)", 4.75),
+            ("4.75 mm (No. 4)", 4.75),
+            ("3/4 in. (19.0 mm)", 19.0),
+            ("2 cm", 20.0),
+        ] {
+            assert_eq!(opening(text).map(|(opening, _)| opening), Some(Opening::Mm(mm)), "{text}");
+        }
+        assert_eq!(opening("0,5"), Some((Opening::Bare(0.5), Said::Plain)));
+        assert_eq!(opening("Pan"), Some((Opening::Pan, Said::Plain)));
+        assert_eq!(opening("< 0.075 mm"), Some((Opening::Below(0.075), Said::WithUnit)));
+        for text in ["No. 3", "#", "project no. 4", "mm", "sixty", "3/0\"", "8-Mar", "1 3/2\"", "x9.5 mm", ""]
+        {
+            assert_eq!(opening(text), None, "{text}");
+        }
+        assert_eq!(Unit::Phi.mm(-2.0), Some(4.0));
+        assert_eq!(Unit::SieveNumber.mm(200.0), Some(0.075));
+        assert_eq!(Unit::SieveNumber.mm(4.75), None);
+    }
+}

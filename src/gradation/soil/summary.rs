@@ -1,0 +1,137 @@
+//! What there is to say of a soil: its sizes, its shape, its class.
+
+use serde::Serialize;
+
+use super::table::Soil;
+use crate::gradation::error::GradationError;
+use crate::gradation::sieve::Gradation;
+
+/// Fines are finer than this (mm): the No. 200 sieve.
+pub const FINES_MM: f64 = 0.075;
+/// Gravel is coarser than this (mm): the No. 4 sieve.
+const GRAVEL_MM: f64 = 4.75;
+
+/// What was understood of a soil, and what follows from its curve.
+#[derive(Clone, Debug, Serialize)]
+pub struct SoilSummary {
+    /// What its sheet or column calls it, or the file.
+    pub name: String,
+    /// Opening (mm) and percent finer by mass; sizes rise.
+    pub points: Vec<[f64; 2]>,
+    /// D5 (mm); this and the others are `None` where they lie below the finest opening.
+    pub d5_mm: Option<f64>,
+    /// D10 (mm).
+    pub d10_mm: Option<f64>,
+    /// D15 (mm).
+    pub d15_mm: Option<f64>,
+    /// D30 (mm).
+    pub d30_mm: Option<f64>,
+    /// D50 (mm).
+    pub d50_mm: Option<f64>,
+    /// D60 (mm).
+    pub d60_mm: Option<f64>,
+    /// D85 (mm).
+    pub d85_mm: Option<f64>,
+    /// D90 (mm).
+    pub d90_mm: Option<f64>,
+    /// D95 (mm).
+    pub d95_mm: Option<f64>,
+    /// D100 (mm).
+    pub d100_mm: Option<f64>,
+    /// D60 / D10.
+    pub cu: Option<f64>,
+    /// D30^2 / (D60 D10).
+    pub cc: Option<f64>,
+    /// Percent finer than 0.075 mm.
+    pub fines_percent: Option<f64>,
+    /// Percent coarser than 4.75 mm.
+    pub gravel_percent: Option<f64>,
+    /// Group of ASTM D2487, as far as a sieve curve tells it.
+    pub class: Option<String>,
+    /// What was assumed when it was read.
+    pub notes: Vec<String>,
+}
+
+impl SoilSummary {
+    /// What there is to say of `soil`, whose open finest tail ends at `d0_mm`.
+    ///
+    /// # Errors
+    /// A table that is no sieve curve.
+    pub fn of(soil: &Soil, d0_mm: Option<f64>) -> Result<SoilSummary, GradationError> {
+        let curve = soil.gradation(d0_mm)?;
+        let d = |percent| curve.d(percent);
+        let cc = || Some(d(30.0)? / d(60.0)? * (d(30.0)? / d(10.0)?));
+        let (cu, cc) = (curve.cu(), cc());
+        let fines_percent = finer(&curve, FINES_MM);
+        let gravel_percent = finer(&curve, GRAVEL_MM).map(|percent| 100.0 - percent);
+        Ok(SoilSummary {
+            name: soil.name().to_owned(),
+            points: curve.points().into_iter().map(|(size, percent)| [size, percent]).collect(),
+            d5_mm: d(5.0),
+            d10_mm: d(10.0),
+            d15_mm: d(15.0),
+            d30_mm: d(30.0),
+            d50_mm: d(50.0),
+            d60_mm: d(60.0),
+            d85_mm: d(85.0),
+            d90_mm: d(90.0),
+            d95_mm: d(95.0),
+            d100_mm: d(100.0),
+            cu,
+            cc,
+            fines_percent,
+            gravel_percent,
+            class: class(fines_percent, gravel_percent, cu.zip(cc)),
+            notes: soil.notes().to_vec(),
+        })
+    }
+}
+
+/// Percent finer than `size`; `None` where that lies in an open finest tail.
+fn finer(curve: &Gradation, size: f64) -> Option<f64> {
+    (curve.pan_fraction() == 0.0 || curve.smallest_mm() <= size).then(|| curve.percent_finer_by_mass(size))
+}
+
+/// The group of ASTM D2487 that follows from sizes alone: whether fines are silt or clay is not known from them.
+fn class(fines: Option<f64>, gravel: Option<f64>, shape: Option<(f64, f64)>) -> Option<String> {
+    let (fines, gravel) = (fines?, gravel?);
+    if fines >= 50.0 {
+        return Some("fine-grained soil (half or more is finer than 0.075 mm): silt or clay".into());
+    }
+    let is_gravel = gravel > (100.0 - fines) / 2.0;
+    let (noun, letter, least_cu) = if is_gravel { ("gravel", 'G', 4.0) } else { ("sand", 'S', 6.0) };
+    if fines > 12.0 {
+        return Some(format!("{noun} with more than 12 % fines: {letter}M or {letter}C"));
+    }
+    let (cu, cc) = shape?;
+    let well = cu >= least_cu && (1.0..=3.0).contains(&cc);
+    let (word, second) = if well { ("well-graded", 'W') } else { ("poorly graded", 'P') };
+    Some(match fines >= 5.0 {
+        true => format!(
+            "{word} {noun} with silt or clay: {letter}{second}-{letter}M or {letter}{second}-{letter}C"
+        ),
+        false => format!("{word} {noun}: {letter}{second}"),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::class;
+
+    #[test]
+    fn classes_follow_the_limits_of_astm_d2487() {
+        for (fines, gravel, shape, expected) in [
+            (2.0, 10.0, Some((7.0, 1.2)), Some("well-graded sand: SW")),
+            (2.0, 10.0, Some((5.9, 1.2)), Some("poorly graded sand: SP")),
+            (2.0, 60.0, Some((4.0, 3.0)), Some("well-graded gravel: GW")),
+            (2.0, 60.0, Some((4.0, 3.1)), Some("poorly graded gravel: GP")),
+            (5.0, 10.0, Some((7.0, 1.2)), Some("well-graded sand with silt or clay: SW-SM or SW-SC")),
+            (12.1, 10.0, None, Some("sand with more than 12 % fines: SM or SC")),
+            (2.0, 10.0, None, None),
+        ] {
+            assert_eq!(class(Some(fines), Some(gravel), shape).as_deref(), expected);
+        }
+        assert!(class(Some(50.0), Some(0.0), None).unwrap().starts_with("fine-grained"));
+        assert_eq!(class(None, Some(0.0), None), None);
+    }
+}
