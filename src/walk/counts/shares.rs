@@ -60,7 +60,7 @@ impl Shares {
     pub fn of_three(&self, exit: usize) -> (u64, u64, [u64; 2]) {
         let (first, second) = (self.probability[exit], self.probability[exit + 1]);
         let of_rest = second - ((u128::from(second) * u128::from(first)) >> 64) as u64;
-        (first, second, [first, first + of_rest])
+        (first, second, [first, first.wrapping_add(of_rest)])
     }
 
     /// Whether a void has an open exit.
