@@ -135,7 +135,7 @@ impl Mistake {
         if b > f {
             let sentence = format!(
                 "the base is coarser than the filter (D50 {b:.3} mm against {f:.3} mm): are the two files \
-                 exchanged?"
+                 exchanged? Or its sizes micrometres under a header in mm?"
             );
             return Some(Self { sentence, is_certain: false });
         }

@@ -7,5 +7,6 @@ mod full_disk;
 mod hostile_names;
 mod pack;
 mod precision;
+mod rules;
 mod scene;
 mod slurm_scripts;

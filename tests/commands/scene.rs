@@ -598,7 +598,7 @@ fn filter_rules_and_equation_one_stand_in_the_outcome() {
     let filter = format!("filter.sieve={}", sieve("filter.csv", "2,0\n3,40\n4.5,100\n"));
     let base = format!("base.sieve={}", sieve("base.csv", "0.05,0\n0.075,20\n0.4,85\n0.6,100\n"));
     let out = root.path().join("out");
-    let more = ["--set", &filter, "--set", &base, "--set", "base.n_base=100000", "--quiet"];
+    let more = ["--set", &filter, "--set", &base, "--set", "base.n_base=100000"];
     let output = run_small(&out, &more);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let value = outcome(&out);
@@ -608,7 +608,16 @@ fn filter_rules_and_equation_one_stand_in_the_outcome() {
     };
     assert_eq!(rule("Kézdi")["met"], true);
     assert_eq!(rule("Kenney and Lau")["met"], true);
-    assert!(rule("Foster and Fell: no")["note"].as_str().unwrap().contains("20 % of it is finer"));
+    // 20 % fines: 1.6 ((35 - 20)/20 (4 x 0.4 - 0.7) + 0.7) = 2.2 mm; (40 - 20)/25 (4 x 0.4 - 0.7) + 0.7 = 1.42 mm.
+    let limit = |name: &str| rule(name)["limit"].as_f64().unwrap();
+    assert!((limit("Foster and Fell: no") - 2.2).abs() < 1e-9);
+    assert!((limit("Sherard") - 1.42).abs() < 1e-9);
+    assert_ne!(value["confidence"], "within checked range");
+    let reasons: Vec<&str> =
+        value["reasons"].as_array().unwrap().iter().map(|reason| reason.as_str().unwrap()).collect();
+    assert!(reasons.iter().any(|reason| reason.contains("20 % of the base is finer")), "{reasons:?}");
+    let stdout = String::from_utf8(output.stdout).unwrap();
+    assert!(stdout.contains(" in the model; ") && stdout.contains(reasons[0]), "{stdout}");
     let found = &value["infiltration"];
     assert_eq!(found["layers"], 10);
     let run = &value["replicates"][0]["runs"][0];
@@ -619,7 +628,7 @@ fn filter_rules_and_equation_one_stand_in_the_outcome() {
     let linear = root.path().join("linear");
     assert!(run_small(&linear, &["--quiet"]).status.success());
     let text = fs::read_to_string(linear.join("outcome.json")).unwrap();
-    assert_eq!(text.matches("needs the filter's sieve curve").count(), 2);
+    assert_eq!(text.matches("needs the filter's sieve curve").count(), 5);
 }
 
 /// Each command that writes a folder leaves those of the others alone, finished or not, with --overwrite and without.
