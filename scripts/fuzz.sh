@@ -7,7 +7,7 @@ set -eu
 cd "$(dirname "$0")/../tests/fuzz"
 seconds=600
 case ${1:-} in [0-9]*) seconds=$1 && shift ;; esac
-[ $# -gt 0 ] || set -- scene sieve curve network packing checkpoint ledger
+[ $# -gt 0 ] || set -- scene sieve soil curve network packing checkpoint ledger
 cargo fuzz --version >/dev/null 2>&1 || cargo install --locked cargo-fuzz
 for target in "$@"; do
     mkdir -p "corpus/$target"

@@ -8,8 +8,12 @@ finer), and `note:` lines, of which each must be in a note of the first soil. A 
 must be in the message. The files are committed; the script is run again only to change them.
 """
 
+import datetime
+import io
 import pathlib
+import struct
 import sys
+import zipfile
 
 HERE = pathlib.Path(__file__).resolve().parent.parent / "tests" / "soils"
 BASE = [(0.075, 2), (0.15, 10), (0.3, 30), (1.18, 60), (4.75, 98), (9.5, 100)]
@@ -135,11 +139,187 @@ def texts():
     put("metres.csv", "opening (m),passing\n0.004,100\n0.002,50\n", refused=["line 1, header", "openings in mm"])
 
 
+AGS = """"GROUP","PROJ"
+"HEADING","PROJ_ID"
+"DATA","P1"
+
+"GROUP","GRAT"
+"HEADING","LOCA_ID","SAMP_TOP","SPEC_DPTH","GRAT_SIZE","GRAT_PERP","GRAT_TYPE"
+"UNIT","","m","m","%s","%%",""
+"TYPE","ID","2DP","2DP","3SF","0DP","PA"
+"DATA","BH1","1.50","1.50","0.063","12","HD"
+"DATA","BH1","1.50","1.50","0.02","5","HD"
+"DATA","BH1","1.50","1.50","2","100","WS"
+"DATA","BH1","1.50","1.50","0.425","60","WS"
+"DATA","BH1","1.50","1.50","0.063","12","WS"
+"DATA","BH2","3.00","3.00","20","100","WS"
+"DATA","BH2","3.00","3.00","2","%s","WS"
+"DATA","BH2","3.00","3.00","0.063","1","WS"
+"""
+
+
+def ags():
+    bh1 = [(0.02, 5), (0.063, 12), (0.425, 60), (2, 100)]
+    put("gradings.ags", AGS % ("mm", "30"), {"BH1 1.50 1.50": bh1, "BH2 3.00 3.00": [(0.063, 1), (2, 30), (20, 100)]})
+    put("gradings_bad.ags", AGS % ("mm", "x"), refused=["line 15, percent_finer: \"x\""])
+    put("gradings_unit.ags", AGS % ("furlong", "30"), refused=["line 7", "GRAT_SIZE"])
+    put("no_gradings.ags", '"GROUP","PROJ"\n"HEADING","PROJ_ID"\n"DATA","P1"\n', refused=["GRAT"])
+
+
+def xlsx(name, sheets, change=None, **expected):
+    """A workbook of sheets: {name: rows}; `change` may work on the workbook before it is saved."""
+    import openpyxl
+
+    book = openpyxl.Workbook()
+    book.remove(book.active)
+    for title, rows in sheets.items():
+        sheet = book.create_sheet(title)
+        for row in rows:
+            sheet.append(row)
+    if change:
+        change(book)
+    out = io.BytesIO()
+    book.save(out)
+    put(name, out.getvalue(), **expected)
+
+
+def ods(name, sheets, percents=False, **expected):
+    from odf.opendocument import OpenDocumentSpreadsheet
+    from odf.table import Table, TableCell, TableRow
+    from odf.text import P
+
+    book = OpenDocumentSpreadsheet()
+    for title, rows in sheets.items():
+        sheet = Table(name=title)
+        for row in rows:
+            line = TableRow()
+            for value in row:
+                if isinstance(value, str):
+                    cell = TableCell(valuetype="string")
+                else:
+                    cell = TableCell(valuetype="percentage" if percents and value is row[1] else "float", value=value)
+                cell.addElement(P(text=str(value)))
+                line.addElement(cell)
+            sheet.addElement(line)
+        # As spreadsheets do: empty rows to the end.
+        sheet.addElement(TableRow(numberrowsrepeated=1048000))
+        book.spreadsheet.addElement(sheet)
+    out = io.BytesIO()
+    book.write(out)
+    put(name, out.getvalue(), **expected)
+
+
+def workbooks():
+    sand = [(0.075, 1), (0.6, 40), (4.75, 97), (9.5, 100)]
+    till = [(0.002, 6), (0.075, 35), (4.75, 90), (19, 100)]
+
+    def rows(soil, heading=("Opening (mm)", "% passing")):
+        return [list(heading)] + [list(point) for point in sorted(soil, reverse=True)]
+
+    titles = [["Project", "Dam, north"], ["Date", datetime.date(2026, 11, 22)], [], ["Depth (m)", 3.5]]
+    xlsx("one.xlsx", {"Sheet1": titles + rows(sand)}, soils=sand)
+    xlsx("sheets.xlsx", {"Cover": [["Soils of the dam"]], "Filter A": rows(sand), "Base 1": rows(till)},
+         soils={"Filter A": sand, "Base 1": till}, notes=["\"Cover\""])
+
+    def merge(book):
+        book.active.merge_cells("B1:C1")
+
+    both = [[size] + [dict(soil).get(size) for soil in (sand, till)] for size in (19, 9.5, 4.75, 0.6, 0.075, 0.002)]
+    xlsx("columns.xlsx", {"Soils": [["Sieve (mm)", "Percent passing", None], [None, "Filter A", "Base 1"]] + both}, merge,
+         soils={"Soils/Filter A": sand, "Soils/Base 1": till})
+
+    def percents(book):
+        for row in book.active.iter_rows(min_row=2, min_col=2):
+            row[0].number_format = "0.0%"
+
+    parts = [(size, percent / 100) for size, percent in sand]
+    xlsx("percent_cells.xlsx", {"A": rows(parts)}, percents, soils=sand)
+    xlsx("fractions.xlsx", {"A": rows(parts)}, soils=sand, notes=["fractions"])
+    names = [["Sieve", "mm", "% passing"], ['3/8"', 9.5, 100], ["No. 4", 4.75, 97], ["No. 30", 0.6, 40], ["No. 200", 0.075, 1], ["Pan", None, 0]]
+    xlsx("names.xlsx", {"A": names}, soils=sand, notes=["pan"])
+    xlsx("only_names.xlsx", {"A": [[row[0], row[2]] for row in names]}, soils=sand, notes=["ASTM E11"])
+    xlsx("masses.xlsx", {"A": [["Sieve mm", "Mass retained, g"], [9.5, 0], [4.75, 15], [0.6, 285], [0.075, 195], ["Pan", 5], ["Total", 500]]},
+         soils=sand, notes=["masses retained"])
+    xlsx("decimal_text.xlsx", {"A": [["Siebgröße, mm", "Durchgang"], ["9,5", "100 %"], ["4,75 mm", "97 %"], ["0,6", "40 %"], ["0,075", "1 %"]]}, soils=sand)
+    xlsx("hydrometer.xlsx", {"A": rows(till[1:]) + [["Hydrometer"], [0.002, 6]]}, soils=till)
+    xlsx("formula.xlsx", {"A": rows(sand)[:-1] + [[0.075, "=100-99"]]}, refused=["sheet \"A\", cell B5", "formula"])
+    xlsx("date.xlsx", {"A": [["Sieve", "% passing"], [datetime.date(2026, 3, 8), 100], ["No. 4", 60], ["No. 10", 10]]},
+         refused=["sheet \"A\", cell A2", "a date"])
+    xlsx("bad_value.xlsx", {"A": titles + rows(sand[1:]) + [[0.3, "sixty"], [0.1, 2]]}, refused=["sheet \"A\", cell B9", "sixty"])
+    xlsx("not_monotone.xlsx", {"A": rows([(4, 100), (2, 30), (1, 40)])}, refused=["sheet \"A\", cell B4", "row 3"])
+    xlsx("empty.xlsx", {"A": []}, refused=["no row of numbers"])
+    ods("one.ods", {"Filter": [["Project X"]] + rows(sand)}, soils={"Filter": sand})
+    ods("two.ods", {"Filter": rows(sand), "Base": rows(till)}, soils={"Filter": sand, "Base": till})
+    ods("percents.ods", {"A": rows(parts[1:])}, percents=True, soils=sand[1:])
+    ods("twice.ods", {"A": rows(sand) + [[0.075, 1]]}, refused=["sheet \"A\", cell A6", "every size once"])
+    hostile((HERE / "one.xlsx").read_bytes())
+
+
+def repacked(book, changes, deflate=zipfile.ZIP_DEFLATED):
+    """The zip with parts replaced or added."""
+    out = io.BytesIO()
+    with zipfile.ZipFile(io.BytesIO(book)) as old, zipfile.ZipFile(out, "w", deflate, compresslevel=9) as new:
+        for name in old.namelist():
+            if name not in changes:
+                new.writestr(name, old.read(name))
+        for name, content in changes.items():
+            new.writestr(name, content)
+    return out.getvalue()
+
+
+def hostile(book):
+    """Workbooks that would take gigabytes, or run something."""
+    sheet = "xl/worksheets/sheet1.xml"
+    put("macros.xlsx", repacked(book, {"xl/vbaProject.bin": b"x"}), refused=["macros"])
+    put("bomb.xlsx", repacked(book, {"xl/media/image1.png": bytes(80 << 20)}), refused=["too large", "unpacked"])
+    huge = repacked(book, {sheet: b"<worksheet><sheetData>" + b" " * (30 << 20)})
+    put("large_sheet.xlsx", huge, refused=["too large", "sheet1.xml"])
+    # The directory says a gigabyte; and says less than there is.
+    put("gigabyte.xlsx", resized(huge, sheet, 1 << 30), refused=["too large", "unpacked"])
+    put("understated.xlsx", resized(huge, sheet, 100), refused=["workbook cannot be read"])
+    many = "".join(f'<row r="{r}"><c r="ZZZ{r}"><v>1</v></c></row>' for r in range(1, 1000))
+    put("far_column.xlsx", repacked(book, {sheet: f"<worksheet><sheetData>{many}</sheetData></worksheet>"}), refused=["too large"])
+    far = '<row r="1"><c r="A1"><v>1</v></c></row><row r="1048576"><c r="A1048576"><v>1</v></c></row>'
+    put("far_row.xlsx", repacked(book, {sheet: f"<worksheet><sheetData>{far}</sheetData></worksheet>"}), refused=["too large"])
+    # Texts that several cells share, as Excel writes them; a count that is not to be believed.
+    strings = ('<sst uniqueCount="1000000000000000000"><si><t>Opening (mm)</t></si><si><r><t xml:space="preserve">% </t></r><r>'
+               '<t>passing</t></r><rPh><t>x</t></rPh></si><si><t>3/8&quot; &amp; No. 4</t></si></sst>')
+    cells = ('<worksheet><sheetData><row r="1"><c r="A1" t="s"><v>0</v></c><c r="B1" t="s"><v>1</v></c></row><row><c><v>4</v></c><c>'
+             '<f>50+50</f><v>100</v></c></row><row r="3"><c r="A3"><v>2.0000000000000004</v></c><c r="B3"><v>%s</v></c></row></sheetData>'
+             "</worksheet>")
+    put("shared.xlsx", repacked(book, {"xl/sharedStrings.xml": strings, sheet: cells % 50}), {"Sheet1": [(4, 100), (2, 50)]})
+    broken = cells.replace("<v>1</v>", "<v>7</v>") % 50
+    put("strings.xlsx", repacked(book, {"xl/sharedStrings.xml": strings, sheet: broken}), refused=["a text that is not there"])
+    put("broken_xml.xlsx", repacked(book, {sheet: "<worksheet><sheetData><row></c>"}), refused=["XML is broken"])
+    put("cut.xlsx", book[: len(book) // 2], refused=["its zip cannot be read"])
+    put("zip.xlsx", repacked(b"PK\x05\x06" + bytes(18), {"a.txt": "a"}), refused=["no workbook"])
+    one = (HERE / "one.ods").read_bytes()
+    cell = '<table:table-cell office:value-type="float" office:value="1" table:number-columns-repeated="%d"/>'
+    content = ('<office:document-content><table:table table:name="A"><table:table-row table:number-rows-repeated="%d">'
+               + cell + "</table:table-row></table:table></office:document-content>")
+    put("repeated.ods", repacked(one, {"content.xml": content % (1000, 10**12)}), refused=["too large"])
+    put("repeated_rows.ods", repacked(one, {"content.xml": content % (10**12, 4)}), refused=["too large"])
+    put("repeated_both.ods", repacked(one, {"content.xml": content % (1000, 900)}), refused=["too large"])
+
+
+def resized(book, name, size):
+    """The zip with another unpacked size of a part in its directory."""
+    data, at = bytearray(book), 0
+    while (at := data.find(b"PK\x01\x02", at)) >= 0:
+        length = struct.unpack_from("<H", data, at + 28)[0]
+        if data[at + 46 : at + 46 + length].decode() == name:
+            struct.pack_into("<I", data, at + 24, size)
+        at += 4
+    return bytes(data)
+
+
 def main():
     HERE.mkdir(exist_ok=True)
     for old in HERE.iterdir():
         old.unlink()
     texts()
+    ags()
+    workbooks()
     print(len(list(HERE.iterdir())) // 2, "files", file=sys.stderr)
 
 

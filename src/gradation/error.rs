@@ -67,6 +67,14 @@ pub enum TableError {
         /// What it is.
         is: String,
     },
+    /// A workbook that is refused as a whole.
+    #[error("{file}: this workbook cannot be read: {why}; allowed: .xlsx or .ods, small and without macros")]
+    Workbook {
+        /// File as the user named it.
+        file: String,
+        /// What is wrong.
+        why: String,
+    },
     /// Several soils, and none of them named.
     #[error("{file} holds several soils: {soils}; name one of them, as in \"{file}#{first}\"")]
     SeveralSoils {

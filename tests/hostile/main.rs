@@ -132,6 +132,11 @@ fn sieve_tables() {
 }
 
 #[test]
+fn files_of_soils() {
+    check("soil", &["tests/soils"], 1500, readers::soil);
+}
+
+#[test]
 fn curves() {
     check("curve", &["tests/bad/curve"], 40_000, readers::curve);
 }

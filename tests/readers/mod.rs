@@ -15,7 +15,7 @@ use bitvec::vec::BitVec;
 use voidwalk::campaign::CampaignPlan;
 use voidwalk::case::Case;
 use voidwalk::constrictions::Curve;
-use voidwalk::gradation::{Gradation, SizeSampler};
+use voidwalk::gradation::{Gradation, SizeSampler, Soil, SoilSummary};
 use voidwalk::network::Network;
 use voidwalk::packing::Packing;
 use voidwalk::scene::{CurveSource, Scene};
@@ -101,6 +101,17 @@ pub fn sieve(bytes: &[u8]) {
                 let size = sampler.diameter(word);
                 assert!(size >= sampler.smallest() && size <= sampler.largest(), "{size}");
             }
+        }
+    }
+}
+
+/// A file of soils: text, workbook or AGS4.
+pub fn soil(bytes: &[u8]) {
+    for soil in shown(Soil::all("soils", bytes)).unwrap_or_default() {
+        assert!(soil.name().len() < LONGEST_MESSAGE, "{} bytes", soil.name().len());
+        shown(Soil::one("soils", bytes, Some(soil.name())));
+        if let Some(summary) = shown(SoilSummary::of(&soil, None)) {
+            assert!(summary.points.windows(2).all(|pair| pair[0][1] <= pair[1][1]), "{:?}", summary.points);
         }
     }
 }

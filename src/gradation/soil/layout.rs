@@ -125,7 +125,7 @@ fn with_headings(grid: &Grid, at: usize, first: usize, heads: Vec<String>) -> Re
     if let Some(row) = rows.iter().find(too_wide) {
         return Err(fields(grid, row));
     }
-    let roles: Vec<Role> = heads.iter().map(|name| role(name)).collect();
+    let (heads, roles) = spread(grid, at, first, heads);
     let of_role = |wanted: Role| (0..heads.len()).filter(|&c| roles[c] == wanted).collect::<Vec<_>>();
     let sizes: Vec<usize> = {
         let mut sizes = of_role(Role::Size);
@@ -183,6 +183,26 @@ fn with_headings(grid: &Grid, at: usize, first: usize, heads: Vec<String>) -> Re
     }
     let other_size = sizes.get(1).copied();
     Ok(Layout { size, other_size, unit, soils, first, headed: true })
+}
+
+/// A heading that is merged over several columns stands in the first of them; the rows below name each.
+fn spread(grid: &Grid, at: usize, first: usize, mut heads: Vec<String>) -> (Vec<String>, Vec<Role>) {
+    let mut roles: Vec<Role> = heads.iter().map(|name| role(name)).collect();
+    let (top, below) = (&grid.rows[at], &grid.rows[at + 1..first]);
+    for column in 1..heads.len() {
+        let before = roles[column - 1];
+        let is_merged = top.cell(column).is_empty()
+            && roles[column] == Role::Other
+            && matches!(before, Role::Finer | Role::Retained(_))
+            && below.iter().any(|row| !row.cell(column).is_empty() && !row.cell(column - 1).is_empty());
+        if is_merged {
+            roles[column] = before;
+            for named in [column - 1, column] {
+                heads[named] = head(below, named);
+            }
+        }
+    }
+    (heads, roles)
 }
 
 impl Layout {

@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use super::grid::{Grid, letters};
+use super::layout::Layout;
 use super::summary::SoilSummary;
 use super::table::Soil;
-use super::{csv, layout, points, text};
+use super::{ags, csv, layout, points, text, workbook};
 use crate::gradation::error::{GradationError, TableError, shortened};
 use crate::gradation::sieve::Gradation;
 use crate::gradation::table::{FILE_LIMIT_BYTES, bytes_of};
@@ -16,7 +17,7 @@ impl Soil {
     /// # Errors
     /// No table, or one that cannot be understood or could be understood in two ways.
     pub fn all(file: &str, bytes: &[u8]) -> Result<Vec<Soil>, GradationError> {
-        let soils = tables(file, bytes)?;
+        let soils = tables(file, bytes, None)?;
         Ok(soils.into_iter().map(|(_, soil)| soil).collect::<Result<_, _>>()?)
     }
 
@@ -26,11 +27,10 @@ impl Soil {
     /// # Errors
     /// As [`Soil::all`], for this soil; several soils, or none of this name.
     pub fn one(file: &str, bytes: &[u8], name: Option<&str>) -> Result<Soil, GradationError> {
-        let mut soils = tables(file, bytes)?;
+        let mut soils = tables(file, bytes, name)?;
         if let Some(name) = name {
-            let wanted = folded(name);
             let all: Vec<String> = soils.iter().map(|(names, _)| names[0].clone()).collect();
-            soils.retain(|(names, _)| names.iter().any(|name| folded(name) == wanted));
+            soils.retain(|(names, _)| is_named(names, name));
             if soils.is_empty() {
                 let (file, name, soils) = (file.to_owned(), shortened(name), listed(&all));
                 return Err(TableError::NoSuchSoil { file, name, soils }.into());
@@ -77,11 +77,21 @@ fn folded(name: &str) -> String {
 type Named = (Vec<String>, Result<Soil, TableError>);
 
 /// Every table that looks like a soil's.
-fn tables(file: &str, bytes: &[u8]) -> Result<Vec<Named>, TableError> {
+fn tables(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Named>, TableError> {
     if bytes.len() as u64 > FILE_LIMIT_BYTES {
         return Err(TableError::TooLarge { file: file.into(), limit: FILE_LIMIT_BYTES });
     }
+    if workbook::is_zip(bytes) {
+        return of_workbook(file, bytes, wanted);
+    }
     let (text, note) = text::decoded(file, bytes)?;
+    if ags::is_ags(&text) {
+        let named = |(name, grid, layout): (String, Grid, Layout)| {
+            let soil = points::soil(&grid, &layout, &layout.soils[0]);
+            (vec![name], soil)
+        };
+        return Ok(ags::soils(file, &text)?.into_iter().map(named).collect());
+    }
     let mut refusal = None;
     for delimiter in csv::separators(&text) {
         let mut grid = csv::grid(file, &text, delimiter);
@@ -97,6 +107,43 @@ fn tables(file: &str, bytes: &[u8]) -> Result<Vec<Named>, TableError> {
         }
     }
     Err(refusal.unwrap_or(TableError::NoRows { file: file.into(), header: false }))
+}
+
+/// The soils of every sheet. One in which no table is found, such as a cover, is passed over where others have
+/// one, and said; asked for by its name, it says what is wrong with it.
+fn of_workbook(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Named>, TableError> {
+    let (mut soils, mut refusals) = (Vec::new(), Vec::new());
+    let sheets = workbook::sheets(file, bytes)?;
+    if sheets.is_empty() {
+        return Err(TableError::NoRows { file: file.into(), header: false });
+    }
+    for grid in sheets {
+        match soils_of(&grid) {
+            Ok(found) => soils.extend(found),
+            Err(error) => refusals.push((grid.sheet.unwrap_or_default(), error)),
+        }
+    }
+    if let Some(at) =
+        refusals.iter().position(|(sheet, _)| wanted.is_some_and(|w| folded(w) == folded(sheet)))
+        && soils.iter().all(|(names, _)| wanted.is_some_and(|w| !is_named(names, w)))
+    {
+        return Err(refusals.swap_remove(at).1);
+    }
+    let all: Vec<String> = refusals.iter().map(|(sheet, _)| format!("\"{sheet}\"")).collect();
+    if soils.is_empty()
+        && let Some((_, error)) = refusals.into_iter().next()
+    {
+        return Err(error);
+    }
+    if !all.is_empty() && wanted.is_none() {
+        let note = format!("no table was found in sheet {}", listed(&all));
+        soils.iter_mut().filter_map(|(_, soil)| soil.as_mut().ok()).for_each(|s| s.notes.push(note.clone()));
+    }
+    Ok(soils)
+}
+
+fn is_named(names: &[String], wanted: &str) -> bool {
+    names.iter().any(|name| folded(name) == folded(wanted))
 }
 
 /// The soils of one grid.

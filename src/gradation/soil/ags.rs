@@ -1,0 +1,100 @@
+//! AGS4, the format in which ground investigations are handed over: the group GRAT holds a row for each opening.
+
+use super::csv::split;
+use super::grid::{Grid, GridRow};
+use super::heading::{Role, unit};
+use super::layout::{Layout, SoilColumn};
+use super::size::Unit;
+use crate::gradation::error::TableError;
+use crate::gradation::table::number;
+
+/// What tells one specimen from another.
+const KEYS: [&str; 7] = ["LOCA_ID", "SAMP_TOP", "SAMP_REF", "SAMP_TYPE", "SAMP_ID", "SPEC_REF", "SPEC_DPTH"];
+
+/// Whether a text is AGS4.
+pub(super) fn is_ags(text: &str) -> bool {
+    text.trim_start().to_uppercase().starts_with("\"GROUP\",")
+}
+
+/// The soils of the group GRAT: a name, its rows, and where they stand in these.
+pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)>, TableError> {
+    let refused = |line: usize, value: &str, allowed: &str| TableError::Header {
+        file: file.into(),
+        line,
+        value: value.into(),
+        allowed: allowed.into(),
+    };
+    let (mut group, mut headings, mut size_unit) = (String::new(), Vec::new(), Some(Unit::Mm));
+    let mut soils: Vec<(String, Grid)> = Vec::new();
+    for (index, content) in text.lines().enumerate() {
+        let (cells, line) = (split(content, ',').0, index + 1);
+        let Some(kind) = cells.first() else { continue };
+        if kind == "GROUP" {
+            group = cells.get(1).cloned().unwrap_or_default();
+            headings.clear();
+        }
+        if group != "GRAT" {
+            continue;
+        }
+        let place = |name: &str| headings.iter().position(|heading| heading == name);
+        let cell = |name: &str| place(name).and_then(|at| cells.get(at)).map_or("", String::as_str);
+        match kind.as_str() {
+            "HEADING" => headings = cells,
+            "UNIT" => {
+                size_unit = match cell("GRAT_SIZE") {
+                    "" => Some(Unit::Mm),
+                    given => match unit(given) {
+                        Ok(Some(unit)) => Some(unit),
+                        _ => return Err(refused(line, given, "a unit of GRAT_SIZE: mm")),
+                    },
+                };
+            }
+            "DATA" => {
+                for name in ["GRAT_SIZE", "GRAT_PERP"] {
+                    if place(name).is_none() {
+                        return Err(refused(line, "GRAT", &format!("a group GRAT with the heading {name}")));
+                    }
+                }
+                let keys: Vec<&str> =
+                    KEYS.iter().map(|key| cell(key)).filter(|key| !key.is_empty()).collect();
+                let name = keys.join(" ");
+                let row = GridRow {
+                    line,
+                    cells: vec![cell("GRAT_SIZE").to_owned(), cell("GRAT_PERP").to_owned()],
+                    text: None,
+                    open: false,
+                };
+                match soils.iter_mut().find(|soil| soil.0 == name) {
+                    Some((_, grid)) => grid.rows.push(row),
+                    None => {
+                        let grid =
+                            Grid { file: file.into(), delimiter: ',', rows: vec![row], ..Grid::default() };
+                        soils.push((name, grid));
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    if soils.is_empty() {
+        return Err(TableError::Format {
+            file: file.into(),
+            is: "AGS4 without a row in its group GRAT (gradings)".into(),
+        });
+    }
+    let soils = soils.into_iter().map(|(name, mut grid)| {
+        in_order(&mut grid);
+        let soil = SoilColumn { column: 1, heading: name.clone(), role: Role::Finer };
+        let layout =
+            Layout { size: 0, other_size: None, unit: size_unit, soils: vec![soil], first: 0, headed: true };
+        (name, grid, layout)
+    });
+    Ok(soils.collect())
+}
+
+/// Sieves and hydrometer may come one after the other, in any order; a row that stands twice counts once.
+fn in_order(grid: &mut Grid) {
+    let size = |row: &GridRow| number(&row.cells[0]).unwrap_or(f64::INFINITY);
+    grid.rows.sort_by(|a, b| size(b).total_cmp(&size(a)));
+    grid.rows.dedup_by(|a, b| a.cells == b.cells);
+}

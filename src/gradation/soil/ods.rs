@@ -1,0 +1,141 @@
+//! Sheets of OpenDocument: `content.xml`.
+
+use quick_xml::Reader;
+use quick_xml::events::{BytesStart, Event};
+
+use super::cells::{Budget, Cells, tidy};
+use super::grid::Grid;
+use super::zipped::{Zipped, attribute, characters, too_large, unreadable};
+use crate::gradation::error::TableError;
+
+/// A filled cell or row may stand for this many equal ones.
+const MOST_REPEATS: usize = 1000;
+
+/// Its sheets.
+pub(super) fn sheets(file: &str, zipped: &mut Zipped) -> Result<Vec<Grid>, TableError> {
+    let text = zipped.text("content.xml")?;
+    let mut reader = Reader::from_str(&text);
+    reader.config_mut().expand_empty_elements = true;
+    let (mut sheets, mut budget) = (Vec::new(), Budget::new());
+    loop {
+        match reader.read_event().map_err(|_| broken(file))? {
+            Event::Start(e) if e.name().as_ref() == "table:table" => {
+                let name = attribute(&e, "table:name").unwrap_or_default();
+                sheets.push(sheet(file, &name, &mut reader, &mut budget)?);
+            }
+            Event::Eof => return Ok(sheets),
+            _ => {}
+        }
+    }
+}
+
+fn broken(file: &str) -> TableError {
+    unreadable(file, "its content.xml is broken")
+}
+
+fn repeats(element: &BytesStart, name: &str) -> usize {
+    attribute(element, name).and_then(|n| n.parse().ok()).unwrap_or(1).max(1)
+}
+
+fn sheet(
+    file: &str,
+    name: &str,
+    reader: &mut Reader<&[u8]>,
+    budget: &mut Budget,
+) -> Result<Grid, TableError> {
+    let mut cells = Cells::new(file, name, budget);
+    let mut row = 0usize;
+    loop {
+        match reader.read_event().map_err(|_| broken(file))? {
+            Event::Start(e) if e.name().as_ref() == "table:table-row" => {
+                let times = repeats(&e, "table:number-rows-repeated");
+                let filled = read_row(file, reader)?;
+                if !filled.is_empty() && times > MOST_REPEATS {
+                    return Err(too_large(file, &format!("a row that is repeated {times} times")));
+                }
+                let kept = if filled.is_empty() { 0 } else { times };
+                for again in 0..kept {
+                    for (column, text) in &filled {
+                        cells.put(row.saturating_add(again), *column, text)?;
+                    }
+                }
+                row = row.saturating_add(times);
+            }
+            Event::End(e) if e.name().as_ref() == "table:table" => return Ok(cells.done()),
+            Event::Eof => return Err(broken(file)),
+            _ => {}
+        }
+    }
+}
+
+/// The filled cells of a row, with their columns.
+fn read_row(file: &str, reader: &mut Reader<&[u8]>) -> Result<Vec<(usize, String)>, TableError> {
+    let mut filled = Vec::new();
+    let mut column = 0usize;
+    loop {
+        match reader.read_event().map_err(|_| broken(file))? {
+            Event::Start(e)
+                if ["table:table-cell", "table:covered-table-cell"].contains(&e.name().as_ref()) =>
+            {
+                let times = repeats(&e, "table:number-columns-repeated");
+                let end = e.name().as_ref().to_owned();
+                let kind = attribute(&e, "office:value-type").unwrap_or_default();
+                let value = attribute(&e, "office:value");
+                let formula = attribute(&e, "table:formula").is_some();
+                let shown = paragraphs(file, reader, &end)?;
+                let text = match (kind.as_str(), value) {
+                    ("percentage", Some(value)) => percents(&value).unwrap_or(value),
+                    ("float" | "currency", Some(value)) => value,
+                    ("date" | "time", _) => format!("{shown} (a date)"),
+                    ("", _) if formula && shown.is_empty() => "a formula without its value".to_owned(),
+                    _ => shown,
+                };
+                let text = tidy(&text);
+                if !text.is_empty() {
+                    if times > MOST_REPEATS {
+                        return Err(too_large(file, &format!("a cell that is repeated {times} times")));
+                    }
+                    filled.extend((0..times).map(|again| (column.saturating_add(again), text.clone())));
+                    if filled.len() > 4 * MOST_REPEATS {
+                        return Err(too_large(file, "a row of more than 4000 cells"));
+                    }
+                }
+                column = column.saturating_add(times);
+            }
+            Event::End(e) if e.name().as_ref() == "table:table-row" => return Ok(filled),
+            Event::Eof => return Err(broken(file)),
+            _ => {}
+        }
+    }
+}
+
+/// A fraction as the percents that the sheet shows.
+fn percents(value: &str) -> Option<String> {
+    let percent = value.parse::<f64>().ok()? * 100.0;
+    Some(format!("{}%", (percent * 1e9).round() / 1e9))
+}
+
+/// The text of a cell, without its comments.
+fn paragraphs(file: &str, reader: &mut Reader<&[u8]>, end: &str) -> Result<String, TableError> {
+    let mut text = String::new();
+    let mut within_comment = 0u32;
+    loop {
+        let event = reader.read_event().map_err(|_| broken(file))?;
+        match &event {
+            Event::Start(e) if e.name().as_ref() == "office:annotation" => within_comment += 1,
+            Event::End(e) if e.name().as_ref() == "office:annotation" => {
+                within_comment = within_comment.saturating_sub(1);
+            }
+            Event::Start(e) if ["text:p", "text:s"].contains(&e.name().as_ref()) && !text.is_empty() => {
+                text.push(' ');
+            }
+            Event::End(e) if e.name().as_ref() == end => return Ok(text),
+            Event::Eof => return Err(broken(file)),
+            _ => {
+                if let Some(more) = characters(&event).filter(|_| within_comment == 0) {
+                    text.push_str(&more);
+                }
+            }
+        }
+    }
+}
