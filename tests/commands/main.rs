@@ -7,4 +7,5 @@ mod hostile_names;
 mod pack;
 mod precision;
 mod scene;
+mod second_command;
 mod slurm_scripts;
