@@ -10,7 +10,15 @@ use crate::outcome::ledger::{Campaign, LedgerLine};
 use crate::outcome::record::Statistic;
 use crate::run::error::RunError;
 use crate::run::results::json;
-use crate::store::write_whole;
+use crate::store::{read_whole, write_whole};
+
+/// Cases of the ledger in a campaign's folder that this plan does not have: they are about to leave it.
+pub(super) fn of_other_plans(plan: &CampaignPlan, out: &Path) -> Vec<String> {
+    let text = read_whole(&out.join("ledger.jsonl")).unwrap_or_default();
+    let lines = serde_json::Deserializer::from_slice(&text).into_iter::<LedgerLine>();
+    let names = lines.map_while(Result::ok).map(|line| line.case);
+    names.filter(|name| plan.case(name).is_none()).collect()
+}
 
 /// Collects the finished cases of a plan, in its order, and writes `ledger.jsonl`, `campaign.json` and
 /// `cases.csv` into the campaign's folder.

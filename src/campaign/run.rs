@@ -6,7 +6,7 @@ use super::cases::{CASES, CasePart, CaseState, Drafts, FailedCase, PreparedCase,
 use super::changed;
 use super::ledger;
 use super::plan::CampaignPlan;
-use super::run_cases::{CampaignCallbacks, CaseRunner};
+use super::run_cases::{CampaignCallbacks, CaseRunner, LOST};
 use crate::case::{PackedFilter, PackingPlan};
 use crate::outcome::ledger::LedgerLine;
 use crate::run::allocation::Allocation;
@@ -154,6 +154,14 @@ pub fn run(
         lines = Some(write_ledger(plan, &cases, out, &callbacks.run)?);
     }
     failed.extend(result?);
+    // Cases that were done, by this process or before, and whose results are gone now.
+    let in_ledger = |name: &str| lines.iter().flatten().any(|line| line.case == name);
+    let lost: Vec<String> = cases
+        .iter()
+        .map(|case| case.planned.name.clone())
+        .filter(|name| lines.is_some() && !in_ledger(name) && failed.iter().all(|f| f.case != *name))
+        .collect();
+    failed.extend(lost.into_iter().map(|case| FailedCase { case, problem: LOST.into() }));
     Ok(FinishedCampaign { lines, failed, cases: count })
 }
 
@@ -164,6 +172,17 @@ fn write_ledger(
     out: &Path,
     callbacks: &Callbacks,
 ) -> Result<Vec<LedgerLine>, RunError> {
+    let dropped = ledger::of_other_plans(plan, out);
+    if !dropped.is_empty() {
+        (callbacks.warn)(&format!(
+            "{}: the ledger of another plan was there, or of this one before it was changed: {} of its cases \
+             are not in this plan and not in the new ledger ({}{}); their folders stay",
+            shown(out),
+            dropped.len(),
+            dropped.iter().take(3).cloned().collect::<Vec<_>>().join(", "),
+            if dropped.len() > 3 { ", ..." } else { "" }
+        ));
+    }
     let lines = ledger::collect(plan, cases, out)?;
     callbacks.results(FolderKind::Campaign, out)?;
     Ok(lines)

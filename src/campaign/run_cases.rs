@@ -23,14 +23,14 @@ use crate::outcome::ledger::{LedgerLine, Made};
 use crate::run::callbacks::Callbacks;
 use crate::run::checkpoints::{self, CheckpointInterval, Checkpoints};
 use crate::run::error::{Exit, RunError};
-use crate::run::folder::{FolderKind, shown};
+use crate::run::folder::{FolderKind, clear, shown};
 use crate::run::machine::Machine;
 use crate::run::replicates::{self, ReplicateContext};
 use crate::run::results;
 use crate::store::{Folder, StoreError, make_folder};
 
 /// What is said of a case whose results are gone.
-const LOST: &str = "its results were overwritten by another process; is another plan, or this one changed, \
+pub(super) const LOST: &str = "its results were overwritten by another process; is another plan, or this one changed, \
     at work on the folder?";
 
 /// How often a process looks whether others are done: at first, and after some waiting.
@@ -158,6 +158,10 @@ impl CaseRunner<'_> {
         self.callbacks.run.is_stopped()
     }
 
+    fn warn(&self, name: &str, problem: &str) {
+        (self.callbacks.run.warn)(&format!("case {name}: {problem}"));
+    }
+
     /// Tries each case once.
     fn pass(&self, open: &[&PreparedCase], tally: &Tally) -> Result<(), RunError> {
         let next = AtomicUsize::new(0);
@@ -216,6 +220,7 @@ impl CaseRunner<'_> {
     /// Walks one case into its folder, on the threads that it is called on.
     fn walk(&self, prepared: &PreparedCase, folder: &Folder) -> Result<bool, RunError> {
         let (name, case) = (&prepared.planned.name, &prepared.case);
+        replicates::have_networks(case)?;
         let resumes = Checkpoints::is_in(folder.path())?;
         (self.callbacks.on_case)(name, CaseEvent::Begun { resumes });
         let (begun, started) = (Instant::now(), SystemTime::now());
@@ -224,6 +229,9 @@ impl CaseRunner<'_> {
         let context = ReplicateContext { callbacks: &silent, checkpoints: Some(&checkpoints) };
         let walked = replicates::replicates(case, &context)
             .and_then(|walked| Ok((replicates::sensitivity(case, &context)?, walked)));
+        for problem in checkpoints.passed_over() {
+            self.warn(name, &format!("{problem}; the checkpoint before it was taken"));
+        }
         let (sensitivity, walked) = match walked {
             Err(error) if error.exit() == Exit::Stopped => {
                 checkpoints.flush()?;
@@ -231,8 +239,7 @@ impl CaseRunner<'_> {
             }
             // Of what the case was before the plan was changed, or corrupt: it is walked from its start.
             Err(error @ RunError::Checkpoint(_)) if error.exit() == Exit::Refused => {
-                let begun = "its checkpoints are left, and it is walked from its start";
-                (self.callbacks.run.warn)(&format!("case {name}: {error}; {begun}"));
+                self.warn(name, &format!("{error}; the case is walked from its start"));
                 checkpoints.clear()?;
                 return Ok(false);
             }
@@ -250,6 +257,11 @@ impl CaseRunner<'_> {
         let outcome = results::outcome(case, &walked, sensitivity, seconds);
         let manifest = results::manifest(case, threads, started, self.command.clone());
         folder.remove(LINE)?;
+        // Results of what the case was before the plan was changed; another process that walks this very case
+        // has written this very scene, and its files stay.
+        if folder.read("scene.toml")?.as_deref() != Some(case.resolved().to_toml().as_bytes()) {
+            clear(folder, FolderKind::Run)?;
+        }
         results::write(folder, case, &outcome, &walked, &manifest)?;
         self.callbacks.run.results(FolderKind::Run, folder.path())?;
         let made =

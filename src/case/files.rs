@@ -41,6 +41,23 @@ const INPUTS: &str = "inputs";
 /// What the user called the files in that folder, by their names there.
 pub const INPUT_NAMES: &str = "inputs/names.json";
 
+/// Every file that may be kept there.
+pub const INPUT_FILES: [&str; 13] = [
+    RECORD,
+    "filter-curve.csv",
+    "filter-sieve.csv",
+    "filter-sieve.xlsx",
+    "filter-sieve.ods",
+    "filter-sieve.ags",
+    "base-sieve.csv",
+    "base-sieve.xlsx",
+    "base-sieve.ods",
+    "base-sieve.ags",
+    "base-dc-curve.csv",
+    "network.csv",
+    "names.json",
+];
+
 /// What the user called a file: what is written beside it in a run's folder, or else its path.
 fn first_name(path: &Path, soil: Option<&str>) -> String {
     let kept = || {
@@ -97,6 +114,7 @@ impl Files {
     }
 
     fn keep(&mut self, setting: &'static str, path: &Path, kept_as: &str, bytes: Vec<u8>) {
+        debug_assert!(INPUT_FILES.contains(&kept_as), "{kept_as} would outlive its run");
         let (name, kept_as) = (first_name(path, None), format!("{INPUTS}/{kept_as}"));
         self.0.push(Input { setting, name, kept_as, bytes, soil: None, notes: Vec::new() });
     }

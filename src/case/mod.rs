@@ -10,7 +10,7 @@ mod sizes;
 mod warnings;
 
 use files::Files;
-pub use files::{INPUT_NAMES, Input};
+pub use files::{INPUT_FILES, INPUT_NAMES, Input};
 pub use memory::{ResourceLimits, in_words};
 pub use packed_filter::{GRAINS, PackedError, PackedFilter, RECORD};
 pub use packing_plan::PackingPlan;

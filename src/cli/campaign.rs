@@ -33,7 +33,7 @@ impl CampaignArgs {
             packings: self.packings.clone(),
             memory: self.memory,
             threads: self.walk.threads,
-            checkpoint_interval: self.walk.checkpoint_every,
+            checkpoint_interval: self.walk.checkpoint_every.unwrap_or_default(),
             command: command_line(),
         }
     }

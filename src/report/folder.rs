@@ -85,16 +85,27 @@ impl RunFolder {
             Ok::<_, ReportError>(curves)
         };
         let (retained, eroded) = (curves("retained.csv")?, curves("eroded.csv")?);
-        let manifest = json(&folder.join("manifest.json"))?;
+        let manifest: Manifest = json(&folder.join("manifest.json"))?;
         let scene = text(&folder.join("scene.toml"))?;
-        let path = folder.join("inputs/packing.json");
-        let packing = if path.is_file() { Some(json(&path)?) } else { None };
+        let packing = packing(&folder.join("inputs/packing.json"), &manifest)?;
         Ok(RunFolder { packing, outcome, manifest, scene, series, layers, retained, eroded })
     }
 
     /// Run numbers, ascending.
     pub(super) fn runs(&self) -> impl Iterator<Item = u64> + use<> {
         1..=self.outcome.summary.len() as u64
+    }
+}
+
+/// The packing of the filter, if this run was made with that very file.
+fn packing(path: &Path, manifest: &Manifest) -> Result<Option<PackingRecord>, ReportError> {
+    if !path.is_file() {
+        return Ok(None);
+    }
+    let sum = format!("{:016x}", xxhash_rust::xxh3::xxh3_64(text(path)?.as_bytes()));
+    match manifest.inputs.iter().any(|input| input.xxh3 == sum) {
+        true => Ok(Some(json(path)?)),
+        false => Ok(None),
     }
 }
 

@@ -5,8 +5,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::error::{AnyError, RunError};
 use super::folder::FolderKind;
+use super::unfinished;
 use crate::case::PackingPlan;
 use crate::packing::CompressionProgress;
+use crate::store::Folder;
 
 /// What happens while a filter is packed and a case is walked.
 #[derive(Clone, Copy, Debug)]
@@ -82,5 +84,11 @@ impl Callbacks<'_> {
     /// Says that results are written.
     pub(crate) fn results(&self, kind: FolderKind, folder: &Path) -> Result<(), RunError> {
         (self.on_results)(kind, folder).map_err(RunError::Results)
+    }
+
+    /// Says that results are written, and takes the mark of unfinished work away.
+    pub(crate) fn finish(&self, kind: FolderKind, folder: &Folder) -> Result<(), RunError> {
+        self.results(kind, folder.path())?;
+        Ok(unfinished::end(folder)?)
     }
 }

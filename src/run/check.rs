@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::error::RunError;
 use super::machine::number_of_threads;
 use super::prepare::{Draft, PrepareOptions};
-use super::replicates::{left_out_of_first_run, runs_to_walk};
+use super::replicates::{have_networks, left_out_of_first_run, runs_to_walk};
 use crate::case::{CaseError, PackedFilter, PackingPlan};
 use crate::outcome::record::{Inputs, Ratios};
 use crate::scene::Scene;
@@ -99,6 +99,7 @@ pub fn check(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError> 
     let refusal = case.place(&options.limits(here), threads, here).err();
     let mut left_out = case.left_out();
     if refusal.is_none() {
+        have_networks(&case)?;
         left_out.extend(left_out_of_first_run(&case).map_err(RunError::refused)?);
     }
     Ok(Check {

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::error::RunError;
-use super::folder::{FolderKind, claim, shown};
+use super::folder::{FolderKind, claim, clear, shown};
+use super::unfinished::{self, Unfinished};
 use crate::constrictions::{Constrictions, DEFAULT_MERGE_OVERLAP, Summary};
 use crate::packing::Packing;
 
@@ -43,9 +44,13 @@ pub fn measure_constrictions(packing: &Path, options: &ConstrictionsOptions) -> 
         ))
     })?;
     let folder = claim(&options.out, FolderKind::Constrictions, options.overwrite)?;
+    clear(&folder, FolderKind::Constrictions)?;
+    let mark = Unfinished { kind: FolderKind::Constrictions.name().into(), ..Unfinished::default() };
+    mark.begin(&folder)?;
     folder.write("grains.vtp", packing.to_vtp().as_bytes())?;
     for (name, text) in found.files()? {
         folder.write(name, text.as_bytes())?;
     }
+    unfinished::end(&folder)?;
     Ok(summary)
 }

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use super::checkpoints::Checkpoints;
 use super::error::RunError;
-use crate::case::RECORD;
+use super::unfinished::{self, Unfinished};
+use crate::case::{GRAINS, INPUT_FILES, RECORD};
 use crate::schema::is_hidden;
 use crate::store::{Folder, StoreError};
 
@@ -60,10 +61,82 @@ impl FolderKind {
     /// What else marks such a folder, finished or not.
     fn marks(self) -> &'static [&'static str] {
         match self {
-            Self::Run => &["series.csv", super::checkpoints::FOLDER],
+            Self::Run => &["scene.toml", "series.csv", super::checkpoints::FOLDER],
             Self::Packing => &STATES,
             Self::Campaign => &["cases"],
             _ => &[],
+        }
+    }
+
+    /// The files that such a folder holds, in the order in which they are removed: the first makes it one
+    /// that is not finished.
+    fn files(self) -> &'static [&'static str] {
+        match self {
+            Self::Run => &[
+                "scene.toml",
+                "manifest.json",
+                "outcome.json",
+                "report.html",
+                "series.csv",
+                "layers.csv",
+                "retained.csv",
+                "eroded.csv",
+            ],
+            Self::Packing => &[
+                RECORD,
+                "report.html",
+                GRAINS,
+                "grains.vtp",
+                "constrictions.csv",
+                "constrictions.json",
+                "constrictions.vtp",
+                STATES[0],
+                STATES[1],
+            ],
+            Self::Campaign => &[],
+            Self::Percolation => &["percolation.json", "report.html", "percolation.csv"],
+            Self::Precision => &[
+                "precision.json",
+                "precision.html",
+                "exact.csv",
+                "exact_slopes.csv",
+                "exact_closed.csv",
+                "exact_networks.csv",
+                "sampling.csv",
+                "sampling_merit.csv",
+                "bias.csv",
+                "decision.csv",
+                "decision_cases.csv",
+                "scaling.csv",
+                "packing.csv",
+                "triangulation.csv",
+            ],
+            Self::Constrictions => {
+                &["constrictions.json", "constrictions.csv", "constrictions.vtp", "grains.vtp"]
+            }
+        }
+    }
+
+    /// The figures of its page, in `figures`.
+    fn figures(self) -> &'static [&'static str] {
+        match self {
+            Self::Run => &["verdict", "gradations", "eroded", "layers", "retained", "sensitivity", "slice"],
+            Self::Packing => &["curves", "slice", "connectivity"],
+            Self::Percolation => &["percolation-sd", "percolation-threshold"],
+            Self::Precision => &[
+                "exact-particles",
+                "exact-time",
+                "sampling-new-networks",
+                "sampling-one-network",
+                "bias",
+                "bias-base-particles",
+                "decision",
+                "scaling-base-particles",
+                "scaling-voids",
+                "packing",
+                "triangulation",
+            ],
+            Self::Campaign | Self::Constrictions => &[],
         }
     }
 
@@ -72,16 +145,19 @@ impl FolderKind {
         Self::ALL.into_iter().find(|kind| folder.join(kind.record()).is_file())
     }
 
-    /// Whether the work in a folder is finished; that of a campaign can always be added to.
-    fn is_finished(self, folder: &Folder) -> Result<bool, RunError> {
-        Ok(match self {
-            // With checkpoints, a study of the sensitivity is still to come.
-            Self::Run => folder.has("manifest.json") && !Checkpoints::is_in(folder.path())?,
-            // With a state beside it, whoever wrote the record was killed before all was done.
-            Self::Packing => folder.has(RECORD) && !STATES.iter().any(|state| folder.has(state)),
-            Self::Campaign => false,
-            other => folder.has(other.record()),
-        })
+    /// Whether the work in a folder is finished, its page included; that of a campaign can always be added
+    /// to.
+    pub(super) fn is_finished(self, folder: &Path) -> Result<bool, RunError> {
+        let has = |name: &str| folder.join(name).symlink_metadata().is_ok();
+        Ok(!has(unfinished::FILE)
+            && match self {
+                // With checkpoints, a study of the sensitivity is still to come.
+                Self::Run => has("scene.toml") && has("manifest.json") && !Checkpoints::is_in(folder)?,
+                // With a state beside it, whoever wrote the record was killed before all was done.
+                Self::Packing => has(RECORD) && !STATES.iter().any(|state| has(state)),
+                Self::Campaign => false,
+                other => has(other.record()),
+            })
     }
 }
 
@@ -97,17 +173,47 @@ pub fn claim(path: &Path, kind: FolderKind, overwrite: bool) -> Result<Folder, R
         _ => Folder::open(path).map_err(RunError::Claim)?,
     };
     let refuse = |problem: String| Err(RunError::Refused(format!("{}: {problem}", shown(path))));
-    // A packing has constrictions of its own, which are no other work.
-    let is_part = |other| kind == FolderKind::Packing && other == FolderKind::Constrictions;
+    // Work that has begun says what it is; that of a corrupt mark is told by its files.
+    let begun = Unfinished::read(&folder)?.map(|begun| begun.kind);
+    let of_begun = |other: &FolderKind| begun.as_deref() == Some(other.name());
+    if let Some(other) = FolderKind::ALL.into_iter().find(|other| *other != kind && of_begun(other)) {
+        return refuse(format!("holds a {}; name another folder", other.name()));
+    }
+    // A packing has constrictions of its own, which are no other work; those of somebody's own grains are.
+    let packed = folder.has(RECORD) || STATES.iter().any(|state| folder.has(state));
+    let packed = kind == FolderKind::Packing && (packed || of_begun(&kind));
+    let is_part = |other| packed && other == FolderKind::Constrictions;
     for other in FolderKind::ALL.into_iter().filter(|other| *other != kind && !is_part(*other)) {
         if folder.has(other.record()) || other.marks().iter().any(|mark| folder.has(mark)) {
             return refuse(format!("holds a {}; name another folder", other.name()));
         }
     }
-    if !overwrite && kind.is_finished(&folder)? {
+    if !overwrite && kind.is_finished(folder.path())? {
         return refuse(format!("holds a {} already; name another folder or add --overwrite", kind.name()));
     }
     Ok(folder)
+}
+
+/// Clears a claimed folder of what earlier work of this kind left there, but for the checkpoints of a run,
+/// before the first file of other work is written. The first file that goes makes the folder one that is not
+/// finished; what the program does not know to be its own stays.
+///
+/// # Errors
+/// What the system says.
+pub fn clear(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
+    let files = kind.files();
+    if kind == FolderKind::Packing && folder.has(RECORD) {
+        // Or its constrictions would be taken for those of somebody's own grains when the record is gone.
+        Unfinished { kind: kind.name().into(), ..Unfinished::default() }.begin(folder)?;
+    }
+    folder.remove_all(&files[..files.len().min(1)])?;
+    folder.remove_all(files)?;
+    let figures: Vec<String> = kind.figures().iter().map(|name| format!("{name}.svg")).collect();
+    folder.remove_all_in("figures", &figures)?;
+    if kind == FolderKind::Run {
+        folder.remove_all_in("inputs", &INPUT_FILES)?;
+    }
+    folder.remove_all(&[unfinished::FILE])
 }
 
 /// Claims the first of `NAME`, `NAME-2`, ... for a run that is new, or that an earlier run left without
@@ -157,10 +263,9 @@ mod tests {
             claim(&path, held, false).unwrap().write(held.record(), b"{}").unwrap();
             for kind in FolderKind::ALL {
                 let own = kind == held;
-                let part = kind == FolderKind::Packing && held == FolderKind::Constrictions;
                 for overwrite in [false, true] {
                     let claimed = claim(&path, kind, overwrite);
-                    if own || part {
+                    if own {
                         continue;
                     }
                     let error = claimed.unwrap_err();
@@ -180,6 +285,7 @@ mod tests {
             let folder = claim(&path, kind, false).unwrap();
             folder.write(kind.record(), b"{}").unwrap();
             folder.write("manifest.json", b"{}").unwrap();
+            folder.write("scene.toml", b"").unwrap();
             drop(folder);
             assert_eq!(FolderKind::of(&path), Some(kind));
             assert!(claim(&path, kind, true).is_ok());

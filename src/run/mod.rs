@@ -4,7 +4,7 @@
 //! - [`pack`](pack::pack) packs a filter, [`measure_constrictions`] measures a packing from elsewhere.
 //! - [`check`](check::check) says what a run would do, by the one model of [`cost`].
 //! - [`Callbacks`] follow the work and stop it, [`RunError`] says how it ended, [`folder::claim`] guards
-//!   every folder.
+//!   every folder, and [`unfinished`] marks those whose work is not whole.
 //!
 //! A case is [prepared](prepare::prepare), its [`replicates`] are walked under [`checkpoints`], and
 //! [`results`] are written. Pages are no part of it: they are made from the files that are written here.
@@ -24,6 +24,7 @@ mod packing_record;
 pub mod prepare;
 pub mod replicates;
 pub mod results;
+pub mod unfinished;
 pub mod walk;
 
 pub use callbacks::{Callbacks, Event};

@@ -11,9 +11,10 @@ use std::time::{Duration, Instant};
 
 use super::callbacks::{Callbacks, Event};
 use super::error::RunError;
-use super::folder::{FolderKind, STATES, claim, shown};
+use super::folder::{FolderKind, STATES, claim, clear, shown};
 use super::machine::on_threads;
 use super::packing_record::record;
+use super::unfinished::{self, Unfinished};
 use crate::case::{GRAINS, PackedFilter, PackingPlan, RECORD};
 use crate::constrictions::Constrictions;
 use crate::outcome::packing::PackingRecord;
@@ -24,19 +25,6 @@ use crate::store::{Folder, StoreError};
 
 /// The checkpoint of a compression that is not finished; its files are [`STATES`].
 const STATE: &str = "compression";
-
-/// What is removed where a packing is begun anew, its record first.
-const ALL_FILES: [&str; 9] = [
-    RECORD,
-    STATES[0],
-    STATES[1],
-    "report.html",
-    GRAINS,
-    "grains.vtp",
-    "constrictions.csv",
-    "constrictions.json",
-    "constrictions.vtp",
-];
 
 /// How often a compression is saved, where the user does not say.
 const SAVE_EVERY: Duration = Duration::from_secs(60);
@@ -96,8 +84,10 @@ pub fn pack(
     let plan = PackingPlan::new(spec)?;
     let out = options.out.clone().unwrap_or_else(|| options.packings.join(plan.folder_name()));
     let folder = claim(&out, FolderKind::Packing, options.overwrite)?;
-    if options.overwrite {
-        ALL_FILES.iter().try_for_each(|name| folder.remove(name))?;
+    let begun = Unfinished::read(&folder)?.is_some_and(|begun| begun.work == plan.fingerprint());
+    let saved = STATES.iter().any(|state| folder.has(state));
+    if options.overwrite || !(begun || saved) {
+        clear(&folder, FolderKind::Packing)?;
     }
     on_threads(options.threads, || make(&folder, &plan, options.checkpoint_interval, callbacks))?;
     let json = folder.read(RECORD)?.unwrap_or_default();
@@ -113,11 +103,12 @@ pub fn pack(
 /// As [`pack`].
 pub fn provide(plan: &PackingPlan, packings: &Path, callbacks: &Callbacks) -> Result<PackedFilter, RunError> {
     let path = packings.join(plan.folder_name());
-    if let Some(filter) = PackedFilter::read(&path, plan)? {
+    let has_page = || path.join(unfinished::FILE).symlink_metadata().is_err();
+    if let Some(filter) = PackedFilter::read(&path, plan)?.filter(|_| has_page()) {
         return Ok(filter);
     }
     let folder = wait_for(&path, callbacks)?;
-    if !folder.has(RECORD) {
+    if !folder.has(RECORD) || folder.has(unfinished::FILE) {
         make(&folder, plan, SAVE_EVERY, callbacks)?;
     }
     PackedFilter::read(&path, plan)?.ok_or_else(|| gone(&path))
@@ -154,6 +145,16 @@ fn make(
     save_every: Duration,
     callbacks: &Callbacks,
 ) -> Result<(), RunError> {
+    // A killed process may have left all but the page.
+    if matches!(PackedFilter::read(folder.path(), plan), Ok(Some(_))) {
+        return finish(folder, callbacks);
+    }
+    let mark = Unfinished {
+        kind: FolderKind::Packing.name().into(),
+        work: plan.fingerprint(),
+        ..Default::default()
+    };
+    mark.begin(folder)?;
     let begun = Instant::now();
     (callbacks.on_event)(Event::PackingBegun(plan));
     let compressed = compress(folder, plan, save_every, callbacks);
@@ -170,8 +171,13 @@ fn make(
     let seconds = seconds_before + begun.elapsed().as_secs_f64();
     let record = record(plan, &packing, &grains, &report, seconds)?;
     folder.write(RECORD, &super::results::json(RECORD, &record)?)?;
+    finish(folder, callbacks)
+}
+
+/// Ends a packing whose record is written: only then its checkpoint goes.
+fn finish(folder: &Folder, callbacks: &Callbacks) -> Result<(), RunError> {
     STATES.iter().try_for_each(|state| folder.remove(state))?;
-    callbacks.results(FolderKind::Packing, folder.path())
+    callbacks.finish(FolderKind::Packing, folder)
 }
 
 /// Compresses the grains; with the seconds that earlier starts spent.

@@ -11,6 +11,7 @@ use super::error::RunError;
 use super::folder::shown;
 use super::machine::{Machine, on_threads};
 use super::pack::provide;
+use super::replicates::have_networks;
 use crate::case::{Case, CaseError, PackedFilter, PackingPlan, ResourceLimits};
 use crate::scene::Scene;
 use crate::store::{Folder, write_whole};
@@ -109,6 +110,7 @@ fn in_order<F>(
     let (limits, threads) = (options.limits(wanted), rayon::current_num_threads() as u64);
     let (draft, mut case) = Draft::new(scene)?;
     case.place(&limits, threads, wanted)?;
+    have_networks(&case)?;
     let (claimed, folder) = claim()?;
     if let Some(packing) = &draft.packing {
         case = draft.case(Some(provide(packing, &options.packings, callbacks)?))?;

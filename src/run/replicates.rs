@@ -16,6 +16,7 @@ use crate::outcome::record::{Replicate, RunSummary, Sensitivity, Statistic, Stop
 use crate::outcome::stopping::Look;
 use crate::outcome::verdict::{below_by_interval, classify};
 use crate::outcome::{Recorded, RunId, RunMetrics};
+use crate::scene::NetworkSource;
 use crate::store::checkpoint::{Checkpoint, CheckpointError};
 use crate::walk::{Engine, RunPlan, SizeClasses, State, Walk, WalkControl};
 
@@ -181,6 +182,27 @@ pub fn left_out_of_first_run(case: &Case) -> Result<Vec<String>, RunError> {
     let network = case.network(replicate_seed(case.scene.walk.seed, 1))?;
     let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
     Ok(plan(case, &network, &open, case.n_base).left_out().to_vec())
+}
+
+/// Finds out whether every replicate that is known to be walked has a network: one with a distribution of
+/// connectivity is searched for at random, and another replicate's search may fail.
+///
+/// # Errors
+/// A replicate that has none.
+pub fn have_networks(case: &Case) -> Result<(), RunError> {
+    if !matches!(case.scene.network.source(), NetworkSource::Connected(..)) {
+        return Ok(());
+    }
+    let one = |replicate| match case.network(replicate_seed(case.scene.walk.seed, replicate)) {
+        Ok(_) => Ok(()),
+        Err(error) => Err(RunError::Refused(format!("replicate {replicate}: {error}"))),
+    };
+    let replicates = 1..=first_replicates(case).max(case.scene.record.sensitivity_replicates);
+    if case.side_by_side(case.n_base, rayon::current_num_threads() as u64) > 1 {
+        replicates.into_par_iter().try_for_each(one)
+    } else {
+        replicates.into_iter().try_for_each(one)
+    }
 }
 
 /// One run of one replicate.

@@ -6,11 +6,12 @@ use std::time::{Instant, SystemTime};
 use super::callbacks::{Callbacks, Event};
 use super::checkpoints::{self, CheckpointInterval, Checkpoints};
 use super::error::{Exit, RunError};
-use super::folder::{FolderKind, claim, claim_first_free, shown};
+use super::folder::{FolderKind, claim, claim_first_free, clear, shown};
 use super::machine::on_threads;
 use super::prepare::{PrepareOptions, prepare_into};
 use super::replicates::{ReplicateContext, ReplicateResult, replicates, runs_to_walk, sensitivity};
 use super::results;
+use super::unfinished::{self, Unfinished};
 use crate::case::Case;
 use crate::outcome::record::{Outcome, Sensitivity};
 use crate::scene::Scene;
@@ -25,8 +26,9 @@ pub struct RunOptions {
     pub overwrite: bool,
     /// Threads, memory and the folder of packings.
     pub prepare: PrepareOptions,
-    /// How often the walks are saved, so that a run which is killed can be continued.
-    pub checkpoint_interval: CheckpointInterval,
+    /// How often the walks are saved, so that a run which is killed can be continued; without it as often as
+    /// the run that is continued was told, else every ten minutes.
+    pub checkpoint_interval: Option<CheckpointInterval>,
     /// What `manifest.json` says that the run was started with.
     pub command: String,
 }
@@ -74,10 +76,11 @@ pub fn walk_scene(
 pub fn resume(folder: &Path, options: &RunOptions, callbacks: &Callbacks) -> Result<FinishedRun, RunError> {
     let (scene, name) = (folder.join("scene.toml"), shown(folder));
     if !scene.is_file() {
-        let problem = "holds no scene.toml; name the folder of a run that was stopped";
+        let problem = "holds no scene.toml; name the folder of a run that was stopped, or walk a scene into \
+             it: voidwalk run SCENE --out DIR";
         return Err(RunError::Refused(format!("{name}: {problem}")));
     }
-    if folder.join("manifest.json").is_file() && !Checkpoints::is_in(folder)? {
+    if FolderKind::Run.is_finished(folder)? {
         let problem = "this run is finished; voidwalk report writes its page again";
         return Err(RunError::Refused(format!("{name}: {problem}")));
     }
@@ -130,20 +133,27 @@ fn walk_here(scene: Scene, options: &RunOptions, callbacks: &Callbacks) -> Resul
         (callbacks.warn)(&warning);
     }
     let started = SystemTime::now();
-    if options.overwrite {
-        checkpoints::discard(folder.path())?;
-    }
     let fingerprint = case.fingerprint();
-    let saved = Checkpoints::scene_in(folder.path()).map_err(RunError::Checkpoint)?;
-    if saved.is_some_and(|scene| scene != fingerprint) {
-        return Err(RunError::Refused(format!(
-            "{}: holds checkpoints of another scene; continue with that one by `voidwalk resume`, or add \
-             --overwrite",
-            shown(folder.path())
-        )));
+    let begun = begun(&folder, &fingerprint, options.overwrite)?;
+    if begun.is_none() {
+        clear(&folder, FolderKind::Run)?;
+        checkpoints::discard(folder.path())?;
+    } else if let Some(outcome) = without_page(&folder, &case)? {
+        callbacks.results(FolderKind::Run, folder.path())?;
+        checkpoints::discard(folder.path())?;
+        unfinished::end(&folder)?;
+        return Ok(FinishedRun { folder: folder.path().to_owned(), outcome });
     }
+    let told = || begun?.checkpoint_every?.parse().ok();
+    let every = options.checkpoint_interval.or_else(told).unwrap_or_default();
+    let mark = Unfinished {
+        kind: FolderKind::Run.name().into(),
+        work: fingerprint.clone(),
+        checkpoint_every: Some(every.to_string()),
+    };
+    mark.begin(&folder)?;
     results::write_scene(&folder, &case)?;
-    let checkpoints = Checkpoints::new(&folder, &fingerprint, options.checkpoint_interval)?;
+    let checkpoints = Checkpoints::new(&folder, &fingerprint, every)?;
     let run = CaseRun { case: &case, folder: &folder, checkpoints: &checkpoints, callbacks };
     let outcome = run.walk(|outcome, walked| {
         let threads = rayon::current_num_threads() as u64;
@@ -152,7 +162,37 @@ fn walk_here(scene: Scene, options: &RunOptions, callbacks: &Callbacks) -> Resul
         callbacks.results(FolderKind::Run, folder.path())
     })?;
     checkpoints.clear()?;
+    unfinished::end(&folder)?;
     Ok(FinishedRun { folder: folder.path().to_owned(), outcome })
+}
+
+/// What is known of an earlier start of this very run in its folder; `None` where there was none, or where
+/// its results are to be replaced, and all that is there is to be cleared.
+fn begun(folder: &Folder, fingerprint: &str, overwrite: bool) -> Result<Option<Unfinished>, RunError> {
+    if overwrite {
+        return Ok(None);
+    }
+    let begun = Unfinished::read(folder)?.filter(|begun| begun.work == fingerprint);
+    match Checkpoints::scene_in(folder.path()).map_err(RunError::Checkpoint)? {
+        Some(scene) if scene == fingerprint => Ok(Some(begun.unwrap_or_default())),
+        // Without a scene they are what was left when a run was to be replaced: nothing continues from them.
+        Some(_) if folder.has("scene.toml") => Err(RunError::Refused(format!(
+            "{}: holds checkpoints of another scene; continue with that one by `voidwalk resume`, or add \
+             --overwrite",
+            shown(folder.path())
+        ))),
+        _ => Ok(begun),
+    }
+}
+
+/// The outcome of a run that was killed when all but its page was written.
+fn without_page(folder: &Folder, case: &Case) -> Result<Option<Outcome>, RunError> {
+    if !folder.has("scene.toml") || !folder.has("manifest.json") {
+        return Ok(None);
+    }
+    let outcome = folder.read(FolderKind::Run.record())?;
+    let outcome: Option<Outcome> = outcome.and_then(|bytes| serde_json::from_slice(&bytes).ok());
+    Ok(outcome.filter(|o| case.sensitivity_factors().is_empty() || !o.sensitivity.is_empty()))
 }
 
 /// A case that is walked into a folder.

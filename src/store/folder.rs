@@ -191,6 +191,43 @@ impl Folder {
         }
     }
 
+    /// Removes files of the folder, those that are there, for good: a power cut brings none of them back.
+    ///
+    /// # Errors
+    /// What the system says, with the file's path.
+    pub fn remove_all(&self, names: &[&str]) -> Result<(), StoreError> {
+        let there: Vec<&&str> = names.iter().filter(|name| self.has(name)).collect();
+        there.iter().try_for_each(|name| self.remove(name))?;
+        match there.is_empty() {
+            true => Ok(()),
+            false => sync(&self.path),
+        }
+    }
+
+    /// [`Folder::remove_all`] for files in a folder inside, which goes too where nothing else is in it.
+    ///
+    /// # Errors
+    /// That folder is a link, or what the system says.
+    pub fn remove_all_in(&self, inside: &str, names: &[impl AsRef<str>]) -> Result<(), StoreError> {
+        let path = self.path.join(inside);
+        if path.symlink_metadata().is_err() {
+            return Ok(());
+        }
+        make_folder(&path)?;
+        let names: Vec<String> = names.iter().map(|name| format!("{inside}/{}", name.as_ref())).collect();
+        let there: Vec<&String> = names.iter().filter(|name| self.has(name)).collect();
+        there.iter().try_for_each(|name| self.remove(name))?;
+        let read = |source| StoreError::Io { path: path.clone(), action: "read the folder", source };
+        if is_empty(&path).map_err(read)? {
+            remove_folder(&path)?;
+            return sync(&self.path);
+        }
+        match there.is_empty() {
+            true => Ok(()),
+            false => sync(&path),
+        }
+    }
+
     /// Writes a whole file: either all of it is there afterwards, or what was there before.
     ///
     /// # Errors
@@ -261,6 +298,15 @@ fn share(path: &Path) -> Result<File, StoreError> {
             other => return other,
         }
     }
+}
+
+/// Sends the names in a folder to the disk.
+fn sync(folder: &Path) -> Result<(), StoreError> {
+    disk::sync_folder(folder).map_err(|source| StoreError::Io {
+        path: folder.to_owned(),
+        action: "sync the folder",
+        source,
+    })
 }
 
 fn is_empty(folder: &Path) -> io::Result<bool> {

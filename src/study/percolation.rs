@@ -10,9 +10,10 @@ use crate::network::{Network, NetworkError, percolation_threshold};
 use crate::outcome::percolation::PercolationStudy;
 use crate::run::callbacks::Callbacks;
 use crate::run::error::RunError;
-use crate::run::folder::{FolderKind, claim};
+use crate::run::folder::{FolderKind, claim, clear};
 use crate::run::machine::on_threads;
 use crate::run::results::json;
+use crate::run::unfinished::Unfinished;
 
 /// What a percolation study is asked for, and where it goes.
 #[derive(Clone, Debug)]
@@ -53,11 +54,18 @@ pub fn run(options: &PercolationOptions, callbacks: &Callbacks) -> Result<Percol
     let plan = PercolationPlan::new(options.sizes.clone(), options.realisations, options.seed);
     let plan = plan.map_err(RunError::refused)?;
     let folder = claim(&options.out, FolderKind::Percolation, options.overwrite)?;
+    let (kind, name) = (FolderKind::Percolation, FolderKind::Percolation.record());
+    let mark = Unfinished { kind: kind.name().into(), work: format!("{plan:?}"), ..Unfinished::default() };
+    if let Some(study) = mark.whole(&folder, name)?.filter(|_| !options.overwrite) {
+        callbacks.finish(kind, &folder)?;
+        return Ok(study);
+    }
     let run = on_threads(options.threads, || Ok(plan.run()?))?;
-    let name = FolderKind::Percolation.record();
+    clear(&folder, kind)?;
+    mark.begin(&folder)?;
     folder.write("percolation.csv", run.csv().as_bytes())?;
     folder.write(name, &json(name, &run.study)?)?;
-    callbacks.results(FolderKind::Percolation, folder.path())?;
+    callbacks.finish(kind, &folder)?;
     Ok(run.study)
 }
 

@@ -240,7 +240,7 @@ fn a_corrupt_checkpoint_is_passed_over_or_refused_and_never_lost() {
     let last = bytes.len() - 1;
     bytes[last] ^= 1;
     fs::write(newest, &bytes).unwrap();
-    let output = call(&at, &["resume", "run"]);
+    let output = call(&at, &["resume", "run", "--checkpoint-every", "10min"]);
     let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
     if both {
         assert!(output.status.success() && stderr.contains("the checkpoint before it was taken"), "{stderr}");

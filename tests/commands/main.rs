@@ -9,4 +9,5 @@ mod pack;
 mod precision;
 mod rules;
 mod scene;
+mod second_command;
 mod slurm_scripts;

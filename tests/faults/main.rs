@@ -6,6 +6,7 @@
 //! a disk that fails, so nothing of this is in the program that users have.
 
 mod disk;
+mod kills;
 mod power;
 
 use std::collections::BTreeMap;
@@ -25,12 +26,13 @@ fn main() -> ExitCode {
         }
         return voidwalk::cli::main();
     }
-    let tests: [(&str, fn()); 6] = [
+    let tests: [(&str, fn()); 7] = [
         ("a_run_outlives_the_failure_of_every_call", || each_failure(&RUN)),
         ("a_resume_outlives_the_failure_of_every_call", || each_failure(&RESUME)),
         ("a_mapped_run_outlives_the_failure_of_every_call", || each_failure(&MAPPED)),
         ("a_packing_outlives_the_failure_of_every_call", || each_failure(&PACKING)),
         ("a_campaign_outlives_the_failure_of_every_call", || each_failure(&CAMPAIGN)),
+        ("what_is_killed_at_any_change_of_a_name_becomes_what_unbroken_work_is", kills::at_every_name),
         ("a_power_cut_at_any_sync_loses_nothing_that_was_synced", power_cuts),
     ];
     let wanted: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
@@ -54,6 +56,8 @@ struct Work {
     out: &'static str,
     /// A call of the command that is the last before a kill, by its share of all calls; what follows is the work.
     killed_at: Option<f64>,
+    /// Commands that were done in the folder before.
+    before: &'static [&'static [&'static str]],
     /// Of how many calls one is tried, unless all are.
     one_in: usize,
 }
@@ -82,6 +86,7 @@ const RUN: Work = Work {
     ],
     out: "r",
     killed_at: None,
+    before: &[],
     one_in: 19,
 };
 const RESUME: Work = Work { name: "resume", killed_at: Some(0.3), one_in: 23, ..RUN };
@@ -131,6 +136,9 @@ const CAMPAIGN: Work = Work {
     ..RUN
 };
 
+/// What of a record differs between two times that the same work is done.
+const TIMES: [&str; 8] = ["seconds", "made", "threads", "host", "machine", "started", "finished", "command"];
+
 /// Input or output error, disk full, interrupted.
 const ERRNOS: [(i32, &str); 3] = [(5, "EIO"), (28, "ENOSPC"), (4, "EINTR")];
 
@@ -160,6 +168,10 @@ impl Work {
         let root = room();
         for (name, text) in self.files {
             fs::write(root.path().join(name), text).unwrap();
+        }
+        for command in self.before {
+            let output = call(root.path(), command, None);
+            assert!(output.status.success(), "{}", stderr(&output));
         }
         if let Some(share) = self.killed_at {
             let number = (share * self.noted(root.path()).len() as f64) as usize;
@@ -191,13 +203,9 @@ impl Work {
         };
         match output.status.code() {
             Some(0) => {}
-            // All but the page may be there.
+            // All of it was there, the page too.
             Some(2)
-                if stderr(&output).contains("finished") || stderr(&output).contains("holds a packing") =>
-            {
-                let output = call(at, &["report", out], None);
-                assert!(output.status.success(), "{}", stderr(&output));
-            }
+                if stderr(&output).contains("finished") || stderr(&output).contains("holds a packing") => {}
             code => panic!("{code:?}: {}", stderr(&output)),
         }
     }
@@ -208,7 +216,7 @@ fn lasting(folder: &Path) -> BTreeMap<PathBuf, String> {
     fn strip(value: &mut Value) {
         match value {
             Value::Object(map) => {
-                ["seconds", "made"].iter().for_each(|name| drop(map.remove(*name)));
+                TIMES.iter().for_each(|name| drop(map.remove(*name)));
                 map.values_mut().for_each(strip);
             }
             Value::Array(items) => items.iter_mut().for_each(strip),
@@ -227,7 +235,7 @@ fn lasting(folder: &Path) -> BTreeMap<PathBuf, String> {
             let text = String::from_utf8_lossy(&fs::read(&path).unwrap()).into_owned();
             let name = path.strip_prefix(folder).unwrap().to_owned();
             let text = match name.file_name().unwrap().to_str().unwrap() {
-                ".voidwalk.lock" | "manifest.json" | "report.html" => String::new(),
+                ".voidwalk.lock" | "report.html" => String::new(),
                 json if json.ends_with(".json") || json.ends_with(".jsonl") => {
                     let values = serde_json::Deserializer::from_str(&text).into_iter::<Value>();
                     let mut values: Vec<Value> = values.map(Result::unwrap).collect();

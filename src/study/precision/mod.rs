@@ -44,10 +44,11 @@ use std::time::{Duration, Instant, SystemTime};
 use crate::outcome::precision::{NetworkRow, Precision};
 use crate::run::callbacks::Callbacks;
 use crate::run::error::RunError;
-use crate::run::folder::{FolderKind, claim};
+use crate::run::folder::{FolderKind, claim, clear};
 use crate::run::machine::{Machine, threads};
 use crate::run::prepare::{PrepareOptions, prepare_into};
 use crate::run::results::json;
+use crate::run::unfinished::Unfinished;
 use crate::scene::Scene;
 
 /// Processor time that may be asked for (s).
@@ -95,6 +96,13 @@ pub fn run(scene: Scene, options: &PrecisionOptions, callbacks: &Callbacks) -> R
     let (case, folder) = pool.install(|| prepare_into(scene, &options.prepare, here, claim, callbacks))?;
     let is_wanted = |tier: &Tier| options.tiers.is_empty() || options.tiers.contains(tier);
     let tiers: Vec<Tier> = Tier::ALL.into_iter().filter(is_wanted).collect();
+    let (kind, name) = (FolderKind::Precision, FolderKind::Precision.record());
+    let work = format!("{} {tiers:?} {:?}", case.fingerprint(), options.budget);
+    let mark = Unfinished { kind: kind.name().into(), work, ..Unfinished::default() };
+    if let Some(precision) = mark.whole(&folder, name)?.filter(|_| !options.overwrite) {
+        callbacks.finish(kind, &folder)?;
+        return Ok(precision);
+    }
     let study = PrecisionStudy {
         case: &case,
         tiers: &tiers,
@@ -103,12 +111,14 @@ pub fn run(scene: Scene, options: &PrecisionOptions, callbacks: &Callbacks) -> R
         callbacks,
     };
     let (precision, networks) = study.run()?;
+    clear(&folder, kind)?;
+    mark.begin(&folder)?;
     for (name, content) in tables(&precision, &networks)? {
         folder.write(name, &content)?;
     }
     // The page is made of it.
-    folder.write(FolderKind::Precision.record(), &json(FolderKind::Precision.record(), &precision)?)?;
-    callbacks.results(FolderKind::Precision, folder.path())?;
+    folder.write(name, &json(name, &precision)?)?;
+    callbacks.finish(kind, &folder)?;
     Ok(precision)
 }
 
