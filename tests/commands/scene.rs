@@ -608,7 +608,8 @@ fn filter_rules_and_equation_one_stand_in_the_outcome() {
     };
     assert_eq!(rule("Kézdi")["met"], true);
     assert_eq!(rule("Kenney and Lau")["met"], true);
-    // 20 % fines: 1.6 ((35 - 20)/20 (4 x 0.4 - 0.7) + 0.7) = 2.2 mm; (40 - 20)/25 (4 x 0.4 - 0.7) + 0.7 = 1.42 mm.
+    // 20 % fines: 1.6 ((35 - 20)/20 (4 x 0.4 - 0.7) + 0.7) = 2.2 mm; and (40 - 20)/25 (4 x 0.4 - 0.7) + 0.7
+    // = 1.42 mm.
     let limit = |name: &str| rule(name)["limit"].as_f64().unwrap();
     assert!((limit("Foster and Fell: no") - 2.2).abs() < 1e-9);
     assert!((limit("Sherard") - 1.42).abs() < 1e-9);
