@@ -30,8 +30,8 @@ use crate::run::results;
 use crate::store::{Folder, StoreError, make_folder};
 
 /// What is said of a case whose results are gone.
-pub(super) const LOST: &str = "its results were overwritten by another process; is another plan, or this one changed, \
-    at work on the folder?";
+pub(super) const LOST: &str = "its results were overwritten by another process; is another plan, or this \
+    one changed, at work on the folder?";
 
 /// How often a process looks whether others are done: at first, and after some waiting.
 const LOOK: (Duration, Duration) = (Duration::from_millis(300), Duration::from_secs(10));

@@ -76,8 +76,8 @@ pub struct WalkArgs {
     #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,
     /// Save the walks this often, as 10min or 50increments, so that a run that is killed continues from
-    /// there; a stop (Ctrl-C, SIGTERM) always saves them [default: 10min; for a run that is continued, what it
-    /// was told first]
+    /// there; a stop (Ctrl-C, SIGTERM) always saves them [default: 10min; for a run that is continued,
+    /// what it was told first]
     #[arg(long, value_name = "TIME")]
     pub checkpoint_every: Option<CheckpointInterval>,
     /// No progress and no summary

@@ -15,8 +15,8 @@
 //!   *near* is the sum over k of | voids with connectivity up to k, less those wanted |. It ends when that
 //!   sum is 0. So hardly more constrictions are changed than must be. Where as many proposals as there are
 //!   possible exits brought nothing nearer, those that leave it as near are taken too, until one does.
-//!   A search that is stuck all the same is begun again from elsewhere: for a while some of what leads farther
-//!   away is taken. Otherwise one replicate would have a network and another none.
+//!   A search that is stuck all the same is begun again from elsewhere: for a while some of what leads
+//!   farther away is taken. Otherwise one replicate would have a network and another none.
 //! - A void never loses its last entrance (the inlet of a start node is one), and keeps two exits; one where
 //!   connectivities below 4 are wanted. The paper's Table 3 speaks for two: a void that one particle can
 //!   close retains so much that those of connectivity 4 would hold three times as much each as those of 5,

@@ -285,7 +285,9 @@ mod tests {
             let folder = claim(&path, kind, false).unwrap();
             folder.write(kind.record(), b"{}").unwrap();
             folder.write("manifest.json", b"{}").unwrap();
-            folder.write("scene.toml", b"").unwrap();
+            if kind == FolderKind::Run {
+                folder.write("scene.toml", b"").unwrap();
+            }
             drop(folder);
             assert_eq!(FolderKind::of(&path), Some(kind));
             assert!(claim(&path, kind, true).is_ok());

@@ -235,7 +235,7 @@ fn harmed_checkpoints_of_a_campaigns_case_are_not_passed_over_in_silence() {
 fn two_plans_on_one_folder_never_leave_a_short_ledger_without_a_word() {
     let set = "[set]\nreplicates = 1\nruns = 1\nengine = \"particles\"\nnetwork = { nx = 5, ny = 5, nz = 8 }\n\
         base = { cu = 1.5, d85_at_dc = 5, n_base = 200 }\nrecord = { sensitivity = [] }\n[[case]]\nname = \"x\"\n";
-    let plan = format!("{set}[[case]]\nname = \"y\"\nbase.n_base = 60000\n");
+    let plan = format!("{set}[[case]]\nname = \"y\"\nset = {{ \"base.n_base\" = 60000 }}\n");
     let (_root, at) = with_files(&[("plan.toml", &plan), ("x.toml", set)]);
     let args =
         ["campaign", "plan.toml", "--out", "c", "-q", "--checkpoint-every", "1increment", "--threads", "1"];
