@@ -30,6 +30,8 @@
 //! `report`: pages and figures. `cli`: the command line. Both are on by default; the rest is the library that
 //! every face calls.
 
+pub mod text;
+
 pub mod stream;
 
 pub mod store;

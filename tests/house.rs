@@ -8,7 +8,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms in the order in which data flows; a room uses only those before it.
-const ORDER: [&str; 17] = [
+const ORDER: [&str; 18] = [
+    "text",
     "stream",
     "store",
     "schema",
@@ -153,7 +154,7 @@ fn walk_and_report_know_what_they_may() {
     for source in sources() {
         let may: &[&str] = match room(&source.module) {
             "walk" => &["stream", "store", "gradation", "network", "walk"],
-            "report" => &["outcome", "store", "report"],
+            "report" => &["outcome", "store", "text", "report"],
             _ => continue,
         };
         for name in ORDER.iter().filter(|name| !may.contains(name)) {

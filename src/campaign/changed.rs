@@ -12,8 +12,8 @@ use crate::store::{files_in, read_whole};
 /// A sentence names no more cases than this.
 const NAMED: usize = 3;
 
-/// What happens to finished cases that are not of this plan as it is now, in sentences. What cannot be read is
-/// passed over: it is found out where it matters.
+/// What happens to finished cases that are not of this plan as it is now, in sentences. What cannot be read
+/// is passed over: it is found out where it matters.
 pub(super) fn sentences(plan: &CampaignPlan, cases: &[PreparedCase], out: &Path) -> Vec<String> {
     let finished = |folder: &Path| folder.join(LINE).symlink_metadata().is_ok();
     let again: Vec<&str> = cases

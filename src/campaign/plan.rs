@@ -31,8 +31,9 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use crate::scene::{Origin, Scene, SceneError};
-use crate::schema::{hints, is_hidden};
+use crate::schema::hints;
 use crate::store::read_regular;
+use crate::text::is_hidden;
 
 /// More cases than this are a mistake.
 const MOST_CASES: usize = 100_000;
@@ -44,8 +45,8 @@ const LARGEST_FILE: u64 = 1 << 20;
 const OF_A_SCENE: [&str; 9] =
     ["filter", "base", "network", "packing", "record", "stop", "replicates", "runs", "engine"];
 
-const SCENE: &str = "is a scene, not the plan of a campaign; walk it by `voidwalk run`, or name it in a plan by \
-    scene = \"FILE\" above its [[factor]] and [[case]]; settings of all cases go under [set]";
+const SCENE: &str = "is a scene, not the plan of a campaign; walk it by `voidwalk run`, or name it in a \
+ plan by scene = \"FILE\" above its [[factor]] and [[case]]; settings of all cases go under [set]";
 
 const NO_PLAN: &str = "is a table of numbers, not the plan of a campaign";
 

@@ -52,7 +52,8 @@ impl Default for CampaignOptions {
 }
 
 impl CampaignOptions {
-    /// Folder of the packings; the campaign's own is no link to one elsewhere, which then would be written to.
+    /// Folder of the packings; the campaign's own is no link to one elsewhere, which then would be written
+    /// to.
     pub(super) fn packings(&self) -> Result<PathBuf, RunError> {
         if let Some(packings) = &self.packings {
             return Ok(packings.clone());

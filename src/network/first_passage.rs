@@ -220,8 +220,8 @@ mod tests {
         assert_eq!((stuck.leaves[0], stuck.moves[0]), (0.0, 0.0));
     }
 
-    /// Loops with a way out that is taken once in a million and in a million million moves, of one void and of
-    /// many; and ordinary lattices, closed loops and dead ends, which take few.
+    /// Loops with a way out that is taken once in a million and in a million million moves, of one void and
+    /// of many; and ordinary lattices, closed loops and dead ends, which take few.
     #[test]
     fn narrow_ways_out_are_known_without_going_them() {
         let of =

@@ -1,13 +1,13 @@
 //! What a control group (a container, a service, a job) leaves a process of the machine's memory.
 //!
-//! A process is in a group, that in another, and so on to the root; each may have a limit, and what is used in
-//! a group counts in all those around it. So what is left is the least of `limit - used` along the way. Pages
-//! of files that were not used for a while are given back when room is needed, and count as free.
+//! A process is in a group, that in another, and so on to the root; each may have a limit, and what is used
+//! in a group counts in all those around it. So what is left is the least of `limit - used` along the way.
+//! Pages of files that were not used for a while are given back when room is needed, and count as free.
 
 use std::path::{Component, Path, PathBuf};
 
-/// Names of the files of a group that say its limit, what is used, and in `memory.stat` the pages of files that
-/// can be given back.
+/// Names of the files of a group that say its limit, what is used, and in `memory.stat` the pages of files
+/// that can be given back.
 struct Names {
     limit: &'static str,
     used: &'static str,

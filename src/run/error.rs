@@ -145,16 +145,18 @@ impl RunError {
         };
         Some(match kind {
             StorageFull | QuotaExceeded => {
-                "what is in its folder under its own name is whole and kept; make room on that disk, then `voidwalk \
-                 resume FOLDER` continues a run, and the same command a packing or a campaign"
+                "what is in its folder under its own name is whole and kept; make room on that disk, then \
+                 `voidwalk resume FOLDER` continues a run, and the same command a packing or a campaign"
             }
             FileTooLarge => {
-                "a larger file than is allowed here (ulimit -f); what is in its folder under its own name is whole \
-                 and kept; allow larger files, then `voidwalk resume FOLDER` continues a run, and the same command a \
-                 packing or a campaign"
+                "a larger file than is allowed here (ulimit -f); what is in its folder under its own name \
+                 is whole and kept; allow larger files, then `voidwalk resume FOLDER` continues a run, and \
+                 the same \
+                 command a packing or a campaign"
             }
             PermissionDenied | ReadOnlyFilesystem => {
-                "nothing may be written there; name a folder of your own by --out, or have somebody give you leave"
+                "nothing may be written there; name a folder of your own by --out, or have somebody give \
+                 you leave"
             }
             InvalidFilename => "name a folder with a shorter name by --out",
             _ => return None,

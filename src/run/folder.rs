@@ -6,8 +6,8 @@ use super::checkpoints::Checkpoints;
 use super::error::RunError;
 use super::unfinished::{self, Unfinished};
 use crate::case::{GRAINS, INPUT_FILES, RECORD};
-use crate::schema::is_hidden;
 use crate::store::{Folder, StoreError};
+use crate::text::is_hidden;
 
 /// The files of the checkpoint of a compression that is not finished.
 pub(super) const STATES: [&str; 2] = ["compression.0", "compression.1"];

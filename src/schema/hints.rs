@@ -36,8 +36,8 @@ pub fn of_line(text: &str, line: usize) -> Option<String> {
     if value.contains('\\') {
         let path = value.trim_matches(['"', '\'']).replace("\\\\", "/").replace('\\', "/");
         return Some(format!(
-            "`{value}` looks like a path with backslashes; write {key} = \"{path}\", or the path as it is between \
-             single quotes"
+            "`{value}` looks like a path with backslashes; write {key} = \"{path}\", or the path as it is \
+             between single quotes"
         ));
     }
     None

@@ -7,7 +7,6 @@
 //! what is written back ([`serde::Serialize`]). So a setting cannot be forgotten in one of these places.
 //! Which settings exclude each other is declared by [`Group`]s.
 
-mod hidden;
 pub mod hints;
 mod nearest;
 mod settings;
@@ -19,7 +18,6 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-pub use hidden::{is_hidden, turns_direction};
 pub use settings::{Alternative, GivenSettings, Group, Names, Origin, SceneError};
 pub use value::Value;
 

@@ -145,8 +145,8 @@ pub struct GivenSettings {
 /// A larger settings file is refused (bytes).
 const LARGEST_FILE: u64 = 1 << 20;
 
-const NO_SCENE: &str = "is a table of numbers, not a scene; a scene names it, as in base.sieve = \"sand.csv\" \
-    (`voidwalk init` writes one to start from)";
+const NO_SCENE: &str = "is a table of numbers, not a scene; a scene names it, as in base.sieve \
+ = \"sand.csv\" (`voidwalk init` writes one to start from)";
 
 const PLAN: &str = "is the plan of a campaign, not a scene; walk it by `voidwalk campaign`";
 

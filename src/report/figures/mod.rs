@@ -92,7 +92,8 @@ mod tests {
 
     proptest::proptest! {
         #![proptest_config(proptest::prelude::ProptestConfig::with_cases(60))]
-        /// Names of any length, in any number, on figures of any size, beside the frame, above it and as ticks.
+        /// Names of any length, in any number, on figures of any size, beside the frame, above it and as
+        /// ticks.
         #[test]
         fn no_name_and_no_size_is_too_much(
             names in proptest::collection::vec("(?s).{0,120}", 0..12),
@@ -109,9 +110,8 @@ mod tests {
                 let at = row as f64;
                 let interval = Some((low, low + 5.0));
                 figure.add(Line::new(vec![(at, low), (at + 1.0, at)], BLUE).label(name));
-                figure.add(
-                    Point::new(at, at, BLACK, Shape::Circle).x_interval(interval).y_interval(interval).label(name),
-                );
+                let point = Point::new(at, at, BLACK, Shape::Circle).label(name);
+                figure.add(point.x_interval(interval).y_interval(interval));
                 figure.add(Rule::new(Across::X, at, GREY).label(name));
                 figure.add(Area::new(vec![(at, 0.0), (low, at), (at, at)], GREEN, 0.2).label(name));
             }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::schema::turns_direction;
+use crate::text::turns_direction;
 
 /// Generic families only: a figure looks alike as a file and in a page, and fetches nothing.
 pub(super) const FONT: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
