@@ -76,7 +76,8 @@ impl Gradation {
     /// without it the pan fraction is counted by mass only.
     ///
     /// # Errors
-    /// What [`Gradation::from_sieve_csv`] refuses of a table's rows, with the point's place in the list as the line.
+    /// What [`Gradation::from_sieve_csv`] refuses of a table's rows, with the point's place in the list as the
+    /// line.
     pub fn from_points(points: &[(f64, f64)], d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
         let rows = points.iter().enumerate().map(|(i, &(size, percent))| Row { line: i + 1, size, percent });
         from_rows("points", Row::checked("points", rows.collect(), FIELDS)?, d0_mm)
@@ -196,7 +197,7 @@ pub(super) fn from_rows(file: &str, rows: Vec<Row>, d0_mm: Option<f64>) -> Resul
         }
         None if single => {
             return Err(TableError::Value {
-                at: Position { file: file.into(), line: finest.line, field: FIELDS[0], cell: None },
+                at: Position { file: file.into(), line: finest.line, field: FIELDS[0], column: None },
                 value: finest.size.to_string(),
                 allowed: "at least two openings, or one and the smallest size (d0_mm); \
                           one row alone leaves all of the mass of unknown size"
@@ -213,7 +214,7 @@ pub(super) fn from_rows(file: &str, rows: Vec<Row>, d0_mm: Option<f64>) -> Resul
     let start = percent.partition_point(|&p| p <= 0.0).saturating_sub(1);
     if end == start + 1 {
         return Err(TableError::Value {
-            at: Position { file: file.into(), line: finest.line, field: FIELDS[1], cell: None },
+            at: Position { file: file.into(), line: finest.line, field: FIELDS[1], column: None },
             value: finest.percent.to_string(),
             allowed: "less than 100 at the finest opening (all of the mass is of unknown size), \
                       or the smallest size (d0_mm)"

@@ -8,3 +8,4 @@ mod pack;
 mod precision;
 mod scene;
 mod slurm_scripts;
+mod soils;

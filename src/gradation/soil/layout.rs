@@ -149,7 +149,10 @@ fn with_headings(grid: &Grid, at: usize, first: usize, heads: Vec<String>) -> Re
     let holds_numbers = |c: &usize| rows.iter().any(|row| is_numeric(row.cell(*c)));
     let finer: Vec<usize> = of_role(Role::Finer).into_iter().filter(holds_numbers).collect();
     let by = |percent: bool, cumulative: bool| -> Vec<usize> {
-        let wanted = |c: &usize| matches!(roles[*c], Role::Retained(r) if r.percent == percent && (r.cumulative == Some(true)) == cumulative);
+        let wanted = |c: &usize| match roles[*c] {
+            Role::Retained(r) => r.percent == percent && (r.cumulative == Some(true)) == cumulative,
+            _ => false,
+        };
         (0..heads.len()).filter(wanted).filter(holds_numbers).collect()
     };
     let others = || -> Vec<usize> {

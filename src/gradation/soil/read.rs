@@ -2,12 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use super::grid::{Grid, letters};
+use super::grid::Grid;
+use super::heading::Role;
 use super::layout::Layout;
 use super::summary::SoilSummary;
 use super::table::Soil;
 use super::{ags, csv, layout, points, text, workbook};
-use crate::gradation::error::{GradationError, TableError, shortened};
+use crate::gradation::error::{GradationError, TableError, letters, shortened};
 use crate::gradation::sieve::Gradation;
 use crate::gradation::table::{FILE_LIMIT_BYTES, bytes_of};
 
@@ -109,8 +110,8 @@ fn tables(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Named>, 
     Err(refusal.unwrap_or(TableError::NoRows { file: file.into(), header: false }))
 }
 
-/// The soils of every sheet. One in which no table is found, such as a cover, is passed over where others have
-/// one, and said; asked for by its name, it says what is wrong with it.
+/// The soils of every sheet. One in which no table is found, such as a cover, is passed over where others
+/// have one, and said; asked for by its name, it says what is wrong with it.
 fn of_workbook(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Named>, TableError> {
     let (mut soils, mut refusals) = (Vec::new(), Vec::new());
     let sheets = workbook::sheets(file, bytes)?;
@@ -153,8 +154,11 @@ fn soils_of(grid: &Grid) -> Result<Vec<Named>, TableError> {
     let mut soils = Vec::new();
     for column in &layout.soils {
         let mut name = column.heading.clone();
-        if name.is_empty() || layout.soils.iter().filter(|other| other.heading == name).count() > 1 {
-            name = format!("{name} (column {})", letters(column.column)).trim().to_owned();
+        if single && grid.sheet.is_none() && column.role != Role::Other {
+            // `% passing` is no name.
+            name.clear();
+        } else if name.is_empty() || layout.soils.iter().filter(|other| other.heading == name).count() > 1 {
+            name = format!("{name} (column {})", letters(column.column as u32)).trim().to_owned();
         }
         let mut names = vec![name.clone()];
         if let Some(sheet) = &grid.sheet {
@@ -192,14 +196,15 @@ pub fn soils_in_file(path: &Path, d0_mm: Option<f64>) -> Result<Vec<SoilSummary>
 impl Gradation {
     /// A sieve table from a file: `site.csv`, or `site.xlsx#Filter A` where it holds several soils.
     ///
-    /// See [`Soil`] for what is understood; of a plain table, `opening_mm,percent_finer`, the header may be left
-    /// out, the columns may stand in either order, sizes may rise or fall.
+    /// `docs::soils` says what is understood. Of a plain table, `opening_mm,percent_finer`, the header may be
+    /// left out, the columns may stand in either order, sizes may rise or fall.
     ///
     /// # Errors
-    /// A file that cannot be read, is a folder, is larger than [`FILE_LIMIT_BYTES`] or no table; no rows; a row
-    /// that cannot be read; a value that is no finite number in range; sizes that repeat or go both ways;
-    /// percent that falls as size rises; a coarsest size below 100 %; a single row without `d0_mm` (all of its
-    /// mass is of unknown size); a `d0_mm` that is not below the finest opening, or that nothing is left for.
+    /// A file that cannot be read, is a folder, is larger than [`FILE_LIMIT_BYTES`] or no table; no rows; a
+    /// row that cannot be read; a value that is no finite number in range; sizes that repeat or go both ways;
+    /// percent that falls as size rises; a coarsest size below 100 %; a single row without `d0_mm` (all of
+    /// its mass is of unknown size); a `d0_mm` that is not below the finest opening, or that nothing is left
+    /// for.
     pub fn from_sieve_csv(path: impl AsRef<Path>, d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
         let (path, name) = file_and_soil(path.as_ref());
         let (file, bytes) = (path.display().to_string(), bytes_of(&path)?);

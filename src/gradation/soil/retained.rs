@@ -83,13 +83,14 @@ pub(super) fn percents_finer(
             return Err(weighed.refused(sieves[sieves.len() - 1].0, last, allowed));
         }
         (Some(true), _, false) => {
-            let allowed = "values retained that rise towards the finer sieves, to 100 % at most, as the heading says cumulative";
+            let allowed = "values retained that rise towards the finer sieves, to 100 % at most, as the \
+                           heading says cumulative";
             return Err(weighed.refused(first_line, first, allowed));
         }
         _ => {
             let allowed = format!(
-                "values retained that sum to the whole with the pan (these sum to {}), or cumulative ones that \
-                 rise towards the finer sieves",
+                "values retained that sum to the whole with the pan (these sum to {}), or cumulative ones \
+                 that rise towards the finer sieves",
                 (all * 1e6).round() / 1e6
             );
             return Err(weighed.refused(first_line, first, &allowed));

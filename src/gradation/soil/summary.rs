@@ -92,7 +92,8 @@ fn finer(curve: &Gradation, size: f64) -> Option<f64> {
     (curve.pan_fraction() == 0.0 || curve.smallest_mm() <= size).then(|| curve.percent_finer_by_mass(size))
 }
 
-/// The group of ASTM D2487 that follows from sizes alone: whether fines are silt or clay is not known from them.
+/// The group of ASTM D2487 that follows from sizes alone: whether fines are silt or clay is not known from
+/// them.
 fn class(fines: Option<f64>, gravel: Option<f64>, shape: Option<(f64, f64)>) -> Option<String> {
     let (fines, gravel) = (fines?, gravel?);
     if fines >= 50.0 {
