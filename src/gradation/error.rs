@@ -11,17 +11,29 @@ pub struct Position {
     pub line: usize,
     /// Name of the column.
     pub field: &'static str,
-    /// Its cell, in a sheet: `B7`.
-    pub cell: Option<String>,
+    /// Column of a sheet, counted from 0.
+    pub column: Option<u32>,
 }
 
 impl fmt::Display for Position {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match &self.cell {
-            Some(cell) => write!(f, "{}, cell {cell}, {}", self.file, self.field),
+        match self.column {
+            Some(column) => write!(f, "{}, cell {}{}, {}", self.file, letters(column), self.line, self.field),
             None => write!(f, "{}, line {}, {}", self.file, self.line, self.field),
         }
     }
+}
+
+/// The name of a column of a sheet: A, B, ... Z, AA.
+pub(super) fn letters(column: u32) -> String {
+    let mut name = String::new();
+    let mut rest = column + 1;
+    while rest > 0 {
+        rest -= 1;
+        name.insert(0, char::from(b'A' + (rest % 26) as u8));
+        rest /= 26;
+    }
+    name
 }
 
 /// A table of two columns that cannot be used.
@@ -143,11 +155,10 @@ pub enum TableError {
 }
 
 impl TableError {
-    /// The same with the cell of a sheet in place of the line, where it is one of the two columns `cells`.
-    pub(super) fn in_sheet(self, cells: &[String; 2]) -> TableError {
+    /// The same with the cell of a sheet in place of the line, in the columns of openings and of percents.
+    pub(super) fn in_sheet(self, columns: [u32; 2]) -> TableError {
         let TableError::Value { mut at, value, allowed } = self else { return self };
-        let column = &cells[usize::from(at.field.starts_with("percent"))];
-        at.cell = Some(format!("{column}{}", at.line));
+        at.column = Some(columns[usize::from(at.field.starts_with("percent"))]);
         TableError::Value { at, value, allowed: allowed.replace("line ", "row ") }
     }
 }

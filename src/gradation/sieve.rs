@@ -197,7 +197,7 @@ pub(super) fn from_rows(file: &str, rows: Vec<Row>, d0_mm: Option<f64>) -> Resul
         }
         None if single => {
             return Err(TableError::Value {
-                at: Position { file: file.into(), line: finest.line, field: FIELDS[0], cell: None },
+                at: Position { file: file.into(), line: finest.line, field: FIELDS[0], column: None },
                 value: finest.size.to_string(),
                 allowed: "at least two openings, or one and the smallest size (d0_mm); \
                           one row alone leaves all of the mass of unknown size"
@@ -214,7 +214,7 @@ pub(super) fn from_rows(file: &str, rows: Vec<Row>, d0_mm: Option<f64>) -> Resul
     let start = percent.partition_point(|&p| p <= 0.0).saturating_sub(1);
     if end == start + 1 {
         return Err(TableError::Value {
-            at: Position { file: file.into(), line: finest.line, field: FIELDS[1], cell: None },
+            at: Position { file: file.into(), line: finest.line, field: FIELDS[1], column: None },
             value: finest.percent.to_string(),
             allowed: "less than 100 at the finest opening (all of the mass is of unknown size), \
                       or the smallest size (d0_mm)"

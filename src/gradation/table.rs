@@ -38,7 +38,7 @@ impl Row {
     ) -> Result<Vec<Row>, TableError> {
         for row in &mut rows {
             let refused = |field, value: f64, allowed| TableError::Value {
-                at: Position { file: file.into(), line: row.line, field, cell: None },
+                at: Position { file: file.into(), line: row.line, field, column: None },
                 value: value.to_string(),
                 allowed,
             };
@@ -135,7 +135,7 @@ impl Table {
         };
         match (with('.'), with(',')) {
             (Some((dot_line, _)), Some((line, value))) => Err(TableError::Value {
-                at: Position { file: self.file.clone(), line, field: "number", cell: None },
+                at: Position { file: self.file.clone(), line, field: "number", column: None },
                 value: shortened(value),
                 allowed: format!(
                     "one decimal sign in the whole file (line {dot_line} has a decimal point), no \
@@ -159,7 +159,7 @@ impl Table {
         percent_field: &'static str,
     ) -> Result<Vec<Row>, TableError> {
         let refused = |line, field, value: &str, allowed: String| TableError::Value {
-            at: Position { file: self.file.clone(), line, field, cell: None },
+            at: Position { file: self.file.clone(), line, field, column: None },
             value: shortened(value),
             allowed,
         };
@@ -249,7 +249,7 @@ pub(crate) fn rising(
     direction: Direction,
 ) -> Result<Vec<Row>, TableError> {
     let refused = |line, field, value: f64, allowed: String| TableError::Value {
-        at: Position { file: file.to_string(), line, field, cell: None },
+        at: Position { file: file.to_string(), line, field, column: None },
         value: value.to_string(),
         allowed,
     };

@@ -131,7 +131,7 @@ fn refused(
     value: &str,
     allowed: impl Into<String>,
 ) -> ImportError {
-    let at = Position { file: file.into(), line, field, cell: None };
+    let at = Position { file: file.into(), line, field, column: None };
     ImportError::Value { at, value: shortened(value), allowed: allowed.into() }
 }
 

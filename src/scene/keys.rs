@@ -69,7 +69,8 @@ section! {
         pub d0_mm: Option<f64> = None, set "1.0", above_zero();
         /// Cu of a linear gradation (a shipped curve knows its own).
         pub cu: Option<f64> = None, off "1.5", within(1.0..=1000.0, "a number from 1 to 1000");
-        /// Instead of a linear gradation: a sieve table (CSV: opening in mm, percent finer by mass).
+        /// Instead of a linear gradation: a sieve table (CSV, .xlsx, .ods or AGS4: openings and percent finer
+        /// by mass; FILE#NAME for one of several soils; see `voidwalk soil`).
         pub sieve: Option<PathBuf> = None, off "\"filter.csv\"", any("a file name in quotes");
         /// N_p / N_voids of Eq. (2): filter grains per void of the packing (a shipped curve or a packing
         /// knows its own).
@@ -102,7 +103,8 @@ section! {
         pub d85_mm: Option<f64> = None, off "0.2", above_zero();
         /// D15F by D85B.
         pub d15f_over_d85b: Option<f64> = None, off "6.5", above_zero();
-        /// Instead of a linear gradation: a sieve table (CSV: opening in mm, percent finer by mass).
+        /// Instead of a linear gradation: a sieve table (CSV, .xlsx, .ods or AGS4: openings and percent finer
+        /// by mass; FILE#NAME for one of several soils; see `voidwalk soil`).
         pub sieve: Option<PathBuf> = None, off "\"base.csv\"", any("a file name in quotes");
         /// With a sieve table: where its open finest tail ends (mm).
         pub d0_mm: Option<f64> = None, off "0.01", above_zero();

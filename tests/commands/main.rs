@@ -11,3 +11,4 @@ mod rules;
 mod scene;
 mod second_command;
 mod slurm_scripts;
+mod soils;

@@ -1,4 +1,4 @@
-//! AGS4, the format in which ground investigations are handed over: the group GRAT holds a row for each
+//! AGS4, the format in which ground investigations are handed over: its group GRAT holds a row for each
 //! opening.
 
 use super::csv::split;

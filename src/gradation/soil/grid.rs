@@ -52,8 +52,8 @@ impl Grid {
         value: &str,
         allowed: impl Into<String>,
     ) -> TableError {
-        let cell = self.sheet.as_ref().map(|_| format!("{}{line}", letters(column)));
-        let at = Position { file: self.place(), line, field, cell };
+        let column = self.sheet.as_ref().map(|_| column as u32);
+        let at = Position { file: self.place(), line, field, column };
         TableError::Value { at, value: shortened(value), allowed: allowed.into() }
     }
 
@@ -70,16 +70,4 @@ impl Grid {
             None => self.file.clone(),
         }
     }
-}
-
-/// The name of a column of a sheet: A, B, ... Z, AA.
-pub(super) fn letters(column: usize) -> String {
-    let mut name = String::new();
-    let mut rest = column + 1;
-    while rest > 0 {
-        rest -= 1;
-        name.insert(0, char::from(b'A' + (rest % 26) as u8));
-        rest /= 26;
-    }
-    name
 }

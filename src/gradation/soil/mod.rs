@@ -1,6 +1,6 @@
 //! Soils as laboratories write them down: from the bytes of a file to tables of openings and percents finer.
 //!
-//! Bytes become text or sheets (`text`, `csv`; `workbook` with `xlsx` and `ods`, `ags`), those become rows of
+//! Bytes become text or sheets (`text`, `csv`; `workbook` with `xlsx` and `ods`; `ags`), those become rows of
 //! cells (`grid`), in which the table is found (`layout`, by `heading`) and read (`points`, `size`,
 //! `retained`). `read` is the way through. What is taken for something that the file does not spell out
 //! becomes a note; what could be two things is refused.

@@ -1,6 +1,6 @@
 //! From a column of a grid to openings in mm and percents finer.
 
-use super::grid::{Grid, letters};
+use super::grid::Grid;
 use super::heading::Role;
 use super::layout::{Layout, SoilColumn, fields, is_blank, is_text, percentage, repeats_headings};
 use super::retained::{Weighed, percents_finer};
@@ -35,8 +35,8 @@ pub(super) fn soil(grid: &Grid, layout: &Layout, column: &SoilColumn) -> Result<
     if largest > 500.0 && unit == Unit::Mm && layout.unit != Some(Unit::Inch) {
         notes.push(format!("its largest opening is {largest} mm: is the column in micrometres?"));
     }
-    let cells = grid.sheet.as_ref().map(|_| [letters(layout.size), letters(column.column)]);
-    Ok(Soil { name: column.heading.clone(), file: grid.place(), rows, notes, cells })
+    let columns = grid.sheet.as_ref().map(|_| [layout.size as u32, column.column as u32]);
+    Ok(Soil { name: column.heading.clone(), file: grid.place(), rows, notes, columns })
 }
 
 /// The rows of the table as they are written.

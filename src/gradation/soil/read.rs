@@ -2,12 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use super::grid::{Grid, letters};
+use super::grid::Grid;
+use super::heading::Role;
 use super::layout::Layout;
 use super::summary::SoilSummary;
 use super::table::Soil;
 use super::{ags, csv, layout, points, text, workbook};
-use crate::gradation::error::{GradationError, TableError, shortened};
+use crate::gradation::error::{GradationError, TableError, letters, shortened};
 use crate::gradation::sieve::Gradation;
 use crate::gradation::table::{FILE_LIMIT_BYTES, bytes_of};
 
@@ -153,8 +154,11 @@ fn soils_of(grid: &Grid) -> Result<Vec<Named>, TableError> {
     let mut soils = Vec::new();
     for column in &layout.soils {
         let mut name = column.heading.clone();
-        if name.is_empty() || layout.soils.iter().filter(|other| other.heading == name).count() > 1 {
-            name = format!("{name} (column {})", letters(column.column)).trim().to_owned();
+        if single && grid.sheet.is_none() && column.role != Role::Other {
+            // `% passing` is no name.
+            name.clear();
+        } else if name.is_empty() || layout.soils.iter().filter(|other| other.heading == name).count() > 1 {
+            name = format!("{name} (column {})", letters(column.column as u32)).trim().to_owned();
         }
         let mut names = vec![name.clone()];
         if let Some(sheet) = &grid.sheet {
@@ -192,7 +196,7 @@ pub fn soils_in_file(path: &Path, d0_mm: Option<f64>) -> Result<Vec<SoilSummary>
 impl Gradation {
     /// A sieve table from a file: `site.csv`, or `site.xlsx#Filter A` where it holds several soils.
     ///
-    /// See [`Soil`] for what is understood; of a plain table, `opening_mm,percent_finer`, the header may be
+    /// `docs::soils` says what is understood. Of a plain table, `opening_mm,percent_finer`, the header may be
     /// left out, the columns may stand in either order, sizes may rise or fall.
     ///
     /// # Errors

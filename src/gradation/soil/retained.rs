@@ -84,7 +84,7 @@ pub(super) fn percents_finer(
         }
         (Some(true), _, false) => {
             let allowed = "values retained that rise towards the finer sieves, to 100 % at most, as the \
-             heading says cumulative";
+                           heading says cumulative";
             return Err(weighed.refused(first_line, first, allowed));
         }
         _ => {

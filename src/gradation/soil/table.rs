@@ -12,7 +12,7 @@ pub struct Soil {
     pub(super) rows: Vec<Row>,
     pub(super) notes: Vec<String>,
     /// Columns of a sheet: openings, percents.
-    pub(super) cells: Option<[String; 2]>,
+    pub(super) columns: Option<[u32; 2]>,
 }
 
 impl Soil {
@@ -31,8 +31,8 @@ impl Soil {
     /// # Errors
     /// A table that is no sieve curve, as [`Gradation::from_sieve_csv`] says.
     pub fn gradation(&self, d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
-        from_rows(&self.file, self.rows.clone(), d0_mm).map_err(|error| match (error, &self.cells) {
-            (GradationError::Table(error), Some(cells)) => error.in_sheet(cells).into(),
+        from_rows(&self.file, self.rows.clone(), d0_mm).map_err(|error| match (error, self.columns) {
+            (GradationError::Table(error), Some(columns)) => error.in_sheet(columns).into(),
             (error, _) => error,
         })
     }

@@ -6,7 +6,7 @@ use quick_xml::Reader;
 use quick_xml::events::Event;
 
 use super::cells::{Budget, Cells};
-use super::grid::{Grid, letters};
+use super::grid::Grid;
 use super::zipped::{Zipped, attribute, characters, too_large, unreadable};
 use crate::gradation::error::{Position, TableError};
 
@@ -229,7 +229,7 @@ impl Context<'_> {
                 file: format!("{}, sheet \"{}\"", self.file, self.sheet),
                 line: row + 1,
                 field: "formula",
-                cell: Some(format!("{}{}", letters(column), row + 1)),
+                column: Some(column as u32),
             };
             let allowed = "a formula with its value: open the workbook in a spreadsheet program and save it";
             return Err(TableError::Value { at, value: String::new(), allowed: allowed.into() });
