@@ -15,8 +15,8 @@ impl Case {
                     .push(format!("Cu of the {whose} is {cu:.2}: the model was checked for {low} to {high}")),
                 Some(_) => {}
                 None => doubts.push(format!(
-                    "Cu of the {whose} is not known, as its D10 is finer than its finest sieve: the model was \
-                     checked for {low} to {high}"
+                    "Cu of the {whose} is not known, as its D10 is finer than its finest sieve: the model \
+                     was checked for {low} to {high}"
                 )),
             }
         }
