@@ -75,7 +75,12 @@ impl Outcome {
         let verdict = self.verdict.words();
         match (self.confidence, self.reasons.first()) {
             (Confidence::Within, _) => verdict.to_owned(),
-            (_, Some(reason)) => format!("{verdict} in the model; {reason}"),
+            (_, Some(reason)) => {
+                // What follows its first clause stands where all reasons are listed.
+                let ends = ["; ", ". "].into_iter().filter_map(|end| reason.find(end));
+                let clause = &reason[..ends.min().unwrap_or(reason.len())];
+                format!("{verdict} in the model; {clause}")
+            }
             (_, None) => format!("{verdict} in the model"),
         }
     }
