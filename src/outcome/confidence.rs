@@ -8,8 +8,8 @@ use super::record::{AppliedRule, Confidence, Outcome, RuleRole, Verdict};
 /// `doubts` say where the inputs leave the range in which the model was checked.
 ///
 /// Rules of retention speak against "no erosion", the boundary of continuing erosion against "some erosion"
-/// too; a rule of drainage that is not kept is a reason whatever the verdict, and said as such; a filter that
-/// does not hold its own fines is not the filter that was walked.
+/// too; a rule of drainage that is not kept is a reason whatever the verdict, and said as such; a filter
+/// that does not hold its own fines is not the filter that was walked.
 pub fn judge(verdict: Verdict, rules: &[AppliedRule], doubts: Vec<String>) -> (Confidence, Vec<String>) {
     let broken = |role: RuleRole| rules.iter().filter(move |rule| rule.is_broken() && rule.role == role);
     let favourable = match verdict {
@@ -49,8 +49,8 @@ fn sentence(rule: &AppliedRule) -> String {
             format!("tests found continuing erosion beyond D15F {limit}, this is {value} (Foster and Fell)")
         }
         "permeability" => format!(
-            "the filter may be too fine to drain the base: D15F {value}, practice asks for {limit} or more; \
-             that says nothing of retention"
+            "the filter may be too fine to drain the base: D15F {value}, practice asks for {limit} or \
+             more; that says nothing of retention"
         ),
         _ if rule.role == RuleRole::Stability => format!(
             "the filter may lose its own fines, and with them the constrictions that were walked: \
@@ -75,7 +75,12 @@ impl Outcome {
         let verdict = self.verdict.words();
         match (self.confidence, self.reasons.first()) {
             (Confidence::Within, _) => verdict.to_owned(),
-            (_, Some(reason)) => format!("{verdict} in the model; {reason}"),
+            (_, Some(reason)) => {
+                // What follows its first clause stands where all reasons are listed.
+                let ends = ["; ", ". "].into_iter().filter_map(|end| reason.find(end));
+                let clause = &reason[..ends.min().unwrap_or(reason.len())];
+                format!("{verdict} in the model; {clause}")
+            }
             (_, None) => format!("{verdict} in the model"),
         }
     }

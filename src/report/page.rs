@@ -214,7 +214,7 @@ fn tally(outcome: &Outcome) -> String {
 /// Why the verdict cannot be relied on as it stands.
 fn reasons(outcome: &Outcome) -> Markup {
     html! {
-        @if outcome.reasons.len() > 1 {
+        @if !outcome.reasons.is_empty() {
             section.warnings {
                 h2 { "Why this verdict is in doubt" }
                 ul { @for reason in &outcome.reasons { li { (clean(reason)) } } }

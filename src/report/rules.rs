@@ -18,8 +18,8 @@ pub(super) fn rules(outcome: &Outcome) -> Markup {
             (table(&practice))
             @if !walk.is_empty() {
                 h3 { "What the walk itself is compared with" }
-                p.small { "These say whether the walk agrees with tests and with the paper; no filter fails \
-                 by them." }
+                p.small { "These say whether the walk agrees with tests and with the paper; no filter \
+                           fails by them." }
                 (table(&walk))
             }
         }
@@ -92,18 +92,15 @@ fn compared(outcome: &Outcome) -> String {
             "So the walk is stricter than the tests here: for uniform sands it errs on the safe side. "
         }
         Some((walked, tests)) if walked < tests => {
-            "So the walk is more favourable than the tests here, and that is the unsafe side: rely on the \
-             tests. "
+            "So the walk is more favourable than the tests here, on the unsafe side: rely on the tests. "
         }
         Some(_) => "So walk and tests agree here. ",
         None => "",
     };
-    text += "Which way each errs: for clean sands tests put the end of no erosion at a D15F/D85B of 6.8 to \
-     10, the limits of Terzaghi and of design at 4, with a margin, and this network near 5. For uniform \
-             sands the model is therefore stricter than tests. For broadly graded bases it is unsafe: a few \
-             coarse \
-             grains block for all the rest; and of cohesive fines it knows nothing. (Tests: Foster and \
-             Fell, as \
-             given by Fell et al., Geotechnical Engineering of Dams, Table 9.2.)";
+    text += "Which way each errs: for clean sands tests put the end of no erosion at a D15F/D85B of 6.8 \
+             to 10, the limits of Terzaghi and of design at 4, with a margin, and this network near 5. \
+             For uniform sands the model is therefore stricter than tests. For broadly graded bases it is \
+             unsafe: a few coarse grains block for all the rest; and of cohesive fines it knows nothing. \
+             (Tests: Foster and Fell, as given by Fell et al., Geotechnical Engineering of Dams, Table 9.2.)";
     text
 }
