@@ -48,7 +48,7 @@ fn least_left(groups: &str, mounts: &str, read: impl Fn(&Path) -> Option<String>
 /// The folder of a group, and the one of its hierarchy in which it is.
 fn folder_of(path: &Path, mounts: &str, names: &Names) -> Option<(PathBuf, PathBuf)> {
     let version_1 = names.limit == V1.limit;
-    let found = mounts.lines().filter_map(|line| {
+    let mut found = mounts.lines().rev().filter_map(|line| {
         // `id parent device root mount-point options [more] - type source super-options`
         let (mount, kind) = line.split_once(" - ")?;
         let mut fields = mount.split(' ').skip(3);
@@ -59,7 +59,7 @@ fn folder_of(path: &Path, mounts: &str, names: &Names) -> Option<(PathBuf, PathB
         let wanted = if version_1 { has_memory } else { kind == "cgroup2" };
         wanted.then(|| (unescaped(root), unescaped(top)))
     });
-    found.last().map(|(root, top)| {
+    found.next().map(|(root, top)| {
         // A container sees the part of the hierarchy that is mounted, and may know its place in the whole.
         let inside = path
             .strip_prefix(&root)
