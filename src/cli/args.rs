@@ -342,7 +342,7 @@ fn time(text: &str) -> Result<Duration, String> {
 
 /// How far the interval may reach, in percentage points.
 fn target_error(text: &str) -> Result<f64, String> {
-    let allowed = "write percentage points above 0 and below 100 with their unit, as 0.5pp";
+    let allowed = "write a number of percentage points above 0 and below 100 with its unit, as 0.5pp";
     number_with(text, "pp", f64::MIN_POSITIVE..=99.999_999, allowed)
 }
 
