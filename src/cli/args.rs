@@ -348,7 +348,7 @@ fn target_error(text: &str) -> Result<f64, String> {
 
 /// The probability with which the verdict is to be right, in percent.
 fn decide(text: &str) -> Result<f64, String> {
-    let allowed = "write a probability from 50% to 99.999% with its sign, as 99.9%";
+    let allowed = "write a probability from 50% to 99.999% with its unit, as 99.9%";
     number_with(text, "%", 50.0..=99.999, allowed)
 }
 

@@ -62,7 +62,7 @@ fn every_mistake_is_answered_with_a_way_out() {
         ("run --memory -2GB", 2, &["--memory", "a size above 0 as 4GB"]),
         ("check --set filter.cu 3", 2, &["--set", "write KEY=VALUE, as --set filter.cu=3"]),
         ("check --decide 150%", 2, &["from 50% to 99.999%", "as 99.9%"]),
-        ("check --decide 99", 2, &["from 50% to 99.999% with its sign", "as 99.9%"]),
+        ("check --decide 99", 2, &["from 50% to 99.999% with its unit", "as 99.9%"]),
         ("check --target-error 0.5", 2, &["with its unit, as 0.5pp"]),
         ("check comma.toml", 2, &["comma.toml, line 2: `1,5` has a decimal comma; write cu = 1.5"]),
         ("check windows.toml", 2, &["windows.toml, line 2", "backslashes; write sieve = \"csv/sand.csv\""]),

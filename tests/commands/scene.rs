@@ -281,7 +281,7 @@ fn a_run_goes_on_until_its_rule_is_met_or_says_what_it_would_take() {
     for (flag, value) in [("--target-error", "0.1"), ("--decide", "99.9"), ("--decide", "many%")] {
         refused(&voidwalk(&["run", flag, value]), &["with its unit"]);
     }
-    refused(&voidwalk(&["run", "--decide", "100%"]), &["stop.decide_percent: `100.0` is not allowed"]);
+    refused(&voidwalk(&["run", "--decide", "100%"]), &["from 50% to 99.999%"]);
 }
 
 /// Particles that do not fit the memory that is allowed live in files: `check` says so, and the run gives the same results.
