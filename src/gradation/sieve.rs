@@ -76,8 +76,8 @@ impl Gradation {
     /// without it the pan fraction is counted by mass only.
     ///
     /// # Errors
-    /// What [`Gradation::from_sieve_csv`] refuses of a table's rows, with the point's place in the list as the
-    /// line.
+    /// What [`Gradation::from_sieve_csv`] refuses of a table's rows, with the point's place in the list as
+    /// the line.
     pub fn from_points(points: &[(f64, f64)], d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
         let rows = points.iter().enumerate().map(|(i, &(size, percent))| Row { line: i + 1, size, percent });
         from_rows("points", Row::checked("points", rows.collect(), FIELDS)?, d0_mm)
