@@ -14,7 +14,8 @@ pub(super) fn separators(text: &str) -> Vec<char> {
         return vec![sign];
     }
     const ALL: [char; 3] = [';', '\t', ','];
-    let lines = text.lines().filter(|line| !line.trim_start().starts_with('#') || names_sieve(line));
+    let named = names_are_sieves(text);
+    let lines = text.lines().filter(|line| !line.trim_start().starts_with('#') || named && names_sieve(line));
     let found = lines.filter_map(|line| ALL.into_iter().find(|&c| line.contains(c))).next().unwrap_or(',');
     let others = ALL.into_iter().filter(|&c| c != found && text.contains(c));
     std::iter::once(found).chain(others).collect()
@@ -31,7 +32,7 @@ fn stated_separator(text: &str) -> Option<char> {
 pub(super) fn grid(file: &str, text: &str, delimiter: char) -> Grid {
     let mut grid = Grid { file: file.into(), delimiter, ..Grid::default() };
     let lines: Vec<&str> = text.lines().collect();
-    let named = names_are_sieves(&lines, delimiter);
+    let named = names_are_sieves(text);
     let mut comments = 0;
     let mut at = usize::from(stated_separator(text).is_some());
     while at < lines.len() {
@@ -69,9 +70,12 @@ pub(super) fn grid(file: &str, text: &str, delimiter: char) -> Grid {
 
 /// Whether lines like `#200,12` are rows of a table: they are where no other row begins with a bare number,
 /// of which such a line could be one that is commented out.
-fn names_are_sieves(lines: &[&str], delimiter: char) -> bool {
-    let mut others = lines.iter().filter(|line| !line.trim_start().starts_with('#'));
-    !others.any(|line| split(line, delimiter).0.first().is_some_and(|cell| number(cell).is_some()))
+fn names_are_sieves(text: &str) -> bool {
+    let mut others = text.lines().filter(|line| !line.trim_start().starts_with('#'));
+    let first = |line: &str| {
+        line.trim_start_matches('"').split([',', ';', '\t', '"']).next().map(str::trim).and_then(number)
+    };
+    !others.any(|line| first(line.trim()).is_some())
 }
 
 /// `#200,12`: a US sieve and a number.

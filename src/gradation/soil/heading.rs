@@ -103,6 +103,7 @@ const SIZE: [&str; 33] = [
 ];
 const MASS: [&str; 11] =
     ["mass", "weight", "masse", "gewicht", "wt", "peso", "g", "gram", "grams", "kg", "grammes"];
+const GRAMS: [&str; 5] = ["g", "gram", "grams", "kg", "grammes"];
 const CUMULATIVE: [&str; 7] = ["cumulative", "cum", "cumul", "accumulated", "total", "coarser", "cumulated"];
 const INDIVIDUAL: [&str; 8] = ["individual", "each", "single", "partial", "on", "interval", "per", "ind"];
 const MICROMETRE: [&str; 9] =
@@ -137,7 +138,8 @@ pub(super) fn role(name: &str) -> Role {
     }
     match (size, mass) {
         (true, _) => Role::Size,
-        (false, true) => Role::Retained(Retained { percent: false, cumulative }),
+        // `mass` alone may be that of what passes; grams are weighed.
+        (false, true) if any(&words, &GRAMS) => Role::Retained(Retained { percent: false, cumulative }),
         _ => Role::Other,
     }
 }

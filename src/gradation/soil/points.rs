@@ -159,8 +159,15 @@ fn unit_of_bare(
     entries: &[Entry],
     notes: &mut Vec<String>,
 ) -> Result<Unit, TableError> {
-    if let Some(unit) = layout.unit {
-        return Ok(unit);
+    let is_no_sieve = |entry: &Entry| match entry.opening {
+        Opening::Bare(value) => value != 0.0 && Unit::SieveNumber.mm(value).is_none(),
+        _ => false,
+    };
+    match layout.unit {
+        // Headings say `Sieve no.` of openings in mm too.
+        Some(Unit::SieveNumber) if entries.iter().any(is_no_sieve) => {}
+        Some(unit) => return Ok(unit),
+        None => {}
     }
     let inches = entries.iter().any(|entry| entry.said == Said::Inches);
     let bare = |entry: &&Entry| matches!(entry.opening, Opening::Bare(value) if value > 0.0);
