@@ -100,6 +100,8 @@ def texts():
     put("pan.csv", table(down) + "Pan,0\n", BASE, ["pan"])
     put("pan_zero.csv", table(down) + "0,0\n", BASE, ["pan"])
     put("pan_above_0.csv", table(down) + "Pan,2.1\n", refused=["line 8, percent_finer: \"2.1\"", "pan"])
+    put("pan_0_mm.csv", "Sieve,% passing\n4 mm,100\n1 mm,20\n0 mm,2\n", refused=["line 4, percent_finer: \"2\"", "pan"])
+    put("below.csv", "Opening (µm),% finer\n2000,100\n600,40\n<75,1\n", [(2, 100), (0.6, 40), (0.075, 1)])
     soil = [(4, 100), (2, 80), (1, 50), (0.5, 10)]
     put("mass_retained.csv", "Sieve (mm),Mass retained (g)\n4,0\n2,100\n1,150\n0.5,200\nPan,50\n", soil, ["masses retained"])
     put("mass_total.csv", "Sieve (mm),Mass retained (g)\n4,0\n2,200\n1,150\n0.5,100\nTotal,500\n", [(4, 100), (2, 60), (1, 30), (0.5, 10)], ["masses retained"])

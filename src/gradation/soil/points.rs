@@ -16,9 +16,18 @@ pub(super) fn soil(grid: &Grid, layout: &Layout, column: &SoilColumn) -> Result<
     let mut entries = entries(grid, layout, column, &mut notes)?;
     let unit = unit_of_bare(grid, layout, &entries, &mut notes)?;
     for entry in &mut entries {
-        if let Opening::Bare(value) = entry.opening {
-            entry.opening = in_mm(grid, layout, entry, value, unit)?;
-        }
+        entry.opening = match entry.opening {
+            Opening::Bare(value) => in_mm(grid, layout, entry, value, unit)?,
+            Opening::Mm(mm) => in_mm(grid, layout, entry, mm, Unit::Mm)?,
+            Opening::Below(value) => {
+                let unit = if entry.said == Said::Plain { unit } else { Unit::Mm };
+                match in_mm(grid, layout, entry, value, unit)? {
+                    Opening::Mm(mm) => Opening::Below(mm),
+                    other => other,
+                }
+            }
+            other => other,
+        };
     }
     say_names(&entries, unit, &mut notes);
     let rows = match column.role {
