@@ -178,7 +178,6 @@ mod tests {
         Case::new(Scene::built_in(&all).unwrap()).unwrap()
     }
 
-    /// Measured: 640,000 voids on 1, 64 and 256 threads took 176, 493 and 1,464 MB, 5.1 MB a thread.
     #[test]
     fn counts_take_a_column_of_the_network_for_each_thread() {
         let counts = case(&["engine=counts", "base.single_mm=0.1", "base.n_base=1e11"]);

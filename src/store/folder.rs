@@ -373,8 +373,11 @@ pub fn make_folder(path: &Path) -> Result<(), StoreError> {
 /// Removes a folder with all that is in it, if it is there.
 ///
 /// # Errors
-/// What the system says.
+/// It is a link, which somebody has laid there; or what the system says.
 pub fn remove_folder(path: &Path) -> Result<(), StoreError> {
+    if path.symlink_metadata().is_ok_and(|meta| meta.is_symlink()) {
+        return Err(StoreError::NotAFolder { path: path.to_owned(), what: "a symbolic link" });
+    }
     match ask(Call::RemoveFolder(path), || fs::remove_dir_all(path)) {
         Err(source) if source.kind() != io::ErrorKind::NotFound => {
             Err(StoreError::Io { path: path.to_owned(), action: "remove", source })
