@@ -144,10 +144,12 @@ fn no_link_leads_out_of_a_folder() {
     fs::create_dir_all(at.join("c/checkpoint")).unwrap();
     fs::write(at.join("c/.voidwalk.lock"), "").unwrap();
     let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/checkpoint-v1.particles");
-    fs::copy(golden, at.join("outside")).unwrap();
+    fs::copy(&golden, at.join("outside")).unwrap();
     symlink("../../outside", at.join("c/checkpoint/0-1.0")).unwrap();
+    // Without a scene it is what was left of a run that was to be replaced: the link goes, not what it leads to.
     let output = voidwalk(&at, &[&run[..], &["c"]].concat());
-    assert!(is_inert(&output).contains("is no regular file"), "{}", is_inert(&output));
+    assert!(output.status.success(), "{}", is_inert(&output));
+    assert_eq!(fs::read(at.join("outside")).unwrap(), fs::read(&golden).unwrap());
     let outcome = at.join("r2/outcome.json");
     fs::rename(&outcome, at.join("outcome")).unwrap();
     symlink("../outcome", &outcome).unwrap();
