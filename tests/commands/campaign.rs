@@ -2,10 +2,12 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Command};
 use std::time::Duration;
 
 use serde_json::Value;
+
+use crate::program::{call, done, voidwalk};
 
 const PLAN: &str = "title = \"three by two\"\nseed = 5\n[set]\nreplicates = 2\n\
     network = { nx = 8, ny = 8, nz = 10 }\nrecord = { sensitivity = [], series_every = 0, size_curves = [] }\n\
@@ -13,22 +15,8 @@ const PLAN: &str = "title = \"three by two\"\nseed = 5\n[set]\nreplicates = 2\n\
     [[factor]]\nname = \"filter\"\n[factor.levels]\nloose = { \"filter.curve\" = \"shire2016-cu1.5-loose\" }\n\
     dense = { \"filter.curve\" = \"shire2016-cu1.5-dense\", \"base.dc_curve\" = \"shire2016-cu1.5-loose\" }\n";
 
-fn voidwalk(folder: &Path, args: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_voidwalk"));
-    command.current_dir(folder).args(args).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    command
-}
-
-fn call(folder: &Path, args: &[&str]) -> Output {
-    voidwalk(folder, args).output().unwrap()
-}
-
 fn start(folder: &Path, args: &[&str]) -> Child {
     voidwalk(folder, args).spawn().unwrap()
-}
-
-fn done(output: &Output) {
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
 fn with_plan(text: &str) -> (tempfile::TempDir, PathBuf) {

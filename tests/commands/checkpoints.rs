@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Command};
 use std::time::Duration;
 
 use bitvec::vec::BitVec;
@@ -11,6 +11,8 @@ use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
 use voidwalk::store::checkpoint::{Identity, Label, newest, save};
 use voidwalk::walk::{Engine, RunPlan, SavedState, SizeClasses, State, Supply, Walk, WalkControl};
+
+use crate::program::{call, voidwalk};
 
 /// A lattice on which a graded base blocks and passes.
 fn network(seed: u64) -> Network {
@@ -118,16 +120,6 @@ fn a_state_of_another_run_is_refused() {
 
 const SCENE: &str = "seed = 3\nreplicates = 3\nengine = \"particles\"\n[filter]\ncurve = \"shire2016-cu1.5-loose\"\n[base]\ncu = 1.5\n\
     d85_at_dc = 5\nn_base = 150000\n[network]\nnx = 8\nny = 8\nnz = 10\n[record]\nsensitivity = [0.5, 2.0]\n";
-
-fn voidwalk(folder: &Path, args: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_voidwalk"));
-    command.current_dir(folder).args(args).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    command
-}
-
-fn call(folder: &Path, args: &[&str]) -> Output {
-    voidwalk(folder, args).output().unwrap()
-}
 
 fn with_scene() -> (tempfile::TempDir, PathBuf) {
     // On a disk in memory, where there is one, a checkpoint every few milliseconds is no matter.

@@ -7,6 +7,7 @@ mod full_disk;
 mod hostile_names;
 mod pack;
 mod precision;
+mod program;
 mod rules;
 mod scene;
 mod second_command;

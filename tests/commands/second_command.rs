@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
 use std::time::Duration;
+
+use crate::program::{call, done, refused, voidwalk};
 
 const SMALL: &str = "[network]\nnx = 4\nny = 4\nnz = 5\n[record]\nsensitivity = []\n";
 const PACKED: &str = "replicates = 2\n[filter]\ncu = 1.5\ndensity = \"loose\"\n[packing]\ngrains = 150\n\
@@ -13,26 +14,6 @@ const SHIPPED: &str =
     "replicates = 2\n[filter]\ncurve = \"cu6-friction0.7\"\n[base]\ncu = 1.5\nd85_at_dc = 5\nn_base = 1000\n";
 const PACK: &str =
     "[filter]\ncu = 1.5\ndensity = \"loose\"\n[packing]\ngrains = 150\nstiffness_ratio = 0.01\n";
-
-fn voidwalk(folder: &Path, args: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_voidwalk"));
-    command.current_dir(folder).args(args).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    command
-}
-
-fn call(folder: &Path, args: &[&str]) -> Output {
-    voidwalk(folder, args).output().unwrap()
-}
-
-fn done(output: &Output) {
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-}
-
-fn refused(output: &Output, message: &str) {
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{stderr}");
-    assert!(stderr.contains(message), "{stderr:?} lacks {message:?}");
-}
 
 fn with_files(files: &[(&str, &str)]) -> (tempfile::TempDir, PathBuf) {
     let memory = Path::new("/dev/shm");
