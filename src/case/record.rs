@@ -34,7 +34,6 @@ impl Case {
         let d = |gradation: &Gradation, percent| gradation.d(percent).unwrap_or(f64::NAN);
         let pairs = |points: Vec<(f64, f64)>| points.into_iter().map(|(a, b)| [a, b]).collect();
         let [voids, constrictions, start_nodes, layers] = self.counts;
-        let d50_by_number = self.filter.d_by_number(50.0).unwrap_or(f64::NAN);
         let cubic = |n: &[u32; 3]| format!("cubic {} x {} x {}", n[0], n[1], n[2]);
         let (kind, name) = match &self.scene.network.source() {
             NetworkSource::Cubic(n) => (record::NetworkKind::Cubic, cubic(n)),
@@ -78,7 +77,7 @@ impl Case {
                 d0_mm: self.unit_mm,
                 d15_mm: d(&self.filter, 15.0),
                 d50_mm: d(&self.filter, 50.0),
-                d50_by_number_mm: d50_by_number,
+                d50_by_number_mm: self.filter.d_by_number(50.0).unwrap_or(f64::NAN),
                 d85_mm: d(&self.filter, 85.0),
                 void_ratio: match &self.packed {
                     Some(packed) => Some(packed.void_ratio),
@@ -94,7 +93,10 @@ impl Case {
                     BaseGradation::Sieve(..) => self.name_of("base.sieve"),
                     BaseGradation::Single(_) => "one size".into(),
                     BaseGradation::Linear { cu, .. } => format!("linear, Cu {cu}"),
-                },
+                } + &self
+                    .regraded_from
+                    .as_ref()
+                    .map_or(String::new(), |(_, at)| format!(", regraded on {at:.3} mm")),
                 cu: self.base.cu(),
                 d0_mm: self.base.smallest_mm(),
                 d15_mm: self.base.d(15.0),
@@ -103,6 +105,7 @@ impl Case {
                 d95_mm: d(&self.base, 95.0),
                 d100_mm: self.base.largest_mm(),
                 tail_mass_fraction: self.base.pan_fraction(),
+                regraded_at_mm: self.regraded_from.as_ref().map(|(_, at)| *at),
                 gradation: pairs(self.base.points()),
             },
             network: record::NetworkRecord {
@@ -116,12 +119,18 @@ impl Case {
                 start_nodes,
                 layers,
                 connectivity: self.connectivity.clone(),
-                thickness_mm: self.network_file.is_none().then_some(layers as f64 * d50_by_number),
+                thickness_mm: self.thickness(),
             },
             mass_ratio: self.mass_ratio,
             inject_share: self.scene.walk.inject_share,
             scale_free: self.is_scale_free(),
         }
+    }
+
+    /// Modelled filter thickness: layers times D50F by number; `None` where a layer has no thickness.
+    pub fn thickness(&self) -> Option<f64> {
+        let d50 = self.filter.d_by_number(50.0).unwrap_or(f64::NAN);
+        self.network_file.is_none().then_some(self.counts[3] as f64 * d50)
     }
 
     /// Whether the filter's gradation is a sieve curve, and not a straight line.
