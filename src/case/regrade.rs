@@ -46,9 +46,9 @@ impl Case {
         let regraded = self.base.regraded();
         regraded.at_mm.map(|at| {
             format!(
-                "the model errs on the unsafe side for this base; practice regrades it on {at:.3} mm ({}), and \
-                 it is walked as it is, so that a few coarse grains block for all the rest. base.regrade = \
-                 \"practice\" walks the part that practice looks at",
+                "the model errs on the unsafe side for this base; practice regrades it on {at:.3} mm ({}), \
+                 and it is walked as it is, so that a few coarse grains block for all the rest. \
+                 base.regrade = \"practice\" walks the part that practice looks at",
                 regraded.why
             )
         })
@@ -58,7 +58,8 @@ impl Case {
     pub(super) fn regrading(&self) -> Option<String> {
         match (&self.regraded_from, self.scene.base.regrade) {
             (Some((given, at)), _) => Some(format!(
-                "the base is walked as practice regrades it: the {:.1} % of it that are finer than {at:.3} mm",
+                "the base is walked as practice regrades it: the {:.1} % of it that are finer than {at:.3} \
+                 mm",
                 given.percent_finer_by_mass(*at)
             )),
             (None, Some(Regrade::Practice)) => {

@@ -39,8 +39,8 @@ fn stricter(verdict: Verdict, rules: &[AppliedRule]) -> Option<String> {
     let ratio = find("paper-no-erosion").filter(|rule| rule.met == Some(false))?;
     matches!(verdict, Verdict::Some | Verdict::Continuing).then(|| {
         format!(
-            "the walk errs on the safe side for this pair; D15F/D85B is {}, tests found no erosion up to D15F \
-             {} (Foster and Fell), and this network retains uniform sands up to a ratio near {}",
+            "the walk errs on the safe side for this pair; D15F/D85B is {}, tests found no erosion up to \
+             D15F {} (Foster and Fell), and this network retains uniform sands up to a ratio near {}",
             ratio.value.map_or("unknown".into(), short),
             size(tests.limit, &tests.unit),
             ratio.limit.map_or("unknown".into(), short)
@@ -78,7 +78,8 @@ fn sentence(rule: &AppliedRule) -> String {
              {quantity} is {value}, the limit {limit} ({whose})"
         ),
         _ => format!(
-            "practice allows {quantity} up to {limit}, this is {value} ({whose}); that says nothing of retention"
+            "practice allows {quantity} up to {limit}, this is {value} ({whose}); that says nothing of \
+             retention"
         ),
     }
 }

@@ -82,8 +82,8 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
         }
     }
     if let Some(line) = summary.filter(|_| soils.is_empty()) {
-        let allowed = "a group GRAT with a row for each opening: GRAG only sums a grading up, and its percents \
-                       of gravel, sand, silt and clay are no sieve curve";
+        let allowed = "a group GRAT with a row for each opening: GRAG only sums a grading up, and its \
+                       percents of gravel, sand, silt and clay are no sieve curve";
         return Err(refused(line, "GRAG", allowed));
     }
     if soils.is_empty() {

@@ -13,12 +13,12 @@ const INTERNAL_STABILITY: &str = "U.S. Army Corps of Engineers, Internal Instabi
                                   (RMC-CPD-2023-10), after Li and Fannin (2008)";
 
 /// Where the most fines are stated: a weak source and a design; that of NRCS could not be read.
-const FINES: &str = "IS 11568 (1986), as summarised at infralens.in; Megech Dam, Appendix B-1, Design of Filter \
-                     Gradation (scribd.com/document/500296062)";
+const FINES: &str = "IS 11568 (1986), as summarised at infralens.in; Megech Dam, Appendix B-1, Design of \
+                     Filter Gradation (scribd.com/document/500296062)";
 
-/// Where the band is stated. The handbook of NRCS, from which it comes, could not be read.
-const BAND: &str = "Megech Dam, Appendix B-1, Design of Filter Gradation (scribd.com/document/500296062), which \
-                    follows the method of NRCS";
+/// Where the band is stated: a design, of which it is one; the handbook of NRCS could not be read.
+const BAND: &str = "Megech Dam, Appendix B-1, Design of Filter Gradation (scribd.com/document/500296062): \
+                    the practice of one design";
 
 /// Every rule, in the order of a reader.
 pub const RULES: [FilterRule; 19] = [
@@ -29,9 +29,9 @@ pub const RULES: [FilterRule; 19] = [
         applies_to: "design of filters; the limit follows from the fines A of the regraded base (NRCS, USBR, \
                      FEMA)",
         quantity: "D15F",
-        formula: "A > 85 %: 9 D85B, not less than 0.2 mm; A 40 to 85 %: 0.7 mm; A 15 to 40 %: (40 - A)/25 (4 \
-                  D85B - 0.7) + 0.7 mm; A < 15 %: 4 D85B; dispersive: A > 85 %: 6.5 D85B, not less than 0.2 mm; \
-                  40 to 85 %: 0.5 mm",
+        formula: "A > 85 %: 9 D85B, not less than 0.2 mm; A 40 to 85 %: 0.7 mm; A 15 to 40 %: (40 - A)/25 \
+                  (4 D85B - 0.7) + 0.7 mm; A < 15 %: 4 D85B; dispersive: A > 85 %: 6.5 D85B, not less than \
+                  0.2 mm; 40 to 85 %: 0.5 mm",
         at_least: false,
         unit: RuleUnit::Size,
         source: "Sherard & Dunnigan (1989), as given by Fell et al., Geotechnical Engineering of Dams, Table \
@@ -103,12 +103,12 @@ pub const RULES: [FilterRule; 19] = [
         role: RuleRole::Continuation,
         applies_to: "joints, defects and cracks beside the base that do not erode; steady flow",
         quantity: "probability",
-        formula: "from JOS/D95B after regrading: below 0.4: 0; 0.5: 0.01 %; 0.75: 0.1 %; 1: 10 %; 2: 50 %; 3 and more: 90 %; \
-                  between them straight on the scale of a normal variate",
+        formula: "from JOS/D95B after regrading: below 0.4: 0; 0.5: 0.01 %; 0.75: 0.1 %; 1: 10 %; 2: 50 %; \
+                  3 and more: 90 %; between them straight on the scale of a normal variate",
         at_least: false,
         unit: RuleUnit::Percent,
-        source: "U.S. Army Corps of Engineers, Filter Evaluation manual (RMC-CPD-2023-04), chapter Constricted Exit, after \
-                 Fell and Foster",
+        source: "U.S. Army Corps of Engineers, Filter Evaluation manual (RMC-CPD-2023-04), chapter \
+                 Constricted Exit, after Fell and Foster",
         pairing: Pairing::CoarseFilterFineBase,
         judge: exit::constricted,
     },
@@ -226,8 +226,8 @@ pub const RULES: [FilterRule; 19] = [
         formula: "0.76 lg h'' + 1, with h'' = D90/D15, and less than 1.86 lg h'' + 1",
         at_least: true,
         unit: RuleUnit::One,
-        source: "U.S. Army Corps of Engineers, Internal Instability Toolbox manual (RMC-CPD-2023-10), chapter Burenkova \
-                 Method",
+        source: "U.S. Army Corps of Engineers, Internal Instability Toolbox manual (RMC-CPD-2023-10), \
+                 chapter Burenkova Method",
         pairing: Pairing::EachFilter,
         judge: stability::burenkova,
     },
@@ -240,8 +240,8 @@ pub const RULES: [FilterRule; 19] = [
         formula: "none stated: 1 / (1 + exp(-Z)), Z from h' and h'' of Burenkova",
         at_least: false,
         unit: RuleUnit::Percent,
-        source: "U.S. Army Corps of Engineers, Internal Instability Toolbox manual (RMC-CPD-2023-10), chapter Modified \
-                 Burenkova Method",
+        source: "U.S. Army Corps of Engineers, Internal Instability Toolbox manual (RMC-CPD-2023-10), \
+                 chapter Modified Burenkova Method",
         pairing: Pairing::EachFilter,
         judge: stability::wan_fell,
     },

@@ -28,7 +28,7 @@ pub struct Sides {
 }
 
 impl Sides {
-    /// Of these curves, of which there is at least one each. A size in a finest tail counts as finer than any.
+    /// Of these curves, of which there is at least one each. A size in a finest tail is finer than any.
     pub fn of(filters: &[NamedCurve], bases: &[NamedCurve]) -> Self {
         let sizes = |curves: &[NamedCurve], size: &dyn Fn(&Gradation) -> Option<f64>| -> Vec<f64> {
             curves.iter().map(|(_, curve)| size(curve).unwrap_or(0.0)).collect()
@@ -48,7 +48,7 @@ impl Sides {
     }
 }
 
-/// Applies every rule to the curves of a filter and of a base: each to the curves that it is for, and named by
+/// Applies every rule to the curves of a filter and of a base: each to those that it is for, named by
 /// them.
 pub fn apply_to_envelopes(
     filters: &[NamedCurve],

@@ -65,7 +65,8 @@ fn by_fines(
         (None, _) => judged.lacking("needs the filter's D15: finer sieves, or filter.d0_mm"),
         (_, None) => judged.lacking("needs the base's D85: finer sieves, or base.d0_mm"),
         (_, Some(None)) => judged.lacking(
-            "needs a test of this soil: no source that was read gives a limit for dispersive soils with so              few fines",
+            "needs a test of this soil: no source that was read gives a limit for dispersive soils with so \
+                          few fines",
         ),
         _ => judged,
     }
