@@ -4,6 +4,9 @@ use super::{Case, CaseError};
 use crate::gradation::Gradation;
 use crate::scene::{BaseGradation, D85, FilterGradation, Regrade, Scene};
 
+/// Cu from which a base counts as broadly graded: that of well-graded sands by ASTM D2487.
+const BROAD_CU: f64 = 6.0;
+
 /// The base to walk; and as it was given, with the size (mm) that it was regraded on.
 pub(super) type Walked = (Gradation, Option<(Gradation, f64)>);
 
@@ -38,20 +41,25 @@ impl Case {
         self.regraded_from.as_ref().map_or(&self.base, |(given, _)| given)
     }
 
-    /// What practice would regrade and was walked as it is: which way the model errs on it.
-    pub(super) fn not_regraded(&self) -> Option<String> {
+    /// Which way the model errs on a base that is broadly graded and walked as it is.
+    pub(super) fn errs_unsafe(&self) -> Option<String> {
         if self.regraded_from.is_some() || self.is_scale_free() {
             return None;
         }
         let regraded = self.base.regraded();
-        regraded.at_mm.map(|at| {
-            format!(
-                "the model errs on the unsafe side for this base; practice regrades it on {at:.3} mm ({}), \
-                 and it is walked as it is, so that a few coarse grains block for all the rest. \
-                 base.regrade = \"practice\" walks the part that practice looks at",
+        let why = match (regraded.at_mm, self.base.cu().filter(|cu| *cu >= BROAD_CU)) {
+            (Some(at), _) => format!(
+                "practice regrades it on {at:.3} mm ({}), and it is walked as it is, so that a few coarse \
+                 grains block for all the rest. base.regrade = \"practice\" walks the part that practice \
+                 looks at",
                 regraded.why
-            )
-        })
+            ),
+            (None, Some(cu)) => {
+                format!("it is broadly graded (Cu {cu:.1}), and a few coarse grains block for all the rest")
+            }
+            (None, None) => return None,
+        };
+        Some(format!("the model errs on the unsafe side for this base; {why}"))
     }
 
     /// What is said of a base that is walked regraded, or that was to be.

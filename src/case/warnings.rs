@@ -15,7 +15,7 @@ impl Case {
     pub fn doubts(&self) -> Vec<String> {
         let mut doubts = Vec::new();
         doubts.extend(self.fines());
-        doubts.extend(self.not_regraded());
+        doubts.extend(self.errs_unsafe());
         doubts.extend(self.too_thick());
         for (whose, soil, low, high) in [("filter", &self.filter, 1.2, 6.0), ("base", &self.base, 1.2, 4.5)] {
             match soil.cu() {

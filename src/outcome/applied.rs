@@ -84,8 +84,8 @@ impl RuleRole {
     /// Which verdicts a rule of this role speaks against where it is not kept.
     pub fn speaks_against(self) -> &'static str {
         match self {
-            Self::Retention => "no erosion",
-            Self::Continuation => "no erosion and some erosion",
+            Self::Retention => "a verdict of no erosion",
+            Self::Continuation => "a verdict of no or of some erosion",
             Self::Stability => "any verdict: without its fines it is not the filter that was walked",
             Self::Drainage | Self::Walk => "no verdict",
         }

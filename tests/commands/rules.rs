@@ -87,7 +87,7 @@ fn envelopes_dispersive_soils_and_joints_by_the_command() {
     assert_eq!((&retains["filter_curve"], &retains["base_curve"]), (&"coarse side".into(), &"fine".into()));
     // 90 % at 0.075 mm, 0 % at 0.001 mm: D85B = 0.001 x 75^(85/90) = 0.05900 mm, 9 times that 0.5310 mm.
     assert!((retains["limit"].as_f64().unwrap() - 0.009 * 75f64.powf(85.0 / 90.0)).abs() < 1e-9);
-    assert_eq!(retains["speaks_against"], "no erosion");
+    assert_eq!(retains["speaks_against"], "a verdict of no erosion");
     let drains = rule(&value, "permeability").unwrap();
     assert_eq!((&drains["filter_curve"], &drains["base_curve"]), (&"fine side".into(), &"coarse".into()));
     assert_eq!(rule(&value, "filter-band").unwrap()["met"], true);
@@ -145,6 +145,13 @@ fn the_base_is_walked_regraded_where_the_scene_says_so() {
     assert!(base["name"].as_str().unwrap().ends_with("till.csv, regraded on 4.750 mm"), "{base}");
     assert!(warned(&regraded, "walked as practice regrades it: the 92.0 % of it"), "{regraded}");
     assert!(!warned(&regraded, "errs on the unsafe side"), "{regraded}");
+    // A broad sand that practice leaves as it is: Cu 9.8.
+    let broad = format!("base.sieve={}", sieve("broad.csv", "0.03,0\n0.1,20\n0.6,60\n4,100\n"));
+    assert!(
+        warned(&check(&["--set", &broad]), "it is broadly graded (Cu 11"),
+        "{}",
+        check(&["--set", &broad])
+    );
     // What practice leaves as it is, is left and said; what has no unit is refused.
     let sand = format!("base.sieve={}", sieve("sand.csv", "0.1,0\n0.5,85\n1,100\n"));
     let left = check(&["--set", &sand, "--set", "base.regrade=practice"]);
