@@ -77,10 +77,11 @@ fn sentence(rule: &AppliedRule) -> String {
             "the filter may lose its own fines, and with them the constrictions that were walked: \
              {quantity} is {value}, the limit {limit} ({whose})"
         ),
-        _ => format!(
-            "practice allows {quantity} up to {limit}, this is {value} ({whose}); that says nothing of \
-             retention"
-        ),
+        _ => {
+            let besides =
+                if rule.role == RuleRole::Drainage { "; that says nothing of retention" } else { "" };
+            format!("practice allows {quantity} up to {limit}, this is {value} ({whose}){besides}")
+        }
     }
 }
 
@@ -128,6 +129,7 @@ mod tests {
         assert_eq!(confidence, Confidence::Contradicted);
         assert!(reasons[0].starts_with("practice allows D15F 1.1 mm, this is 6.5 mm"), "{}", reasons[0]);
         assert_eq!(reasons.last().unwrap(), "35 % fines");
+        assert!(!reasons.iter().any(|reason| reason.contains("nothing of retention")), "{reasons:?}");
         // The same rules share an unfavourable one.
         assert_eq!(judge(Verdict::Continuing, &all, Vec::new()), (Confidence::Within, Vec::new()));
     }
