@@ -221,7 +221,8 @@ pub const RULES: [FilterRule; 19] = [
         id: "burenkova",
         name: "Burenkova (1993): the filter holds its own fines",
         role: RuleRole::Stability,
-        applies_to: "the filter alone: sands and gravels without cohesion, up to 100 mm, Cu up to 200",
+        applies_to: "the filter alone: broadly graded and gap-graded sands and gravels without cohesion, \
+                     up to 100 mm, Cu up to 200",
         quantity: "h' = D90/D60 of the filter",
         formula: "0.76 lg h'' + 1, with h'' = D90/D15, and less than 1.86 lg h'' + 1",
         at_least: true,

@@ -54,8 +54,20 @@ fn index(
 /// What is said of a filter that was assumed to be a straight line.
 const CURVE_NEEDED: &str = "needs the filter's sieve curve";
 
-/// Burenkova's range of uniformity. Above it her own zone III is suffusive too; Wan and Fell tested none
-/// there, and expect them to be stable.
+/// Cu from which a filter counts as broadly graded here: that of well-graded sands by ASTM D2487.
+const BROAD_CU: f64 = 6.0;
+
+/// What is said of a filter that neither rule on uniformity was tested on.
+const UNIFORM: &str = "the filter is neither broadly graded (Cu of 6 and more) nor gap-graded";
+
+/// Whether a filter is neither broadly graded nor gap-graded.
+fn is_uniform(filter: &Gradation) -> bool {
+    filter.cu().is_some_and(|cu| cu < BROAD_CU) && filter.gap(0.0).is_none()
+}
+
+/// Burenkova's range of uniformity, for soils such as Wan and Fell judged it on; they found it no clear
+/// boundary, and uniform stones lie below it that have no fines to lose. Above it her own zone III is
+/// suffusive too; Wan and Fell tested none there, and expect them to be stable.
 pub fn burenkova(inputs: &RuleInputs) -> Judged {
     let filter = inputs.filter;
     if !inputs.filter_is_measured {
@@ -70,6 +82,9 @@ pub fn burenkova(inputs: &RuleInputs) -> Judged {
     let is_too_wide = filter.cu().is_some_and(|cu| cu > 200.0);
     if filter.largest_mm() > 100.0 && !inputs.scale_free || is_too_wide {
         return judged.not_for("for grains of up to 100 mm and a Cu of up to 200");
+    }
+    if is_uniform(filter) {
+        return judged.not_for(UNIFORM);
     }
     match factors.coarse >= high {
         true => judged.not_for(format!(
@@ -86,8 +101,8 @@ pub fn wan_fell(inputs: &RuleInputs) -> Judged {
     if !inputs.filter_is_measured || inputs.scale_free {
         return Judged::default().lacking(CURVE_NEEDED);
     }
-    if filter.is_broad() != Some(true) && filter.gap(0.0).is_none() {
-        return Judged::default().not_for("the filter is neither broadly graded nor gap-graded");
+    if is_uniform(filter) {
+        return Judged::default().not_for(UNIFORM);
     }
     let Some(factors) = filter.uniformity_factors() else {
         return Judged::of(None, None).lacking("needs the filter's D15: finer sieves, or filter.d0_mm");

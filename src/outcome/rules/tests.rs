@@ -252,12 +252,14 @@ fn burenkova_and_wan_and_fell_by_hand() {
     let by_hand = 100.0 / (1.0 + (-3.004f64).exp());
     assert!(rule.value.is_some_and(|found| (found - by_hand).abs() < 1e-6), "{rule:?}");
     assert!(rule.met.is_none() && rule.limit.is_none() && rule.applies && rule.unit == "%");
-    // Uniform sand is not what Wan and Fell tested, and within Burenkova's range.
+    // Uniform sand is not what Wan and Fell tested; nor is No. 78 stone, which Burenkova's range would blame.
     let uniform = sieve(&[(1.0, 0.0), (2.25, 100.0)]);
     assert!(!of("wan-fell", &uniform, &soil).applies);
-    assert_eq!(of("burenkova", &uniform, &soil).met, Some(true));
+    let stone = sieve(&[(1.18, 2.5), (2.36, 5.0), (4.75, 15.0), (9.5, 57.5), (12.5, 95.0), (19.0, 100.0)]);
+    let rule = of("burenkova", &stone, &soil);
+    assert!(rule.value < rule.limit && !rule.applies && rule.met.is_none(), "{rule:?}");
     // A long coarse tail: her third zone has no result.
-    let tailed = sieve(&[(0.9, 0.0), (1.0, 15.0), (1.2, 60.0), (6.0, 90.0), (10.0, 100.0)]);
+    let tailed = sieve(&[(0.05, 0.0), (0.1, 5.0), (1.0, 15.0), (2.5, 60.0), (19.0, 90.0), (30.0, 100.0)]);
     let rule = of("burenkova", &tailed, &soil);
     assert!(!rule.applies && rule.met.is_none() && rule.note.contains("third zone"), "{rule:?}");
 }
