@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 
 use super::Case;
-use crate::scene::{CurveSource, Scene};
+use crate::scene::{About, CurveSource, Scene};
 
 /// Part of the fingerprint of every case: raised whenever the program gives other results for the same scene.
 const PROTOCOL: u32 = 1;
@@ -42,7 +42,9 @@ impl Case {
 
     /// Fingerprint of everything that the results follow from: the resolved scene and its files.
     pub fn fingerprint(&self) -> String {
-        let mut text = format!("{PROTOCOL}\n{}", self.resolved().to_toml()).into_bytes();
+        // Nothing follows from what is only said of it.
+        let scene = Scene { about: About::default(), ..self.resolved() };
+        let mut text = format!("{PROTOCOL}\n{}", scene.to_toml()).into_bytes();
         text.extend_from_slice(self.shipped.map_or("", |shipped| shipped.curve_csv).as_bytes());
         for input in self.inputs.iter().filter(|input| input.setting != "filter.density") {
             text.extend_from_slice(input.setting.as_bytes());
