@@ -178,9 +178,8 @@ const LINE: usize = 120;
 
 /// Texts that stand in one line of a page.
 fn line() -> Allowed<String> {
-    let fits = |text: &String| {
-        (1..=LINE).contains(&text.trim().chars().count()) && !text.chars().any(is_hidden)
-    };
+    let fits =
+        |text: &String| (1..=LINE).contains(&text.trim().chars().count()) && !text.chars().any(is_hidden);
     only(format!("a text in quotes, one line of at most {LINE} characters that are seen"), fits)
 }
 
