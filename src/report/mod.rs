@@ -25,6 +25,7 @@
 mod appendix;
 mod boundaries;
 mod campaign;
+mod campaign_cases;
 mod connectivity;
 mod error;
 pub mod figures;
