@@ -31,12 +31,22 @@ pub(super) fn gradations(outcome: &Outcome) -> Markup {
     }
 }
 
+/// A size as a laboratory writes it: four digits that mean something, no zeros at the end.
+fn entered(size: f64) -> String {
+    let digits = libm::pow(10.0, 3.0 - libm::floor(libm::log10(size.max(1e-9))));
+    if (1e-3..1e6).contains(&size) {
+        format!("{}", (size * digits).round() / digits)
+    } else {
+        significant(size)
+    }
+}
+
 fn gradation(kind: &str, name: &str, rows: &[[f64; 2]], unit: &str) -> Markup {
     let finest = rows.iter().map(|row| row[1]).fold(100.0, f64::min);
     // The coarsest first, as a laboratory writes it.
     let shown: Vec<&[f64; 2]> = rows.iter().rev().take(ROWS).collect();
     let table = Table::of(&shown)
-        .number(format!("Size ({unit})"), |row| significant(row[0]))
+        .number(format!("Size ({unit})"), |row| entered(row[0]))
         .number("Percent finer", |row| trimmed((row[1] * 100.0).round() / 100.0));
     html! {
         div {
