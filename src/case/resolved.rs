@@ -53,3 +53,20 @@ impl Case {
         format!("{:032x}", xxhash_rust::xxh3::xxh3_128(&text))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_only_said_of_a_scene_is_kept_and_changes_no_fingerprint() {
+        let case = |set: &[&str]| {
+            let set: Vec<String> = set.iter().map(ToString::to_string).collect();
+            Case::new(Scene::built_in(&set).unwrap()).unwrap()
+        };
+        let said = case(&["about.client=Water Board", "about.project=Dam"]);
+        assert_eq!(said.fingerprint(), case(&[]).fingerprint());
+        assert_ne!(said.fingerprint(), case(&["base.cu=1.6"]).fingerprint());
+        assert_eq!(said.resolved().about.client.as_deref(), Some("Water Board"));
+    }
+}
