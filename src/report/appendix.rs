@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::names::soil_name;
-use super::numbers::{percent, significant, size_unit, trimmed};
+use super::numbers::{in_digits, percent, size_unit, trimmed};
 use super::shell::clean;
 use super::table::Table;
 use crate::outcome::record::Outcome;
@@ -19,8 +19,8 @@ pub(super) fn gradations(outcome: &Outcome) -> Markup {
         section.appendix {
             h2 { "Appendix: the two gradations" }
             p.small {
-                "Percent finer by mass, as walked and as the rules read them; between two rows straight lines \
-                 on semi-logarithmic paper. Files that they were read from are kept in the folder "
+                "Percent finer by mass, as walked and as the rules read them; between two rows straight \
+                 lines on semi-logarithmic paper. Files that they were read from are kept in the folder "
                 code { "inputs" } " of this run."
             }
             div.gradations {
@@ -31,22 +31,12 @@ pub(super) fn gradations(outcome: &Outcome) -> Markup {
     }
 }
 
-/// A size as a laboratory writes it: four digits that mean something, no zeros at the end.
-fn entered(size: f64) -> String {
-    let digits = libm::pow(10.0, 3.0 - libm::floor(libm::log10(size.max(1e-9))));
-    if (1e-3..1e6).contains(&size) {
-        format!("{}", (size * digits).round() / digits)
-    } else {
-        significant(size)
-    }
-}
-
 fn gradation(kind: &str, name: &str, rows: &[[f64; 2]], unit: &str) -> Markup {
     let finest = rows.iter().map(|row| row[1]).fold(100.0, f64::min);
     // The coarsest first, as a laboratory writes it.
     let shown: Vec<&[f64; 2]> = rows.iter().rev().take(ROWS).collect();
     let table = Table::of(&shown)
-        .number(format!("Size ({unit})"), |row| entered(row[0]))
+        .number(format!("Size ({unit})"), |row| in_digits(row[0], 4))
         .number("Percent finer", |row| trimmed((row[1] * 100.0).round() / 100.0));
     html! {
         div {

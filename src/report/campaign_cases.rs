@@ -25,9 +25,9 @@ pub(super) fn cases(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> M
         (table(folder, about, ledger))
         @if ledger.len() > LISTED { p.small { "The rest is in cases.csv." } }
         p.small {
-            "Class: with a link to the page of the case; below it the replicates by class, where they differ. \
-             Confidence: within or outside the range in which the model was checked, or contradicted by a rule \
-             of practice. Below a number its 95 % interval over the replicates."
+            "Class: with a link to the page of the case; below it the replicates by class, where they \
+             differ. Confidence: within or outside the range in which the model was checked, or \
+             contradicted by a rule of practice. Below a number its 95 % interval over the replicates."
         }
         (listed("Rules of practice that are not met", &tally(ledger, rules_of)))
         (listed("Warnings", &tally(ledger, |line| line.warnings.clone())))
@@ -37,11 +37,13 @@ pub(super) fn cases(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> M
 /// How many verdicts cannot be relied on as they stand; nothing where all can.
 pub(super) fn doubted(ledger: &[LedgerLine]) -> Markup {
     let count = |wanted| ledger.iter().filter(|line| line.confidence == Some(wanted)).count() as u64;
-    let (outside, against) = (count(Confidence::Outside), count(Confidence::Contradicted));
+    let doubts = [Confidence::Outside, Confidence::Contradicted].map(|doubt| (doubt, count(doubt)));
     html! {
-        @for (count, words) in [(outside, Confidence::Outside.words()), (against, Confidence::Contradicted.words())] {
-            @if count > 0 {
-                p { span.amber { (whole(count)) @if count == 1 { " case" } @else { " cases" } ": " (words) } }
+        @for (doubt, count) in doubts.into_iter().filter(|(_, count)| *count > 0) {
+            p {
+                span.amber {
+                    (whole(count)) @if count == 1 { " case: " } @else { " cases: " } (doubt.words())
+                }
             }
         }
     }

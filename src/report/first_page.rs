@@ -7,7 +7,7 @@ use serde::Deserialize;
 use super::figures::shorten;
 use super::folder::RunFolder;
 use super::names::soil_name;
-use super::numbers::{significant, size, trimmed, whole};
+use super::numbers::{in_digits, significant, size, whole};
 use super::shell::clean;
 use super::table::Table;
 use crate::outcome::record::{AppliedRule, Outcome, RuleRole};
@@ -100,7 +100,7 @@ fn table(rules: &[&AppliedRule]) -> Markup {
         })
         .number("limit", |rule| {
             let sign = if rule.at_least { "≥" } else { "≤" };
-            let limit = |limit: f64| format!("{sign} {} {}", trimmed((limit * 1e3).round() / 1e3), rule.unit);
+            let limit = |limit: f64| format!("{sign} {} {}", in_digits(limit, 3), rule.unit);
             clean(rule.limit.map_or_else(|| "–".to_owned(), limit).trim_end())
         })
         .text("", |rule| match result(rule) {

@@ -18,10 +18,10 @@ pub(super) fn infiltration(outcome: &Outcome) -> Markup {
             },
             Some(found) => {
                 p {
-                    "How far a particle comes that enters the clean filter alone: with a confidence P of 95 % \
-                     (or 99 %) it does not pass more than n = ln(1 − P) / ln(P(F)) layers, where P(F) is its \
-                     chance to move one layer downstream in the directed lattice that is walked. Nothing is \
-                     blocked here."
+                    "How far a particle comes that enters the clean filter alone: with a confidence P of \
+                     95 % (or 99 %) it does not pass more than n = ln(1 − P) / ln(P(F)) layers, where P(F) \
+                     is its chance to move one layer downstream in the directed lattice that is walked. \
+                     Nothing is blocked here."
                 }
                 (sizes(found, outcome.inputs.scale_free))
                 (beside_the_walk(found, outcome))

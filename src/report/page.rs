@@ -220,7 +220,7 @@ fn warnings(outcome: &Outcome) -> Markup {
             section.warnings {
                 h2 { "Before you rely on this" }
                 ul {
-                    @if outcome.capped {
+                    @if outcome.capped && !warnings.iter().any(|warning| warning.starts_with("capped at")) {
                         li {
                             "Capped: " (whole(outcome.n_base)) " base particles were walked; "
                             "Eq. (2) requires " (known(outcome.n_base_eq2, whole)) "."
@@ -313,8 +313,8 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
             (fact("D85, D95, D100 (by mass)", [base.d85_mm, base.d95_mm, base.d100_mm].map(mm).join(", ")))
             @if base.tail_mass_fraction > 0.0 {
                 (fact("Pan fraction (finer than the finest sieve)",
-                    format!("{} by mass; taken as too fine to block any constriction (passive); only its mass is \
-                             counted", percent(base.tail_mass_fraction))))
+                    format!("{} by mass; taken as too fine to block any constriction (passive); only its \
+                             mass is counted", percent(base.tail_mass_fraction))))
             }
             (fact("D15F/D85B, D15F/D95B", format!("{}, {}", significant(outcome.ratios.d15f_over_d85b),
                 significant(outcome.ratios.d15f_over_d95b))))
