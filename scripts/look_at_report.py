@@ -144,7 +144,7 @@ def faults_of_sheets(found, first):
             yield f"printed page {number} of {len(found)} is mostly empty"
         for place, (box, word) in enumerate(words):
             near = (other for other in words[place + 1:] if other[1] == word)
-            if any(max(abs(a - b) for a, b in zip(box, other)) < 4.0 for other, _ in near):
+            if any(max(abs(a - b) for a, b in zip(box, other)) < 2.0 for other, _ in near):
                 yield f"printed page {number}: \"{word}\" is there twice at one place"
 
 

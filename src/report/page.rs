@@ -118,6 +118,7 @@ fn verdict_box(outcome: &Outcome, verdict: &Drawn) -> Markup {
             div { (drawing(verdict)) }
             (table)
             @if let Some(stopping) = &outcome.stopping { p { (stopped(stopping)) } }
+            @if let Some(next) = outcome.what_would_decide() { p { (capital(next)) "." } }
             p { (tally(outcome)) " Threshold between the classes: " (threshold(outcome.threshold)) "." }
             @if count == 1 {
                 p {

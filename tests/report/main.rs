@@ -107,8 +107,13 @@ fn every_class_has_its_words() {
                 reached.";
     assert!(words(&made(&plan).0).contains(rule));
     assert!(words(&made(&plan).0).contains("Inconclusive: the interval of the second run includes 7.5 %"));
+    let next = "More replicates may decide it: --decide 99% adds them";
+    assert!(!words(&made(&plan).0).contains(next), "they were added already");
+    plan.outcome.stopping = None;
+    assert!(words(&made(&plan).0).contains(next));
     plan.outcome.summary.truncate(1);
     plan.outcome.replicates.iter_mut().for_each(|replicate| replicate.runs.truncate(1));
+    assert!(words(&made(&plan).0).contains("Two runs tell some from continuing erosion (runs = 2)"));
     assert!(words(&made(&plan).0).contains("only a first was asked for"));
 }
 
