@@ -42,6 +42,9 @@ FIRST_PAGE = """[...document.querySelectorAll('.names, .about, .verdict .word, .
 # Width and height in inches.
 PAPER = {"a4": (8.27, 11.69), "letter": (8.5, 11.0)}
 
+# Left and right of the text, as the style says (inches).
+MARGIN = 13 / 25.4
+
 # A page on which a larger share of the height than this holds no word in one piece is mostly empty.
 EMPTY = 0.45
 
@@ -112,10 +115,18 @@ def print_out(page, pdf, paper):
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile, Browser(profile) as browser:
         tab = browser.open(pathlib.Path(page).resolve().as_uri(), 1280, 900)
         first = browser.ask("Runtime.evaluate", tab, expression=FIRST_PAGE, returnByValue=True)
+        inside = int(96 * (width - 2 * MARGIN))
+        browser.ask("Emulation.setDeviceMetricsOverride", tab, width=inside, height=900, deviceScaleFactor=1, mobile=False)
+        browser.ask("Emulation.setEmulatedMedia", tab, media="print")
+        wide = browser.ask("Runtime.evaluate", tab, expression="document.documentElement.scrollWidth", returnByValue=True)
+        browser.ask("Emulation.setEmulatedMedia", tab, media="")
         printed = browser.ask("Page.printToPDF", tab, paperWidth=width, paperHeight=height,
                               printBackground=False, preferCSSPageSize=True)
         pathlib.Path(pdf).write_bytes(base64.b64decode(printed["data"]))
-    return list(faults_of_sheets(sheets(pdf), first["result"]["value"]))
+    faults = list(faults_of_sheets(sheets(pdf), first["result"]["value"]))
+    if wide["result"]["value"] > inside:
+        faults.append(f"is {wide['result']['value']} px wide on a sheet of {inside} px: all of it is printed smaller")
+    return faults
 
 
 def sheets(pdf):

@@ -79,7 +79,9 @@ pub(super) fn replicates(outcome: &Outcome) -> Markup {
         .collect();
     let table = Table::of(&rows)
         .class("replicates")
-        .name("Replicate", |(number, replicate, _)| format!("{number} (seed {})", replicate.seed))
+        .name("Replicate", |(number, replicate, _)| {
+            html! { (number) span.seed { " (seed " (replicate.seed) ")" } }
+        })
         .text("Verdict", |(_, replicate, _)| replicate.verdict.words())
         .text("Run", |(.., run)| html! { span class={ "run-" (run.run) } { (run.run) } })
         .number("Eroded, mass", |(.., run)| percent(run.eroded_mass_fraction))
@@ -108,7 +110,8 @@ pub(super) fn replicates(outcome: &Outcome) -> Markup {
             p.small {
                 "Inserted, eroded, in constrictions, in voids and trapped count particles; per void is all \
                  retained "
-                "particles over voids; trapped particles are trapped in closed loops."
+                "particles over voids; trapped particles are trapped in closed loops. Seeds, increments, moves and \
+                 times are not printed; outcome.json holds them."
             }
         }
     }
