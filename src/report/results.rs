@@ -110,8 +110,8 @@ pub(super) fn replicates(outcome: &Outcome) -> Markup {
             p.small {
                 "Inserted, eroded, in constrictions, in voids and trapped count particles; per void is all \
                  retained "
-                "particles over voids; trapped particles are trapped in closed loops. Seeds, increments, moves and \
-                 times are not printed; outcome.json holds them."
+                "particles over voids; trapped particles are trapped in closed loops. Seeds, increments, \
+                 moves and times are not printed; outcome.json holds them."
             }
         }
     }
