@@ -1,17 +1,16 @@
-"""Drives Chromium over its debugging pipe for look_at_report.sh. Python's standard library only."""
+"""Drives Chromium for look_at_report.sh. Python's standard library only."""
 
 import base64
-import json
-import os
+import html
 import pathlib
+import re
 import struct
 import subprocess
 import sys
 import tempfile
 import zlib
 
-FLAGS = """--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking
---disable-component-update --disable-sync --disable-dev-shm-usage --hide-scrollbars --remote-debugging-pipe""".split()
+from browser import Browser
 
 # What a person would trip over; runs in the finished page.
 INSPECT = """(() => {
@@ -36,53 +35,18 @@ INSPECT = """(() => {
 })()"""
 
 
-class Browser:
-    """One Chromium, spoken to in JSON messages that end with a zero byte."""
+# What must stand on the first printed page, so that it can be handed in by itself.
+FIRST_PAGE = """[...document.querySelectorAll('.names, .about, .verdict .word, .warnings, .short, .leaves')]
+  .map(part => part.innerText)"""
 
-    def __init__(self, profile):
-        to_browser, self.out = os.pipe()
-        self.inn, from_browser = os.pipe()
+# Width and height in inches.
+PAPER = {"a4": (8.27, 11.69), "letter": (8.5, 11.0)}
 
-        def wire():  # the browser reads from descriptor 3 and writes to 4
-            os.dup2(to_browser, 103)
-            os.dup2(from_browser, 104)
-            os.dup2(103, 3)
-            os.dup2(104, 4)
+# Left and right of the text, as the style says (inches).
+MARGIN = 13 / 25.4
 
-        self.process = subprocess.Popen(
-            ["chromium", *FLAGS, f"--user-data-dir={profile}", "about:blank"],
-            preexec_fn=wire, close_fds=False, stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        os.close(to_browser)
-        os.close(from_browser)
-        self.buffer, self.number, self.events = b"", 0, []
-
-    def read(self):
-        while b"\0" not in self.buffer:
-            chunk = os.read(self.inn, 1 << 20)
-            if not chunk:
-                raise SystemExit("chromium ended before it answered")
-            self.buffer += chunk
-        message, self.buffer = self.buffer.split(b"\0", 1)
-        return json.loads(message)
-
-    def ask(self, method, session=None, **params):
-        self.number += 1
-        message = {"id": self.number, "method": method, "params": params}
-        if session:
-            message["sessionId"] = session
-        os.write(self.out, json.dumps(message).encode() + b"\0")
-        while True:
-            answer = self.read()
-            if answer.get("id") == self.number:
-                if "error" in answer:
-                    raise SystemExit(f"{method}: {answer['error']['message']}")
-                return answer["result"]
-            self.events.append(answer)
-
-    def wait(self, method):
-        while not any(event.get("method") == method for event in self.events):
-            self.events.append(self.read())
+# A page on which a larger share of the height than this holds no word in one piece is mostly empty.
+EMPTY = 0.45
 
 
 def colours(png):
@@ -124,40 +88,75 @@ def colours(png):
 def look(page, picture, width):
     wanted = pathlib.Path(page).resolve().as_uri()
     faults = []
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
-        browser = Browser(profile)
-        try:
-            target = browser.ask("Target.createTarget", url="about:blank")["targetId"]
-            tab = browser.ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
-            for domain in ("Page", "Runtime", "Log", "Network"):
-                browser.ask(f"{domain}.enable", tab)
-            browser.ask("Emulation.setDeviceMetricsOverride", tab,
-                        width=width, height=900, deviceScaleFactor=1, mobile=False)
-            browser.ask("Page.navigate", tab, url=wanted)
-            browser.wait("Page.loadEventFired")
-            inspected = browser.ask("Runtime.evaluate", tab, expression=INSPECT, returnByValue=True)
-            faults += inspected["result"].get("value", ["the page could not be inspected"])
-            size = browser.ask("Page.getLayoutMetrics", tab)["cssContentSize"]
-            area = {"x": 0, "y": 0, "width": width, "height": size["height"]}
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile, Browser(profile) as browser:
+        tab = browser.open(wanted, width, 900)
+        inspected = browser.ask("Runtime.evaluate", tab, expression=INSPECT, returnByValue=True)
+        faults += inspected["result"].get("value", ["the page could not be inspected"])
+        size = browser.ask("Page.getLayoutMetrics", tab)["cssContentSize"]
+        area = {"x": 0, "y": 0, "width": width, "height": size["height"]}
 
-            def shoot(scale):
-                shot = browser.ask("Page.captureScreenshot", tab, format="png", captureBeyondViewport=True,
-                                   clip={**area, "scale": scale})
-                return base64.b64decode(shot["data"])
+        def shoot(scale):
+            shot = browser.ask("Page.captureScreenshot", tab, format="png", captureBeyondViewport=True,
+                               clip={**area, "scale": scale})
+            return base64.b64decode(shot["data"])
 
-            pathlib.Path(picture).write_bytes(shoot(1))
-            if colours(shoot(0.1)) < 8:
-                faults.append("the picture is blank")
-            browser.ask("Page.disable", tab)  # everything logged so far has arrived with this answer
-            for event in browser.events:
-                faults += complaints(event, wanted)
-            browser.ask("Browser.close")
-        finally:
-            try:
-                browser.process.wait(timeout=10)
-            except subprocess.TimeoutExpired:
-                browser.process.kill()
+        pathlib.Path(picture).write_bytes(shoot(1))
+        if colours(shoot(0.1)) < 8:
+            faults.append("the picture is blank")
+        browser.ask("Page.disable", tab)  # everything logged so far has arrived with this answer
+        for event in browser.events:
+            faults += complaints(event, wanted)
     return faults
+
+
+def print_out(page, pdf, paper):
+    """Prints the page as a reader would, without backgrounds, and looks at what is on each sheet."""
+    width, height = PAPER[paper]
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile, Browser(profile) as browser:
+        tab = browser.open(pathlib.Path(page).resolve().as_uri(), 1280, 900)
+        first = browser.ask("Runtime.evaluate", tab, expression=FIRST_PAGE, returnByValue=True)
+        inside = int(96 * (width - 2 * MARGIN))
+        browser.ask("Emulation.setDeviceMetricsOverride", tab, width=inside, height=900, deviceScaleFactor=1, mobile=False)
+        browser.ask("Emulation.setEmulatedMedia", tab, media="print")
+        wide = browser.ask("Runtime.evaluate", tab, expression="document.documentElement.scrollWidth", returnByValue=True)
+        browser.ask("Emulation.setEmulatedMedia", tab, media="")
+        printed = browser.ask("Page.printToPDF", tab, paperWidth=width, paperHeight=height,
+                              printBackground=False, preferCSSPageSize=True)
+        pathlib.Path(pdf).write_bytes(base64.b64decode(printed["data"]))
+    faults = list(faults_of_sheets(sheets(pdf), first["result"]["value"]))
+    if wide["result"]["value"] > inside:
+        faults.append(f"is {wide['result']['value']} px wide on a sheet of {inside} px: all of it is printed smaller")
+    return faults
+
+
+def sheets(pdf):
+    """Each sheet of a PDF: its height, and its words with where they stand."""
+    found = subprocess.run(["pdftotext", "-bbox", pdf, "-"], capture_output=True, check=True, text=True).stdout
+    for sheet in found.split("<page ")[1:]:
+        words = re.findall(r'<word xMin="(.*?)" yMin="(.*?)" xMax="(.*?)" yMax="(.*?)">(.*?)</word>', sheet)
+        height = float(re.search(r'height="(.*?)"', sheet)[1])
+        yield height, [([float(edge) for edge in word[:4]], html.unescape(word[4])) for word in words]
+
+
+def faults_of_sheets(found, first):
+    found = list(found)
+    there = "".join(word for _, word in found[0][1])
+    for part in first:
+        missing = [word for word in part.split() if word not in there]
+        # a word that is broken at the end of a line is not there in one piece
+        if len(missing) > 0.05 * len(part.split()):
+            yield f"the first printed page lacks: {' '.join(missing)[:200]}"
+    for number, (height, words) in enumerate(found, 1):
+        edges = sorted((box[1], box[3]) for box, _ in words)
+        gap, reached = 0.0, 0.06 * height
+        for top, bottom in edges + [(0.94 * height, 0.94 * height)]:
+            gap, reached = max(gap, top - reached), max(reached, bottom)
+        if gap > EMPTY * height and number < len(found):
+            yield f"printed page {number} of {len(found)} is mostly empty"
+        for place, (box, word) in enumerate(words):
+            near = (other for other in words[place + 1:] if other[1] == word)
+            if any(max(abs(a - b) for a, b in zip(box, other)) < 2.0 for other, _ in near):
+                yield f"printed page {number}: \"{word}\" is there twice at one place"
 
 
 def complaints(event, wanted):
@@ -173,13 +172,14 @@ def complaints(event, wanted):
 
 
 def main():
-    page, picture, width = sys.argv[1], sys.argv[2], int(sys.argv[3])
-    faults = look(page, picture, width)
+    page, out, how = sys.argv[1], sys.argv[2], sys.argv[3]
+    is_print = out.endswith(".pdf")
+    faults = print_out(page, out, how) if is_print else look(page, out, int(how))
     for fault in faults:
         print(f"{page}: {fault}", file=sys.stderr)
     if faults:
         raise SystemExit(1)
-    print(f"{picture}: {width} px wide, no complaint")
+    print(f"{out}: {how if is_print else how + ' px wide'}, no complaint")
 
 
 main()

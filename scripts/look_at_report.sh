@@ -1,27 +1,32 @@
 #!/bin/sh
-# Opens a report in a headless Chromium, as a person would, and takes a picture of the whole page.
+# Opens a report in a headless Chromium, as a person would, and takes a picture of the whole page, or prints it.
 #
 #   scripts/look_at_report.sh REPORT.html OUT.png [WIDTH]
+#   scripts/look_at_report.sh REPORT.html OUT.pdf [a4|letter]
 #
 # WIDTH is that of the window in pixels, 1280 unless given (390 is a telephone). Fails when the page breaks its content
 # security policy, logs an error, asks for any other file, is wider than the window, holds two labels that overlap in a
-# figure or one that is cut off, or when the picture is blank. Installs Debian's chromium when it is missing.
+# figure or one that is cut off, or when the picture is blank; in print, when the first page lacks verdict, warnings or
+# rules, when a page but the last is mostly empty, or when a word lies on itself. Installs Debian's chromium, and for
+# print poppler-utils, when they are missing.
 set -eu
 
 if [ "$#" -lt 2 ] || [ "$#" -gt 3 ]; then
-    echo "usage: $0 REPORT.html OUT.png [WIDTH]" >&2
+    echo "usage: $0 REPORT.html OUT.png [WIDTH], or OUT.pdf [a4|letter]" >&2
     exit 2
 fi
 [ -f "$1" ] || { echo "$1: no such file" >&2; exit 2; }
+. "$(dirname "$0")/chromium.sh"
 
-missing=
-command -v chromium >/dev/null 2>&1 || missing="$missing chromium fonts-liberation"
-command -v python3 >/dev/null 2>&1 || missing="$missing python3"
-if [ -n "$missing" ]; then
-    [ "$(id -u)" = 0 ] || { echo "needs:$missing (as root this script installs them)" >&2; exit 2; }
-    apt-get update -qq >&2
-    # shellcheck disable=SC2086 # several packages
-    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >&2
-fi
-
-exec python3 "$(dirname "$0")/look_at_report.py" "$1" "$2" "${3:-1280}"
+case $2 in
+    *.pdf)
+        how=${3:-a4}
+        case $how in a4 | letter) ;; *) echo "$how: a4 or letter" >&2; exit 2 ;; esac
+        have_commands chromium python3 pdftotext
+        ;;
+    *)
+        how=${3:-1280}
+        have_commands chromium python3
+        ;;
+esac
+exec python3 "$(dirname "$0")/look_at_report.py" "$1" "$2" "$how"

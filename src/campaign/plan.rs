@@ -42,8 +42,8 @@ const MOST_CASES: usize = 100_000;
 const LARGEST_FILE: u64 = 1 << 20;
 
 /// What a scene has at its top, and a plan only inside `set`.
-const OF_A_SCENE: [&str; 9] =
-    ["filter", "base", "network", "packing", "record", "stop", "replicates", "runs", "engine"];
+const OF_A_SCENE: [&str; 10] =
+    ["filter", "base", "network", "packing", "record", "stop", "about", "replicates", "runs", "engine"];
 
 const SCENE: &str = "is a scene, not the plan of a campaign; walk it by `voidwalk run`, or name it in a \
  plan by scene = \"FILE\" above its [[factor]] and [[case]]; settings of all cases go under [set]";

@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 
 use super::Case;
-use crate::scene::{CurveSource, Scene};
+use crate::scene::{About, CurveSource, Scene};
 
 /// Part of the fingerprint of every case: raised whenever the program gives other results for the same scene.
 const PROTOCOL: u32 = 1;
@@ -42,12 +42,31 @@ impl Case {
 
     /// Fingerprint of everything that the results follow from: the resolved scene and its files.
     pub fn fingerprint(&self) -> String {
-        let mut text = format!("{PROTOCOL}\n{}", self.resolved().to_toml()).into_bytes();
+        // Nothing follows from what is only said of it.
+        let scene = Scene { about: About::default(), ..self.resolved() };
+        let mut text = format!("{PROTOCOL}\n{}", scene.to_toml()).into_bytes();
         text.extend_from_slice(self.shipped.map_or("", |shipped| shipped.curve_csv).as_bytes());
         for input in self.inputs.iter().filter(|input| input.setting != "filter.density") {
             text.extend_from_slice(input.setting.as_bytes());
             text.extend_from_slice(&input.bytes);
         }
         format!("{:032x}", xxhash_rust::xxh3::xxh3_128(&text))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_only_said_of_a_scene_is_kept_and_changes_no_fingerprint() {
+        let case = |set: &[&str]| {
+            let set: Vec<String> = set.iter().map(ToString::to_string).collect();
+            Case::new(Scene::built_in(&set).unwrap()).unwrap()
+        };
+        let said = case(&["about.client=Water Board", "about.project=Dam"]);
+        assert_eq!(said.fingerprint(), case(&[]).fingerprint());
+        assert_ne!(said.fingerprint(), case(&["base.cu=1.6"]).fingerprint());
+        assert_eq!(said.resolved().about.client.as_deref(), Some("Water Board"));
     }
 }

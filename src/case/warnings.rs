@@ -37,8 +37,8 @@ impl Case {
         }
         if self.base.pan_fraction() > 0.0 {
             doubts.push(format!(
-                "{:.1} % of the base is finer than its finest sieve: taken as passive and counted by mass \
-                 only",
+                "{:.1} % of the base is finer than its finest sieve: taken as too fine to block any \
+                 constriction, and counted by its mass only",
                 100.0 * self.base.pan_fraction()
             ));
         }

@@ -74,6 +74,9 @@ fn summary(run: &FinishedRun) -> String {
     if let Some(sentence) = outcome.stopping.as_ref().and_then(|stopping| stopping.sentence.as_ref()) {
         line(format!("  {sentence}"));
     }
+    if let Some(next) = outcome.what_would_decide() {
+        line(format!("  {next}"));
+    }
     let trapped: u64 = outcome.replicates.iter().flat_map(|r| &r.runs).map(|r| r.trapped).sum();
     if trapped > 0 {
         line(format!("  {} particles trapped in closed loops; they count as retained", count(trapped)));

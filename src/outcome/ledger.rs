@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::record::{Outcome, Ratios, RunSummary, Verdict};
+use super::record::{Confidence, Outcome, Ratios, RunSummary, Verdict};
 
 /// A finished case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -23,6 +23,13 @@ pub struct LedgerLine {
     pub commit: Option<String>,
     /// The class that the replicates together support.
     pub verdict: Verdict,
+    /// How far it can be relied on; lines of earlier versions do not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub confidence: Option<Confidence>,
+    /// The rules of practice that were made for these soils and are not kept, by their names for programs;
+    /// lines of earlier versions do not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rules_not_met: Option<Vec<String>>,
     /// Replicates by their own class, in the order of [`Verdict::ALL`].
     pub replicate_verdicts: [u64; 4],
     /// Replicates.
@@ -95,6 +102,10 @@ impl LedgerLine {
             version: env!("CARGO_PKG_VERSION").into(),
             commit: option_env!("VOIDWALK_COMMIT").map(String::from),
             verdict: outcome.verdict,
+            confidence: Some(outcome.confidence),
+            rules_not_met: Some(
+                outcome.rules.iter().filter(|rule| rule.is_broken()).map(|rule| rule.id.clone()).collect(),
+            ),
             replicate_verdicts: Verdict::ALL.map(of),
             replicates: outcome.replicates.len() as u64,
             n_base: outcome.n_base,

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use maud::{Markup, Render, html};
+use maud::{Markup, html};
 
+use super::campaign_cases as cases;
 use super::error::ReportError;
 use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, PURPLE, Point, Rule, Shape, shorten};
 use super::files::{json, lines};
-use super::numbers::{duration, interval, interval_in_percent, percent, significant, whole};
+use super::numbers::{duration, interval, interval_in_percent, whole};
 use super::run_figures::verdict_colour;
 use super::shell::{Drawn, citation, clean, figures, leaves_out, whole_page};
 use super::table::Table;
@@ -19,9 +20,6 @@ use crate::outcome::verdict::THRESHOLD;
 
 /// Cases drawn one by one; all are in the table.
 const DRAWN: usize = 120;
-
-/// Cases listed in the page; all are in `cases.csv`.
-const LISTED: usize = 2000;
 
 /// Symbols of the classes, in the order of [`Verdict::ALL`].
 const SHAPES: [Shape; 4] = [Shape::Circle, Shape::Diamond, Shape::Square, Shape::Triangle];
@@ -37,7 +35,8 @@ pub fn write_campaign(folder: &Path) -> Result<Written, ReportError> {
         true => Vec::new(),
         false => vec![by_ratio(&ledger), both_runs(&ledger), largest(&ledger)],
     };
-    write_page(folder, &figures, &page(&about, &ledger, &figures))
+    let cases = cases::cases(folder, &about, &ledger);
+    write_page(folder, &figures, &page(&about, &ledger, &figures, &cases))
 }
 
 fn eroded(line: &LedgerLine, run: usize) -> Option<&Statistic> {
@@ -133,7 +132,7 @@ fn largest(ledger: &[LedgerLine]) -> Drawn {
     Drawn::new("largest-eroded", figure.sizes((720.0, 340.0), (358.0, 320.0)), caption)
 }
 
-fn page(about: &Campaign, ledger: &[LedgerLine], drawn: &[Drawn]) -> String {
+fn page(about: &Campaign, ledger: &[LedgerLine], drawn: &[Drawn], cases: &Markup) -> String {
     let title = if about.title.is_empty() { about.plan.as_str() } else { about.title.as_str() };
     let header = html! {
         h1 { "Which of these filters hold?" }
@@ -148,7 +147,13 @@ fn page(about: &Campaign, ledger: &[LedgerLine], drawn: &[Drawn]) -> String {
                 (Table::of(classes.iter().filter(|(_, count)| *count > 0))
                     .name("Class", |(class, _)| class.words())
                     .number("cases", |(_, count)| whole(*count)))
-                p { "Undecided: an interval over replicates straddles 7.5 %. More replicates may decide it." }
+                @if count(Verdict::Undecided) > 0 {
+                    p {
+                        "Undecided: an interval over replicates straddles 7.5 %. More replicates may decide \
+                         it."
+                    }
+                }
+                (cases::doubted(ledger))
             }
             (leaves_out(&MODEL_LEAVES_OUT, &html! {}))
         }
@@ -157,53 +162,13 @@ fn page(about: &Campaign, ledger: &[LedgerLine], drawn: &[Drawn]) -> String {
             p { (whole(about.missing.len() as u64)) " cases are missing: continue with the same command." }
             ul { @for name in about.missing.iter().take(50) { li { (clean(name)) } } }
         }
-        (figures(drawn))
         h2 { "Cases" }
-        (cases(about, ledger))
-        @if ledger.len() > LISTED { p.small { "The rest is in cases.csv." } }
+        (cases)
+        h2 { "Figures" }
+        (figures(drawn))
         (provenance(about, ledger))
     };
     whole_page(&clean(title), &header, &main, &citation())
-}
-
-fn cases(about: &Campaign, ledger: &[LedgerLine]) -> Markup {
-    let with_interval = |statistic: Option<&Statistic>| {
-        let Some(statistic) = statistic else { return "–".to_owned() };
-        let around =
-            interval(statistic).map(|(low, high)| format!(" ({} to {})", percent(low), percent(high)));
-        format!("{}{}", percent(statistic.mean), around.unwrap_or_default())
-    };
-    let mut table = Table::of(ledger.iter().take(LISTED)).class("cases");
-    for factor in &about.factors {
-        table = table.text(clean(factor), move |line| match line.levels.get(factor) {
-            Some(serde_json::Value::String(level)) => clean(level),
-            _ => String::new(),
-        });
-    }
-    if about.factors.is_empty() || ledger.iter().any(|line| line.levels.is_empty()) {
-        let case = |line: &LedgerLine| if line.levels.is_empty() { clean(&line.case) } else { String::new() };
-        table = table.text("case", case);
-    }
-    let capped = |line: &LedgerLine| if line.capped { " (capped)" } else { "" };
-    table
-        .number("D15F/D85B", |line| significant(line.ratios.d15f_over_d85b))
-        .number("D15F/D95B", |line| significant(line.ratios.d15f_over_d95b))
-        .number("N_base", move |line| format!("{}{}", whole(line.n_base), capped(line)))
-        .number("first run", move |line| with_interval(eroded(line, 0)))
-        .number("second run", move |line| with_interval(eroded(line, 1)))
-        .number("largest / D15F", |line| {
-            largest_eroded(line).map_or_else(String::new, |s| significant(s.mean))
-        })
-        .text("class", |line| html! { b { (line.verdict.words()) } })
-        .text("replicates by class", replicates_by_class)
-        .render()
-}
-
-/// "7 none, 3 some".
-fn replicates_by_class(line: &LedgerLine) -> String {
-    let names = ["none", "some", "continuing", "undecided"];
-    let parts = names.iter().zip(line.replicate_verdicts).filter(|(_, count)| *count > 0);
-    parts.map(|(name, count)| format!("{count} {name}")).collect::<Vec<_>>().join(", ")
 }
 
 fn provenance(about: &Campaign, ledger: &[LedgerLine]) -> Markup {

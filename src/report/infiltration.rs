@@ -18,11 +18,10 @@ pub(super) fn infiltration(outcome: &Outcome) -> Markup {
             },
             Some(found) => {
                 p {
-                    "How far a particle comes that enters the clean filter alone, n = ln(1 − P) / \
-                     ln(P(F)): with a confidence of "
-                    "95 % (or 99 %) it does not pass more layers. P(F), the probability that it moves one \
-                     layer downstream, is "
-                    "that of the directed lattice that is walked. Nothing is blocked here."
+                    "How far a particle comes that enters the clean filter alone: with a confidence P of \
+                     95 % (or 99 %) it does not pass more than n = ln(1 − P) / ln(P(F)) layers, where P(F) \
+                     is its chance to move one layer downstream in the directed lattice that is walked. \
+                     Nothing is blocked here."
                 }
                 (sizes(found, outcome.inputs.scale_free))
                 (beside_the_walk(found, outcome))
@@ -36,7 +35,7 @@ fn sizes(found: &Infiltration, scale_free: bool) -> Markup {
     Table::of(&found.sizes)
         .name("Particle", |row| clean(&row.name))
         .number("Size", |row| size(row.diameter_mm, scale_free))
-        .number("P(F)", |row| format!("{:.4}", row.downstream))
+        .number("Chance to move one layer on", |row| format!("{:.4}", row.downstream))
         .number("Layers, 95 %", |row| layers(row.layers_95))
         .number("Layers, 99 %", |row| layers(row.layers_99))
         .number(format!("Passes all {}", whole(found.layers)), |row| percent(row.through))

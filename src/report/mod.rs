@@ -22,18 +22,24 @@
 //! An engineer reads the verdict first, with its numbers, and beside it what the model leaves out; then
 //! warnings, figures, the rules of practice, tables, and how to run it again.
 
+mod appendix;
+mod boundaries;
 mod campaign;
+mod campaign_cases;
 mod connectivity;
 mod error;
 pub mod figures;
 pub mod files;
+mod first_page;
 mod folder;
 mod infiltration;
+mod names;
 pub mod numbers;
 mod packing;
 mod page;
 mod percolation;
 mod precision;
+mod results;
 mod rules;
 mod run_figures;
 pub mod shell;

@@ -96,6 +96,15 @@ pub(super) fn trimmed(factor: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
+/// A number with at most this many digits that mean something, and no zeros at the end.
+pub(super) fn in_digits(value: f64, digits: u8) -> String {
+    if !(1e-4..1e6).contains(&value) {
+        return significant(value);
+    }
+    let scale = libm::pow(10.0, f64::from(digits) - 1.0 - libm::floor(libm::log10(value)));
+    format!("{}", (value * scale).round() / scale)
+}
+
 /// The text with its first letter a capital.
 pub(super) fn capital(text: &str) -> String {
     let mut characters = text.chars();
@@ -132,6 +141,13 @@ mod tests {
         let texts: Vec<String> = [1.0, 0.16044, 12.345, 1234.5, 0.000_012, 2e9, 0.0].map(significant).into();
         assert_eq!(texts, ["1.00", "0.160", "12.3", "1234", "1.20e-5", "2.00e9", "0"]);
         assert_eq!(significant(f64::INFINITY), "unlimited");
+    }
+
+    #[test]
+    fn digits_end_where_they_mean_nothing() {
+        let texts = [19.05, 0.075, 0.6, 4.0, 25.896, 100.0, 1e-7].map(|value| in_digits(value, 3));
+        assert_eq!(texts, ["19.1", "0.075", "0.6", "4", "25.9", "100", "1.00e-7"]);
+        assert_eq!(in_digits(19.05, 4), "19.05");
     }
 
     #[test]

@@ -7,25 +7,22 @@ use maud::{Markup, html};
 use super::connectivity::by_connectivity;
 use super::error::ReportError;
 use super::figures::{shorten, visible};
+use super::first_page::{self, in_short};
 use super::folder::RunFolder;
 use super::infiltration::infiltration;
+use super::names::soil_name;
 use super::numbers::{
-    capital, duration, interval, known, percent, percent_interval, significant, size, size_unit, threshold,
-    trimmed, whole,
+    capital, duration, interval, known, percent, percent_interval, significant, size, threshold, whole,
 };
+use super::results::{replicates, results, run_heading, sensitivity};
 use super::rules::rules;
 use super::run_figures::{self, run_name};
 use super::shell::{self, Drawn, clean, drawing, fact, whole_page};
 use super::table::Table;
 use super::written::{Written, write_page};
-use super::{packing, shell::leaves_out};
+use super::{appendix, packing, shell::leaves_out};
 use crate::outcome::packing::PackingRecord;
-use crate::outcome::record::{
-    Confidence, NetworkKind, Outcome, Replicate, Run, RunSummary, Sensitivity, Statistic, Stopping, Verdict,
-};
-
-/// Replicates listed one by one; all are in `outcome.json`.
-const LISTED: usize = 100;
+use crate::outcome::record::{Confidence, NetworkKind, Outcome, RunSummary, Stopping, Verdict};
 
 /// Characters of `scene.toml` that are shown.
 const SCENE: usize = 100_000;
@@ -40,8 +37,8 @@ const SCENE: usize = 100_000;
 pub fn write(folder: &Path) -> Result<Written, ReportError> {
     let run = RunFolder::read(folder)?;
     let verdict = run_figures::verdict(&run);
+    let gradations = run_figures::gradations(&run);
     let figures: Vec<Drawn> = [
-        Some(run_figures::gradations(&run)),
         run_figures::eroded(&run),
         run_figures::layers(&run),
         run_figures::retained(&run),
@@ -52,40 +49,36 @@ pub fn write(folder: &Path) -> Result<Written, ReportError> {
     .flatten()
     .collect();
 
-    let page = page(&run, &verdict, &figures);
-    let all: Vec<Drawn> = std::iter::once(verdict).chain(figures).collect();
+    let page = page(&run, &verdict, &gradations, &figures);
+    let all: Vec<Drawn> = [verdict, gradations].into_iter().chain(figures).collect();
     write_page(folder, &all, &page)
 }
 
-/// The page as text. `verdict` stands beside the verdict, `figures` below it.
-fn page(folder: &RunFolder, verdict: &Drawn, figures: &[Drawn]) -> String {
+/// The page as text. `verdict` and `gradations` stand on its first sheet, `figures` below it.
+fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Drawn]) -> String {
     let outcome = &folder.outcome;
     let (filter, base) = (&outcome.inputs.filter, &outcome.inputs.base);
-    let title = format!(
-        "{}: {} on {}",
-        outcome.verdict.words(),
-        clean(&shorten(&base.name, 60)),
-        clean(&shorten(&filter.name, 60))
-    );
-    let header = html! {
-        h1 { "Will this filter hold this soil?" }
-        p.names {
-            "Base " b { bdi { (clean(&base.name)) } } " against filter " b { bdi { (clean(&filter.name)) } }
-        }
-    };
+    let soil = |name: &str| clean(&shorten(soil_name(name), 60));
+    let title = format!("{}: {} on {}", outcome.verdict.words(), soil(&base.name), soil(&filter.name));
     let main = html! {
-        div.first {
-            (verdict_box(outcome, verdict))
-            (leaves_out(&outcome.model_leaves_out, &html! {
-                @if outcome.model_leaves_out.is_empty() { p { "outcome.json does not say." } }
-                p { "The verdict is the model’s. It does not replace a filter test or a designer’s \
-                     judgement." }
-            }))
+        section.sheet {
+            div.first {
+                (verdict_box(outcome, verdict))
+                (leaves_out(&outcome.model_leaves_out, &html! {
+                    @if outcome.model_leaves_out.is_empty() { p { "outcome.json does not say." } }
+                    p { "The verdict is the model’s. It does not replace a filter test or a designer’s \
+                         judgement." }
+                }))
+            }
+            (reasons(outcome))
+            (warnings(outcome))
+            div.pair {
+                (shell::figure(1, gradations))
+                (in_short(outcome))
+            }
         }
-        (reasons(outcome))
-        (warnings(outcome))
         h2 { "Figures" }
-        (shell::figures(figures))
+        @for (number, drawn) in (2..).zip(figures) { (shell::figure(number, drawn)) }
         (missing(folder, figures))
         (rules(outcome))
         (results(outcome))
@@ -94,9 +87,10 @@ fn page(folder: &RunFolder, verdict: &Drawn, figures: &[Drawn]) -> String {
         (replicates(outcome))
         (sensitivity(outcome))
         (inputs(outcome, folder.packing.as_ref()))
+        (appendix::gradations(outcome))
         (provenance(folder))
     };
-    whole_page(&title, &header, &main, &citation(outcome))
+    whole_page(&title, &first_page::header(folder), &main, &citation(outcome))
 }
 
 fn verdict_box(outcome: &Outcome, verdict: &Drawn) -> Markup {
@@ -124,6 +118,7 @@ fn verdict_box(outcome: &Outcome, verdict: &Drawn) -> Markup {
             div { (drawing(verdict)) }
             (table)
             @if let Some(stopping) = &outcome.stopping { p { (stopped(stopping)) } }
+            @if let Some(next) = outcome.what_would_decide() { p { (capital(next)) "." } }
             p { (tally(outcome)) " Threshold between the classes: " (threshold(outcome.threshold)) "." }
             @if count == 1 {
                 p {
@@ -133,11 +128,6 @@ fn verdict_box(outcome: &Outcome, verdict: &Drawn) -> Markup {
             }
         }
     }
-}
-
-/// "First run", in the colour of the run.
-fn run_heading(run: u64) -> Markup {
-    html! { span class={ "run-" (run) } { (capital(run_name(run))) } }
 }
 
 /// What the rule that added replicates arrived at.
@@ -232,7 +222,7 @@ fn warnings(outcome: &Outcome) -> Markup {
             section.warnings {
                 h2 { "Before you rely on this" }
                 ul {
-                    @if outcome.capped {
+                    @if outcome.capped && !warnings.iter().any(|warning| warning.starts_with("capped at")) {
                         li {
                             "Capped: " (whole(outcome.n_base)) " base particles were walked; "
                             "Eq. (2) requires " (known(outcome.n_base_eq2, whole)) "."
@@ -265,120 +255,6 @@ fn missing(folder: &RunFolder, figures: &[Drawn]) -> Markup {
             p.small { "series.csv does not hold every replicate and run: the mean is over those that it \
                        holds." }
         }
-    }
-}
-
-/// A mean with its interval below it.
-fn with_interval(mean: String, interval: Option<String>) -> Markup {
-    html! {
-        (mean)
-        @if let Some(interval) = interval { br; span.small { (interval) } }
-    }
-}
-
-fn fraction(statistic: &Statistic) -> Markup {
-    with_interval(percent(statistic.mean), percent_interval(statistic))
-}
-
-fn results(outcome: &Outcome) -> Markup {
-    type Row<'a> = (&'static str, &'a dyn Fn(&RunSummary) -> Markup);
-    let (filter, scale_free) = (&outcome.inputs.filter, outcome.inputs.scale_free);
-    let nothing = || html! { "nothing eroded" };
-    let largest_ratio = |run: &RunSummary| match &run.largest_eroded_over_d15f {
-        Some(of) => {
-            let ends = of.low.zip(of.high);
-            let ends = ends.map(|(low, high)| format!("{} to {}", significant(low), significant(high)));
-            with_interval(significant(of.mean), ends)
-        }
-        None => nothing(),
-    };
-    let largest = |run: &RunSummary| match &run.largest_eroded_over_d15f {
-        Some(of) => html! { (size(of.mean * filter.d15_mm, scale_free)) },
-        None => nothing(),
-    };
-    let sd =
-        |run: &RunSummary| html! { (run.eroded_mass_fraction.sd.map_or_else(|| "none".to_owned(), percent)) };
-    let rows: [Row; 8] = [
-        ("Base eroded, by mass", &|run| fraction(&run.eroded_mass_fraction)),
-        ("Replicate SD of the base eroded, by mass", &sd),
-        ("Base eroded, by number", &|run| fraction(&run.eroded_number_fraction)),
-        ("Largest particle eroded, over D15F", &largest_ratio),
-        ("Largest particle eroded", &largest),
-        ("Constrictions blocked at the end", &|run| fraction(&run.blocked_fraction)),
-        ("Blocked in the first three layers", &|run| fraction(&run.blocked_first_three_layers_fraction)),
-        ("Backbone: constrictions on an open path", &|run| fraction(&run.backbone_fraction)),
-    ];
-    let mut table = Table::of(&rows).name("Mean, and 95 % interval", |row| row.0);
-    for run in &outcome.summary {
-        table = table.number(run_heading(run.run), move |row| (row.1)(run));
-    }
-    html! {
-        h2 { "Results" }
-        (table)
-    }
-}
-
-fn replicates(outcome: &Outcome) -> Markup {
-    let unit = size_unit(outcome.inputs.scale_free);
-    let of_known = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), significant);
-    let listed = outcome.replicates.len().min(LISTED);
-    let rows: Vec<(usize, &Replicate, &Run)> = (1..)
-        .zip(outcome.replicates.iter().take(LISTED))
-        .flat_map(|(number, replicate)| replicate.runs.iter().map(move |run| (number, replicate, run)))
-        .collect();
-    let table = Table::of(&rows)
-        .class("replicates")
-        .name("Replicate", |(number, replicate, _)| format!("{number} (seed {})", replicate.seed))
-        .text("Verdict", |(_, replicate, _)| replicate.verdict.words())
-        .text("Run", |(.., run)| html! { span class={ "run-" (run.run) } { (run.run) } })
-        .number("Eroded, mass", |(.., run)| percent(run.eroded_mass_fraction))
-        .number("number", |(.., run)| percent(run.eroded_number_fraction))
-        .number(format!("largest ({unit})"), |(.., run)| of_known(run.largest_eroded_mm))
-        .number("/ D15F", |(.., run)| of_known(run.largest_eroded_over_d15f))
-        .number("Blocked", |(.., run)| percent(run.blocked_fraction))
-        .number("3 layers", |(.., run)| percent(run.blocked_first_three_layers_fraction))
-        .number("Backbone", |(.., run)| percent(run.backbone_fraction))
-        .number("Inserted", |(.., run)| whole(run.inserted))
-        .number("Eroded", |(.., run)| whole(run.eroded))
-        .number("In constrictions", |(.., run)| whole(run.retained_in_constrictions))
-        .number("In voids", |(.., run)| whole(run.retained_in_voids))
-        .number("Trapped", |(.., run)| whole(run.trapped))
-        .number("Per void", |(.., run)| significant(run.retained_per_void))
-        .number("Increments", |(.., run)| whole(run.increments))
-        .number("Moves", |(.., run)| whole(run.particle_moves))
-        .number("Time", |(.., run)| duration(run.seconds));
-    html! {
-        details {
-            summary {
-                "Each replicate (" (listed)
-                @if listed < outcome.replicates.len() { " of " (outcome.replicates.len()) } ")"
-            }
-            (table)
-            p.small {
-                "Inserted, eroded, in constrictions, in voids and trapped count particles; per void is all \
-                 retained "
-                "particles over voids; trapped particles are trapped in closed loops."
-            }
-        }
-    }
-}
-
-fn sensitivity(outcome: &Outcome) -> Markup {
-    let mut table = Table::of(&outcome.sensitivity)
-        .number("× N_base", |case| trimmed(case.factor))
-        .number("N_base", |case| whole(case.n_base))
-        .number("Grains per void", |case| known(case.grains_per_void, significant))
-        .number("or mass ratio", |case| known(case.mass_ratio, percent))
-        .number("Replicates", |case| case.replicates);
-    for (index, run) in outcome.summary.iter().enumerate() {
-        let of = move |case: &Sensitivity| case.runs.get(index).map_or_else(|| html! { "–" }, fraction);
-        table = table.number(capital(run_name(run.run)), of);
-    }
-    html! {
-        @if !outcome.sensitivity.is_empty() { details {
-            summary { "Sensitivity to the number of base particles, in numbers" }
-            (table.text("Verdict", |case| case.verdict.words()))
-        } }
     }
 }
 
@@ -425,7 +301,8 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
             (fact("Void ratio", known(filter.void_ratio, significant)))
             (fact("Grains per void, N_p/N_voids", known(outcome.grains_per_void, significant)))
             (fact("Constriction curve",
-                format!("{}, Cu of the curve {}", filter.curve_name, significant(filter.cu_csd))))
+                format!("{}; uniformity of its sizes, Dc60/Dc10 by number, {}", filter.curve_name,
+                    significant(filter.cu_csd))))
             (fact("Credit for the curve",
                 if filter.attribution.is_empty() { "the user’s own" } else { &filter.attribution }))
         } }
@@ -438,7 +315,8 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
             (fact("D85, D95, D100 (by mass)", [base.d85_mm, base.d95_mm, base.d100_mm].map(mm).join(", ")))
             @if base.tail_mass_fraction > 0.0 {
                 (fact("Pan fraction (finer than the finest sieve)",
-                    format!("{} by mass; passive, counted by mass only", percent(base.tail_mass_fraction))))
+                    format!("{} by mass; taken as too fine to block any constriction (passive); only its \
+                             mass is counted", percent(base.tail_mass_fraction))))
             }
             (fact("D15F/D85B, D15F/D95B", format!("{}, {}", significant(outcome.ratios.d15f_over_d85b),
                 significant(outcome.ratios.d15f_over_d95b))))

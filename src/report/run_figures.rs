@@ -2,11 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::boundaries::{self, boundaries};
 use super::figures::{
     Across, Area, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Point, Rule,
     Shape, Tick, VERMILLION, positive_range, ramp, shorten,
 };
 use super::folder::RunFolder;
+use super::names::soil_name;
 use super::numbers::{
     capital, interval, interval_in_percent, known, percent, significant, size, threshold, trimmed, whole,
 };
@@ -87,8 +89,9 @@ pub(super) fn verdict(folder: &RunFolder) -> Drawn {
 pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     let inputs = &folder.outcome.inputs;
     let (filter, base) = (&inputs.filter, &inputs.base);
+    let limits = boundaries(&folder.outcome);
     let rows = filter.gradation.iter().chain(&filter.constrictions).chain(&base.gradation);
-    let x = size_axis(folder, rows.map(|row| row[0]));
+    let x = size_axis(folder, rows.map(|row| row[0]).chain(limits.iter().map(|(_, limit)| *limit)));
     let y = Axis::percent("Percent finer (%)");
     let what = format!(
         "Percent finer against size for the filter (by mass), its constrictions (by number) and the base (by \
@@ -99,8 +102,9 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     let mut figure = Figure::new("Gradations and constriction curve", &what, "", x, y)
         .sizes((720.0, 460.0), (358.0, 400.0));
     let name = |kind: &str, name: &str| {
-        if name.is_empty() { kind.to_owned() } else { format!("{kind}:\n{}", shorten(name, 24)) }
+        if name.is_empty() { kind.to_owned() } else { format!("{kind}:\n{}", shorten(soil_name(name), 24)) }
     };
+    boundaries::draw(&mut figure, &limits);
     figure.add(Line::new(points(&base.gradation), VERMILLION).width(2.6).label(&name("base", &base.name)));
     let constrictions = Line::new(points(&filter.constrictions), BLUE).dash(Dash::Dashed);
     figure.add(constrictions.label("constrictions\n(by number)"));
@@ -114,10 +118,11 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     let caption = format!(
         "Gradations of filter and base (percent finer by mass) and the filter’s constrictions (percent \
          smaller by number, curve “{}”). Base particles pass a constriction that is no smaller than they \
-         are. D15F/D85B = {}, D15F/D95B = {}.{}",
+         are. D15F/D85B = {}, D15F/D95B = {}.{}{}",
         shorten(&filter.curve_name, 80),
         significant(folder.outcome.ratios.d15f_over_d85b),
         significant(folder.outcome.ratios.d15f_over_d95b),
+        boundaries::caption(&limits, inputs.scale_free),
         if inputs.scale_free { " Sizes are multiples of D0F, the smallest filter grain." } else { "" },
     );
     Drawn::new("gradations", figure, caption)
@@ -323,7 +328,7 @@ pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
         tick.rank = u8::from(case.factor != 1.0);
         tick
     });
-    let x = Axis::log("Multiple of N_base, and below it grains per void", least, most)
+    let x = Axis::log("Times the base particles of this scene; below, grains per void", least, most)
         .with_ticks(ticks.collect())
         .within(least / 1.25, most * 1.25);
     let highest = 100.0 * cases.iter().flat_map(|case| &case.runs).map(upper).fold(0.0, f64::max);

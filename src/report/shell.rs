@@ -95,7 +95,7 @@ pub(super) fn figures(drawn: &[Drawn]) -> Markup {
 /// A figure with its number and its caption.
 pub(super) fn figure(number: usize, drawn: &Drawn) -> Markup {
     html! {
-        figure {
+        figure.tall[drawn.figure.is_tall()] {
             (drawing(drawn))
             figcaption { b { "Figure " (number) ". " } (clean(&drawn.caption)) }
         }

@@ -117,8 +117,8 @@ impl FolderKind {
         }
     }
 
-    /// The figures of its page, in `figures`.
-    fn figures(self) -> &'static [&'static str] {
+    /// The figures of its page, in `figures`; those of a campaign stay, as all that it holds.
+    pub fn figures(self) -> &'static [&'static str] {
         match self {
             Self::Run => &["verdict", "gradations", "eroded", "layers", "retained", "sensitivity", "slice"],
             Self::Packing => &["curves", "slice", "connectivity"],
@@ -208,7 +208,9 @@ pub fn clear(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
     }
     folder.remove_all(&files[..files.len().min(1)])?;
     folder.remove_all(files)?;
-    let figures: Vec<String> = kind.figures().iter().map(|name| format!("{name}.svg")).collect();
+    // The pictures were made of the drawings by others, as `scripts/figures_to_png.sh`.
+    let both = |name: &&str| ["svg", "png"].map(|ending| format!("{name}.{ending}"));
+    let figures: Vec<String> = kind.figures().iter().flat_map(both).collect();
     folder.remove_all_in("figures", &figures)?;
     if kind == FolderKind::Run {
         folder.remove_all_in("inputs", &INPUT_FILES)?;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::keys::{Base, Filter, FilterPacking, NetworkKeys, Record, WalkKeys};
+use super::keys::{About, Base, Filter, FilterPacking, NetworkKeys, Record, WalkKeys};
 use crate::outcome::stopping::StopRule;
 use crate::packing;
 use crate::schema::KeyInfo;
@@ -21,6 +21,7 @@ pub(super) fn sections() -> Vec<(&'static [&'static str], Vec<KeyInfo>)> {
         (Base::ABOUT, Base::keys()),
         (NetworkKeys::ABOUT, NetworkKeys::keys()),
         (Record::ABOUT, Record::keys()),
+        (About::ABOUT, About::keys()),
     ]
 }
 

@@ -7,7 +7,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::constrictions::DEFAULT_MERGE_OVERLAP;
 use crate::network::Connectivity;
-use crate::schema::{Leaf, above_zero, any, only, section, whole, within, words};
+use crate::schema::{Allowed, Leaf, above_zero, any, only, section, whole, within, words};
+use crate::text::is_hidden;
 use crate::walk::{Engine, Sampling};
 
 section! {
@@ -163,6 +164,35 @@ section! {
             only("a list of numbers above 0", |list: &Vec<f64>| list.iter().all(|factor| *factor > 0.0));
         /// Replicates of each.
         pub sensitivity_replicates: u64 = 3, set, whole(1..=1000);
+    }
+}
+
+section! {
+    /// What the first page of the report says besides: no result follows from it.
+    pub struct About in "about" {
+        /// The project.
+        pub project: Option<String> = None, off "\"Main dam, zone 2B\"", line();
+        /// For whom.
+        pub client: Option<String> = None, off "\"Water Board\"", line();
+        /// By whom.
+        pub author: Option<String> = None, off "\"N. N.\"", line();
+    }
+}
+
+/// Characters of a line.
+const LINE: usize = 120;
+
+/// Texts that stand in one line of a page.
+fn line() -> Allowed<String> {
+    let fits =
+        |text: &String| (1..=LINE).contains(&text.trim().chars().count()) && !text.chars().any(is_hidden);
+    only(format!("a text in quotes, one line of at most {LINE} characters that are seen"), fits)
+}
+
+impl About {
+    /// Whether nothing is said.
+    pub fn is_unset(&self) -> bool {
+        *self == Self::default()
     }
 }
 

@@ -17,7 +17,9 @@ use std::sync::LazyLock;
 use serde::Serialize;
 
 pub use crate::schema::{Origin, SceneError};
-pub use keys::{Base, CurveSource, Density, Filter, FilterPacking, NetworkKeys, Record, Regrade, WalkKeys};
+pub use keys::{
+    About, Base, CurveSource, Density, Filter, FilterPacking, NetworkKeys, Record, Regrade, WalkKeys,
+};
 pub use meaning::{Amount, BaseGradation, D85, FilterGradation, NetworkSource, PackingSpec};
 
 use crate::outcome::stopping::StopRule;
@@ -57,6 +59,9 @@ pub struct Scene {
     pub network: NetworkKeys,
     /// What to keep.
     pub record: Record,
+    /// What the first page of the report says besides.
+    #[serde(skip_serializing_if = "About::is_unset")]
+    pub about: About,
 }
 
 /// The section `packing`: what belongs to the measured packing, and how its grains are compressed.
@@ -147,6 +152,7 @@ impl Scene {
             base: Base::read(s)?,
             network: NetworkKeys::read(s)?,
             record: Record::read(s)?,
+            about: About::read(s)?,
         };
         scene.check_what_is_missing(s)?;
         scene.fill_in();
@@ -326,7 +332,9 @@ mod tests {
             vec!["seed=18446744073709551615", "stop.decide_percent=99.9", "inject_share=0.02"],
             vec!["filter.density=dense", "filter.cu=3", "packing.grains=500", "packing.drag=0.04"],
             vec!["filter.friction=0.2", "filter.sieve=f.csv", "filter.d0_mm=0.1"],
-            vec!["filter.estimate=0.5", "base.sieve=b.csv", "base.regrade=practice", "base.n_base=1e6"],
+            vec!["about.project=Dam, \"zone\" 2B", "about.client=Größe & Co."],
+            vec!["filter.estimate=0.5", "base.sieve=b.csv", "base.regrade=practice", "record.sensitivity=[]"],
+            vec!["base.n_base=1e6"],
             vec!["base.dc_curve=cu3-loose", "base.cap=2e8", "network.connectivity={5=50, 7=50}"],
             vec!["network.file=n.csv", "sampling=stratified", "engine=expected"],
         ] {
@@ -400,6 +408,10 @@ mod tests {
             ("base.regrade=yes", "\"practice\" or \"no\""),
             ("filter.thickness_mm=0", "above 0"),
             ("base.d0_mm=1", "goes with base.sieve"),
+            ("about.client=3", "a text in quotes, one line of at most 120 characters"),
+            ("about.client=\" \"", "a text in quotes, one line"),
+            ("about.author=\"a\\nb\"", "a text in quotes, one line"),
+            ("about.project=turned \u{202e}", "characters that are seen"),
             ("bas.cu=2", "did you mean `base.cu`"),
             ("filter.density=medium", "\"dense\" (friction 0), \"intermediate\" (0.1) or \"loose\" (0.3)"),
             ("packing.drag=1", "packing.drag goes with filter.density or filter.friction"),

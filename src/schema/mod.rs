@@ -119,6 +119,7 @@ pub trait Leaf: Serialize + DeserializeOwned {
 
 impl Leaf for u64 {}
 impl Leaf for f64 {}
+impl Leaf for String {}
 impl Leaf for Vec<u64> {}
 impl Leaf for Vec<f64> {}
 impl Leaf for PathBuf {

@@ -5,6 +5,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
+use voidwalk::run::FolderKind;
+
+use super::program::figures_are_listed;
+
 const FILTER: &str =
     "[filter]\ncu = 1.5\ndensity = \"loose\"\n[packing]\ngrains = 600\nstiffness_ratio = 0.01\n";
 
@@ -52,6 +56,7 @@ fn a_packing_folder_holds_what_is_promised() {
     ] {
         assert!(out.join(name).is_file(), "{name}");
     }
+    figures_are_listed(FolderKind::Packing, &out);
     assert!(!out.join("compression.0").exists() && !out.join("compression.1").exists());
     let record: serde_json::Value =
         serde_json::from_slice(&fs::read(out.join("packing.json")).unwrap()).unwrap();
@@ -200,6 +205,7 @@ fn a_folder_of_another_kind_is_left_alone() {
         "[base]\ncu = 1.5\nd85_at_dc = 5\n[network]\nnx = 4\nny = 4\nnz = 4\n[record]\nsensitivity = []\n";
     let (_root, at) = with_filter(&format!("replicates = 1\n{FILTER}{base}"));
     done(&call(&at, &["run", "filter.toml", "--out", "a-run"]));
+    figures_are_listed(FolderKind::Run, &at.join("a-run"));
     let before = fs::read(at.join("a-run/report.html")).unwrap();
     refused(&call(&at, &["pack", "filter.toml", "--out", "a-run"]), "holds a run");
     assert_eq!(before, fs::read(at.join("a-run/report.html")).unwrap());

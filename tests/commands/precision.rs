@@ -6,6 +6,10 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use voidwalk::run::FolderKind;
+
+use super::program::figures_are_listed;
+
 /// A narrow scene, so that a replicate takes milliseconds.
 const SMALL: [&str; 6] = ["--set", "network.nx=8", "--set", "network.ny=8", "--set", "network.nz=10"];
 
@@ -111,6 +115,7 @@ fn threads_change_nothing_but_times_and_the_page_shows_every_tier() {
     run("2", "two");
     assert!(TIERS.iter().all(|tier| told.contains(&format!("  {tier}: "))), "{told}");
     let (one, two) = (root.path().join("one"), root.path().join("two"));
+    figures_are_listed(FolderKind::Precision, &one);
     let tables = without_times(&one);
     assert_eq!(tables, without_times(&two));
     let names: Vec<&str> = tables.keys().map(String::as_str).collect();

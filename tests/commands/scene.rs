@@ -5,6 +5,9 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
+use voidwalk::run::FolderKind;
+
+use super::program::figures_are_listed;
 
 /// A run of seconds: a small network, few replicates.
 const SMALL: [&str; 5] =
@@ -538,6 +541,7 @@ fn a_percolation_study_fills_a_folder() {
     for file in ["report.html", "figures/percolation-sd.svg", "figures/percolation-threshold.svg"] {
         assert!(!fs::read_to_string(out.join(file)).unwrap().contains("NaN"), "{file}");
     }
+    figures_are_listed(FolderKind::Percolation, &out);
     refused(&on("1", &out), &["--overwrite"]);
     let other = root.path().join("other");
     assert!(on("3", &other).status.success());

@@ -1,5 +1,7 @@
 //! The report of a made-up run folder: what it says, what it may not do, and what it refuses.
 
+mod campaign;
+mod first_page;
 mod folder;
 
 use std::fs;
@@ -47,13 +49,17 @@ fn the_page_says_what_an_engineer_reads_first() {
         "Hydraulics: no gradient",
         "18 % of the base is finer than 0.075 mm",
         "Figure 1.",
+        "Rules of practice, in short",
+        "Terzaghi",
+        "Thickness modelled: 296 mm",
+        "Figure 2.",
         "Figure 5.",
         "Filter rules beside the verdict",
-        "Terzaghi",
         "Largest particle eroded, over D15F",
         "Modelled filter thickness: 296 mm",
         "21 443 871 (Eq. 2)",
-        "4f2c43f",
+        "Appendix: the two gradations",
+        "0.1.0 (commit 4f2c43f)",
         "curve = \"shire2016-cu1.5-loose\"".replace('"', "&quot;").as_str(),
         "How to cite",
         "A network model to assess base-filter combinations",
@@ -101,8 +107,13 @@ fn every_class_has_its_words() {
                 reached.";
     assert!(words(&made(&plan).0).contains(rule));
     assert!(words(&made(&plan).0).contains("Inconclusive: the interval of the second run includes 7.5 %"));
+    let next = "More replicates may decide it: --decide 99% adds them";
+    assert!(!words(&made(&plan).0).contains(next), "they were added already");
+    plan.outcome.stopping = None;
+    assert!(words(&made(&plan).0).contains(next));
     plan.outcome.summary.truncate(1);
     plan.outcome.replicates.iter_mut().for_each(|replicate| replicate.runs.truncate(1));
+    assert!(words(&made(&plan).0).contains("Two runs tell some from continuing erosion (runs = 2)"));
     assert!(words(&made(&plan).0).contains("only a first was asked for"));
 }
 

@@ -84,6 +84,11 @@ impl Figure {
         }
     }
 
+    /// Whether it is higher than wide, so that it needs a printed page for itself.
+    pub fn is_tall(&self) -> bool {
+        self.wide.1 > 1.1 * self.wide.0
+    }
+
     /// Its title.
     pub fn title(&self) -> &str {
         &self.title

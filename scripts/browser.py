@@ -1,0 +1,86 @@
+"""Chromium over its debugging pipe, for look_at_report.py and figures_to_png.py. Python's standard library only."""
+
+import json
+import os
+import subprocess
+
+FLAGS = """--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking
+--disable-component-update --disable-sync --disable-dev-shm-usage --hide-scrollbars --remote-debugging-pipe""".split()
+
+
+class Browser:
+    """One Chromium, spoken to in JSON messages that end with a zero byte."""
+
+    def __init__(self, profile):
+        to_browser, self.out = os.pipe()
+        self.inn, from_browser = os.pipe()
+
+        def wire():  # the browser reads from descriptor 3 and writes to 4
+            os.dup2(to_browser, 103)
+            os.dup2(from_browser, 104)
+            os.dup2(103, 3)
+            os.dup2(104, 4)
+
+        self.process = subprocess.Popen(
+            ["chromium", *FLAGS, f"--user-data-dir={profile}", "about:blank"],
+            preexec_fn=wire, close_fds=False, stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(to_browser)
+        os.close(from_browser)
+        self.buffer, self.number, self.events = b"", 0, []
+
+    def read(self):
+        while b"\0" not in self.buffer:
+            chunk = os.read(self.inn, 1 << 20)
+            if not chunk:
+                raise SystemExit("chromium ended before it answered")
+            self.buffer += chunk
+        message, self.buffer = self.buffer.split(b"\0", 1)
+        return json.loads(message)
+
+    def ask(self, method, session=None, **params):
+        self.number += 1
+        message = {"id": self.number, "method": method, "params": params}
+        if session:
+            message["sessionId"] = session
+        os.write(self.out, json.dumps(message).encode() + b"\0")
+        while True:
+            answer = self.read()
+            if answer.get("id") == self.number:
+                if "error" in answer:
+                    raise SystemExit(f"{method}: {answer['error']['message']}")
+                return answer["result"]
+            self.events.append(answer)
+
+    def open(self, url, width, height):
+        """A tab of this size that shows the page."""
+        target = self.ask("Target.createTarget", url="about:blank")["targetId"]
+        tab = self.ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Log", "Network"):
+            self.ask(f"{domain}.enable", tab)
+        self.show(tab, url, width, height)
+        return tab
+
+    def show(self, tab, url, width, height):
+        self.ask("Emulation.setDeviceMetricsOverride", tab,
+                 width=width, height=height, deviceScaleFactor=1, mobile=False)
+        self.events = [event for event in self.events if event.get("method") != "Page.loadEventFired"]
+        self.ask("Page.navigate", tab, url=url)
+        self.wait("Page.loadEventFired")
+
+    def close(self):
+        self.ask("Browser.close")
+
+    def wait(self, method):
+        while not any(event.get("method") == method for event in self.events):
+            self.events.append(self.read())
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        try:
+            self.close()
+            self.process.wait(timeout=10)
+        except (subprocess.TimeoutExpired, SystemExit, OSError):
+            self.process.kill()

@@ -1,0 +1,54 @@
+//! The boundaries of practice at the row of D15F, as engineers know them from Foster and Fell: short vertical
+//! lines on the sheet of gradations.
+
+use super::figures::{Across, BLACK, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Rule};
+use super::numbers::size;
+use crate::outcome::record::Outcome;
+
+/// Half the height of a line, in percent finer.
+const HALF: f64 = 4.0;
+
+/// The rules whose limit is a D15F: what stands beside the line, its colour, and what the caption says of it.
+const LIMITS: [(&str, &str, Colour, &str); 4] = [
+    ("sherard-dunnigan", "design", GREY, "design (Sherard and Dunnigan)"),
+    ("foster-fell-no-erosion", "NE", GREEN, "no erosion (NE)"),
+    ("foster-fell-excessive", "EE", ORANGE, "excessive erosion (EE)"),
+    ("foster-fell-continuing", "CE", PURPLE, "continuing erosion (CE)"),
+];
+
+/// A boundary: its place in [`LIMITS`], and the D15F at which it is.
+type Boundary = (usize, f64);
+
+/// The boundaries that are known for these soils.
+pub(super) fn boundaries(outcome: &Outcome) -> Vec<Boundary> {
+    let limit = |id: &str| {
+        let rule = outcome.rules.iter().find(|rule| rule.id == id && rule.applies)?;
+        rule.limit.filter(|limit| rule.quantity == "D15F" && *limit > 0.0 && limit.is_finite())
+    };
+    let found = LIMITS.iter().enumerate().filter_map(|(place, (id, ..))| Some((place, limit(id)?)));
+    found.collect()
+}
+
+/// Draws the row of 15 % and the boundaries at it.
+pub(super) fn draw(figure: &mut Figure, boundaries: &[Boundary]) {
+    figure.add(Rule::new(Across::Y, 15.0, BLACK).dash(Dash::Dotted).label("15 %"));
+    for (place, limit) in boundaries {
+        let (_, name, colour, _) = LIMITS[*place];
+        let line = Line::new(vec![(*limit, 15.0 - HALF), (*limit, 15.0 + HALF)], colour);
+        figure.add(line.width(3.0).label(name));
+    }
+}
+
+/// What the caption says of them; nothing where there are none.
+pub(super) fn caption(boundaries: &[Boundary], scale_free: bool) -> String {
+    if boundaries.is_empty() {
+        return String::new();
+    }
+    let one = |(place, limit): &Boundary| format!("{} {}", LIMITS[*place].3, size(*limit, scale_free));
+    let all: Vec<String> = boundaries.iter().map(one).collect();
+    format!(
+        " Short lines at the 15 % row: the D15F up to which practice sees {}, the erosion boundaries by \
+         Foster and Fell.",
+        all.join(", ")
+    )
+}

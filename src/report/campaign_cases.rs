@@ -1,0 +1,178 @@
+//! The cases of a campaign's page: one row a case, its class first, with a link to its own page.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use maud::{Markup, Render, html};
+
+use super::figures::shorten;
+use super::numbers::{percent, percent_interval, significant, whole};
+use super::shell::clean;
+use super::table::Table;
+use crate::outcome::ledger::{Campaign, LedgerLine};
+use crate::outcome::record::{Confidence, Statistic, Verdict};
+use crate::outcome::rules::RULES;
+
+/// Cases listed in the page; all are in `cases.csv`.
+const LISTED: usize = 2000;
+
+/// Different warnings that are listed.
+const WARNINGS: usize = 40;
+
+/// The table of all cases, and below it what its counts count. Cases whose folder holds a page are linked.
+pub(super) fn cases(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Markup {
+    html! {
+        (table(folder, about, ledger))
+        @if ledger.len() > LISTED { p.small { "The rest is in cases.csv." } }
+        p.small {
+            "Class: with a link to the page of the case; below it the replicates by class, where they \
+             differ. Confidence: within or outside the range in which the model was checked, or \
+             contradicted by a rule of practice. Below a number its 95 % interval over the replicates."
+        }
+        (listed("Rules of practice that are not met", &tally(ledger, rules_of)))
+        (listed("Warnings", &tally(ledger, |line| line.warnings.clone())))
+    }
+}
+
+/// How many verdicts cannot be relied on as they stand; nothing where all can.
+pub(super) fn doubted(ledger: &[LedgerLine]) -> Markup {
+    let count = |wanted| ledger.iter().filter(|line| line.confidence == Some(wanted)).count() as u64;
+    let doubts = [Confidence::Outside, Confidence::Contradicted].map(|doubt| (doubt, count(doubt)));
+    html! {
+        @for (doubt, count) in doubts.into_iter().filter(|(_, count)| *count > 0) {
+            p {
+                span.amber {
+                    (whole(count)) @if count == 1 { " case: " } @else { " cases: " } (doubt.words())
+                }
+            }
+        }
+    }
+}
+
+fn table(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Markup {
+    let eroded = |line: &LedgerLine, run: usize| match line.runs.get(run) {
+        Some(run) => with_interval(&run.eroded_mass_fraction),
+        None => html! { "–" },
+    };
+    let mut table = Table::of(ledger.iter().take(LISTED))
+        .class("cases")
+        .name("Class", move |line| class(line, page_of(folder, line).as_deref()));
+    for factor in &about.factors {
+        table = table.text(clean(factor), move |line| match line.levels.get(factor) {
+            Some(serde_json::Value::String(level)) => clean(&shorten(level, 40)),
+            _ => String::new(),
+        });
+    }
+    if about.factors.is_empty() || ledger.iter().any(|line| line.levels.is_empty()) {
+        let name = |line: &LedgerLine| clean(&shorten(&line.case, 60));
+        table =
+            table.text("Case", move |line| if line.levels.is_empty() { name(line) } else { String::new() });
+    }
+    table
+        .text("Confidence", |line| confidence(line.confidence))
+        .number("Rules not met", |line| known(line.rules_not_met.as_ref().map(Vec::len)))
+        .number("Warnings", |line| line.warnings.len())
+        .number("Eroded, first run", move |line| eroded(line, 0))
+        .number("second run", move |line| eroded(line, 1))
+        .number("D15F/ D85B", |line| significant(line.ratios.d15f_over_d85b))
+        .number("D15F/ D95B", |line| significant(line.ratios.d15f_over_d95b))
+        .number("Largest eroded/ D15F", |line| {
+            let largest = line.runs.first().and_then(|run| run.largest_eroded_over_d15f);
+            largest.map_or_else(|| "–".to_owned(), |largest| significant(largest.mean))
+        })
+        .number("Base particles", |line| {
+            html! { (whole(line.n_base)) @if line.capped { br; span.small { "capped" } } }
+        })
+        .render()
+}
+
+/// The class, with a link to the case's own page, and below it the replicates where they differ.
+fn class(line: &LedgerLine, page: Option<&str>) -> Markup {
+    let words = line.verdict.words();
+    let mixed = line.replicate_verdicts.iter().filter(|count| **count > 0).count() > 1;
+    html! {
+        @match page {
+            Some(page) => a href=(page) { b { (words) } },
+            None => b { (words) },
+        }
+        @if mixed { br; span.small { (replicates_by_class(line)) } }
+    }
+}
+
+/// "7 no, 3 some".
+fn replicates_by_class(line: &LedgerLine) -> String {
+    let parts = Verdict::ALL.iter().zip(line.replicate_verdicts).filter(|(_, count)| *count > 0);
+    parts
+        .map(|(class, count)| format!("{count} {}", class.words().replace(" erosion", "")))
+        .collect::<Vec<_>>()
+        .join(", ")
+}
+
+/// Where a case's own page is, as seen from the campaign's: nowhere else than in a folder inside it.
+fn page_of(folder: &Path, line: &LedgerLine) -> Option<String> {
+    let plain = |part: &str| {
+        !part.is_empty()
+            && !part.starts_with('.')
+            && part.chars().all(|c| c.is_ascii_alphanumeric() || "=.,-_".contains(c))
+    };
+    let page = format!("{}/report.html", line.folder);
+    (page.split('/').all(plain) && folder.join(&page).is_file()).then_some(page)
+}
+
+fn with_interval(statistic: &Statistic) -> Markup {
+    html! {
+        (percent(statistic.mean))
+        @if let Some(interval) = percent_interval(statistic) { br; span.small { (interval) } }
+    }
+}
+
+fn confidence(confidence: Option<Confidence>) -> Markup {
+    html! { @match confidence {
+        None => "–",
+        Some(Confidence::Within) => "within",
+        Some(Confidence::Outside) => span.amber { "outside" },
+        Some(Confidence::Contradicted) => span.amber { "contradicted" },
+    } }
+}
+
+fn known(count: Option<usize>) -> Markup {
+    html! { @match count {
+        None => "–",
+        Some(0) => "0",
+        Some(count) => span.amber { (count) },
+    } }
+}
+
+/// The names of the rules that a case does not keep.
+fn rules_of(line: &LedgerLine) -> Vec<String> {
+    let name = |id: &String| RULES.iter().find(|rule| rule.id == id).map(|rule| rule.name.to_owned());
+    line.rules_not_met.iter().flatten().map(|id| name(id).unwrap_or_else(|| id.clone())).collect()
+}
+
+/// What cases say, each thing once with the number of cases that say it, the commonest first.
+fn tally(ledger: &[LedgerLine], of: impl Fn(&LedgerLine) -> Vec<String>) -> Vec<(String, u64)> {
+    let mut counts: BTreeMap<String, u64> = BTreeMap::new();
+    for said in ledger.iter().flat_map(of) {
+        *counts.entry(said).or_default() += 1;
+    }
+    let mut counts: Vec<_> = counts.into_iter().collect();
+    counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    counts
+}
+
+fn listed(heading: &str, counts: &[(String, u64)]) -> Markup {
+    html! {
+        @if !counts.is_empty() {
+            h3 { (heading) }
+            ul {
+                @for (said, count) in counts.iter().take(WARNINGS) {
+                    li { (clean(&shorten(said, 400))) " (" (whole(*count))
+                        @if *count == 1 { " case)" } @else { " cases)" } }
+                }
+                @if counts.len() > WARNINGS {
+                    li { (counts.len() - WARNINGS) " more, on the pages of the cases" }
+                }
+            }
+        }
+    }
+}

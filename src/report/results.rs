@@ -1,0 +1,138 @@
+//! The tables of results of a report page.
+
+use maud::{Markup, html};
+
+use super::numbers::{
+    capital, duration, known, percent, percent_interval, significant, size, size_unit, trimmed, whole,
+};
+use super::run_figures::run_name;
+use super::table::Table;
+use crate::outcome::record::{Outcome, Replicate, Run, RunSummary, Sensitivity, Statistic};
+
+/// Replicates listed one by one; all are in `outcome.json`.
+const LISTED: usize = 100;
+
+/// "First run", in the colour of the run.
+pub(super) fn run_heading(run: u64) -> Markup {
+    html! { span class={ "run-" (run) } { (capital(run_name(run))) } }
+}
+
+/// A mean with its interval below it.
+fn with_interval(mean: String, interval: Option<String>) -> Markup {
+    html! {
+        (mean)
+        @if let Some(interval) = interval { br; span.small { (interval) } }
+    }
+}
+
+fn fraction(statistic: &Statistic) -> Markup {
+    with_interval(percent(statistic.mean), percent_interval(statistic))
+}
+
+/// Means over the replicates.
+pub(super) fn results(outcome: &Outcome) -> Markup {
+    type Row<'a> = (&'static str, &'a dyn Fn(&RunSummary) -> Markup);
+    let (filter, scale_free) = (&outcome.inputs.filter, outcome.inputs.scale_free);
+    let nothing = || html! { "nothing eroded" };
+    let largest_ratio = |run: &RunSummary| match &run.largest_eroded_over_d15f {
+        Some(of) => {
+            let ends = of.low.zip(of.high);
+            let ends = ends.map(|(low, high)| format!("{} to {}", significant(low), significant(high)));
+            with_interval(significant(of.mean), ends)
+        }
+        None => nothing(),
+    };
+    let largest = |run: &RunSummary| match &run.largest_eroded_over_d15f {
+        Some(of) => html! { (size(of.mean * filter.d15_mm, scale_free)) },
+        None => nothing(),
+    };
+    let sd =
+        |run: &RunSummary| html! { (run.eroded_mass_fraction.sd.map_or_else(|| "none".to_owned(), percent)) };
+    let rows: [Row; 8] = [
+        ("Base eroded, by mass", &|run| fraction(&run.eroded_mass_fraction)),
+        ("Its scatter from replicate to replicate (SD)", &sd),
+        ("Base eroded, by number", &|run| fraction(&run.eroded_number_fraction)),
+        ("Largest particle eroded, over D15F", &largest_ratio),
+        ("Largest particle eroded", &largest),
+        ("Constrictions blocked at the end", &|run| fraction(&run.blocked_fraction)),
+        ("Blocked in the first three layers", &|run| fraction(&run.blocked_first_three_layers_fraction)),
+        ("Constrictions on an open path (backbone)", &|run| fraction(&run.backbone_fraction)),
+    ];
+    let mut table = Table::of(&rows).name("Mean, and 95 % interval", |row| row.0);
+    for run in &outcome.summary {
+        table = table.number(run_heading(run.run), move |row| (row.1)(run));
+    }
+    html! {
+        h2 { "Results" }
+        (table)
+    }
+}
+
+/// Each replicate, collapsed.
+pub(super) fn replicates(outcome: &Outcome) -> Markup {
+    let unit = size_unit(outcome.inputs.scale_free);
+    let of_known = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), significant);
+    let listed = outcome.replicates.len().min(LISTED);
+    let rows: Vec<(usize, &Replicate, &Run)> = (1..)
+        .zip(outcome.replicates.iter().take(LISTED))
+        .flat_map(|(number, replicate)| replicate.runs.iter().map(move |run| (number, replicate, run)))
+        .collect();
+    let table = Table::of(&rows)
+        .class("replicates")
+        .name("Replicate", |(number, replicate, _)| {
+            html! { (number) span.seed { " (seed " (replicate.seed) ")" } }
+        })
+        .text("Verdict", |(_, replicate, _)| replicate.verdict.words())
+        .text("Run", |(.., run)| html! { span class={ "run-" (run.run) } { (run.run) } })
+        .number("Eroded, mass", |(.., run)| percent(run.eroded_mass_fraction))
+        .number("number", |(.., run)| percent(run.eroded_number_fraction))
+        .number(format!("largest ({unit})"), |(.., run)| of_known(run.largest_eroded_mm))
+        .number("/ D15F", |(.., run)| of_known(run.largest_eroded_over_d15f))
+        .number("Blocked", |(.., run)| percent(run.blocked_fraction))
+        .number("3 layers", |(.., run)| percent(run.blocked_first_three_layers_fraction))
+        .number("On an open path", |(.., run)| percent(run.backbone_fraction))
+        .number("Inserted", |(.., run)| whole(run.inserted))
+        .number("Eroded", |(.., run)| whole(run.eroded))
+        .number("In constrictions", |(.., run)| whole(run.retained_in_constrictions))
+        .number("In voids", |(.., run)| whole(run.retained_in_voids))
+        .number("Trapped", |(.., run)| whole(run.trapped))
+        .number("Per void", |(.., run)| significant(run.retained_per_void))
+        .number("Increments", |(.., run)| whole(run.increments))
+        .number("Moves", |(.., run)| whole(run.particle_moves))
+        .number("Time", |(.., run)| duration(run.seconds));
+    html! {
+        details {
+            summary {
+                "Each replicate (" (listed)
+                @if listed < outcome.replicates.len() { " of " (outcome.replicates.len()) } ")"
+            }
+            (table)
+            p.small {
+                "Inserted, eroded, in constrictions, in voids and trapped count particles; per void is all \
+                 retained "
+                "particles over voids; trapped particles are trapped in closed loops. Seeds, increments, \
+                 moves and times are not printed; outcome.json holds them."
+            }
+        }
+    }
+}
+
+/// Other numbers of base particles, collapsed.
+pub(super) fn sensitivity(outcome: &Outcome) -> Markup {
+    let mut table = Table::of(&outcome.sensitivity)
+        .number("Times the base particles", |case| format!("×{}", trimmed(case.factor)))
+        .number("Base particles, N_base", |case| whole(case.n_base))
+        .number("Grains per void", |case| known(case.grains_per_void, significant))
+        .number("or mass ratio", |case| known(case.mass_ratio, percent))
+        .number("Replicates", |case| case.replicates);
+    for (index, run) in outcome.summary.iter().enumerate() {
+        let of = move |case: &Sensitivity| case.runs.get(index).map_or_else(|| html! { "–" }, fraction);
+        table = table.number(capital(run_name(run.run)), of);
+    }
+    html! {
+        @if !outcome.sensitivity.is_empty() { details {
+            summary { "Sensitivity to the number of base particles, in numbers" }
+            (table.text("Verdict", |case| case.verdict.words()))
+        } }
+    }
+}

@@ -1,0 +1,94 @@
+//! The page of a made-up campaign.
+
+use std::fs;
+use std::path::Path;
+
+use tempfile::TempDir;
+use voidwalk::outcome::ledger::{Campaign, LedgerLine, Made};
+use voidwalk::outcome::record::{Confidence, Outcome, Verdict};
+use voidwalk::report;
+
+use super::{folder, words};
+
+fn line(case: &str, place: &str, outcome: &Outcome) -> LedgerLine {
+    let made = Made {
+        host: "here".into(),
+        threads: 1,
+        job: None,
+        started: "2026-11-21T09:12:04Z".into(),
+        seconds: 1.0,
+    };
+    let levels = [("filter".to_owned(), case.to_owned())];
+    LedgerLine::new(case, &levels, place.into(), "0".into(), outcome, made)
+}
+
+fn page(lines: &[LedgerLine], root: &Path) -> String {
+    let about = Campaign {
+        title: "Two <b>filters</b>".into(),
+        plan: "plan.toml".into(),
+        factors: vec!["filter".into()],
+        cases: lines.len() as u64,
+        missing: Vec::new(),
+    };
+    let ledger: Vec<String> = lines.iter().map(|line| serde_json::to_string(line).unwrap()).collect();
+    fs::write(root.join("campaign.json"), serde_json::to_string(&about).unwrap()).unwrap();
+    fs::write(root.join("ledger.jsonl"), ledger.join("\n") + "\n").unwrap();
+    fs::read_to_string(report::write_campaign(root).unwrap().page).unwrap()
+}
+
+#[test]
+fn the_class_comes_first_and_leads_to_the_page_of_its_case() {
+    let root = TempDir::new().unwrap();
+    for there in ["cases/fine,cu=1.5", "cases/.hidden", "cases/a\"b"] {
+        fs::create_dir_all(root.path().join(there)).unwrap();
+        fs::write(root.path().join(there).join("report.html"), "").unwrap();
+    }
+    let outcome = folder::outcome(3);
+    let lines = [
+        line("fine", "cases/fine,cu=1.5", &outcome),
+        line("gone", "cases/gone", &outcome),
+        line("above", "../cases", &outcome),
+        line("hidden", "cases/.hidden", &outcome),
+        line("quoted", "cases/a\"b", &outcome),
+    ];
+    let page = page(&lines, root.path());
+    assert_eq!(page.matches("href=").count(), 1, "only to a page that is there, inside the folder");
+    assert!(page.contains("<th><a href=\"cases/fine,cu=1.5/report.html\"><b>some erosion</b></a>"), "{page}");
+    assert!(page.contains("Two &lt;b&gt;filters&lt;/b&gt;") && !page.contains("<b>filters"));
+    assert!(words(&page).contains("ClassfilterConfidenceRules not metWarnings"));
+}
+
+#[test]
+fn doubts_are_counted_and_said_once() {
+    let root = TempDir::new().unwrap();
+    let mut outcome = folder::outcome(3);
+    outcome.warnings = vec!["the base is <i>odd</i>".into()];
+    outcome.confidence = Confidence::Contradicted;
+    outcome.rules[0].id = "terzaghi".into();
+    (outcome.rules[0].applies, outcome.rules[0].met) = (true, Some(false));
+    outcome.rules[1].id = "a-rule-of-tomorrow".into();
+    (outcome.rules[1].applies, outcome.rules[1].met) = (true, Some(false));
+    outcome.rules[2].met = Some(true);
+    let first = line("one", "cases/one", &outcome);
+    // as an earlier version wrote it
+    let old = LedgerLine { confidence: None, rules_not_met: None, ..line("two", "cases/two", &outcome) };
+    assert!(!serde_json::to_string(&old).unwrap().contains("confidence"));
+    let page = page(&[first, old], root.path());
+    assert!(page.contains("<span class=\"amber\">contradicted</span>") && page.contains("<td>–</td>"));
+    assert!(page.contains("<td class=\"n\"><span class=\"amber\">2</span></td>"));
+    let text = words(&page);
+    assert!(text.contains("1 case: contradicted by practice"), "{text}");
+    assert!(text.contains("Terzaghi: the filter retains the base (1 case)"));
+    assert!(text.contains("a-rule-of-tomorrow (1 case)"));
+    assert!(page.contains("the base is &lt;i&gt;odd&lt;/i&gt; (2 cases)"));
+}
+
+#[test]
+fn more_replicates_are_spoken_of_where_a_case_is_undecided() {
+    let root = TempDir::new().unwrap();
+    let mut outcome = folder::outcome(3);
+    let sentence = "More replicates may decide it.";
+    assert!(!words(&page(&[line("one", "cases/one", &outcome)], root.path())).contains(sentence));
+    outcome.verdict = Verdict::Undecided;
+    assert!(words(&page(&[line("one", "cases/one", &outcome)], root.path())).contains(sentence));
+}

@@ -1,0 +1,163 @@
+//! What a page to hand in needs: whose it is, the boundaries of practice, plain words, and a style for print.
+
+use voidwalk::outcome::record::RuleRole;
+use voidwalk::run::FolderKind;
+
+use super::folder::Plan;
+use super::{made, words};
+
+#[test]
+fn the_page_says_for_whom_and_by_whom_it_is() {
+    let mut plan = Plan::usual();
+    let before = words(&made(&plan).0);
+    assert!(!before.contains("Client") && !before.contains("Author"));
+    assert!(before.contains("Date 2026-11-21Program voidwalk 0.1.0 (4f2c43f)Seed 2016"));
+    plan.scene.push_str(
+        "[about]\nproject = \"Dam <script>alert(1)</script>\"\nclient = \"turned \u{202e} & Co\"\n",
+    );
+    let page = made(&plan).0;
+    let header = page.split("<main").next().unwrap();
+    assert!(header.contains("Dam &lt;script&gt;alert(1)&lt;/script&gt;") && !header.contains("Author"));
+    assert!(header.contains("turned \u{fffd} &amp; Co"));
+    // a scene that says it in another way, or is none, has a page all the same
+    for scene in ["[about]\nproject = 3\n", "about = 1\n", "no scene at all"] {
+        plan.scene = scene.into();
+        assert!(!words(&made(&plan).0).contains("Project"), "{scene}");
+    }
+}
+
+#[test]
+fn soils_go_by_their_names_and_not_their_files() {
+    let mut plan = Plan::usual();
+    plan.outcome.inputs.base.name = "csv/tillh.csv".into();
+    plan.outcome.inputs.filter.name = "lab/ring.xlsx#C33 sand".into();
+    let (page, figures, _folder) = made(&plan);
+    assert!(page.contains("<title>some erosion: tillh on C33 sand</title>"));
+    let text = words(&page);
+    assert!(text.contains("Base tillh against filter C33 sand"));
+    assert!(
+        text.contains("Name csv/tillh.csv") || text.contains("Namecsv/tillh.csv"),
+        "the file, with the inputs"
+    );
+    let (_, gradations) = figures.iter().find(|(name, _)| name == "gradations.svg").unwrap();
+    assert!(gradations.contains(">tillh</text>") && !gradations.contains("csv/"));
+}
+
+#[test]
+fn boundaries_of_practice_stand_at_the_row_of_d15f() {
+    let mut plan = Plan::usual();
+    let gradations = |plan: &Plan| {
+        let (page, figures, _folder) = made(plan);
+        let (_, figure) = figures.into_iter().find(|(name, _)| name == "gradations.svg").unwrap();
+        (words(&page), figure)
+    };
+    let (text, figure) = gradations(&plan);
+    assert!(figure.contains(">15 %</text>") && !figure.contains(">NE</text>"));
+    assert!(!text.contains("Short lines at the 15 % row"), "no rule has such a limit");
+
+    for (rule, (id, limit)) in
+        [("foster-fell-no-erosion", 5.5), ("foster-fell-continuing", 12.25)].into_iter().enumerate()
+    {
+        let rule = &mut plan.outcome.rules[rule];
+        (rule.id, rule.quantity) = (id.into(), "D15F".into());
+        (rule.applies, rule.limit, rule.unit) = (true, Some(limit), "mm".into());
+    }
+    let (text, figure) = gradations(&plan);
+    assert!(figure.contains(">NE</text>") && figure.contains(">CE</text>"), "{figure}");
+    assert!(text.contains("no erosion (NE) 5.50 mm, continuing erosion (CE) 12.2 mm"), "{text}");
+
+    plan.outcome.rules[0].applies = false;
+    plan.outcome.rules[1].limit = None;
+    let (text, figure) = gradations(&plan);
+    assert!(!figure.contains(">NE</text>") && !figure.contains(">CE</text>"));
+    assert!(!text.contains("Short lines at the 15 % row"));
+}
+
+#[test]
+fn rules_in_short_are_those_with_a_result() {
+    let short = |plan: &Plan| {
+        let text = words(&made(plan).0);
+        let begin = text.find("Rules of practice, in short").unwrap();
+        text[begin..begin + text[begin..].find("Thickness modelled").unwrap()].to_owned()
+    };
+    let mut plan = Plan::usual();
+    assert!(short(&plan).contains("Terzaghi") && short(&plan).contains("continuing erosion"));
+    assert!(!short(&plan).contains("no result here"));
+    plan.outcome.rules[0].met = None;
+    plan.outcome.rules[2].role = RuleRole::Walk;
+    let text = short(&plan);
+    assert!(!text.contains("Terzaghi") && !text.contains("continuing erosion"), "{text}");
+    assert!(text.contains("1 more rule has no result here"), "{text}");
+    plan.outcome.rules.clear();
+    assert!(short(&plan).contains("No rule has a result for these soils."));
+}
+
+#[test]
+fn both_gradations_are_in_the_appendix() {
+    let mut plan = Plan::usual();
+    plan.outcome.inputs.base.gradation = vec![[0.075, 12.5], [0.6, 63.25], [19.05, 100.0]];
+    let text = words(&made(&plan).0);
+    let appendix = &text[text.find("Appendix: the two gradations").unwrap()..];
+    for expected in ["Base: Silty core fill", "19.05100", "0.663.25", "0.07512.5", "12.5 % are finer"] {
+        assert!(appendix.contains(expected), "{expected}: {}", &appendix[..1200]);
+    }
+    assert!(appendix.find("19.05100") < appendix.find("0.663.25"), "the coarsest first");
+}
+
+#[test]
+fn headings_are_plain_words() {
+    let mut plan = Plan::usual();
+    plan.outcome.inputs.base.tail_mass_fraction = 0.12;
+    let (page, figures, _folder) = made(&plan);
+    for jargon in [
+        ">Backbone",
+        ">P(F)<",
+        "Multiple of N_base",
+        "Cu of the curve",
+        "passive and counted",
+        "passive, counted",
+    ] {
+        assert!(!page.contains(jargon), "{jargon}");
+        assert!(figures.iter().all(|(_, figure)| !figure.contains(jargon)), "{jargon}");
+    }
+    for plain in [
+        "Constrictions on an open path (backbone)",
+        "Chance to move one layer on",
+        "Times the base particles",
+        "taken as too fine to block any constriction (passive)",
+    ] {
+        assert!(page.contains(plain), "{plain}");
+    }
+}
+
+/// The rest is looked at in a browser: `scripts/look_at_report.sh REPORT.html OUT.pdf`.
+#[test]
+fn print_opens_what_is_collapsed_and_keeps_heads_of_tables() {
+    let page = made(&Plan::usual()).0;
+    let style = page.split("<style>").nth(1).unwrap().split("</style>").next().unwrap();
+    let (screen, print) = style.split_once("@media print{").expect("a style for print");
+    for piece in [
+        "details::details-content{display:block;content-visibility:visible",
+        "thead{display:table-header-group}",
+        "svg text{stroke:none}",
+        "tr{break-inside:avoid}",
+        "@page{size:auto;",
+    ] {
+        assert!(print.contains(piece), "{piece}");
+    }
+    // A sheet of paper is as narrow as a telephone held across: what is made for that must not reach it.
+    assert!(!screen.contains("@media (max-width") && screen.contains("@media screen and (max-width"));
+    assert!(page.contains("<details><summary>Each replicate (10)"));
+}
+
+#[test]
+fn every_figure_of_a_run_is_on_the_list_of_what_a_replaced_run_leaves() {
+    let (_, figures, _folder) = made(&Plan::usual());
+    let mut drawn: Vec<String> = figures.into_iter().map(|(name, _)| name.replace(".svg", "")).collect();
+    // drawn of a packing, which this run has none of; tests/commands/pack.rs looks at that
+    drawn.push("slice".into());
+    drawn.sort();
+    let mut listed = FolderKind::Run.figures().to_vec();
+    listed.sort_unstable();
+    assert_eq!(drawn, listed);
+}
