@@ -54,8 +54,8 @@ pub enum NetworkError {
     },
     /// Closed loops but for a way out that is hardly ever taken.
     #[error(
-        "a network has loops with so narrow a way out that what a particle can expect there is not known after \
-         {sweeps} sweeps over its voids"
+        "a network has loops with so narrow a way out that what a particle can expect there is not known \
+         after {sweeps} sweeps over its voids"
     )]
     NarrowWayOut {
         /// How often all voids were looked at.

@@ -60,8 +60,8 @@ fn unit(file: &str, text: &str) -> Result<Option<Unit>, ImportError> {
     for (at, item) in text.match_indices("ITEM: UNITS") {
         let line = 2 + text[..at].matches('\n').count();
         let name = text[at + item.len()..].lines().nth(1).map_or("", str::trim);
-        let allowed = "si, cgs, micro or nano; where the lengths are in mm, remove the line ITEM: UNITS and the \
-                       one after it";
+        let allowed = "si, cgs, micro or nano; where the lengths are in mm, remove the line ITEM: UNITS and \
+                       the one after it";
         let unit = UNITS.into_iter().find(|unit| unit.name == name);
         let unit = unit.ok_or_else(|| refused(file, line, "units", name, allowed))?;
         if found.is_some_and(|before| before.name != unit.name) {

@@ -79,7 +79,7 @@ fn a_dump_says_which_frame_and_which_units_were_taken() {
         assert!(refused.starts_with(&message), "{refused}");
     }
     let two = parsed(&format!("{}{DUMP}{}{DUMP}", units("si"), units("cgs"))).unwrap_err();
-    assert!(two.contains("line 14, units: \"cgs\"") && two.contains("the same units"), "{two}");
+    assert!(two.contains("line 15, units: \"cgs\"") && two.contains("the same units"), "{two}");
     let huge = parsed(&format!("{}{}", units("si"), DUMP.replace("0.5 2.5", "1e307 2.5"))).unwrap_err();
     assert!(huge.contains("lengths in metres that are numbers in mm"), "{huge}");
 }

@@ -40,7 +40,7 @@ pub mod shell;
 mod table;
 mod written;
 
-pub use campaign::write_campaign;
+pub use campaign::{campaign_page, write_campaign};
 pub use error::ReportError;
 pub use packing::write_packing;
 pub use page::write;

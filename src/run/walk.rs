@@ -182,8 +182,8 @@ fn unchanged(folder: &Folder, fingerprint: &str) -> Result<(), RunError> {
         // Of a corrupt mark nothing is known.
         Some(begun) if !begun.work.is_empty() && begun.work != fingerprint => {
             Err(RunError::Refused(format!(
-                "{}: scene.toml or a file in inputs is not what this run was begun with; put it back, or walk \
-                 the scene anew: voidwalk run SCENE --out DIR --overwrite",
+                "{}: scene.toml or a file in inputs is not what this run was begun with; put it back, or \
+                 walk the scene anew: voidwalk run SCENE --out DIR --overwrite",
                 shown(folder.path())
             )))
         }
