@@ -119,6 +119,9 @@ def alike(value, name=None):
     if name in TIMES and isinstance(value, (str, int, float)):
         return "alike" if isinstance(value, str) else 1
     if isinstance(value, dict):
+        if str(value.get("name", "")).endswith("packing.json") and "xxh3" in value:
+            # A sum over a record with times in it.
+            value = {**value, "xxh3": "alike"}
         return {key: alike(inner, key) for key, inner in value.items()}
     return [alike(inner) for inner in value] if isinstance(value, list) else value
 
