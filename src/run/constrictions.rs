@@ -41,7 +41,9 @@ pub fn measure_constrictions(
     let found = Constrictions::measure(&packing, options.merge_overlap)
         .map_err(|error| RunError::Refused(format!("{file}: {error}")))?;
     // Those near the outside of grains without a cell are no part of the curve.
-    let summary = found.summary().map_err(|_| {
+    let whole =
+        |summary: &Summary| summary.grains_per_void.is_finite() && summary.mean_connectivity.is_finite();
+    let summary = found.summary().ok().filter(whole).ok_or_else(|| {
         RunError::Refused(format!(
             "{file}: {} grains are too few: no constriction lies between two voids inside the packing. At \
              least 5 grains that do not lie in one plane are needed for one, some thousands for a curve",
