@@ -79,7 +79,7 @@ WORKS = {
     ),
     "percolation": (PERCOLATION, None, ["r"]),
     "percolation-overwrite": ([*PERCOLATION, "--overwrite"], [*PERCOLATION[:3], "--sizes", "5", "--realisations", "2"], ["r"]),
-    "precision": (["precision", "--out", "r", "--budget", "100ms", "--tier", "exact", "sampling", "scaling", *STUDY], None, ["r"]),
+    "precision": (["precision", "--out", "r", "--budget", "100ms", "--tier", "sampling", "bias", "scaling", *STUDY], None, ["r"]),
     "precision-overwrite": (
         ["precision", "--out", "r", "--budget", "100ms", "--tier", "sampling", "scaling", "--overwrite", *STUDY],
         ["precision", "--out", "r", "--budget", "100ms", "--tier", "scaling", *STUDY],
