@@ -11,7 +11,8 @@ know how far it was (`resume`, or the same command); when it has ended well, eve
     kill      SIGKILL after a random time
     stop      SIGTERM, SIGINT, SIGHUP or SIGXCPU after a random time
     full      no file may grow beyond a random size (RLIMIT_FSIZE); as root also: a small disk (tmpfs) that is full, and gets room
-    cut       a file of the unfinished folder is cut to a random length (not of a campaign's case that is done)
+    cut       a file of the unfinished folder is cut to a random length (not of
+              results that are written but for their page: they have no sums)
     flip      one bit of a checkpoint changes
     other     a command of another kind is pointed at the unfinished folder: it must be refused, and change no file
 
@@ -92,6 +93,7 @@ HARMS = ["kill", "kill", "kill", "kill", "kill", "stop", "full", "cut", "flip", 
 TIMES = {"seconds", "made", "threads", "host", "machine", "started", "finished", "command", "core_seconds", "wall_seconds",
          "triangulate_seconds", "measure_seconds", "merit", "merit_low", "merit_high", "spent"}
 LOCK, MARK, PART = ".voidwalk.lock", ".voidwalk.unfinished", ".voidwalk-part-"
+RECORDS = ("outcome.json", "packing.json", "percolation.json", "precision.json", "constrictions.json", "case.json")
 PAGES = ("report.html", "precision.html")
 
 
@@ -292,8 +294,7 @@ class Trial:
     def is_done(self):
         """Whether a kill came when the last file had been written and the mark was gone."""
         has = lambda name: os.path.exists(os.path.join(self.out, name))
-        records = ("outcome.json", "packing.json", "percolation.json", "precision.json", "constrictions.json")
-        return self.command != "campaign" and not has(MARK) and any(map(has, records)) and not (self.old and self.is_old())
+        return self.command != "campaign" and not has(MARK) and any(map(has, RECORDS)) and not (self.old and self.is_old())
 
     def harmed(self, wanted):
         harms = 0
@@ -416,10 +417,10 @@ class Trial:
         return False
 
     def cut(self, harm):
-        # A case of a campaign that is done has no sums: only that it is done can be seen to be harmed.
-        done = {os.path.dirname(name) for name in files_of(self.out) if os.path.basename(name) == "case.json"}
-        is_done = lambda name: any(name.startswith(f"{case}/") for case in done) and os.path.basename(name) != "case.json"
-        names = sorted(name for name in files_of(self.out) if os.path.basename(name) != LOCK and not is_done(name))
+        # Results that are written have no sums: once a record is there, only the record itself is looked at again.
+        written = {os.path.dirname(name): name for name in sorted(files_of(self.out), reverse=True) if os.path.basename(name) in RECORDS}
+        under = lambda name: next((r for at, r in written.items() if name.startswith(f"{at}/" if at else "")), None)
+        names = sorted(name for name in files_of(self.out) if os.path.basename(name) != LOCK and under(name) in (None, name))
         if not names:
             return False
         name = self.chance.choice(names)
