@@ -59,6 +59,21 @@ const PERCOLATION: &[&str] =
     &["percolation", "--sizes", "3,4", "--realisations", "3", "--out", "r", "--threads", "1"];
 
 const WORKS: [Work; 10] = [
+    Work {
+        name: "constrictions",
+        files: FILES,
+        command: &["constrictions", "grains.csv", "--out", "r"],
+        one_in: 1,
+        ..RUN
+    },
+    Work {
+        name: "constrictions --overwrite",
+        files: FILES,
+        before: &[&["constrictions", "fewer.csv", "--out", "r"]],
+        command: &["constrictions", "grains.csv", "--out", "r", "--overwrite"],
+        one_in: 1,
+        ..RUN
+    },
     Work { name: "scene with files", files: FILES, command: run!("files.toml"), one_in: 3, ..RUN },
     Work {
         name: "packed filter",
@@ -97,21 +112,6 @@ const WORKS: [Work; 10] = [
         before: &[&["pack", "pack.toml", "--out", "r", "-q", "--threads", "1"]],
         command: &["pack", "pack.toml", "--out", "r", "-q", "--threads", "1", "--seed", "7", "--overwrite"],
         one_in: 2,
-        ..RUN
-    },
-    Work {
-        name: "constrictions",
-        files: FILES,
-        command: &["constrictions", "grains.csv", "--out", "r"],
-        one_in: 1,
-        ..RUN
-    },
-    Work {
-        name: "constrictions --overwrite",
-        files: FILES,
-        before: &[&["constrictions", "fewer.csv", "--out", "r"]],
-        command: &["constrictions", "grains.csv", "--out", "r", "--overwrite"],
-        one_in: 1,
         ..RUN
     },
     Work { name: "percolation", command: PERCOLATION, one_in: 1, ..RUN },
