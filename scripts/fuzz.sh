@@ -11,6 +11,6 @@ case ${1:-} in [0-9]*) seconds=$1 && shift ;; esac
 cargo fuzz --version >/dev/null 2>&1 || cargo install --locked cargo-fuzz
 for target in "$@"; do
     mkdir -p "corpus/$target"
-    nice cargo +nightly fuzz run "$target" "corpus/$target" "../seeds/$target" -- \
+    nice cargo +nightly fuzz run --fuzz-dir . "$target" "corpus/$target" "../seeds/$target" -- \
         -max_total_time="$seconds" -timeout=10 -malloc_limit_mb=256 -rss_limit_mb=2048 -print_final_stats=1
 done

@@ -148,7 +148,18 @@ impl CampaignPlan {
                 format!("must be a regular file of at most {LARGEST_FILE} bytes"),
             ));
         };
-        let text = hints::as_text(&bytes).map_err(|problem| syntax(String::new(), problem))?;
+        Self::parse(&bytes, path)
+    }
+
+    /// [`CampaignPlan::read`] on the content of a file; the files that its scenes name are looked for beside
+    /// `path`.
+    ///
+    /// # Errors
+    /// As [`CampaignPlan::read`].
+    pub fn parse(bytes: &[u8], path: &Path) -> Result<Self, SceneError> {
+        let file = path.display().to_string();
+        let syntax = |at: String, problem: String| SceneError::Syntax { file: file.clone(), at, problem };
+        let text = hints::as_text(bytes).map_err(|problem| syntax(String::new(), problem))?;
         let written: Written = toml::from_str(text).map_err(|e| {
             let line = e.span().map(|span| text[..span.start.min(text.len())].matches('\n').count() + 1);
             let hint = line.and_then(|line| hints::of_line(text, line));

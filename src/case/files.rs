@@ -59,15 +59,25 @@ pub const INPUT_FILES: [&str; 13] = [
 ];
 
 /// What the user called a file: what is written beside it in a run's folder, or else its path.
-fn first_name(path: &Path, soil: Option<&str>) -> String {
-    let kept = || {
-        let folder = path.parent().filter(|folder| folder.ends_with(INPUTS))?;
-        let text = read_regular(&folder.parent()?.join(INPUT_NAMES), LARGEST_TABLE).ok()??;
-        let mut names: BTreeMap<String, String> = serde_json::from_slice(&text).ok()?;
-        names.remove(path.file_name()?.to_str()?)
-    };
+///
+/// # Errors
+/// What is written there is not as the program writes it.
+fn first_name(path: &Path, soil: Option<&str>) -> Result<String, CaseError> {
     let part = soil.map(|soil| format!("#{soil}")).unwrap_or_default();
-    kept().unwrap_or_else(|| format!("{}{part}", path.display()))
+    let own = format!("{}{part}", path.display());
+    let folder = path.parent().filter(|folder| folder.ends_with(INPUTS)).and_then(Path::parent);
+    let Some(file) = folder.map(|folder| folder.join(INPUT_NAMES)) else { return Ok(own) };
+    let Ok(Some(text)) = read_regular(&file, LARGEST_TABLE) else { return Ok(own) };
+    let names = serde_json::from_slice(&text).map_err(|error| SceneError::Syntax {
+        file: file.display().to_string(),
+        at: String::new(),
+        problem: format!(
+            "does not name the files beside it as a run writes it ({error}); remove it, and they \
+                          are called by their names there"
+        ),
+    });
+    let mut names: BTreeMap<String, String> = names?;
+    Ok(path.file_name().and_then(|name| names.remove(name.to_str()?)).unwrap_or(own))
 }
 
 /// The name under which a run keeps a table: with the ending of a workbook where it is one.
@@ -109,14 +119,21 @@ impl Files {
             let problem = format!("must be a regular file of at most {largest} bytes");
             return Err(SceneError::Syntax { file: named, at: String::new(), problem }.into());
         };
-        self.keep(setting, path, kept_as, bytes);
+        self.keep(setting, path, kept_as, bytes)?;
         Ok((file, &self.0[self.0.len() - 1].bytes))
     }
 
-    fn keep(&mut self, setting: &'static str, path: &Path, kept_as: &str, bytes: Vec<u8>) {
+    fn keep(
+        &mut self,
+        setting: &'static str,
+        path: &Path,
+        kept_as: &str,
+        bytes: Vec<u8>,
+    ) -> Result<(), CaseError> {
         debug_assert!(INPUT_FILES.contains(&kept_as), "{kept_as} would outlive its run");
-        let (name, kept_as) = (first_name(path, None), format!("{INPUTS}/{kept_as}"));
+        let (name, kept_as) = (first_name(path, None)?, format!("{INPUTS}/{kept_as}"));
         self.0.push(Input { setting, name, kept_as, bytes, soil: None, notes: Vec::new() });
+        Ok(())
     }
 
     pub fn curve(
@@ -138,16 +155,19 @@ impl Files {
     }
 
     /// The curve of a filter that was packed; kept as if it had been given, with the packing's record.
-    pub fn packed(&mut self, packed: &PackedFilter) -> Curve {
+    ///
+    /// # Errors
+    /// Names of files that are not as the program writes them.
+    pub fn packed(&mut self, packed: &PackedFilter) -> Result<Curve, CaseError> {
         if let Some([curve, record]) = &packed.files {
             for (setting, path, kept_as, bytes) in [
                 ("filter.curve", curve, "filter-curve.csv", packed.curve_csv.as_bytes()),
                 ("filter.density", record, RECORD, &packed.record),
             ] {
-                self.keep(setting, path, kept_as, bytes.to_vec());
+                self.keep(setting, path, kept_as, bytes.to_vec())?;
             }
         }
-        packed.curve.clone()
+        Ok(packed.curve.clone())
     }
 
     pub fn sieve(
@@ -162,7 +182,7 @@ impl Files {
         let read = Soil::one(&name, bytes, soil.as_deref())?;
         let gradation = read.gradation(d0_mm)?;
         if let Some(input) = self.0.last_mut() {
-            input.name = first_name(&path, soil.as_deref());
+            input.name = first_name(&path, soil.as_deref())?;
             input.soil = soil;
             input.notes = read.notes().to_vec();
         }

@@ -142,7 +142,7 @@ impl Case {
         };
         let mut files = Files::default();
         let curve = match (&scene.filter.curve, &packed) {
-            (_, Some(packed)) => Some((files.packed(packed), None)),
+            (_, Some(packed)) => Some((files.packed(packed)?, None)),
             (Some(source), None) => Some(files.curve(source, "filter.curve", "filter-curve.csv")?),
             (None, None) if scene.packing.is_some() => {
                 return Err(CaseError::NotPacked { file: scene.name.clone() });

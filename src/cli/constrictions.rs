@@ -2,6 +2,7 @@
 
 use super::args::ConstrictionsArgs;
 use super::print::{count, json, plain, to_stdout};
+use super::progress::unfollowed;
 use crate::run::{ConstrictionsOptions, RunError, measure_constrictions};
 
 /// Measures a packing's constrictions and writes them into a folder.
@@ -11,7 +12,7 @@ pub fn constrictions(args: &ConstrictionsArgs) -> Result<(), RunError> {
         out: args.out.clone(),
         overwrite: args.overwrite,
     };
-    let summary = measure_constrictions(&args.packing, &options)?;
+    let summary = measure_constrictions(&args.packing, &options, &unfollowed())?;
     if args.json {
         to_stdout(&json(&summary)?);
         return Ok(());

@@ -52,6 +52,15 @@ pub enum NetworkError {
         /// What is allowed.
         allowed: String,
     },
+    /// Closed loops but for a way out that is hardly ever taken.
+    #[error(
+        "a network has loops with so narrow a way out that what a particle can expect there is not known \
+         after {sweeps} sweeps over its voids"
+    )]
+    NarrowWayOut {
+        /// How often all voids were looked at.
+        sweeps: usize,
+    },
     /// A row that is not understood.
     #[error("{file}, line {line}, {field}: `{value}` is not allowed; {allowed}")]
     Row {

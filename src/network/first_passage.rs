@@ -14,10 +14,17 @@
 //! first: on a lattice that is periodic sideways only the rows of a layer wait for each other, so some tens
 //! of sweeps do.
 
-use super::{END, Network};
+use super::{END, Network, NetworkError};
 
 /// Sweeps end when nothing changes by more than this part of itself.
 const CONVERGED: f64 = 1e-15;
+
+/// Constrictions looked at until an answer is given up: seconds. A loop that is left once in `n` moves takes
+/// some `30 n` sweeps.
+const MOST_LOOKS: usize = 1 << 30;
+
+/// Sweeps until an answer is given up on the largest network, at least.
+const LEAST_SWEEPS: usize = 1 << 12;
 
 /// What a single particle can expect, by the void that it starts in.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,14 +54,21 @@ impl Network {
     /// use voidwalk::network::Network;
     /// // One void: it leaves through z by the share of area, or is stopped by the finer x; y leads back.
     /// let network = Network::cubic_from_diameters([1, 1, 1], vec![1.0, 2.0, 2.0], 1.0)?;
-    /// let passage = network.first_passage(1.5, |_| false);
+    /// let passage = network.first_passage(1.5, |_| false)?;
     /// assert!((passage.leaves[0] - 0.8).abs() < 1e-12);
     /// // x is closed: nothing stops it, and it leaves after two moves on average.
-    /// let passage = network.first_passage(1.5, |c| c == 0);
+    /// let passage = network.first_passage(1.5, |c| c == 0)?;
     /// assert!((passage.leaves[0] - 1.0).abs() < 1e-12 && (passage.moves[0] - 2.0).abs() < 1e-12);
     /// # Ok::<(), voidwalk::network::NetworkError>(())
     /// ```
-    pub fn first_passage(&self, d: f32, closed: impl Fn(usize) -> bool) -> FirstPassage {
+    ///
+    /// # Errors
+    /// Loops have so narrow a way out that the answer would take too long.
+    pub fn first_passage(
+        &self,
+        d: f32,
+        closed: impl Fn(usize) -> bool,
+    ) -> Result<FirstPassage, NetworkError> {
         let weight = |c: usize| if closed(c) { 0.0 } else { self.exit_weight(c) };
         let mut share = vec![0.0; self.constrictions()];
         let mut ends = vec![false; self.voids()];
@@ -71,9 +85,10 @@ impl Network {
         }
         let circles = self.spread(&share, ends.clone()).into_iter().map(|ends| !ends).collect();
         let unending = self.spread(&share, circles);
-        let leaves = self.relax(&share, &vec![false; self.voids()], |out| f64::from(u8::from(out)));
-        let moves = self.relax(&share, &unending, |_| 1.0);
-        FirstPassage { leaves, moves }
+        let most = (MOST_LOOKS / self.constrictions().max(1)).max(LEAST_SWEEPS);
+        let leaves = self.relax(&share, &vec![false; self.voids()], |out| f64::from(u8::from(out)), most)?;
+        let moves = self.relax(&share, &unending, |_| 1.0, most)?;
+        Ok(FirstPassage { leaves, moves })
     }
 
     /// Voids from which one of `marked` can be reached through exits with a share.
@@ -149,11 +164,17 @@ impl Network {
         }
     }
 
-    /// The smallest solution of `x(v) = sum share_e (gain(e leads out) + x(t(e)))`; infinite where
-    /// `unending`.
-    fn relax(&self, share: &[f64], unending: &[bool], gain: impl Fn(bool) -> f64) -> Vec<f64> {
+    /// In at most so many sweeps the smallest solution of
+    /// `x(v) = sum share_e (gain(e leads out) + x(t(e)))`; infinite where `unending`.
+    fn relax(
+        &self,
+        share: &[f64],
+        unending: &[bool],
+        gain: impl Fn(bool) -> f64,
+        most: usize,
+    ) -> Result<Vec<f64>, NetworkError> {
         let mut x: Vec<f64> = unending.iter().map(|&u| if u { f64::INFINITY } else { 0.0 }).collect();
-        loop {
+        for _ in 0..most {
             let mut change = 0f64;
             for void in (0..self.voids()).rev().filter(|&void| !unending[void]) {
                 let one = |c: usize| match self.target[c] {
@@ -168,9 +189,10 @@ impl Network {
                 x[void] = new;
             }
             if change <= CONVERGED {
-                return x;
+                return Ok(x);
             }
         }
+        Err(NetworkError::NarrowWayOut { sweeps: most })
     }
 
     /// The network on which a particle that fits everywhere fares as a single particle of diameter `d` does
@@ -201,23 +223,41 @@ mod tests {
     #[test]
     fn equal_constrictions_take_three_moves_a_layer() {
         let network = Network::cubic_from_diameters([3, 2, 7], vec![0.5; 126], 1.0).unwrap();
-        let (leaves, moves) = network.first_passage(0.5, |_| false).from_start(&network);
+        let (leaves, moves) = network.first_passage(0.5, |_| false).unwrap().from_start(&network);
         assert!((leaves - 1.0).abs() < 1e-12 && (moves - 21.0).abs() < 1e-9, "{leaves} {moves}");
-        assert_eq!(network.first_passage(0.6, |_| false).leaves, vec![0.0; 42]);
+        assert_eq!(network.first_passage(0.6, |_| false).unwrap().leaves, vec![0.0; 42]);
     }
 
     /// x and y lead round, z is closed: it never leaves, and never stops moving.
     #[test]
     fn a_particle_that_circles_never_leaves() {
         let network = Network::cubic_from_diameters([2, 2, 2], vec![1.0; 24], 1.0).unwrap();
-        let passage = network.first_passage(0.5, |c| c % 3 == 2 && c >= 12);
+        let passage = network.first_passage(0.5, |c| c % 3 == 2 && c >= 12).unwrap();
         assert_eq!(
             (passage.leaves[0], passage.moves[0], passage.moves[4]),
             (0.0, f64::INFINITY, f64::INFINITY)
         );
         // Where everything is closed it moves no more.
-        let stuck = network.first_passage(0.5, |_| true);
+        let stuck = network.first_passage(0.5, |_| true).unwrap();
         assert_eq!((stuck.leaves[0], stuck.moves[0]), (0.0, 0.0));
+    }
+
+    /// A loop that is left once in a million million moves would be swept for days; one that is left once in
+    /// ten thousand has its answer.
+    #[test]
+    fn an_answer_that_takes_too_long_is_given_up_in_words() {
+        let of = |narrow: f64| {
+            let text = format!("from,to,diameter_mm\nstart,0,\n0,0,1\n0,end,{narrow}\n");
+            let network = Network::from_csv(text.as_bytes(), "n.csv", 1.0).unwrap();
+            network.first_passage(0.0, |_| false).map(|passage| passage.from_start(&network))
+        };
+        let (leaves, moves) = of(0.01).unwrap();
+        assert!((leaves - 1.0).abs() < 1e-9 && (moves / 10_001.0 - 1.0).abs() < 1e-6, "{leaves} {moves}");
+        // As few sweeps as on a large network, so that the test is short.
+        let text = "from,to,diameter_mm\nstart,0,\n0,0,1\n0,end,0.000001\n";
+        let network = Network::from_csv(text.as_bytes(), "n.csv", 1.0).unwrap();
+        let error = network.relax(&[1.0, 1e-12], &[false], |_| 1.0, 1000).unwrap_err().to_string();
+        assert!(error.contains("after 1000 sweeps") && error.contains("way out"), "{error}");
     }
 
     /// Loops with a way out that is taken once in a million and in a million million moves, of one void and
@@ -248,9 +288,9 @@ mod tests {
     fn the_network_of_a_first_particle_has_its_answer() {
         let diameters: Vec<f32> = (0..3 * 3 * 4 * 5).map(|i| 0.2 + 0.01 * (i * 37 % 61) as f32).collect();
         let network = Network::cubic_from_diameters([3, 4, 5], diameters, 1.0).unwrap();
-        let direct = network.first_passage(0.3, |_| false);
+        let direct = network.first_passage(0.3, |_| false).unwrap();
         let made = network.as_first_particle_of(0.3);
-        let passage = made.first_passage(0.0, |_| false);
+        let passage = made.first_passage(0.0, |_| false).unwrap();
         assert!(direct.leaves[0] > 0.0 && direct.leaves[0] < 0.9);
         for void in 0..network.voids() {
             assert!((direct.leaves[void] - passage.leaves[void]).abs() < 1e-12);

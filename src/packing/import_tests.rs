@@ -29,7 +29,7 @@ fn the_same_packing_in_every_dress() {
         CSV.replace("x_mm,y_mm,z_mm,diameter_mm\n", "\n# note\n X_mm , Y_mm,\"z_mm\",diameter_mm,colour\n"),
         CSV.replace("\n0", "\n\n0").replace(',', ";"),
         DUMP.to_string(),
-        DUMP.replace("TIMESTEP\n0", "UNITS\nlj\nITEM: TIMESTEP\n7\nITEM: TIME\n0.5"),
+        DUMP.replace("TIMESTEP\n0", "TIMESTEP\n7\nITEM: TIME\n0.5"),
         DUMP.replace("-1 1", "0 2")
             .replace("id type x", "id type xs")
             .replace(" 0.5 2", " 0.75 2")
@@ -42,6 +42,46 @@ fn the_same_packing_in_every_dress() {
     let free = Packing { cell: Cell::Free, x: vec![-0.5, 0.5], z: vec![3.0, 4.25], ..expected() };
     assert_eq!(parsed(&DUMP.replace("pp pp pp", "ff sm ff")), Ok(free));
     assert_eq!(parsed(&CSV.replace("cell_mm = 2, 3, 4", "cell = none")).unwrap().cell, Cell::Free);
+}
+
+/// A dump says once what its lengths are, before its first frame or before each.
+#[test]
+fn a_dump_says_which_frame_and_which_units_were_taken() {
+    let units = |name: &str| format!("ITEM: UNITS\n{name}\n");
+    let read = |text: &str| {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("dump");
+        std::fs::write(&path, text).unwrap();
+        Packing::read_with_notes(&path)
+    };
+    for (name, scale, words) in [
+        ("si", 1e3, "metres"),
+        ("cgs", 10.0, "centimetres"),
+        ("micro", 1e-3, "micro"),
+        ("nano", 1e-6, "nano"),
+    ] {
+        let first = DUMP.replace("0.375", "9").replace("TIMESTEP\n0", "TIMESTEP\n-1");
+        for text in
+            [format!("{}{first}{DUMP}", units(name)), format!("{}{first}{}{DUMP}", units(name), units(name))]
+        {
+            let (packing, notes) = read(&text).unwrap();
+            assert_eq!(packing.diameter, [scale, 0.75 * scale], "{text}");
+            assert_eq!(packing.x, [0.5 * scale, 1.5 * scale]);
+            assert_eq!(packing.cell, Cell::Periodic([2.0 * scale, 3.0 * scale, 4.0 * scale]));
+            assert!(notes[0].ends_with("holds 2 frames: the last one, timestep 0, is taken"), "{notes:?}");
+            assert!(notes[1].contains(&format!("ITEM: UNITS {name}: lengths are in {words}")), "{notes:?}");
+        }
+    }
+    assert_eq!(read(DUMP).unwrap(), (expected(), Vec::new()));
+    for name in ["lj", "real", "metal", "electron", "SI", ""] {
+        let refused = parsed(&format!("{}{DUMP}", units(name))).unwrap_err();
+        let message = format!("f, line 2, units: \"{name}\" is not allowed; allowed: si, cgs, micro or nano");
+        assert!(refused.starts_with(&message), "{refused}");
+    }
+    let two = parsed(&format!("{}{DUMP}{}{DUMP}", units("si"), units("cgs"))).unwrap_err();
+    assert!(two.contains("line 15, units: \"cgs\"") && two.contains("the same units"), "{two}");
+    let huge = parsed(&format!("{}{}", units("si"), DUMP.replace("0.5 2.5", "1e307 2.5"))).unwrap_err();
+    assert!(huge.contains("lengths in metres that are numbers in mm"), "{huge}");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use maud::{Markup, html};
 use super::campaign_cases as cases;
 use super::error::ReportError;
 use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, PURPLE, Point, Rule, Shape, shorten};
-use super::files::{json, lines};
+use super::files::{json, json_of, lines, lines_of};
 use super::numbers::{duration, interval, interval_in_percent, whole};
 use super::run_figures::verdict_colour;
 use super::shell::{Drawn, citation, clean, figures, leaves_out, whole_page};
@@ -29,14 +29,33 @@ const SHAPES: [Shape; 4] = [Shape::Circle, Shape::Diamond, Shape::Square, Shape:
 /// # Errors
 /// A file that is missing or malformed; nothing is written then.
 pub fn write_campaign(folder: &Path) -> Result<Written, ReportError> {
-    let about: Campaign = json(&folder.join("campaign.json"))?;
-    let ledger: Vec<LedgerLine> = lines(&folder.join("ledger.jsonl"))?;
-    let figures: Vec<Drawn> = match ledger.is_empty() {
-        true => Vec::new(),
-        false => vec![by_ratio(&ledger), both_runs(&ledger), largest(&ledger)],
-    };
+    let about: Campaign = json(&folder.join(ABOUT))?;
+    let ledger: Vec<LedgerLine> = lines(&folder.join(LEDGER))?;
+    let figures = drawn(&ledger);
     let cases = cases::cases(folder, &about, &ledger);
     write_page(folder, &figures, &page(&about, &ledger, &figures, &cases))
+}
+
+/// The page of a campaign whose `campaign.json` and `ledger.jsonl` hold these texts; writes nothing.
+///
+/// # Errors
+/// A text that is malformed.
+pub fn campaign_page(about: &str, ledger: &str) -> Result<String, ReportError> {
+    let about: Campaign = json_of(Path::new(ABOUT), about)?;
+    let ledger: Vec<LedgerLine> = lines_of(Path::new(LEDGER), ledger)?;
+    // Without a folder no case has a page of its own.
+    let cases = cases::cases(Path::new(""), &about, &ledger);
+    Ok(page(&about, &ledger, &drawn(&ledger), &cases))
+}
+
+const ABOUT: &str = "campaign.json";
+const LEDGER: &str = "ledger.jsonl";
+
+fn drawn(ledger: &[LedgerLine]) -> Vec<Drawn> {
+    match ledger.is_empty() {
+        true => Vec::new(),
+        false => vec![by_ratio(ledger), both_runs(ledger), largest(ledger)],
+    }
 }
 
 fn eroded(line: &LedgerLine, run: usize) -> Option<&Statistic> {

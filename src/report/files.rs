@@ -20,7 +20,12 @@ pub(super) fn text(path: &Path) -> Result<String, ReportError> {
 /// # Errors
 /// [`ReportError`] names the file, and the line where its form is wrong.
 pub fn json<T: DeserializeOwned>(path: &Path) -> Result<T, ReportError> {
-    serde_json::from_str(&text(path)?).map_err(|error| ReportError::Form {
+    json_of(path, &text(path)?)
+}
+
+/// [`json()`] of a file with this text.
+pub(super) fn json_of<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, ReportError> {
+    serde_json::from_str(text).map_err(|error| ReportError::Form {
         path: path.to_owned(),
         line: error.line() as u64,
         message: error.to_string(),
@@ -32,6 +37,11 @@ pub fn json<T: DeserializeOwned>(path: &Path) -> Result<T, ReportError> {
 /// # Errors
 /// [`ReportError`] names the file and the line.
 pub fn lines<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, ReportError> {
+    lines_of(path, &text(path)?)
+}
+
+/// [`lines()`] of a file with this text.
+pub(super) fn lines_of<T: DeserializeOwned>(path: &Path, text: &str) -> Result<Vec<T>, ReportError> {
     let one = |(index, line): (usize, &str)| {
         serde_json::from_str(line).map_err(|error| ReportError::Form {
             path: path.to_owned(),
@@ -39,7 +49,7 @@ pub fn lines<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, ReportError> {
             message: error.to_string(),
         })
     };
-    text(path)?.lines().enumerate().map(one).collect()
+    text.lines().enumerate().map(one).collect()
 }
 
 /// The rows of a CSV file, each with its line; columns go by their names in the first line of the file.

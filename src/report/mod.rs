@@ -47,7 +47,7 @@ mod soils;
 mod table;
 mod written;
 
-pub use campaign::write_campaign;
+pub use campaign::{campaign_page, write_campaign};
 pub use error::ReportError;
 pub use packing::write_packing;
 pub use page::write;

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::callbacks::Callbacks;
 use super::error::RunError;
 use super::folder::{FolderKind, claim, clear, shown};
 use super::unfinished::{self, Unfinished};
@@ -30,19 +31,26 @@ impl Default for ConstrictionsOptions {
 ///
 /// # Errors
 /// Grains that are refused, a folder that cannot be claimed or written.
-pub fn measure_constrictions(packing: &Path, options: &ConstrictionsOptions) -> Result<Summary, RunError> {
+pub fn measure_constrictions(
+    packing: &Path,
+    options: &ConstrictionsOptions,
+    callbacks: &Callbacks,
+) -> Result<Summary, RunError> {
     let file = shown(packing);
-    let packing = Packing::read(packing)?;
+    let (packing, notes) = Packing::read_with_notes(packing)?;
     let found = Constrictions::measure(&packing, options.merge_overlap)
         .map_err(|error| RunError::Refused(format!("{file}: {error}")))?;
     // Those near the outside of grains without a cell are no part of the curve.
-    let summary = found.summary().map_err(|_| {
+    let whole =
+        |summary: &Summary| summary.grains_per_void.is_finite() && summary.mean_connectivity.is_finite();
+    let summary = found.summary().ok().filter(whole).ok_or_else(|| {
         RunError::Refused(format!(
             "{file}: {} grains are too few: no constriction lies between two voids inside the packing. At \
              least 5 grains that do not lie in one plane are needed for one, some thousands for a curve",
             packing.diameter.len()
         ))
     })?;
+    notes.iter().for_each(|note| (callbacks.warn)(note));
     let folder = claim(&options.out, FolderKind::Constrictions, options.overwrite)?;
     clear(&folder, FolderKind::Constrictions)?;
     let mark = Unfinished { kind: FolderKind::Constrictions.name().into(), ..Unfinished::default() };

@@ -146,13 +146,12 @@ impl RunError {
         Some(match kind {
             StorageFull | QuotaExceeded => {
                 "what is in its folder under its own name is whole and kept; make room on that disk, then \
-                 `voidwalk resume FOLDER` continues a run, and the same command a packing or a campaign"
+                 `voidwalk resume FOLDER` continues a run, and the same command any other work"
             }
             FileTooLarge => {
                 "a larger file than is allowed here (ulimit -f); what is in its folder under its own name \
                  is whole and kept; allow larger files, then `voidwalk resume FOLDER` continues a run, and \
-                 the same \
-                 command a packing or a campaign"
+                 the same command any other work"
             }
             PermissionDenied | ReadOnlyFilesystem => {
                 "nothing may be written there; name a folder of your own by --out, or have somebody give \

@@ -12,6 +12,9 @@ use crate::text::is_hidden;
 /// The files of the checkpoint of a compression that is not finished.
 pub(super) const STATES: [&str; 2] = ["compression.0", "compression.1"];
 
+/// The files of the checkpoint of a precision study that is not finished.
+pub(crate) const STUDY: [&str; 2] = ["study.0", "study.1"];
+
 /// What a folder holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FolderKind {
@@ -64,6 +67,7 @@ impl FolderKind {
             Self::Run => &["scene.toml", "series.csv", super::checkpoints::FOLDER],
             Self::Packing => &STATES,
             Self::Campaign => &["cases"],
+            Self::Precision => &STUDY,
             _ => &[],
         }
     }
@@ -110,6 +114,8 @@ impl FolderKind {
                 "scaling.csv",
                 "packing.csv",
                 "triangulation.csv",
+                STUDY[0],
+                STUDY[1],
             ],
             Self::Constrictions => {
                 &["constrictions.json", "constrictions.csv", "constrictions.vtp", "grains.vtp"]
@@ -236,6 +242,18 @@ pub(super) fn claim_first_free(name: &str) -> Result<Folder, RunError> {
         }
     }
     unreachable!("there is no last name")
+}
+
+/// Refuses a folder of packings inside one of the program's own that is a link to one elsewhere, which then
+/// would be written to.
+pub(crate) fn own_packings(packings: &Path) -> Result<(), RunError> {
+    match packings.symlink_metadata() {
+        Ok(meta) if meta.is_symlink() => Err(RunError::Refused(format!(
+            "{}: is a symbolic link, which is not followed; put the folder itself there, or remove the link",
+            shown(packings)
+        ))),
+        _ => Ok(()),
+    }
 }
 
 /// A file system without locks, where cases cannot be claimed, in words.

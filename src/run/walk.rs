@@ -6,7 +6,7 @@ use std::time::{Instant, SystemTime};
 use super::callbacks::{Callbacks, Event};
 use super::checkpoints::{self, CheckpointInterval, Checkpoints};
 use super::error::{Exit, RunError};
-use super::folder::{FolderKind, claim, claim_first_free, clear, shown};
+use super::folder::{FolderKind, claim, claim_first_free, clear, own_packings, shown};
 use super::machine::on_threads;
 use super::prepare::{PrepareOptions, prepare_into};
 use super::replicates::{ReplicateContext, ReplicateResult, replicates, runs_to_walk, sensitivity};
@@ -65,7 +65,7 @@ pub fn walk_scene(
     options: &RunOptions,
     callbacks: &Callbacks,
 ) -> Result<FinishedRun, RunError> {
-    on_threads(options.prepare.threads, || walk_here(scene, options, callbacks))
+    on_threads(options.prepare.threads, || walk_here(scene, options, false, callbacks))
 }
 
 /// Continues a run that was stopped or killed, with the same bits: its scene is the one that its folder
@@ -84,8 +84,10 @@ pub fn resume(folder: &Path, options: &RunOptions, callbacks: &Callbacks) -> Res
         let problem = "this run is finished; voidwalk report writes its page again";
         return Err(RunError::Refused(format!("{name}: {problem}")));
     }
+    own_packings(&options.prepare.packings)?;
     let options = RunOptions { out: Some(folder.to_owned()), overwrite: false, ..options.clone() };
-    walk_scene(Scene::read(&scene, &[])?, &options, callbacks)
+    let scene = Scene::read(&scene, &[])?;
+    on_threads(options.prepare.threads, || walk_here(scene, &options, true, callbacks))
 }
 
 /// Walks a case in memory and writes nothing, on the threads of the pool that it is called in, else on one
@@ -121,7 +123,12 @@ pub fn walk_case(case: &Case, callbacks: &Callbacks) -> Result<Outcome, RunError
     }
 }
 
-fn walk_here(scene: Scene, options: &RunOptions, callbacks: &Callbacks) -> Result<FinishedRun, RunError> {
+fn walk_here(
+    scene: Scene,
+    options: &RunOptions,
+    resumed: bool,
+    callbacks: &Callbacks,
+) -> Result<FinishedRun, RunError> {
     let wanted = options.out.as_deref();
     let claim = || match wanted {
         Some(path) => claim(path, FolderKind::Run, options.overwrite),
@@ -134,6 +141,9 @@ fn walk_here(scene: Scene, options: &RunOptions, callbacks: &Callbacks) -> Resul
     }
     let started = SystemTime::now();
     let fingerprint = case.fingerprint();
+    if resumed {
+        unchanged(&folder, &fingerprint)?;
+    }
     let begun = begun(&folder, &fingerprint, options.overwrite)?;
     if begun.is_none() {
         clear(&folder, FolderKind::Run)?;
@@ -164,6 +174,21 @@ fn walk_here(scene: Scene, options: &RunOptions, callbacks: &Callbacks) -> Resul
     checkpoints.clear()?;
     unfinished::end(&folder)?;
     Ok(FinishedRun { folder: folder.path().to_owned(), outcome })
+}
+
+/// Refuses a run to be continued that is no longer the one that was begun.
+fn unchanged(folder: &Folder, fingerprint: &str) -> Result<(), RunError> {
+    match Unfinished::read(folder)? {
+        // Of a corrupt mark nothing is known.
+        Some(begun) if !begun.work.is_empty() && begun.work != fingerprint => {
+            Err(RunError::Refused(format!(
+                "{}: scene.toml or a file in inputs is not what this run was begun with; put it back, or \
+                 walk the scene anew: voidwalk run SCENE --out DIR --overwrite",
+                shown(folder.path())
+            )))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// What is known of an earlier start of this very run in its folder; `None` where there was none, or where

@@ -16,7 +16,8 @@ pub enum Placement {
     /// In memory.
     #[default]
     Memory,
-    /// In files without a name, in this folder, mapped into memory: the system keeps in memory what is in
+    /// In files without a name (where the file system knows such; else their name is removed as soon as they
+    /// are made), in this folder, mapped into memory: the system keeps in memory what is in
     /// use and takes the rest out to the disk. They vanish with the process.
     Mapped(PathBuf),
 }
@@ -38,7 +39,8 @@ enum Values<T: Pod> {
 
 impl<T: Pod> Column<T> {
     /// `len` zeros. Pages of memory are touched when they are first written; blocks of a file are
-    /// allocated here, so that a full disk is an error now and not a crash later.
+    /// allocated here, so that a full disk is an error now and not a crash later (but see `allocate` for file
+    /// systems that copy on write).
     ///
     /// # Errors
     /// The file cannot be made, allocated or mapped.
@@ -59,14 +61,24 @@ fn map_zeros(folder: &Path, bytes: usize) -> io::Result<MmapMut> {
     ask(Call::Map(folder, bytes as u64), || {
         let file: File = tempfile::tempfile_in(folder)?;
         allocate(&file, bytes as u64)?;
-        // SAFETY: the file has no name, so no other process can open it, and this process keeps no other
-        // handle to it that could change or cut it while it is mapped. Its blocks are allocated, so a
-        // write to the mapping cannot run out of disk.
+        // SAFETY: what is mapped must not change or be cut by others while it is used as a slice. This
+        // process keeps no other handle to the file: it is closed here, and only the mapping keeps it. Others
+        // have no name by which to open it. Two ways are left, of this user's own processes (and root's)
+        // alone, and as deliberate as writing into this process by /proc/PID/mem, which no program can rule
+        // out: the mapping under /proc/PID/map_files; and, where the file system has no O_TMPFILE, the moment
+        // between the making of the file, by a random name and with mode 0600, and the removal of that name.
+        // Beyond its end nothing is mapped: `allocate` has made it `bytes` long.
         unsafe { MmapOptions::new().len(bytes).map_mut(&file) }
     })
 }
 
 /// Makes the file `bytes` long with every block allocated: by the file system, or else by writing.
+///
+/// So a full disk is an error here, and no signal (SIGBUS) when a page of the mapping goes to the disk; as
+/// far as the file system writes in place, as ext4, XFS and tmpfs do. One that copies on write (btrfs, ZFS,
+/// bcachefs) may take new blocks for a page that is written again, and one that compresses may have allocated
+/// nothing for zeros: where others fill such a disk up while the program runs, the signal can end it, and it
+/// continues from its last checkpoint, as after a kill.
 fn allocate(mut file: &File, bytes: u64) -> io::Result<()> {
     match rustix::fs::fallocate(file, rustix::fs::FallocateFlags::empty(), 0, bytes) {
         Err(rustix::io::Errno::OPNOTSUPP) => {

@@ -239,3 +239,112 @@ fn two_plans_on_one_folder_never_leave_a_short_ledger_without_a_word() {
     let stderr = String::from_utf8_lossy(&narrowed.stderr);
     assert!(stderr.contains("1 of its cases are not in this plan") && stderr.contains("(y)"), "{stderr}");
 }
+
+/// A run that was killed as soon as it had begun, with its scene and its files.
+fn killed_run(at: &Path, args: &[&str]) {
+    let mut child = voidwalk(at, args).spawn().unwrap();
+    while !at.join("r/checkpoint/0-1.1").exists() {
+        assert!(child.try_wait().unwrap().is_none(), "it is too short to be killed");
+    }
+    let _ = child.kill();
+    let _ = child.wait();
+}
+
+const WITH_FILES: &str = "seed = 4\nreplicates = 2\nengine = \"particles\"\n[filter]\ncurve = \"shire2016-cu1.5-loose\"\n\
+    sieve = \"filter.csv\"\ngrains_per_void = 0.6\n[base]\nsieve = \"base.csv\"\nn_base = 100000\n\
+    [network]\nnx = 5\nny = 5\nnz = 8\n[record]\nsensitivity = []\n";
+
+#[test]
+fn a_resumed_run_is_the_one_that_was_begun() {
+    let (_root, at) = with_files(&[
+        ("s.toml", WITH_FILES),
+        ("filter.csv", "opening_mm,percent_finer\n4,100\n2,50\n1,0\n"),
+        ("base.csv", "opening_mm,percent_finer\n0.4,100\n0.2,50\n0.08,0\n"),
+    ]);
+    killed_run(&at, &["run", "s.toml", "--out", "r", "-q", "--checkpoint-every", "1increment"]);
+    let resume = || call(&at, &["resume", "r", "-q"]);
+    // What the user called the files is known, or it is said that it is not.
+    let names = fs::read(at.join("r/inputs/names.json")).unwrap();
+    fs::write(at.join("r/inputs/names.json"), &names[..names.len() / 2]).unwrap();
+    refused(&resume(), "r/inputs/names.json: does not name the files beside it as a run writes it");
+    fs::write(at.join("r/inputs/names.json"), names).unwrap();
+    // Another base is no part of this run, with its checkpoints or without.
+    let base = fs::read(at.join("r/inputs/base-sieve.csv")).unwrap();
+    fs::write(at.join("r/inputs/base-sieve.csv"), "opening_mm,percent_finer\n0.4,100\n0.08,0\n").unwrap();
+    refused(&resume(), "scene.toml or a file in inputs is not what this run was begun with");
+    let before = files(&at.join("r"));
+    fs::rename(at.join("r/checkpoint"), at.join("kept")).unwrap();
+    refused(&resume(), "scene.toml or a file in inputs is not what this run was begun with");
+    fs::remove_dir_all(at.join("r/checkpoint")).ok();
+    fs::rename(at.join("kept"), at.join("r/checkpoint")).unwrap();
+    assert!(before.keys().eq(files(&at.join("r")).keys()));
+    fs::write(at.join("r/inputs/base-sieve.csv"), base).unwrap();
+    done(&resume());
+}
+
+#[test]
+fn a_resumed_run_follows_no_link_to_packings() {
+    let scene = format!("{SHIPPED}{SMALL}").replace("n_base = 1000", "n_base = 100000");
+    let (_root, at) = with_files(&[("s.toml", &format!("engine = \"particles\"\n{scene}"))]);
+    killed_run(&at, &["run", "s.toml", "--out", "r", "-q", "--checkpoint-every", "1increment"]);
+    fs::create_dir(at.join("elsewhere")).unwrap();
+    std::os::unix::fs::symlink("../elsewhere", at.join("r/packings")).unwrap();
+    refused(&call(&at, &["resume", "r", "-q"]), "r/packings: is a symbolic link, which is not followed");
+    assert!(names(&at.join("elsewhere")).is_empty());
+    fs::remove_file(at.join("r/packings")).unwrap();
+    done(&call(&at, &["resume", "r", "-q"]));
+}
+
+/// But for what a clock says, the tables of a study that was killed and stopped are those of one that was not.
+#[test]
+fn a_precision_study_that_is_killed_goes_on_with_the_tier_it_was_at() {
+    let (_root, at) = with_files(&[]);
+    let args = |out: &'static str| {
+        let small = ["network.nx=4", "network.ny=4", "network.nz=5", "base.n_base=500"];
+        let mut args =
+            vec!["precision", "--tier", "sampling", "bias", "scaling", "--budget", "200ms", "--out", out];
+        args.extend(small.iter().flat_map(|set| ["--set", set]));
+        args
+    };
+    done(&call(&at, &args("whole")));
+    // Killed when its first tier is kept, then stopped when its second is.
+    for (slot, kill) in [("study.1", true), ("study.0", false)] {
+        let mut child = voidwalk(&at, &args("p")).spawn().unwrap();
+        while !at.join("p").join(slot).exists() {
+            assert!(child.try_wait().unwrap().is_none(), "it is too short to be killed");
+        }
+        if kill {
+            let _ = child.kill();
+            let _ = child.wait();
+            continue;
+        }
+        let id = child.id().to_string();
+        assert!(std::process::Command::new("kill").args(["-TERM", &id]).status().unwrap().success());
+        let output = child.wait_with_output().unwrap();
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(3), "{stderr}");
+        assert!(!stderr.contains("sampling: the scatter"), "{stderr}");
+        let message = "after 2 of 3 tiers, which are kept in p; continue with the same command";
+        assert!(stderr.contains(message), "{stderr}");
+    }
+    let other = [&args("p")[..], &["--seed", "9"]].concat();
+    refused(&call(&at, &other), "the unfinished precision study there cannot be continued");
+    refused(&call(&at, &["percolation", "--sizes", "3", "--out", "p"]), "holds a precision study");
+    let last = call(&at, &args("p"));
+    done(&last);
+    assert!(!String::from_utf8_lossy(&last.stderr).contains("bias: settings"));
+    assert_eq!(names(&at.join("p")), names(&at.join("whole")));
+    let clocks = ["core_seconds", "merit", "merit_low", "merit_high"];
+    for table in ["sampling.csv", "sampling_merit.csv", "bias.csv"] {
+        let rows = |folder: &str| -> Vec<BTreeMap<String, String>> {
+            let mut reader = csv::Reader::from_path(at.join(folder).join(table)).unwrap();
+            let rows = reader.deserialize().map(Result::unwrap);
+            rows.map(|mut row: BTreeMap<String, String>| {
+                clocks.iter().for_each(|clock| drop(row.remove(*clock)));
+                row
+            })
+            .collect()
+        };
+        assert!(rows("p") == rows("whole") && !rows("p").is_empty(), "{table}");
+    }
+}

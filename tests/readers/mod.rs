@@ -7,8 +7,7 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::RefCell;
 use std::fmt::Display;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use bitvec::vec::BitVec;
@@ -19,7 +18,7 @@ use voidwalk::gradation::{Gradation, SizeSampler, Soil, SoilSummary};
 use voidwalk::network::Network;
 use voidwalk::packing::Packing;
 use voidwalk::scene::{CurveSource, Scene};
-use voidwalk::store::checkpoint::{Checkpoint, Identity, Label, Section, newest, save};
+use voidwalk::store::checkpoint::{Checkpoint, Identity, Label, Section, save};
 use voidwalk::walk::{Engine, RunPlan, SavedState, SizeClasses, State, Supply, Walk, WalkControl, WalkError};
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -146,11 +145,11 @@ pub fn packing(bytes: &[u8]) {
 
 /// A checkpoint: as it is, and with its checksums made right, so that what they protect is reached.
 pub fn checkpoint(bytes: &[u8]) {
-    let folder = folder();
     for content in [bytes.to_vec(), with_right_sums(bytes.to_vec())] {
-        fs::write(folder.join("x.0"), &content).unwrap();
-        let Some(Some(opened)) = shown(Checkpoint::open(&folder.join("x.0"))) else { continue };
-        let Some((Some(saved), _)) = shown(newest(&folder, "x", &opened.label.identity)) else { continue };
+        let Some(saved) = shown(Checkpoint::parse("x.0", content)) else { continue };
+        if shown(saved.check()).is_none() {
+            continue;
+        }
         SMALL_RUNS.with_borrow(|runs| {
             for run in runs {
                 let mut state = run.fresh();
@@ -166,36 +165,20 @@ pub fn checkpoint(bytes: &[u8]) {
 
 /// A plan, and the ledger of a campaign: the first line is `campaign.json`, the others are `ledger.jsonl`.
 pub fn ledger(bytes: &[u8]) {
-    let folder = folder();
-    let plan = folder.join("plan.toml");
-    fs::write(&plan, bytes).unwrap();
     // The cross of many factors takes its time and is bounded by itself.
     if bytes.len() < 2000
-        && let Some(plan) = shown(CampaignPlan::read(&plan))
+        && let Some(plan) = shown(CampaignPlan::parse(bytes, Path::new("plan.toml")))
     {
         for case in &plan.cases {
             let name = case.folder_name();
             assert!(!name.contains('/') && !name.starts_with('.') && name.len() < 200, "{name}");
         }
     }
-    let (about, lines) = bytes.split_at(bytes.iter().position(|&b| b == b'\n').unwrap_or(bytes.len()));
-    fs::write(folder.join("campaign.json"), about).unwrap();
-    fs::write(folder.join("ledger.jsonl"), lines.strip_prefix(b"\n").unwrap_or(lines)).unwrap();
-    if shown(voidwalk::report::write_campaign(&folder)).is_some() {
-        let page = fs::read_to_string(folder.join("report.html")).unwrap();
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let (about, lines) = text.split_once('\n').unwrap_or((text, ""));
+    if let Some(page) = shown(voidwalk::report::campaign_page(about, lines)) {
         assert!(!page.to_lowercase().contains("<script"), "a script got into the page");
     }
-}
-
-/// A folder of this thread, on a disk in memory where there is one.
-fn folder() -> PathBuf {
-    thread_local! {
-        static FOLDER: tempfile::TempDir = {
-            let memory = Path::new("/dev/shm");
-            if memory.is_dir() { tempfile::tempdir_in(memory).unwrap() } else { tempfile::tempdir().unwrap() }
-        };
-    }
-    FOLDER.with(|folder| folder.path().to_owned())
 }
 
 /// A run of a lattice that is made in microseconds.

@@ -1,6 +1,5 @@
 //! The header of a checkpoint: its fixed fields, the table of its sections, and checksums.
 
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
@@ -109,7 +108,7 @@ pub(super) fn encode(label: &Label, sections: &[Section]) -> Vec<u8> {
 /// Label, sections and length in bytes of the header of a file of `length` bytes.
 pub(super) fn read(
     path: &Path,
-    file: &mut File,
+    file: &mut impl Read,
     length: u64,
 ) -> Result<(Label, Vec<Entry>, u64), CheckpointError> {
     let corrupt = |problem: String| CheckpointError::corrupt(path, problem);

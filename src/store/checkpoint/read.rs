@@ -23,10 +23,31 @@ pub struct Checkpoint {
     /// What it is of.
     pub label: Label,
     path: PathBuf,
-    file: File,
+    source: Source,
     sections: Vec<Entry>,
     /// Offset and length of what lies between the sections, all zeros.
     gaps: Vec<(u64, usize)>,
+}
+
+/// Where its bytes are.
+#[derive(Debug)]
+enum Source {
+    File(File),
+    Memory(Vec<u8>),
+}
+
+impl Source {
+    fn read_at(&self, offset: u64, bytes: &mut [u8]) -> io::Result<()> {
+        match self {
+            Self::File(file) => file.read_exact_at(bytes, offset),
+            Self::Memory(content) => {
+                let begin = usize::try_from(offset).ok();
+                let part = begin.and_then(|begin| content.get(begin..begin.checked_add(bytes.len())?));
+                bytes.copy_from_slice(part.ok_or(io::ErrorKind::UnexpectedEof)?);
+                Ok(())
+            }
+        }
+    }
 }
 
 impl Checkpoint {
@@ -46,10 +67,29 @@ impl Checkpoint {
         }
         let mut file = ask(Call::Read(path), || open_own(path)).map_err(unreadable)?;
         let length = file.metadata().map_err(unreadable)?.len();
-        let (label, sections, header) = header::read(path, &mut file, length)?;
-        let gaps =
-            gaps(&sections, header, length).map_err(|problem| CheckpointError::corrupt(path, problem))?;
-        Ok(Some(Self { label, path: path.to_owned(), file, sections, gaps }))
+        let of = header::read(path, &mut file, length)?;
+        Self::with_header(path, of, length, Source::File(file)).map(Some)
+    }
+
+    /// [`Checkpoint::open`] on the content of a file, called `name` in messages.
+    ///
+    /// # Errors
+    /// As [`Checkpoint::open`].
+    pub fn parse(name: &str, content: Vec<u8>) -> Result<Self, CheckpointError> {
+        let (path, length) = (Path::new(name), content.len() as u64);
+        let of = header::read(path, &mut content.as_slice(), length)?;
+        Self::with_header(path, of, length, Source::Memory(content))
+    }
+
+    fn with_header(
+        path: &Path,
+        (label, sections, header): (Label, Vec<Entry>, u64),
+        length: u64,
+        source: Source,
+    ) -> Result<Self, CheckpointError> {
+        let gaps = gaps(&sections, header, length);
+        let gaps = gaps.map_err(|problem| CheckpointError::corrupt(path, problem))?;
+        Ok(Self { label, path: path.to_owned(), source, sections, gaps })
     }
 
     /// Where it is.
@@ -155,7 +195,7 @@ impl Checkpoint {
     }
 
     fn read_at(&self, offset: u64, bytes: &mut [u8]) -> Result<(), CheckpointError> {
-        let read = ask(Call::Read(&self.path), || self.file.read_exact_at(bytes, offset));
+        let read = ask(Call::Read(&self.path), || self.source.read_at(offset, bytes));
         read.map_err(|source| CheckpointError::from_io(&self.path, source))
     }
 
@@ -165,7 +205,8 @@ impl Checkpoint {
     /// # Errors
     /// The first that is wrong.
     pub fn check(&self) -> Result<(), CheckpointError> {
-        let mut bytes = vec![0; PIECE];
+        let longest = self.sections.iter().map(|entry| entry.count * entry.element).max().unwrap_or(0);
+        let mut bytes = vec![0; PIECE.min(longest.max(4096) as usize)];
         for &(offset, length) in &self.gaps {
             self.read_at(offset, &mut bytes[..length])?;
             if bytes[..length].iter().any(|&byte| byte != 0) {

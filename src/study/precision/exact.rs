@@ -21,7 +21,7 @@ use super::comparison::mean;
 use super::first_run::{FirstRun, clean};
 use super::study::PrecisionStudy;
 use super::work::summed;
-use crate::network::Network;
+use crate::network::{Network, NetworkError};
 use crate::outcome::log_log_slope;
 use crate::outcome::precision::{ExactRow, ExactTier, NetworkRow, Quantity, Slope, merit, sd_estimate};
 use crate::run::error::RunError;
@@ -148,18 +148,18 @@ fn quantity(name: &str, words: &str, known: &[Known]) -> Quantity {
 }
 
 /// A lattice of which some constrictions are blocked; the particle is finer than every constriction.
-fn clogged(network: Network, seed: u64) -> Known {
+fn clogged(network: Network, seed: u64) -> Result<Known, NetworkError> {
     let mut draws = Key { seed, purpose: Purpose::Percolation, run: 0, increment: 0, chunk: 0 }.generator();
     let blocked: BitVec<u64> =
         (0..network.constrictions()).map(|_| unit(draws.next_u64()) < CLOGGED).collect();
     let diameter = f64::from(network.finest_open(|_| false)) / 2.0;
-    let (leaves, _) = network.first_passage(diameter as f32, |c| blocked[c]).from_start(&network);
-    Known { network, blocked, diameter, leaves }
+    let (leaves, _) = network.first_passage(diameter as f32, |c| blocked[c])?.from_start(&network);
+    Ok(Known { network, blocked, diameter, leaves })
 }
 
-fn first_particle(network: Network, diameter: f64) -> Known {
-    let (leaves, _) = network.first_passage(diameter as f32, |_| false).from_start(&network);
-    Known { blocked: clean(&network), network, diameter, leaves }
+fn first_particle(network: Network, diameter: f64) -> Result<Known, NetworkError> {
+    let (leaves, _) = network.first_passage(diameter as f32, |_| false)?.from_start(&network);
+    Ok(Known { blocked: clean(&network), network, diameter, leaves })
 }
 
 impl Known {
@@ -174,11 +174,19 @@ impl Known {
 impl PrecisionStudy<'_> {
     /// Random networks of the scene's curve with an answer that is neither sure nor hopeless; none where
     /// there are not enough.
-    fn known(&self, of: impl Fn(Network, u64) -> Known) -> Result<Vec<Known>, RunError> {
+    fn known(
+        &self,
+        of: impl Fn(Network, u64) -> Result<Known, NetworkError>,
+    ) -> Result<Vec<Known>, RunError> {
         let mut taken = Vec::new();
         for k in 1..=TRIES * NETWORKS as u64 {
             let seed = self.seed(k);
-            let known = of(self.lattice(SHAPE, seed)?, seed);
+            let known = of(self.lattice(SHAPE, seed)?, seed).map_err(|error| {
+                RunError::failed(format!(
+                    "exact: {error}; such a curve has no exact answers to compare with: leave this tier out \
+                     (--tier sampling bias decision scaling packing)"
+                ))
+            })?;
             if PROBABILITIES.contains(&known.leaves) {
                 taken.push(known);
             }

@@ -25,6 +25,7 @@ mod comparison;
 mod decision;
 mod exact;
 mod first_run;
+mod kept;
 mod networks;
 mod packing;
 mod sampling;
@@ -34,6 +35,7 @@ mod tables;
 mod twin;
 mod work;
 
+use kept::{Found, Kept};
 pub use study::{PrecisionStudy, Tier};
 use tables::tables;
 
@@ -41,14 +43,14 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
-use crate::outcome::precision::{NetworkRow, Precision};
+use crate::outcome::precision::Precision;
 use crate::run::callbacks::Callbacks;
-use crate::run::error::RunError;
+use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, claim, clear};
 use crate::run::machine::{Machine, threads};
 use crate::run::prepare::{PrepareOptions, prepare_into};
 use crate::run::results::json;
-use crate::run::unfinished::Unfinished;
+use crate::run::unfinished::{self, Unfinished};
 use crate::scene::Scene;
 
 /// Processor time that may be asked for (s).
@@ -85,7 +87,8 @@ impl Default for PrecisionOptions {
 ///
 /// # Errors
 /// A scene that is wrong and a folder that cannot be claimed are refused before any work; then what a
-/// packing, a network or a walk brings. A study that is stopped begins anew.
+/// packing, a network or a walk brings. After a stop or a kill the same command continues with the tier that
+/// was under way.
 pub fn run(scene: Scene, options: &PrecisionOptions, callbacks: &Callbacks) -> Result<Precision, RunError> {
     if !BUDGET_S.contains(&options.budget.as_secs_f64()) {
         return Err(RunError::refused("budget: allowed: from 100ms to 7days"));
@@ -99,10 +102,21 @@ pub fn run(scene: Scene, options: &PrecisionOptions, callbacks: &Callbacks) -> R
     let (kind, name) = (FolderKind::Precision, FolderKind::Precision.record());
     let work = format!("{} {tiers:?} {:?}", case.fingerprint(), options.budget);
     let mark = Unfinished { kind: kind.name().into(), work, ..Unfinished::default() };
+    let kept = Kept::new(&folder, &mark.work);
+    let whole = || {
+        callbacks.results(kind, folder.path())?;
+        kept.discard()?;
+        Ok::<_, RunError>(unfinished::end(&folder)?)
+    };
     if let Some(precision) = mark.whole(&folder, name)?.filter(|_| !options.overwrite) {
-        callbacks.finish(kind, &folder)?;
+        whole()?;
         return Ok(precision);
     }
+    let found = if options.overwrite { None } else { kept.newest(callbacks)? };
+    if found.is_none() {
+        clear(&folder, kind)?;
+    }
+    mark.begin(&folder)?;
     let study = PrecisionStudy {
         case: &case,
         tiers: &tiers,
@@ -110,32 +124,53 @@ pub fn run(scene: Scene, options: &PrecisionOptions, callbacks: &Callbacks) -> R
         threads: pool.current_num_threads(),
         callbacks,
     };
-    let (precision, networks) = study.run()?;
-    clear(&folder, kind)?;
-    mark.begin(&folder)?;
+    let Found { precision, networks } = study.run(&kept, found)?;
     for (name, content) in tables(&precision, &networks)? {
         folder.write(name, &content)?;
     }
     // The page is made of it.
     folder.write(name, &json(name, &precision)?)?;
-    callbacks.finish(kind, &folder)?;
+    whole()?;
     Ok(precision)
 }
 
 impl PrecisionStudy<'_> {
-    /// Runs every tier: what `precision.json` holds, and the networks of the tier of exact answers, at the
-    /// most particles of each line.
+    /// Runs every tier that was not done before, and keeps each as soon as it is done.
     ///
     /// # Errors
     /// A network, a walk or a packing that fails, or that it was stopped.
-    fn run(&self) -> Result<(Precision, Vec<NetworkRow>), RunError> {
-        let (begun, started) = (Instant::now(), SystemTime::now());
+    fn run(&self, kept: &Kept, found: Option<Found>) -> Result<Found, RunError> {
+        let begun = Instant::now();
+        let mut found = found.unwrap_or_else(|| self.begun());
+        let seconds_before = found.precision.seconds;
+        let whole: f64 = self.tiers.iter().map(|tier| tier.about().2).sum();
+        // Each tier that is done has its line there, in this order.
+        let done = found.precision.spent.len();
+        for (number, &tier) in self.tiers.iter().enumerate().skip(done) {
+            let (name, measures, part) = tier.about();
+            self.tell(&format!("{name}: {measures}"));
+            let before = work::all_threads();
+            self.measure(tier, self.budget_s * part / whole, &mut found).map_err(|error| {
+                match error.exit() {
+                    Exit::Stopped => kept.stopped(number, self.tiers.len()),
+                    _ => error,
+                }
+            })?;
+            found.precision.spent.push((name.into(), work::all_threads() - before));
+            found.precision.seconds = seconds_before + begun.elapsed().as_secs_f64();
+            kept.keep(&found)?;
+        }
+        Ok(found)
+    }
+
+    /// A study of which no tier is done.
+    fn begun(&self) -> Found {
         let record = self.case.record();
-        let mut precision = Precision {
+        let precision = Precision {
             version: env!("CARGO_PKG_VERSION").into(),
             commit: option_env!("VOIDWALK_COMMIT").map(String::from),
             machine: Machine::here().description,
-            started: humantime::format_rfc3339_seconds(started).to_string(),
+            started: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
             seed: self.case.scene.walk.seed,
             budget_s: self.budget_s,
             scene: format!(
@@ -146,27 +181,22 @@ impl PrecisionStudy<'_> {
             voids: self.case.counts[0],
             ..Precision::default()
         };
-        let whole: f64 = self.tiers.iter().map(|tier| tier.about().2).sum();
-        let mut networks = Vec::new();
-        for &tier in self.tiers {
-            let (name, measures, part) = tier.about();
-            self.tell(&format!("{name}: {measures}"));
-            let before = work::all_threads();
-            let budget_s = self.budget_s * part / whole;
-            match tier {
-                Tier::Exact => {
-                    let (exact, rows) = exact::tier(self, budget_s)?;
-                    (precision.exact, networks) = (Some(exact), rows);
-                }
-                Tier::Sampling => precision.sampling = Some(sampling::tier(self, budget_s)?),
-                Tier::Bias => precision.bias = Some(bias::tier(self, budget_s)?),
-                Tier::Decision => precision.decision = decision::tier(self, budget_s)?,
-                Tier::Scaling => precision.scaling = Some(scaling::tier(self, budget_s)?),
-                Tier::Packing => precision.packing = Some(packing::tier(self, budget_s)?),
+        Found { precision, networks: Vec::new() }
+    }
+
+    fn measure(&self, tier: Tier, budget_s: f64, found: &mut Found) -> Result<(), RunError> {
+        let precision = &mut found.precision;
+        match tier {
+            Tier::Exact => {
+                let (exact, rows) = exact::tier(self, budget_s)?;
+                (precision.exact, found.networks) = (Some(exact), rows);
             }
-            precision.spent.push((name.into(), work::all_threads() - before));
+            Tier::Sampling => precision.sampling = Some(sampling::tier(self, budget_s)?),
+            Tier::Bias => precision.bias = Some(bias::tier(self, budget_s)?),
+            Tier::Decision => precision.decision = decision::tier(self, budget_s)?,
+            Tier::Scaling => precision.scaling = Some(scaling::tier(self, budget_s)?),
+            Tier::Packing => precision.packing = Some(packing::tier(self, budget_s)?),
         }
-        precision.seconds = begun.elapsed().as_secs_f64();
-        Ok((precision, networks))
+        Ok(())
     }
 }

@@ -79,5 +79,5 @@ impl PrecisionStudy<'_> {
 
 /// It was asked to stop.
 pub(super) fn stopped() -> RunError {
-    RunError::failed("stopped on request; a precision study begins anew")
+    RunError::Stopped("stopped on request".into())
 }

@@ -1,0 +1,236 @@
+//! Text dumps of LAMMPS.
+//!
+//! The last frame of a dump with the columns `x y z` (or `xu`, `xs`, `xsu` and so on), `radius` or
+//! `diameter`, and `id` where there is one, which then decides the order. Boundaries `pp pp pp` are a
+//! periodic cell, moved to the origin; boundaries without any `p` are free. Lengths are turned into mm from
+//! what `ITEM: UNITS` says they are (`si`, `cgs`, `micro`, `nano`), and are mm where a dump does not say.
+
+use super::fields::{ImportError, Kind, Line, number, refused};
+use super::grains::{Cell, Packing};
+use crate::gradation::shortened;
+
+/// How a dump gives a coordinate.
+#[derive(Clone, Copy)]
+struct Coordinate {
+    place: usize,
+    /// As a fraction of the box.
+    scaled: bool,
+}
+
+/// A system of units of LAMMPS that says what a length is.
+#[derive(Clone, Copy)]
+struct Unit {
+    name: &'static str,
+    length: &'static str,
+    /// A length (mm).
+    mm: f64,
+}
+
+/// The others are of atoms, or have no lengths of their own.
+const UNITS: [Unit; 4] = [
+    Unit { name: "si", length: "metres", mm: 1e3 },
+    Unit { name: "cgs", length: "centimetres", mm: 10.0 },
+    Unit { name: "micro", length: "micrometres", mm: 1e-3 },
+    Unit { name: "nano", length: "nanometres", mm: 1e-6 },
+];
+
+impl Unit {
+    fn turn_into_mm(self, packing: &mut Packing, (file, line): (&str, usize)) -> Result<(), ImportError> {
+        let Packing { cell, x, y, z, diameter } = packing;
+        let lengths = match cell {
+            Cell::Periodic(lengths) => lengths.as_mut_slice(),
+            Cell::Free => &mut [],
+        };
+        let all = [x, y, z, diameter].into_iter().flatten().chain(lengths);
+        for length in all {
+            let given = *length;
+            *length *= self.mm;
+            if !length.is_finite() || (*length == 0.0) != (given == 0.0) {
+                let allowed = format!("lengths in {} that are numbers in mm", self.length);
+                return Err(refused(file, line, "units", &given.to_string(), allowed));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What a dump says of its units, of which it says something once or before every frame.
+fn unit(file: &str, text: &str) -> Result<Option<Unit>, ImportError> {
+    let mut found: Option<Unit> = None;
+    for (at, item) in text.match_indices("ITEM: UNITS") {
+        let line = 2 + text[..at].matches('\n').count();
+        let name = text[at + item.len()..].lines().nth(1).map_or("", str::trim);
+        let allowed = "si, cgs, micro or nano; where the lengths are in mm, remove the line ITEM: UNITS and \
+                       the one after it";
+        let unit = UNITS.into_iter().find(|unit| unit.name == name);
+        let unit = unit.ok_or_else(|| refused(file, line, "units", name, allowed))?;
+        if found.is_some_and(|before| before.name != unit.name) {
+            return Err(refused(file, line, "units", name, "the same units in every frame"));
+        }
+        found = Some(unit);
+    }
+    Ok(found)
+}
+
+/// The last frame, and what a user must know of it.
+pub(super) fn dump(file: &str, text: &str) -> Result<(Packing, Vec<String>), ImportError> {
+    let unit = unit(file, text)?;
+    // Only the last frame is parsed, so that a long run costs no more than its end.
+    let start = text.rfind("ITEM: TIMESTEP").unwrap_or(0);
+    let frames = text.matches("ITEM: TIMESTEP").count();
+    let mut notes = Vec::new();
+    if frames > 1 {
+        let step = text[start..].lines().nth(1).map_or("", str::trim);
+        let step = shortened(step);
+        notes.push(format!("{file} holds {frames} frames: the last one, timestep {step}, is taken"));
+    }
+    if let Some(Unit { name, length, .. }) = unit.filter(|unit| unit.mm != 1.0) {
+        notes.push(format!("{file}: ITEM: UNITS {name}: lengths are in {length}, and are turned into mm"));
+    }
+    let before = text[..start].matches('\n').count();
+    let mut lines = text[start..].lines().enumerate().map(|(i, line)| (before + i + 1, line));
+    let (mut atoms, mut bounds, mut last) = (None, None, before);
+    let ended = |line: usize, expected: &str| ImportError::Truncated {
+        file: file.into(),
+        line,
+        expected: expected.into(),
+    };
+    while let Some((line, item)) = lines.next() {
+        last = line;
+        let Some(item) = item.trim().strip_prefix("ITEM:").map(str::trim) else {
+            if item.trim().is_empty() {
+                continue;
+            }
+            return Err(refused(file, line, "section", item, "a line that starts with ITEM:"));
+        };
+        if item == "NUMBER OF ATOMS" {
+            let (line, value) = lines.next().ok_or_else(|| ended(last, "the number of atoms"))?;
+            let count = value.trim().parse::<u64>().ok().filter(|&n| n > 0);
+            atoms = Some(
+                count
+                    .ok_or_else(|| refused(file, line, "number of atoms", value, "a whole number from 1"))?,
+            );
+        } else if let Some(kinds) = item.strip_prefix("BOX BOUNDS") {
+            let mut box_lines = [(0, ""); 3];
+            for slot in &mut box_lines {
+                *slot = lines.next().ok_or_else(|| ended(last, "three lines of box bounds"))?;
+                last = slot.0;
+            }
+            bounds = Some(box_bounds(file, (line, kinds), box_lines)?);
+        } else if let Some(columns) = item.strip_prefix("ATOMS") {
+            let atoms =
+                atoms.ok_or_else(|| refused(file, line, "section", item, "ITEM: NUMBER OF ATOMS first"))?;
+            let bounds =
+                bounds.ok_or_else(|| refused(file, line, "section", item, "ITEM: BOX BOUNDS first"))?;
+            let mut packing = rows(file, (line, columns), atoms, bounds, lines)?;
+            if let Some(unit) = unit {
+                unit.turn_into_mm(&mut packing, (file, line))?;
+            }
+            return Ok((packing, notes));
+        } else {
+            // TIMESTEP, TIME, UNITS: one line, known by now or not needed.
+            lines.next();
+        }
+    }
+    Err(ended(last, "ITEM: ATOMS"))
+}
+
+/// Whether the box is periodic, and its bounds.
+type Bounds = (bool, [[f64; 2]; 3]);
+
+fn box_bounds(file: &str, (line, kinds): Line<'_>, lines: [Line<'_>; 3]) -> Result<Bounds, ImportError> {
+    let words: Vec<&str> = kinds.split_whitespace().collect();
+    if words.contains(&"xy") || words.contains(&"abc") {
+        return Err(refused(file, line, "box bounds", kinds, "a box with right angles"));
+    }
+    let periodic = words.iter().all(|&kind| kind == "pp");
+    if words.len() != 3 || !(periodic || words.iter().all(|kind| !kind.contains('p'))) {
+        let allowed = "pp pp pp (a periodic cell), or three boundaries without p (free)";
+        return Err(refused(file, line, "box bounds", kinds.trim(), allowed));
+    }
+    let mut bounds = [[0.0; 2]; 3];
+    for (slot, (line, text)) in bounds.iter_mut().zip(lines) {
+        let values: Vec<&str> = text.split_whitespace().collect();
+        let [low, high] = values[..] else {
+            return Err(refused(file, line, "box bounds", text, "two numbers, low and high"));
+        };
+        let read = |text| number(file, line, "box bounds", text, Kind::Finite);
+        *slot = [read(low)?, read(high)?];
+        if slot[0] >= slot[1] {
+            return Err(refused(file, line, "box bounds", text, "a low bound below the high one"));
+        }
+    }
+    Ok((periodic, bounds))
+}
+
+fn rows<'a>(
+    file: &str,
+    (header_line, header): Line<'_>,
+    atoms: u64,
+    (periodic, bounds): Bounds,
+    lines: impl Iterator<Item = Line<'a>>,
+) -> Result<Packing, ImportError> {
+    let names: Vec<&str> = header.split_whitespace().collect();
+    let place = |name: &str| names.iter().position(|&n| n == name);
+    let missing = |what: &str| refused(file, header_line, "columns", header.trim(), what);
+    let coordinate = |axis: &str| {
+        [("", false), ("u", false), ("s", true), ("su", true)].into_iter().find_map(|(suffix, scaled)| {
+            place(&format!("{axis}{suffix}")).map(|place| Coordinate { place, scaled })
+        })
+    };
+    let mut coordinates = [Coordinate { place: 0, scaled: false }; 3];
+    for (slot, axis) in coordinates.iter_mut().zip(["x", "y", "z"]) {
+        *slot = coordinate(axis).ok_or_else(|| missing("columns x, y and z (or xu, xs, xsu and so on)"))?;
+    }
+    let (size, factor) = match (place("diameter"), place("radius")) {
+        (Some(diameter), _) => (diameter, 1.0),
+        (None, Some(radius)) => (radius, 2.0),
+        (None, None) => return Err(missing("a column called diameter or radius")),
+    };
+    let (id, mut grains) = (place("id"), Vec::new());
+    let mut last = header_line;
+    for (line, row) in lines {
+        if row.trim().is_empty() {
+            continue;
+        }
+        last = line;
+        if grains.len() as u64 == atoms {
+            let allowed = format!("{atoms} rows, the number of atoms, and then the end of the file");
+            return Err(refused(file, line, "atoms", row, allowed));
+        }
+        let fields: Vec<&str> = row.split_whitespace().collect();
+        if fields.len() != names.len() {
+            return Err(refused(file, line, "atoms", row, format!("{} fields", names.len())));
+        }
+        let mut grain = [0.0; 4];
+        for (axis, (slot, at)) in grain.iter_mut().zip(coordinates).enumerate() {
+            let [low, high] = bounds[axis];
+            let value = number(file, line, ["x", "y", "z"][axis], fields[at.place], Kind::Finite)?;
+            let value = if at.scaled { low + value * (high - low) } else { value };
+            *slot = if periodic { value - low } else { value };
+        }
+        grain[3] = factor * number(file, line, "diameter", fields[size], Kind::Positive)?;
+        let order = match id {
+            Some(place) => fields[place]
+                .parse::<u64>()
+                .map_err(|_| refused(file, line, "id", fields[place], "a whole number"))?,
+            None => grains.len() as u64,
+        };
+        grains.push((order, line, grain));
+    }
+    if (grains.len() as u64) < atoms {
+        let expected = format!("{atoms} rows of atoms, {} found", grains.len());
+        return Err(ImportError::Truncated { file: file.into(), line: last, expected });
+    }
+    grains.sort_by_key(|&(order, line, _)| (order, line));
+    if let Some(pair) = grains.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+        let allowed = format!("every id once (it stands on line {} too)", pair[0].1);
+        return Err(refused(file, pair[1].1, "id", &pair[1].0.to_string(), allowed));
+    }
+    let column = |axis: usize| grains.iter().map(|(_, _, grain)| grain[axis]).collect();
+    let cell = match periodic {
+        true => Cell::Periodic(bounds.map(|[low, high]| high - low)),
+        false => Cell::Free,
+    };
+    Ok(Packing { cell, x: column(0), y: column(1), z: column(2), diameter: column(3) })
+}

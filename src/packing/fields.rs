@@ -1,0 +1,97 @@
+//! The fields of a packing file, and what is said of one that cannot be.
+
+use crate::gradation::{Position, shortened};
+
+/// A packing file that cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum ImportError {
+    /// The file cannot be opened or read.
+    #[error("{file}: cannot be read: {source}")]
+    Read {
+        /// File as the user named it.
+        file: String,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A folder where a file is wanted.
+    #[error("{file} is a folder; allowed: a packing as CSV or as a LAMMPS text dump")]
+    Folder {
+        /// Folder as the user named it.
+        file: String,
+    },
+    /// More bytes than any packing has.
+    #[error("{file} is larger than {limit} bytes; allowed: a packing file up to that size")]
+    TooLarge {
+        /// File as the user named it.
+        file: String,
+        /// Largest file that is read.
+        limit: u64,
+    },
+    /// Bytes that are no UTF-8 text.
+    #[error("{file}, line {line}: byte 0x{byte:02X} is not UTF-8 text; allowed: a text file saved as UTF-8")]
+    Encoding {
+        /// File as the user named it.
+        file: String,
+        /// Line, counted from 1.
+        line: usize,
+        /// The first byte that does not belong.
+        byte: u8,
+    },
+    /// A value that is not allowed where it stands.
+    #[error("{at}: \"{value}\" is not allowed; allowed: {allowed}")]
+    Value {
+        /// Where it stands.
+        at: Position,
+        /// The value, shortened.
+        value: String,
+        /// What is allowed there.
+        allowed: String,
+    },
+    /// The file ends before the packing does.
+    #[error("{file} ends after line {line}; expected {expected}")]
+    Truncated {
+        /// File as the user named it.
+        file: String,
+        /// Its last line.
+        line: usize,
+        /// What should have followed.
+        expected: String,
+    },
+}
+
+/// A line of a file and its number, counted from 1.
+pub(super) type Line<'a> = (usize, &'a str);
+
+pub(super) fn refused(
+    file: &str,
+    line: usize,
+    field: &'static str,
+    value: &str,
+    allowed: impl Into<String>,
+) -> ImportError {
+    let at = Position { file: file.into(), line, field, column: None };
+    ImportError::Value { at, value: shortened(value), allowed: allowed.into() }
+}
+
+/// What a number must be.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Kind {
+    Finite,
+    Positive,
+}
+
+pub(super) fn number(
+    file: &str,
+    line: usize,
+    field: &'static str,
+    text: &str,
+    kind: Kind,
+) -> Result<f64, ImportError> {
+    let value = text.trim().trim_matches('"').parse::<f64>().ok().filter(|v| v.is_finite());
+    match (value, kind) {
+        (Some(value), Kind::Finite) => Ok(value),
+        (Some(value), Kind::Positive) if value > 0.0 => Ok(value),
+        (_, Kind::Finite) => Err(refused(file, line, field, text.trim(), "a finite number")),
+        (_, Kind::Positive) => Err(refused(file, line, field, text.trim(), "a finite number above 0")),
+    }
+}
