@@ -34,11 +34,19 @@ impl Case {
                 gap.within, gap.from_mm
             ));
         }
-        if self.base.pan_fraction() > 0.0 {
+        let pan_percent = 100.0 * self.base.pan_fraction();
+        if self.pan_size.is_some() {
             doubts.push(format!(
-                "{:.1} % of the base is finer than its finest sieve: taken as passive and counted by mass \
-                 only",
-                100.0 * self.base.pan_fraction()
+                "{pan_percent:.1} % of the base is finer than its finest sieve, {} mm, and may be coarser than \
+                 the finest constriction, {:.3} mm: walked twice, as finer than every constriction and as all \
+                 of that sieve's size",
+                self.base.smallest_mm(),
+                self.curve.smallest()
+            ));
+        } else if pan_percent > 0.0 {
+            doubts.push(format!(
+                "{pan_percent:.1} % of the base is finer than its finest sieve: taken as passive and counted \
+                 by mass only"
             ));
         }
         if let Some(shipped) = self.shipped.filter(|_| self.network_file.is_none())

@@ -21,7 +21,8 @@ use super::written::{Written, write_page};
 use super::{packing, shell::leaves_out};
 use crate::outcome::packing::PackingRecord;
 use crate::outcome::record::{
-    Confidence, NetworkKind, Outcome, Replicate, Run, RunSummary, Sensitivity, Statistic, Stopping, Verdict,
+    Confidence, NetworkKind, Outcome, PanBounds, PanReading, Replicate, Run, RunSummary, Sensitivity,
+    Statistic, Stopping, Verdict,
 };
 
 /// Replicates listed one by one; all are in `outcome.json`.
@@ -123,6 +124,7 @@ fn verdict_box(outcome: &Outcome, verdict: &Drawn) -> Markup {
             p.lead { (in_words(outcome)) }
             div { (drawing(verdict)) }
             (table)
+            @if let Some(bounds) = &outcome.pan_bounds { (both_readings(bounds)) }
             @if let Some(stopping) = &outcome.stopping { p { (stopped(stopping)) } }
             p { (tally(outcome)) " Threshold between the classes: " (threshold(outcome.threshold)) "." }
             @if count == 1 {
@@ -132,6 +134,26 @@ fn verdict_box(outcome: &Outcome, verdict: &Drawn) -> Markup {
                 }
             }
         }
+    }
+}
+
+/// What came of either reading of a pan fraction that need not be passive.
+fn both_readings(bounds: &PanBounds) -> Markup {
+    let mut table = Table::of(&bounds.readings)
+        .name("The base’s finest part taken as", |reading| bounds.words(reading))
+        .text("verdict", |reading| reading.verdict.words());
+    for index in 0..bounds.readings[0].runs.len() {
+        let of = move |reading: &PanReading| reading.runs.get(index).map_or_else(|| html! { "–" }, fraction);
+        table = table.number(run_name(index as u64 + 1), of);
+    }
+    html! {
+        p {
+            (percent(bounds.mass_fraction)) " of the base is finer than its finest sieve, "
+            (size(bounds.finest_sieve_mm, false)) ", which is coarser than the finest constriction, "
+            (size(bounds.finest_constriction_mm, false)) ". The base was walked with either end of the sizes \
+             that this part may have; the verdict is what both give, the other numbers are of the first."
+        }
+        (table)
     }
 }
 
@@ -175,6 +197,11 @@ fn in_words(outcome: &Outcome) -> String {
             "In the model the filter does not hold this base: {limit} or more of its mass passes in the \
              first run and again in the second."
         ),
+        Verdict::Undecided if outcome.pan_bounds.as_ref().is_some_and(PanBounds::differ) => {
+            "Inconclusive: the finest part of the base, whose sizes the sieves do not tell, decides between \
+             the classes."
+                .to_owned()
+        }
         Verdict::Undecided => {
             let straddles = |run: &&RunSummary| {
                 interval(&run.eroded_mass_fraction)
@@ -437,7 +464,9 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
             (fact("D85, D95, D100 (by mass)", [base.d85_mm, base.d95_mm, base.d100_mm].map(mm).join(", ")))
             @if base.tail_mass_fraction > 0.0 {
                 (fact("Pan fraction (finer than the finest sieve)",
-                    format!("{} by mass; passive, counted by mass only", percent(base.tail_mass_fraction))))
+                    format!("{} by mass; {}", percent(base.tail_mass_fraction),
+                        if outcome.pan_bounds.is_some() { "walked as passive and as all of the finest sieve’s size" }
+                        else { "passive, counted by mass only" })))
             }
             (fact("D15F/D85B, D15F/D95B", format!("{}, {}", significant(outcome.ratios.d15f_over_d85b),
                 significant(outcome.ratios.d15f_over_d95b))))

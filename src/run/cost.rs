@@ -5,7 +5,7 @@
 //! processor of 2024, rounded up (`results/walk-speed-*.md`, `results/filters-*.md`); `results/slurm-*.md`
 //! holds estimates against measured times.
 
-use super::replicates::runs_to_walk;
+use super::replicates::networks_to_walk;
 use crate::case::{Case, PackingPlan};
 
 /// Seconds for one move of a particle that is walked by itself.
@@ -45,6 +45,11 @@ impl Case {
     /// Seconds that one thread of a machine of today takes for the whole case, its packing apart: a rough
     /// guess. What a rule that adds replicates may ask for besides is not foreseen.
     pub fn core_seconds(&self) -> f64 {
+        self.readings().map(Case::reading_seconds).sum::<f64>() + FILES_S
+    }
+
+    /// The same for one reading of its base, its files apart.
+    fn reading_seconds(&self) -> f64 {
         let [voids, constrictions, start_nodes, layers] = self.counts.map(|n| n as f64);
         let one_run = |n_base: u64| {
             let each = self.scene.walk.engine.takes_each(n_base / self.increments(), start_nodes as u64);
@@ -53,12 +58,13 @@ impl Case {
             let counted = if each { 0.0 } else { voids };
             walk_seconds(0.0, increments, counted, one_by_one, one_by_one * layers.max(1.0))
         };
-        let (runs, replicates) = (self.scene.walk.runs as f64, self.scene.walk.replicates as f64);
+        let [replicates, studied] = networks_to_walk(self).map(|n| n as f64);
         let own = replicates * one_run(self.n_base);
         let of_factor = |factor: f64| one_run((self.n_base as f64 * factor) as u64);
         let others: f64 = self.sensitivity_factors().into_iter().map(of_factor).sum();
-        let networks = runs_to_walk(self) as f64 / runs.max(1.0) * (voids + constrictions) * NETWORK_S;
-        runs * (own + self.scene.record.sensitivity_replicates as f64 * others) + networks + FILES_S
+        let of_each = self.scene.record.sensitivity_replicates as f64;
+        let networks = (replicates + studied) * (voids + constrictions) * NETWORK_S;
+        self.scene.walk.runs as f64 * (own + of_each * others) + networks
     }
 
     /// Bytes that the program takes where its walks take so many.

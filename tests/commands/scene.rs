@@ -454,8 +454,6 @@ fn what_once_slipped_through_is_refused() {
     fs::write(&sieve, "opening_mm,percent_finer\n0.8,10\n1.0,60\n1.2,100\n").unwrap();
     let set = format!("base.sieve={}", sieve.display());
     for (more, message) in [
-        // A pan fraction that may not be passive.
-        (vec!["--set", &set, "--set", "filter.d0_mm=1.01"], "its pan fraction may not be passive"),
         (vec!["--set", "base.sieve=/dev/null"], "must be a regular file"),
         (vec!["--set", "inject_share=1e-12"], "whole number of equal parts"),
         (
