@@ -76,7 +76,7 @@ fn write(folder: &Path, filter: &str, base: &str, how: &str) {
     fs::write(folder.join("filter.csv"), filter).unwrap();
     fs::write(folder.join("base.csv"), base).unwrap();
     let scene = format!(
-        "replicates = 2\n[filter]\nsieve = \"filter.csv\"\n{how}\n[base]\nsieve = \"base.csv\"\ncap = 2000\n[network]\n\
+        "replicates = 2\n[filter]\nsieve = \"filter.csv\"\n{how}\n[base]\nsieve = \"base.csv\"\ncap = 500\n[network]\n\
          nx = 5\nny = 5\nnz = 10\n[record]\nsensitivity = []\n"
     );
     fs::write(folder.join("scene.toml"), scene).unwrap();

@@ -450,9 +450,6 @@ fn constrictions_of_a_packing_become_a_curve_for_a_scene() {
 fn what_once_slipped_through_is_refused() {
     let root = tempfile::tempdir().unwrap();
     let out = root.path().join("out");
-    let sieve = root.path().join("base.csv");
-    fs::write(&sieve, "opening_mm,percent_finer\n0.8,10\n1.0,60\n1.2,100\n").unwrap();
-    let set = format!("base.sieve={}", sieve.display());
     for (more, message) in [
         (vec!["--set", "base.sieve=/dev/null"], "must be a regular file"),
         (vec!["--set", "inject_share=1e-12"], "whole number of equal parts"),
