@@ -46,12 +46,20 @@ impl Case {
         if self.scene.walk.engine.takes_each(n_base / self.increments(), self.counts[2]) {
             return n_base;
         }
+        let passive = self.first_word(n_base) as f64 / 18_446_744_073_709_551_616.0;
+        (n_base as f64 * (1.0 - passive)).ceil() as u64
+    }
+
+    /// The first random word that draws one of those particles.
+    pub fn first_word(&self, n_base: u64) -> u128 {
+        if self.scene.walk.engine.takes_each(n_base / self.increments(), self.counts[2]) {
+            return 0;
+        }
         let finest = match &self.network_file {
             Some(network) => network.finest_open(|_| false),
             None => (self.curve.smallest() / self.unit_mm) as f32,
         };
-        let passive = self.sampler.word_limit(finest) as f64 / 18_446_744_073_709_551_616.0;
-        (n_base as f64 * (1.0 - passive)).ceil() as u64
+        self.sampler.word_limit(finest)
     }
 
     /// Bytes of the columns of a walk of `n_base` particles.

@@ -1,8 +1,9 @@
 //! The pan fraction of a base, what is finer than its finest sieve, of the sizes between which it lies.
 //!
-//! Where the finest sieve is no coarser than the finest constriction, a pan fraction is passive, and is counted
-//! by mass only. Where it is coarser, some of it may block constrictions. The base is then walked twice, with
-//! the same mass: once with a pan fraction that is passive, and once with all of it of the finest sieve's size.
+//! Where the finest sieve is no coarser than the finest constriction, a pan fraction is passive, and is
+//! counted by mass only. Where it is coarser, some of it may block constrictions. The base is then walked
+//! twice, with the same mass: once with a pan fraction that is passive, and once with all of it of the finest
+//! sieve's size.
 
 use crate::constrictions::Curve;
 use crate::gradation::{Gradation, GradationError};

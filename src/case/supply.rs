@@ -59,8 +59,8 @@ impl Against<'_> {
             Some(size) => &pan::taken_as(base, size, self.curve)?,
             None => base,
         };
-        // A number that the user gives is of particles whose sizes are known; the mass stays the same. A cap is
-        // there for the work, which passive particles hardly add to.
+        // A number that the user gives is of particles whose sizes are known; the mass stays the same. A cap
+        // is there for the work, which passive particles hardly add to.
         let more = taken.particles_per_unit_volume() / base.particles_per_unit_volume();
         let (ratio, cap) = match self.scene.base.amount() {
             Amount::MassRatio(ratio, Some(cap)) if pan_size == Some(PanSize::Passive) => {

@@ -37,9 +37,9 @@ impl Case {
         let pan_percent = 100.0 * self.base.pan_fraction();
         if self.pan_size.is_some() {
             doubts.push(format!(
-                "{pan_percent:.1} % of the base is finer than its finest sieve, {} mm, and may be coarser than \
-                 the finest constriction, {:.3} mm: walked twice, as finer than every constriction and as all \
-                 of that sieve's size",
+                "{pan_percent:.1} % of the base is finer than its finest sieve, {} mm, and may be coarser \
+                 than the finest constriction, {:.3} mm: walked twice, as finer than every constriction and \
+                 as all of that sieve's size",
                 self.base.smallest_mm(),
                 self.curve.smallest()
             ));

@@ -76,6 +76,9 @@ fn summary(run: &FinishedRun) -> String {
             line(format!("    {}: {verdict}, {} eroded", bounds.words(reading), runs.join(" and ")));
         }
     }
+    if let Some(step) = outcome.next_step() {
+        line(format!("  {step}"));
+    }
     if outcome.replicates.len() == 1 {
         line(
             "  one replicate: the scatter is unknown; walk more before relying on this (replicates = 10)"

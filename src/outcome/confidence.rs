@@ -70,6 +70,23 @@ fn short(value: f64) -> String {
 }
 
 impl Outcome {
+    /// What would decide a verdict that is undecided; `None` where there is nothing to add to what is said
+    /// elsewhere.
+    pub fn next_step(&self) -> Option<&'static str> {
+        let said = self.stopping.is_some() || self.pan_bounds.as_ref().is_some_and(|bounds| bounds.differ());
+        if self.verdict != Verdict::Undecided || said {
+            return None;
+        }
+        let first = self.summary.first()?.eroded_mass_fraction;
+        Some(match (self.summary.len(), first.low.unwrap_or(first.mean) >= self.threshold) {
+            (1, true) => "to decide it: a second run (runs = 2) tells some erosion from continuing erosion",
+            _ => {
+                "to decide it: --decide 95% adds replicates until the verdict is certain at that level, or \
+                 says what it would take"
+            }
+        })
+    }
+
     /// The verdict in a line, with the first reason why it cannot be relied on as it stands.
     pub fn headline(&self) -> String {
         let verdict = self.verdict.words();

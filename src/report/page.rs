@@ -465,8 +465,10 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
             @if base.tail_mass_fraction > 0.0 {
                 (fact("Pan fraction (finer than the finest sieve)",
                     format!("{} by mass; {}", percent(base.tail_mass_fraction),
-                        if outcome.pan_bounds.is_some() { "walked as passive and as all of the finest sieve’s size" }
-                        else { "passive, counted by mass only" })))
+                        match outcome.pan_bounds {
+                            Some(_) => "walked as passive and as all of the finest sieve’s size",
+                            None => "passive, counted by mass only",
+                        })))
             }
             (fact("D15F/D85B, D15F/D95B", format!("{}, {}", significant(outcome.ratios.d15f_over_d85b),
                 significant(outcome.ratios.d15f_over_d95b))))

@@ -15,3 +15,4 @@ mod scene;
 mod second_command;
 mod slurm_scripts;
 mod soils;
+mod trial;

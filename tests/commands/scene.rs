@@ -695,7 +695,7 @@ fn check_says_what_packing_and_walks_take() {
     let args = ["check", scene.to_str().unwrap(), "--packings", packings.to_str().unwrap()];
     let words = String::from_utf8(voidwalk(&args).stdout).unwrap();
     let line = |name: &str| words.lines().find(|line| line.starts_with(name)).unwrap().to_owned();
-    assert!(line("time to pack").contains("some 95 000 steps"), "{words}");
+    assert!(line("time to pack").contains("some 10 500 steps"), "{words}");
     assert!(line("time to walk").contains("of one core"), "{words}");
     let output = voidwalk(&[&args[..], &["--json"]].concat());
     let json: Value = serde_json::from_slice(&output.stdout).unwrap();
