@@ -16,7 +16,7 @@ pub use files::{INPUT_FILES, INPUT_NAMES, Input};
 pub use memory::{ResourceLimits, in_words};
 pub use packed_filter::{GRAINS, PackedError, PackedFilter, RECORD};
 pub use packing_plan::PackingPlan;
-use supply::{Against, WalkedBase};
+use supply::Against;
 
 use crate::constrictions::{Curve, CurveError, CurveUnit, ShippedFilter, inscribed};
 use crate::gradation::{Gradation, GradationError, NumberError, SizeSampler};
@@ -94,8 +94,8 @@ pub struct Case {
     pub packed: Option<PackedFilter>,
     /// The base's gradation.
     pub base: Gradation,
-    /// Of what size its pan fraction is walked; `None` where there is none, or where it is passive and counted
-    /// by mass only.
+    /// Of what size its pan fraction is walked; `None` where there is none, or where it is passive and
+    /// counted by mass only.
     pub pan_size: Option<PanSize>,
     /// The same case with the other reading of its pan fraction, where it has two.
     pub other_reading: Option<Box<Case>>,
@@ -261,32 +261,6 @@ impl Case {
         };
         case.other_reading = other.map(|walked| Box::new(case.read_as(walked)));
         Ok(case)
-    }
-
-    /// The same case with another reading of its base, of which no other is studied.
-    fn read_as(&self, walked: WalkedBase) -> Self {
-        let mut scene = self.scene.clone();
-        scene.record.sensitivity.clear();
-        Self {
-            pan_size: walked.pan_size,
-            n_base_eq2: walked.n_base_eq2(),
-            sampler: walked.sampler,
-            n_base: walked.n_base.n_base,
-            capped: walked.n_base.capped,
-            mass_ratio: walked.mass_ratio,
-            scene,
-            ..self.clone()
-        }
-    }
-
-    /// The case itself and its other reading, where it has two.
-    pub fn readings(&self) -> impl Iterator<Item = &Case> {
-        std::iter::once(self).chain(self.other_reading.as_deref())
-    }
-
-    /// Share of the base's mass that is passive and counted by mass only.
-    pub fn pan_by_mass_only(&self) -> f64 {
-        if self.pan_size.is_some() { 0.0 } else { self.base.pan_fraction() }
     }
 
     /// The network of the replicate with this seed.

@@ -34,21 +34,7 @@ impl Case {
                 gap.within, gap.from_mm
             ));
         }
-        let pan_percent = 100.0 * self.base.pan_fraction();
-        if self.pan_size.is_some() {
-            doubts.push(format!(
-                "{pan_percent:.1} % of the base is finer than its finest sieve, {} mm, and may be coarser \
-                 than the finest constriction, {:.3} mm: walked twice, as finer than every constriction and \
-                 as all of that sieve's size",
-                self.base.smallest_mm(),
-                self.curve.smallest()
-            ));
-        } else if pan_percent > 0.0 {
-            doubts.push(format!(
-                "{pan_percent:.1} % of the base is finer than its finest sieve: taken as passive and counted \
-                 by mass only"
-            ));
-        }
+        doubts.extend(self.pan_doubt());
         if let Some(shipped) = self.shipped.filter(|_| self.network_file.is_none())
             && let Some(cu) = self.filter.cu()
             && (cu / shipped.cu - 1.0).abs() > 0.05
@@ -68,6 +54,26 @@ impl Case {
             );
         }
         doubts
+    }
+
+    /// What is not known of the base's finest part.
+    pub fn pan_doubt(&self) -> Option<String> {
+        let percent = 100.0 * self.base.pan_fraction();
+        if self.pan_size.is_some() {
+            return Some(format!(
+                "{percent:.1} % of the base is finer than its finest sieve, {} mm, and may be coarser than \
+                 the finest constriction, {:.3} mm: walked twice, as finer than every constriction and as \
+                 all of that sieve's size",
+                self.base.smallest_mm(),
+                self.curve.smallest()
+            ));
+        }
+        (percent > 0.0).then(|| {
+            format!(
+                "{percent:.1} % of the base is finer than its finest sieve: taken as passive and counted by \
+                 mass only"
+            )
+        })
     }
 
     /// Fines of the base that may be cohesive, or that are not known.

@@ -32,11 +32,21 @@ pub fn outcome(
         sensitivity.sort_by(|a, b| a.factor.total_cmp(&b.factor));
     }
     let rules = rules::apply(&rule_inputs(case, walked));
-    let (confidence, mut reasons) = confidence::judge(verdict, &rules, case.doubts());
-    if let Some(bounds) = &pan_bounds {
-        // Where the readings differ, that is why nothing is decided.
-        reasons.insert(if bounds.differ() { 0 } else { reasons.len() }, bounds.sentence());
+    // What was to be walked twice has been.
+    let told = |sentences: Vec<String>| match (&pan_bounds, case.pan_doubt()) {
+        (Some(bounds), Some(doubt)) => {
+            let one = |said: String| if said == doubt { bounds.sentence() } else { said };
+            sentences.into_iter().map(one).collect()
+        }
+        _ => sentences,
+    };
+    let (confidence, mut reasons) = confidence::judge(verdict, &rules, told(case.doubts()));
+    if let Some(bounds) = pan_bounds.as_ref().filter(|bounds| bounds.differ()) {
+        // That is why nothing is decided.
+        reasons.retain(|reason| *reason != bounds.sentence());
+        reasons.insert(0, bounds.sentence());
     }
+    let warnings = told(case.warnings());
     Outcome {
         verdict,
         confidence,
@@ -52,7 +62,7 @@ pub fn outcome(
         stopping,
         pan_bounds,
         threshold: verdict::THRESHOLD,
-        warnings: case.warnings(),
+        warnings,
         left_out: left_out(case, walked),
         model_leaves_out: MODEL_LEAVES_OUT.map(String::from).to_vec(),
         inputs: case.record(),
