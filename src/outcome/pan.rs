@@ -72,10 +72,10 @@ impl PanBounds {
     pub fn sentence(&self) -> String {
         let (percent, sieve) = (100.0 * self.mass_fraction, self.finest_sieve_mm);
         let finest = self.finest_constriction_mm;
-        let said = self
-            .readings
-            .each_ref()
-            .map(|reading| format!("taken as {} it gives {}", self.words(reading), reading.verdict.words()));
+        let said = self.readings.each_ref().map(|reading| match reading.verdict {
+            Verdict::Undecided => format!("taken as {} it stays open", self.words(reading)),
+            verdict => format!("taken as {} it gives {}", self.words(reading), verdict.words()),
+        });
         if self.differ() {
             format!(
                 "the answer hangs on the {percent:.1} % of the base that is finer than its finest sieve, \
@@ -134,6 +134,8 @@ mod tests {
             )
         );
         // One that is open itself agrees with nothing but another that is.
-        assert_eq!(bounds([Verdict::None, Verdict::Undecided]).verdict(), Verdict::Undecided);
+        let half = bounds([Verdict::Undecided, Verdict::None]);
+        assert_eq!(half.verdict(), Verdict::Undecided);
+        assert!(half.sentence().contains("taken as finer than every constriction it stays open, "));
     }
 }
