@@ -700,9 +700,10 @@ fn check_says_what_packing_and_walks_take() {
     let output = voidwalk(&[&args[..], &["--json"]].concat());
     let json: Value = serde_json::from_slice(&output.stdout).unwrap();
     let packing = &json["packing"];
-    assert_eq!((&packing["steps"], &packing["is_made"]), (&95_000.into(), &false.into()));
+    assert_eq!((&packing["steps"], &packing["is_made"]), (&10_500.into(), &false.into()));
     let seconds = packing["core_seconds"].as_f64().unwrap();
-    let expected = packing["grains"].as_f64().unwrap() * 95_000.0 * 1e-7;
+    let grains = packing["grains"].as_f64().unwrap();
+    let expected = grains * (10_500.0 * 7e-8 * (grains / 9_000.0).powf(0.2) + 5e-5);
     assert!((seconds / expected - 1.0).abs() < 1e-9, "{seconds} for {expected}");
     assert!(json["core_seconds"].as_f64().unwrap() > 0.0);
 }
