@@ -228,11 +228,12 @@ impl CaseRunner<'_> {
         let silent = Callbacks { stop: self.callbacks.run.stop, ..Callbacks::default() };
         let context = ReplicateContext { callbacks: &silent, checkpoints: Some(&checkpoints) };
         let walked = replicates::replicates(case, &context)
+            .and_then(|walked| Ok((walked, replicates::other_reading(case, &context)?)))
             .and_then(|walked| Ok((replicates::sensitivity(case, &context)?, walked)));
         for problem in checkpoints.passed_over() {
             self.warn(name, &format!("{problem}; the checkpoint before it was taken"));
         }
-        let (sensitivity, walked) = match walked {
+        let (sensitivity, (walked, other)) = match walked {
             Err(error) if error.exit() == Exit::Stopped => {
                 checkpoints.flush()?;
                 return Ok(false);
@@ -254,7 +255,7 @@ impl CaseRunner<'_> {
         }
         let seconds = begun.elapsed().as_secs_f64();
         let threads = rayon::current_num_threads() as u64;
-        let outcome = results::outcome(case, &walked, sensitivity, seconds);
+        let outcome = results::outcome(case, &walked, &other, sensitivity, seconds);
         let manifest = results::manifest(case, threads, started, self.command.clone());
         folder.remove(LINE)?;
         // Results of what the case was before the plan was changed; another process that walks this very case

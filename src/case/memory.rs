@@ -46,12 +46,20 @@ impl Case {
         if self.scene.walk.engine.takes_each(n_base / self.increments(), self.counts[2]) {
             return n_base;
         }
+        let passive = self.first_word(n_base) as f64 / 18_446_744_073_709_551_616.0;
+        (n_base as f64 * (1.0 - passive)).ceil() as u64
+    }
+
+    /// The first random word that draws one of those particles.
+    pub fn first_word(&self, n_base: u64) -> u128 {
+        if self.scene.walk.engine.takes_each(n_base / self.increments(), self.counts[2]) {
+            return 0;
+        }
         let finest = match &self.network_file {
             Some(network) => network.finest_open(|_| false),
             None => (self.curve.smallest() / self.unit_mm) as f32,
         };
-        let passive = self.sampler.word_limit(finest) as f64 / 18_446_744_073_709_551_616.0;
-        (n_base as f64 * (1.0 - passive)).ceil() as u64
+        self.sampler.word_limit(finest)
     }
 
     /// Bytes of the columns of a walk of `n_base` particles.
@@ -100,8 +108,12 @@ impl Case {
 
     /// The most bytes that the whole case takes at once on this many threads, all columns in memory.
     pub fn peak_bytes(&self, threads: u64) -> u64 {
-        let n_base = self.most_particles();
-        self.bytes(n_base, threads).saturating_mul(self.side_by_side(n_base, threads))
+        let of = |case: &Case| {
+            let n_base = case.most_particles();
+            case.bytes(n_base, threads).saturating_mul(case.side_by_side(n_base, threads))
+        };
+        // One reading is walked after the other.
+        self.readings().map(of).max().unwrap_or(0)
     }
 
     /// Replicates of `n_base` particles that walk at the same time on this many threads: one, unless they are
@@ -117,8 +129,12 @@ impl Case {
     /// # Errors
     /// [`CaseError::Memory`]: they fit neither.
     pub fn place(&mut self, room: &ResourceLimits, threads: u64, folder: &Path) -> Result<(), CaseError> {
+        if let Some(other) = &mut self.other_reading {
+            other.place(room, threads, folder)?;
+        }
         self.memory = room.memory;
-        let (n_base, needed) = (self.most_particles(), self.peak_bytes(threads));
+        let n_base = self.most_particles();
+        let needed = self.bytes(n_base, threads).saturating_mul(self.side_by_side(n_base, threads));
         if needed <= room.memory {
             self.placement = Placement::Memory;
         } else if self.other_bytes(n_base, threads) <= room.memory && self.column_bytes(n_base) <= room.disk {
@@ -140,6 +156,12 @@ impl Case {
 
     /// Where the particles of a walk on this many threads live, for a reader.
     pub fn memory_in_words(&self, threads: u64) -> String {
+        match &self.other_reading {
+            Some(other) if other.bytes(other.n_base, threads) > self.bytes(self.n_base, threads) => {
+                return other.memory_in_words(threads);
+            }
+            _ => {}
+        }
         let bytes = in_words(self.bytes(self.n_base, threads));
         let limit = in_words(self.memory);
         match &self.placement {

@@ -4,10 +4,12 @@ mod files;
 mod memory;
 mod packed_filter;
 mod packing_plan;
+mod pan;
 mod record;
 mod regrade;
 mod resolved;
 mod sizes;
+mod supply;
 mod warnings;
 
 use files::Files;
@@ -15,12 +17,13 @@ pub use files::{INPUT_FILES, INPUT_NAMES, Input};
 pub use memory::{ResourceLimits, in_words};
 pub use packed_filter::{GRAINS, PackedError, PackedFilter, RECORD};
 pub use packing_plan::PackingPlan;
+use supply::Against;
 
 use crate::constrictions::{Curve, CurveError, CurveUnit, ShippedFilter, inscribed};
-use crate::gradation::{BaseSupply, Gradation, GradationError, NumberError, SizeSampler, base_particles};
+use crate::gradation::{Gradation, GradationError, NumberError, SizeSampler};
 use crate::network::{Network, NetworkError};
 use crate::outcome::Mistake;
-use crate::outcome::record::Ratios;
+use crate::outcome::record::{PanSize, Ratios};
 use crate::scene::{Amount, BaseGradation, D85, FilterGradation, NetworkSource, Scene, SceneError};
 use crate::store::Placement;
 use crate::stream::{Key, Purpose};
@@ -78,6 +81,7 @@ pub fn replicate_seed(seed: u64, replicate: u64) -> u64 {
 }
 
 /// A scene, worked out.
+#[derive(Clone)]
 pub struct Case {
     /// The scene it comes from.
     pub scene: Scene,
@@ -93,6 +97,11 @@ pub struct Case {
     pub base: Gradation,
     /// The base as it was given, and the size (mm) that it was regraded on, where it is walked regraded.
     pub regraded_from: Option<(Gradation, f64)>,
+    /// Of what size its pan fraction is walked; `None` where there is none, or where it is passive and
+    /// counted by mass only.
+    pub pan_size: Option<PanSize>,
+    /// The same case with the other reading of its pan fraction, where it has two.
+    pub other_reading: Option<Box<Case>>,
     /// Draws the base's sizes, in units of `unit_mm`.
     pub sampler: SizeSampler,
     /// Base particles of a run, by Eq. (2) or as given.
@@ -209,22 +218,19 @@ impl Case {
         let of_shipped = shipped.filter(|_| network_file.is_none()).map(|s| s.grains_per_void);
         let of_packing = packed.as_ref().map(|packed| packed.grains_per_void).or(of_shipped);
         let grains_per_void = scene.filter.grains_per_void.or(of_packing);
-        let (supply, mass_ratio) =
-            supply(&scene, grains_per_void, counts[0], &base, &filter).map_err(|error| match mistake {
-                Some(mistake) => CaseError::from(scene.clash(mistake.sentence)),
-                None => error,
-            })?;
-        let is_guess = packed.as_ref().is_some_and(|packed| packed.files.is_none());
-        if base.pan_fraction() > 0.0 && base.smallest_mm() > curve.smallest() && !is_guess {
-            let problem = format!(
-                "the base's finest sieve, {} mm, is coarser than the finest constriction, {:.4} mm: its \
-                 pan fraction may not be passive; give base.d0_mm or a finer sieve",
-                base.smallest_mm(),
-                curve.smallest()
-            );
-            return Err(scene.clash(problem).into());
-        }
-        let sampler = SizeSampler::new(&base, unit_mm)?;
+        let against = Against {
+            scene: &scene,
+            filter: &filter,
+            curve: &curve,
+            unit_mm,
+            grains_per_void,
+            voids: counts[0],
+            is_packed: packed.as_ref().is_some_and(|packed| packed.files.is_some()),
+        };
+        let (walked, other) = against.readings(&base).map_err(|error| match mistake {
+            Some(mistake) => CaseError::from(scene.clash(mistake.sentence)),
+            None => error,
+        })?;
         for (name, gradation, percent) in [("filter", &filter, 15.0), ("base", &base, 85.0)] {
             if gradation.d(percent).is_none() {
                 let problem = format!(
@@ -234,19 +240,21 @@ impl Case {
                 return Err(scene.clash(problem).into());
             }
         }
-        Ok(Self {
+        let mut case = Self {
             packed,
             filter,
             curve,
             shipped,
             base,
             regraded_from,
-            sampler,
-            n_base: supply.0,
-            n_base_eq2: supply.1,
-            capped: supply.2,
+            pan_size: walked.pan_size,
+            other_reading: None,
+            n_base_eq2: walked.n_base_eq2(),
+            sampler: walked.sampler,
+            n_base: walked.n_base.n_base,
+            capped: walked.n_base.capped,
             grains_per_void,
-            mass_ratio,
+            mass_ratio: walked.mass_ratio,
             unit_mm,
             network_file,
             counts,
@@ -255,7 +263,9 @@ impl Case {
             memory: u64::MAX,
             placement: Placement::Memory,
             scene,
-        })
+        };
+        case.other_reading = other.map(|walked| Box::new(case.read_as(walked)));
+        Ok(case)
     }
 
     /// The network of the replicate with this seed.
@@ -367,39 +377,4 @@ fn base_gradation(
         }
     };
     Ok(Gradation::linear_from_dx(85.0, d85_mm, cu)?)
-}
-
-/// The mass ratio that Eq. (2) speaks of where the scene gives a number: the paper's 5 %.
-const PAPER_MASS_RATIO: f64 = 0.05;
-
-/// N_base as walked, N_base by Eq. (2), whether a cap bit; and the mass ratio that N_base stands for.
-#[expect(clippy::type_complexity, reason = "one caller, who takes it apart")]
-fn supply(
-    scene: &Scene,
-    grains_per_void: Option<f64>,
-    voids: u64,
-    base: &Gradation,
-    filter: &Gradation,
-) -> Result<((u64, Option<u64>, bool), Option<f64>), CaseError> {
-    let (ratio, cap) = match scene.base.amount() {
-        Amount::MassRatio(ratio, cap) => (ratio, cap),
-        Amount::Number(n) => {
-            let Some(grains) = grains_per_void else { return Ok(((n, None, false), None)) };
-            let per_grain = base.particles_per_unit_volume() / filter.particles_per_unit_volume();
-            let eq2 = base_particles(PAPER_MASS_RATIO, grains, voids, base, filter, None)?.n_base_eq2;
-            return Ok(((n, Some(eq2), false), Some(n as f64 / (grains * voids as f64 * per_grain))));
-        }
-    };
-    let Some(grains) = grains_per_void else {
-        return Err(scene
-            .clash("filter.grains_per_void is missing (Eq. 2): only the shipped curves know theirs")
-            .into());
-    };
-    let BaseSupply { n_base, n_base_eq2, capped } = base_particles(ratio, grains, voids, base, filter, cap)?;
-    if n_base == 0 {
-        let problem = "Eq. (2) gives less than half a base particle: a larger network, mass ratio or grains \
-         per void is needed";
-        return Err(scene.clash(problem).into());
-    }
-    Ok(((n_base, Some(n_base_eq2), capped), Some(ratio)))
 }

@@ -35,13 +35,7 @@ impl Case {
                 gap.within, gap.from_mm
             ));
         }
-        if self.base.pan_fraction() > 0.0 {
-            doubts.push(format!(
-                "{:.1} % of the base is finer than its finest sieve: taken as too fine to block any \
-                 constriction, and counted by its mass only",
-                100.0 * self.base.pan_fraction()
-            ));
-        }
+        doubts.extend(self.pan_doubt());
         if let Some(shipped) = self.shipped.filter(|_| self.network_file.is_none())
             && let Some(cu) = self.filter.cu()
             && (cu / shipped.cu - 1.0).abs() > 0.05
@@ -72,6 +66,26 @@ impl Case {
                 "the modelled filter is thicker than the real one; {} layers of D50F by number are \
                  {modelled:.1} {unit}, filter.thickness_mm is {real}: network.nz says how many layers",
                 self.counts[3]
+            )
+        })
+    }
+
+    /// What is not known of the base's finest part.
+    pub fn pan_doubt(&self) -> Option<String> {
+        let percent = 100.0 * self.base.pan_fraction();
+        if self.pan_size.is_some() {
+            return Some(format!(
+                "{percent:.1} % of the base is finer than its finest sieve, {} mm, and may be coarser than \
+                 the finest constriction, {:.3} mm: walked twice, as finer than every constriction and as \
+                 all of that sieve's size",
+                self.base.smallest_mm(),
+                self.curve.smallest()
+            ));
+        }
+        (percent > 0.0).then(|| {
+            format!(
+                "{percent:.1} % of the base is finer than its finest sieve: taken as passive and counted by \
+                 mass only"
             )
         })
     }

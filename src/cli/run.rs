@@ -65,6 +65,17 @@ fn summary(run: &FinishedRun) -> String {
     for run in &outcome.summary {
         line(format!("  {}", run_line(run)));
     }
+    if let Some(bounds) = &outcome.pan_bounds {
+        line(
+            "  those are of the base with its finest part finer than every constriction; both readings:"
+                .into(),
+        );
+        for reading in &bounds.readings {
+            let verdict = reading.verdict.words();
+            let runs: Vec<String> = reading.runs.iter().map(|run| percent(run.mean)).collect();
+            line(format!("    {}: {verdict}, {} eroded", bounds.words(reading), runs.join(" and ")));
+        }
+    }
     if outcome.replicates.len() == 1 {
         line(
             "  one replicate: the scatter is unknown; walk more before relying on this (replicates = 10)"

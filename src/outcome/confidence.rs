@@ -97,7 +97,8 @@ fn short(value: f64) -> String {
 impl Outcome {
     /// What to do where the replicates leave the class open and nothing was to add to them.
     pub fn what_would_decide(&self) -> Option<&'static str> {
-        if self.verdict != Verdict::Undecided || self.stopping.is_some() {
+        let said = self.stopping.is_some() || self.pan_bounds.as_ref().is_some_and(|bounds| bounds.differ());
+        if self.verdict != Verdict::Undecided || said {
             return None;
         }
         let straddles = |run: &RunSummary| {

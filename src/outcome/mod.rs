@@ -21,6 +21,7 @@ pub mod ledger;
 mod metrics;
 pub mod packing;
 mod pair;
+mod pan;
 pub mod paper;
 pub mod percolation;
 pub mod precision;

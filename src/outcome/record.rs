@@ -16,6 +16,7 @@
 use serde::{Deserialize, Serialize};
 
 pub use super::applied::{AppliedRule, Confidence, RuleRole};
+pub use super::pan::{PanBounds, PanReading, PanSize};
 
 /// The whole of `outcome.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -48,6 +49,9 @@ pub struct Outcome {
     /// Why there are so many replicates, where a rule added them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stopping: Option<Stopping>,
+    /// Both readings of a pan fraction that need not be passive.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pan_bounds: Option<PanBounds>,
     /// Eroded mass fraction that divides the classes: 0.075.
     pub threshold: f64,
     /// Where the inputs leave the range in which the model was checked, and what else a reader must know.

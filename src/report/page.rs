@@ -14,7 +14,7 @@ use super::names::soil_name;
 use super::numbers::{
     capital, duration, interval, known, percent, percent_interval, significant, size, threshold, whole,
 };
-use super::results::{replicates, results, run_heading, sensitivity};
+use super::results::{fraction, replicates, results, run_heading, sensitivity};
 use super::rules::rules;
 use super::run_figures::{self, run_name};
 use super::shell::{self, Drawn, clean, drawing, fact, whole_page};
@@ -22,7 +22,9 @@ use super::table::Table;
 use super::written::{Written, write_page};
 use super::{appendix, packing, shell::leaves_out};
 use crate::outcome::packing::PackingRecord;
-use crate::outcome::record::{Confidence, NetworkKind, Outcome, RunSummary, Stopping, Verdict};
+use crate::outcome::record::{
+    Confidence, NetworkKind, Outcome, PanBounds, PanReading, RunSummary, Stopping, Verdict,
+};
 
 /// Characters of `scene.toml` that are shown.
 const SCENE: usize = 100_000;
@@ -117,6 +119,7 @@ fn verdict_box(outcome: &Outcome, verdict: &Drawn) -> Markup {
             p.lead { (in_words(outcome)) }
             div { (drawing(verdict)) }
             (table)
+            @if let Some(bounds) = &outcome.pan_bounds { (both_readings(bounds)) }
             @if let Some(stopping) = &outcome.stopping { p { (stopped(stopping)) } }
             @if let Some(next) = outcome.what_would_decide() { p { (capital(next)) "." } }
             p { (tally(outcome)) " Threshold between the classes: " (threshold(outcome.threshold)) "." }
@@ -127,6 +130,26 @@ fn verdict_box(outcome: &Outcome, verdict: &Drawn) -> Markup {
                 }
             }
         }
+    }
+}
+
+/// What came of either reading of a pan fraction that need not be passive.
+fn both_readings(bounds: &PanBounds) -> Markup {
+    let mut table = Table::of(&bounds.readings)
+        .name("The base’s finest part taken as", |reading| bounds.words(reading))
+        .text("verdict", |reading| reading.verdict.words());
+    for index in 0..bounds.readings[0].runs.len() {
+        let of = move |reading: &PanReading| reading.runs.get(index).map_or_else(|| html! { "–" }, fraction);
+        table = table.number(run_name(index as u64 + 1), of);
+    }
+    html! {
+        p {
+            (percent(bounds.mass_fraction)) " of the base is finer than its finest sieve, "
+            (size(bounds.finest_sieve_mm, false)) ", which is coarser than the finest constriction, "
+            (size(bounds.finest_constriction_mm, false)) ". The base was walked with either end of the sizes \
+             that this part may have; the verdict is what both give, the other numbers are of the first."
+        }
+        (table)
     }
 }
 
@@ -165,6 +188,11 @@ fn in_words(outcome: &Outcome) -> String {
             "In the model the filter does not hold this base: {limit} or more of its mass passes in the \
              first run and again in the second."
         ),
+        Verdict::Undecided if outcome.pan_bounds.as_ref().is_some_and(PanBounds::differ) => {
+            "Inconclusive: the finest part of the base, whose sizes the sieves do not tell, decides between \
+             the classes."
+                .to_owned()
+        }
         Verdict::Undecided => {
             let straddles = |run: &&RunSummary| {
                 interval(&run.eroded_mass_fraction)
@@ -315,8 +343,11 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
             (fact("D85, D95, D100 (by mass)", [base.d85_mm, base.d95_mm, base.d100_mm].map(mm).join(", ")))
             @if base.tail_mass_fraction > 0.0 {
                 (fact("Pan fraction (finer than the finest sieve)",
-                    format!("{} by mass; taken as too fine to block any constriction (passive); only its \
-                             mass is counted", percent(base.tail_mass_fraction))))
+                    format!("{} by mass; {}", percent(base.tail_mass_fraction),
+                        match outcome.pan_bounds {
+                            Some(_) => "walked as passive and as all of the finest sieve’s size",
+                            None => "taken as too fine to block any constriction (passive); only its mass is counted",
+                        })))
             }
             (fact("D15F/D85B, D15F/D95B", format!("{}, {}", significant(outcome.ratios.d15f_over_d85b),
                 significant(outcome.ratios.d15f_over_d95b))))

@@ -25,7 +25,8 @@ fn with_interval(mean: String, interval: Option<String>) -> Markup {
     }
 }
 
-fn fraction(statistic: &Statistic) -> Markup {
+/// A fraction in percent, with its interval below it.
+pub(super) fn fraction(statistic: &Statistic) -> Markup {
     with_interval(percent(statistic.mean), percent_interval(statistic))
 }
 

@@ -2,32 +2,52 @@
 //!
 //! It is asked before any work, to tell a user minutes from hours and a cluster what to give, and after a
 //! first run, whose counted work says what more of them will take. Its figures are those of one thread of a
-//! processor of 2024, rounded up (`results/walk-speed-*.md`, `results/filters-*.md`); `results/slurm-*.md`
-//! holds estimates against measured times.
+//! processor of 2024 that is shared with other work; `results/check-*.md` and `results/slurm-*.md` hold
+//! estimates against measured times (`scripts/check_times.py`).
 
-use super::replicates::runs_to_walk;
+use super::replicates::networks_to_walk;
 use crate::case::{Case, PackingPlan};
+use crate::scene::NetworkSource;
 
 /// Seconds for one move of a particle that is walked by itself.
 const MOVE_S: f64 = 2.5e-9;
 /// Seconds to insert such a particle.
 const INSERTION_S: f64 = 1.5e-8;
-/// Seconds to part the counts of a void in an increment.
-const VOID_S: f64 = 1.3e-8;
+/// Seconds to part the counts of a void that holds some, in an increment, on a cubic lattice ...
+const VOID_S: f64 = 1.7e-8;
+/// ... and this many times longer on a network of any other kind, whose voids have any number of exits.
+const OTHER_NETWORK: f64 = 3.5;
+/// A void holds counts for the increments of insertion and, as the front that passes it is spread out, this
+/// many times the root of the number of layers.
+const SPREAD: f64 = 24.0;
+/// Moves of a particle that nothing stops, by layers: on a directed lattice a third of its moves lead
+/// downstream.
+const MOVES_A_LAYER: f64 = 3.0;
+/// Parts of the curve and of the base in which the moves of a particle are worked out.
+const PARTS: usize = 64;
 /// Seconds to draw a constriction of a cubic lattice, its place in the tables included.
 const CONSTRICTION_S: f64 = 3.5e-8;
-/// Seconds to build a network of any kind, by its voids and constrictions: those of given connectivity take
-/// longest.
-const NETWORK_S: f64 = 3e-7;
+/// Seconds to build a network, by its voids and constrictions.
+const NETWORK_S: f64 = 1e-7;
 /// Seconds to write a case's files and page.
 const FILES_S: f64 = 0.1;
 /// Share of a case's threads that walks keep busy.
 const BUSY: f64 = 0.7;
-/// Seconds for one grain in one step of a compression.
-const GRAIN_STEP_S: f64 = 1e-7;
-/// Steps that packings took, by the friction up to which it holds (`results/filters-2026-11-21.md`: 38,700 to
-/// 52,500 without friction, 11,500 to 31,500 with 0.3, 92,500 with 0.7).
-const STEPS: [(f64, u64); 3] = [(0.0, 55_000), (0.5, 32_000), (f64::INFINITY, 95_000)];
+/// Seconds for one grain in one step of a compression of `GRAINS` grains; more fit the cache less well, and
+/// their seconds grow with the power `GRAINS_POWER` of their number.
+const GRAIN_STEP_S: f64 = 7e-8;
+/// See `GRAIN_STEP_S`.
+const GRAINS: f64 = 9_000.0;
+/// See `GRAIN_STEP_S`.
+const GRAINS_POWER: f64 = 0.2;
+/// Steps that packings with friction took at Cu 1.5, and the power of Cu with which they grow (10,000 to
+/// 12,800 at Cu 1.5, 19,800 at Cu 2, 21,200 to 33,100 at Cu 3, 92,500 at Cu 6;
+/// `results/filters-2026-11-21.md`).
+const STEPS: (f64, f64) = (10_500.0, 1.4);
+/// Steps that packings without friction took at the least (38,700 to 52,500).
+const DENSE_STEPS: f64 = 45_000.0;
+/// Seconds to measure the constrictions around a grain, and to write it.
+const MEASURED_GRAIN_S: f64 = 5e-5;
 /// Seconds to compress a grain of a small packing of a precision study, with friction and without.
 const SMALL_PACKING_GRAIN_S: [f64; 2] = [6.5e-4, 2.4e-3];
 /// Seconds to read a packing and measure its constrictions.
@@ -45,20 +65,48 @@ impl Case {
     /// Seconds that one thread of a machine of today takes for the whole case, its packing apart: a rough
     /// guess. What a rule that adds replicates may ask for besides is not foreseen.
     pub fn core_seconds(&self) -> f64 {
+        self.readings().map(Case::reading_seconds).sum::<f64>() + FILES_S
+    }
+
+    /// The same for one reading of its base, its files apart.
+    fn reading_seconds(&self) -> f64 {
         let [voids, constrictions, start_nodes, layers] = self.counts.map(|n| n as f64);
         let one_run = |n_base: u64| {
             let each = self.scene.walk.engine.takes_each(n_base / self.increments(), start_nodes as u64);
             let one_by_one = self.one_by_one(n_base) as f64;
-            let increments = self.increments() as f64 + 3.0 * layers;
-            let counted = if each { 0.0 } else { voids };
-            walk_seconds(0.0, increments, counted, one_by_one, one_by_one * layers.max(1.0))
+            let increments = self.increments() as f64 + SPREAD * layers.sqrt();
+            let slower = if self.is_cubic() { 1.0 } else { OTHER_NETWORK };
+            let counted = if each { 0.0 } else { slower * voids };
+            walk_seconds(0.0, increments, counted, one_by_one, one_by_one * self.moves_of_each(n_base))
         };
-        let (runs, replicates) = (self.scene.walk.runs as f64, self.scene.walk.replicates as f64);
+        let [replicates, studied] = networks_to_walk(self).map(|n| n as f64);
         let own = replicates * one_run(self.n_base);
         let of_factor = |factor: f64| one_run((self.n_base as f64 * factor) as u64);
         let others: f64 = self.sensitivity_factors().into_iter().map(of_factor).sum();
-        let networks = runs_to_walk(self) as f64 / runs.max(1.0) * (voids + constrictions) * NETWORK_S;
-        runs * (own + self.scene.record.sensitivity_replicates as f64 * others) + networks + FILES_S
+        let of_each = self.scene.record.sensitivity_replicates as f64;
+        let networks = (replicates + studied) * (voids + constrictions) * NETWORK_S;
+        self.scene.walk.runs as f64 * (own + of_each * others) + networks
+    }
+
+    fn is_cubic(&self) -> bool {
+        matches!(self.scene.network.source(), NetworkSource::Cubic(_))
+    }
+
+    /// Moves of a particle that is walked by itself, on average: until a finer constriction stops it, with
+    /// the chance that it has on the clean network, or until it leaves.
+    fn moves_of_each(&self, n_base: u64) -> f64 {
+        let shares = || (0..PARTS).map(|part| (part as f64 + 0.5) / PARTS as f64);
+        let areas: Vec<(f64, f64)> =
+            shares().map(|share| self.curve.quantile(share) / self.unit_mm).map(|d| (d, d * d)).collect();
+        let all: f64 = areas.iter().map(|(_, area)| area).sum();
+        let most = MOVES_A_LAYER * (self.counts[3] as f64).max(1.0);
+        let moves = |d: f64| {
+            let stopped =
+                areas.iter().take_while(|(size, _)| *size < d).map(|(_, area)| area).sum::<f64>() / all;
+            if stopped > 0.0 { (1.0 - libm::pow(1.0 - stopped, most)) / stopped } else { most }
+        };
+        let walked = self.sampler.part(self.first_word(n_base)..1 << 64);
+        shares().filter_map(|share| walked.d_by_number(share)).map(moves).sum::<f64>() / PARTS as f64
     }
 
     /// Bytes that the program takes where its walks take so many.
@@ -112,13 +160,18 @@ impl PackingPlan {
     pub fn core_seconds(&self) -> f64 {
         // Stiffer grains move in shorter steps.
         let stiffness = libm::sqrt((self.compression.stiffness_ratio / 0.1).max(0.1));
-        self.compression.grains as f64 * self.usual_steps() as f64 * stiffness * GRAIN_STEP_S
+        let grains = self.compression.grains as f64;
+        let step_s = GRAIN_STEP_S * libm::pow(grains / GRAINS, GRAINS_POWER);
+        grains * (self.usual_steps() as f64 * stiffness * step_s + MEASURED_GRAIN_S)
     }
 
-    /// Steps that packings of this friction took.
+    /// Steps that packings of this friction and width of gradation took: that of a straight line of this Cu.
     pub fn usual_steps(&self) -> u64 {
-        let friction = self.compression.friction;
-        STEPS.into_iter().find(|(most, _)| friction <= *most).map_or(0, |(_, steps)| steps)
+        let cu = libm::sqrt(self.gradation.largest_mm() / self.gradation.smallest_mm());
+        let (at_1_5, power) = STEPS;
+        let steps = at_1_5 * libm::pow(cu / 1.5, power);
+        let steps = if self.compression.friction == 0.0 { steps.max(DENSE_STEPS) } else { steps };
+        100 * (steps / 100.0).round() as u64
     }
 
     /// The most bytes that packing it takes.

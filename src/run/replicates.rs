@@ -50,8 +50,14 @@ pub struct ReplicateResult {
 
 /// Number of runs that [`replicates`] and [`sensitivity`] walk for a case, as far as it is known before.
 pub fn runs_to_walk(case: &Case) -> u64 {
-    let factors = case.sensitivity_factors().len() as u64;
-    case.scene.walk.runs * (first_replicates(case) + factors * case.scene.record.sensitivity_replicates)
+    case.readings().map(|case| case.scene.walk.runs * networks_to_walk(case).iter().sum::<u64>()).sum()
+}
+
+/// Networks that one reading of a case is walked on, as far as it is known before: for itself, and for its
+/// sensitivity study.
+pub fn networks_to_walk(case: &Case) -> [u64; 2] {
+    let studied = case.sensitivity_factors().len() as u64 * case.scene.record.sensitivity_replicates;
+    [first_replicates(case), studied]
 }
 
 /// Walks every replicate of the case: as many as the scene says, or until its rule stops.
@@ -59,11 +65,30 @@ pub fn runs_to_walk(case: &Case) -> u64 {
 /// # Errors
 /// A walk that loses particles, or that was stopped.
 pub fn replicates(case: &Case, context: &ReplicateContext) -> Result<Vec<ReplicateResult>, RunError> {
+    all_replicates(case, 0, context)
+}
+
+/// The same for the other reading of the base's pan fraction, on the same networks; none where the case has
+/// only one.
+///
+/// # Errors
+/// As [`replicates`].
+pub fn other_reading(case: &Case, context: &ReplicateContext) -> Result<Vec<ReplicateResult>, RunError> {
+    // The parts before are those of the sensitivity study.
+    let part = case.sensitivity_factors().len() as u64 + 1;
+    case.other_reading.as_ref().map_or(Ok(Vec::new()), |other| all_replicates(other, part, context))
+}
+
+fn all_replicates(
+    case: &Case,
+    part: u64,
+    context: &ReplicateContext,
+) -> Result<Vec<ReplicateResult>, RunError> {
     let mut walked = Vec::new();
     let mut wanted = first_replicates(case);
     loop {
         let more = walked.len() as u64 + 1..=wanted;
-        walked.extend(some_replicates(case, 0, more, case.n_base, context)?);
+        walked.extend(some_replicates(case, part, more, case.n_base, context)?);
         match look(case, &walked) {
             Some(Look::Until(next)) => {
                 context.tell(Event::MoreRuns { runs: (next - wanted) * case.scene.walk.runs });
@@ -140,7 +165,7 @@ fn walk_replicate(
             replicate,
             run: done.runs.len() as u64 + 1,
             d15f_mm: case.filter.d(15.0).unwrap_or(f64::NAN),
-            pan_fraction: case.base.pan_fraction(),
+            pan_fraction: case.pan_by_mass_only(),
         };
         let begun = Instant::now();
         let walk = RunContext { case, network: &network, id, of };

@@ -8,29 +8,45 @@ use super::error::RunError;
 use super::machine::Machine;
 use super::replicates::{ReplicateResult, as_it_is, stopping, summarise};
 use crate::case::{Case, INPUT_NAMES};
-use crate::outcome::record::{Manifest, Outcome, Sensitivity, Statistic};
+use crate::outcome::record::{
+    Manifest, Outcome, PanBounds, PanReading, RunSummary, Sensitivity, Statistic, Stopping, Verdict,
+};
 use crate::outcome::rules::{BaseSoil, RuleInputs};
 use crate::outcome::{MODEL_LEAVES_OUT, Recorded, confidence, infiltration, rules, verdict};
 use crate::scene::NetworkSource;
 use crate::store::{Folder, StoreError};
 
-/// The outcome of a case that has been walked.
+/// The outcome of a case that has been walked; `other` are the replicates of its other reading.
 pub fn outcome(
     case: &Case,
     walked: &[ReplicateResult],
+    other: &[ReplicateResult],
     mut sensitivity: Vec<Sensitivity>,
     seconds: f64,
 ) -> Outcome {
-    let (verdict, summary) = summarise(walked);
-    let stopping = stopping(case, walked);
-    // A verdict that was to be certain is one at the level asked for.
-    let verdict = stopping.as_ref().and_then(|stopping| stopping.verdict).unwrap_or(verdict);
+    let (verdict, summary, stopping) = concluded(case, walked);
+    let pan_bounds = pan_bounds(case, [walked, other]);
+    let verdict = pan_bounds.as_ref().map_or(verdict, PanBounds::verdict);
     if !sensitivity.is_empty() {
         sensitivity.push(as_it_is(case, walked));
         sensitivity.sort_by(|a, b| a.factor.total_cmp(&b.factor));
     }
     let rules = rules::apply(&rule_inputs(case, walked));
-    let (confidence, reasons) = confidence::judge(verdict, &rules, case.doubts());
+    // What was to be walked twice has been.
+    let told = |sentences: Vec<String>| match (&pan_bounds, case.pan_doubt()) {
+        (Some(bounds), Some(doubt)) => {
+            let one = |said: String| if said == doubt { bounds.sentence() } else { said };
+            sentences.into_iter().map(one).collect()
+        }
+        _ => sentences,
+    };
+    let (confidence, mut reasons) = confidence::judge(verdict, &rules, told(case.doubts()));
+    if let Some(bounds) = pan_bounds.as_ref().filter(|bounds| bounds.differ()) {
+        // That is why nothing is decided.
+        reasons.retain(|reason| *reason != bounds.sentence());
+        reasons.insert(0, bounds.sentence());
+    }
+    let warnings = told(case.warnings());
     Outcome {
         verdict,
         confidence,
@@ -44,8 +60,9 @@ pub fn outcome(
         replicates: walked.iter().map(|w| w.replicate.clone()).collect(),
         summary,
         stopping,
+        pan_bounds,
         threshold: verdict::THRESHOLD,
-        warnings: case.warnings(),
+        warnings,
         left_out: left_out(case, walked),
         model_leaves_out: MODEL_LEAVES_OUT.map(String::from).to_vec(),
         inputs: case.record(),
@@ -58,6 +75,37 @@ pub fn outcome(
         sensitivity,
         seconds,
     }
+}
+
+/// The verdict of replicates, their statistics by run, and what a rule that adds replicates came to.
+fn concluded(case: &Case, walked: &[ReplicateResult]) -> (Verdict, Vec<RunSummary>, Option<Stopping>) {
+    let (verdict, summary) = summarise(walked);
+    let stopping = stopping(case, walked);
+    // A verdict that was to be certain is one at the level asked for.
+    let verdict = stopping.as_ref().and_then(|stopping| stopping.verdict).unwrap_or(verdict);
+    (verdict, summary, stopping)
+}
+
+/// What came of both readings of the base's pan fraction; `None` where there is only one.
+fn pan_bounds(case: &Case, walked: [&[ReplicateResult]; 2]) -> Option<PanBounds> {
+    let reading = |case: &Case, walked: &[ReplicateResult]| -> Option<PanReading> {
+        let (verdict, summary, stopping) = concluded(case, walked);
+        Some(PanReading {
+            taken_as: case.pan_size?,
+            n_base: case.n_base,
+            replicates: walked.len() as u64,
+            verdict,
+            runs: summary.iter().map(|run| run.eroded_mass_fraction).collect(),
+            stopping,
+        })
+    };
+    let other = case.other_reading.as_ref()?;
+    Some(PanBounds {
+        mass_fraction: case.base.pan_fraction(),
+        finest_sieve_mm: case.base.smallest_mm(),
+        finest_constriction_mm: case.curve.smallest(),
+        readings: [reading(case, walked[0])?, reading(other, walked[1])?],
+    })
 }
 
 /// Writes what a run can be started again from: the resolved scene and its input files.

@@ -9,7 +9,9 @@ use super::error::{Exit, RunError};
 use super::folder::{FolderKind, claim, claim_first_free, clear, own_packings, shown};
 use super::machine::on_threads;
 use super::prepare::{PrepareOptions, prepare_into};
-use super::replicates::{ReplicateContext, ReplicateResult, replicates, runs_to_walk, sensitivity};
+use super::replicates::{
+    ReplicateContext, ReplicateResult, other_reading, replicates, runs_to_walk, sensitivity,
+};
 use super::results;
 use super::unfinished::{self, Unfinished};
 use crate::case::Case;
@@ -114,8 +116,9 @@ pub fn walk_case(case: &Case, callbacks: &Callbacks) -> Result<Outcome, RunError
         let context = ReplicateContext { callbacks, checkpoints: None };
         (callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(case) });
         let walked = replicates(case, &context)?;
+        let other = other_reading(case, &context)?;
         let sensitivity = sensitivity(case, &context)?;
-        Ok(results::outcome(case, &walked, sensitivity, begun.elapsed().as_secs_f64()))
+        Ok(results::outcome(case, &walked, &other, sensitivity, begun.elapsed().as_secs_f64()))
     };
     match rayon::current_thread_index() {
         Some(_) => walk(),
@@ -229,23 +232,24 @@ struct CaseRun<'a> {
 }
 
 impl CaseRun<'_> {
-    /// Walks the replicates, writes what came of them, then adds the study of the sensitivity and writes the
-    /// whole.
+    /// Walks the replicates, of both readings of the base where there are two, writes what came of them, then
+    /// adds the study of the sensitivity and writes the whole.
     fn walk(
         &self,
         write: impl Fn(&Outcome, &[ReplicateResult]) -> Result<(), RunError>,
     ) -> Result<Outcome, RunError> {
         let begun = Instant::now();
         let context = ReplicateContext { callbacks: self.callbacks, checkpoints: Some(self.checkpoints) };
-        let outcome = |walked: &[ReplicateResult], sensitivity: Vec<Sensitivity>| {
-            results::outcome(self.case, walked, sensitivity, begun.elapsed().as_secs_f64())
-        };
         (self.callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(self.case) });
         let walked = replicates(self.case, &context).map_err(|error| self.ended(error))?;
+        let other = other_reading(self.case, &context).map_err(|error| self.ended(error))?;
+        let outcome = |sensitivity: Vec<Sensitivity>| {
+            results::outcome(self.case, &walked, &other, sensitivity, begun.elapsed().as_secs_f64())
+        };
         for problem in self.checkpoints.passed_over() {
             (self.callbacks.warn)(&format!("{problem}; the checkpoint before it was taken"));
         }
-        let first = outcome(&walked, Vec::new());
+        let first = outcome(Vec::new());
         if !self.case.sensitivity_factors().is_empty() {
             // A folder with results counts as finished unless it holds checkpoints, and the study of the
             // sensitivity is to come.
@@ -256,7 +260,7 @@ impl CaseRun<'_> {
         if sensitivity.is_empty() {
             return Ok(first);
         }
-        let whole = outcome(&walked, sensitivity);
+        let whole = outcome(sensitivity);
         write(&whole, &walked)?;
         Ok(whole)
     }

@@ -129,6 +129,8 @@ fn one_replicate_is_said_to_have_no_scatter() {
         text.contains("one replicate: the scatter is unknown") && text.contains(" 1 replicate of 500"),
         "{text}"
     );
+    // One run of two, undecided, says what would decide it.
+    assert!(text.contains("two runs tell some from continuing erosion (runs = 2)"), "{text}");
     let two = voidwalk(root.path(), &["run", "small.toml", "--set", "replicates=2", "--out", "two"]);
     let text = String::from_utf8_lossy(&two.stdout);
     assert!(!text.contains("scatter is unknown") && text.contains(" 2 replicates of 500"), "{text}");

@@ -129,6 +129,7 @@ pub fn outcome(replicates: u64) -> Outcome {
             half_width_pp: Some(1.2),
             sentence: None,
         }),
+        pan_bounds: None,
         threshold: 0.075,
         warnings: vec!["18 % of the base is finer than 0.075 mm: the model was checked up to 15 %.".into()],
         left_out: vec!["packing: the constriction curve was given".into(), "triangulation".into()],

@@ -47,7 +47,7 @@ impl FirstRun {
         Self {
             engine: case.scene.walk.engine,
             sampler: case.sampler.clone(),
-            pan_fraction: case.base.pan_fraction(),
+            pan_fraction: case.pan_by_mass_only(),
             n_base: case.n_base,
             increments: case.increments(),
             sampling: case.scene.walk.sampling,

@@ -1,0 +1,63 @@
+//! The pan fraction of a base, what is finer than its finest sieve, of the sizes between which it lies.
+//!
+//! Where the finest sieve is no coarser than the finest constriction, a pan fraction is passive, and is
+//! counted by mass only. Where it is coarser, some of it may block constrictions. The base is then walked
+//! twice, with the same mass: once with a pan fraction that is passive, and once with all of it of the finest
+//! sieve's size.
+
+use crate::constrictions::Curve;
+use crate::gradation::{Gradation, GradationError};
+use crate::outcome::record::PanSize;
+
+/// Passive particles are walked this much finer than the finest constriction, and of sizes that span as
+/// much: what is passive is never stopped by a constriction, so that its size matters to nothing else.
+const FINER: f64 = 0.99;
+
+/// Particles of the finest sieve's size are walked from this much finer on: a sieve curve cannot be upright.
+const NEARLY: f64 = 0.999;
+
+/// Whether a pan fraction need not be passive.
+pub(super) fn may_block(base: &Gradation, curve: &Curve) -> bool {
+    base.pan_fraction() > 0.0 && base.smallest_mm() > curve.smallest()
+}
+
+/// The base with its pan fraction of a size.
+pub(super) fn taken_as(base: &Gradation, size: PanSize, curve: &Curve) -> Result<Gradation, GradationError> {
+    let mut points = base.points();
+    let (sieve, percent) = points[0];
+    match size {
+        PanSize::Passive => {
+            let passive = FINER * curve.smallest();
+            points.splice(0..0, [(FINER * passive, 0.0), (passive, percent)]);
+        }
+        PanSize::FinestSieve => points.insert(0, (NEARLY * sieve, 0.0)),
+    }
+    Gradation::from_points(&points, None)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::constrictions::CurveUnit;
+    use crate::gradation::SizeSampler;
+
+    #[test]
+    fn both_readings_keep_the_mass_and_lie_where_they_must() {
+        let base = Gradation::from_points(&[(0.075, 35.0), (0.5, 80.0), (2.0, 100.0)], None).unwrap();
+        let curve = |finest| Curve::from_points(&[(0.0, finest), (100.0, 1.0)], CurveUnit::Mm).unwrap();
+        assert!(!may_block(&base, &curve(0.075)) && may_block(&base, &curve(0.0749)));
+        let curve = curve(0.04);
+        let fine = taken_as(&base, PanSize::Passive, &curve).unwrap();
+        let coarse = taken_as(&base, PanSize::FinestSieve, &curve).unwrap();
+        for reading in [&fine, &coarse] {
+            assert_eq!(reading.pan_fraction(), 0.0);
+            for percent in [36.0, 80.0, 99.0] {
+                assert_eq!(reading.d(percent), base.d(percent));
+            }
+            assert!((reading.percent_finer_by_mass(0.075) - 35.0).abs() < 1e-12);
+        }
+        assert!((fine.percent_finer_by_mass(0.0399) - 35.0).abs() < 1e-12);
+        assert!(SizeSampler::new(&fine, 1.0).unwrap().smallest() > 0.039);
+        assert_eq!(coarse.percent_finer_by_mass(0.074), 0.0);
+    }
+}

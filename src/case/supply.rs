@@ -1,0 +1,145 @@
+//! The base as it is walked: its sizes, and how many particles of them.
+
+use super::{Case, CaseError, pan};
+use crate::constrictions::Curve;
+use crate::gradation::{BaseSupply, Gradation, SizeSampler, base_particles};
+use crate::outcome::record::PanSize;
+use crate::scene::{Amount, Scene};
+
+/// The mass ratio that Eq. (2) speaks of where the scene gives a number: the paper's 5 %.
+const PAPER_MASS_RATIO: f64 = 0.05;
+
+/// The base as it is walked.
+pub(super) struct WalkedBase {
+    /// Of what size its pan fraction is; `None` where it is counted by mass only.
+    pub pan_size: Option<PanSize>,
+    /// Draws its sizes.
+    pub sampler: SizeSampler,
+    /// N_base as walked, N_base by Eq. (2), whether a cap bit.
+    pub n_base: BaseSupply,
+    /// Whether N_base by Eq. (2) is known.
+    pub has_eq2: bool,
+    /// The mass ratio that N_base stands for.
+    pub mass_ratio: Option<f64>,
+}
+
+impl WalkedBase {
+    /// N_base by Eq. (2); `None` where the grains per void are not known.
+    pub fn n_base_eq2(&self) -> Option<u64> {
+        self.has_eq2.then_some(self.n_base.n_base_eq2)
+    }
+}
+
+/// What a base is walked against.
+pub(super) struct Against<'a> {
+    pub scene: &'a Scene,
+    pub filter: &'a Gradation,
+    pub curve: &'a Curve,
+    /// The reference length (mm).
+    pub unit_mm: f64,
+    pub grains_per_void: Option<f64>,
+    pub voids: u64,
+    /// Whether the filter has been packed, so that nothing may be refused any more.
+    pub is_packed: bool,
+}
+
+impl Against<'_> {
+    /// The base as it is walked: once, or with both readings of a pan fraction that need not be passive.
+    pub fn readings(&self, base: &Gradation) -> Result<(WalkedBase, Option<WalkedBase>), CaseError> {
+        if !pan::may_block(base, self.curve) {
+            return Ok((self.walked(base, None)?, None));
+        }
+        let [passive, coarse] =
+            [PanSize::Passive, PanSize::FinestSieve].map(|size| self.walked(base, Some(size)));
+        Ok((passive?, Some(coarse?)))
+    }
+
+    fn walked(&self, base: &Gradation, pan_size: Option<PanSize>) -> Result<WalkedBase, CaseError> {
+        let taken = match pan_size {
+            Some(size) => &pan::taken_as(base, size, self.curve)?,
+            None => base,
+        };
+        // A number that the user gives is of particles whose sizes are known; the mass stays the same. A cap
+        // is there for the work, which passive particles hardly add to.
+        let more = taken.particles_per_unit_volume() / base.particles_per_unit_volume();
+        let (ratio, cap) = match self.scene.base.amount() {
+            Amount::MassRatio(ratio, Some(cap)) if pan_size == Some(PanSize::Passive) => {
+                (ratio, Some(self.times(cap, more)?))
+            }
+            Amount::MassRatio(ratio, cap) => (ratio, cap),
+            Amount::Number(n) => return self.number(taken, pan_size, self.times(n, more)?),
+        };
+        let Some(grains) = self.grains_per_void else {
+            let problem = "filter.grains_per_void is missing (Eq. 2): only the shipped curves know theirs";
+            return Err(self.scene.clash(problem).into());
+        };
+        let mut n_base = base_particles(ratio, grains, self.voids, taken, self.filter, cap)?;
+        if n_base.n_base == 0 && self.is_packed {
+            // The grains per void that were guessed gave one, just so.
+            n_base.n_base = 1;
+        }
+        if n_base.n_base == 0 {
+            let problem = "Eq. (2) gives less than half a base particle: a larger network, mass ratio or \
+                           grains per void is needed";
+            return Err(self.scene.clash(problem).into());
+        }
+        let sampler = SizeSampler::new(taken, self.unit_mm)?;
+        Ok(WalkedBase { pan_size, sampler, n_base, has_eq2: true, mass_ratio: Some(ratio) })
+    }
+
+    /// The base of which the user gives the number of particles.
+    fn number(&self, taken: &Gradation, pan_size: Option<PanSize>, n: u64) -> Result<WalkedBase, CaseError> {
+        let sampler = SizeSampler::new(taken, self.unit_mm)?;
+        let Some(grains) = self.grains_per_void else {
+            let n_base = BaseSupply { n_base: n, n_base_eq2: n, capped: false };
+            return Ok(WalkedBase { pan_size, sampler, n_base, has_eq2: false, mass_ratio: None });
+        };
+        let per_grain = taken.particles_per_unit_volume() / self.filter.particles_per_unit_volume();
+        let eq2 = base_particles(PAPER_MASS_RATIO, grains, self.voids, taken, self.filter, None)?.n_base_eq2;
+        let mass_ratio = n as f64 / (grains * self.voids as f64 * per_grain);
+        let n_base = BaseSupply { n_base: n, n_base_eq2: eq2, capped: false };
+        Ok(WalkedBase { pan_size, sampler, n_base, has_eq2: true, mass_ratio: Some(mass_ratio) })
+    }
+
+    /// A number of particles times `more`.
+    fn times(&self, n: u64, more: f64) -> Result<u64, CaseError> {
+        let product = n as f64 * more;
+        match more {
+            1.0 => Ok(n),
+            _ if product < 9e18 => Ok((product.round() as u64).max(1)),
+            _ => {
+                let problem = "the base's pan fraction, as fine as the finest constriction, has more \
+                               particles than can be counted: give base.d0_mm or a finer sieve";
+                Err(self.scene.clash(problem).into())
+            }
+        }
+    }
+}
+
+impl Case {
+    /// The same case with another reading of its base, of which no other is studied.
+    pub(super) fn read_as(&self, walked: WalkedBase) -> Self {
+        let mut scene = self.scene.clone();
+        scene.record.sensitivity.clear();
+        Self {
+            pan_size: walked.pan_size,
+            n_base_eq2: walked.n_base_eq2(),
+            sampler: walked.sampler,
+            n_base: walked.n_base.n_base,
+            capped: walked.n_base.capped,
+            mass_ratio: walked.mass_ratio,
+            scene,
+            ..self.clone()
+        }
+    }
+
+    /// The case itself and its other reading, where it has two.
+    pub fn readings(&self) -> impl Iterator<Item = &Case> {
+        std::iter::once(self).chain(self.other_reading.as_deref())
+    }
+
+    /// Share of the base's mass that is passive and counted by mass only.
+    pub fn pan_by_mass_only(&self) -> f64 {
+        if self.pan_size.is_some() { 0.0 } else { self.base.pan_fraction() }
+    }
+}

@@ -1,0 +1,141 @@
+//! What came of the two readings of a base whose pan fraction (finer than its finest sieve) need not be
+//! passive; as they are recorded.
+
+use serde::{Deserialize, Serialize};
+
+use super::record::{Statistic, Stopping, Verdict};
+
+/// The two readings of a pan fraction that need not be passive: its sizes are not known, but they lie between
+/// these two.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PanBounds {
+    /// Share of the base's mass that is finer than its finest sieve.
+    pub mass_fraction: f64,
+    /// The finest sieve.
+    pub finest_sieve_mm: f64,
+    /// The finest constriction: what is finer is passive.
+    pub finest_constriction_mm: f64,
+    /// The two readings; the rest of `outcome.json` is of the first, its verdict of both.
+    pub readings: [PanReading; 2],
+}
+
+/// One reading of a pan fraction, walked.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PanReading {
+    /// Of what size its particles were walked.
+    pub taken_as: PanSize,
+    /// Base particles inserted in each run; both readings insert the same mass, where no cap bites.
+    pub n_base: u64,
+    /// How many replicates were walked.
+    pub replicates: u64,
+    /// Their class.
+    pub verdict: Verdict,
+    /// Eroded mass fraction, one per run.
+    pub runs: Vec<Statistic>,
+    /// Why there are so many replicates, where a rule added them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stopping: Option<Stopping>,
+}
+
+/// Of what size the particles of a pan fraction are walked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum PanSize {
+    /// Just finer than every constriction: they block nothing.
+    #[serde(rename = "passive")]
+    Passive,
+    /// As coarse as they can be: of the finest sieve's size.
+    #[serde(rename = "finest sieve")]
+    FinestSieve,
+}
+
+impl PanBounds {
+    /// The verdict that both readings give; undecided where they differ.
+    pub fn verdict(&self) -> Verdict {
+        let [fine, coarse] = self.readings.each_ref().map(|reading| reading.verdict);
+        if fine == coarse { fine } else { Verdict::Undecided }
+    }
+
+    /// Whether the readings give different verdicts.
+    pub fn differ(&self) -> bool {
+        self.readings[0].verdict != self.readings[1].verdict
+    }
+
+    /// A reading in words, as `all 0.075 mm`.
+    pub fn words(&self, reading: &PanReading) -> String {
+        match reading.taken_as {
+            PanSize::Passive => "finer than every constriction".into(),
+            PanSize::FinestSieve => format!("all {} mm", self.finest_sieve_mm),
+        }
+    }
+
+    /// What the two readings say together, and what would tell more.
+    pub fn sentence(&self) -> String {
+        let (percent, sieve) = (100.0 * self.mass_fraction, self.finest_sieve_mm);
+        let finest = self.finest_constriction_mm;
+        let said = self.readings.each_ref().map(|reading| match reading.verdict {
+            Verdict::Undecided => format!("taken as {} it stays open", self.words(reading)),
+            verdict => format!("taken as {} it gives {}", self.words(reading), verdict.words()),
+        });
+        if self.differ() {
+            format!(
+                "the answer hangs on the {percent:.1} % of the base that is finer than its finest sieve, \
+                 {sieve} mm; the finest constriction is {finest:.3} mm: {}, {}. A hydrometer test, a finer \
+                 sieve or base.d0_mm would decide",
+                said[0], said[1]
+            )
+        } else {
+            format!(
+                "{percent:.1} % of the base is finer than its finest sieve, {sieve} mm, and may be coarser \
+                 than the finest constriction, {finest:.3} mm: taken as finer than every constriction or as \
+                 all {sieve} mm, it gives {}",
+                self.readings[0].verdict.words()
+            )
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bounds(verdicts: [Verdict; 2]) -> PanBounds {
+        let reading = |taken_as, verdict| PanReading {
+            taken_as,
+            n_base: 100,
+            replicates: 2,
+            verdict,
+            runs: Vec::new(),
+            stopping: None,
+        };
+        PanBounds {
+            mass_fraction: 0.35,
+            finest_sieve_mm: 0.075,
+            finest_constriction_mm: 0.0392,
+            readings: [reading(PanSize::Passive, verdicts[0]), reading(PanSize::FinestSieve, verdicts[1])],
+        }
+    }
+
+    #[test]
+    fn what_both_readings_give_is_the_verdict_and_else_it_is_open() {
+        let both = bounds([Verdict::Some; 2]);
+        assert_eq!((both.verdict(), both.differ()), (Verdict::Some, false));
+        assert!(
+            both.sentence().ends_with("or as all 0.075 mm, it gives some erosion"),
+            "{}",
+            both.sentence()
+        );
+        let open = bounds([Verdict::Continuing, Verdict::None]);
+        assert_eq!((open.verdict(), open.differ()), (Verdict::Undecided, true));
+        let sentence = open.sentence();
+        assert!(sentence.starts_with("the answer hangs on the 35.0 % of the base"), "{sentence}");
+        assert!(
+            sentence.contains(
+                "constriction it gives continuing erosion, taken as all 0.075 mm it gives no erosion"
+            )
+        );
+        // One that is open itself agrees with nothing but another that is.
+        let half = bounds([Verdict::Undecided, Verdict::None]);
+        assert_eq!(half.verdict(), Verdict::Undecided);
+        assert!(half.sentence().contains("taken as finer than every constriction it stays open, "));
+    }
+}

@@ -1,0 +1,147 @@
+//! A base whose finest sieve is coarser than the finest constriction: both readings of what is finer.
+
+use std::fs;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use serde_json::Value;
+use voidwalk::run::{Callbacks, CheckpointInterval, Event, Exit, RunOptions, resume, walk_scene};
+use voidwalk::scene::Scene;
+
+use crate::program::{call, done};
+
+/// A filter sand, and bases of which the finest sieve passes `pan` percent.
+fn files(folder: &Path, pan: u32) {
+    let table = |name: &str, rows: &str| {
+        fs::write(folder.join(name), format!("opening_mm,percent_finer\n{rows}")).unwrap();
+    };
+    table("sand.csv", "1.18,100\n0.6,45\n0.425,15\n0.25,0\n");
+    table("base.csv", &format!("0.3,100\n0.2,85\n0.15,{pan}\n"));
+    fs::write(
+        folder.join("scene.toml"),
+        "replicates = 3\n[filter]\nsieve = \"sand.csv\"\nestimate = 0.5\ngrains_per_void = 0.6\n[base]\nsieve = \
+         \"base.csv\"\n[network]\nnx = 8\nny = 8\nnz = 10\n[record]\nsensitivity = [0.5]\nsensitivity_replicates = 2\n",
+    )
+    .unwrap();
+}
+
+fn outcome(folder: &Path) -> Value {
+    let mut value: Value = serde_json::from_slice(&fs::read(folder.join("outcome.json")).unwrap()).unwrap();
+    // Times are no results.
+    value["seconds"].take();
+    for replicate in value["replicates"].as_array_mut().unwrap() {
+        replicate["runs"].as_array_mut().unwrap().iter_mut().for_each(|run| drop(run["seconds"].take()));
+    }
+    value
+}
+
+#[test]
+fn a_pan_fraction_that_may_block_gives_two_verdicts_and_their_common_one() {
+    let root = tempfile::tempdir().unwrap();
+    files(root.path(), 30);
+    let check = call(root.path(), &["check", "scene.toml"]);
+    done(&check);
+    let said = String::from_utf8_lossy(&check.stdout).into_owned();
+    assert!(said.contains("walked twice, as finer than every constriction and as all of that"), "{said}");
+    // Two readings of three replicates, two studied ones, two runs each.
+    assert!(said.contains("16 runs"), "{said}");
+    let run = call(root.path(), &["run", "scene.toml", "--out", "out"]);
+    done(&run);
+    let found = outcome(&root.path().join("out"));
+    let bounds = &found["pan_bounds"];
+    let readings = bounds["readings"].as_array().unwrap();
+    let of = |k: usize, key: &str| readings[k][key].clone();
+    assert_eq!((of(0, "taken_as"), of(1, "taken_as")), ("passive".into(), "finest sieve".into()));
+    let eroded = |k: usize| readings[k]["runs"][0]["mean"].as_f64().unwrap();
+    // What is passive leaves; what is of the finest sieve's size is held with the rest.
+    assert!(eroded(0) > 0.1 && eroded(1) < 0.075, "{bounds}");
+    assert_eq!(found["summary"][0]["eroded_mass_fraction"]["mean"].as_f64().unwrap(), eroded(0));
+    assert_eq!((of(0, "verdict"), of(1, "verdict")), ("some erosion".into(), "no erosion".into()));
+    assert_eq!(found["verdict"], "undecided");
+    let reason = found["reasons"][0].as_str().unwrap();
+    assert!(reason.starts_with("the answer hangs on the 30.0 % of the base"), "{reason}");
+    let said = String::from_utf8_lossy(&run.stdout).into_owned();
+    for words in [
+        "Verdict: undecided in the model; the answer hangs on the 30.0 % of the base",
+        "    finer than every constriction: some erosion, ",
+        "    all 0.15 mm: no erosion, ",
+    ] {
+        assert!(said.contains(words), "{said}");
+    }
+    let page = fs::read_to_string(root.path().join("out/report.html")).unwrap();
+    for words in ["The base’s finest part taken as", "all 0.15 mm", "decides between the classes"] {
+        assert!(page.contains(words), "{words}");
+    }
+    // The size where it ends leaves one reading, and so does a finer sieve.
+    done(&call(root.path(), &["run", "scene.toml", "--set", "base.d0_mm=0.01", "--out", "one"]));
+    assert!(outcome(&root.path().join("one"))["pan_bounds"].is_null());
+    fs::write(root.path().join("base.csv"), "opening_mm,percent_finer\n0.3,100\n0.2,85\n0.15,30\n0.05,5\n")
+        .unwrap();
+    done(&call(root.path(), &["run", "scene.toml", "--out", "fine"]));
+    assert!(outcome(&root.path().join("fine"))["pan_bounds"].is_null());
+
+    // Where there is hardly any, both readings give the same.
+    files(root.path(), 1);
+    let run = call(root.path(), &["run", "scene.toml", "--out", "few"]);
+    done(&run);
+    let found = outcome(&root.path().join("few"));
+    assert_eq!(found["pan_bounds"]["readings"][0]["verdict"], found["pan_bounds"]["readings"][1]["verdict"]);
+    assert_eq!(found["verdict"], found["pan_bounds"]["readings"][0]["verdict"]);
+    let reasons = found["reasons"].to_string();
+    assert!(reasons.contains("or as all 0.15 mm, it gives no erosion"), "{reasons}");
+}
+
+#[test]
+fn both_readings_are_continued_with_the_same_bits() {
+    let root = tempfile::tempdir().unwrap();
+    files(root.path(), 20);
+    let scene = || Scene::read(&root.path().join("scene.toml"), &[]).unwrap();
+    let whole = RunOptions { out: Some(root.path().join("whole")), ..RunOptions::default() };
+    walk_scene(scene(), &whole, &Callbacks::default()).unwrap();
+    let whole = outcome(&root.path().join("whole"));
+    // Six runs of the first reading, six of the second, four of the study: stopped in each.
+    for runs in [1, 7, 11, 13] {
+        let out = root.path().join(format!("stopped{runs}"));
+        let options = RunOptions {
+            out: Some(out.clone()),
+            checkpoint_interval: Some(CheckpointInterval::Increments(7)),
+            ..RunOptions::default()
+        };
+        let (stop, seen) = (AtomicBool::new(false), AtomicU64::new(0));
+        let on_event = |event: Event| {
+            if matches!(event, Event::RunDone) && seen.fetch_add(1, Ordering::Relaxed) + 1 >= runs {
+                stop.store(true, Ordering::Relaxed);
+            }
+        };
+        let stopping = Callbacks { on_event: &on_event, stop: &stop, ..Callbacks::default() };
+        let stopped = walk_scene(scene(), &options, &stopping).err().expect("it was stopped");
+        assert_eq!(stopped.exit(), Exit::Stopped, "{stopped}");
+        resume(&out, &options, &Callbacks::default()).unwrap();
+        assert_eq!(outcome(&out), whole, "stopped after {runs} runs");
+    }
+    // The run's own scene gives it again.
+    let again = RunOptions { out: Some(root.path().join("again")), ..RunOptions::default() };
+    let kept = Scene::read(&root.path().join("whole/scene.toml"), &[]).unwrap();
+    walk_scene(kept, &again, &Callbacks::default()).unwrap();
+    assert_eq!(outcome(&root.path().join("again")), whole);
+}
+
+#[test]
+fn a_case_of_a_campaign_has_the_class_that_both_readings_give() {
+    let root = tempfile::tempdir().unwrap();
+    files(root.path(), 30);
+    fs::write(
+        root.path().join("plan.toml"),
+        "[set]\nreplicates = 2\nnetwork = { nx = 6, ny = 6, nz = 10 }\nrecord = { sensitivity = [] }\nfilter = { \
+         sieve = \"sand.csv\", estimate = 0.5, grains_per_void = 0.6 }\nbase = { sieve = \"base.csv\" }\n\
+         [[case]]\nname = \"x\"\n",
+    )
+    .unwrap();
+    let run = call(root.path(), &["campaign", "plan.toml", "--out", "c", "-q"]);
+    done(&run);
+    let line: Value =
+        serde_json::from_slice(&fs::read(root.path().join("c/cases/x/case.json")).unwrap()).unwrap();
+    let outcome = outcome(&root.path().join("c/cases/x"));
+    assert_eq!((&line["verdict"], &outcome["verdict"]), (&"undecided".into(), &"undecided".into()));
+    assert!(outcome["pan_bounds"]["readings"].is_array());
+}
