@@ -22,6 +22,7 @@ use super::cases::{CASES, FailedCase, LINE, PROBLEM, PreparedCase};
 use crate::outcome::ledger::{LedgerLine, Made};
 use crate::run::callbacks::Callbacks;
 use crate::run::checkpoints::{self, CheckpointInterval, Checkpoints};
+use crate::run::curve_range::curve_range;
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, clear, shown};
 use crate::run::machine::Machine;
@@ -228,11 +229,12 @@ impl CaseRunner<'_> {
         let silent = Callbacks { stop: self.callbacks.run.stop, ..Callbacks::default() };
         let context = ReplicateContext { callbacks: &silent, checkpoints: Some(&checkpoints) };
         let walked = replicates::replicates(case, &context)
-            .and_then(|walked| Ok((replicates::sensitivity(case, &context)?, walked)));
+            .and_then(|walked| Ok((curve_range(case, &walked, &context)?, walked)))
+            .and_then(|(range, walked)| Ok((range, replicates::sensitivity(case, &context)?, walked)));
         for problem in checkpoints.passed_over() {
             self.warn(name, &format!("{problem}; the checkpoint before it was taken"));
         }
-        let (sensitivity, walked) = match walked {
+        let (range, sensitivity, walked) = match walked {
             Err(error) if error.exit() == Exit::Stopped => {
                 checkpoints.flush()?;
                 return Ok(false);
@@ -254,7 +256,7 @@ impl CaseRunner<'_> {
         }
         let seconds = begun.elapsed().as_secs_f64();
         let threads = rayon::current_num_threads() as u64;
-        let outcome = results::outcome(case, &walked, sensitivity, seconds);
+        let outcome = results::outcome(case, &walked, range, sensitivity, seconds);
         let manifest = results::manifest(case, threads, started, self.command.clone());
         folder.remove(LINE)?;
         // Results of what the case was before the plan was changed; another process that walks this very case

@@ -1,5 +1,7 @@
 //! A case: a scene with its files read and every number worked out, before any work is done.
 
+mod curve_ends;
+mod cut;
 mod files;
 mod memory;
 mod packed_filter;
@@ -9,6 +11,7 @@ mod resolved;
 mod sizes;
 mod warnings;
 
+pub use curve_ends::OtherCurve;
 use files::Files;
 pub use files::{INPUT_FILES, INPUT_NAMES, Input};
 pub use memory::{ResourceLimits, in_words};
@@ -52,6 +55,16 @@ pub enum CaseError {
         /// The scene.
         file: String,
     },
+    /// So few grains that the cell would be no wider than two of the largest.
+    #[error("{file}: {problem}")]
+    NarrowCell {
+        /// The scene.
+        file: String,
+        /// What is wrong.
+        problem: String,
+        /// The same plan with grains enough.
+        would_do: Box<PackingPlan>,
+    },
     /// More memory, or more disk, than there is.
     #[error(
         "{n_base} base particles walked one by one on {voids} voids need {needed} of memory, but \
@@ -77,6 +90,7 @@ pub fn replicate_seed(seed: u64, replicate: u64) -> u64 {
 }
 
 /// A scene, worked out.
+#[derive(Clone)]
 pub struct Case {
     /// The scene it comes from.
     pub scene: Scene,
@@ -204,7 +218,8 @@ impl Case {
         // The grains per void of a shipped packing say nothing of a network from elsewhere.
         let of_shipped = shipped.filter(|_| network_file.is_none()).map(|s| s.grains_per_void);
         let of_packing = packed.as_ref().map(|packed| packed.grains_per_void).or(of_shipped);
-        let grains_per_void = scene.filter.grains_per_void.or(of_packing);
+        let guessed = guesses_grains_per_void(&scene).then_some(GUESSED_GRAINS_PER_VOID);
+        let grains_per_void = scene.filter.grains_per_void.or(of_packing).or(guessed);
         let (supply, mass_ratio) =
             supply(&scene, grains_per_void, counts[0], &base, &filter).map_err(|error| match mistake {
                 Some(mistake) => CaseError::from(scene.clash(mistake.sentence)),
@@ -310,6 +325,12 @@ impl Case {
             }
             None => "packing and triangulation: the constriction curve is given".to_string(),
         }];
+        if let Some(other) = self.packed.as_ref().and_then(|packed| packed.same_shape.as_ref()) {
+            left_out.push(format!(
+                "packing the filter: the packing in {} has its shape, and was taken {:.4} times as large",
+                other.folder, other.factor
+            ));
+        }
         if self.scene.walk.runs == 1 {
             left_out.push("the second run: it was not asked for".into());
         }
@@ -318,6 +339,18 @@ impl Case {
         }
         left_out
     }
+}
+
+/// Filter grains per void where the constrictions are a guess and the user gives none: that of loose packings
+/// (`results/filters-*.md`).
+const GUESSED_GRAINS_PER_VOID: f64 = 0.6;
+
+/// Whether Eq. (2) needs grains per void that nobody gives: where the constrictions are a guess.
+fn guesses_grains_per_void(scene: &Scene) -> bool {
+    let filter = &scene.filter;
+    filter.estimate.is_some()
+        && filter.grains_per_void.is_none()
+        && matches!(scene.base.amount(), Amount::MassRatio(..))
 }
 
 /// The constriction curve of a given network (mm): its open diameters by number, at most a thousand points.

@@ -81,7 +81,7 @@ impl Case {
                 d50_by_number_mm: d50_by_number,
                 d85_mm: d(&self.filter, 85.0),
                 void_ratio: match &self.packed {
-                    Some(packed) => Some(packed.void_ratio),
+                    Some(packed) => packed.void_ratio,
                     None => self.shipped.filter(|_| self.network_file.is_none()).map(|s| s.void_ratio),
                 },
                 gradation: pairs(self.filter.points()),

@@ -32,6 +32,7 @@ mod sieve;
 mod soil;
 mod stability;
 mod supply;
+mod surface;
 mod table;
 
 pub(crate) use error::shortened;

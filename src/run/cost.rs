@@ -54,7 +54,7 @@ impl Case {
             walk_seconds(0.0, increments, counted, one_by_one, one_by_one * layers.max(1.0))
         };
         let (runs, replicates) = (self.scene.walk.runs as f64, self.scene.walk.replicates as f64);
-        let own = replicates * one_run(self.n_base);
+        let own = replicates * (1 + self.curve_ends().len()) as f64 * one_run(self.n_base);
         let of_factor = |factor: f64| one_run((self.n_base as f64 * factor) as u64);
         let others: f64 = self.sensitivity_factors().into_iter().map(of_factor).sum();
         let networks = runs_to_walk(self) as f64 / runs.max(1.0) * (voids + constrictions) * NETWORK_S;

@@ -16,6 +16,7 @@ mod check;
 pub mod checkpoints;
 pub mod constrictions;
 pub mod cost;
+pub mod curve_range;
 pub mod error;
 pub mod folder;
 pub mod machine;

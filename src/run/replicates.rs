@@ -48,10 +48,13 @@ pub struct ReplicateResult {
     below: Vec<bool>,
 }
 
-/// Number of runs that [`replicates`] and [`sensitivity`] walk for a case, as far as it is known before.
+/// Number of runs that [`replicates`], the ends of the curve's range and [`sensitivity`] walk for a case, as
+/// far as it is known before.
 pub fn runs_to_walk(case: &Case) -> u64 {
     let factors = case.sensitivity_factors().len() as u64;
-    case.scene.walk.runs * (first_replicates(case) + factors * case.scene.record.sensitivity_replicates)
+    let curves = 1 + case.curve_ends().len() as u64;
+    let of_factors = factors * case.scene.record.sensitivity_replicates;
+    case.scene.walk.runs * (first_replicates(case) * curves + of_factors)
 }
 
 /// Walks every replicate of the case: as many as the scene says, or until its rule stops.
@@ -99,7 +102,7 @@ fn look(case: &Case, walked: &[ReplicateResult]) -> Option<Look> {
 
 /// Replicates with `n_base` particles each; part 0 are those of the case itself, the only ones that are
 /// recorded.
-fn some_replicates(
+pub(super) fn some_replicates(
     case: &Case,
     part: u64,
     which: RangeInclusive<u64>,

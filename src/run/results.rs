@@ -8,7 +8,7 @@ use super::error::RunError;
 use super::machine::Machine;
 use super::replicates::{ReplicateResult, as_it_is, stopping, summarise};
 use crate::case::{Case, INPUT_NAMES};
-use crate::outcome::record::{Manifest, Outcome, Sensitivity, Statistic};
+use crate::outcome::record::{CurveRange, Manifest, Outcome, Sensitivity, Statistic, Verdict};
 use crate::outcome::rules::{BaseSoil, RuleInputs};
 use crate::outcome::{MODEL_LEAVES_OUT, Recorded, confidence, infiltration, rules, verdict};
 use crate::scene::NetworkSource;
@@ -18,6 +18,7 @@ use crate::store::{Folder, StoreError};
 pub fn outcome(
     case: &Case,
     walked: &[ReplicateResult],
+    curve_range: Option<CurveRange>,
     mut sensitivity: Vec<Sensitivity>,
     seconds: f64,
 ) -> Outcome {
@@ -30,7 +31,17 @@ pub fn outcome(
         sensitivity.sort_by(|a, b| a.factor.total_cmp(&b.factor));
     }
     let rules = rules::apply(&rule_inputs(case, walked));
-    let (confidence, reasons) = confidence::judge(verdict, &rules, case.doubts());
+    let agreed = curve_range.as_ref().map_or(verdict, |range| match verdict == range.whole() {
+        true => verdict,
+        false => Verdict::Undecided,
+    });
+    let of_range = curve_range.iter().map(CurveRange::sentence);
+    let doubts = match agreed == verdict {
+        true => case.doubts().into_iter().chain(of_range).collect(),
+        false => of_range.chain(case.doubts()).collect(),
+    };
+    let verdict = agreed;
+    let (confidence, reasons) = confidence::judge(verdict, &rules, doubts);
     Outcome {
         verdict,
         confidence,
@@ -55,6 +66,7 @@ pub fn outcome(
             NetworkSource::Cubic(_) => Some(infiltration(&case.curve, &case.base, case.counts[3])),
             _ => None,
         },
+        curve_range,
         sensitivity,
         seconds,
     }

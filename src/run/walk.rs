@@ -5,6 +5,7 @@ use std::time::{Instant, SystemTime};
 
 use super::callbacks::{Callbacks, Event};
 use super::checkpoints::{self, CheckpointInterval, Checkpoints};
+use super::curve_range::curve_range;
 use super::error::{Exit, RunError};
 use super::folder::{FolderKind, claim, claim_first_free, clear, shown};
 use super::machine::on_threads;
@@ -112,8 +113,9 @@ pub fn walk_case(case: &Case, callbacks: &Callbacks) -> Result<Outcome, RunError
         let context = ReplicateContext { callbacks, checkpoints: None };
         (callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(case) });
         let walked = replicates(case, &context)?;
+        let range = curve_range(case, &walked, &context)?;
         let sensitivity = sensitivity(case, &context)?;
-        Ok(results::outcome(case, &walked, sensitivity, begun.elapsed().as_secs_f64()))
+        Ok(results::outcome(case, &walked, range, sensitivity, begun.elapsed().as_secs_f64()))
     };
     match rayon::current_thread_index() {
         Some(_) => walk(),
@@ -212,15 +214,17 @@ impl CaseRun<'_> {
     ) -> Result<Outcome, RunError> {
         let begun = Instant::now();
         let context = ReplicateContext { callbacks: self.callbacks, checkpoints: Some(self.checkpoints) };
-        let outcome = |walked: &[ReplicateResult], sensitivity: Vec<Sensitivity>| {
-            results::outcome(self.case, walked, sensitivity, begun.elapsed().as_secs_f64())
-        };
         (self.callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(self.case) });
         let walked = replicates(self.case, &context).map_err(|error| self.ended(error))?;
         for problem in self.checkpoints.passed_over() {
             (self.callbacks.warn)(&format!("{problem}; the checkpoint before it was taken"));
         }
-        let first = outcome(&walked, Vec::new());
+        let range = curve_range(self.case, &walked, &context).map_err(|error| self.ended(error))?;
+        let outcome = |sensitivity: Vec<Sensitivity>| {
+            let seconds = begun.elapsed().as_secs_f64();
+            results::outcome(self.case, &walked, range.clone(), sensitivity, seconds)
+        };
+        let first = outcome(Vec::new());
         if !self.case.sensitivity_factors().is_empty() {
             // A folder with results counts as finished unless it holds checkpoints, and the study of the
             // sensitivity is to come.
@@ -231,7 +235,7 @@ impl CaseRun<'_> {
         if sensitivity.is_empty() {
             return Ok(first);
         }
-        let whole = outcome(&walked, sensitivity);
+        let whole = outcome(sensitivity);
         write(&whole, &walked)?;
         Ok(whole)
     }
