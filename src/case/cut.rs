@@ -67,7 +67,7 @@ mod tests {
         assert!((part.largest_mm() - 2.36).abs() < 1e-9 && packed.percent == 90.0);
         assert!((part.percent_finer_by_mass(1.18) - 75.0).abs() < 1e-9);
         // By hand: percent / ln(b/a) (1/a - 1/b) of each row.
-        assert!((packed.surface_left_out - 0.0167).abs() < 5e-4, "{packed:?}");
+        assert!((packed.surface_left_out - 0.015855).abs() < 1e-6, "{packed:?}");
         assert!((packed.finer_by - 0.6 * packed.surface_left_out).abs() < 1e-15);
         assert!(!packed.sizes_missing_above);
         assert!(packed.sentence().contains("90.0 % of its mass, up to 2.360 mm"));
