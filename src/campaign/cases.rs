@@ -121,11 +121,11 @@ impl<'a> Drafts<'a> {
         Ok(Self(wanted.into_iter().map(draft).collect::<Result<_, _>>()?))
     }
 
-    /// The packings that the cases need, each once, in the order of the cases.
+    /// The packings that the cases need, each shape once, in the order of the cases.
     pub fn packings(&self) -> Vec<&PackingPlan> {
         let mut all: Vec<&PackingPlan> = Vec::new();
         for plan in self.0.iter().filter_map(|(_, draft)| draft.packing.as_ref()) {
-            if !all.iter().any(|other| other.fingerprint() == plan.fingerprint()) {
+            if !all.iter().any(|other| other.has_shape_of(plan)) {
                 all.push(plan);
             }
         }

@@ -70,7 +70,7 @@ impl CampaignOptions {
 
     /// The filter of a packing that is there.
     pub(super) fn packed(&self, plan: &PackingPlan) -> Result<Option<PackedFilter>, RunError> {
-        Ok(PackedFilter::read(&self.packings()?.join(plan.folder_name()), plan)?)
+        Ok(PackedFilter::find(&self.packings()?, plan)?)
     }
 }
 

@@ -25,6 +25,7 @@ use crate::run::checkpoints::{self, CheckpointInterval, Checkpoints};
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, clear, shown};
 use crate::run::machine::Machine;
+use crate::run::other_walks::OtherWalks;
 use crate::run::replicates::{self, ReplicateContext};
 use crate::run::results;
 use crate::store::{Folder, StoreError, make_folder};
@@ -228,12 +229,12 @@ impl CaseRunner<'_> {
         let silent = Callbacks { stop: self.callbacks.run.stop, ..Callbacks::default() };
         let context = ReplicateContext { callbacks: &silent, checkpoints: Some(&checkpoints) };
         let walked = replicates::replicates(case, &context)
-            .and_then(|walked| Ok((walked, replicates::other_reading(case, &context)?)))
-            .and_then(|walked| Ok((replicates::sensitivity(case, &context)?, walked)));
+            .and_then(|walked| Ok((OtherWalks::walk(case, &walked, &context)?, walked)))
+            .and_then(|(other, walked)| Ok((other, replicates::sensitivity(case, &context)?, walked)));
         for problem in checkpoints.passed_over() {
             self.warn(name, &format!("{problem}; the checkpoint before it was taken"));
         }
-        let (sensitivity, (walked, other)) = match walked {
+        let (other, sensitivity, walked) = match walked {
             Err(error) if error.exit() == Exit::Stopped => {
                 checkpoints.flush()?;
                 return Ok(false);

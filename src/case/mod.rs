@@ -1,5 +1,7 @@
 //! A case: a scene with its files read and every number worked out, before any work is done.
 
+mod curve_ends;
+mod cut;
 mod files;
 mod memory;
 mod packed_filter;
@@ -12,6 +14,7 @@ mod sizes;
 mod supply;
 mod warnings;
 
+pub use curve_ends::OtherCurve;
 use files::Files;
 pub use files::{INPUT_FILES, INPUT_NAMES, Input};
 pub use memory::{ResourceLimits, in_words};
@@ -55,6 +58,16 @@ pub enum CaseError {
     NotPacked {
         /// The scene.
         file: String,
+    },
+    /// So few grains that the cell would be no wider than two of the largest.
+    #[error("{file}: {problem}")]
+    NarrowCell {
+        /// The scene.
+        file: String,
+        /// What is wrong.
+        problem: String,
+        /// The same plan with grains enough.
+        would_do: Box<PackingPlan>,
     },
     /// More memory, or more disk, than there is.
     #[error(
@@ -217,7 +230,8 @@ impl Case {
         // The grains per void of a shipped packing say nothing of a network from elsewhere.
         let of_shipped = shipped.filter(|_| network_file.is_none()).map(|s| s.grains_per_void);
         let of_packing = packed.as_ref().map(|packed| packed.grains_per_void).or(of_shipped);
-        let grains_per_void = scene.filter.grains_per_void.or(of_packing);
+        let guessed = guesses_grains_per_void(&scene).then_some(GUESSED_GRAINS_PER_VOID);
+        let grains_per_void = scene.filter.grains_per_void.or(of_packing).or(guessed);
         let against = Against {
             scene: &scene,
             filter: &filter,
@@ -325,6 +339,12 @@ impl Case {
             }
             None => "packing and triangulation: the constriction curve is given".to_string(),
         }];
+        if let Some(other) = self.packed.as_ref().and_then(|packed| packed.same_shape.as_ref()) {
+            left_out.push(format!(
+                "packing the filter: the packing in {} has its shape, and was taken {:.4} times as large",
+                other.folder, other.factor
+            ));
+        }
         if self.scene.walk.runs == 1 {
             left_out.push("the second run: it was not asked for".into());
         }
@@ -333,6 +353,18 @@ impl Case {
         }
         left_out
     }
+}
+
+/// Filter grains per void where the constrictions are a guess and the user gives none: that of loose packings
+/// (`results/filters-*.md`).
+const GUESSED_GRAINS_PER_VOID: f64 = 0.6;
+
+/// Whether Eq. (2) needs grains per void that nobody gives: where the constrictions are a guess.
+fn guesses_grains_per_void(scene: &Scene) -> bool {
+    let filter = &scene.filter;
+    filter.estimate.is_some()
+        && filter.grains_per_void.is_none()
+        && matches!(scene.base.amount(), Amount::MassRatio(..))
 }
 
 /// The constriction curve of a given network (mm): its open diameters by number, at most a thousand points.

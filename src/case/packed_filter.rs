@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use super::PackingPlan;
 use crate::constrictions::{Constrictions, ConstrictionsError, Curve, CurveError, CurveUnit};
-use crate::outcome::packing::PackingRecord;
+use crate::outcome::packing::{PackedPart, PackingRecord, SameShape};
 use crate::packing::{ImportError, Packing};
 use crate::store::{StoreError, read_whole};
 
@@ -30,8 +30,14 @@ pub struct PackedFilter {
     pub grains_per_void: f64,
     /// `packing.json`, as it is.
     pub record: Vec<u8>,
-    /// Volume of the voids by that of the grains.
-    pub void_ratio: f64,
+    /// Volume of the voids by that of the grains of the filter: known where the whole was packed.
+    pub void_ratio: Option<f64>,
+    /// What part of the filter was packed, where it is not the whole.
+    pub part: Option<PackedPart>,
+    /// Where the packing was taken from, where it was made for another filter of the same shape.
+    pub same_shape: Option<SameShape>,
+    /// Share of the grains, by number, that carry no load; `None` for a placeholder.
+    pub rattlers: Option<f64>,
 }
 
 /// Why a packing's folder cannot be used.
@@ -65,17 +71,66 @@ impl PackedFilter {
     /// # Errors
     /// A folder that is damaged, or that holds another filter.
     pub fn read(folder: &Path, order: &PackingPlan) -> Result<Option<Self>, PackedError> {
+        let Some((record, read)) = read_record(folder)? else { return Ok(None) };
+        if read.fingerprint != order.fingerprint() {
+            let problem = "this is the packing of another recipe; name another folder".into();
+            return Err(PackedError::Record { file: folder.join(RECORD).display().to_string(), problem });
+        }
+        // Another filter may have the same finer part.
+        let is_of_it = read.part == order.part && read.same_shape.is_none();
+        let read = PackingRecord { part: order.part, same_shape: None, ..read };
+        Self::measured(folder, order, read, 1.0, is_of_it.then_some(record)).map(Some)
+    }
+
+    /// Takes a filter from a folder that holds packings: its own, or else one of the same shape; `None` where
+    /// there is neither.
+    ///
+    /// # Errors
+    /// A packing of it that is damaged.
+    pub fn find(packings: &Path, order: &PackingPlan) -> Result<Option<Self>, PackedError> {
+        match Self::read(&packings.join(order.folder_name()), order)? {
+            Some(own) => Ok(Some(own)),
+            None => Self::of_same_shape(packings, order),
+        }
+    }
+
+    /// Takes a filter from a packing of the same shape, all of whose sizes are those wanted times one factor,
+    /// in a folder that holds packings; `None` where there is none. Of several the first by name is taken.
+    ///
+    /// # Errors
+    /// A packing of the same shape that is damaged.
+    pub fn of_same_shape(packings: &Path, order: &PackingPlan) -> Result<Option<Self>, PackedError> {
+        let Ok(entries) = std::fs::read_dir(packings) else { return Ok(None) };
+        let own = packings.join(order.folder_name());
+        let mut folders: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+        folders.retain(|folder| *folder != own);
+        folders.sort();
+        for folder in folders {
+            // What is no packing, or not whole, is none of the same shape.
+            let Ok(Some((_, read))) = read_record(&folder) else { continue };
+            let points: Vec<(f64, f64)> = read.gradation.iter().map(|[d, percent]| (*d, *percent)).collect();
+            if read.fingerprint != order.fingerprint_of(&points) {
+                continue;
+            }
+            let Some(factor) = order.scale_from(&points) else { continue };
+            let same_shape = Some(SameShape { folder: folder.display().to_string(), factor });
+            let read = PackingRecord { part: order.part, same_shape, ..read.scaled(factor) };
+            return Self::measured(&folder, order, read, factor, None).map(Some);
+        }
+        Ok(None)
+    }
+
+    /// Measures the constrictions of the grains of a folder, times `factor`; `record` is that file as it is,
+    /// where it says the same as `read`.
+    fn measured(
+        folder: &Path,
+        order: &PackingPlan,
+        read: PackingRecord,
+        factor: f64,
+        record: Option<Vec<u8>>,
+    ) -> Result<Self, PackedError> {
         let path = folder.join(RECORD);
         let problem = |problem: String| PackedError::Record { file: path.display().to_string(), problem };
-        let record = match read_whole(&path) {
-            Ok(bytes) => bytes,
-            Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-            Err(source) => return Err(StoreError::Io { path, action: "read", source }.into()),
-        };
-        let read: PackingRecord = serde_json::from_slice(&record).map_err(|e| problem(e.to_string()))?;
-        if read.fingerprint != order.fingerprint() {
-            return Err(problem("this is the packing of another recipe; name another folder".into()));
-        }
         let grains = folder.join(GRAINS);
         let bytes = match read_whole(&grains) {
             Ok(bytes) => bytes,
@@ -88,15 +143,23 @@ impl PackedFilter {
             return Err(problem(format!("{} is not the file that this record was written with", GRAINS)));
         }
         let packing = Packing::parse(&grains.display().to_string(), &bytes)?;
+        let packing = if factor == 1.0 { packing } else { packing.scaled(factor) };
         let found = Constrictions::measure(&packing, order.merge_overlap)?;
-        Ok(Some(Self {
+        let record = match record {
+            Some(record) => record,
+            None => serde_json::to_vec_pretty(&read).map_err(|e| problem(e.to_string()))?,
+        };
+        Ok(Self {
             files: Some([folder.join("constrictions.csv"), path]),
             curve: found.curve()?,
             curve_csv: found.curve_csv()?,
             grains_per_void: found.grains_per_void(),
+            void_ratio: read.part.is_none().then_some(read.after.void_ratio),
+            part: read.part,
+            same_shape: read.same_shape,
+            rattlers: Some(read.after.rattlers),
             record,
-            void_ratio: read.after.void_ratio,
-        }))
+        })
     }
 
     /// The filter whose curve a run kept in its folder, with `packing.json` beside it.
@@ -118,7 +181,10 @@ impl PackedFilter {
             files: Some([curve.to_owned(), record]),
             grains_per_void,
             record: record_bytes,
-            void_ratio: of.after.void_ratio,
+            void_ratio: of.part.is_none().then_some(of.after.void_ratio),
+            part: of.part,
+            same_shape: of.same_shape,
+            rattlers: Some(of.after.rattlers),
         })
     }
 
@@ -139,7 +205,26 @@ impl PackedFilter {
             curve_csv: String::new(),
             grains_per_void: 0.6,
             record: Vec::new(),
-            void_ratio: f64::NAN,
+            void_ratio: None,
+            part: order.part,
+            same_shape: None,
+            rattlers: None,
         })
     }
+}
+
+/// A packing's record, as it is and read; `None` where there is none.
+fn read_record(folder: &Path) -> Result<Option<(Vec<u8>, PackingRecord)>, PackedError> {
+    let path = folder.join(RECORD);
+    let record = match read_whole(&path) {
+        Ok(bytes) => bytes,
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+        Err(source) => return Err(StoreError::Io { path, action: "read", source }.into()),
+    };
+    let problem = |e: serde_json::Error| PackedError::Record {
+        file: path.display().to_string(),
+        problem: e.to_string(),
+    };
+    let read = serde_json::from_slice(&record).map_err(problem)?;
+    Ok(Some((record, read)))
 }

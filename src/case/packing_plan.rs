@@ -1,7 +1,8 @@
 //! A recipe worked out: its files read, its number of grains decided, before any work is done.
 
-use super::{CaseError, Files, Input};
+use super::{CaseError, Files, Input, cut};
 use crate::gradation::Gradation;
+use crate::outcome::packing::PackedPart;
 use crate::packing::Settings as Compression;
 use crate::scene::{FilterGradation, PackingSpec, Scene, SceneError};
 
@@ -10,8 +11,17 @@ use crate::scene::{FilterGradation, PackingSpec, Scene, SceneError};
 const CELLS_WIDTH: f64 = 5.4;
 /// ... within these numbers of grains: fewer scatter, more cost a wide gradation hours.
 const GRAINS: (usize, usize) = (9_000, 60_000);
+/// Grains for the finer part of a filter that cannot be packed whole, at most.
+const GRAINS_OF_PART: usize = 30_000;
+/// A cell is at least this many times as wide as the largest grain: twice, and some for what a guess is off.
+const LEAST_WIDTH: f64 = 2.2;
 /// Packing fraction by which the width of a cell is guessed.
 const FRACTION: f64 = 0.65;
+
+/// Two gradations have one shape where their sizes, scaled, are as near as this ...
+const SAME_SIZE: f64 = 1e-3;
+/// ... and their percentages as near as this.
+const SAME_PERCENT: f64 = 1e-2;
 
 /// Part of the definition of a packing: another number gives other grains from the same recipe.
 const PROTOCOL: u32 = 2;
@@ -19,12 +29,14 @@ const PROTOCOL: u32 = 2;
 /// What is to be packed.
 #[derive(Clone, Debug)]
 pub struct PackingPlan {
-    /// The filter's gradation.
+    /// The gradation that is packed: the filter's, or its finer part's.
     pub gradation: Gradation,
     /// The gradation in words.
     pub name: String,
     /// Whether it is linear.
     pub linear: bool,
+    /// What part of the filter it is, where the whole is not packed.
+    pub part: Option<PackedPart>,
     /// How it is compressed.
     pub compression: Compression,
     /// Overlap of two inscribed spheres from which their tetrahedra are one void.
@@ -62,32 +74,85 @@ impl PackingPlan {
             FilterGradation::Linear { cu, .. } => format!("linear, Cu {}", cu.unwrap_or(1.0)),
             FilterGradation::Sieve(path, _) => path.display().to_string(),
         };
-        let mut compression = recipe.compression.clone();
-        compression.grains = recipe.grains.unwrap_or_else(|| grains_for(&gradation));
-        let width = width_by_largest(&gradation, compression.grains);
-        if width < 2.2 {
-            let problem = format!(
-                "packing.grains = {}: the cell would be about {width:.1} times as wide as the largest \
-                 grain, at least 2.2 times is needed; about {} grains would do",
-                compression.grains,
-                (compression.grains as f64 * (2.3 / width).powi(3)).ceil()
-            );
-            return Err(SceneError::Clash { file: recipe.file.clone(), problem }.into());
-        }
-        Ok(Self {
-            gradation,
+        let mut plan = Self {
             name,
             linear,
-            compression,
+            part: None,
+            compression: recipe.compression.clone(),
             merge_overlap: recipe.merge_overlap,
             inputs: files.0,
-        })
+            gradation,
+        };
+        plan.take_part(recipe)?;
+        Ok(plan)
+    }
+
+    /// Takes the part that is asked for, or, where the cell of the whole would be too narrow, the part that
+    /// can be packed; and decides on the number of grains.
+    fn take_part(&mut self, recipe: &PackingSpec) -> Result<(), CaseError> {
+        let (whole, grains) = (self.gradation.clone(), recipe.grains);
+        let part = match recipe.coarsest {
+            Some(percent) if percent < 100.0 => Some(cut::finer_part(&whole, percent).ok_or_else(|| {
+                let problem = format!(
+                    "packing.coarsest = {percent}: no grains of known size are finer than that percentage"
+                );
+                SceneError::Clash { file: recipe.file.clone(), problem }
+            })?),
+            None if width_by_largest(&whole, grains.unwrap_or_else(|| grains_for(&whole))) < LEAST_WIDTH => {
+                let most = grains.unwrap_or(GRAINS_OF_PART);
+                cut::that_can_be_packed(&whole, |part| width_by_largest(part, most))
+            }
+            _ => None,
+        };
+        let mut usual = grains_for(&whole);
+        if let Some((gradation, packed)) = part {
+            self.name = format!("{}, its finer {:.1} %", self.name, packed.percent);
+            let most = if recipe.coarsest.is_some() { GRAINS.1 } else { GRAINS_OF_PART };
+            usual = grains_for(&gradation).min(most);
+            (self.gradation, self.part, self.linear) = (gradation, Some(packed), false);
+        }
+        self.compression.grains = grains.unwrap_or(usual);
+        let width = width_by_largest(&self.gradation, self.compression.grains);
+        if width >= LEAST_WIDTH {
+            return Ok(());
+        }
+        let grains = grains_at_least(&self.gradation);
+        let problem = format!(
+            "packing.grains = {}: the cell would be about {width:.1} times as wide as the largest grain, at \
+             least {LEAST_WIDTH} times is needed; about {grains} grains would do",
+            self.compression.grains
+        );
+        self.compression.grains = grains;
+        Err(CaseError::NarrowCell { file: recipe.file.clone(), problem, would_do: Box::new(self.clone()) })
     }
 
     /// Fingerprint of everything that the grains follow from.
     pub fn fingerprint(&self) -> String {
-        let text = format!("{PROTOCOL} {:?} {:?}", self.gradation.points(), self.compression);
+        self.fingerprint_of(&self.gradation.points())
+    }
+
+    /// The same of a gradation with these points, compressed likewise.
+    pub(super) fn fingerprint_of(&self, points: &[(f64, f64)]) -> String {
+        let text = format!("{PROTOCOL} {points:?} {:?}", self.compression);
         format!("{:016x}", xxhash_rust::xxh3::xxh3_64(text.as_bytes()))
+    }
+
+    /// The factor that takes a gradation with these points to the plan's: `None` where one factor does not
+    /// take every size to within a thousandth of its own.
+    pub(super) fn scale_from(&self, points: &[(f64, f64)]) -> Option<f64> {
+        let own = self.gradation.points();
+        let (coarsest, its) = (own.last()?, points.last()?);
+        let factor = coarsest.0 / its.0;
+        let fits = |(own, other): (&(f64, f64), &(f64, f64))| {
+            (factor * other.0 / own.0 - 1.0).abs() < SAME_SIZE && (other.1 - own.1).abs() < SAME_PERCENT
+        };
+        (own.len() == points.len() && own.iter().zip(points).all(fits)).then_some(factor)
+    }
+
+    /// Whether one packing, scaled, does for both plans.
+    pub fn has_shape_of(&self, other: &Self) -> bool {
+        let points = other.gradation.points();
+        self.scale_from(&points).is_some() && self.fingerprint_of(&points) == other.fingerprint()
     }
 
     /// Name of the folder in which the packing is kept among others.
@@ -102,6 +167,11 @@ impl PackingPlan {
 fn grains_for(gradation: &Gradation) -> usize {
     let wanted = (CELLS_WIDTH / width_by_largest(gradation, 1)).powi(3);
     (wanted as usize).clamp(GRAINS.0, GRAINS.1)
+}
+
+/// Grains with which the cell is wide enough, and a little more.
+fn grains_at_least(gradation: &Gradation) -> usize {
+    libm::ceil(((LEAST_WIDTH + 0.1) / width_by_largest(gradation, 1)).powi(3)) as usize
 }
 
 /// Width of the cell of this many grains, by the largest grain.

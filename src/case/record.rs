@@ -80,7 +80,7 @@ impl Case {
                 d50_by_number_mm: self.filter.d_by_number(50.0).unwrap_or(f64::NAN),
                 d85_mm: d(&self.filter, 85.0),
                 void_ratio: match &self.packed {
-                    Some(packed) => Some(packed.void_ratio),
+                    Some(packed) => packed.void_ratio,
                     None => self.shipped.filter(|_| self.network_file.is_none()).map(|s| s.void_ratio),
                 },
                 gradation: pairs(self.filter.points()),

@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use super::Case;
+use super::{Case, guesses_grains_per_void};
 use crate::scene::{About, CurveSource, Scene};
 
 /// Part of the fingerprint of every case: raised whenever the program gives other results for the same scene.
@@ -33,7 +33,9 @@ impl Case {
         if scene.filter.sieve.is_none() {
             scene.filter.cu = scene.filter.cu.or(self.shipped.map(|shipped| shipped.cu));
         }
-        scene.filter.grains_per_void = self.grains_per_void;
+        if !guesses_grains_per_void(&scene) {
+            scene.filter.grains_per_void = self.grains_per_void;
+        }
         scene.base.sieve = kept("base.sieve");
         scene.base.dc_curve = kept_curve(scene.base.dc_curve, "base.dc_curve");
         scene.network.file = kept("network.file");

@@ -55,5 +55,6 @@ fn summary(packing: &FinishedPacking) -> String {
         format!("{:.1} s; report: {}", record.seconds, out.join("report.html").display()),
         format!("for a scene: filter.curve = \"{}\"", out.join("constrictions.csv").display()),
     ];
-    lines.iter().map(|line| plain(line) + "\n").collect()
+    let part = filter.part.iter().map(|part| format!("  {}", part.sentence()));
+    lines.into_iter().chain(part).map(|line| plain(&line) + "\n").collect()
 }

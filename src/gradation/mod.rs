@@ -35,6 +35,7 @@ mod sieve;
 mod soil;
 mod stability;
 mod supply;
+mod surface;
 mod table;
 
 pub use burenkova::UniformityFactors;

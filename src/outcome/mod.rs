@@ -15,6 +15,7 @@
 mod applied;
 pub mod by_connectivity;
 pub mod confidence;
+mod curve_range;
 mod infiltration;
 mod least_squares;
 pub mod ledger;

@@ -14,6 +14,59 @@ pub struct CurveRow {
     pub diameter_mm: f64,
 }
 
+/// Coarse grains float in a finer part of at least this percent of the mass, and carry each other without it:
+/// Skempton and Brogan (1994), Geotechnique 44(3), 449-460.
+pub const FLOATING_PERCENT: f64 = 35.0;
+
+/// The finer part of a filter that was packed, where the whole was not.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PackedPart {
+    /// Percent of the filter's mass that is in it.
+    pub percent: f64,
+    /// Its largest grain (mm).
+    pub largest_mm: f64,
+    /// Share of the surface of all grains that the grains left out have.
+    pub surface_left_out: f64,
+    /// Its constrictions are finer than those of the whole by up to this share of their size.
+    pub finer_by: f64,
+    /// Whether the filter has next to no grains up to half as large again as the largest.
+    pub sizes_missing_above: bool,
+}
+
+impl PackedPart {
+    /// What a reader must know of a filter of which this part was packed.
+    pub fn sentence(&self) -> String {
+        let Self { percent, largest_mm, finer_by, .. } = self;
+        let floating = match (self.sizes_missing_above, *percent >= FLOATING_PERCENT) {
+            (true, true) => {
+                "; the coarse grains of this gap-graded filter are taken to float in it, as they do where it \
+                 is 35 % of the mass or more (Skempton and Brogan 1994)"
+            }
+            (_, false) => {
+                "; that is less than the 35 % of the mass in which coarse grains float (Skempton and Brogan \
+                 1994): the coarse grains carry each other, the finer ones may lie loose between them, and \
+                 wider constrictions than those that were walked may be open"
+            }
+            (false, true) => "",
+        };
+        format!(
+            "only the finer part of the filter is packed: {percent:.1} % of its mass, up to {largest_mm:.3} \
+             mm. Its constrictions are up to {:.1} % finer than those of the whole (measured on filters that \
+             can be packed whole), and both ends of that range are walked{floating}",
+            100.0 * finer_by
+        )
+    }
+}
+
+/// Where a packing was taken from that another scene's filter of the same shape had been packed into.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SameShape {
+    /// Its folder.
+    pub folder: String,
+    /// What its sizes were multiplied with.
+    pub factor: f64,
+}
+
 /// The whole of `packing.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PackingRecord {
@@ -27,7 +80,13 @@ pub struct PackingRecord {
     pub linear: bool,
     /// D60 / D10 by mass, where known.
     pub cu: Option<f64>,
-    /// Rows of size (mm) and percent finer by mass, ascending.
+    /// What part of the filter was packed, where it is not the whole.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub part: Option<PackedPart>,
+    /// Where the packing was taken from, where it was made for another filter of the same shape.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub same_shape: Option<SameShape>,
+    /// Rows of size (mm) and percent finer by mass of what was packed, ascending.
     pub gradation: Vec<[f64; 2]>,
     /// Grains.
     pub grains: u64,
@@ -59,4 +118,15 @@ pub struct PackingRecord {
     /// Grains cut by the plane through the middle of the cell: x, y of the centre, diameter of the cut,
     /// diameter of the grain (mm).
     pub slice: Vec<[f64; 4]>,
+}
+
+impl PackingRecord {
+    /// The record of the same packing with every length multiplied by `factor`.
+    pub fn scaled(mut self, factor: f64) -> Self {
+        let sizes = self.gradation.iter_mut().map(|row| &mut row[0]);
+        let inscribed = self.inscribed.iter_mut().flatten().map(|row| &mut row[0]);
+        let slice = self.slice.iter_mut().flatten();
+        sizes.chain(inscribed).chain(slice).chain([&mut self.cell_mm]).for_each(|mm| *mm *= factor);
+        self
+    }
 }

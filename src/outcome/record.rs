@@ -69,6 +69,10 @@ pub struct Outcome {
     /// Eq. (1) for single particles; `None` where the network is no cubic lattice.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub infiltration: Option<Infiltration>,
+    /// What comes of the other constriction curves that the filter may have; `None` where its curve was
+    /// given, or measured on the whole filter.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curve_range: Option<CurveRange>,
     /// How the verdict moves with the number of base particles; empty when it was not asked for.
     pub sensitivity: Vec<Sensitivity>,
     /// Wall time of everything, s.
@@ -414,6 +418,33 @@ pub struct Sensitivity {
     pub grains_per_void: Option<f64>,
     /// Mass ratio to which this factor corresponds at the scene's grains per void.
     pub mass_ratio: Option<f64>,
+    /// How many replicates were walked.
+    pub replicates: u64,
+    /// Their class.
+    pub verdict: Verdict,
+    /// Eroded mass fraction, one per run.
+    pub runs: Vec<Statistic>,
+}
+
+/// The walks at the ends of the range of a constriction curve.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CurveRange {
+    /// The class by the curve itself.
+    pub verdict: Verdict,
+    /// The other curves of the range: its ends.
+    pub ends: Vec<CurveEnd>,
+    /// Least and most eroded over the whole range, one pair per run: the ends of the 95 % intervals, or the
+    /// means of a single replicate (fraction of the mass).
+    pub eroded_mass_fraction: Vec<[f64; 2]>,
+}
+
+/// The replicates walked with another constriction curve, all else and all random numbers the same.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CurveEnd {
+    /// Which curve it is, in words.
+    pub curve: String,
+    /// Its median constriction by that of the curve itself.
+    pub dc50_factor: f64,
     /// How many replicates were walked.
     pub replicates: u64,
     /// Their class.

@@ -36,3 +36,15 @@ pub struct Packing {
     /// Diameter (mm).
     pub diameter: Vec<f64>,
 }
+
+impl Packing {
+    /// The same packing with every length multiplied by `factor`.
+    pub fn scaled(mut self, factor: f64) -> Self {
+        let columns = [&mut self.x, &mut self.y, &mut self.z, &mut self.diameter];
+        columns.into_iter().flatten().for_each(|mm| *mm *= factor);
+        if let Cell::Periodic(edges) = &mut self.cell {
+            edges.iter_mut().for_each(|mm| *mm *= factor);
+        }
+        self
+    }
+}

@@ -87,8 +87,11 @@ pub fn check(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError> 
     let (draft, mut case) = Draft::new(scene)?;
     let mut packing = None;
     if let Some(plan) = &draft.packing {
-        let folder = options.packings.join(plan.folder_name());
-        let made = PackedFilter::read(&folder, plan)?;
+        let mut folder = options.packings.join(plan.folder_name());
+        let made = PackedFilter::find(&options.packings, plan)?;
+        if let Some(other) = made.as_ref().and_then(|made| made.same_shape.as_ref()) {
+            folder = other.folder.clone().into();
+        }
         packing = Some(PackingCheck::new(plan, folder, made.is_some()));
         if made.is_some() {
             case = draft.case(made)?;

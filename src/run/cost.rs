@@ -80,7 +80,7 @@ impl Case {
             walk_seconds(0.0, increments, counted, one_by_one, one_by_one * self.moves_of_each(n_base))
         };
         let [replicates, studied] = networks_to_walk(self).map(|n| n as f64);
-        let own = replicates * one_run(self.n_base);
+        let own = replicates * (1 + self.curve_ends().len()) as f64 * one_run(self.n_base);
         let of_factor = |factor: f64| one_run((self.n_base as f64 * factor) as u64);
         let others: f64 = self.sensitivity_factors().into_iter().map(of_factor).sum();
         let of_each = self.scene.record.sensitivity_replicates as f64;

@@ -10,12 +10,13 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::callbacks::{Callbacks, Event};
+use super::cost::duration;
 use super::error::RunError;
 use super::folder::{FolderKind, STATES, claim, clear, shown};
 use super::machine::on_threads;
 use super::packing_record::record;
 use super::unfinished::{self, Unfinished};
-use crate::case::{GRAINS, PackedFilter, PackingPlan, RECORD};
+use crate::case::{CaseError, GRAINS, PackedFilter, PackingPlan, RECORD};
 use crate::constrictions::Constrictions;
 use crate::outcome::packing::PackingRecord;
 use crate::packing::{Compression, PackReport, PackingError, draw, random_start};
@@ -81,7 +82,7 @@ pub fn pack(
     options: &PackOptions,
     callbacks: &Callbacks,
 ) -> Result<FinishedPacking, RunError> {
-    let plan = PackingPlan::new(spec)?;
+    let plan = PackingPlan::new(spec).map_err(with_time)?;
     let out = options.out.clone().unwrap_or_else(|| options.packings.join(plan.folder_name()));
     let folder = claim(&out, FolderKind::Packing, options.overwrite)?;
     let begun = Unfinished::read(&folder)?.is_some_and(|begun| begun.work == plan.fingerprint());
@@ -96,8 +97,19 @@ pub fn pack(
     Ok(FinishedPacking { folder: out, json: String::from_utf8_lossy(&json).into_owned(), record, filter })
 }
 
-/// The packing of a scene's filter: taken from where packings are kept, or made and kept there; one that
-/// another process makes is waited for.
+/// A plan that is refused for its few grains, with the time that grains enough would take.
+pub(super) fn with_time(error: CaseError) -> RunError {
+    let CaseError::NarrowCell { would_do, .. } = &error else { return error.into() };
+    let time = duration(would_do.core_seconds());
+    RunError::Refused(format!(
+        "{error}, in about {time} of one core or more; or packing.coarsest = 90, say, packs the finer 90 % \
+         of the mass alone; or filter.estimate, in place of the density, guesses without a packing, and the \
+         verdict's range shows how far"
+    ))
+}
+
+/// The packing of a scene's filter: taken from where packings are kept, its own or else one of the same shape
+/// in another size, or made and kept there; one that another process makes is waited for.
 ///
 /// # Errors
 /// As [`pack`].
@@ -105,6 +117,9 @@ pub fn provide(plan: &PackingPlan, packings: &Path, callbacks: &Callbacks) -> Re
     let path = packings.join(plan.folder_name());
     let has_page = || path.join(unfinished::FILE).symlink_metadata().is_err();
     if let Some(filter) = PackedFilter::read(&path, plan)?.filter(|_| has_page()) {
+        return Ok(filter);
+    }
+    if let Some(filter) = PackedFilter::of_same_shape(packings, plan)? {
         return Ok(filter);
     }
     let folder = wait_for(&path, callbacks)?;

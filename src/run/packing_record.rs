@@ -39,6 +39,8 @@ pub(super) fn record(
         name: plan.name.clone(),
         linear: plan.linear,
         cu: plan.gradation.cu(),
+        part: plan.part,
+        same_shape: None,
         gradation: plan.gradation.points().into_iter().map(|(d, percent)| [d, percent]).collect(),
         grains: packing.x.len() as u64,
         seed: s.seed,

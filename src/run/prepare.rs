@@ -10,7 +10,7 @@ use super::callbacks::Callbacks;
 use super::error::RunError;
 use super::folder::shown;
 use super::machine::{Machine, on_threads};
-use super::pack::provide;
+use super::pack::{provide, with_time};
 use super::replicates::have_networks;
 use crate::case::{Case, CaseError, PackedFilter, PackingPlan, ResourceLimits};
 use crate::scene::Scene;
@@ -54,7 +54,7 @@ impl Draft {
     /// # Errors
     /// Everything that is wrong with the scene.
     pub fn new(scene: Scene) -> Result<(Self, Case), RunError> {
-        let packing = PackingPlan::of(&scene)?;
+        let packing = PackingPlan::of(&scene).map_err(with_time)?;
         let placeholder = packing.as_ref().map(PackedFilter::placeholder).transpose();
         let case = Case::with_packed(scene.clone(), placeholder.map_err(CaseError::from)?)?;
         Ok((Self { scene, packing }, case))

@@ -48,9 +48,12 @@ pub struct ReplicateResult {
     below: Vec<bool>,
 }
 
-/// Number of runs that [`replicates`] and [`sensitivity`] walk for a case, as far as it is known before.
+/// Number of runs that [`replicates`], the ends of the curve's range and [`sensitivity`] walk for a case, as
+/// far as it is known before.
 pub fn runs_to_walk(case: &Case) -> u64 {
-    case.readings().map(|case| case.scene.walk.runs * networks_to_walk(case).iter().sum::<u64>()).sum()
+    let of_readings: u64 = case.readings().map(|case| networks_to_walk(case).iter().sum::<u64>()).sum();
+    let at_ends = case.curve_ends().len() as u64 * first_replicates(case);
+    case.scene.walk.runs * (of_readings + at_ends)
 }
 
 /// Networks that one reading of a case is walked on, as far as it is known before: for itself, and for its
@@ -124,7 +127,7 @@ fn look(case: &Case, walked: &[ReplicateResult]) -> Option<Look> {
 
 /// Replicates with `n_base` particles each; part 0 are those of the case itself, the only ones that are
 /// recorded.
-fn some_replicates(
+pub(super) fn some_replicates(
     case: &Case,
     part: u64,
     which: RangeInclusive<u64>,

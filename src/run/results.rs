@@ -6,26 +6,28 @@ use serde::Serialize;
 
 use super::error::RunError;
 use super::machine::Machine;
+use super::other_walks::OtherWalks;
 use super::replicates::{ReplicateResult, as_it_is, stopping, summarise};
 use crate::case::{Case, INPUT_NAMES};
 use crate::outcome::record::{
-    Manifest, Outcome, PanBounds, PanReading, RunSummary, Sensitivity, Statistic, Stopping, Verdict,
+    CurveRange, Manifest, Outcome, PanBounds, PanReading, RunSummary, Sensitivity, Statistic, Stopping,
+    Verdict,
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
 use crate::outcome::{MODEL_LEAVES_OUT, Recorded, confidence, infiltration, rules, verdict};
 use crate::scene::NetworkSource;
 use crate::store::{Folder, StoreError};
 
-/// The outcome of a case that has been walked; `other` are the replicates of its other reading.
+/// The outcome of a case that has been walked; with what was walked besides.
 pub fn outcome(
     case: &Case,
     walked: &[ReplicateResult],
-    other: &[ReplicateResult],
+    other: &OtherWalks,
     mut sensitivity: Vec<Sensitivity>,
     seconds: f64,
 ) -> Outcome {
     let (verdict, summary, stopping) = concluded(case, walked);
-    let pan_bounds = pan_bounds(case, [walked, other]);
+    let pan_bounds = pan_bounds(case, [walked, &other.reading]);
     let verdict = pan_bounds.as_ref().map_or(verdict, PanBounds::verdict);
     if !sensitivity.is_empty() {
         sensitivity.push(as_it_is(case, walked));
@@ -40,7 +42,17 @@ pub fn outcome(
         }
         _ => sentences,
     };
-    let (confidence, mut reasons) = confidence::judge(verdict, &rules, told(case.doubts()));
+    let agreed = match &other.range {
+        Some(range) if range.whole() != verdict => Verdict::Undecided,
+        _ => verdict,
+    };
+    let of_range = other.range.iter().map(CurveRange::sentence);
+    let doubts = match agreed == verdict {
+        true => told(case.doubts()).into_iter().chain(of_range).collect(),
+        false => of_range.chain(told(case.doubts())).collect(),
+    };
+    let verdict = agreed;
+    let (confidence, mut reasons) = confidence::judge(verdict, &rules, doubts);
     if let Some(bounds) = pan_bounds.as_ref().filter(|bounds| bounds.differ()) {
         // That is why nothing is decided.
         reasons.retain(|reason| *reason != bounds.sentence());
@@ -72,6 +84,7 @@ pub fn outcome(
             NetworkSource::Cubic(_) => Some(infiltration(&case.curve, &case.base, case.counts[3])),
             _ => None,
         },
+        curve_range: other.range.clone(),
         sensitivity,
         seconds,
     }

@@ -8,10 +8,9 @@ use super::checkpoints::{self, CheckpointInterval, Checkpoints};
 use super::error::{Exit, RunError};
 use super::folder::{FolderKind, claim, claim_first_free, clear, own_packings, shown};
 use super::machine::on_threads;
+use super::other_walks::OtherWalks;
 use super::prepare::{PrepareOptions, prepare_into};
-use super::replicates::{
-    ReplicateContext, ReplicateResult, other_reading, replicates, runs_to_walk, sensitivity,
-};
+use super::replicates::{ReplicateContext, ReplicateResult, replicates, runs_to_walk, sensitivity};
 use super::results;
 use super::unfinished::{self, Unfinished};
 use crate::case::Case;
@@ -116,7 +115,7 @@ pub fn walk_case(case: &Case, callbacks: &Callbacks) -> Result<Outcome, RunError
         let context = ReplicateContext { callbacks, checkpoints: None };
         (callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(case) });
         let walked = replicates(case, &context)?;
-        let other = other_reading(case, &context)?;
+        let other = OtherWalks::walk(case, &walked, &context)?;
         let sensitivity = sensitivity(case, &context)?;
         Ok(results::outcome(case, &walked, &other, sensitivity, begun.elapsed().as_secs_f64()))
     };
@@ -232,7 +231,7 @@ struct CaseRun<'a> {
 }
 
 impl CaseRun<'_> {
-    /// Walks the replicates, of both readings of the base where there are two, writes what came of them, then
+    /// Walks the replicates, and what is walked besides, writes what came of them, then
     /// adds the study of the sensitivity and writes the whole.
     fn walk(
         &self,
@@ -242,7 +241,7 @@ impl CaseRun<'_> {
         let context = ReplicateContext { callbacks: self.callbacks, checkpoints: Some(self.checkpoints) };
         (self.callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(self.case) });
         let walked = replicates(self.case, &context).map_err(|error| self.ended(error))?;
-        let other = other_reading(self.case, &context).map_err(|error| self.ended(error))?;
+        let other = OtherWalks::walk(self.case, &walked, &context).map_err(|error| self.ended(error))?;
         let outcome = |sensitivity: Vec<Sensitivity>| {
             results::outcome(self.case, &walked, &other, sensitivity, begun.elapsed().as_secs_f64())
         };

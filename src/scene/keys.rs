@@ -88,6 +88,10 @@ section! {
     pub struct FilterPacking in "packing" {
         /// Grains: by default enough for a cell 5.4 times as wide as the largest one, 9,000 to 60,000.
         pub grains: Option<u64> = None, off "10000", whole(10..=10_000_000);
+        /// Percent of the filter's mass, from its finest grain on, that is packed; 100 is all of it. By
+        /// default all, or of a filter so broad that the whole would need more grains as much as they
+        /// suffice for; warnings and the verdict's range say what that leaves open.
+        pub coarsest: Option<f64> = None, off "90", within(1.0..=100.0, "a percentage from 1 to 100");
         /// Overlap of two inscribed spheres from which their tetrahedra are one void.
         pub merge_overlap: f64 = DEFAULT_MERGE_OVERLAP, off, only("a number from 0", |f| *f >= 0.0);
     }

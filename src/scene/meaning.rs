@@ -180,6 +180,8 @@ pub struct PackingSpec {
     pub gradation: FilterGradation,
     /// Grains, where the user says how many.
     pub grains: Option<usize>,
+    /// Percent of the mass, from the finest grain on, that is packed, where the user says it.
+    pub coarsest: Option<f64>,
     /// How the grains are compressed; its number of grains counts only where the user gave one.
     pub compression: packing::Settings,
     /// Overlap of two inscribed spheres from which their tetrahedra are one void.
@@ -208,7 +210,8 @@ impl PackingSpec {
         compression.grains = grains.unwrap_or(compression.grains);
         compression.check().map_err(|e| clash(format!("packing.{e}")))?;
         let merge_overlap = packing.filter.merge_overlap;
-        Ok(Self { gradation, grains, compression, merge_overlap, file: file.to_owned() })
+        let coarsest = packing.filter.coarsest;
+        Ok(Self { gradation, grains, coarsest, compression, merge_overlap, file: file.to_owned() })
     }
 
     /// The sieve table of the gradation, if there is one.

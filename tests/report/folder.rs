@@ -252,6 +252,7 @@ pub fn outcome(replicates: u64) -> Outcome {
             coarsest_through_mm: 0.85,
             eroded_without_blocking: 0.873,
         }),
+        curve_range: None,
         sensitivity: sensitivity.collect(),
         seconds: 239.4,
     }

@@ -1,0 +1,38 @@
+//! Walks a case at the ends of the range in which its constriction curve is known.
+
+use super::error::RunError;
+use super::replicates::{ReplicateContext, ReplicateResult, some_replicates, summarise};
+use crate::case::Case;
+use crate::outcome::record::{CurveEnd, CurveRange};
+
+/// Walks as many replicates as were walked with the curve itself at each end of its range, on the same random
+/// numbers; `None` where the curve is no range.
+///
+/// # Errors
+/// As [`super::replicates::replicates`].
+pub fn curve_range(
+    case: &Case,
+    walked: &[ReplicateResult],
+    context: &ReplicateContext,
+) -> Result<Option<CurveRange>, RunError> {
+    // The parts before these are the sensitivity study's and the other reading's.
+    let parts = case.sensitivity_factors().len() as u64 + 2..;
+    let own = case.curve.dc(50.0).unwrap_or(f64::NAN);
+    let mut ends = Vec::new();
+    for (part, end) in parts.zip(case.curve_ends()) {
+        let dc50_factor = end.curve.dc(50.0).unwrap_or(f64::NAN) / own;
+        let other = case.with_curve(end.curve);
+        let of_end = some_replicates(&other, part, 1..=walked.len() as u64, case.n_base, context)?;
+        let (verdict, summaries) = summarise(&of_end);
+        ends.push(CurveEnd {
+            curve: end.name,
+            dc50_factor,
+            replicates: of_end.len() as u64,
+            verdict,
+            runs: summaries.iter().map(|s| s.eroded_mass_fraction).collect(),
+        });
+    }
+    let (verdict, summaries) = summarise(walked);
+    let runs: Vec<_> = summaries.iter().map(|s| s.eroded_mass_fraction).collect();
+    Ok(CurveRange::new(verdict, &runs, ends))
+}
