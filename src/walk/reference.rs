@@ -153,6 +153,9 @@ impl<'a> Reference<'a> {
     }
 
     fn open_area(&self, exit: usize) -> f64 {
+        if self.network.reservoir().is_some() {
+            return if self.blocked[exit] { 0.0 } else { self.network.exit_weight(exit) };
+        }
         let diameter = f64::from(self.network.diameters()[exit]);
         if self.blocked[exit] { 0.0 } else { diameter * diameter }
     }

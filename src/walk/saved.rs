@@ -228,7 +228,8 @@ impl State {
             };
         }
         (self.increment, self.finished, self.tally) = (record.increment, record.finished, record.tally);
-        if self.tally.check(self.increment).is_err() || self.tally.blocked != self.blocked.count_ones() as u64
+        if self.tally.check(self.increment).is_err()
+            || self.tally.blocked != network.blocked_count(&self.blocked)
         {
             return Err(wrong("sums"));
         }

@@ -112,7 +112,7 @@ impl State {
     ) -> io::Result<Self> {
         assert_eq!(blocked.len(), network.constrictions(), "one bit a constriction");
         let chunks = (supply.total() as usize).div_ceil(CHUNK);
-        let tally = Tally { blocked: blocked.count_ones() as u64, ..Tally::default() };
+        let tally = Tally { blocked: network.blocked_count(&blocked), ..Tally::default() };
         let diameter = match supply.single_size() {
             Some(size) => {
                 let mut sizes = Column::zeroed(chunks.min(1) * CHUNK, &Placement::Memory)?;
@@ -144,9 +144,10 @@ impl State {
         })
     }
 
-    /// Whether base particles cannot use constriction `c`: blocked, or of size 0.
+    /// Whether base particles cannot use constriction `c`: blocked, of size 0, or no exit by the rule that
+    /// gives constrictions their direction.
     #[inline]
     pub fn is_closed(&self, network: &Network, c: usize) -> bool {
-        self.blocked[c] || network.diameters()[c] == 0.0
+        self.blocked[c] || network.diameters()[c] == 0.0 || network.exit_weight(c) == 0.0
     }
 }

@@ -167,6 +167,12 @@ impl<'a> PassiveWalk<'a> {
         tally.largest_eroded = tally.largest_eroded.max(largest);
     }
 
+    /// The flow has been solved again: every exit may weigh something else.
+    pub fn renew(&mut self, network: &Network, state: &State) {
+        self.shares = Shares::new(network, &state.blocked);
+        self.trap = None;
+    }
+
     /// Constrictions of these voids have closed.
     pub fn refresh(&mut self, network: &Network, state: &State, voids: impl Iterator<Item = u32>) {
         for void in voids {
