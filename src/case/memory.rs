@@ -46,7 +46,7 @@ impl Case {
         if self.scene.walk.engine.takes_each(n_base / self.increments(), self.counts[2]) {
             return n_base;
         }
-        let finest = match &self.network_file {
+        let finest = match &self.fixed_network {
             Some(network) => network.finest_open(|_| false),
             None => (self.curve.smallest() / self.unit_mm) as f32,
         };

@@ -32,6 +32,8 @@ pub struct PackedFilter {
     pub record: Vec<u8>,
     /// Volume of the voids by that of the grains.
     pub void_ratio: f64,
+    /// The grains, as CSV; `None` for a placeholder, or where a run kept the curve alone.
+    pub grains: Option<Vec<u8>>,
 }
 
 /// Why a packing's folder cannot be used.
@@ -96,6 +98,7 @@ impl PackedFilter {
             grains_per_void: found.grains_per_void(),
             record,
             void_ratio: read.after.void_ratio,
+            grains: Some(bytes),
         }))
     }
 
@@ -119,6 +122,7 @@ impl PackedFilter {
             grains_per_void,
             record: record_bytes,
             void_ratio: of.after.void_ratio,
+            grains: None,
         })
     }
 
@@ -140,6 +144,7 @@ impl PackedFilter {
             grains_per_void: 0.6,
             record: Vec::new(),
             void_ratio: f64::NAN,
+            grains: None,
         })
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{Case, Input, replicate_seed};
 use crate::gradation::FINES_MM;
+use crate::network::ExitRule;
 use crate::outcome::Mistake;
 use crate::outcome::rules::FEW_FINES;
 
@@ -41,7 +42,7 @@ impl Case {
                 100.0 * self.base.pan_fraction()
             ));
         }
-        if let Some(shipped) = self.shipped.filter(|_| self.network_file.is_none())
+        if let Some(shipped) = self.shipped.filter(|_| self.fixed_network.is_none())
             && let Some(cu) = self.filter.cu()
             && (cu / shipped.cu - 1.0).abs() > 0.05
         {
@@ -125,9 +126,11 @@ impl Case {
     /// network, or where one constriction is very much wider than another.
     fn moves_to_an_end(&self) -> Option<f64> {
         let widest = self.curve.largest() / self.curve.smallest();
-        match &self.network_file {
+        match &self.fixed_network {
+            // Down the pressure there are no loops.
+            Some(network) if network.reservoir().is_some() => None,
             Some(network) => Some(network.moves_to_an_end(LOOKED_AT)),
-            None if widest * widest > MANY_MOVES => {
+            None if widest * widest > MANY_MOVES && self.scene.exit_rule() == ExitRule::Area => {
                 let network = self.network(replicate_seed(self.scene.walk.seed, 1)).ok()?;
                 Some(network.moves_to_an_end(LOOKED_AT))
             }

@@ -171,6 +171,12 @@ impl VoidGraph {
         libm::cbrt(x * y * z / self.voids() as f64)
     }
 
+    /// Permeability (mm2) by Kozeny and Carman: `n^3 d32^2 / (180 (1 - n)^2)` with n the porosity.
+    pub fn kozeny_carman_mm2(&self) -> f64 {
+        let (n, solid) = (self.porosity, 1.0 - self.porosity);
+        n * n * n * self.d32_mm * self.d32_mm / (180.0 * solid * solid)
+    }
+
     /// The graph as CSV: `from,to,shift_x,shift_y,shift_z,diameter_mm,conductance_mm3`, where the conductance
     /// is multiplied by the viscosity.
     pub fn to_csv(&self) -> String {
@@ -270,4 +276,74 @@ fn water(c: &[GrainPoint; 4]) -> f64 {
     let six = (e[0] * normal[0] + e[1] * normal[1] + e[2] * normal[2]).abs();
     let solid: f64 = (0..4).map(|a| solid_angle(&edges(a), six) * c[a][3] * c[a][3] * c[a][3] / 3.0).sum();
     six / 6.0 - solid
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::packing::Cell;
+    use crate::stream::{Key, Purpose, unit};
+    use rand::Rng;
+
+    /// Grains of several sizes on a disturbed lattice.
+    fn packing() -> Packing {
+        let mut rng = Key { seed: 3, purpose: Purpose::Packing, run: 0, increment: 0, chunk: 0 }.generator();
+        let mut random = || unit(rng.next_u64());
+        let n = 6usize;
+        let mut packing =
+            Packing { cell: Cell::Periodic([6.0; 3]), x: vec![], y: vec![], z: vec![], diameter: vec![] };
+        for i in 0..n * n * n {
+            packing.x.push((i % n) as f64 + 0.3 * random());
+            packing.y.push((i / n % n) as f64 + 0.3 * random());
+            packing.z.push((i / n / n) as f64 + 0.3 * random());
+            packing.diameter.push(0.4 + 0.4 * random());
+        }
+        packing
+    }
+
+    /// Bipyramids fill the voids, and their solid angles go once round every grain.
+    #[test]
+    fn throats_sum_to_all_water_and_all_surface() {
+        let packing = packing();
+        let t = Triangulation::new(&packing).unwrap();
+        let positions = t.positions();
+        let voids = Voids::merge(&t, &positions, 0.1);
+        let centres = power_centres(&t, &positions, &voids);
+        let (mut volume, mut surface) = (0.0, 0.0);
+        for (i, k) in (0..t.tetrahedra()).flat_map(|i| (0..4).map(move |k| (i, k))) {
+            let (u, _, across) = t.across(i, k).unwrap();
+            let corners = t.at(&positions, i, Shift::ZERO);
+            let facet = [1, 2, 3].map(|e| corners[(k + e) % 4]);
+            let other = moved(&centres[u], &positions.displacement(across));
+            let throat = Throat::new(&facet, &corners[k], [&centres[i], &other]);
+            // Every facet is seen from both sides.
+            volume += 0.5 * throat.volume;
+            surface += 0.5 * throat.surface;
+        }
+        let unit = t.unit_mm();
+        let pi = std::f64::consts::PI;
+        let solid: f64 = packing.diameter.iter().map(|d| pi / 6.0 * d * d * d).sum();
+        let all: f64 = packing.diameter.iter().map(|d| pi * d * d).sum();
+        assert!((volume * unit * unit * unit / (216.0 - solid) - 1.0).abs() < 1e-9, "{volume}");
+        assert!((surface * unit * unit / all - 1.0).abs() < 1e-9, "{surface}");
+        let graph = VoidGraph::of(&t, 0.1).unwrap();
+        let of_voids: f64 = graph.volume_mm3.iter().sum();
+        assert!((of_voids / (216.0 - solid) - 1.0).abs() < 1e-9, "{of_voids}");
+        assert!(graph.point_mm.iter().flatten().all(|&x| (0.0..6.0).contains(&x)));
+        // Either end of a constriction is near its other end.
+        for c in 0..graph.from.len() {
+            let (p, q) = (graph.point_mm[graph.from[c] as usize], graph.point_mm[graph.to[c] as usize]);
+            let far: [f64; 3] = std::array::from_fn(|axis| q[axis] + 6.0 * f64::from(graph.shift[c][axis]));
+            assert!(distance(&p, &far) < 3.0, "{c}");
+        }
+    }
+
+    /// Where voids merge into one that fills the cell, no way through it is known.
+    #[test]
+    fn a_void_through_the_whole_cell_is_refused() {
+        let error = VoidGraph::measure(&packing(), 0.0).unwrap_err().to_string();
+        assert!(error.contains("runs through the whole cell"), "{error}");
+        let free = Packing { cell: Cell::Free, ..packing() };
+        assert!(VoidGraph::measure(&free, 0.1).unwrap_err().to_string().contains("periodic cell"));
+    }
 }

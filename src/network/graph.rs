@@ -14,18 +14,20 @@ pub struct GraphShape {
     pub rule: ExitRule,
     /// Part of its conductance that a blocked constriction keeps.
     pub rho: f64,
+    /// Length of one unit of diameter (mm).
+    pub unit_mm: f64,
 }
 
 impl Network {
     /// The voids of a packing, in `copies` equal cells one behind the other along z and periodic in x and y:
     /// void `v` of copy `k` is void `k N + v`. A constriction that leads into the first copy from before it is
     /// an inlet, one that leads out of the last an outlet. Layers are as thick as the edge of the cube that a
-    /// void has on average. Lengths are in units of the smallest grain.
+    /// void has on average.
     ///
     /// # Errors
     /// What [`Network::linked`] refuses, as no way through.
     pub fn of_graph(graph: &VoidGraph, shape: GraphShape) -> Result<Self, NetworkError> {
-        let (voids, unit) = (graph.voids() as u32, graph.d0_mm);
+        let (voids, unit) = (graph.voids() as u32, shape.unit_mm);
         let copies = shape.copies;
         let too_many = || NetworkError::Unlinked {
             problem: format!(
@@ -128,7 +130,7 @@ mod tests {
     #[test]
     fn a_simple_cubic_packing_has_straight_columns() {
         let graph = lattice(&[[0.0; 3]], 1.0, [3, 4, 5]);
-        let shape = GraphShape { copies: 2, rule: ExitRule::Flux, rho: 0.0 };
+        let shape = GraphShape { copies: 2, rule: ExitRule::Flux, rho: 0.0, unit_mm: 1.0 };
         let mut network = Network::of_graph(&graph, shape).unwrap();
         assert_eq!((network.filter_voids(), network.entries(), network.layers()), (120, 12, 10));
         assert_eq!(network.passages(), 3 * 120 + 12);

@@ -79,6 +79,7 @@ impl FolderKind {
                 "report.html",
                 "series.csv",
                 "layers.csv",
+                "flow.csv",
                 "retained.csv",
                 "eroded.csv",
             ],
@@ -112,7 +113,7 @@ impl FolderKind {
                 "triangulation.csv",
             ],
             Self::Constrictions => {
-                &["constrictions.json", "constrictions.csv", "constrictions.vtp", "grains.vtp"]
+                &["constrictions.json", "constrictions.csv", "constrictions.vtp", "graph.csv", "grains.vtp"]
             }
         }
     }

@@ -115,8 +115,12 @@ pub(super) fn merge(
                 state.eroded_sizes.merge(eroded);
                 state.retained_sizes.merge(retained);
             }
-            for &(constriction, _) in &events.stopped {
-                state.retained_in_constrictions[upstream[constriction as usize] as usize] += 1;
+            for &(constriction, diameter) in &events.stopped {
+                let void = upstream[constriction as usize] as usize;
+                state.retained_in_constrictions[void] += 1;
+                if let Some(cubes) = state.retained_cubes.get_mut(void) {
+                    *cubes += cube(diameter);
+                }
                 if !state.blocked.replace(constriction as usize, true) {
                     closed.push(constriction);
                     // One blocking closes a constriction both ways.
@@ -125,8 +129,11 @@ pub(super) fn merge(
                     }
                 }
             }
-            for &(void, _) in &events.stranded {
+            for &(void, diameter) in &events.stranded {
                 state.retained_in_voids[void as usize] += 1;
+                if let Some(cubes) = state.retained_cubes.get_mut(void as usize) {
+                    *cubes += cube(diameter);
+                }
             }
         }
         events.clear();

@@ -73,6 +73,9 @@ pub struct State {
     pub retained_in_constrictions: Vec<u64>,
     /// Base particles retained in each void for want of an open exit.
     pub retained_in_voids: Vec<u64>,
+    /// Sum of the diameters cubed of the particles retained in each void and its exits; empty where the voids
+    /// have no known volume.
+    pub retained_cubes: Vec<f64>,
     /// Sums over the run.
     pub tally: Tally,
     /// Bounds of the size classes.
@@ -137,6 +140,7 @@ impl State {
             history: Vec::new(),
             retained_in_constrictions: vec![0; network.voids()],
             retained_in_voids: vec![0; network.voids()],
+            retained_cubes: vec![0.0; if network.volumes().is_empty() { 0 } else { network.voids() }],
             tally,
             eroded_sizes: SizeCounts::new(&classes),
             retained_sizes: SizeCounts::new(&classes),

@@ -4,6 +4,7 @@ mod campaign;
 mod checkpoints;
 mod first_hour;
 mod full_disk;
+mod graph;
 mod hostile_names;
 mod pack;
 mod precision;

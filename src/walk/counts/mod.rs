@@ -145,6 +145,9 @@ impl<'a> PassiveWalk<'a> {
         tally.retained_in_voids += retained;
         for &(void, n) in stranded {
             state.retained_in_voids[void as usize] += n;
+            if let Some(cubes) = state.retained_cubes.get_mut(void as usize) {
+                *cubes += self.sizes.mass(n);
+            }
         }
     }
 
