@@ -110,6 +110,13 @@ impl Case {
                 self.n_base
             ));
         }
+        if let Some((copies, _)) = self.copies {
+            let equal = if copies > 1 { format!(", {copies} equal copies of it,") } else { String::new() };
+            warnings.push(format!(
+                "all replicates walk the voids of one packing{equal} so that their spread is that of the walk \
+                 alone, not that between packings"
+            ));
+        }
         if let Some(moves) = self.moves_to_an_end().filter(|moves| *moves > MANY_MOVES) {
             let about = if moves < 1e15 { format!("about {moves:.1e}") } else { "more than 1e15".into() };
             warnings.push(format!(
