@@ -165,6 +165,13 @@ def ags():
     put("gradings.ags", AGS % ("mm", "30"), {"BH1 1.50 1.50": bh1, "BH2 3.00 3.00": [(0.063, 1), (2, 30), (20, 100)]})
     put("gradings_bad.ags", AGS % ("mm", "x"), refused=["line 15, percent_finer: \"x\""])
     put("gradings_unit.ags", AGS % ("furlong", "30"), refused=["line 7", "GRAT_SIZE"])
+    grag = ('"GROUP","GRAG"\n"HEADING","LOCA_ID","SAMP_TOP","GRAG_UC","GRAG_GRAV","GRAG_SAND","GRAG_FINE"\n'
+            '"UNIT","","m","","%","%","%"\n"DATA","BH1","1.50","6.8","0","88","12"\n\n')
+    both = AGS % ("mm", "30")
+    put("gradings_summary.ags", '"GROUP","PROJ"\n"HEADING","PROJ_ID"\n"DATA","P1"\n\n' + grag,
+        refused=["line 8", "GRAG", "a group GRAT with a row for each opening"])
+    put("gradings_both.ags", both.replace('"GROUP","GRAT"', grag + '"GROUP","GRAT"'),
+        {"BH1 1.50 1.50": bh1, "BH2 3.00 3.00": [(0.063, 1), (2, 30), (20, 100)]}, notes=["GRAG, which sums"])
     put("no_gradings.ags", '"GROUP","PROJ"\n"HEADING","PROJ_ID"\n"DATA","P1"\n', refused=["GRAT"])
 
 

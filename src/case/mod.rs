@@ -5,6 +5,7 @@ mod memory;
 mod packed_filter;
 mod packing_plan;
 mod record;
+mod regrade;
 mod resolved;
 mod sizes;
 mod void_graph;
@@ -92,8 +93,10 @@ pub struct Case {
     pub shipped: Option<&'static ShippedFilter>,
     /// The packing that the curve was measured on, if the program made it.
     pub packed: Option<PackedFilter>,
-    /// The base's gradation.
+    /// The base's gradation, as it is walked.
     pub base: Gradation,
+    /// The base as it was given, and the size (mm) that it was regraded on, where it is walked regraded.
+    pub regraded_from: Option<(Gradation, f64)>,
     /// Draws the base's sizes, in units of `unit_mm`.
     pub sampler: SizeSampler,
     /// Base particles of a run, by Eq. (2) or as given.
@@ -211,6 +214,7 @@ impl Case {
             (None, None) => return Err(scene.clash("filter.curve is missing").into()),
         };
         let base = base_gradation(&scene, &filter, &curve, unit_mm, &mut files)?;
+        let (base, regraded_from) = regrade::walked(&scene, base)?;
         // A sieve table alone can be in another unit, or the filter's.
         let mistake = match scene.base.gradation() {
             BaseGradation::Sieve(..) => Mistake::find(&filter, &base, false),
@@ -267,6 +271,7 @@ impl Case {
             curve,
             shipped,
             base,
+            regraded_from,
             sampler,
             n_base: supply.0,
             n_base_eq2: supply.1,

@@ -35,7 +35,6 @@ impl Case {
         let d = |gradation: &Gradation, percent| gradation.d(percent).unwrap_or(f64::NAN);
         let pairs = |points: Vec<(f64, f64)>| points.into_iter().map(|(a, b)| [a, b]).collect();
         let [voids, constrictions, start_nodes, layers] = self.counts;
-        let d50_by_number = self.filter.d_by_number(50.0).unwrap_or(f64::NAN);
         let cubic = |n: &[u32; 3]| format!("cubic {} x {} x {}", n[0], n[1], n[2]);
         let (kind, name) = match &self.scene.network.source() {
             NetworkSource::Cubic(n) => (record::NetworkKind::Cubic, cubic(n)),
@@ -87,7 +86,7 @@ impl Case {
                 d0_mm: self.unit_mm,
                 d15_mm: d(&self.filter, 15.0),
                 d50_mm: d(&self.filter, 50.0),
-                d50_by_number_mm: d50_by_number,
+                d50_by_number_mm: self.filter.d_by_number(50.0).unwrap_or(f64::NAN),
                 d85_mm: d(&self.filter, 85.0),
                 void_ratio: match &self.packed {
                     Some(packed) => Some(packed.void_ratio),
@@ -103,7 +102,10 @@ impl Case {
                     BaseGradation::Sieve(..) => self.name_of("base.sieve"),
                     BaseGradation::Single(_) => "one size".into(),
                     BaseGradation::Linear { cu, .. } => format!("linear, Cu {cu}"),
-                },
+                } + &self
+                    .regraded_from
+                    .as_ref()
+                    .map_or(String::new(), |(_, at)| format!(", regraded on {at:.3} mm")),
                 cu: self.base.cu(),
                 d0_mm: self.base.smallest_mm(),
                 d15_mm: self.base.d(15.0),
@@ -112,6 +114,7 @@ impl Case {
                 d95_mm: d(&self.base, 95.0),
                 d100_mm: self.base.largest_mm(),
                 tail_mass_fraction: self.base.pan_fraction(),
+                regraded_at_mm: self.regraded_from.as_ref().map(|(_, at)| *at),
                 gradation: pairs(self.base.points()),
             },
             network: record::NetworkRecord {
@@ -125,11 +128,7 @@ impl Case {
                 start_nodes,
                 layers,
                 connectivity: self.connectivity.clone(),
-                thickness_mm: match (self.copies, &self.fixed_network) {
-                    (Some((_, thickness_mm)), _) => Some(thickness_mm),
-                    (None, Some(_)) => None,
-                    (None, None) => Some(layers as f64 * d50_by_number),
-                },
+                thickness_mm: self.thickness(),
                 copies: self.copies.map(|(copies, _)| u64::from(copies)),
             },
             mass_ratio: self.mass_ratio,
@@ -155,10 +154,20 @@ impl Case {
             inlets,
             copies: self.copies.map(|(copies, _)| u64::from(copies)),
             layers,
-            thickness_mm: self.record().network.thickness_mm,
+            thickness_mm: self.thickness(),
             k0_m2,
             k0_m_per_s: k0_m2.map(|k| k * GRAVITY / KINEMATIC_VISCOSITY),
         })
+    }
+
+    /// Modelled filter thickness: layers times D50F by number, or copies of a packing; `None` where a layer has no thickness.
+    pub fn thickness(&self) -> Option<f64> {
+        let d50 = self.filter.d_by_number(50.0).unwrap_or(f64::NAN);
+        match (self.copies, &self.fixed_network) {
+            (Some((_, thickness_mm)), _) => Some(thickness_mm),
+            (None, Some(_)) => None,
+            (None, None) => Some(self.counts[3] as f64 * d50),
+        }
     }
 
     /// Whether the filter's gradation is a sieve curve, and not a straight line.

@@ -1,10 +1,9 @@
 //! Where a case leaves the range in which the model was checked, and what else a reader must know.
 
 use super::{Case, Input, replicate_seed};
-use crate::gradation::FINES_MM;
+use crate::gradation::{FEW_FINES, FINES_MM};
 use crate::network::ExitRule;
 use crate::outcome::Mistake;
-use crate::outcome::rules::FEW_FINES;
 
 /// More moves than these of a particle that nothing stops are worth a word.
 const MANY_MOVES: f64 = 1e5;
@@ -17,6 +16,8 @@ impl Case {
     pub fn doubts(&self) -> Vec<String> {
         let mut doubts = Vec::new();
         doubts.extend(self.fines());
+        doubts.extend(self.errs_unsafe());
+        doubts.extend(self.too_thick());
         for (whose, soil, low, high) in [("filter", &self.filter, 1.2, 6.0), ("base", &self.base, 1.2, 4.5)] {
             match soil.cu() {
                 Some(cu) if cu < low - 1e-9 || cu > high + 1e-9 => doubts
@@ -63,6 +64,19 @@ impl Case {
         doubts
     }
 
+    /// A real filter layer that is thinner than the modelled one.
+    fn too_thick(&self) -> Option<String> {
+        let (real, modelled) = (self.scene.filter.thickness_mm?, self.thickness()?);
+        let unit = if self.is_scale_free() { "D0F" } else { "mm" };
+        (modelled > real).then(|| {
+            format!(
+                "the modelled filter is thicker than the real one; {} layers of D50F by number are \
+                 {modelled:.1} {unit}, filter.thickness_mm is {real}: network.nz says how many layers",
+                self.counts[3]
+            )
+        })
+    }
+
     /// Fines of the base that may be cohesive, or that are not known.
     fn fines(&self) -> Option<String> {
         if self.is_scale_free() {
@@ -89,6 +103,7 @@ impl Case {
     /// Where the inputs leave the range in which the model was checked, and what else a reader must know.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = self.doubts();
+        warnings.extend(self.regrading());
         let of_file = |input: &Input| -> Vec<String> {
             input.notes.iter().map(|note| format!("{}: {note}", input.name)).collect()
         };

@@ -60,10 +60,17 @@ pub enum Command {
 /// Which two soils.
 #[derive(Debug, Args)]
 pub struct RulesArgs {
-    /// The filter: a sieve table, as filter.sieve in a scene
+    /// The filter: a sieve table, as filter.sieve in a scene; several soils in it are the curves of its
+    /// envelope
     pub filter: PathBuf,
-    /// The base: a sieve table, as base.sieve in a scene
+    /// The base: a sieve table, as base.sieve in a scene; several soils in it are the curves of its envelope
     pub base: PathBuf,
+    /// The base is dispersive: stricter limits where it has many fines
+    #[arg(long)]
+    pub dispersive: bool,
+    /// Width of an open joint beside the base: the probability of continuing erosion into it
+    #[arg(long, value_name = "MM", value_parser = millimetres, allow_hyphen_values = true)]
+    pub joint_mm: Option<f64>,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
@@ -123,6 +130,9 @@ pub struct SoilArgs {
     /// Where an open finest tail ends (mm)
     #[arg(long, value_name = "MM")]
     pub d0_mm: Option<f64>,
+    /// Draw their curves into this file, which is not there yet
+    #[arg(long, value_name = "FILE.svg")]
+    pub figure: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
@@ -353,6 +363,15 @@ fn time(text: &str) -> Result<Duration, String> {
 }
 
 /// How far the interval may reach, in percentage points.
+fn millimetres(text: &str) -> Result<f64, String> {
+    let size: f64 = text.trim().parse().map_err(|_| "write a number of millimetres above 0".to_owned())?;
+    if size > 0.0 && size.is_finite() {
+        Ok(size)
+    } else {
+        Err("write a number of millimetres above 0".into())
+    }
+}
+
 fn target_error(text: &str) -> Result<f64, String> {
     let allowed = "write a number of percentage points above 0 and below 100 with its unit, as 0.5pp";
     number_with(text, "pp", f64::MIN_POSITIVE..=99.999_999, allowed)

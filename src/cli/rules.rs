@@ -1,22 +1,22 @@
 //! `voidwalk rules`: what filter practice says of two soils, without a walk.
 
-use std::fmt::Write;
-use std::path::Path;
-
 use super::args::RulesArgs;
 use super::print::{json, plain, to_stdout};
-use crate::gradation::Gradation;
-use crate::outcome::PairRules;
+use crate::gradation::curves_in_file;
 use crate::outcome::record::{AppliedRule, RuleRole};
+use crate::outcome::{PairOptions, PairRules};
 use crate::run::RunError;
+use std::fmt::Write;
 
 /// Widest line (characters).
 const WIDTH: usize = 100;
 
-/// Applies every rule to two sieve tables.
+/// Applies every rule to two sieve tables, or to the curves of two envelopes.
 pub fn rules(args: &RulesArgs) -> Result<(), RunError> {
-    let read = |path: &Path| Gradation::from_sieve_csv(path, None).map_err(RunError::refused);
-    let pair = PairRules::of(&read(&args.filter)?, &read(&args.base)?);
+    let filters = curves_in_file(&args.filter, None).map_err(RunError::refused)?;
+    let bases = curves_in_file(&args.base, None).map_err(RunError::refused)?;
+    let options = PairOptions { dispersive: args.dispersive, joint_mm: args.joint_mm };
+    let pair = PairRules::of_envelopes(&filters, &bases, options);
     to_stdout(&if args.json { json(&pair)? } else { words(&pair, args) });
     Ok(())
 }
@@ -28,16 +28,22 @@ fn words(pair: &PairRules, args: &RulesArgs) -> String {
     let mut line = |s: String| {
         let _ = writeln!(text, "{}", plain(&s));
     };
+    let of_curve = |curves: &[String], curve: &str| match curves.is_empty() {
+        true => String::new(),
+        false => format!(", curve {curve}"),
+    };
     line(format!(
-        "filter  {}: D15 {}, D85 {} mm, Cu {}",
+        "filter  {}{}: D15 {}, D85 {} mm, Cu {}",
         args.filter.display(),
+        of_curve(&filter.curves, &filter.curve),
         number(filter.d15_mm),
         number(filter.d85_mm),
         number(filter.cu)
     ));
     line(format!(
-        "base    {}: D15 {}, D85 {}, D95 {} mm, Cu {}",
+        "base    {}{}: D15 {}, D85 {}, D95 {} mm, Cu {}",
         args.base.display(),
+        of_curve(&base.curves, &base.curve),
         number(base.d15_mm),
         number(base.d85_mm),
         number(base.d95_mm),
@@ -49,7 +55,8 @@ fn words(pair: &PairRules, args: &RulesArgs) -> String {
         Some(at) => format!("D85, D95 and fines after regrading on {at:.3} mm ({})", base.why),
         None => format!("not regraded ({})", base.why),
     };
-    line(format!("        {category}, {fines}; {regraded}"));
+    let dispersive = if base.dispersive { ", dispersive" } else { "" };
+    line(format!("        {category}{dispersive}, {fines}; {regraded}"));
     for warning in &pair.warnings {
         line(format!("warning {warning}"));
     }
@@ -60,10 +67,14 @@ fn words(pair: &PairRules, args: &RulesArgs) -> String {
         (RuleRole::Stability, "The filter holds its own fines"),
     ] {
         line(String::new());
-        line(heading.into());
+        line(format!("{heading} (not kept, it speaks against {})", role.speaks_against()));
         for rule in pair.rules.iter().filter(|rule| rule.role == role) {
             line(row(rule));
-            let more = [&rule.note, &rule.needs].map(String::as_str);
+            let curves = [("filter", &rule.filter_curve), ("base", &rule.base_curve)];
+            let named = curves.iter().filter(|(_, curve)| !curve.is_empty());
+            let curves: Vec<String> = named.map(|(whose, curve)| format!("{whose} curve {curve}")).collect();
+            let curves = curves.join(", ");
+            let more = [&curves, &rule.note, &rule.needs].map(String::as_str);
             for text in more.into_iter().filter(|text| !text.is_empty()) {
                 wrapped(text).into_iter().for_each(&mut line);
             }
@@ -78,6 +89,7 @@ fn row(rule: &AppliedRule) -> String {
     let result = match (rule.met, rule.applies) {
         (Some(true), _) => "met",
         (Some(false), _) => "NOT MET",
+        (None, true) if rule.needs.is_empty() && rule.limit.is_none() => "no limit",
         (None, true) => "no result",
         (None, false) => "not for it",
     };

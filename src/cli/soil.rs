@@ -5,10 +5,11 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use super::args::SoilArgs;
-use super::print::{json, plain, to_stdout};
+use super::print::{json, plain, shown, to_stdout};
 use crate::case::CaseError;
 use crate::gradation::{SoilSummary, soils_in_file};
-use crate::run::RunError;
+use crate::report::soils_figure;
+use crate::run::{RunError, write_new};
 
 /// The soils of a file.
 #[derive(Serialize)]
@@ -19,8 +20,13 @@ struct Soils {
 /// Shows the soils of a file.
 pub fn soil(args: &SoilArgs) -> Result<(), RunError> {
     let soils = soils_in_file(&args.file, args.d0_mm).map_err(CaseError::from)?;
+    if let Some(path) = &args.figure {
+        let curves = soils.iter().map(|soil| (soil.name.as_str(), soil.points.as_slice()));
+        write_new(path, soils_figure(curves).as_bytes())?;
+    }
     let soils = Soils { soils };
-    to_stdout(&if args.json { json(&soils)? } else { words(&soils.soils) });
+    let drawn = args.figure.as_deref().map_or(String::new(), |path| format!("\n{}\n", shown(path)));
+    to_stdout(&if args.json { json(&soils)? } else { words(&soils.soils) + &drawn });
     Ok(())
 }
 

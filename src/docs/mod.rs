@@ -6,6 +6,9 @@ pub mod soils {}
 #[doc = include_str!("graph.md")]
 pub mod graph {}
 
+#[doc = include_str!("rules.md")]
+pub mod rules {}
+
 #[doc = include_str!("campaigns.md")]
 pub mod campaigns {}
 

@@ -6,7 +6,8 @@
 //! - [`Soil`] is a table as it stands in a file: CSV, workbook or AGS4, as laboratories write them.
 //! - [`SizeSampler`] draws diameters from it by number.
 //! - [`Gradation::kenney_lau`] and [`Gradation::kezdi`] say whether a soil holds its own fines,
-//!   with [`Gradation::li_fannin`]; [`Gradation::gap`] whether sizes are missing.
+//!   with [`Gradation::li_fannin`] and [`Gradation::uniformity_factors`]; [`Gradation::gap`] whether sizes
+//!   are missing; [`Gradation::regraded`] is a base as filter practice regrades it.
 //! - [`base_particles`] is Eq. (2) of the paper: how many base particles a test inserts.
 //!
 //! # By mass and by number
@@ -22,8 +23,10 @@
 //! Sizes are diameters in mm. Only ratios of sizes enter a formula that rounds, so a factor of two
 //! on every length changes no bit of any ratio.
 
+mod burenkova;
 mod error;
 mod numbers;
+mod regrade;
 mod root;
 mod sampler;
 mod segments;
@@ -34,13 +37,15 @@ mod stability;
 mod supply;
 mod table;
 
+pub use burenkova::UniformityFactors;
 pub(crate) use error::shortened;
 pub use error::{GradationError, NumberError, Position, TableError};
+pub use regrade::{FEW_FINES, Regraded};
 pub use sampler::{SizeRange, SizeSampler};
 pub use shape::Gap;
 pub use sieve::Gradation;
 pub(crate) use soil::file_and_soil;
-pub use soil::{FINES_MM, Soil, SoilSummary, soils_in_file};
+pub use soil::{FINES_MM, Soil, SoilSummary, curves_in_file, soils_in_file};
 pub use stability::{KEZDI_RANGE, ShapeIndex};
 pub use supply::{BaseSupply, base_particles};
 pub(crate) use table::{Direction, Row, Table, check_size, rising};

@@ -45,6 +45,15 @@ pub struct AppliedRule {
     pub formula: String,
     /// Where the rule is published.
     pub source: String,
+    /// Which verdicts it speaks against where it is not kept.
+    #[serde(default)]
+    pub speaks_against: String,
+    /// Which curve of the filter it read, where that is an envelope of several.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub filter_curve: String,
+    /// Which curve of the base it read, where that is an envelope of several.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub base_curve: String,
 }
 
 impl AppliedRule {
@@ -63,12 +72,24 @@ pub enum RuleRole {
     Retention,
     /// A coarser filter: erosion ends.
     Continuation,
-    /// The filter drains.
+    /// The filter drains and can be placed.
     Drainage,
     /// The filter holds its own fines.
     Stability,
     /// The walk itself: it is checked by this, not the filter.
     Walk,
+}
+
+impl RuleRole {
+    /// Which verdicts a rule of this role speaks against where it is not kept.
+    pub fn speaks_against(self) -> &'static str {
+        match self {
+            Self::Retention => "a verdict of no erosion",
+            Self::Continuation => "a verdict of no or of some erosion",
+            Self::Stability => "any verdict: without its fines it is not the filter that was walked",
+            Self::Drainage | Self::Walk => "no verdict",
+        }
+    }
 }
 
 /// How far a verdict can be relied on.

@@ -36,7 +36,7 @@ pub use infiltration::infiltration;
 pub(crate) use least_squares::log_log_slope;
 pub(crate) use metrics::eroded_mass_fraction;
 pub use metrics::{Recorded, RunId, RunMetrics};
-pub use pair::{BaseSizes, FilterSizes, Mistake, PairRules};
+pub use pair::{BaseSizes, FilterSizes, Mistake, PairOptions, PairRules};
 pub use recorder::{Recorder, Wanted};
 
 /// What the model does not contain, for any scene; shown next to every verdict.

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::applied::AppliedRule;
-use super::rules::{BaseSoil, RuleInputs, apply};
+use super::rules::{BaseSoil, NamedCurve, Sides, apply_to_envelopes};
 use crate::gradation::Gradation;
 
 /// What is said of two sieve curves by the rules of practice alone.
@@ -15,13 +15,28 @@ pub struct PairRules {
     pub base: BaseSizes,
     /// Every rule.
     pub rules: Vec<AppliedRule>,
-    /// What may be wrong with the two tables.
+    /// What may be wrong with the two tables, and what was taken for what.
     pub warnings: Vec<String>,
 }
 
-/// Sizes of a filter (mm); `None` where they lie in a finest tail of unknown size.
+/// What else the rules are told of two soils.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PairOptions {
+    /// Whether the base is dispersive.
+    pub dispersive: bool,
+    /// Width of an open joint at the exit (mm).
+    pub joint_mm: Option<f64>,
+}
+
+/// Sizes of a filter (mm), of its coarsest curve where it is an envelope; `None` where they lie in a finest
+/// tail of unknown size.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FilterSizes {
+    /// Its curves, where there are several.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub curves: Vec<String>,
+    /// The curve that these sizes are of.
+    pub curve: String,
     /// 15 % finer.
     pub d15_mm: Option<f64>,
     /// 50 % finer.
@@ -34,9 +49,17 @@ pub struct FilterSizes {
     pub cc: Option<f64>,
 }
 
-/// A base as practice describes it (mm); `None` where a size lies in a finest tail of unknown size.
+/// A base as practice describes it (mm), its finest curve where it is an envelope; `None` where a size lies
+/// in a finest tail of unknown size.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BaseSizes {
+    /// Its curves, where there are several.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub curves: Vec<String>,
+    /// The curve that these sizes are of.
+    pub curve: String,
+    /// Whether it was said to be dispersive.
+    pub dispersive: bool,
     /// Category of NRCS, 1 to 4; `None` where the fines are not known closely enough.
     pub category: Option<u8>,
     /// Percent finer than 0.075 mm after regrading.
@@ -60,7 +83,7 @@ pub struct BaseSizes {
 }
 
 impl PairRules {
-    /// Every rule on a filter and a base, both in mm.
+    /// Every rule on a filter and a base of one curve each, both in mm.
     ///
     /// ```
     /// use voidwalk::{Gradation, outcome::PairRules};
@@ -73,11 +96,43 @@ impl PairRules {
     /// # Ok::<(), voidwalk::gradation::GradationError>(())
     /// ```
     pub fn of(filter: &Gradation, base: &Gradation) -> Self {
-        let inputs = RuleInputs::of_soils(filter, base);
+        let one = |name: &str, curve: &Gradation| vec![(name.to_owned(), curve.clone())];
+        Self::of_envelopes(&one("filter", filter), &one("base", base), PairOptions::default())
+    }
+
+    /// Every rule on the curves of a filter and of a base, all in mm: retention reads the finest base and the
+    /// coarsest filter, permeability the coarsest base and the finest filter.
+    ///
+    /// # Panics
+    /// Where either has no curve.
+    pub fn of_envelopes(filters: &[NamedCurve], bases: &[NamedCurve], options: PairOptions) -> Self {
+        let sides = Sides::of(filters, bases);
+        let (curve, filter) = &filters[sides.coarsest_filter];
+        let (base_curve, base) = &bases[sides.finest_base];
         let BaseSoil { gradation, regraded, regraded_at_mm, why, fines_percent, category } =
-            inputs.base_soil.clone();
+            BaseSoil::of(base, false);
+        let names = |curves: &[NamedCurve]| match curves.len() {
+            1 => Vec::new(),
+            _ => curves.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>(),
+        };
+        let mut warnings: Vec<String> =
+            Mistake::find(filter, base, false).into_iter().map(|mistake| mistake.sentence).collect();
+        for (whose, curves) in [("filter", filters), ("base", bases)] {
+            if curves.len() > 1 {
+                warnings.push(format!(
+                    "the {whose} has {} curves ({}): taken as the envelope of one soil; FILE#NAME takes one \
+                     of them",
+                    curves.len(),
+                    names(curves).join(", ")
+                ));
+            }
+        }
+        let rules = apply_to_envelopes(filters, bases, options.dispersive, options.joint_mm);
+        warnings.extend(stricter(filters, bases, options, sides, &rules));
         Self {
             filter: FilterSizes {
+                curves: names(filters),
+                curve: curve.clone(),
                 d15_mm: filter.d(15.0),
                 d50_mm: filter.d(50.0),
                 d85_mm: filter.d(85.0),
@@ -85,6 +140,9 @@ impl PairRules {
                 cc: filter.cc(),
             },
             base: BaseSizes {
+                curves: names(bases),
+                curve: base_curve.clone(),
+                dispersive: options.dispersive,
                 category,
                 fines_percent,
                 regraded,
@@ -96,13 +154,35 @@ impl PairRules {
                 cu: base.cu(),
                 cc: base.cc(),
             },
-            rules: apply(&inputs),
-            warnings: Mistake::find(filter, base, false)
-                .into_iter()
-                .map(|mistake| mistake.sentence)
-                .collect(),
+            rules,
+            warnings,
         }
     }
+}
+
+/// Whether a base curve that is not the finest has a stricter limit of design: its fines put it into another
+/// category.
+fn stricter(
+    filters: &[NamedCurve],
+    bases: &[NamedCurve],
+    options: PairOptions,
+    sides: Sides,
+    rules: &[AppliedRule],
+) -> Option<String> {
+    let limit = |rules: &[AppliedRule]| rules.iter().find(|rule| rule.id == "sherard-dunnigan")?.limit;
+    let of_finest = limit(rules)?;
+    let filter = std::slice::from_ref(&filters[sides.coarsest_filter]);
+    let of_curve = |curve: &NamedCurve| {
+        let alone = apply_to_envelopes(filter, std::slice::from_ref(curve), options.dispersive, None);
+        Some((curve.0.clone(), limit(&alone)?))
+    };
+    let (name, least) = bases.iter().filter_map(of_curve).min_by(|a, b| a.1.total_cmp(&b.1))?;
+    (bases.len() > 1 && least < of_finest * (1.0 - 1e-9)).then(|| {
+        format!(
+            "the base curve {name} allows a D15F of {least:.3} mm, less than the {of_finest:.3} mm of the \
+             finest curve, as its fines put it into another category"
+        )
+    })
 }
 
 /// Two tables that can hardly be a filter and its base.

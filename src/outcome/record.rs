@@ -326,6 +326,9 @@ pub struct BaseRecord {
     pub d100_mm: f64,
     /// Pan fraction (finer than the finest sieve) by mass; counted as passive.
     pub tail_mass_fraction: f64,
+    /// The size that it was regraded on before it was walked; `None` where it is walked as it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub regraded_at_mm: Option<f64>,
     /// Rows of (size, percent finer by mass), sizes ascending.
     pub gradation: Vec<[f64; 2]>,
 }

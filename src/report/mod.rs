@@ -37,6 +37,7 @@ mod precision;
 mod rules;
 mod run_figures;
 pub mod shell;
+mod soils;
 mod table;
 mod written;
 
@@ -46,4 +47,5 @@ pub use packing::write_packing;
 pub use page::write;
 pub use percolation::{percolation_spread, write_percolation};
 pub use precision::{precision_judgements, write_precision};
+pub use soils::soils_figure;
 pub use written::{Written, write_page};

@@ -118,7 +118,7 @@ fn verdict_box(outcome: &Outcome, verdict: &Drawn) -> Markup {
         });
     html! {
         section.verdict.(class) {
-            p.word.long[doubted] { (clean(&capital(&outcome.headline()))) "." }
+            p.word.long[!outcome.reasons.is_empty()] { (clean(&capital(&outcome.headline()))) "." }
             @if doubted { p { "Confidence: " b { (outcome.confidence.words()) } "." } }
             p.lead { (in_words(outcome)) }
             div { (drawing(verdict)) }
@@ -216,7 +216,8 @@ fn reasons(outcome: &Outcome) -> Markup {
     html! {
         @if !outcome.reasons.is_empty() {
             section.warnings {
-                h2 { "Why this verdict is in doubt" }
+                @if outcome.confidence == Confidence::Within { h2 { "What else to know of this pair" } }
+                @else { h2 { "Why this verdict is in doubt" } }
                 ul { @for reason in &outcome.reasons { li { (clean(reason)) } } }
             }
         }

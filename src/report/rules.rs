@@ -34,6 +34,9 @@ fn table(rules: &[&AppliedRule]) -> Markup {
             html! {
                 (clean(&rule.name))
                 @if !rule.applies_to.is_empty() { br; span.small { "For " (clean(&rule.applies_to)) "." } }
+                @if !rule.speaks_against.is_empty() && rule.role != RuleRole::Walk {
+                    br; span.small { "Not kept, it speaks against " (clean(&rule.speaks_against)) "." }
+                }
                 @for text in [&rule.note, &rule.needs] {
                     @if !text.is_empty() { br; span.small { b { (clean(text)) } } }
                 }
@@ -57,6 +60,9 @@ fn table(rules: &[&AppliedRule]) -> Markup {
             (_, Some(true)) => html! { span.keeps { "✓ met" } },
             (_, Some(false)) => html! { span.breaks { "✗ not met" } },
             (_, None) if !rule.applies && rule.needs.is_empty() => html! { "not made for it" },
+            (_, None) if rule.value.is_some() && rule.limit.is_none() && rule.needs.is_empty() => {
+                html! { "no limit" }
+            }
             (_, None) => html! { "no result" },
         });
     html! { (table) }

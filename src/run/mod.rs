@@ -34,5 +34,5 @@ pub use constrictions::{ConstrictionsOptions, measure_constrictions};
 pub use error::{Exit, RunError};
 pub use folder::FolderKind;
 pub use pack::{FinishedPacking, PackOptions, pack};
-pub use prepare::{PrepareOptions, prepare, write_built_in};
+pub use prepare::{PrepareOptions, prepare, write_built_in, write_new};
 pub use walk::{FinishedRun, RunOptions, resume, walk_case, walk_scene};

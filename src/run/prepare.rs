@@ -124,9 +124,17 @@ fn in_order<F>(
 /// # Errors
 /// A file that is there already is refused.
 pub fn write_built_in(path: &Path) -> Result<(), RunError> {
+    write_new(path, Scene::init_text().as_bytes())
+}
+
+/// Writes a file that is not there yet.
+///
+/// # Errors
+/// A file that is there already is refused.
+pub fn write_new(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
     if path.symlink_metadata().is_ok() {
         let problem = "is there already; name a file that is not";
         return Err(RunError::Refused(format!("{}: {problem}", shown(path))));
     }
-    write_whole(path, Scene::init_text().as_bytes()).map_err(RunError::Claim)
+    write_whole(path, bytes).map_err(RunError::Claim)
 }

@@ -103,9 +103,13 @@ fn rule_inputs<'a>(case: &'a Case, walked: &[ReplicateResult]) -> RuleInputs<'a>
     RuleInputs {
         filter: &case.filter,
         filter_is_measured: case.filter_is_measured(),
-        base: &case.base,
-        base_soil: BaseSoil::of(&case.base, case.is_scale_free()),
+        base: case.base_as_given(),
+        walked_base: &case.base,
+        base_soil: BaseSoil::of(case.base_as_given(), case.is_scale_free()),
         scale_free: case.is_scale_free(),
+        filter_curves: Vec::new(),
+        dispersive: false,
+        joint_mm: None,
         largest_eroded_over_d15f: (!largest.is_empty()).then(|| Statistic::of(&largest).mean),
     }
 }

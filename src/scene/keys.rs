@@ -72,6 +72,9 @@ section! {
         /// Instead of a linear gradation: a sieve table (CSV, .xlsx, .ods or AGS4: openings and percent finer
         /// by mass; FILE#NAME for one of several soils; see `voidwalk soil`).
         pub sieve: Option<PathBuf> = None, off "\"filter.csv\"", any("a file name in quotes");
+        /// Thickness of the real filter layer (mm): where the modelled one is thicker, that is said of the
+        /// verdict.
+        pub thickness_mm: Option<f64> = None, off "500.0", above_zero();
         /// N_p / N_voids of Eq. (2): filter grains per void of the packing (a shipped curve or a packing
         /// knows its own).
         pub grains_per_void: Option<f64> = None, off "0.61", above_zero();
@@ -108,6 +111,9 @@ section! {
         pub sieve: Option<PathBuf> = None, off "\"base.csv\"", any("a file name in quotes");
         /// With a sieve table: where its open finest tail ends (mm).
         pub d0_mm: Option<f64> = None, off "0.01", above_zero();
+        /// Whether the base is walked as filter practice regrades it ("practice": to 100 % finer than 4.75 mm
+        /// or a gap, where practice does), or as it is ("no", the default). Needs sizes in mm.
+        pub regrade: Option<Regrade> = None, off "\"practice\"", any("\"practice\" or \"no\"");
         /// Instead of a gradation: one size (mm).
         pub single_mm: Option<f64> = None, off "0.18", above_zero();
         /// How much base: mass of base over mass of filter, Eq. (2).
@@ -293,6 +299,17 @@ impl NetworkKind {
 
 impl Leaf for NetworkKind {}
 impl Leaf for ExitRule {}
+/// Whether a base is walked regraded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Regrade {
+    /// As filter practice regrades it.
+    Practice,
+    /// As it is.
+    No,
+}
+
+impl Leaf for Regrade {}
 impl Leaf for Density {}
 impl Leaf for Engine {}
 impl Leaf for Sampling {}

@@ -18,7 +18,8 @@ use serde::Serialize;
 
 pub use crate::schema::{Origin, SceneError};
 pub use keys::{
-    Base, CurveSource, Density, ExitKeys, Filter, FilterPacking, NetworkKeys, NetworkKind, Record, WalkKeys,
+    Base, CurveSource, Density, ExitKeys, Filter, FilterPacking, NetworkKeys, NetworkKind, Record, Regrade,
+    WalkKeys,
 };
 pub use meaning::{
     Amount, BaseGradation, D85, Extent, FilterGradation, NetworkSource, PackingSpec, USUAL_LAYERS,
@@ -395,7 +396,7 @@ mod tests {
             vec!["seed=18446744073709551615", "stop.decide_percent=99.9", "inject_share=0.02"],
             vec!["filter.density=dense", "filter.cu=3", "packing.grains=500", "packing.drag=0.04"],
             vec!["filter.friction=0.2", "filter.sieve=f.csv", "filter.d0_mm=0.1"],
-            vec!["filter.estimate=0.5", "base.sieve=b.csv", "base.n_base=1e6", "record.sensitivity=[]"],
+            vec!["filter.estimate=0.5", "base.sieve=b.csv", "base.regrade=practice", "base.n_base=1e6"],
             vec!["base.dc_curve=cu3-loose", "base.cap=2e8", "network.connectivity={5=50, 7=50}"],
             vec!["network.file=n.csv", "sampling=stratified", "engine=expected"],
         ] {
@@ -466,6 +467,8 @@ mod tests {
             ("network.nx=0", "from 1 to"),
             ("network.nx=1e10", "from 1 to"),
             ("record.size_curves=[0]", "increments, from 1"),
+            ("base.regrade=yes", "\"practice\" or \"no\""),
+            ("filter.thickness_mm=0", "above 0"),
             ("base.d0_mm=1", "goes with base.sieve"),
             ("bas.cu=2", "did you mean `base.cu`"),
             ("filter.density=medium", "\"dense\" (friction 0), \"intermediate\" (0.1) or \"loose\" (0.3)"),

@@ -58,6 +58,113 @@ fn rules_are_applied_without_a_walk_under_the_names_of_the_contract() {
     assert!(String::from_utf8(output.stdout).unwrap().contains("micrometres under a header in mm"));
 }
 
+/// Several soils in a sheet are the curves of one envelope; every number names its curve.
+#[test]
+fn envelopes_dispersive_soils_and_joints_by_the_command() {
+    let root = tempfile::tempdir().unwrap();
+    let sheet = |name: &str, text: &str| {
+        let path = root.path().join(name);
+        fs::write(&path, text).unwrap();
+        path.display().to_string()
+    };
+    let filter =
+        sheet("filter.csv", "opening_mm,fine side,coarse side\n0.5,15,0\n1,60,15\n2,100,60\n5,100,100\n");
+    let base = sheet("base.csv", "opening_mm,fine,coarse\n0.001,0,0\n0.075,90,60\n0.2,98,85\n1,100,100\n");
+    let json = |more: &[&str]| -> serde_json::Value {
+        let output = voidwalk(&[&["rules", &filter, &base, "--json"], more].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let rule = |value: &serde_json::Value, id: &str| {
+        value["rules"].as_array().unwrap().iter().find(|rule| rule["id"] == id).cloned()
+    };
+    let value = json(&[]);
+    assert_eq!(
+        (value["base"]["curve"].as_str(), value["base"]["category"].as_u64()),
+        (Some("fine"), Some(1))
+    );
+    let retains = rule(&value, "sherard-dunnigan").unwrap();
+    assert_eq!((&retains["filter_curve"], &retains["base_curve"]), (&"coarse side".into(), &"fine".into()));
+    // 90 % at 0.075 mm, 0 % at 0.001 mm: D85B = 0.001 x 75^(85/90) = 0.05900 mm, 9 times that 0.5310 mm.
+    assert!((retains["limit"].as_f64().unwrap() - 0.009 * 75f64.powf(85.0 / 90.0)).abs() < 1e-9);
+    assert_eq!(retains["speaks_against"], "a verdict of no erosion");
+    let drains = rule(&value, "permeability").unwrap();
+    assert_eq!((&drains["filter_curve"], &drains["base_curve"]), (&"fine side".into(), &"coarse".into()));
+    assert_eq!(rule(&value, "filter-band").unwrap()["met"], true);
+    assert!(rule(&value, "constricted-exit").is_none());
+    let dispersive = json(&["--dispersive", "--joint-mm", "1e-9"]);
+    let limit = rule(&dispersive, "sherard-dunnigan").unwrap()["limit"].as_f64().unwrap();
+    assert!((limit - 0.0065 * 75f64.powf(85.0 / 90.0)).abs() < 1e-9);
+    assert_eq!(rule(&dispersive, "constricted-exit").unwrap()["value"], 0.0);
+    let words = String::from_utf8(voidwalk(&["rules", &filter, &base, "--joint-mm", "5"]).stdout).unwrap();
+    for said in [
+        "filter curve coarse side, base curve fine",
+        "probability = 90.0 %",
+        "envelope of one soil",
+        "FILE#NAME",
+    ] {
+        assert!(words.contains(said), "{said}: {words}");
+    }
+    // One curve of each by its name.
+    let one = voidwalk(&["rules", &format!("{filter}#fine side"), &format!("{base}#coarse"), "--json"]);
+    let one: serde_json::Value = serde_json::from_slice(&one.stdout).unwrap();
+    assert!(one["base"].get("curves").is_none() && rule(&one, "filter-band").is_none());
+    for joint in ["0", "-1", "wide"] {
+        let output = voidwalk(&["rules", &filter, &base, "--joint-mm", joint]);
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.code() == Some(2) && stderr.contains("millimetres above 0"), "{stderr}");
+    }
+}
+
+/// The till of the first trial: 92 % of it are finer than 4.75 mm, 35 % than 0.075 mm.
+#[test]
+fn the_base_is_walked_regraded_where_the_scene_says_so() {
+    let root = tempfile::tempdir().unwrap();
+    let sieve = |name: &str, rows: &str| table(root.path(), name, rows);
+    let filter = format!("filter.sieve={}", sieve("gravel.csv", "5,0\n6.5,15\n20,100\n"));
+    let till =
+        format!("base.sieve={}", sieve("till.csv", "19,100\n4.75,92\n2,82\n0.425,60\n0.075,35\n0.01,0\n"));
+    let check = |more: &[&str]| {
+        let set = ["check", "--json", "--set", &filter, "--set", &till, "--set", "base.n_base=1000"];
+        let output = voidwalk(&[&set, more].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice::<serde_json::Value>(&output.stdout).unwrap()
+    };
+    let warned = |value: &serde_json::Value, said: &str| {
+        value["warnings"].as_array().unwrap().iter().any(|warning| warning.as_str().unwrap().contains(said))
+    };
+    let as_it_is = check(&[]);
+    let base = &as_it_is["inputs"]["base"];
+    assert!(base["d100_mm"] == 19.0 && base.get("regraded_at_mm").is_none());
+    assert!(warned(&as_it_is, "errs on the unsafe side for this base"), "{as_it_is}");
+    assert_eq!(check(&["--set", "base.regrade=no"])["inputs"], as_it_is["inputs"]);
+    let regraded = check(&["--set", "base.regrade=practice"]);
+    let base = &regraded["inputs"]["base"];
+    assert!(base["d100_mm"] == 4.75 && base["regraded_at_mm"] == 4.75, "{base}");
+    assert!((base["d85_mm"].as_f64().unwrap() - 1.5305).abs() < 1e-3);
+    assert!(base["name"].as_str().unwrap().ends_with("till.csv, regraded on 4.750 mm"), "{base}");
+    assert!(warned(&regraded, "walked as practice regrades it: the 92.0 % of it"), "{regraded}");
+    assert!(!warned(&regraded, "errs on the unsafe side"), "{regraded}");
+    // A broad sand that practice leaves as it is: Cu 9.8.
+    let broad = format!("base.sieve={}", sieve("broad.csv", "0.03,0\n0.1,20\n0.6,60\n4,100\n"));
+    assert!(
+        warned(&check(&["--set", &broad]), "it is broadly graded (Cu 11"),
+        "{}",
+        check(&["--set", &broad])
+    );
+    // What practice leaves as it is, is left and said; what has no unit is refused.
+    let sand = format!("base.sieve={}", sieve("sand.csv", "0.1,0\n0.5,85\n1,100\n"));
+    let left = check(&["--set", &sand, "--set", "base.regrade=practice"]);
+    assert!(warned(&left, "practice does not regrade this base: nothing is coarser"), "{left}");
+    let output = voidwalk(&["check", "--set", "base.regrade=practice"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("needs sizes in mm"));
+    // The modelled layer and the real one.
+    let thin = check(&["--set", "filter.thickness_mm=300"]);
+    assert!(warned(&thin, "the modelled filter is thicker than the real one; 60 layers"), "{thin}");
+    assert!(!warned(&check(&["--set", "filter.thickness_mm=3000"]), "thicker"));
+}
+
 /// Exchanged tables and micrometres are recognised before Eq. (2) is blamed.
 #[test]
 fn tables_that_cannot_be_are_refused_by_what_is_wrong_with_them() {

@@ -629,7 +629,7 @@ fn filter_rules_and_equation_one_stand_in_the_outcome() {
     let linear = root.path().join("linear");
     assert!(run_small(&linear, &["--quiet"]).status.success());
     let text = fs::read_to_string(linear.join("outcome.json")).unwrap();
-    assert_eq!(text.matches("needs the filter's sieve curve").count(), 5);
+    assert_eq!(text.matches("needs the filter's sieve curve").count(), 8);
 }
 
 /// Each command that writes a folder leaves those of the others alone, finished or not, with --overwrite and without.

@@ -46,6 +46,23 @@ fn a_soil_is_shown_with_its_sizes_and_class() {
     assert!(shown["soils"][0]["d15_mm"].is_null() && shown["soils"][0]["cu"].is_null(), "{shown}");
 }
 
+/// A figure is written where none is, and nothing where the file is refused.
+#[test]
+fn the_curves_of_a_file_are_drawn_where_asked() {
+    let root = tempfile::tempdir().unwrap();
+    let figure = root.path().join("curves.svg");
+    let at = figure.to_str().unwrap();
+    let refused = voidwalk(&["soil", &soils("gradings_summary.ags"), "--figure", at]);
+    assert!(refused.status.code() == Some(2) && !figure.exists());
+    let drawn = voidwalk(&["soil", &soils("gradings.ags"), "--figure", at]);
+    assert!(drawn.status.success() && String::from_utf8_lossy(&drawn.stdout).contains("curves.svg"));
+    let text = std::fs::read_to_string(&figure).unwrap();
+    assert!(text.contains(">BH1 1.50 1.50<") && text.contains(">BH2 3.00 3.00<"), "{text}");
+    let again = voidwalk(&["soil", &soils("gradings.ags"), "--figure", at]);
+    assert!(again.status.code() == Some(2));
+    assert!(String::from_utf8_lossy(&again.stderr).contains("is there already"));
+}
+
 #[test]
 fn a_soil_that_is_not_there_or_not_clear_is_refused() {
     for (file, message) in [

@@ -173,6 +173,7 @@ pub fn outcome(replicates: u64) -> Outcome {
                 d95_mm: base_at(95.0),
                 d100_mm: base_at(100.0),
                 tail_mass_fraction: 0.0,
+                regraded_at_mm: None,
                 gradation: straight(d0b, cu_b),
             },
             network: NetworkRecord {
@@ -227,6 +228,9 @@ pub fn outcome(replicates: u64) -> Outcome {
                 applies_to: "bases in general".into(),
                 formula: String::new(),
                 source,
+                speaks_against: String::new(),
+                filter_curve: String::new(),
+                base_curve: String::new(),
             }
         })
         .into(),

@@ -1,5 +1,5 @@
 //! AGS4, the format in which ground investigations are handed over: its group GRAT holds a row for each
-//! opening.
+//! opening. Its group GRAG sums a grading up (percents of gravel, sand, silt and clay, Cu) and has no curve.
 
 use super::csv::split;
 use super::grid::{Grid, GridRow};
@@ -27,12 +27,16 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
     };
     let (mut group, mut headings, mut size_unit) = (String::new(), Vec::new(), Some(Unit::Mm));
     let mut soils: Vec<(String, Grid)> = Vec::new();
+    let mut summary = None;
     for (index, content) in text.lines().enumerate() {
         let (cells, line) = (split(content, ',').0, index + 1);
         let Some(kind) = cells.first() else { continue };
         if kind == "GROUP" {
             group = cells.get(1).cloned().unwrap_or_default();
             headings.clear();
+        }
+        if group == "GRAG" && kind == "DATA" {
+            summary = summary.or(Some(line));
         }
         if group != "GRAT" {
             continue;
@@ -77,6 +81,11 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
             _ => {}
         }
     }
+    if let Some(line) = summary.filter(|_| soils.is_empty()) {
+        let allowed = "a group GRAT with a row for each opening: GRAG only sums a grading up, and its \
+                       percents of gravel, sand, silt and clay are no sieve curve";
+        return Err(refused(line, "GRAG", allowed));
+    }
     if soils.is_empty() {
         return Err(TableError::Format {
             file: file.into(),
@@ -85,6 +94,10 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
     }
     let soils = soils.into_iter().map(|(name, mut grid)| {
         in_order(&mut grid);
+        if summary.is_some() {
+            grid.notes
+                .push("the group GRAG, which sums gradings up, was passed over: sizes are of GRAT".into());
+        }
         let soil = SoilColumn { column: 1, heading: name.clone(), role: Role::Finer };
         let layout =
             Layout { size: 0, other_size: None, unit: size_unit, soils: vec![soil], first: 0, headed: true };

@@ -174,11 +174,9 @@ fn soils_of(grid: &Grid) -> Result<Vec<Named>, TableError> {
     Ok(soils)
 }
 
-/// What there is to say of the soils of a file, or of the one that `path` names after a `#`.
-///
-/// # Errors
-/// As [`Gradation::from_sieve_csv`], for each of them.
-pub fn soils_in_file(path: &Path, d0_mm: Option<f64>) -> Result<Vec<SoilSummary>, GradationError> {
+/// The soils of a file, or the one that `path` names after a `#`; a soil without a name is called by its
+/// file.
+fn soils_of_file(path: &Path) -> Result<Vec<Soil>, GradationError> {
     let (path, name) = file_and_soil(path);
     let (file, bytes) = (path.display().to_string(), bytes_of(&path)?);
     let mut soils = match name {
@@ -190,7 +188,24 @@ pub fn soils_in_file(path: &Path, d0_mm: Option<f64>) -> Result<Vec<SoilSummary>
     {
         soil.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     }
-    soils.iter().map(|soil| SoilSummary::of(soil, d0_mm)).collect()
+    Ok(soils)
+}
+
+/// What there is to say of the soils of a file, or of the one that `path` names after a `#`.
+///
+/// # Errors
+/// As [`Gradation::from_sieve_csv`], for each of them.
+pub fn soils_in_file(path: &Path, d0_mm: Option<f64>) -> Result<Vec<SoilSummary>, GradationError> {
+    soils_of_file(path)?.iter().map(|soil| SoilSummary::of(soil, d0_mm)).collect()
+}
+
+/// The names and sieve curves of the soils of a file, or of the one that `path` names after a `#`.
+///
+/// # Errors
+/// As [`Gradation::from_sieve_csv`], for each of them.
+pub fn curves_in_file(path: &Path, d0_mm: Option<f64>) -> Result<Vec<(String, Gradation)>, GradationError> {
+    let soils = soils_of_file(path)?;
+    soils.iter().map(|soil| Ok((soil.name.clone(), soil.gradation(d0_mm)?))).collect()
 }
 
 impl Gradation {

@@ -9,7 +9,7 @@ use crate::gradation::sieve::Gradation;
 /// Fines are finer than this (mm): the No. 200 sieve.
 pub const FINES_MM: f64 = 0.075;
 /// Gravel is coarser than this (mm): the No. 4 sieve.
-const GRAVEL_MM: f64 = 4.75;
+pub const GRAVEL_MM: f64 = 4.75;
 
 /// What was understood of a soil, and what follows from its curve.
 #[derive(Clone, Debug, Serialize)]

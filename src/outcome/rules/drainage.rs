@@ -1,7 +1,7 @@
-//! Rules by which a filter drains.
+//! Rules by which a filter drains and can be placed. None of them says whether it retains its base.
 
 use super::rule::{Judged, RuleInputs};
-use crate::gradation::FINES_MM;
+use crate::gradation::{FINES_MM, Gradation};
 
 /// Times D15B that D15F is at least.
 const TIMES: f64 = 5.0;
@@ -48,4 +48,40 @@ pub fn greatest_size(inputs: &RuleInputs) -> Judged {
         true => Judged { limit: MOST, ..Judged::default() }.lacking("needs the filter's sieve curve in mm"),
         false => Judged::of(Some(inputs.filter.largest_mm()), MOST),
     }
+}
+
+/// The filter is uniform enough: a band of wider curves leaves room for gap-graded ones.
+pub fn uniformity(inputs: &RuleInputs) -> Judged {
+    const MOST: Option<f64> = Some(6.0);
+    match (inputs.filter_is_measured, inputs.filter.cu()) {
+        (false, _) => Judged { limit: MOST, ..Judged::default() }.lacking("needs the filter's sieve curve"),
+        (true, None) => Judged::of(None, MOST).lacking("needs the filter's D10: finer sieves"),
+        (true, cu) => Judged::of(cu, MOST),
+    }
+}
+
+/// Percent finer over which the sides of a band are compared: D5 is the lowest size that designs state, and
+/// tails below it depend on the finest sieve; the second limit is the rule's.
+const BAND: [f64; 2] = [5.0, 60.0];
+
+/// The band of the filter is narrow: its coarse side over its fine side.
+pub fn band(inputs: &RuleInputs) -> Judged {
+    if inputs.filter_curves.len() < 2 {
+        return Judged::left_out();
+    }
+    let widest = |percent: f64| {
+        let sizes: Vec<f64> =
+            inputs.filter_curves.iter().map(|curve| curve.d(percent)).collect::<Option<_>>()?;
+        let (least, most) =
+            sizes.iter().fold((f64::INFINITY, 0.0f64), |(low, high), &d| (low.min(d), high.max(d)));
+        Some((percent, most / least))
+    };
+    // Between two points of any of the curves the ratio has no extreme.
+    let of_curve = |curve: &&Gradation| curve.points().into_iter().map(|(_, percent)| percent);
+    let percents = inputs.filter_curves.iter().flat_map(of_curve).chain(BAND);
+    let within = percents.filter(|percent| (BAND[0]..=BAND[1]).contains(percent));
+    let Some((percent, ratio)) = within.filter_map(widest).max_by(|a, b| a.1.total_cmp(&b.1)) else {
+        return Judged::of(None, Some(5.0)).lacking("needs finer sieves of the filter");
+    };
+    Judged::of(Some(ratio), Some(5.0)).noted(format!("at {percent:.0} % finer"))
 }

@@ -1,6 +1,7 @@
 //! Rules by which a filter retains its base, and the boundaries of coarser filters.
 
 use super::rule::{Fines, Judged, RuleInputs};
+use crate::gradation::FEW_FINES;
 
 /// What is said where the fines are not known.
 const FINES_NEEDED: &str = "needs finer sieves of the base: whether it has 15 % fines or more is not known";
@@ -13,30 +14,40 @@ fn between(few: f64, many: f64, fines: f64, d85b: f64) -> f64 {
     (many - fines) / (many - few) * (4.0 * d85b - 0.7) + 0.7
 }
 
-/// Sherard and Dunnigan's limit of design.
+/// Sherard and Dunnigan's limit of design; with the limits for dispersive soils where the base is one.
 pub fn sherard_dunnigan(inputs: &RuleInputs) -> Judged {
-    let limit = |fines: f64, d85b: f64| match fines {
-        fines if fines > 85.0 => (9.0 * d85b).max(0.2),
-        fines if fines >= 40.0 => 0.7,
-        fines if fines >= 15.0 => between(15.0, 40.0, fines, d85b),
-        _ => 4.0 * d85b,
+    let limit = |fines: f64, d85b: f64| match (inputs.dispersive, fines) {
+        (false, fines) if fines > 85.0 => Some((9.0 * d85b).max(0.2)),
+        (true, fines) if fines > 85.0 => Some((6.5 * d85b).max(0.2)),
+        (false, fines) if fines >= 40.0 => Some(0.7),
+        (true, fines) if fines >= 40.0 => Some(0.5),
+        (true, fines) if fines >= 15.0 => None,
+        (_, fines) if fines >= 15.0 => Some(between(15.0, 40.0, fines, d85b)),
+        _ => Some(4.0 * d85b),
     };
     by_fines(inputs, limit, |category| format!("base category {category}"))
 }
 
-/// Foster and Fell's boundary of no erosion.
+/// Foster and Fell's boundary of no erosion; with their limits for dispersive soils where the base is one.
 pub fn no_erosion(inputs: &RuleInputs) -> Judged {
-    let limit = |fines: f64, d85b: f64| match fines {
-        fines if fines > 85.0 => 9.0 * d85b,
-        fines if fines >= 35.0 => 0.7,
-        fines if fines >= 15.0 => 1.6 * between(15.0, 35.0, fines, d85b),
-        _ => 7.0 * d85b,
+    let limit = |fines: f64, d85b: f64| match (inputs.dispersive, fines) {
+        (false, fines) if fines > 85.0 => Some(9.0 * d85b),
+        (true, fines) if fines > 85.0 => Some(6.4 * d85b),
+        (false, fines) if fines >= 35.0 => Some(0.7),
+        (true, fines) if fines >= 35.0 => Some(0.5),
+        (true, fines) if fines >= 15.0 => None,
+        (_, fines) if fines >= 15.0 => Some(1.6 * between(15.0, 35.0, fines, d85b)),
+        _ => Some(7.0 * d85b),
     };
     by_fines(inputs, limit, |_| String::new())
 }
 
-/// A limit of D15F that follows from fines and D85B of the regraded base.
-fn by_fines(inputs: &RuleInputs, limit: impl Fn(f64, f64) -> f64, note: impl Fn(u8) -> String) -> Judged {
+/// A limit of D15F that follows from fines and D85B of the regraded base; `None` where no source gives it.
+fn by_fines(
+    inputs: &RuleInputs,
+    limit: impl Fn(f64, f64) -> Option<f64>,
+    note: impl Fn(u8) -> String,
+) -> Judged {
     let (d15f, d85b) = (inputs.d15f(), inputs.d85b());
     let (fines, said) = match inputs.fines() {
         Fines::Percent(percent) => (percent, regraded(inputs, note(inputs.base_soil.category.unwrap_or(4)))),
@@ -44,10 +55,19 @@ fn by_fines(inputs: &RuleInputs, limit: impl Fn(f64, f64) -> f64, note: impl Fn(
         Fines::Assumed => (0.0, ASSUMED.to_owned()),
         Fines::Unknown => return Judged::of(d15f, None).lacking(FINES_NEEDED),
     };
-    let judged = Judged::of(d15f, d85b.map(|d85b| limit(fines, d85b))).noted(said);
-    match (d15f, d85b) {
+    let said = match inputs.dispersive && fines >= FEW_FINES {
+        true => format!("dispersive; {said}").trim_end_matches("; ").to_owned(),
+        false => said,
+    };
+    let limit = d85b.map(|d85b| limit(fines, d85b));
+    let judged = Judged::of(d15f, limit.flatten()).noted(said);
+    match (d15f, limit) {
         (None, _) => judged.lacking("needs the filter's D15: finer sieves, or filter.d0_mm"),
         (_, None) => judged.lacking("needs the base's D85: finer sieves, or base.d0_mm"),
+        (_, Some(None)) => judged.lacking(
+            "needs a test of this soil: no source that was read gives a limit for dispersive soils with so \
+                          few fines",
+        ),
         _ => judged,
     }
 }

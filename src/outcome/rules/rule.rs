@@ -24,8 +24,21 @@ pub struct FilterRule {
     pub unit: RuleUnit,
     /// Where it is published.
     pub source: &'static str,
+    /// Which curves it reads where a soil has several.
+    pub pairing: Pairing,
     /// Works it out.
     pub judge: fn(&RuleInputs) -> Judged,
+}
+
+/// Which curves a rule reads where a soil is an envelope of several.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pairing {
+    /// The coarsest filter (D15F) and the finest base (D85B after regrading): retention.
+    CoarseFilterFineBase,
+    /// The finest filter (D15F) and the coarsest base (D15B before regrading): permeability.
+    FineFilterCoarseBase,
+    /// Every curve of the filter; the worst of them counts.
+    EachFilter,
 }
 
 /// The unit of a rule's value and limit.
@@ -54,6 +67,8 @@ pub struct Judged {
     pub needs: String,
     /// What else a reader must know.
     pub note: String,
+    /// Whether nobody asked for it: it is not listed.
+    pub is_left_out: bool,
 }
 
 impl Judged {
@@ -72,6 +87,11 @@ impl Judged {
         Self { applies: false, note: why.into(), ..self }
     }
 
+    /// A rule that nobody asked for.
+    pub fn left_out() -> Self {
+        Self { is_left_out: true, ..Self::default() }
+    }
+
     /// The same for a rule that lacks an input.
     pub fn lacking(self, needs: impl Into<String>) -> Self {
         Self { needs: needs.into(), ..self }
@@ -86,10 +106,18 @@ pub struct RuleInputs<'a> {
     pub filter_is_measured: bool,
     /// The base as it is.
     pub base: &'a Gradation,
+    /// The base as it is walked.
+    pub walked_base: &'a Gradation,
     /// The base as practice describes it.
     pub base_soil: BaseSoil,
     /// Whether sizes are multiples of D0F and not mm.
     pub scale_free: bool,
+    /// Every curve of the filter, where it is an envelope of several; empty otherwise.
+    pub filter_curves: Vec<&'a Gradation>,
+    /// Whether the base is a dispersive clay or silt.
+    pub dispersive: bool,
+    /// Width of an open joint at the exit (mm), where one is asked about.
+    pub joint_mm: Option<f64>,
     /// Largest particle eroded in the first run over D15F, mean over replicates; `None` where nothing eroded,
     /// or nothing was walked.
     pub largest_eroded_over_d15f: Option<f64>,
@@ -102,8 +130,12 @@ impl<'a> RuleInputs<'a> {
             filter,
             filter_is_measured: true,
             base,
+            walked_base: base,
             base_soil: BaseSoil::of(base, false),
             scale_free: false,
+            filter_curves: Vec::new(),
+            dispersive: false,
+            joint_mm: None,
             largest_eroded_over_d15f: None,
         }
     }

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::gradation::Gradation;
+use crate::outcome::applied::{AppliedRule, RuleRole};
 
 fn sieve(points: &[(f64, f64)]) -> Gradation {
     Gradation::from_points(points, None).unwrap()
@@ -187,6 +188,138 @@ fn fines_that_are_not_known_are_asked_for() {
         let rule = of(id, &filter(1.0), &hidden);
         assert!(rule.met.is_none() && rule.limit.is_none() && rule.needs.contains("fines"), "{rule:?}");
     }
+}
+
+/// The notes of Table 9.2: 6.4 D85B in group 1, 0.5 mm in group 2A; no limit for fewer fines was read.
+#[test]
+fn dispersive_bases_have_limits_of_their_own() {
+    let filter = filter(0.4);
+    let of = |id: &str, fines: f64, d85: f64| {
+        let base = base(fines, d85);
+        let rules = apply(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(&filter, &base) });
+        rules.into_iter().find(|rule| rule.id == id).unwrap()
+    };
+    for (id, fines, d85, limit) in [
+        ("sherard-dunnigan", 90.0, 0.05, 0.325),
+        ("sherard-dunnigan", 90.0, 0.01, 0.2),
+        ("sherard-dunnigan", 60.0, 0.5, 0.5),
+        ("sherard-dunnigan", 5.0, 0.6, 2.4),
+        ("foster-fell-no-erosion", 90.0, 0.05, 0.32),
+        ("foster-fell-no-erosion", 35.0, 0.5, 0.5),
+        ("foster-fell-no-erosion", 5.0, 0.6, 4.2),
+    ] {
+        let rule = of(id, fines, d85);
+        assert!(close(rule.limit, limit) && rule.met == Some(0.4 <= limit), "{rule:?}");
+    }
+    for id in ["sherard-dunnigan", "foster-fell-no-erosion"] {
+        let rule = of(id, 25.0, 0.6);
+        assert!(rule.limit.is_none() && rule.met.is_none() && rule.needs.contains("test"), "{rule:?}");
+    }
+}
+
+/// The appendix of the Megech dam: core of 35 to 90 % fines, greatest D15F 0.7 mm; D15B 0.0123 mm, and never
+/// less than 0.1 mm for D15F; D60F of 6 x 0.083 = 0.5 mm.
+#[test]
+fn the_design_of_the_megech_dam_is_reproduced_to_its_digits() {
+    let core = sieve(&[(0.001, 0.0), (0.0123, 15.0), (0.075, 60.0), (4.75, 100.0)]);
+    let fine_side = sieve(&[(0.07, 0.0), (0.083, 10.0), (0.1, 15.0), (0.498, 60.0), (2.5, 100.0)]);
+    assert!(close(of("sherard-dunnigan", &fine_side, &core).limit, 0.7));
+    let drains = of("permeability", &fine_side, &core);
+    assert!(close(drains.limit, 0.1) && close(drains.value, 0.1) && drains.met == Some(true));
+    assert_eq!(format!("{:.2}", 4.0 * core.d(15.0).unwrap()), "0.05");
+    let uniform = of("filter-uniformity", &fine_side, &core);
+    assert!(uniform.value.is_some_and(|cu| (cu - 6.0).abs() < 1e-9), "{uniform:?}");
+    assert_eq!(format!("{:.1}", fine_side.d(60.0).unwrap()), "0.5");
+}
+
+#[test]
+fn burenkova_and_wan_and_fell_by_hand() {
+    // h' = 2, h'' = 100: the range begins at 2.52; the probability is 1 / (1 + exp(-3.004)).
+    let soil = base(5.0, 0.5);
+    let broad = sieve(&[(0.08, 0.0), (0.1, 15.0), (2.0, 30.0), (5.0, 60.0), (10.0, 90.0), (20.0, 100.0)]);
+    let rule = of("burenkova", &broad, &soil);
+    assert!(close(rule.value, 2.0) && close(rule.limit, 2.52) && rule.met == Some(false), "{rule:?}");
+    let gap = sieve(&[
+        (0.08, 0.0),
+        (0.1, 15.0),
+        (0.2, 30.0),
+        (2.0, 30.0),
+        (5.0, 60.0),
+        (10.0, 90.0),
+        (20.0, 100.0),
+    ]);
+    let rule = of("wan-fell", &gap, &soil);
+    let by_hand = 100.0 / (1.0 + (-3.004f64).exp());
+    assert!(rule.value.is_some_and(|found| (found - by_hand).abs() < 1e-6), "{rule:?}");
+    assert!(rule.met.is_none() && rule.limit.is_none() && rule.applies && rule.unit == "%");
+    // Uniform sand is not what Wan and Fell tested; nor is No. 78 stone, which Burenkova's range would blame.
+    let uniform = sieve(&[(1.0, 0.0), (2.25, 100.0)]);
+    assert!(!of("wan-fell", &uniform, &soil).applies);
+    let stone = sieve(&[(1.18, 2.5), (2.36, 5.0), (4.75, 15.0), (9.5, 57.5), (12.5, 95.0), (19.0, 100.0)]);
+    let rule = of("burenkova", &stone, &soil);
+    assert!(rule.value < rule.limit && !rule.applies && rule.met.is_none(), "{rule:?}");
+    // A long coarse tail: her third zone has no result.
+    let tailed = sieve(&[(0.05, 0.0), (0.1, 5.0), (1.0, 15.0), (2.5, 60.0), (19.0, 90.0), (30.0, 100.0)]);
+    let rule = of("burenkova", &tailed, &soil);
+    assert!(!rule.applies && rule.met.is_none() && rule.note.contains("third zone"), "{rule:?}");
+}
+
+/// Kezdi's ratio is above 4 at the splits of 1 % and 100 % of an ordinary filter, which is no alarm.
+#[test]
+fn the_ends_of_an_ordinary_filter_raise_no_alarm() {
+    let filter = sieve(&[(0.075, 0.5), (0.3, 2.0), (0.6, 10.0), (1.2, 40.0), (4.0, 100.0)]);
+    assert!(filter.d(15.85).unwrap() / filter.d(0.85).unwrap() > 4.0);
+    let c33 = [0.075, 0.15, 0.3, 0.6, 1.18, 2.36, 4.75, 9.5];
+    let middle = [1.5, 5.0, 17.5, 37.5, 67.5, 90.0, 97.5, 100.0];
+    let c33 = sieve(&c33.into_iter().zip(middle).collect::<Vec<_>>());
+    assert!(c33.d(100.0).unwrap() / c33.d(85.0).unwrap() > 4.0);
+    for filter in [filter, c33] {
+        for id in ["kezdi", "kenney-lau", "li-fannin", "burenkova"] {
+            let rule = of(id, &filter, &base(5.0, 0.5));
+            assert!(rule.met != Some(false), "{rule:?}");
+        }
+    }
+}
+
+fn named(curves: &[(&str, Gradation)]) -> Vec<NamedCurve> {
+    curves.iter().map(|(name, curve)| ((*name).to_owned(), curve.clone())).collect()
+}
+
+/// Filters with D15F 0.6 and 1.2 mm, bases with D85B 0.2 and 0.5 mm.
+#[test]
+fn envelopes_pair_the_worst_sides() {
+    let straight = |d15: f64, cu: f64| Gradation::linear_from_dx(15.0, d15, cu).unwrap();
+    let filters = named(&[("fine", straight(0.6, 2.0)), ("coarse", straight(1.2, 3.0))]);
+    let bases = named(&[("coarse side", base(5.0, 0.5)), ("fine side", base(10.0, 0.2))]);
+    let rules = apply_to_envelopes(&filters, &bases, false, Some(0.3));
+    let find = |id: &str| rules.iter().find(|rule| rule.id == id).unwrap();
+    let retains = find("sherard-dunnigan");
+    assert!(close(retains.value, 1.2) && close(retains.limit, 0.8) && retains.met == Some(false));
+    assert_eq!((retains.filter_curve.as_str(), retains.base_curve.as_str()), ("coarse", "fine side"));
+    let drains = find("permeability");
+    assert_eq!((drains.filter_curve.as_str(), drains.base_curve.as_str()), ("fine", "coarse side"));
+    assert!(close(drains.value, 0.6));
+    let cu = find("filter-uniformity");
+    assert!(close(cu.value, 3.0) && cu.filter_curve == "coarse" && cu.base_curve.is_empty());
+    // Straight curves: D_x = D15 Cu^((x - 15) / 50), so the ratio is 2 x 1.5^((x - 15) / 50), most at 60 %.
+    let band = find("filter-band");
+    assert!(close(band.value, 2.0 * 1.5f64.powf(0.9)) && band.met == Some(true), "{band:?}");
+    // The finest D95B is straight from 0.2 mm at 85 % to 4 mm at 100 %: 0.2 x 20^(2/3) = 1.474 mm.
+    let joint = find("constricted-exit");
+    assert!(close(joint.value, 0.0) && joint.met.is_none() && joint.note.contains("JOS/D95B = 0.20"));
+    // One curve each is what it always was, and asks for neither.
+    let one = apply_to_envelopes(&filters[..1], &bases[..1], false, None);
+    assert_eq!(one, apply(&RuleInputs::of_soils(&filters[0].1, &bases[0].1)));
+    assert!(!one.iter().any(|rule| ["filter-band", "constricted-exit"].contains(&rule.id.as_str())));
+}
+
+#[test]
+fn every_role_says_what_it_speaks_against() {
+    let rules = apply(&RuleInputs::of_soils(&filter(0.4), &base(5.0, 0.5)));
+    for rule in rules {
+        assert_eq!(rule.speaks_against, rule.role.speaks_against());
+    }
+    assert_eq!(RuleRole::Drainage.speaks_against(), "no verdict");
 }
 
 /// No number of the boundary of excessive erosion was read: it has no result, and says so.

@@ -22,8 +22,8 @@ pub fn paper_continuing(inputs: &RuleInputs) -> Judged {
     ratio(inputs, 95.0, 4.7)
 }
 
-/// D15F over a size of the base that is walked, which is not regraded.
+/// D15F over a size of the base that is walked.
 fn ratio(inputs: &RuleInputs, percent: f64, limit: f64) -> Judged {
-    let value = inputs.d15f().zip(inputs.base.d(percent)).map(|(d15f, of)| d15f / of);
+    let value = inputs.d15f().zip(inputs.walked_base.d(percent)).map(|(d15f, of)| d15f / of);
     Judged::of(value, Some(limit)).noted("a result of the model, for the base as it is walked")
 }

@@ -1,0 +1,123 @@
+//! Regrading: the part of a base soil that filter practice looks at.
+
+use super::Gradation;
+use super::shape::Gap;
+use super::soil::{FINES_MM, GRAVEL_MM};
+
+/// Percent of fines below which a base has few.
+pub const FEW_FINES: f64 = 15.0;
+
+/// A base soil regraded as filter practice does, or left as it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Regraded {
+    /// The soil after regrading; as it was where it is not regraded.
+    pub gradation: Gradation,
+    /// The size on which it was regraded (mm); `None` where it was not.
+    pub at_mm: Option<f64>,
+    /// Why it was regraded, or not.
+    pub why: String,
+}
+
+impl Gradation {
+    /// This soil as filter practice regrades a base; sizes in mm.
+    ///
+    /// Regrading is that of the U.S. Army Corps of Engineers' Filter Evaluation manual (chapter Base
+    /// Gradation), after Sherard and Dunnigan (1989): a gap-graded soil at its gap; a soil with grains
+    /// coarser than No. 4 (4.75 mm) to 100 % passing No. 4, unless it has less than 15 % fines and is not
+    /// broadly graded. Every percent is divided by that passing.
+    ///
+    /// ```
+    /// use voidwalk::gradation::Gradation;
+    /// let till = Gradation::from_points(&[(0.075, 35.0), (4.75, 92.0), (19.0, 100.0)], None)?;
+    /// let regraded = till.regraded();
+    /// assert_eq!((regraded.at_mm, regraded.gradation.largest_mm()), (Some(4.75), 4.75));
+    /// # Ok::<(), voidwalk::gradation::GradationError>(())
+    /// ```
+    pub fn regraded(&self) -> Regraded {
+        let (at, why) = self.regrading();
+        match at.map(|at| self.passing(at)) {
+            None => Regraded { gradation: self.clone(), at_mm: None, why },
+            Some(Some(gradation)) => Regraded { gradation, at_mm: at, why },
+            Some(None) => {
+                let why = format!("{why}; but no known size of it passes that sieve: left as it is");
+                Regraded { gradation: self.clone(), at_mm: None, why }
+            }
+        }
+    }
+
+    /// The size on which practice regrades this base, and why.
+    fn regrading(&self) -> (Option<f64>, String) {
+        if let Some(Gap { from_mm, .. }) = self.gap(FINES_MM) {
+            let why = format!("gap-graded: next to nothing between {from_mm:.3} mm and four times that");
+            return (Some(from_mm), why);
+        }
+        if self.largest_mm() <= GRAVEL_MM {
+            return (None, "nothing is coarser than No. 4 (4.75 mm)".into());
+        }
+        let broad = self.is_broad();
+        // Where the finest sieve is coarser, this is the most that the fines can be.
+        let many_fines = self.percent_finer_by_mass(FINES_MM) >= FEW_FINES;
+        if !many_fines && broad == Some(false) {
+            return (None, "less than 15 % fines and not broadly graded".into());
+        }
+        let why = match broad {
+            _ if many_fines => "grains coarser than No. 4 (4.75 mm) and 15 % fines or more",
+            Some(true) => "broadly graded, with grains coarser than No. 4 (4.75 mm)",
+            _ => "grains coarser than No. 4 (4.75 mm), and Cu is not known: taken as broadly graded",
+        };
+        (Some(GRAVEL_MM), why.into())
+    }
+
+    /// Whether a soil is broadly graded by ASTM D2487: Cc of 1 to 3 with a Cu of at least 6 for sands, 4 for
+    /// gravels; `None` where D10 is not known.
+    pub fn is_broad(&self) -> Option<bool> {
+        let coarse = 100.0 - self.percent_finer_by_mass(FINES_MM);
+        let gravel = 100.0 - self.percent_finer_by_mass(GRAVEL_MM);
+        let least_cu = if gravel > coarse / 2.0 { 4.0 } else { 6.0 };
+        Some((1.0..=3.0).contains(&self.cc()?) && self.cu()? >= least_cu)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn regraded(points: &[(f64, f64)]) -> Regraded {
+        Gradation::from_points(points, None).unwrap().regraded()
+    }
+
+    /// The till of the first trial: 92 % finer than 4.75 mm.
+    #[test]
+    fn a_till_is_regraded_on_no_4_by_hand() {
+        let till = regraded(&[(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)]);
+        assert_eq!(till.at_mm, Some(4.75));
+        assert!((till.gradation.percent_finer_by_mass(0.075) - 35.0 / 0.92).abs() < 1e-9);
+        // 85 % of 92 % is 78.2 % of the whole: between 0.425 mm (60 %) and 2 mm (82 %).
+        let d85 = 0.425 * (2.0f64 / 0.425).powf(18.2 / 22.0);
+        assert!((till.gradation.d(85.0).unwrap() - d85).abs() < 1e-9);
+    }
+
+    #[test]
+    fn each_question_of_the_manual_has_its_answer() {
+        // Nothing coarser than No. 4.
+        assert_eq!(regraded(&[(0.1, 0.0), (0.5, 60.0), (4.75, 100.0)]).at_mm, None);
+        // Coarser, less than 15 % fines, Cu 3.2: left.
+        let gravel = regraded(&[(2.0, 0.0), (9.5, 60.0), (19.0, 100.0)]);
+        assert!(gravel.at_mm.is_none() && gravel.why.contains("not broadly graded"));
+        // Coarser and broadly graded: Cu 15.0, Cc 1.01.
+        let broad = regraded(&[(0.1, 0.0), (0.5, 20.0), (2.0, 45.0), (4.75, 70.0), (19.0, 100.0)]);
+        assert!(broad.at_mm.is_some() && broad.why.starts_with("broadly graded"), "{}", broad.why);
+        // Coarser, and D10 in a tail: on the safe side.
+        let tail = regraded(&[(0.3, 12.0), (1.0, 40.0), (4.75, 80.0), (9.5, 100.0)]);
+        assert!(tail.at_mm.is_some() && tail.why.contains("not known"));
+        // A gap: the part finer than it.
+        let gap = regraded(&[(0.1, 0.0), (0.5, 40.0), (5.0, 40.0), (20.0, 100.0)]);
+        assert_eq!((gap.at_mm, gap.gradation.largest_mm()), (Some(0.5), 0.5));
+    }
+
+    #[test]
+    fn gravel_alone_has_nothing_to_regrade() {
+        let soil = regraded(&[(5.0, 0.0), (10.0, 10.0), (25.0, 30.0), (60.0, 60.0), (80.0, 100.0)]);
+        assert!(soil.at_mm.is_none() && soil.why.contains("left as it is"), "{}", soil.why);
+    }
+}

@@ -1,0 +1,288 @@
+//! The table of rules.
+
+use super::rule::{FilterRule, Pairing, RuleUnit};
+use super::{drainage, exit, retention, stability, walk};
+use crate::outcome::applied::RuleRole;
+
+/// Fell et al., who give Table 9.2.
+const FELL: &str = "Fell, MacGregor, Stapledon & Bell, Geotechnical Engineering of Dams, Table 9.2 (after \
+                    Foster 1999; Foster & Fell 2001)";
+
+/// Where the stability rules are stated.
+const INTERNAL_STABILITY: &str = "U.S. Army Corps of Engineers, Internal Instability Toolbox manual \
+                                  (RMC-CPD-2023-10), after Li and Fannin (2008)";
+
+/// Where the most fines are stated: a weak source and a design; that of NRCS could not be read.
+const FINES: &str = "IS 11568 (1986), as summarised at infralens.in; Megech Dam, Appendix B-1, Design of \
+                     Filter Gradation (scribd.com/document/500296062)";
+
+/// Where the band is stated: a design, of which it is one; the handbook of NRCS could not be read.
+const BAND: &str = "Megech Dam, Appendix B-1, Design of Filter Gradation (scribd.com/document/500296062): \
+                    the practice of one design";
+
+/// Every rule, in the order of a reader.
+pub const RULES: [FilterRule; 19] = [
+    FilterRule {
+        id: "sherard-dunnigan",
+        name: "Sherard and Dunnigan: the filter retains the base (design)",
+        role: RuleRole::Retention,
+        applies_to: "design of filters; the limit follows from the fines A of the regraded base (NRCS, USBR, \
+                     FEMA)",
+        quantity: "D15F",
+        formula: "A > 85 %: 9 D85B, not less than 0.2 mm; A 40 to 85 %: 0.7 mm; A 15 to 40 %: (40 - A)/25 \
+                  (4 D85B - 0.7) + 0.7 mm; A < 15 %: 4 D85B; dispersive: A > 85 %: 6.5 D85B, not less than \
+                  0.2 mm; 40 to 85 %: 0.5 mm",
+        at_least: false,
+        unit: RuleUnit::Size,
+        source: "Sherard & Dunnigan (1989), as given by Fell et al., Geotechnical Engineering of Dams, Table \
+                 9.2, with its note on dispersive soils; the 0.2 mm and 6.5 D85B: NRCS, National Engineering \
+                 Handbook 633, chapter 26 (2017), second hand",
+        pairing: Pairing::CoarseFilterFineBase,
+        judge: retention::sherard_dunnigan,
+    },
+    FilterRule {
+        id: "foster-fell-no-erosion",
+        name: "Foster and Fell: no erosion rather than some",
+        role: RuleRole::Retention,
+        applies_to: "filters of existing dams: the boundary seen in tests, without a margin of safety",
+        quantity: "D15F",
+        formula: "A > 85 %: 9 D85B; A 35 to 85 %: 0.7 mm; A 15 to 35 %: 1.6 ((35 - A)/20 (4 D85B - 0.7) + \
+                  0.7 mm); A < 15 %: 7 D85B; dispersive: A > 85 %: 6.4 D85B; 35 to 85 %: 0.5 mm",
+        at_least: false,
+        unit: RuleUnit::Size,
+        source: FELL,
+        pairing: Pairing::CoarseFilterFineBase,
+        judge: retention::no_erosion,
+    },
+    FilterRule {
+        id: "foster-fell-excessive",
+        name: "Foster and Fell: some erosion rather than excessive",
+        role: RuleRole::Continuation,
+        applies_to: "filters of existing dams",
+        quantity: "D15F",
+        formula: "",
+        at_least: false,
+        unit: RuleUnit::Size,
+        source: "Foster and Fell (2001); Fell et al. (2008); in figures of the Filter Evaluation manual of \
+                 the U.S. Army Corps of Engineers",
+        pairing: Pairing::CoarseFilterFineBase,
+        judge: retention::excessive,
+    },
+    FilterRule {
+        id: "foster-fell-continuing",
+        name: "Foster and Fell: some erosion rather than continuing",
+        role: RuleRole::Continuation,
+        applies_to: "existing dams with filters coarser than modern rules allow; D95B after regrading",
+        quantity: "D15F",
+        formula: "9 D95B",
+        at_least: false,
+        unit: RuleUnit::Size,
+        source: "Foster and Fell, as stated by Shire & O'Sullivan, section 2, and in nsenergybusiness.com, \
+                 Potential for surfacing internal erosion in glacial moraine core embankment dams, Table 1; \
+                 regraded base: U.S. Army Corps of Engineers, Filter Evaluation manual, chapter Foster and \
+                 Fell",
+        pairing: Pairing::CoarseFilterFineBase,
+        judge: retention::continuing,
+    },
+    FilterRule {
+        id: "terzaghi",
+        name: "Terzaghi: the filter retains the base",
+        role: RuleRole::Retention,
+        applies_to: "bases with less than 15 % fines; D85B after regrading",
+        quantity: "D15F/D85B",
+        formula: "4",
+        at_least: false,
+        unit: RuleUnit::One,
+        source: "Terzaghi, as stated by Shire & O'Sullivan, section 2",
+        pairing: Pairing::CoarseFilterFineBase,
+        judge: retention::terzaghi,
+    },
+    FilterRule {
+        id: "constricted-exit",
+        name: "Constricted exit: probability of continuing erosion into an open joint",
+        role: RuleRole::Continuation,
+        applies_to: "joints, defects and cracks beside the base that do not erode; steady flow",
+        quantity: "probability",
+        formula: "from JOS/D95B after regrading: below 0.4: 0; 0.5: 0.01 %; 0.75: 0.1 %; 1: 10 %; 2: 50 %; \
+                  3 and more: 90 %; between them straight on the scale of a normal variate",
+        at_least: false,
+        unit: RuleUnit::Percent,
+        source: "U.S. Army Corps of Engineers, Filter Evaluation manual (RMC-CPD-2023-04), chapter \
+                 Constricted Exit, after Fell and Foster",
+        pairing: Pairing::CoarseFilterFineBase,
+        judge: exit::constricted,
+    },
+    FilterRule {
+        id: "permeability",
+        name: "Permeability: the filter drains the base",
+        role: RuleRole::Drainage,
+        applies_to: "design of filters; D15B before regrading",
+        quantity: "D15F",
+        formula: "5 D15B, and not less than 0.1 mm (older manuals: 3 to 5 D15B)",
+        at_least: true,
+        unit: RuleUnit::Size,
+        source: "U.S. Army Corps of Engineers, Filter Evaluation manual, chapter Permeability, which cites \
+                 USBR (2011), NRCS (2017) and EM 1110-2-1901",
+        pairing: Pairing::FineFilterCoarseBase,
+        judge: drainage::permeability,
+    },
+    FilterRule {
+        id: "filter-fines",
+        name: "The filter has few fines",
+        role: RuleRole::Drainage,
+        applies_to: "design of filters; that they are not plastic is not seen from a sieve curve",
+        quantity: "finer than 0.075 mm",
+        formula: "5 %",
+        at_least: false,
+        unit: RuleUnit::Percent,
+        source: FINES,
+        pairing: Pairing::EachFilter,
+        judge: drainage::fines,
+    },
+    FilterRule {
+        id: "filter-greatest-size",
+        name: "The filter has no cobbles",
+        role: RuleRole::Drainage,
+        applies_to: "design of filters: coarse grains segregate",
+        quantity: "D100F",
+        formula: "75 mm",
+        at_least: false,
+        unit: RuleUnit::Size,
+        source: "IS 11568 (1986), as summarised at infralens.in",
+        pairing: Pairing::EachFilter,
+        judge: drainage::greatest_size,
+    },
+    FilterRule {
+        id: "filter-uniformity",
+        name: "The filter is uniform enough for its band",
+        role: RuleRole::Drainage,
+        applies_to: "design of filters: both sides of the band; wider curves leave room for gap-graded ones",
+        quantity: "Cu of the filter",
+        formula: "6",
+        at_least: false,
+        unit: RuleUnit::One,
+        source: BAND,
+        pairing: Pairing::EachFilter,
+        judge: drainage::uniformity,
+    },
+    FilterRule {
+        id: "filter-band",
+        name: "The band of the filter is narrow",
+        role: RuleRole::Drainage,
+        applies_to: "design of filters that are stated as a band of curves",
+        quantity: "size of the coarse side / of the fine side",
+        formula: "5, from 5 to 60 % finer",
+        at_least: false,
+        unit: RuleUnit::One,
+        source: BAND,
+        pairing: Pairing::EachFilter,
+        judge: drainage::band,
+    },
+    FilterRule {
+        id: "kezdi",
+        name: "Kézdi (1979): the filter holds its own fines",
+        role: RuleRole::Stability,
+        applies_to: "the filter alone: internal stability",
+        quantity: "greatest D'15/d'85 of the filter",
+        formula: "4",
+        at_least: false,
+        unit: RuleUnit::One,
+        source: INTERNAL_STABILITY,
+        pairing: Pairing::EachFilter,
+        judge: stability::kezdi,
+    },
+    FilterRule {
+        id: "kenney-lau",
+        name: "Kenney and Lau (1986): the filter holds its own fines",
+        role: RuleRole::Stability,
+        applies_to: "the filter alone: internal stability, F up to 20 % (Cu > 3) or 30 %",
+        quantity: "least H/F of the filter",
+        formula: "1",
+        at_least: true,
+        unit: RuleUnit::One,
+        source: INTERNAL_STABILITY,
+        pairing: Pairing::EachFilter,
+        judge: stability::kenney_lau,
+    },
+    FilterRule {
+        id: "li-fannin",
+        name: "Li and Fannin (2008): the filter holds its own fines",
+        role: RuleRole::Stability,
+        applies_to: "the filter alone: internal stability; Kenney and Lau to F = 15 %, Kézdi from there",
+        quantity: "least H/min(F, 15 %) of the filter",
+        formula: "1",
+        at_least: true,
+        unit: RuleUnit::One,
+        source: INTERNAL_STABILITY,
+        pairing: Pairing::EachFilter,
+        judge: stability::li_fannin,
+    },
+    FilterRule {
+        id: "burenkova",
+        name: "Burenkova (1993): the filter holds its own fines",
+        role: RuleRole::Stability,
+        applies_to: "the filter alone: broadly graded and gap-graded sands and gravels without cohesion, \
+                     up to 100 mm, Cu up to 200",
+        quantity: "h' = D90/D60 of the filter",
+        formula: "0.76 lg h'' + 1, with h'' = D90/D15, and less than 1.86 lg h'' + 1",
+        at_least: true,
+        unit: RuleUnit::One,
+        source: "U.S. Army Corps of Engineers, Internal Instability Toolbox manual (RMC-CPD-2023-10), \
+                 chapter Burenkova Method",
+        pairing: Pairing::EachFilter,
+        judge: stability::burenkova,
+    },
+    FilterRule {
+        id: "wan-fell",
+        name: "Wan and Fell (2004): probability that the filter loses its fines",
+        role: RuleRole::Stability,
+        applies_to: "the filter alone: broadly graded and gap-graded soils",
+        quantity: "probability",
+        formula: "none stated: 1 / (1 + exp(-Z)), Z from h' and h'' of Burenkova",
+        at_least: false,
+        unit: RuleUnit::Percent,
+        source: "U.S. Army Corps of Engineers, Internal Instability Toolbox manual (RMC-CPD-2023-10), \
+                 chapter Modified Burenkova Method",
+        pairing: Pairing::EachFilter,
+        judge: stability::wan_fell,
+    },
+    FilterRule {
+        id: "kenney-controlling",
+        name: "Kenney et al.: controlling constriction size Dc* ≤ D15F/5",
+        role: RuleRole::Walk,
+        applies_to: "bases without cohesion; Dc* is the largest particle eroded in the first run",
+        quantity: "largest eroded / D15F",
+        formula: "1/5",
+        at_least: false,
+        unit: RuleUnit::One,
+        source: "Kenney et al., as stated by Shire & O'Sullivan, section 2",
+        pairing: Pairing::CoarseFilterFineBase,
+        judge: walk::largest_passing,
+    },
+    FilterRule {
+        id: "paper-no-erosion",
+        name: "Network model of the paper: no erosion rather than some",
+        role: RuleRole::Walk,
+        applies_to: "loose filters of Cu 1.5 and 3",
+        quantity: "D15F/D85B",
+        formula: "5",
+        at_least: false,
+        unit: RuleUnit::One,
+        source: "Shire & O'Sullivan, section 6, Fig. 14(a)",
+        pairing: Pairing::CoarseFilterFineBase,
+        judge: walk::paper_no_erosion,
+    },
+    FilterRule {
+        id: "paper-continuing",
+        name: "Network model of the paper: some erosion rather than continuing",
+        role: RuleRole::Walk,
+        applies_to: "filters of Cu 1.5 and 3",
+        quantity: "D15F/D95B",
+        formula: "4.7",
+        at_least: false,
+        unit: RuleUnit::One,
+        source: "Shire & O'Sullivan, section 6, Fig. 15",
+        pairing: Pairing::CoarseFilterFineBase,
+        judge: walk::paper_continuing,
+    },
+];

@@ -1,0 +1,138 @@
+//! Every rule, applied to two soils, or to two envelopes of curves.
+
+use super::all::RULES;
+use super::base::BaseSoil;
+use super::rule::{FilterRule, Pairing, RuleInputs, RuleUnit};
+use crate::gradation::Gradation;
+use crate::outcome::applied::AppliedRule;
+
+/// Applies every rule.
+pub fn apply(inputs: &RuleInputs) -> Vec<AppliedRule> {
+    RULES.iter().filter_map(|rule| applied(rule, inputs)).collect()
+}
+
+/// A curve of a soil, with its name.
+pub type NamedCurve = (String, Gradation);
+
+/// Which curves of a filter and a base are their finest and coarsest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sides {
+    /// The filter with the least D15F.
+    pub finest_filter: usize,
+    /// The filter with the greatest D15F.
+    pub coarsest_filter: usize,
+    /// The base with the least D85B after regrading.
+    pub finest_base: usize,
+    /// The base with the greatest D15B before regrading.
+    pub coarsest_base: usize,
+}
+
+impl Sides {
+    /// Of these curves, of which there is at least one each. A size in a finest tail is finer than any.
+    pub fn of(filters: &[NamedCurve], bases: &[NamedCurve]) -> Self {
+        let sizes = |curves: &[NamedCurve], size: &dyn Fn(&Gradation) -> Option<f64>| -> Vec<f64> {
+            curves.iter().map(|(_, curve)| size(curve).unwrap_or(0.0)).collect()
+        };
+        let d15f = sizes(filters, &|curve| curve.d(15.0));
+        let d85b = sizes(bases, &|curve| BaseSoil::of(curve, false).gradation.d(85.0));
+        let d15b = sizes(bases, &|curve| curve.d(15.0));
+        let least = |sizes: &[f64]| (0..sizes.len()).min_by(|&a, &b| sizes[a].total_cmp(&sizes[b]));
+        // The first of equals, as for the least.
+        let most = |sizes: &[f64]| (0..sizes.len()).rev().max_by(|&a, &b| sizes[a].total_cmp(&sizes[b]));
+        Self {
+            finest_filter: least(&d15f).unwrap_or(0),
+            coarsest_filter: most(&d15f).unwrap_or(0),
+            finest_base: least(&d85b).unwrap_or(0),
+            coarsest_base: most(&d15b).unwrap_or(0),
+        }
+    }
+}
+
+/// Applies every rule to the curves of a filter and of a base: each to those that it is for, named by
+/// them.
+pub fn apply_to_envelopes(
+    filters: &[NamedCurve],
+    bases: &[NamedCurve],
+    dispersive: bool,
+    joint_mm: Option<f64>,
+) -> Vec<AppliedRule> {
+    let sides = Sides::of(filters, bases);
+    let every: Vec<&Gradation> = filters.iter().map(|(_, curve)| curve).collect();
+    let inputs = |filter: usize, base: usize| RuleInputs {
+        filter_curves: if filters.len() > 1 { every.clone() } else { Vec::new() },
+        dispersive,
+        joint_mm,
+        ..RuleInputs::of_soils(&filters[filter].1, &bases[base].1)
+    };
+    let name = |curves: &[NamedCurve], at: usize| match curves.len() {
+        1 => String::new(),
+        _ => curves[at].0.clone(),
+    };
+    let one = |rule: &FilterRule, filter: usize, base: usize| {
+        let applied = applied(rule, &inputs(filter, base))?;
+        let of_both = rule.pairing != Pairing::EachFilter;
+        let base_curve = if of_both { name(bases, base) } else { String::new() };
+        Some(AppliedRule { filter_curve: name(filters, filter), base_curve, ..applied })
+    };
+    let of = |rule: &FilterRule| match rule.pairing {
+        Pairing::CoarseFilterFineBase => one(rule, sides.coarsest_filter, sides.finest_base),
+        Pairing::FineFilterCoarseBase => one(rule, sides.finest_filter, sides.coarsest_base),
+        Pairing::EachFilter => {
+            let each = (0..filters.len()).filter_map(|filter| one(rule, filter, sides.finest_base));
+            each.min_by(|a, b| margin(a).partial_cmp(&margin(b)).unwrap_or(std::cmp::Ordering::Equal))
+        }
+    };
+    RULES.iter().filter_map(of).collect()
+}
+
+/// How well a rule is kept: the worst first.
+fn margin(rule: &AppliedRule) -> (u8, f64) {
+    let class = match (rule.met, rule.applies) {
+        (Some(false), _) => 0,
+        (None, true) => 1,
+        (Some(true), _) => 2,
+        (None, false) => 3,
+    };
+    let over = match (rule.value, rule.limit) {
+        (Some(value), Some(limit)) if rule.at_least => value / limit,
+        (Some(value), Some(limit)) => limit / value,
+        (Some(value), None) => -value,
+        _ => 0.0,
+    };
+    (class, over)
+}
+
+/// One rule, applied; `None` where nobody asked for it.
+fn applied(rule: &FilterRule, inputs: &RuleInputs) -> Option<AppliedRule> {
+    let judged = (rule.judge)(inputs);
+    if judged.is_left_out {
+        return None;
+    }
+    let keeps = |(value, limit): (f64, f64)| if rule.at_least { value >= limit } else { value <= limit };
+    let met = judged.met.or_else(|| judged.value.zip(judged.limit).map(keeps));
+    Some(AppliedRule {
+        id: rule.id.into(),
+        name: rule.name.into(),
+        role: rule.role,
+        applies: judged.applies,
+        quantity: rule.quantity.into(),
+        value: judged.value,
+        limit: judged.limit,
+        unit: match rule.unit {
+            RuleUnit::Size if inputs.scale_free => "D0F".into(),
+            RuleUnit::Size => "mm".into(),
+            RuleUnit::One => String::new(),
+            RuleUnit::Percent => "%".into(),
+        },
+        at_least: rule.at_least,
+        met: met.filter(|_| judged.applies),
+        needs: judged.needs,
+        note: judged.note,
+        applies_to: rule.applies_to.into(),
+        formula: rule.formula.into(),
+        source: rule.source.into(),
+        speaks_against: rule.role.speaks_against().into(),
+        filter_curve: String::new(),
+        base_curve: String::new(),
+    })
+}
