@@ -102,14 +102,17 @@ impl Flow {
         let Some(reservoir) = network.reservoir() else {
             return Ok(Permeability { conductance: 0.0, k_mm2: None });
         };
-        let inside = self.joined(network, reservoir);
-        let system = System::new(network, self, &inside, reservoir);
-        system.solve(&mut self.pressure, network.layers())?;
-        for (void, &inside) in inside.iter().enumerate() {
-            if !inside && void != reservoir as usize {
-                self.pressure[void] = 0.0;
+        // Water flows where it comes in and gets out; elsewhere it stands under the pressure of the one side.
+        let from_reservoir = self.joined(network, reservoir, reservoir);
+        let to_end = self.joined(network, reservoir, network.voids() as u32);
+        let inside: Vec<bool> = from_reservoir.iter().zip(&to_end).map(|(a, b)| *a && *b).collect();
+        for (void, pressure) in self.pressure.iter_mut().enumerate().take(network.voids()) {
+            if !inside[void] && void != reservoir as usize {
+                *pressure = f64::from(u8::from(from_reservoir[void]));
             }
         }
+        let system = System::new(network, self, &inside, reservoir);
+        system.solve(&mut self.pressure, network.layers())?;
         let conductance = network.exits(reservoir).map(|c| self.flux(reservoir, c)).sum::<f64>().max(0.0);
         let factor = undirected.and_then(|u| u.permeability_mm2);
         Ok(Permeability { conductance, k_mm2: factor.map(|factor| factor * conductance) })
@@ -132,27 +135,26 @@ impl Flow {
         network.undirected.as_mut().expect("it has a reservoir").weight = weight;
     }
 
-    /// Voids that water reaches or leaves: joined to the reservoir or to the end.
-    fn joined(&self, network: &Network, reservoir: u32) -> Vec<bool> {
+    /// Voids that hang together with one side, the reservoir or the end, without the other.
+    fn joined(&self, network: &Network, reservoir: u32, side: u32) -> Vec<bool> {
         let outside = network.voids() as u32;
-        let mut inside = vec![false; network.voids()];
+        let mut joined = vec![false; network.voids()];
         let mut stack: Vec<u32> = Vec::new();
-        for void in (0..network.voids() as u32).filter(|&v| v != reservoir) {
-            let ends = |c: usize| self.open[c] > 0.0 && [reservoir, outside].contains(&self.other[c]);
-            if network.exits(void).any(ends) {
-                inside[void as usize] = true;
+        for void in (0..outside).filter(|&v| v != reservoir) {
+            if network.exits(void).any(|c| self.open[c] > 0.0 && self.other[c] == side) {
+                joined[void as usize] = true;
                 stack.push(void);
             }
         }
         while let Some(void) = stack.pop() {
             for c in network.exits(void).filter(|&c| self.open[c] > 0.0) {
                 let to = self.other[c];
-                if to != reservoir && to != outside && !std::mem::replace(&mut inside[to as usize], true) {
+                if to != reservoir && to != outside && !std::mem::replace(&mut joined[to as usize], true) {
                     stack.push(to);
                 }
             }
         }
-        inside
+        joined
     }
 }
 

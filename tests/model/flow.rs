@@ -238,7 +238,7 @@ fn a_filter_that_clogs_wholly_ends_its_run() {
 #[test]
 fn counts_and_particles_share_one_history_of_blocking() {
     let network = lattice([6, 6, 12], [0.1, 0.3], 4.0, 2);
-    let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.05, 4.0).unwrap(), 1.0).unwrap();
+    let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.05, 2.2).unwrap(), 1.0).unwrap();
     let classes = || SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), 16);
     let run = |engine: Engine, threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
