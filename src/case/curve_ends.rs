@@ -16,7 +16,7 @@ impl Case {
     /// packed, the constrictions as much coarser as leaving the others out made them finer at most; of a
     /// guess, the densest and the loosest. None for a curve that was given, or measured on the whole.
     pub fn curve_ends(&self) -> Vec<OtherCurve> {
-        if self.network_file.is_some() {
+        if self.fixed_network.is_some() {
             return Vec::new();
         }
         let finer_by = self.packed.as_ref().and_then(|packed| packed.part).map_or(0.0, |part| part.finer_by);

@@ -4,10 +4,13 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::CaseError;
-use super::packed_filter::{PackedFilter, RECORD};
+use super::packed_filter::PackedError;
+use super::packed_filter::{GRAINS, PackedFilter, RECORD};
+use super::void_graph::KEPT_GRAINS;
 use crate::constrictions::{Curve, ShippedFilter, find};
 use crate::gradation::{Gradation, Soil, file_and_soil};
 use crate::network::Network;
+use crate::packing::{PACKING_FILE_LIMIT_BYTES, Packing};
 use crate::scene::CurveSource;
 use crate::scene::SceneError;
 use crate::store::read_regular;
@@ -42,7 +45,7 @@ const INPUTS: &str = "inputs";
 pub const INPUT_NAMES: &str = "inputs/names.json";
 
 /// Every file that may be kept there.
-pub const INPUT_FILES: [&str; 13] = [
+pub const INPUT_FILES: [&str; 14] = [
     RECORD,
     "filter-curve.csv",
     "filter-sieve.csv",
@@ -55,6 +58,7 @@ pub const INPUT_FILES: [&str; 13] = [
     "base-sieve.ags",
     "base-dc-curve.csv",
     "network.csv",
+    KEPT_GRAINS,
     "names.json",
 ];
 
@@ -187,6 +191,19 @@ impl Files {
             input.notes = read.notes().to_vec();
         }
         Ok(gradation)
+    }
+
+    /// The grains of a file, and what to call it.
+    pub fn packing(&mut self, path: &Path, kept_as: &str) -> Result<(String, Packing), CaseError> {
+        let (name, bytes) = self.read("network.packing", path, kept_as, PACKING_FILE_LIMIT_BYTES)?;
+        let packing = Packing::parse(&name, bytes).map_err(PackedError::from)?;
+        Ok((name, packing))
+    }
+
+    /// The grains of a filter that was packed; kept as if they had been given.
+    pub fn packed_grains(&mut self, grains: &[u8], kept_as: &str) -> Result<(String, Packing), CaseError> {
+        self.keep("network.packing", Path::new(GRAINS), kept_as, grains.to_vec())?;
+        Ok((GRAINS.into(), Packing::parse(GRAINS, grains).map_err(PackedError::from)?))
     }
 
     pub fn network(&mut self, path: &Path, unit_mm: f64) -> Result<Network, CaseError> {

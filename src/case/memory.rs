@@ -55,7 +55,7 @@ impl Case {
         if self.scene.walk.engine.takes_each(n_base / self.increments(), self.counts[2]) {
             return 0;
         }
-        let finest = match &self.network_file {
+        let finest = match &self.fixed_network {
             Some(network) => network.finest_open(|_| false),
             None => (self.curve.smallest() / self.unit_mm) as f32,
         };

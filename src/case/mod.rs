@@ -12,6 +12,7 @@ mod regrade;
 mod resolved;
 mod sizes;
 mod supply;
+mod void_graph;
 mod warnings;
 
 pub use curve_ends::OtherCurve;
@@ -21,13 +22,16 @@ pub use memory::{ResourceLimits, in_words};
 pub use packed_filter::{GRAINS, PackedError, PackedFilter, RECORD};
 pub use packing_plan::PackingPlan;
 use supply::Against;
+use void_graph::GraphPacking;
 
 use crate::constrictions::{Curve, CurveError, CurveUnit, ShippedFilter, inscribed};
 use crate::gradation::{Gradation, GradationError, NumberError, SizeSampler};
-use crate::network::{Network, NetworkError};
+use crate::network::{ExitRule, Network, NetworkError};
 use crate::outcome::Mistake;
 use crate::outcome::record::{PanSize, Ratios};
-use crate::scene::{Amount, BaseGradation, D85, FilterGradation, NetworkSource, Scene, SceneError};
+use crate::scene::{
+    Amount, BaseGradation, D85, Extent, FilterGradation, NetworkSource, Scene, SceneError, USUAL_LAYERS,
+};
 use crate::store::Placement;
 use crate::stream::{Key, Purpose};
 use rand::Rng;
@@ -130,8 +134,10 @@ pub struct Case {
     pub mass_ratio: Option<f64>,
     /// The reference length: the smallest filter grain (mm).
     pub unit_mm: f64,
-    /// The network, where it comes from a file.
-    pub network_file: Option<Network>,
+    /// The network, where all replicates walk the same: from a file, or the voids of a packing.
+    pub fixed_network: Option<Network>,
+    /// Copies of a packing whose voids are the network, and their thickness together (mm).
+    pub copies: Option<(u32, f64)>,
     /// Voids, constrictions (of the first replicate), start nodes, layers.
     pub counts: [u64; 4],
     /// Connectivity and percent of the voids, where not all voids have the same.
@@ -157,22 +163,31 @@ impl Case {
     ///
     /// # Errors
     /// As [`Case::new`]; the scene's filter is to be packed and has not been.
-    pub fn with_packed(scene: Scene, packed: Option<PackedFilter>) -> Result<Self, CaseError> {
+    pub fn with_packed(mut scene: Scene, packed: Option<PackedFilter>) -> Result<Self, CaseError> {
         let packed = match (&scene.filter.measured, scene.filter.grains_per_void) {
             (Some(curve), Some(grains_per_void)) => Some(PackedFilter::kept(curve, grains_per_void)?),
             _ => packed,
         };
         let mut files = Files::default();
+        let graph = match scene.network.source() {
+            NetworkSource::Graph(file, _) => {
+                GraphPacking::read(&scene, file.as_ref(), packed.as_ref(), &mut files)?
+            }
+            _ => None,
+        };
         let curve = match (&scene.filter.curve, &packed) {
             (_, Some(packed)) => Some((files.packed(packed)?, None)),
             (Some(source), None) => Some(files.curve(source, "filter.curve", "filter-curve.csv")?),
             (None, None) if scene.packing.is_some() => {
                 return Err(CaseError::NotPacked { file: scene.name.clone() });
             }
-            (None, None) => None,
+            (None, None) => graph.as_ref().map(|graph| (graph.curve.clone(), None)),
         };
         let shipped = curve.as_ref().and_then(|(_, shipped)| *shipped);
         let filter = match &scene.filter.gradation() {
+            FilterGradation::Linear { cu: None, .. } if shipped.is_none() && graph.is_some() => {
+                graph.as_ref().expect("just seen").gradation.clone()
+            }
             FilterGradation::Linear { d0_mm, cu } => {
                 let cu = cu.or(shipped.map(|s| s.cu)).ok_or_else(|| {
                     scene.clash(
@@ -191,11 +206,24 @@ impl Case {
             None => curve,
         };
         let unit_mm = filter.smallest_mm();
-        let network_file = match &scene.network.source() {
-            NetworkSource::File(path) => Some(files.network(path, unit_mm)?),
-            _ => None,
-        };
-        let curve = match (&network_file, curve) {
+        let d50f_mm = filter.d(50.0).unwrap_or(unit_mm);
+        let (mut fixed_network, mut copies) = (None, None);
+        match (&scene.network.source(), &graph) {
+            (NetworkSource::File(path), _) => fixed_network = Some(files.network(path, unit_mm)?),
+            (NetworkSource::Graph(_, extent), Some(graph)) => {
+                let count = graph.copies(*extent, d50f_mm);
+                copies = Some((count, f64::from(count) * graph.graph.cell_mm[2]));
+                fixed_network = Some(graph.network(&scene, *extent, d50f_mm, unit_mm)?);
+            }
+            (NetworkSource::Cubic(_), _) => {
+                if let Some(mm) = scene.network.extent().thickness_mm(d50f_mm) {
+                    let layer = filter.d_by_number(50.0).unwrap_or(unit_mm);
+                    scene.network.set_layers((mm / layer).round().clamp(1.0, f64::from(u32::MAX)) as u64);
+                }
+            }
+            _ => {}
+        }
+        let curve = match (fixed_network.as_ref().filter(|_| graph.is_none()), curve) {
             (Some(network), _) => curve_of(network)?,
             (None, Some((curve, _))) => {
                 if curve.unit() == CurveUnit::D0f && filter.pan_fraction() > 0.0 {
@@ -217,21 +245,23 @@ impl Case {
         if let Some(mistake) = mistake.as_ref().filter(|mistake| mistake.is_certain) {
             return Err(scene.clash(&mistake.sentence).into());
         }
-        let (counts, connectivity) = match (&network_file, &scene.network.source()) {
+        let (counts, connectivity) = match (&fixed_network, &scene.network.source()) {
+            (Some(n), _) if graph.is_some() => (sizes::of_network(n), Vec::new()),
             (Some(n), _) => (sizes::of_network(n), sizes::connectivity_of(n)),
             (None, NetworkSource::Connected(shape, wanted)) => {
                 sizes::of_connected(*shape, wanted, &curve, unit_mm, replicate_seed(scene.walk.seed, 1))?
             }
             (None, source) => {
-                let shape = source.shape().expect("a network file was read above");
+                let shape = source.shape().unwrap_or_else(|| placeholder_shape(&scene));
                 (sizes::of_lattice(shape)?, Vec::new())
             }
         };
         // The grains per void of a shipped packing say nothing of a network from elsewhere.
-        let of_shipped = shipped.filter(|_| network_file.is_none()).map(|s| s.grains_per_void);
+        let of_shipped = shipped.filter(|_| fixed_network.is_none()).map(|s| s.grains_per_void);
+        let of_graph = graph.as_ref().map(|graph| graph.grains_per_void(&filter));
         let of_packing = packed.as_ref().map(|packed| packed.grains_per_void).or(of_shipped);
         let guessed = guesses_grains_per_void(&scene).then_some(GUESSED_GRAINS_PER_VOID);
-        let grains_per_void = scene.filter.grains_per_void.or(of_packing).or(guessed);
+        let grains_per_void = scene.filter.grains_per_void.or(of_graph).or(of_packing).or(guessed);
         let against = Against {
             scene: &scene,
             filter: &filter,
@@ -270,7 +300,8 @@ impl Case {
             grains_per_void,
             mass_ratio: walked.mass_ratio,
             unit_mm,
-            network_file,
+            fixed_network,
+            copies,
             counts,
             connectivity,
             inputs: files.0,
@@ -296,13 +327,30 @@ impl Case {
     /// # Errors
     /// A length of 0, or more constrictions than 32 bits can number.
     pub fn network_of_shape(&self, shape: [u32; 3], seed: u64) -> Result<Network, NetworkError> {
-        match (&self.network_file, &self.scene.network.source()) {
-            (None, NetworkSource::Cubic(_)) => Network::cubic(shape, &self.curve, self.unit_mm, seed),
+        match (&self.fixed_network, &self.scene.network.source()) {
+            (None, NetworkSource::Cubic(_)) => {
+                self.with_directions(Network::cubic(shape, &self.curve, self.unit_mm, seed)?)
+            }
+            // A packing that is still to be made.
+            (None, NetworkSource::Graph(..)) => {
+                let shape = placeholder_shape(&self.scene);
+                self.with_directions(Network::cubic(shape, &self.curve, self.unit_mm, seed)?)
+            }
             (None, NetworkSource::Connected(_, wanted)) => {
                 Network::connected(shape, &self.curve, self.unit_mm, seed, wanted)
             }
             (file, _) => Ok(file.clone().expect("a network from a file was read")),
         }
+    }
+
+    /// A lattice as its exit rule wants it: without directions where water gives them.
+    fn with_directions(&self, lattice: Network) -> Result<Network, NetworkError> {
+        let (rule, exits) = (self.scene.exit_rule(), &self.scene.exits);
+        if rule == ExitRule::Area {
+            return Ok(lattice);
+        }
+        let exponent = exits.conductance_exponent.unwrap_or(CONDUCTANCE_EXPONENT);
+        lattice.undirected_lattice(rule, exits.rho.unwrap_or(0.0), exponent)
     }
 
     /// Increments over which the base is inserted: a whole number, so that every part is equal.
@@ -329,7 +377,10 @@ impl Case {
 
     /// Parts of the program that this scene does not need, in words.
     pub fn left_out(&self) -> Vec<String> {
-        let mut left_out = vec![match self.network_file {
+        let mut left_out = vec![match self.fixed_network {
+            Some(_) if self.copies.is_some() => {
+                "a lattice: the voids of the packing are the network".to_string()
+            }
             Some(_) => "packing, triangulation and constriction curve: the network is given".to_string(),
             None if self.packed.is_some() => {
                 "a given constriction curve: it is measured on the packing".to_string()
@@ -366,6 +417,23 @@ fn guesses_grains_per_void(scene: &Scene) -> bool {
         && filter.grains_per_void.is_none()
         && matches!(scene.base.amount(), Amount::MassRatio(..))
 }
+
+/// Power of its diameter that a constriction of a lattice conducts water in proportion to (Poiseuille).
+const CONDUCTANCE_EXPONENT: f64 = 4.0;
+
+/// A lattice about as large as the graph of a packing that is still to be made.
+fn placeholder_shape(scene: &Scene) -> [u32; 3] {
+    let grains = scene.packing.as_ref().and_then(|packing| packing.filter.grains).unwrap_or(9_000);
+    let across = libm::cbrt(grains as f64 / PLACEHOLDER_GRAINS_PER_VOID).ceil().clamp(1.0, 1000.0) as u32;
+    let along = match scene.network.extent() {
+        Extent::Copies(copies) => copies.saturating_mul(across).min(1_000_000),
+        _ => USUAL_LAYERS as u32,
+    };
+    [across, across, along]
+}
+
+/// Grains per void of a packing that is still to be made.
+const PLACEHOLDER_GRAINS_PER_VOID: f64 = 0.6;
 
 /// The constriction curve of a given network (mm): its open diameters by number, at most a thousand points.
 fn curve_of(network: &Network) -> Result<Curve, CaseError> {

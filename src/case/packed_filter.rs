@@ -38,6 +38,8 @@ pub struct PackedFilter {
     pub same_shape: Option<SameShape>,
     /// Share of the grains, by number, that carry no load; `None` for a placeholder.
     pub rattlers: Option<f64>,
+    /// The grains, as CSV; `None` for a placeholder, or where a run kept the curve alone.
+    pub grains: Option<Vec<u8>>,
 }
 
 /// Why a packing's folder cannot be used.
@@ -159,6 +161,7 @@ impl PackedFilter {
             same_shape: read.same_shape,
             rattlers: Some(read.after.rattlers),
             record,
+            grains: Some(bytes),
         })
     }
 
@@ -185,6 +188,7 @@ impl PackedFilter {
             part: of.part,
             same_shape: of.same_shape,
             rattlers: Some(of.after.rattlers),
+            grains: None,
         })
     }
 
@@ -209,6 +213,7 @@ impl PackedFilter {
             part: order.part,
             same_shape: None,
             rattlers: None,
+            grains: None,
         })
     }
 }

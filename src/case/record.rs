@@ -2,6 +2,7 @@
 
 use super::{Case, Input};
 use crate::gradation::Gradation;
+use crate::network::ExitRule;
 use crate::outcome::record::{self, InputFile};
 use crate::scene::{BaseGradation, CurveSource, D85, FilterGradation, NetworkSource};
 
@@ -44,12 +45,20 @@ impl Case {
                 (record::NetworkKind::Connected, name)
             }
             NetworkSource::File(_) => (record::NetworkKind::File, self.name_of("network.file")),
+            NetworkSource::Graph(..) => {
+                let copies = self.copies.map_or(1, |(copies, _)| copies);
+                let times = if copies == 1 { String::new() } else { format!(", {copies} times") };
+                (
+                    record::NetworkKind::Graph,
+                    format!("the voids of {}{times}", self.name_of("network.packing")),
+                )
+            }
         };
         let shape = match self.scene.network.source().shape() {
             Some(shape) => shape.map(|n| Some(u64::from(n))),
             None => [None; 3],
         };
-        let curve_name = match (&self.network_file, &self.scene.filter.curve) {
+        let curve_name = match (&self.fixed_network, &self.scene.filter.curve) {
             (None, None) if self.packed.as_ref().is_some_and(|packed| packed.files.is_none()) => {
                 "a guess, until the filter is packed".to_string()
             }
@@ -69,7 +78,7 @@ impl Case {
                         format!("linear, Cu {}", rounded(self.filter.cu()))
                     }
                 },
-                attribution: match (&self.network_file, self.shipped) {
+                attribution: match (&self.fixed_network, self.shipped) {
                     (None, Some(shipped)) => format!("{} ({})", shipped.attribution, shipped.licence),
                     _ => String::new(),
                 },
@@ -81,7 +90,7 @@ impl Case {
                 d85_mm: d(&self.filter, 85.0),
                 void_ratio: match &self.packed {
                     Some(packed) => packed.void_ratio,
-                    None => self.shipped.filter(|_| self.network_file.is_none()).map(|s| s.void_ratio),
+                    None => self.shipped.filter(|_| self.fixed_network.is_none()).map(|s| s.void_ratio),
                 },
                 gradation: pairs(self.filter.points()),
                 constrictions: self.curve.points().into_iter().map(|(percent, d)| [d, percent]).collect(),
@@ -120,6 +129,7 @@ impl Case {
                 layers,
                 connectivity: self.connectivity.clone(),
                 thickness_mm: self.thickness(),
+                copies: self.copies.map(|(copies, _)| u64::from(copies)),
             },
             mass_ratio: self.mass_ratio,
             inject_share: self.scene.walk.inject_share,
@@ -127,10 +137,37 @@ impl Case {
         }
     }
 
-    /// Modelled filter thickness: layers times D50F by number; `None` where a layer has no thickness.
+    /// The network that was walked, where its constrictions have no direction of their own.
+    pub fn network_summary(&self, replicates: &[record::Replicate]) -> Option<record::NetworkSummary> {
+        let rule = self.scene.exit_rule();
+        if rule == ExitRule::Area {
+            return None;
+        }
+        let [voids, constrictions, inlets, layers] = self.counts;
+        let of_first = replicates.first().and_then(|replicate| replicate.runs.first());
+        let k0_m2 = of_first.and_then(|run| run.k0_mm2).filter(|_| !self.is_scale_free()).map(|k| k * 1e-6);
+        Some(record::NetworkSummary {
+            kind: if self.copies.is_some() { "graph" } else { "lattice" }.into(),
+            exit: rule.name().into(),
+            voids,
+            constrictions,
+            inlets,
+            copies: self.copies.map(|(copies, _)| u64::from(copies)),
+            layers,
+            thickness_mm: self.thickness(),
+            k0_m2,
+            k0_m_per_s: k0_m2.map(|k| k * GRAVITY / KINEMATIC_VISCOSITY),
+        })
+    }
+
+    /// Modelled filter thickness: layers times D50F by number, or copies of a packing; `None` where a layer has no thickness.
     pub fn thickness(&self) -> Option<f64> {
         let d50 = self.filter.d_by_number(50.0).unwrap_or(f64::NAN);
-        self.network_file.is_none().then_some(self.counts[3] as f64 * d50)
+        match (self.copies, &self.fixed_network) {
+            (Some((_, thickness_mm)), _) => Some(thickness_mm),
+            (None, Some(_)) => None,
+            (None, None) => Some(self.counts[3] as f64 * d50),
+        }
     }
 
     /// Whether the filter's gradation is a sieve curve, and not a straight line.
@@ -142,13 +179,19 @@ impl Case {
     pub fn is_scale_free(&self) -> bool {
         matches!(self.scene.filter.gradation(), FilterGradation::Linear { d0_mm, .. } if d0_mm == 1.0)
             && (self.shipped.is_some() || self.packed.is_some() || self.scene.filter.estimate.is_some())
-            && self.network_file.is_none()
+            && self.fixed_network.is_none()
             && matches!(
                 self.scene.base.gradation(),
                 BaseGradation::Linear { d85: D85::AtDc(..) | D85::Ratio(_), .. } | BaseGradation::Single(_)
             )
     }
 }
+
+/// Kinematic viscosity of water of 10 C (m2/s).
+const KINEMATIC_VISCOSITY: f64 = 1.307e-6;
+
+/// Gravity (m/s2).
+const GRAVITY: f64 = 9.81;
 
 /// A coefficient of uniformity without the digits that rounding left.
 fn rounded(cu: Option<f64>) -> f64 {

@@ -39,6 +39,7 @@ impl Case {
         scene.base.sieve = kept("base.sieve");
         scene.base.dc_curve = kept_curve(scene.base.dc_curve, "base.dc_curve");
         scene.network.file = kept("network.file");
+        scene.network.packing = kept("network.packing");
         scene
     }
 

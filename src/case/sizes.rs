@@ -15,7 +15,7 @@ const SMALLER: u32 = 64;
 
 /// Voids, constrictions, start nodes, layers.
 pub(super) fn of_network(n: &Network) -> [u64; 4] {
-    [n.voids() as u64, n.constrictions() as u64, n.start().len() as u64, n.layers() as u64]
+    [n.filter_voids() as u64, n.passages() as u64, n.entries() as u64, n.layers() as u64]
 }
 
 /// The same for the cubic lattice, which is not made for it.

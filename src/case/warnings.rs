@@ -2,6 +2,7 @@
 
 use super::{Case, GUESSED_GRAINS_PER_VOID, Input, guesses_grains_per_void, replicate_seed};
 use crate::gradation::{FEW_FINES, FINES_MM};
+use crate::network::ExitRule;
 use crate::outcome::Mistake;
 
 /// More moves than these of a particle that nothing stops are worth a word.
@@ -42,7 +43,7 @@ impl Case {
             ));
         }
         doubts.extend(self.pan_doubt());
-        if let Some(shipped) = self.shipped.filter(|_| self.network_file.is_none())
+        if let Some(shipped) = self.shipped.filter(|_| self.fixed_network.is_none())
             && let Some(cu) = self.filter.cu()
             && (cu / shipped.cu - 1.0).abs() > 0.05
         {
@@ -173,6 +174,13 @@ impl Case {
                 self.n_base
             ));
         }
+        if let Some((copies, _)) = self.copies {
+            let equal = if copies > 1 { format!(", {copies} equal copies of it,") } else { String::new() };
+            warnings.push(format!(
+                "all replicates walk the voids of one packing{equal} so that their spread is that of the walk \
+                 alone, not that between packings"
+            ));
+        }
         if let Some(moves) = self.moves_to_an_end().filter(|moves| *moves > MANY_MOVES) {
             let about = if moves < 1e15 { format!("about {moves:.1e}") } else { "more than 1e15".into() };
             warnings.push(format!(
@@ -189,9 +197,11 @@ impl Case {
     /// network, or where one constriction is very much wider than another.
     fn moves_to_an_end(&self) -> Option<f64> {
         let widest = self.curve.largest() / self.curve.smallest();
-        match &self.network_file {
+        match &self.fixed_network {
+            // Down the pressure there are no loops.
+            Some(network) if network.reservoir().is_some() => None,
             Some(network) => Some(network.moves_to_an_end(LOOKED_AT)),
-            None if widest * widest > MANY_MOVES => {
+            None if widest * widest > MANY_MOVES && self.scene.exit_rule() == ExitRule::Area => {
                 let network = self.network(replicate_seed(self.scene.walk.seed, 1)).ok()?;
                 Some(network.moves_to_an_end(LOOKED_AT))
             }

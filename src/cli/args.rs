@@ -7,7 +7,7 @@ use std::time::Duration;
 use clap::{Args, Parser, Subcommand};
 
 use crate::campaign::CasePart;
-use crate::constrictions::DEFAULT_MERGE_OVERLAP;
+use crate::constrictions::{DEFAULT_MERGE_OVERLAP, Facets};
 use crate::run::CheckpointInterval;
 use crate::run::machine::bytes_from_words;
 use crate::study::precision::Tier;
@@ -260,6 +260,10 @@ pub struct ConstrictionsArgs {
     /// Overlap of two inscribed spheres from which their tetrahedra are one void
     #[arg(long, value_name = "F", default_value_t = DEFAULT_MERGE_OVERLAP)]
     pub merge_overlap: f64,
+    /// Which facets between voids the curve counts: all, or on-both-hulls, those on the convex hulls of the
+    /// grains of both voids
+    #[arg(long, value_name = "WHICH", default_value = "all", value_parser = facets)]
+    pub facets: Facets,
     /// Folder for the results
     #[arg(long, value_name = "DIR", default_value = "voidwalk-constrictions")]
     pub out: PathBuf,
@@ -335,6 +339,14 @@ fn assignment(text: &str) -> Result<String, String> {
 }
 
 /// A seed.
+fn facets(text: &str) -> Result<Facets, String> {
+    match text {
+        "all" => Ok(Facets::All),
+        "on-both-hulls" => Ok(Facets::OnBothHulls),
+        _ => Err("all or on-both-hulls".into()),
+    }
+}
+
 fn seed(text: &str) -> Result<u64, String> {
     text.trim().parse().map_err(|_| format!("write a whole number from 0 to {}", u64::MAX))
 }

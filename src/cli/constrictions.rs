@@ -9,6 +9,7 @@ use crate::run::{ConstrictionsOptions, RunError, measure_constrictions};
 pub fn constrictions(args: &ConstrictionsArgs) -> Result<(), RunError> {
     let options = ConstrictionsOptions {
         merge_overlap: args.merge_overlap,
+        facets: args.facets,
         out: args.out.clone(),
         overwrite: args.overwrite,
     };
@@ -17,7 +18,7 @@ pub fn constrictions(args: &ConstrictionsArgs) -> Result<(), RunError> {
         to_stdout(&json(&summary)?);
         return Ok(());
     }
-    let lines = [
+    let mut lines = vec![
         format!("{} grains, void ratio {:.4}", count(summary.grains as u64), summary.void_ratio),
         format!(
             "{} voids, {:.3} grains per void (Eq. 2), {:.2} constrictions a void on average",
@@ -31,8 +32,17 @@ pub fn constrictions(args: &ConstrictionsArgs) -> Result<(), RunError> {
             summary.cu_csd,
             args.merge_overlap
         ),
+        String::new(),
         format!("for a scene: filter.curve = \"{}\"", args.out.join("constrictions.csv").display()),
     ];
+    let permeability = summary.k_over_d32_squared.zip(summary.kozeny_carman_over_d32_squared);
+    lines[3] = match permeability {
+        Some((k, kc)) => format!(
+            "permeability {k:.3e} d32 squared along z, {:.2} times Kozeny and Carman's; the void graph: graph.csv",
+            k / kc
+        ),
+        None => "no void graph: it needs a periodic cell through which no void runs from end to end".into(),
+    };
     to_stdout(&lines.iter().map(|line| plain(line) + "\n").collect::<String>());
     Ok(())
 }

@@ -2,6 +2,7 @@
 
 use super::curve::{Curve, CurveError, CurveUnit};
 use super::discs::{ConstrictionDisc, disc};
+use super::throat::solid_angle;
 use super::triangulation::{GrainPoint, Positions, Shift, Triangulation, TriangulationError};
 use super::voids::{Insphere, Voids};
 use crate::packing::Packing;
@@ -108,6 +109,20 @@ pub enum ConstrictionsError {
     /// The packing has no triangulation.
     #[error(transparent)]
     Triangulation(#[from] TriangulationError),
+    /// Grains without a periodic cell, where the graph of their voids is wanted.
+    #[error("the grains have no periodic cell, and the graph of their voids needs one")]
+    NoCell,
+    /// A void that meets itself on the other side of the cell.
+    #[error(
+        "void {void} runs through the whole cell and meets itself: no way through the graph is known. Merge \
+         less (merge_overlap = {merge_overlap} now), or take more grains"
+    )]
+    Endless {
+        /// The void.
+        void: u32,
+        /// Overlap from which tetrahedra share a void.
+        merge_overlap: f64,
+    },
     /// A merge overlap that is none.
     #[error("merge_overlap = {value} is not allowed; allowed: a finite number from 0")]
     MergeOverlap {
@@ -134,6 +149,81 @@ impl Region {
     }
 }
 
+/// An open facet between two voids, and the constriction that it is, or is a part of.
+pub(super) struct Passage {
+    /// Tetrahedron and corner opposite the facet, on the side that comes first.
+    pub(super) facet: (usize, usize),
+    /// Its constriction; facets come in such an order that a new one is one more than those before.
+    pub(super) constriction: usize,
+    /// Radius of the disc, in grid units.
+    pub(super) radius: f64,
+    /// Its centre, in the stored translate of the tetrahedron.
+    pub(super) centre: [f64; 3],
+    /// Whether a fourth grain cuts into it.
+    pub(super) cut: bool,
+}
+
+/// The facets between voids.
+pub(super) struct Passages {
+    /// Those that are open.
+    pub(super) of: Vec<Passage>,
+    /// Number of those that the grains close.
+    pub(super) closed: usize,
+}
+
+impl Passages {
+    /// The facets between voids that are `counted`.
+    pub(super) fn new(t: &Triangulation, positions: &Positions<'_>, voids: &Voids, counted: Facets) -> Self {
+        let counts = |i: usize, k: usize| {
+            // Each facet from the tetrahedron that comes first.
+            t.across(i, k).is_some_and(|(u, j, _)| {
+                u > i
+                    && voids.of[u] != voids.of[i]
+                    && (counted == Facets::All
+                        || voids.on_hull(t, positions, i, k) && voids.on_hull(t, positions, u, j))
+            })
+        };
+        let facets: Vec<(usize, usize)> = (0..t.tetrahedra())
+            .into_par_iter()
+            .with_min_len(256)
+            .flat_map_iter(|i| (0..4).map(move |k| (i, k)))
+            .filter(|&(i, k)| counts(i, k))
+            .collect();
+        let discs: Vec<ConstrictionDisc> =
+            facets.par_iter().with_min_len(256).map(|&(i, k)| disc(t, positions, i, k)).collect();
+        let frame = Frame::new(t);
+        let mut found = Self { of: Vec::new(), closed: 0 };
+        // Diameter and centre (mm) of each constriction.
+        let mut constrictions: Vec<(f64, [f64; 3])> = Vec::new();
+        let mut between: HashMap<(u32, u32), Vec<usize>> = HashMap::new();
+        for (&(i, k), disc) in facets.iter().zip(&discs) {
+            let Some((u, _, _)) = t.across(i, k) else { continue };
+            if disc.radius <= 0.0 {
+                found.closed += 1;
+                continue;
+            }
+            let (centre, diameter) = (frame.inside_mm(disc.centre), 2.0 * disc.radius * frame.unit_mm);
+            let (a, b) = (voids.of[i], voids.of[u]);
+            let seen = between.entry((a.min(b), a.max(b))).or_default();
+            let same = |&&c: &&usize| {
+                (constrictions[c].0 - diameter).abs() <= SAME_DISC * diameter
+                    && frame.distance_mm(&constrictions[c].1, &centre) <= SAME_DISC * diameter
+            };
+            let constriction = match seen.iter().find(same) {
+                Some(&known) => known,
+                None => {
+                    seen.push(constrictions.len());
+                    constrictions.push((diameter, centre));
+                    constrictions.len() - 1
+                }
+            };
+            let &ConstrictionDisc { centre, radius, cut } = disc;
+            found.of.push(Passage { facet: (i, k), constriction, radius, centre, cut });
+        }
+        found
+    }
+}
+
 impl Constrictions {
     /// Triangulates a packing and measures it.
     ///
@@ -157,47 +247,21 @@ impl Constrictions {
         }
         let positions = t.positions();
         let voids = Voids::merge(t, &positions, merge_overlap);
-        let counts = |i: usize, k: usize| {
-            // Each facet from the tetrahedron that comes first.
-            t.across(i, k).is_some_and(|(u, j, _)| {
-                u > i
-                    && voids.of[u] != voids.of[i]
-                    && (counted == Facets::All
-                        || voids.on_hull(t, &positions, i, k) && voids.on_hull(t, &positions, u, j))
-            })
-        };
-        let facets: Vec<(usize, usize)> = (0..t.tetrahedra())
-            .into_par_iter()
-            .with_min_len(256)
-            .flat_map_iter(|i| (0..4).map(move |k| (i, k)))
-            .filter(|&(i, k)| counts(i, k))
-            .collect();
-        let discs: Vec<ConstrictionDisc> =
-            facets.par_iter().with_min_len(256).map(|&(i, k)| disc(t, &positions, i, k)).collect();
+        let passages = Passages::new(t, &positions, &voids, counted);
         let frame = Frame::new(t);
         let mut found = Self::empty(t, &voids, &frame);
         (found.merge_overlap, found.counted) = (merge_overlap, counted);
-        let mut between: HashMap<(u32, u32), Vec<usize>> = HashMap::new();
-        for (&(i, k), disc) in facets.iter().zip(&discs) {
-            if disc.radius <= 0.0 {
-                found.closed += 1;
+        found.closed = passages.closed;
+        for passage in &passages.of {
+            if passage.constriction < found.diameter_mm.len() {
                 continue;
             }
-            let (centre, diameter) = (frame.inside_mm(disc.centre), 2.0 * disc.radius * frame.unit_mm);
+            let (i, k) = passage.facet;
             let Some((u, _, _)) = t.across(i, k) else { continue };
             let (a, b) = (voids.of[i], voids.of[u]);
-            let seen = between.entry((a.min(b), a.max(b))).or_default();
-            let same = |&c: &usize| {
-                (found.diameter_mm[c] - diameter).abs() <= SAME_DISC * diameter
-                    && frame.distance_mm(&found.centre_mm[c], &centre) <= SAME_DISC * diameter
-            };
-            if seen.iter().any(same) {
-                continue;
-            }
-            seen.push(found.diameter_mm.len());
-            found.cut += usize::from(disc.cut);
-            found.diameter_mm.push(diameter);
-            found.centre_mm.push(centre);
+            found.cut += usize::from(passage.cut);
+            found.diameter_mm.push(2.0 * passage.radius * frame.unit_mm);
+            found.centre_mm.push(frame.inside_mm(passage.centre));
             let up = leads_up(&t.at(&positions, i, Shift::ZERO), k);
             found.upstream.push(if up { a } else { b });
             found.downstream.push(if up { b } else { a });
@@ -346,7 +410,7 @@ fn ball(radius: f64) -> f64 {
 }
 
 /// Void ratio of the tetrahedra whose centroid lies in a region: their volume, and the sectors that
-/// their grains fill (solid angle by Van Oosterom & Strackee, doi:10.1109/TBME.1983.325207).
+/// their grains fill.
 fn void_ratio_within(t: &Triangulation, positions: &Positions<'_>, frame: &Frame, region: &Region) -> f64 {
     let (mut whole, mut solid) = (0.0, 0.0);
     for i in 0..t.tetrahedra() {
@@ -358,12 +422,9 @@ fn void_ratio_within(t: &Triangulation, positions: &Positions<'_>, frame: &Frame
         for a in 0..4 {
             let edges = [1, 2, 3]
                 .map(|k| -> [f64; 3] { std::array::from_fn(|axis| c[(a + k) % 4][axis] - c[a][axis]) });
-            let dot = |p: &[f64; 3], q: &[f64; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-            let six = dot(&edges[0], &super::tangent::cross(&edges[1], &edges[2])).abs();
-            let [l, m, n] = edges.map(|e| dot(&e, &e).sqrt());
-            let [e, f, g] = edges;
-            let below = l * m * n + dot(&e, &f) * n + dot(&e, &g) * m + dot(&f, &g) * l;
-            solid += 2.0 * libm::atan2(six, below) / 3.0 * c[a][3] * c[a][3] * c[a][3];
+            let normal = super::tangent::cross(&edges[1], &edges[2]);
+            let six = (edges[0][0] * normal[0] + edges[0][1] * normal[1] + edges[0][2] * normal[2]).abs();
+            solid += solid_angle(&edges, six) / 3.0 * c[a][3] * c[a][3] * c[a][3];
             if a == 0 {
                 whole += six / 6.0;
             }

@@ -7,15 +7,18 @@
 
 mod curve;
 mod discs;
+mod graph;
 mod inscribed;
 mod measure;
 mod shipped;
 mod summary;
 mod tangent;
+mod throat;
 mod triangulation;
 mod voids;
 
 pub use curve::{Curve, CurveError, CurveUnit};
+pub use graph::VoidGraph;
 pub use inscribed::inscribed;
 pub use measure::{Constrictions, ConstrictionsError, DEFAULT_MERGE_OVERLAP, Facets};
 pub use shipped::{ShippedFilter, find, shipped};

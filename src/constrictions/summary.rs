@@ -47,6 +47,12 @@ pub struct Summary {
     pub hidden_grains: Vec<u32>,
     /// Pairs of grains with the same centre.
     pub duplicate_grains: Vec<[u32; 2]>,
+    /// Permeability along z over the square of the grains' Sauter mean d32; none without a periodic cell.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub k_over_d32_squared: Option<f64>,
+    /// The same by Kozeny and Carman, (1 - c)^3 / (180 c^2) with c the solid fraction.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kozeny_carman_over_d32_squared: Option<f64>,
 }
 
 impl Constrictions {
@@ -75,15 +81,17 @@ impl Constrictions {
             closed_facets: self.closed,
             hidden_grains: self.hidden.clone(),
             duplicate_grains: self.duplicates.clone(),
+            k_over_d32_squared: None,
+            kozeny_carman_over_d32_squared: None,
         })
     }
 
-    /// The files that say all of it, by name: curve, figures, and the constrictions for ParaView.
+    /// The files that say all of it, by name: curve, the constrictions for ParaView, and this summary.
     ///
     /// # Errors
     /// As [`Constrictions::curve`].
-    pub fn files(&self) -> Result<[(&'static str, String); 3], CurveError> {
-        let json = serde_json::to_string_pretty(&self.summary()?).expect("numbers and names") + "\n";
+    pub fn files(&self, summary: &Summary) -> Result<[(&'static str, String); 3], CurveError> {
+        let json = serde_json::to_string_pretty(summary).expect("numbers and names") + "\n";
         Ok([
             ("constrictions.csv", self.curve_csv()?),
             ("constrictions.vtp", self.to_vtp()),

@@ -36,6 +36,11 @@ pub(super) enum Insphere {
 pub(super) struct Voids {
     /// Void by tetrahedron, numbered by their first tetrahedra.
     pub(super) of: Vec<u32>,
+    /// By tetrahedron: the translate of it that belongs to the same image of the void as the stored translate
+    /// of the void's first tetrahedron.
+    pub(super) shift: Vec<Shift>,
+    /// By void: whether it meets an image of itself, and so runs through the whole periodic cell.
+    pub(super) endless: Vec<bool>,
     /// Number of voids.
     pub(super) count: usize,
     /// Insphere by tetrahedron.
@@ -49,28 +54,30 @@ impl Voids {
             .with_min_len(1024)
             .map(|i| insphere(&t.at(positions, i, Shift::ZERO)))
             .collect();
-        let pairs: Vec<[u32; 2]> = (0..t.tetrahedra())
+        let pairs: Vec<(u32, u32, Shift)> = (0..t.tetrahedra())
             .into_par_iter()
             .with_min_len(1024)
             .flat_map_iter(|i| joined(t, positions, &inspheres, merge_overlap, i))
             .collect();
-        let mut sets = Sets((0..t.tetrahedra() as u32).collect());
-        for [a, b] in pairs {
-            sets.unite(a, b);
-        }
+        let mut sets = Sets::new(t.tetrahedra());
+        let meets_itself: Vec<u32> =
+            pairs.into_iter().filter(|&(a, b, by)| !sets.unite(a, b, by)).map(|(a, _, _)| a).collect();
         let mut number = vec![u32::MAX; t.tetrahedra()];
         let mut count = 0;
-        let of = (0..t.tetrahedra() as u32)
+        let (of, shift): (Vec<u32>, Vec<Shift>) = (0..t.tetrahedra() as u32)
             .map(|i| {
-                let root = sets.root(i) as usize;
-                if number[root] == u32::MAX {
-                    number[root] = count;
+                let (root, shift) = sets.root(i);
+                let number = &mut number[root as usize];
+                if *number == u32::MAX {
+                    *number = count;
                     count += 1;
                 }
-                number[root]
+                (*number, shift)
             })
-            .collect();
-        Self { of, count: count as usize, inspheres }
+            .unzip();
+        let mut endless = vec![false; count as usize];
+        meets_itself.iter().for_each(|&i| endless[of[i as usize] as usize] = true);
+        Self { of, shift, endless, count: count as usize, inspheres }
     }
 }
 
@@ -135,23 +142,23 @@ fn is_flat(corners: &[GrainPoint; 4]) -> bool {
     })
 }
 
-/// The tetrahedra that tetrahedron `i` shares its void with, by what can be seen from it.
+/// The tetrahedra that tetrahedron `i` shares its void with, by what can be seen from it: `i`, the other, and
+/// the translate of the other that the stored one of `i` meets.
 fn joined(
     t: &Triangulation,
     positions: &Positions<'_>,
     inspheres: &[Insphere],
     merge_overlap: f64,
     i: usize,
-) -> Vec<[u32; 2]> {
+) -> Vec<(u32, u32, Shift)> {
     let neighbours = (0..4).filter_map(|k| t.across(i, k).map(|(u, _, shift)| (u, shift)));
-    let pair = |u: usize| [i as u32, u as u32];
+    let pair = |(u, shift): (usize, Shift)| (i as u32, u as u32, shift);
     match inspheres[i] {
-        Insphere::Open => neighbours.map(|(u, _)| pair(u)).collect(),
+        Insphere::Open => neighbours.map(pair).collect(),
         Insphere::Flat => {
             let radius = |u: usize| if let Insphere::Sphere(s) = inspheres[u] { s.radius } else { 0.0 };
             neighbours
-                .map(|(u, _)| u)
-                .reduce(|best, u| if (radius(u), best) > (radius(best), u) { u } else { best })
+                .reduce(|best, u| if (radius(u.0), best.0) > (radius(best.0), u.0) { u } else { best })
                 .map(pair)
                 .into_iter()
                 .collect()
@@ -169,7 +176,7 @@ fn joined(
                     let distance = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
                     let overlap = own.radius + other.radius - distance;
                     if overlap >= merge_overlap * own.radius.min(other.radius) {
-                        found.push(pair(u));
+                        found.push(pair((u, shift)));
                     }
                 }
             };
@@ -184,21 +191,66 @@ fn joined(
     }
 }
 
-/// Disjoint sets; each is known by its smallest member, whatever the order of the unions.
-struct Sets(Vec<u32>);
+/// Disjoint sets; each is known by its smallest member, whatever the order of the unions. Every member knows
+/// which of its translates goes with the stored translate of its set's smallest member.
+struct Sets {
+    above: Vec<u32>,
+    /// Translate of each member that goes with the stored one of the member above it.
+    shift: Vec<Shift>,
+}
 
 impl Sets {
-    fn root(&mut self, mut i: u32) -> u32 {
-        while self.0[i as usize] != i {
-            let above = self.0[self.0[i as usize] as usize];
-            self.0[i as usize] = above;
-            i = above;
-        }
-        i
+    fn new(members: usize) -> Self {
+        Self { above: (0..members as u32).collect(), shift: vec![Shift::ZERO; members] }
     }
 
-    fn unite(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b) as usize] = a.min(b);
+    /// The smallest member of the set of `i`, and the translate of `i` that goes with it.
+    fn root(&mut self, i: u32) -> (u32, Shift) {
+        let mut at = i as usize;
+        let mut shift = Shift::ZERO;
+        while self.above[at] as usize != at {
+            let above = self.above[at] as usize;
+            // Halves the way for the next time.
+            self.shift[at] = self.shift[at].plus(self.shift[above]);
+            self.above[at] = self.above[above];
+            shift = shift.plus(self.shift[at]);
+            at = self.above[at] as usize;
+        }
+        (at as u32, shift)
+    }
+
+    /// Joins the sets of `a` and `b`, where translate `by` of `b` goes with the stored one of `a`. False where
+    /// they are of one set already, by another translate.
+    fn unite(&mut self, a: u32, b: u32, by: Shift) -> bool {
+        let ((root_a, of_a), (root_b, of_b)) = (self.root(a), self.root(b));
+        let between = of_a.plus(by).minus(of_b);
+        if root_a == root_b {
+            return between == Shift::ZERO;
+        }
+        let (below, above, shift) = match root_a < root_b {
+            true => (root_b, root_a, between),
+            false => (root_a, root_b, Shift::ZERO.minus(between)),
+        };
+        self.above[below as usize] = above;
+        self.shift[below as usize] = shift;
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sets_know_which_translates_go_together() {
+        let mut sets = Sets::new(5);
+        let by = |x| Shift::new([x, 0, -x]);
+        assert!(sets.unite(3, 4, by(1)) && sets.unite(1, 2, by(2)) && sets.unite(4, 2, by(-1)));
+        // 1 is the smallest; 2 goes with it at 2, 4 at 2 + 1, 3 at 3 - 1.
+        for (member, shift) in [(1, 0), (2, 2), (4, 3), (3, 2)] {
+            assert_eq!(sets.root(member), (1, by(shift)), "{member}");
+        }
+        assert!(sets.unite(1, 3, by(2)) && !sets.unite(1, 3, by(1)));
+        assert_eq!(sets.root(0), (0, Shift::ZERO));
     }
 }

@@ -3,6 +3,9 @@
 #[doc = include_str!("soils.md")]
 pub mod soils {}
 
+#[doc = include_str!("graph.md")]
+pub mod graph {}
+
 #[doc = include_str!("rules.md")]
 pub mod rules {}
 

@@ -184,6 +184,7 @@ impl Network {
             layer: (0..voids as u32).map(|v| v / (shape[0] * shape[1])).collect(),
             unit_mm,
             shape: None,
+            undirected: None,
         };
         for void in 0..voids {
             network.exit_begin.push(network.target.len() as u32);

@@ -104,6 +104,7 @@ impl Network {
             layer: (0..voids).map(|v| v / plane).collect(),
             unit_mm,
             shape: Some(shape),
+            undirected: None,
         })
     }
 }

@@ -44,6 +44,20 @@ pub enum NetworkError {
         /// The value found.
         value: f32,
     },
+    /// A conductance that no constriction can have.
+    #[error("constriction {constriction} has conductance {value}: it must be finite and not negative")]
+    Conductance {
+        /// Constriction, counted from 0.
+        constriction: usize,
+        /// The value found.
+        value: f64,
+    },
+    /// Voids and constrictions that are no network that anything can pass.
+    #[error("the network cannot be walked: {problem}")]
+    Unlinked {
+        /// What is wrong.
+        problem: String,
+    },
     /// A distribution of connectivity that cannot be.
     #[error("connectivity {value} is not allowed; {allowed}")]
     Connectivity {
@@ -254,8 +268,16 @@ impl Rows {
             }
             return Ok(lattice);
         }
-        let mut network =
-            Network { exit_begin, target, diameter, start: self.start, layer: vec![], unit_mm, shape: None };
+        let mut network = Network {
+            exit_begin,
+            target,
+            diameter,
+            start: self.start,
+            layer: vec![],
+            unit_mm,
+            shape: None,
+            undirected: None,
+        };
         network.layer = network.distances(|_| true);
         Ok(network)
     }

@@ -13,19 +13,31 @@
 
 mod connectivity;
 mod cubic;
+mod exit_rule;
 mod file;
 mod first_passage;
+mod flow;
+mod graph;
 mod passage;
 mod percolation;
+mod permeability;
 mod reach;
 mod stratified;
+mod undirected;
 
 pub use connectivity::{Connectivity, TABLE_3, TOLERANCE_PERCENT};
+pub use exit_rule::ExitRule;
 pub use file::NetworkError;
 pub use first_passage::FirstPassage;
+pub use flow::{Flow, FlowError, Permeability};
+pub use graph::GraphShape;
 pub use passage::Passage;
 pub use percolation::percolation_threshold;
+pub use permeability::permeability_mm2;
 pub use reach::Reachability;
+pub use undirected::{Link, LinkEnd, LinkedVoids, WIDE};
+
+use undirected::Undirected;
 
 /// Target of an exit that leaves the filter.
 pub const END: u32 = u32::MAX;
@@ -51,23 +63,29 @@ pub struct Network {
     unit_mm: f64,
     /// Voids along x, y, z where the network is the cubic lattice.
     shape: Option<[u32; 3]>,
+    /// What there is besides where constrictions have no direction of their own.
+    undirected: Option<Box<Undirected>>,
 }
 
 impl Network {
     /// How a constriction weighs in the choice among the open exits of its void: its area, but for a factor
-    /// that all have (the paper's Fig. 4). One that is closed from the start weighs nothing.
+    /// that all have (the paper's Fig. 4), or what its [`ExitRule`] makes of area and flow. One that is closed
+    /// from the start weighs nothing.
     ///
     /// Engines, first passage and Eq. (1) all take it from here; the slow reference of the walk works it out
     /// by itself, on purpose.
     #[inline]
     pub fn exit_weight(&self, constriction: usize) -> f64 {
+        if let Some(undirected) = &self.undirected {
+            return undirected.weight[constriction];
+        }
         let diameter = f64::from(self.diameter[constriction]);
         diameter * diameter
     }
 
     /// Fingerprint of everything that a walk takes from the network: a new column must say here what it is.
     pub fn fingerprint(&self) -> u64 {
-        let Self { exit_begin, target, diameter, start, layer, unit_mm, shape: _ } = self;
+        let Self { exit_begin, target, diameter, start, layer, unit_mm, shape: _, undirected } = self;
         let mut hash = xxhash_rust::xxh3::Xxh3::new();
         hash.update(bytemuck::cast_slice(exit_begin));
         hash.update(bytemuck::cast_slice(target));
@@ -75,6 +93,9 @@ impl Network {
         hash.update(bytemuck::cast_slice(start));
         hash.update(bytemuck::cast_slice(layer));
         hash.update(&unit_mm.to_bits().to_le_bytes());
+        if let Some(undirected) = undirected {
+            undirected.hash(&mut hash);
+        }
         hash.digest()
     }
 

@@ -1,6 +1,6 @@
 //! What can be reached through open constrictions: the backbone, and the blocked set of one size.
 
-use super::{END, NO_LAYER, Network};
+use super::{END, NO_LAYER, Network, WIDE};
 
 /// Where paths through passable constrictions lead, found breadth-first.
 pub struct Reachability {
@@ -26,11 +26,11 @@ impl Network {
         for void in (0..self.voids() as u32).filter(|&v| reach.from_start[v as usize]) {
             let leads_out = |&c: &usize| {
                 let target = self.target[c];
-                open(c) && (target == END || reach.to_end[target as usize])
+                self.diameter[c] != WIDE && open(c) && (target == END || reach.to_end[target as usize])
             };
             on_path += self.exits(void).filter(leads_out).count() as u64;
         }
-        on_path as f64 / self.constrictions() as f64
+        on_path as f64 / self.passages().max(1) as f64
     }
 
     /// The constrictions that an unlimited supply of particles of diameter `d` blocks, whatever the

@@ -13,6 +13,10 @@ type Sums = [u64; 5];
 /// and not counted.
 pub fn of_run(network: &Network, state: &State) -> Vec<ByConnectivity> {
     let mut sums: BTreeMap<u64, Sums> = BTreeMap::new();
+    // Entrances and exits are the same there.
+    if network.reservoir().is_some() {
+        return Vec::new();
+    }
     for (void, &k) in network.connectivity().iter().enumerate() {
         let exits = network.exits(void as u32);
         let of_void = [

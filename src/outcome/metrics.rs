@@ -1,11 +1,11 @@
 //! The numbers of one run at its end, and its rows of the CSV files.
 
 use super::by_connectivity;
-use super::record::{LayerRow, Run, SeriesRow, SizeRow};
+use super::record::{FlowRow, LayerRow, Run, SeriesRow, SizeRow};
 use super::recorder::Recorder;
 use super::verdict::{below_by_count, below_by_mass};
 use crate::network::{NO_LAYER, Network};
-use crate::walk::{SizeClasses, SizeCounts, State, Tally};
+use crate::walk::{FlowRecord, SizeClasses, SizeCounts, State, Tally};
 
 /// A run of a replicate, and what its numbers are given by.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +40,9 @@ pub struct Recorded {
     pub retained: Vec<SizeRow>,
     /// Rows of `eroded.csv`.
     pub eroded: Vec<SizeRow>,
+    /// Rows of `flow.csv`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub flow: Vec<FlowRow>,
 }
 
 /// Mass eroded over the mass that the run inserts in all.
@@ -63,8 +66,8 @@ pub(crate) fn eroded_mass_fraction(tally: &Tally, end: &Tally, pan_fraction: f64
 }
 
 impl RunMetrics {
-    /// The numbers of a finished run, which took `seconds` of wall time.
-    pub fn new(network: &Network, state: &State, of: RunId, seconds: f64) -> Self {
+    /// The numbers of a finished run, which took `seconds` of wall time, on the network as it was at its end.
+    pub fn new(network: &Network, state: &State, flow: Option<&FlowRecord>, of: RunId, seconds: f64) -> Self {
         let tally = &state.tally;
         let eroded_mass_fraction = eroded_mass_fraction(tally, tally, of.pan_fraction);
         let one_size = state.classes.upper().len() == 1 && of.pan_fraction == 0.0;
@@ -76,6 +79,7 @@ impl RunMetrics {
         let largest_mm = (tally.eroded > 0).then(|| f64::from(tally.largest_eroded) * network.unit_mm());
         let retained = tally.retained_in_constrictions + tally.retained_in_voids + tally.trapped;
         let [deepest, most] = retained_layers(network, state);
+        let fullness = fullness(network, state);
         let run = Run {
             run: of.run,
             eroded_mass_fraction,
@@ -83,7 +87,7 @@ impl RunMetrics {
             largest_eroded_mm: largest_mm,
             largest_eroded_over_d15f: largest_mm.map(|d| d / of.d15f_mm),
             blocked: tally.blocked,
-            blocked_fraction: tally.blocked as f64 / network.constrictions().max(1) as f64,
+            blocked_fraction: tally.blocked as f64 / network.passages().max(1) as f64,
             blocked_first_three_layers_fraction: blocked_first_layers(network, state, 3),
             backbone_fraction: network.backbone_fraction(|c| !state.is_closed(network, c)),
             inserted: tally.inserted,
@@ -91,11 +95,16 @@ impl RunMetrics {
             retained_in_constrictions: tally.retained_in_constrictions,
             retained_in_voids: tally.retained_in_voids,
             trapped: tally.trapped,
-            retained_per_void: retained as f64 / network.voids() as f64,
+            retained_per_void: retained as f64 / network.filter_voids() as f64,
             deepest_retained_layer: deepest,
             retained_95_layer: most,
             increments: state.increment,
-            particle_moves: tally.particle_moves,
+            particle_moves: tally.particle_moves - free_entries(network, state),
+            k_over_k0: flow.and_then(|flow| flow.k_over_k0.last()).map(|&(_, k)| k),
+            k0_mm2: flow.and_then(|flow| flow.k0_mm2),
+            fullness_max: fullness.iter().copied().reduce(f64::max),
+            overfull_fraction: (!fullness.is_empty())
+                .then(|| fullness.iter().filter(|&&f| f > OVERFULL).count() as f64 / fullness.len() as f64),
             by_connectivity: by_connectivity::of_run(network, state),
             seconds,
         };
@@ -105,7 +114,13 @@ impl RunMetrics {
 
 impl Recorded {
     /// The rows of a finished run.
-    pub fn new(network: &Network, state: &State, recorder: &Recorder, of: RunId) -> Self {
+    pub fn new(
+        network: &Network,
+        state: &State,
+        flow: Option<&FlowRecord>,
+        recorder: &Recorder,
+        of: RunId,
+    ) -> Self {
         let series = recorder.series.iter().map(|(increment, tally)| SeriesRow {
             replicate: of.replicate,
             run: of.run,
@@ -119,8 +134,18 @@ impl Recorded {
             blocked: tally.blocked,
             eroded_mass_fraction: eroded_mass_fraction(tally, &state.tally, of.pan_fraction),
         });
-        let mut recorded =
-            Self { series: series.collect(), layers: layers(network, state, of), ..Self::default() };
+        let flow = flow.iter().flat_map(|flow| &flow.k_over_k0).map(|&(increment, k_over_k0)| FlowRow {
+            replicate: of.replicate,
+            run: of.run,
+            increment,
+            k_over_k0,
+        });
+        let mut recorded = Self {
+            series: series.collect(),
+            layers: layers(network, state, of),
+            flow: flow.collect(),
+            ..Self::default()
+        };
         for (increment, retained, eroded) in &recorder.sizes {
             let row = |counts| size_curve(counts, &state.classes, network.unit_mm(), of, *increment);
             recorded.retained.extend(row(retained));
@@ -135,6 +160,28 @@ impl Recorded {
         self.layers.append(&mut later.layers);
         self.retained.append(&mut later.retained);
         self.eroded.append(&mut later.eroded);
+        self.flow.append(&mut later.flow);
+    }
+}
+
+/// A void is overfull above this part of its volume: no packing of the particles in it is denser.
+const OVERFULL: f64 = 0.6;
+
+/// Retained volume over volume of each void; nothing where volumes are not known.
+fn fullness(network: &Network, state: &State) -> Vec<f64> {
+    // Of an expectation only the number by void is known.
+    if state.passive.expected().is_some() {
+        return Vec::new();
+    }
+    let full = |(&volume, &cubes): (&f64, &f64)| std::f64::consts::FRAC_PI_6 * cubes / volume;
+    network.volumes().iter().zip(&state.retained_cubes).map(full).collect()
+}
+
+/// Moves out of the reservoir through ways in that are no constrictions: coming in is no move.
+fn free_entries(network: &Network, state: &State) -> u64 {
+    match network.reservoir().filter(|_| network.entry_is_free()) {
+        Some(r) => state.tally.inserted - state.retained_in_voids[r as usize],
+        None => 0,
     }
 }
 
@@ -157,8 +204,8 @@ fn retained_layers(network: &Network, state: &State) -> [Option<u64>; 2] {
 fn blocked_first_layers(network: &Network, state: &State, layers: u32) -> f64 {
     let (mut blocked, mut all) = (0u64, 0u64);
     for void in (0..network.voids() as u32).filter(|&v| network.layer_of()[v as usize] < layers) {
-        let exits = network.exits(void);
-        all += exits.len() as u64;
+        let exits = network.exits(void).filter(|&c| network.counts(c));
+        all += exits.clone().count() as u64;
         blocked += exits.filter(|&c| state.blocked[c]).count() as u64;
     }
     blocked as f64 / all.max(1) as f64
@@ -181,8 +228,8 @@ fn layers(network: &Network, state: &State, of: RunId) -> Vec<LayerRow> {
             continue;
         }
         let row = &mut rows[layer as usize];
-        let exits = network.exits(void as u32);
-        row.constrictions += exits.len() as u64;
+        let exits = network.exits(void as u32).filter(|&c| network.counts(c));
+        row.constrictions += exits.clone().count() as u64;
         row.blocked += exits.filter(|&c| state.blocked[c]).count() as u64;
         row.retained_in_constrictions += state.retained_in_constrictions[void];
         row.retained_in_voids += state.retained_in_voids[void];

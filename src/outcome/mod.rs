@@ -50,3 +50,16 @@ pub const MODEL_LEAVES_OUT: [&str; 6] = [
     "the excessive-erosion class of Foster and Fell: the verdict knows no, some and continuing erosion",
     "cohesion, suffusion of the filter itself, segregation and layering of the filter",
 ];
+
+/// What stands in the place of the first where water gives particles their way.
+const LEAVES_OUT_OF_FLOW: &str = "hydraulics but for the direction and the shares of slow flow: no gradient, no \
+    time; an increment is not an interval of time";
+
+/// What the model does not contain where particles choose by this rule.
+pub fn leaves_out(rule: crate::network::ExitRule) -> Vec<String> {
+    let mut all = MODEL_LEAVES_OUT.map(String::from).to_vec();
+    if rule.needs_flow() {
+        all[0] = LEAVES_OUT_OF_FLOW.into();
+    }
+    all
+}

@@ -62,6 +62,9 @@ pub struct Outcome {
     pub model_leaves_out: Vec<String>,
     /// What went in, resolved.
     pub inputs: Inputs,
+    /// The network, where its constrictions have no direction of their own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub network: Option<NetworkSummary>,
     /// The ratios that filter rules use.
     pub ratios: Ratios,
     /// Empirical filter rules applied to the same two curves.
@@ -187,6 +190,18 @@ pub struct Run {
     pub increments: u64,
     /// Moves completed, the one that leaves included.
     pub particle_moves: u64,
+    /// Permeability when the run ends over that of the clean filter, where water flows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub k_over_k0: Option<f64>,
+    /// Permeability of the clean filter (mm2), where the network knows its lengths.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub k0_mm2: Option<f64>,
+    /// Retained volume over void volume of the fullest void, where voids have a volume.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fullness_max: Option<f64>,
+    /// Share of the voids that are filled by more than 0.6 of their volume, likewise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub overfull_fraction: Option<f64>,
     /// Retained and blocked by connectivity of the void, rising; empty where all voids have one connectivity.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub by_connectivity: Vec<ByConnectivity>,
@@ -350,8 +365,50 @@ pub struct NetworkRecord {
     /// Rows of (connectivity, percent of the voids), rising; empty where all voids have the same.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub connectivity: Vec<[f64; 2]>,
-    /// Modelled filter thickness: layers times D50F by number; `None` where a layer has no thickness.
+    /// Modelled filter thickness: layers times D50F by number, or copies of a packing; `None` where a layer has
+    /// no thickness.
     pub thickness_mm: Option<f64>,
+    /// Equal copies of a packing, one behind the other; `None` but for a graph.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub copies: Option<u64>,
+}
+
+/// The network that was walked, where its constrictions have no direction of their own.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NetworkSummary {
+    /// `lattice` or `graph`.
+    pub kind: String,
+    /// How particles chose among the exits of a void: `flux`, `area-along-flow` or `height`.
+    pub exit: String,
+    /// Voids.
+    pub voids: u64,
+    /// Constrictions, each counted once.
+    pub constrictions: u64,
+    /// Ways in from the reservoir.
+    pub inlets: u64,
+    /// Equal copies of a packing, one behind the other; `None` for a lattice.
+    pub copies: Option<u64>,
+    /// Layers of voids.
+    pub layers: u64,
+    /// Modelled filter thickness (mm).
+    pub thickness_mm: Option<f64>,
+    /// Permeability of the clean filter (m2); `None` where no water flows, or where lengths have no unit.
+    pub k0_m2: Option<f64>,
+    /// Hydraulic conductivity of the clean filter for water of 10 C (m/s), likewise.
+    pub k0_m_per_s: Option<f64>,
+}
+
+/// One row of `flow.csv`: the permeability when the flow was solved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FlowRow {
+    /// Counts from 1.
+    pub replicate: u64,
+    /// 1 or 2.
+    pub run: u64,
+    /// Increments that were done.
+    pub increment: u64,
+    /// Permeability over that of the clean filter.
+    pub k_over_k0: f64,
 }
 
 /// How a network was made.
@@ -364,6 +421,8 @@ pub enum NetworkKind {
     Connected,
     /// Read from a file.
     File,
+    /// The voids of a packing and the constrictions between them.
+    Graph,
 }
 
 /// The ratios of characteristic sizes.

@@ -302,6 +302,7 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
         }
         (NetworkKind::Cubic | NetworkKind::Connected, ..) => "directed lattice".to_owned(),
         (NetworkKind::File, ..) => "read from a file".to_owned(),
+        (NetworkKind::Graph, ..) => "the voids of a packing".to_owned(),
     };
     html! {
         h2 { "Filter thickness and inputs" }

@@ -6,7 +6,8 @@ use super::callbacks::Callbacks;
 use super::error::RunError;
 use super::folder::{FolderKind, claim, clear, shown};
 use super::unfinished::{self, Unfinished};
-use crate::constrictions::{Constrictions, DEFAULT_MERGE_OVERLAP, Summary};
+use crate::constrictions::{Constrictions, DEFAULT_MERGE_OVERLAP, Facets, Summary, Triangulation, VoidGraph};
+use crate::network::permeability_mm2;
 use crate::packing::Packing;
 
 /// How constrictions are measured.
@@ -14,6 +15,8 @@ use crate::packing::Packing;
 pub struct ConstrictionsOptions {
     /// Overlap of two inscribed spheres from which their tetrahedra are one void.
     pub merge_overlap: f64,
+    /// Which facets between voids are constrictions of the curve.
+    pub facets: Facets,
     /// Folder for the results.
     pub out: PathBuf,
     /// Whether earlier results there are replaced.
@@ -22,12 +25,18 @@ pub struct ConstrictionsOptions {
 
 impl Default for ConstrictionsOptions {
     fn default() -> Self {
-        Self { merge_overlap: DEFAULT_MERGE_OVERLAP, out: "voidwalk-constrictions".into(), overwrite: false }
+        Self {
+            merge_overlap: DEFAULT_MERGE_OVERLAP,
+            facets: Facets::All,
+            out: "voidwalk-constrictions".into(),
+            overwrite: false,
+        }
     }
 }
 
 /// Measures the constrictions of the grains in a file and writes `grains.vtp`, `constrictions.csv`,
-/// `constrictions.vtp` and, last, `constrictions.json`; gives what that file says.
+/// `constrictions.vtp`, for grains in a periodic cell `graph.csv` and, last, `constrictions.json`; gives what
+/// that file says.
 ///
 /// # Errors
 /// Grains that are refused, a folder that cannot be claimed or written.
@@ -38,12 +47,16 @@ pub fn measure_constrictions(
 ) -> Result<Summary, RunError> {
     let file = shown(packing);
     let (packing, notes) = Packing::read_with_notes(packing)?;
-    let found = Constrictions::measure(&packing, options.merge_overlap)
-        .map_err(|error| RunError::Refused(format!("{file}: {error}")))?;
+    let refused = |error: String| RunError::Refused(format!("{file}: {error}"));
+    let t = Triangulation::new(&packing).map_err(|error| refused(error.to_string()))?;
+    let found = Constrictions::from_triangulation(&t, options.merge_overlap, options.facets)
+        .map_err(|error| refused(error.to_string()))?;
+    // Grains without a cell, and voids that run through it, have no graph.
+    let graph = VoidGraph::of(&t, options.merge_overlap).ok();
     // Those near the outside of grains without a cell are no part of the curve.
     let whole =
         |summary: &Summary| summary.grains_per_void.is_finite() && summary.mean_connectivity.is_finite();
-    let summary = found.summary().ok().filter(whole).ok_or_else(|| {
+    let mut summary = found.summary().ok().filter(whole).ok_or_else(|| {
         RunError::Refused(format!(
             "{file}: {} grains are too few: no constriction lies between two voids inside the packing. At \
              least 5 grains that do not lie in one plane are needed for one, some thousands for a curve",
@@ -51,12 +64,21 @@ pub fn measure_constrictions(
         ))
     })?;
     notes.iter().for_each(|note| (callbacks.warn)(note));
+    if let Some(graph) = &graph {
+        let square = graph.d32_mm * graph.d32_mm;
+        let k = permeability_mm2(graph, 2).map_err(|error| RunError::refused(format!("{file}: {error}")))?;
+        summary.k_over_d32_squared = Some(k / square);
+        summary.kozeny_carman_over_d32_squared = Some(graph.kozeny_carman_mm2() / square);
+    }
     let folder = claim(&options.out, FolderKind::Constrictions, options.overwrite)?;
     clear(&folder, FolderKind::Constrictions)?;
     let mark = Unfinished { kind: FolderKind::Constrictions.name().into(), ..Unfinished::default() };
     mark.begin(&folder)?;
     folder.write("grains.vtp", packing.to_vtp().as_bytes())?;
-    for (name, text) in found.files()? {
+    if let Some(graph) = &graph {
+        folder.write("graph.csv", graph.to_csv().as_bytes())?;
+    }
+    for (name, text) in found.files(&summary)? {
         folder.write(name, text.as_bytes())?;
     }
     unfinished::end(&folder)?;

@@ -83,6 +83,7 @@ impl FolderKind {
                 "report.html",
                 "series.csv",
                 "layers.csv",
+                "flow.csv",
                 "retained.csv",
                 "eroded.csv",
             ],
@@ -118,7 +119,7 @@ impl FolderKind {
                 STUDY[1],
             ],
             Self::Constrictions => {
-                &["constrictions.json", "constrictions.csv", "constrictions.vtp", "grains.vtp"]
+                &["constrictions.json", "constrictions.csv", "constrictions.vtp", "graph.csv", "grains.vtp"]
             }
         }
     }

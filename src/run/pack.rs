@@ -180,7 +180,7 @@ fn make(
     let grains = packing.to_csv();
     folder.write(GRAINS, grains.as_bytes())?;
     folder.write("grains.vtp", packing.to_vtp().as_bytes())?;
-    for (name, text) in found.files()? {
+    for (name, text) in found.files(&found.summary()?)? {
         folder.write(name, text.as_bytes())?;
     }
     let seconds = seconds_before + begun.elapsed().as_secs_f64();

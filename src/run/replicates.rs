@@ -1,5 +1,6 @@
 //! Walks the replicates of a case: a new network and a new walk each.
 
+use std::borrow::Cow;
 use std::ops::RangeInclusive;
 use std::time::Instant;
 
@@ -18,7 +19,7 @@ use crate::outcome::verdict::{below_by_interval, classify};
 use crate::outcome::{Recorded, RunId, RunMetrics};
 use crate::scene::NetworkSource;
 use crate::store::checkpoint::{Checkpoint, CheckpointError};
-use crate::walk::{Engine, RunPlan, SizeClasses, State, Walk, WalkControl};
+use crate::walk::{Engine, FlowRecord, RunPlan, SizeClasses, State, Walk, WalkControl};
 
 /// How replicates are walked: who follows them, and what saves them.
 #[derive(Clone, Copy)]
@@ -172,11 +173,12 @@ fn walk_replicate(
         };
         let begun = Instant::now();
         let walk = RunContext { case, network: &network, id, of };
-        let state = walk.run(blocked, &mut done, saved.take(), context)?;
-        let metrics = RunMetrics::new(&network, &state, of, begun.elapsed().as_secs_f64());
+        let (state, network, flow) = walk.run(blocked, &mut done, saved.take(), context)?;
+        let seconds = begun.elapsed().as_secs_f64();
+        let metrics = RunMetrics::new(&network, &state, flow.as_ref(), of, seconds);
         let recorder = std::mem::take(&mut done.recorder);
         if part == 0 {
-            done.recorded.append(Recorded::new(&network, &state, &recorder, of));
+            done.recorded.append(Recorded::new(&network, &state, flow.as_ref(), &recorder, of));
         }
         done.below.push(metrics.below_threshold);
         done.runs.push(metrics.run);
@@ -242,14 +244,14 @@ struct RunContext<'a> {
 }
 
 impl RunContext<'_> {
-    /// Walks from the start, or from where it was saved.
+    /// Walks from the start, or from where it was saved; the state, the network and the flow at the end.
     fn run(
         &self,
         blocked: BitVec<u64>,
         done: &mut Done,
         saved: Option<Checkpoint>,
         context: &ReplicateContext,
-    ) -> Result<State, RunError> {
+    ) -> Result<(State, Cow<'_, Network>, Option<FlowRecord>), RunError> {
         let Self { case, network, id, of } = *self;
         let WalkId { part, seed, n_base, .. } = id;
         let blocked = match &saved {
@@ -270,11 +272,9 @@ impl RunContext<'_> {
             }
             state.restore(network, &supply, &saved).map_err(RunError::Checkpoint)?;
         }
-        if state.finished {
-            return Ok(state);
-        }
+        let mut walk = Walk::new(network, &supply, &state);
         let (mut last, mut failed) = (Instant::now(), None);
-        let walked = Walk::new(network, &supply, &state).run(&mut state, &mut |state| {
+        let walked = walk.run(&mut state, &mut |state| {
             if part == 0 {
                 done.recorder.observe(&case.scene.record.wanted(), state);
             }
@@ -298,7 +298,13 @@ impl RunContext<'_> {
             return Err(RunError::Save(error));
         }
         walked?;
-        Ok(state)
+        let (end, flow) = walk.end(&state)?;
+        // The network outlives what the run was fed from.
+        let network = match end {
+            Cow::Borrowed(_) => Cow::Borrowed(network),
+            Cow::Owned(directed) => Cow::Owned(directed),
+        };
+        Ok((state, network, flow))
     }
 }
 
@@ -308,8 +314,11 @@ fn blocked_at_start(network: &Network, saved: &Checkpoint) -> Result<BitVec<u64>
     let mut blocked = BitVec::from_vec(saved.read::<u64>("blocked")?);
     blocked.truncate(network.constrictions());
     for constriction in saved.read::<u32>("history_constriction")? {
-        if let Some(mut bit) = blocked.get_mut(constriction as usize) {
-            *bit = false;
+        let exits = [Some(constriction as usize), network.twin(constriction as usize)];
+        for exit in exits.into_iter().flatten() {
+            if let Some(mut bit) = blocked.get_mut(exit) {
+                *bit = false;
+            }
         }
     }
     blocked.resize(network.constrictions(), false);

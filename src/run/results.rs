@@ -9,12 +9,13 @@ use super::machine::Machine;
 use super::other_walks::OtherWalks;
 use super::replicates::{ReplicateResult, as_it_is, stopping, summarise};
 use crate::case::{Case, INPUT_NAMES};
+use crate::network::ExitRule;
 use crate::outcome::record::{
     CurveRange, Manifest, Outcome, PanBounds, PanReading, RunSummary, Sensitivity, Statistic, Stopping,
     Verdict,
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
-use crate::outcome::{MODEL_LEAVES_OUT, Recorded, confidence, infiltration, rules, verdict};
+use crate::outcome::{Recorded, confidence, infiltration, leaves_out, rules, verdict};
 use crate::scene::NetworkSource;
 use crate::store::{Folder, StoreError};
 
@@ -76,12 +77,15 @@ pub fn outcome(
         threshold: verdict::THRESHOLD,
         warnings,
         left_out: left_out(case, walked),
-        model_leaves_out: MODEL_LEAVES_OUT.map(String::from).to_vec(),
+        model_leaves_out: leaves_out(case.scene.exit_rule()),
         inputs: case.record(),
+        network: case.network_summary(&walked.iter().map(|w| w.replicate.clone()).collect::<Vec<_>>()),
         ratios: case.ratios(),
         rules,
         infiltration: match case.scene.network.source() {
-            NetworkSource::Cubic(_) => Some(infiltration(&case.curve, &case.base, case.counts[3])),
+            NetworkSource::Cubic(_) if case.scene.exit_rule() == ExitRule::Area => {
+                Some(infiltration(&case.curve, &case.base, case.counts[3]))
+            }
             _ => None,
         },
         curve_range: other.range.clone(),
@@ -201,6 +205,9 @@ pub fn write(
     folder.write("layers.csv", &csv("layers.csv", LAYERS, &recorded.layers)?)?;
     folder.write("retained.csv", &csv("retained.csv", SIZES, &recorded.retained)?)?;
     folder.write("eroded.csv", &csv("eroded.csv", SIZES, &recorded.eroded)?)?;
+    if !recorded.flow.is_empty() {
+        folder.write("flow.csv", &csv("flow.csv", FLOW, &recorded.flow)?)?;
+    }
     folder.write("outcome.json", &json("outcome.json", outcome)?)?;
     // Last, so that a folder with a manifest is whole.
     folder.write("manifest.json", &json("manifest.json", manifest)?)?;
@@ -210,6 +217,7 @@ pub fn write(
 const SERIES: &str = "replicate,run,increment,inserted,moving,eroded,retained_in_constrictions,\
     retained_in_voids,trapped,blocked,eroded_mass_fraction";
 const LAYERS: &str = "replicate,run,layer,constrictions,blocked,retained_in_constrictions,retained_in_voids";
+const FLOW: &str = "replicate,run,increment,k_over_k0";
 const SIZES: &str = "replicate,run,increment,diameter_mm,percent_finer_by_mass,percent_finer_by_number";
 
 /// A value as indented JSON with a newline at its end.

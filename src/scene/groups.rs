@@ -73,6 +73,23 @@ pub(super) const GROUPS: &[Group] = &[
         alternatives: &[
             Alternative::by(&["network.nx", "network.ny", "network.nz", "network.connectivity"]),
             Alternative::by(&["network.file"]),
+            Alternative::by(&["network.packing", "network.copies"]),
+        ],
+    },
+    Group {
+        says: "say what the network is made of",
+        alternatives: &[Alternative {
+            resets: &["network.nx", "network.ny", "network.nz", "network.connectivity", "network.file"],
+            ..Alternative::by(&["network.kind"])
+        }],
+    },
+    Group {
+        says: "say how thick the filter is",
+        alternatives: &[
+            Alternative::by(&["network.nz"]),
+            Alternative::by(&["network.copies"]),
+            Alternative::by(&["network.thickness_mm"]),
+            Alternative::by(&["network.thickness_d50f"]),
         ],
     },
 ];

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::keys::{About, Base, Filter, FilterPacking, NetworkKeys, Record, WalkKeys};
+use super::keys::{About, Base, ExitKeys, Filter, FilterPacking, NetworkKeys, Record, WalkKeys};
 use crate::outcome::stopping::StopRule;
 use crate::packing;
 use crate::schema::KeyInfo;
@@ -19,6 +19,7 @@ pub(super) fn sections() -> Vec<(&'static [&'static str], Vec<KeyInfo>)> {
         (Filter::ABOUT, Filter::keys()),
         (FilterPacking::ABOUT, packing_keys),
         (Base::ABOUT, Base::keys()),
+        (ExitKeys::ABOUT, ExitKeys::keys()),
         (NetworkKeys::ABOUT, NetworkKeys::keys()),
         (Record::ABOUT, Record::keys()),
         (About::ABOUT, About::keys()),

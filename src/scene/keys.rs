@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::constrictions::DEFAULT_MERGE_OVERLAP;
-use crate::network::Connectivity;
+use crate::network::{Connectivity, ExitRule};
 use crate::schema::{Allowed, Leaf, above_zero, any, only, section, whole, within, words};
 use crate::text::is_hidden;
 use crate::walk::{Engine, Sampling};
@@ -132,8 +132,38 @@ section! {
 }
 
 section! {
-    /// The network: a directed cubic lattice, z being the direction of flow, or one from a file.
+    /// How particles choose their way.
+    pub struct ExitKeys in "walk" {
+        /// How a particle chooses among the open exits of its void: in proportion to "area" on a network whose
+        /// constrictions have a direction (the paper's); to the "flux" of water; to "area-along-flow", among
+        /// the exits that water leaves by; or by "height", to area among those that lead further along the
+        /// axis. Without it "area" on a lattice, "flux" on a graph.
+        pub exit: Option<ExitRule> = None, off "\"flux\"", words(&ExitRule::ALL.map(ExitRule::name));
+        /// Part of its conductance that a blocked constriction keeps, where water flows.
+        pub rho: Option<f64> = None, off "0.0", within(0.0..=1.0, "a part from 0 to 1");
+        /// Power of its diameter that a lattice's constriction conducts water in proportion to; 4 unless it is
+        /// given.
+        pub conductance_exponent: Option<f64> = None, off "4.0", within(0.0..=10.0, "a number from 0 to 10");
+    }
+}
+
+section! {
+    /// The network: a directed cubic lattice, z being the direction of flow, one from a file, or the voids of a
+    /// packing themselves.
     pub struct NetworkKeys in "network" {
+        /// "lattice", or "graph": the voids of the filter's own packing and the constrictions between them.
+        pub kind: Option<NetworkKind> = None, off "\"graph\"", words(&NetworkKind::ALL.map(NetworkKind::name));
+        /// The packing whose voids are walked, where it is not made here: grains in a periodic cell (CSV, LAMMPS
+        /// dump).
+        pub packing: Option<PathBuf> = None, off "\"grains.csv\"", any("a file name in quotes");
+        /// Equal copies of that packing one behind the other along the flow; as many as 60 layers of voids
+        /// need unless they or the thickness are given.
+        pub copies: Option<u64> = None, off "3", whole(1..=1_000_000);
+        /// Thickness of the filter (mm): layers of a lattice, each as thick as D50F by number, or copies of a
+        /// packing, rounded up.
+        pub thickness_mm: Option<f64> = None, off "500.0", above_zero();
+        /// The same in multiples of D50F by mass.
+        pub thickness_d50f: Option<f64> = None, off "75.0", above_zero();
         /// Voids across.
         pub nx: Option<u64> = None, set "40", whole(1..=u64::from(u32::MAX));
         /// Voids across, the other way.
@@ -271,6 +301,38 @@ impl Density {
     }
 }
 
+impl ExitKeys {
+    /// Whether none is given.
+    pub fn is_unset(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// What a network is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum NetworkKind {
+    /// A cubic lattice of voids.
+    Lattice,
+    /// The voids of a packing.
+    Graph,
+}
+
+impl NetworkKind {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Lattice, Self::Graph];
+
+    /// Its name in a scene.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lattice => "lattice",
+            Self::Graph => "graph",
+        }
+    }
+}
+
+impl Leaf for NetworkKind {}
+impl Leaf for ExitRule {}
 /// Whether a base is walked regraded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

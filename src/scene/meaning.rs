@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use super::keys::{Base, CurveSource, Filter, NetworkKeys, Record};
+use super::keys::{Base, CurveSource, Filter, NetworkKeys, NetworkKind, Record};
 use super::{PackingKeys, SceneError};
 use crate::network::Connectivity;
 use crate::outcome::Wanted;
@@ -68,13 +68,42 @@ pub enum NetworkSource {
     Connected([u32; 3], Connectivity),
     /// A CSV file.
     File(PathBuf),
+    /// The voids of a packing: of the filter that was packed, or of a file of grains.
+    Graph(Option<PathBuf>, Extent),
+}
+
+/// How far a filter reaches along the flow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Extent {
+    /// As many layers of voids as the paper's lattice.
+    Usual,
+    /// Copies of a packing.
+    Copies(u32),
+    /// Thickness (mm).
+    Mm(f64),
+    /// Thickness over D50F by mass.
+    D50F(f64),
+}
+
+impl Extent {
+    /// Thickness (mm) of the filter, where it is given as such.
+    pub fn thickness_mm(self, d50f_mm: f64) -> Option<f64> {
+        match self {
+            Self::Mm(mm) => Some(mm),
+            Self::D50F(multiple) => Some(multiple * d50f_mm),
+            Self::Usual | Self::Copies(_) => None,
+        }
+    }
 }
 
 /// Mass of base over mass of filter where a scene does not say: the paper's.
 const MASS_RATIO: f64 = 0.05;
 
 /// Voids along x, y, z where a scene does not say: the paper's.
-const VOIDS: [u64; 3] = [40, 40, 60];
+const VOIDS: [u64; 3] = [40, 40, USUAL_LAYERS];
+
+/// Layers of voids where a scene does not say: the paper's.
+pub const USUAL_LAYERS: u64 = 60;
 
 impl Filter {
     pub(super) fn fill_in(&mut self) {
@@ -131,15 +160,39 @@ impl Base {
 
 impl NetworkKeys {
     pub(super) fn fill_in(&mut self) {
-        if self.file.is_none() {
-            for (given, usual) in [&mut self.nx, &mut self.ny, &mut self.nz].into_iter().zip(VOIDS) {
-                given.get_or_insert(usual);
-            }
+        if self.file.is_some() || self.kind == Some(NetworkKind::Graph) {
+            return;
         }
+        let is_thick = self.extent() != Extent::Usual;
+        for (given, usual) in [&mut self.nx, &mut self.ny].into_iter().zip(VOIDS) {
+            given.get_or_insert(usual);
+        }
+        if !is_thick {
+            self.nz.get_or_insert(VOIDS[2]);
+        }
+    }
+
+    /// How far it reaches along the flow.
+    pub fn extent(&self) -> Extent {
+        match (self.copies, self.thickness_mm, self.thickness_d50f) {
+            (Some(copies), ..) => Extent::Copies(copies as u32),
+            (None, Some(mm), _) => Extent::Mm(mm),
+            (None, None, Some(multiple)) => Extent::D50F(multiple),
+            (None, None, None) => Extent::Usual,
+        }
+    }
+
+    /// Says how many layers a lattice of this thickness has.
+    pub fn set_layers(&mut self, layers: u64) {
+        self.nz = Some(layers);
+        (self.thickness_mm, self.thickness_d50f) = (None, None);
     }
 
     /// Where it comes from.
     pub fn source(&self) -> NetworkSource {
+        if self.kind == Some(NetworkKind::Graph) {
+            return NetworkSource::Graph(self.packing.clone(), self.extent());
+        }
         if let Some(path) = &self.file {
             return NetworkSource::File(path.clone());
         }
@@ -157,7 +210,7 @@ impl NetworkSource {
     pub fn shape(&self) -> Option<[u32; 3]> {
         match self {
             Self::Cubic(shape) | Self::Connected(shape, _) => Some(*shape),
-            Self::File(_) => None,
+            Self::File(_) | Self::Graph(..) => None,
         }
     }
 }

@@ -18,10 +18,14 @@ use serde::Serialize;
 
 pub use crate::schema::{Origin, SceneError};
 pub use keys::{
-    About, Base, CurveSource, Density, Filter, FilterPacking, NetworkKeys, Record, Regrade, WalkKeys,
+    About, Base, CurveSource, Density, ExitKeys, Filter, FilterPacking, NetworkKeys, NetworkKind, Record,
+    Regrade, WalkKeys,
 };
-pub use meaning::{Amount, BaseGradation, D85, FilterGradation, NetworkSource, PackingSpec};
+pub use meaning::{
+    Amount, BaseGradation, D85, Extent, FilterGradation, NetworkSource, PackingSpec, USUAL_LAYERS,
+};
 
+use crate::network::ExitRule;
 use crate::outcome::stopping::StopRule;
 use crate::packing;
 use crate::schema::{GivenSettings, KeyInfo, Names};
@@ -55,6 +59,9 @@ pub struct Scene {
     pub packing: Option<PackingKeys>,
     /// The base soil.
     pub base: Base,
+    /// How particles choose their way.
+    #[serde(rename = "walk", skip_serializing_if = "ExitKeys::is_unset")]
+    pub exits: ExitKeys,
     /// The network.
     pub network: NetworkKeys,
     /// What to keep.
@@ -150,6 +157,7 @@ impl Scene {
             filter: Filter::read(s)?,
             packing: packing_keys(s)?,
             base: Base::read(s)?,
+            exits: ExitKeys::read(s)?,
             network: NetworkKeys::read(s)?,
             record: Record::read(s)?,
             about: About::read(s)?,
@@ -202,6 +210,7 @@ impl Scene {
             && filter.estimate.is_none()
             && self.packing.is_none()
             && self.network.file.is_none()
+            && self.network.packing.is_none()
         {
             return Err(s.clash(
                 "filter.curve is missing: a shipped name, or a CSV file with percent_smaller,diameter_mm; \
@@ -213,6 +222,7 @@ impl Scene {
                 "filter.measured goes with filter.grains_per_void, and filter.density or filter.friction",
             ));
         }
+        self.check_network(s)?;
         let base = &self.base;
         if base.cu.is_none() && base.sieve.is_none() && base.single_mm.is_none() {
             return Err(
@@ -228,6 +238,64 @@ impl Scene {
             ));
         }
         self.packing_spec().map(drop)
+    }
+
+    /// Refuses a network that is half a lattice and half a graph, and an exit rule that does not go with it.
+    fn check_network(&self, s: &GivenSettings) -> Result<(), SceneError> {
+        let graph = self.network.kind == Some(NetworkKind::Graph);
+        let wrong = |names: &[&str], problem: &str| match names.iter().find(|name| s.has(name)) {
+            Some(name) => Err(s.clash(format!("{name} {problem}"))),
+            None => Ok(()),
+        };
+        if graph {
+            wrong(
+                &["network.nx", "network.ny", "network.nz", "network.connectivity", "network.file"],
+                "does not go with network.kind = \"graph\": a packing has its voids where they are",
+            )?;
+            wrong(&["walk.conductance_exponent"], "is for a lattice: a packing's voids conduct as they do")?;
+            if self.network.packing.is_none() && self.packing.is_none() {
+                return Err(s.clash(
+                    "network.kind = \"graph\" needs grains: filter.density packs them, or network.packing \
+                     names a file of them",
+                ));
+            }
+        } else {
+            wrong(&["network.packing", "network.copies"], "goes with network.kind = \"graph\"")?;
+        }
+        if self.network.file.is_some() || self.network.connectivity.is_some() {
+            wrong(&["network.thickness_mm", "network.thickness_d50f"], "is for a lattice or a graph")?;
+        }
+        let rule = self.exit_rule();
+        let allowed: &[ExitRule] = match (graph, &self.network.file, &self.network.connectivity) {
+            (true, ..) => &[ExitRule::Flux, ExitRule::AreaAlongFlow, ExitRule::Height],
+            (false, None, None) => &[ExitRule::Area, ExitRule::Flux, ExitRule::AreaAlongFlow],
+            _ => &[ExitRule::Area],
+        };
+        if !allowed.contains(&rule) {
+            let words: Vec<String> = allowed.iter().map(|rule| format!("\"{}\"", rule.name())).collect();
+            return Err(s.refuse(
+                "walk.exit",
+                format!("{} on this network: {}", words.join(", "), match graph {
+                    true => "the constrictions of a graph have no direction of their own, so that area alone leads nowhere",
+                    false => "the rule needs to know which way is which",
+                }),
+            ));
+        }
+        if !rule.needs_flow() {
+            wrong(
+                &["walk.rho", "walk.conductance_exponent"],
+                "says nothing where no water flows: walk.exit",
+            )?;
+        }
+        Ok(())
+    }
+
+    /// How particles choose among the exits of a void.
+    pub fn exit_rule(&self) -> ExitRule {
+        self.exits.exit.unwrap_or(match self.network.kind {
+            Some(NetworkKind::Graph) => ExitRule::Flux,
+            _ => ExitRule::Area,
+        })
     }
 
     /// Gives the settings that follow from others their values, so that the scene says all that it means.

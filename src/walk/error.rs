@@ -1,5 +1,7 @@
 //! Why a walk ended before its run did.
 
+use crate::network::FlowError;
+
 /// Why a walk ended before its run did.
 #[derive(Debug, thiserror::Error)]
 pub enum WalkError {
@@ -12,6 +14,14 @@ pub enum WalkError {
         inserted: u64,
         /// Moving, retained, trapped and eroded.
         accounted: u64,
+    },
+    /// The flow through the network is not known.
+    #[error("increment {increment}: {source}")]
+    Flow {
+        /// The increment.
+        increment: u64,
+        /// Why.
+        source: FlowError,
     },
     /// The caller asked the run to stop.
     #[error("stopped on request in increment {increment}")]

@@ -60,12 +60,20 @@ pub(super) struct Lattice {
 pub(super) struct General {
     /// By constriction: its threshold.
     pub threshold: Vec<u64>,
-    /// By void: its last open exit as a constriction, or `NONE`.
+    /// By void: its last open exit as a constriction, or `NONE`, or `WAIT`.
     pub last_open: Vec<u32>,
 }
 
 /// Stands for "no open exit".
 pub(super) const NONE: u32 = u32::MAX;
+/// Stands for "no exit has been open since the flow was solved last": particles wait until it is solved again.
+pub(super) const WAIT: u32 = u32::MAX - 1;
+
+/// Whether particles in a void without open exits wait: water left it when the flow was solved last, by exits
+/// that have been blocked since.
+pub(super) fn waits(network: &Network, void: u32) -> bool {
+    network.exit_rule().needs_flow() && network.exits(void).any(|c| network.exit_weight(c) > 0.0)
+}
 
 /// What a kernel reads: the network and its exits open at the start of the increment.
 pub(super) struct OpenExits<'a> {
@@ -93,11 +101,15 @@ impl ExitTable {
         table
     }
 
-    /// Renews the voids upstream of constrictions that have just closed.
-    pub(super) fn refresh(&mut self, network: &Network, blocked: &BitSlice<u64>, closed: &[u32]) {
+    /// Renews voids of which exits have just closed.
+    pub(super) fn refresh(
+        &mut self,
+        network: &Network,
+        blocked: &BitSlice<u64>,
+        voids: impl Iterator<Item = u32>,
+    ) {
         let mut scratch = Vec::new();
-        for &constriction in closed {
-            let void = self.upstream[constriction as usize];
+        for void in voids {
             self.set(network, blocked, void, &mut scratch);
         }
     }
@@ -109,7 +121,11 @@ impl ExitTable {
             Form::General(general) => {
                 let exits = network.exits(void);
                 general.threshold[exits.clone()].copy_from_slice(scratch);
-                general.last_open[void as usize] = last_open.map_or(NONE, |e| (exits.start + e) as u32);
+                general.last_open[void as usize] = match last_open {
+                    Some(e) => (exits.start + e) as u32,
+                    None if waits(network, void) => WAIT,
+                    None => NONE,
+                };
             }
         }
     }

@@ -7,6 +7,7 @@ use std::cell::RefCell;
 
 use super::sizes::cube;
 use super::{Blocking, SizeClasses, SizeCounts, State};
+use crate::network::Network;
 
 thread_local! {
     /// Buffer for the eroded particles of the chunk that a thread works on.
@@ -29,6 +30,8 @@ pub(super) struct Events {
     pub stopped: Vec<(u32, f32)>,
     /// Void and diameter of the particles without open exit, in particle order.
     pub stranded: Vec<(u32, f32)>,
+    /// Particles that wait for the flow to find another way.
+    pub waiting: u64,
     /// Passive particles among those received.
     pub passive_inserted: u32,
     passive_eroded: u64,
@@ -44,6 +47,7 @@ impl Events {
         self.inserted_mass = 0.0;
         self.passive_inserted = 0;
         self.moves = 0;
+        self.waiting = 0;
         self.eroded_count = 0;
         self.stopped.clear();
         self.stranded.clear();
@@ -82,8 +86,14 @@ impl Events {
     }
 }
 
-/// Adds the events of all chunks to the state; returns the constrictions that have just closed, ascending.
-pub(super) fn merge(events: &mut [Events], upstream: &[u32], state: &mut State) -> Vec<u32> {
+/// Adds the events of all chunks to the state; returns the constrictions that have just closed, ascending, each
+/// as the exit by which it was blocked.
+pub(super) fn merge(
+    network: &Network,
+    events: &mut [Events],
+    upstream: &[u32],
+    state: &mut State,
+) -> Vec<u32> {
     let tally = &mut state.tally;
     let mut closed = Vec::new();
     for events in events.iter_mut() {
@@ -105,14 +115,25 @@ pub(super) fn merge(events: &mut [Events], upstream: &[u32], state: &mut State) 
                 state.eroded_sizes.merge(eroded);
                 state.retained_sizes.merge(retained);
             }
-            for &(constriction, _) in &events.stopped {
-                state.retained_in_constrictions[upstream[constriction as usize] as usize] += 1;
+            for &(constriction, diameter) in &events.stopped {
+                let void = upstream[constriction as usize] as usize;
+                state.retained_in_constrictions[void] += 1;
+                if let Some(cubes) = state.retained_cubes.get_mut(void) {
+                    *cubes += cube(diameter);
+                }
                 if !state.blocked.replace(constriction as usize, true) {
                     closed.push(constriction);
+                    // One blocking closes a constriction both ways.
+                    if let Some(twin) = network.twin(constriction as usize) {
+                        state.blocked.set(twin, true);
+                    }
                 }
             }
-            for &(void, _) in &events.stranded {
+            for &(void, diameter) in &events.stranded {
                 state.retained_in_voids[void as usize] += 1;
+                if let Some(cubes) = state.retained_cubes.get_mut(void as usize) {
+                    *cubes += cube(diameter);
+                }
             }
         }
         events.clear();

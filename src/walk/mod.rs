@@ -47,6 +47,7 @@
 
 mod chunks;
 mod counts;
+mod directions;
 mod engine;
 mod error;
 mod exits;
@@ -67,6 +68,7 @@ mod threads;
 mod trapped;
 
 pub use counts::{Counted, Expected, ExpectedSums, Passive};
+pub use directions::FlowRecord;
 pub use engine::{Engine, RunPlan};
 pub use error::WalkError;
 pub use exits::ExitTable;
@@ -79,7 +81,10 @@ pub use supply::Supply;
 pub use tally::Tally;
 pub use threads::threads;
 
-use crate::network::Network;
+use std::borrow::Cow;
+
+use crate::network::{FlowError, Network};
+use directions::Directions;
 use merge::Events;
 
 /// Whether a run goes on after an increment.
@@ -118,7 +123,11 @@ pub type Observer<'a> = dyn FnMut(&State) -> WalkControl + Send + 'a;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Walk<'a> {
-    network: &'a Network,
+    /// A copy of its own where water gives constrictions their direction.
+    network: Cow<'a, Network>,
+    directions: Option<Directions>,
+    /// Why the flow is not known.
+    no_flow: Option<FlowError>,
     supply: &'a Supply,
     table: ExitTable,
     events: Vec<Events>,
@@ -131,10 +140,46 @@ pub struct Walk<'a> {
 impl<'a> Walk<'a> {
     /// Prepares to walk from `state` on.
     pub fn new(network: &'a Network, supply: &'a Supply, state: &State) -> Self {
-        let table = ExitTable::new(network, &state.blocked);
+        let mut network = Cow::Borrowed(network);
+        let (mut directions, mut no_flow) = (None, None);
+        if network.exit_rule().needs_flow() {
+            match Directions::new(network.to_mut(), state) {
+                Ok(found) => directions = Some(found),
+                Err(error) => no_flow = Some(error),
+            }
+        }
+        let table = ExitTable::new(&network, &state.blocked);
         let (trap, passive) =
-            (trapped::Search::new(network), counts::PassiveWalk::new(network, supply, state));
-        Self { network, supply, table, events: Vec::new(), trap, all_caught: false, passive }
+            (trapped::Search::new(&network), counts::PassiveWalk::new(&network, supply, state));
+        Self {
+            network,
+            directions,
+            no_flow,
+            supply,
+            table,
+            events: Vec::new(),
+            trap,
+            all_caught: false,
+            passive,
+        }
+    }
+
+    /// What is left of a walk at the end of its run: the network with the directions that it has then, and how
+    /// the permeability fell, where water gives them.
+    ///
+    /// # Errors
+    /// [`WalkError::Flow`].
+    pub fn end(self, state: &State) -> Result<(Cow<'a, Network>, Option<FlowRecord>), WalkError> {
+        let Self { mut network, directions, no_flow, .. } = self;
+        let error = |source| WalkError::Flow { increment: state.increment, source };
+        if let Some(source) = no_flow {
+            return Err(error(source));
+        }
+        let record = match directions {
+            Some(directions) => Some(directions.end(network.to_mut(), state).map_err(error)?),
+            None => None,
+        };
+        Ok((network, record))
     }
 
     /// This walk with the instructions of `isa`, to the same bits: for tests and measurements.
@@ -153,38 +198,58 @@ impl<'a> Walk<'a> {
     /// One increment, as in the paper's Fig. 3.
     ///
     /// # Errors
-    /// [`WalkError::NotConserved`] where particles are lost or made.
+    /// [`WalkError::NotConserved`] where particles are lost or made; [`WalkError::Flow`].
     pub fn increment(&mut self, state: &mut State) -> Result<(), WalkError> {
         state.increment += 1;
+        self.direct(state).map_err(|source| WalkError::Flow { increment: state.increment, source })?;
         self.insert(state);
         self.step(state);
         self.merge(state);
         self.tally(state)
     }
 
+    /// Gives constrictions the directions of the flow, where it is to be solved again.
+    fn direct(&mut self, state: &State) -> Result<(), FlowError> {
+        if let Some(error) = self.no_flow.take() {
+            return Err(error);
+        }
+        let Some(directions) = &mut self.directions else { return Ok(()) };
+        if directions.renew(self.network.to_mut(), state)? {
+            let isa = self.table.isa();
+            self.table = ExitTable::new(&self.network, &state.blocked);
+            self.table.set_isa(isa);
+            if let Some(passive) = &mut self.passive {
+                passive.renew(&self.network, state);
+            }
+        }
+        Ok(())
+    }
+
     /// This increment's share of the base starts, each particle on a start node.
     fn insert(&mut self, state: &mut State) {
-        insert::insert(self.network, self.supply, self.table.isa(), state, &mut self.events);
+        insert::insert(&self.network, self.supply, self.table.isa(), state, &mut self.events);
         if let Some(passive) = &mut self.passive {
-            passive.insert(self.network, self.supply, state);
+            passive.insert(&self.network, self.supply, state);
         }
     }
 
     /// Every moving particle attempts one move, on the open set at the start of the increment.
     fn step(&mut self, state: &mut State) {
-        kernel::step(self.network, &self.table, self.supply, state, &mut self.events);
+        kernel::step(&self.network, &self.table, self.supply, state, &mut self.events);
         if let Some(passive) = &mut self.passive {
-            passive.step(self.network, state);
+            passive.step(&self.network, state);
         }
     }
 
     /// What happened is added to the state, and the constrictions that were blocked close.
     fn merge(&mut self, state: &mut State) {
-        let closed = merge::merge(&mut self.events, self.table.upstream(), state);
-        self.table.refresh(self.network, &state.blocked, &closed);
+        let closed = merge::merge(&self.network, &mut self.events, self.table.upstream(), state);
+        let upstream = self.table.upstream();
+        let both = closed.iter().flat_map(|&c| [Some(c as usize), self.network.twin(c as usize)]);
+        let voids: Vec<u32> = both.flatten().map(|c| upstream[c]).collect();
+        self.table.refresh(&self.network, &state.blocked, voids.iter().copied());
         if let Some(passive) = &mut self.passive {
-            let upstream = self.table.upstream();
-            passive.refresh(self.network, state, closed.iter().map(|&c| upstream[c as usize]));
+            passive.refresh(&self.network, state, voids.into_iter());
         }
     }
 
@@ -201,9 +266,9 @@ impl<'a> Walk<'a> {
     /// Whether every moving particle is trapped. Once those walked one by one are, nothing can block any
     /// more, so they stay so.
     fn all_trapped(&mut self, state: &mut State) -> bool {
-        self.all_caught = self.all_caught || self.trap.all_trapped(self.network, state);
+        self.all_caught = self.all_caught || self.trap.all_trapped(&self.network, state);
         self.all_caught
-            && self.passive.as_mut().is_none_or(|passive| passive.all_trapped(self.network, state))
+            && self.passive.as_mut().is_none_or(|passive| passive.all_trapped(&self.network, state))
     }
 
     /// Increments until the run ends or `observe` stops it.

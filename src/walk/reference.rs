@@ -1,12 +1,16 @@
 //! The slow, obvious walk that the fast one is held against.
 //!
 //! One particle after another, every weight computed afresh from the network, in the words of the
-//! model. It shares nothing with the kernel but the network, the base's sizes, the strata and the streams.
+//! model. It shares nothing with the kernel but the network, the flow that is solved on it, the base's sizes, the
+//! strata and the streams.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
+use bitvec::vec::BitVec;
+
 use super::{CHUNK, Supply};
-use crate::network::{END, Network};
+use crate::network::{END, Flow, Network};
 use crate::stream::{DRAWS_PER_BLOCK, Key, LANES, Purpose, draw16};
 
 /// One base particle.
@@ -22,7 +26,9 @@ pub struct Particle {
 
 /// A run, particle by particle.
 pub struct Reference<'a> {
-    network: &'a Network,
+    network: Cow<'a, Network>,
+    /// The flow, the last increment before it was solved, and the constrictions blocked by then.
+    flow: Option<(Flow, u64, usize)>,
     supply: &'a Supply,
     seed: u64,
     run: u64,
@@ -50,7 +56,8 @@ impl<'a> Reference<'a> {
     /// Before the first increment.
     pub fn new(network: &'a Network, supply: &'a Supply, blocked: Vec<bool>, seed: u64, run: u64) -> Self {
         Self {
-            network,
+            network: Cow::Borrowed(network),
+            flow: network.exit_rule().needs_flow().then(|| (Flow::new(network), 0, 0)),
             supply,
             seed,
             run,
@@ -74,6 +81,7 @@ impl<'a> Reference<'a> {
     /// One increment.
     pub fn increment(&mut self) {
         self.increment += 1;
+        self.direct();
         self.insert();
         let mut newly_blocked = BTreeSet::new();
         let mut still_moving = vec![];
@@ -83,7 +91,10 @@ impl<'a> Reference<'a> {
             let draw = self.draw(particle.rank / CHUNK as u64, *place);
             *place += 1;
             let Some(exit) = self.pick(particle.void, draw) else {
-                self.stranded.push(particle);
+                match self.waits(particle.void) {
+                    true => still_moving.push(particle),
+                    false => self.stranded.push(particle),
+                }
                 continue;
             };
             if particle.diameter > self.network.diameters()[exit] {
@@ -100,11 +111,40 @@ impl<'a> Reference<'a> {
         self.moving = still_moving;
         for exit in newly_blocked {
             self.blocked[exit] = true;
+            if let Some(twin) = self.network.twin(exit) {
+                self.blocked[twin] = true;
+            }
             self.history.push((self.increment, exit));
         }
         if self.increment >= self.supply.increments() && self.moving.iter().all(|p| self.is_trapped(p)) {
             self.trapped = std::mem::take(&mut self.moving);
         }
+    }
+
+    /// Solves the flow before the first increment; then where one in a hundred constrictions has been blocked
+    /// since, or any in the last ten increments.
+    fn direct(&mut self) {
+        let Some((mut flow, solved_at, blocked_then)) = self.flow.take() else { return };
+        let since = self.history.len() - blocked_then;
+        let due = 100 * since >= self.network.passages() || self.increment > solved_at + 10;
+        let blocked: BitVec<u64> = self.blocked.iter().copied().collect();
+        let network = self.network.to_mut();
+        if self.increment == 1 {
+            // The clean filter comes first: its pressures are where the next solution begins.
+            flow.solve(network, &BitVec::repeat(false, blocked.len())).expect("small networks are solved");
+        }
+        self.flow = Some(if self.increment == 1 || (since > 0 && due) {
+            flow.solve(network, &blocked).expect("small networks are solved");
+            flow.direct(network, &blocked);
+            (flow, self.increment - 1, self.history.len())
+        } else {
+            (flow, solved_at, blocked_then)
+        });
+    }
+
+    /// Whether water left a void when the flow was solved, so that its particles wait for another way.
+    fn waits(&self, void: u32) -> bool {
+        self.flow.is_some() && self.network.exits(void).any(|e| self.network.exit_weight(e) > 0.0)
     }
 
     fn key(&self, purpose: Purpose, chunk: u64) -> Key {
@@ -153,6 +193,9 @@ impl<'a> Reference<'a> {
     }
 
     fn open_area(&self, exit: usize) -> f64 {
+        if self.network.reservoir().is_some() {
+            return if self.blocked[exit] { 0.0 } else { self.network.exit_weight(exit) };
+        }
         let diameter = f64::from(self.network.diameters()[exit]);
         if self.blocked[exit] { 0.0 } else { diameter * diameter }
     }

@@ -30,6 +30,7 @@ use crate::store::checkpoint::{Checkpoint, CheckpointError, Section};
 /// | `retained_in_voids` | u64 | by void |
 /// | `eroded_number`, `retained_number` | u64 | particles by size class |
 /// | `eroded_mass`, `retained_mass` | f64 | mass by size class |
+/// | `retained_cubes` | f64 | sum of diameters cubed of what is retained, by void; only where voids have a volume |
 ///
 /// The record holds, in these fields, those of [`State`] of the same names: `seed`, `run`, `increment`,
 /// `finished`, `passive_limit` (`null` where no constriction was open when the run began) and `tally` (all
@@ -111,7 +112,7 @@ impl<'a> SavedState<'a> {
         let particles = &state.particles;
         let chunks = 0..particles.live.len();
         let expected = state.passive.expected();
-        vec![
+        let mut sections = vec![
             Section::new("state", &self.record),
             Section::new("live", &particles.live),
             Section::parts("void", chunks.clone().map(|c| particles.chunk(c).0)),
@@ -129,7 +130,11 @@ impl<'a> SavedState<'a> {
             Section::new("eroded_mass", &state.eroded_sizes.mass),
             Section::new("retained_number", &state.retained_sizes.number),
             Section::new("retained_mass", &state.retained_sizes.mass),
-        ]
+        ];
+        if !state.retained_cubes.is_empty() {
+            sections.push(Section::new("retained_cubes", &state.retained_cubes));
+        }
+        sections
     }
 }
 
@@ -217,6 +222,9 @@ impl State {
         self.history = increments.iter().zip(&constrictions).map(pair).collect();
         self.retained_in_constrictions = saved.read_exact("retained_in_constrictions", network.voids())?;
         self.retained_in_voids = saved.read_exact("retained_in_voids", network.voids())?;
+        if !self.retained_cubes.is_empty() {
+            self.retained_cubes = saved.read_exact("retained_cubes", network.voids())?;
+        }
         for (sizes, number, mass) in [
             (&mut self.eroded_sizes, "eroded_number", "eroded_mass"),
             (&mut self.retained_sizes, "retained_number", "retained_mass"),
@@ -228,7 +236,8 @@ impl State {
             };
         }
         (self.increment, self.finished, self.tally) = (record.increment, record.finished, record.tally);
-        if self.tally.check(self.increment).is_err() || self.tally.blocked != self.blocked.count_ones() as u64
+        if self.tally.check(self.increment).is_err()
+            || self.tally.blocked != network.blocked_count(&self.blocked)
         {
             return Err(wrong("sums"));
         }

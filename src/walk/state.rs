@@ -73,6 +73,9 @@ pub struct State {
     pub retained_in_constrictions: Vec<u64>,
     /// Base particles retained in each void for want of an open exit.
     pub retained_in_voids: Vec<u64>,
+    /// Sum of the diameters cubed of the particles retained in each void and its exits; empty where the voids
+    /// have no known volume.
+    pub retained_cubes: Vec<f64>,
     /// Sums over the run.
     pub tally: Tally,
     /// Bounds of the size classes.
@@ -112,7 +115,7 @@ impl State {
     ) -> io::Result<Self> {
         assert_eq!(blocked.len(), network.constrictions(), "one bit a constriction");
         let chunks = (supply.total() as usize).div_ceil(CHUNK);
-        let tally = Tally { blocked: blocked.count_ones() as u64, ..Tally::default() };
+        let tally = Tally { blocked: network.blocked_count(&blocked), ..Tally::default() };
         let diameter = match supply.single_size() {
             Some(size) => {
                 let mut sizes = Column::zeroed(chunks.min(1) * CHUNK, &Placement::Memory)?;
@@ -137,6 +140,7 @@ impl State {
             history: Vec::new(),
             retained_in_constrictions: vec![0; network.voids()],
             retained_in_voids: vec![0; network.voids()],
+            retained_cubes: vec![0.0; if network.volumes().is_empty() { 0 } else { network.voids() }],
             tally,
             eroded_sizes: SizeCounts::new(&classes),
             retained_sizes: SizeCounts::new(&classes),
@@ -144,9 +148,10 @@ impl State {
         })
     }
 
-    /// Whether base particles cannot use constriction `c`: blocked, or of size 0.
+    /// Whether base particles cannot use constriction `c`: blocked, of size 0, or no exit by the rule that
+    /// gives constrictions their direction.
     #[inline]
     pub fn is_closed(&self, network: &Network, c: usize) -> bool {
-        self.blocked[c] || network.diameters()[c] == 0.0
+        self.blocked[c] || network.diameters()[c] == 0.0 || network.exit_weight(c) == 0.0
     }
 }

@@ -8,7 +8,7 @@ use std::time::Duration;
 use bitvec::vec::BitVec;
 use serde_json::Value;
 use voidwalk::gradation::{Gradation, SizeSampler};
-use voidwalk::network::Network;
+use voidwalk::network::{ExitRule, Network};
 use voidwalk::store::checkpoint::{Identity, Label, newest, save};
 use voidwalk::walk::{Engine, RunPlan, SavedState, SizeClasses, State, Supply, Walk, WalkControl};
 
@@ -44,8 +44,15 @@ fn shown(state: &State) -> String {
 fn a_walk_goes_on_from_every_increment_with_every_engine_on_any_threads() {
     let root = tempfile::tempdir().unwrap();
     let gradation = Gradation::linear_from_dx(85.0, 0.2, 3.0).unwrap();
-    for engine in [Engine::Particles, Engine::Counts, Engine::Expected] {
-        let (seed, network) = (11, network(4));
+    let flowing = network(4).undirected_lattice(ExitRule::Flux, 0.0, 4.0).unwrap();
+    for (engine, network) in [
+        (Engine::Particles, network(4)),
+        (Engine::Counts, network(4)),
+        (Engine::Expected, network(4)),
+        (Engine::Particles, flowing.clone()),
+        (Engine::Counts, flowing),
+    ] {
+        let seed = 11;
         let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
         let supply_of = |blocked: &BitVec<u64>, run| {
             let sampler = SizeSampler::new(&gradation, 1.0).unwrap();
@@ -57,7 +64,7 @@ fn a_walk_goes_on_from_every_increment_with_every_engine_on_any_threads() {
         // The second run, which begins on what the first left blocked, is the one that is broken off.
         let supply = supply_of(&first.blocked, 2);
         let mut whole = fresh(&network, &supply, &first.blocked, seed, 2);
-        let name = format!("{engine:?}");
+        let name = format!("{engine:?}-{}", network.exit_rule().name());
         let mut splits = 0;
         Walk::new(&network, &supply, &whole)
             .run(&mut whole, &mut |state| {

@@ -6,6 +6,7 @@ mod check_and_run;
 mod checkpoints;
 mod first_hour;
 mod full_disk;
+mod graph;
 mod hostile_names;
 mod pack;
 mod pan;

@@ -3,7 +3,7 @@
 use bitvec::vec::BitVec;
 use proptest::prelude::*;
 use voidwalk::gradation::{Gradation, SizeSampler};
-use voidwalk::network::Network;
+use voidwalk::network::{ExitRule, Link, LinkEnd, LinkedVoids, Network};
 use voidwalk::walk::reference::Reference;
 use voidwalk::walk::{CHUNK, SizeClasses, State, Supply, Walk};
 
@@ -35,7 +35,7 @@ fn compare(network: &Network, supply: &Supply, blocked: &[bool], seed: u64, run:
     let mut state = State::new(network, supply, classes, bits, seed, run);
     let mut walk = Walk::new(network, supply, &state);
     let mut reference = Reference::new(network, supply, blocked.to_vec(), seed, run);
-    let blocked_before = blocked.iter().filter(|&&b| b).count() as u64;
+    let blocked_before = state.tally.blocked;
     while !reference.finished() && state.increment < LONG_ENOUGH {
         assert!(!state.finished, "the kernel ended early");
         walk.increment(&mut state).unwrap();
@@ -140,6 +140,63 @@ proptest! {
         let supply = Supply::new(SizeSampler::new(&base, 1.0).unwrap(), n, 10);
         compare(&network, &supply, &vec![false; network.constrictions()], seed, 1);
     }
+}
+
+/// Voids and constrictions without a direction, with parallel ones, dead ends and voids that nothing leads to;
+/// `None` where nothing leads through.
+fn linked(rule: ExitRule, rho: f64, voids: u32, links: &[(u32, u32, usize, usize)]) -> Option<Network> {
+    // The two ends above the voids are outside.
+    let end = |at: u32| if at >= voids { LinkEnd::Outside } else { LinkEnd::Void(at) };
+    let links: Vec<Link> = links
+        .iter()
+        .map(|&(from, to, size, flow)| Link {
+            from: end(from),
+            to: end(to),
+            diameter: [0.5, 1.0, 1.5, 2.5][size],
+            conductance: [0.0, 1.0, 3.0, 1e-3][flow],
+            rise: f64::from(to) - f64::from(from),
+        })
+        .collect();
+    let layer = (0..voids).map(|v| v / 2).collect();
+    Network::linked(LinkedVoids { layer, unit_mm: 1.0, rule, rho, ..LinkedVoids::default() }, &links).ok()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(250))]
+
+    /// Constrictions that can be passed both ways, and water that gives them their direction: both runs, one by
+    /// one.
+    #[test]
+    fn undirected_networks_agree_with_the_reference(
+        rule in prop::sample::select(vec![ExitRule::Flux, ExitRule::AreaAlongFlow, ExitRule::Height]),
+        rho in prop::sample::select(vec![0.0, 0.1]),
+        links in prop::collection::vec((0u32..12, 0u32..12, 0usize..4, 0usize..4), 12..60),
+        n in 1u64..600,
+        increments in 1u64..20,
+        seed: u64,
+    ) {
+        let Some(network) = linked(rule, rho, 10, &links) else { return Ok(()) };
+        let base = Gradation::linear_from_d0(0.4, 2.6).unwrap();
+        let sampler = SizeSampler::new(&base, 1.0).unwrap();
+        let supply = Supply::new(sampler, n, increments);
+        let blocked = compare(&network, &supply, &vec![false; network.constrictions()], seed, 1);
+        compare(&network, &supply, &blocked, seed, 2);
+    }
+}
+
+/// Most of the random networks lead through, so that the comparison says something.
+#[test]
+fn most_random_networks_lead_through() {
+    let mut seed = 7u64;
+    let mut next = |below: u32| {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) as u32 % below
+    };
+    let links = |next: &mut dyn FnMut(u32) -> u32| {
+        (0..40).map(|_| (next(12), next(12), next(4) as usize, next(4) as usize)).collect::<Vec<_>>()
+    };
+    let through = (0..200).filter(|_| linked(ExitRule::Flux, 0.0, 10, &links(&mut next)).is_some()).count();
+    assert!(through > 150, "{through}");
 }
 
 /// Several chunks, some of them drained, inserted over chunk borders.

@@ -13,7 +13,7 @@ pub(in crate::constrictions) struct Shift(pub(super) u32);
 impl Shift {
     pub(in crate::constrictions) const ZERO: Self = Self(0);
 
-    pub(super) fn new(cells: [i32; 3]) -> Self {
+    pub(in crate::constrictions) fn new(cells: [i32; 3]) -> Self {
         Self(cells.iter().rev().fold(0, |word, &c| (word << 8) | (c as u32 & 0xff)))
     }
 

@@ -76,7 +76,10 @@ impl Expected {
                 continue;
             }
             if !shares.leads_on(void) {
-                self.retained[void] += n;
+                match shares.waits(void) {
+                    true => next[void] += n,
+                    false => self.retained[void] += n,
+                }
                 continue;
             }
             self.sums.moves += n;

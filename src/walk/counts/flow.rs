@@ -33,6 +33,8 @@ const ALONE: usize = 4;
 pub(super) struct Moved {
     /// Particles that attempted a move and made it.
     pub moves: u64,
+    /// Particles that wait where they are.
+    pub waiting: u64,
     /// Particles that left the filter.
     pub eroded: u64,
     /// Void and number of particles without an open exit.
@@ -164,7 +166,7 @@ impl Flow {
         let mut moved = Moved::default();
         for worker in &mut self.workers {
             let mut part = std::mem::take(&mut worker.moved);
-            if part.moves == 0 && part.stranded.is_empty() {
+            if part.moves == 0 && part.waiting == 0 && part.stranded.is_empty() {
                 continue;
             }
             let (next, left) = worker.next.split_at_mut(moving.len());
@@ -234,6 +236,10 @@ fn downstream(network: &Network, block: usize) -> Vec<u32> {
     let exits = network.exits((block * BLOCK) as u32).start..network.exits(end - 1).end;
     let inner = network.targets()[exits].iter().filter(|&&target| target != END);
     let mut blocks: Vec<u32> = inner.map(|&target| target / BLOCK as u32).collect();
+    if network.exit_rule().needs_flow() {
+        // Particles may wait where they are.
+        blocks.push(block as u32);
+    }
     blocks.sort_unstable();
     blocks.dedup();
     blocks
@@ -250,6 +256,7 @@ impl Worker {
         // END is beyond every void.
         let mut arrive =
             |constriction: usize, n: u64| next[(targets[constriction] as usize).min(outside)] += n;
+        let mut waiting = Vec::new();
         batch.rows = 0;
         let mut draws = Draws::new(key);
         for (void, &n) in voids.clone().zip(&counts[voids]) {
@@ -257,7 +264,13 @@ impl Worker {
                 continue;
             }
             if !shares.leads_on(void) {
-                moved.stranded.push((void as u32, n));
+                if shares.waits(void) {
+                    moved.waiting += n;
+                    // The particles of this void alone may be there yet.
+                    waiting.push((void, n));
+                } else {
+                    moved.stranded.push((void as u32, n));
+                }
                 continue;
             }
             moved.moves += n;
@@ -278,6 +291,7 @@ impl Worker {
         while batch.rows > 0 {
             batch.round(&mut draws, shares, &mut arrive);
         }
+        waiting.iter().for_each(|&(void, n)| next[void] += n);
     }
 }
 

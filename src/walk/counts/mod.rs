@@ -145,6 +145,9 @@ impl<'a> PassiveWalk<'a> {
         tally.retained_in_voids += retained;
         for &(void, n) in stranded {
             state.retained_in_voids[void as usize] += n;
+            if let Some(cubes) = state.retained_cubes.get_mut(void as usize) {
+                *cubes += self.sizes.mass(n);
+            }
         }
     }
 
@@ -165,6 +168,12 @@ impl<'a> PassiveWalk<'a> {
         self.sizes.expect(retained, retained_now, &mut state.retained_sizes);
         let largest = self.sizes.median_largest(now.eroded).unwrap_or(0.0);
         tally.largest_eroded = tally.largest_eroded.max(largest);
+    }
+
+    /// The flow has been solved again: every exit may weigh something else.
+    pub fn renew(&mut self, network: &Network, state: &State) {
+        self.shares = Shares::new(network, &state.blocked);
+        self.trap = None;
     }
 
     /// Constrictions of these voids have closed.

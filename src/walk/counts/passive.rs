@@ -31,7 +31,7 @@ impl Passive {
     }
 
     /// The expectation, where there is one.
-    pub(in crate::walk) fn expected(&self) -> Option<&Expected> {
+    pub(crate) fn expected(&self) -> Option<&Expected> {
         match self {
             Passive::Expected(expected) => Some(expected),
             _ => None,

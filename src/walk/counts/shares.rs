@@ -12,13 +12,18 @@ pub(super) struct Shares {
     probability: Vec<u64>,
     /// By void: whether it has an open exit.
     leads_on: Vec<bool>,
+    /// By void: whether its particles wait for one.
+    waits: Vec<bool>,
 }
 
 impl Shares {
     /// The shares of the constrictions that `blocked` leaves open.
     pub fn new(network: &Network, blocked: &BitSlice<u64>) -> Self {
-        let mut shares =
-            Self { probability: vec![0; network.constrictions()], leads_on: vec![false; network.voids()] };
+        let mut shares = Self {
+            probability: vec![0; network.constrictions()],
+            leads_on: vec![false; network.voids()],
+            waits: vec![false; network.voids()],
+        };
         let mut thresholds = Vec::new();
         for void in 0..network.voids() as u32 {
             shares.set(network, blocked, void, &mut thresholds);
@@ -34,6 +39,7 @@ impl Shares {
         let exits = network.exits(void);
         let last = exits::thresholds(network, blocked, void, thresholds);
         self.leads_on[void as usize] = last.is_some();
+        self.waits[void as usize] = last.is_none() && exits::waits(network, void);
         let mut before = 0u64;
         for (e, probability) in self.probability[exits].iter_mut().enumerate() {
             *probability = match last {
@@ -63,6 +69,11 @@ impl Shares {
         // The sum is a probability and stays below 1, except beside an exit that is certain: what it wraps to
         // there is the threshold that does not hold.
         (first, second, [first, first.wrapping_add(of_rest)])
+    }
+
+    /// Whether the particles of a void without open exits stay there until the flow is solved again.
+    pub fn waits(&self, void: usize) -> bool {
+        self.waits[void]
     }
 
     /// Whether a void has an open exit.

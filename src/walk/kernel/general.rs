@@ -2,7 +2,7 @@
 
 use crate::network::{END, Network};
 use crate::stream::{DRAWS_PER_BLOCK, Extension, Key, draw16};
-use crate::walk::exits::{General, NONE};
+use crate::walk::exits::{General, NONE, WAIT};
 use crate::walk::merge::Events;
 
 /// Moves the particles of one chunk; returns how many still move.
@@ -22,8 +22,14 @@ pub(super) fn step(
         for j in begin..void.len().min(begin + DRAWS_PER_BLOCK) {
             let (from, d) = (void[j], diameter[j]);
             let last_open = table.last_open[from as usize];
-            if last_open == NONE {
-                events.stranded.push((from, d));
+            if last_open >= WAIT {
+                if last_open == NONE {
+                    events.stranded.push((from, d));
+                } else {
+                    events.waiting += 1;
+                    (void[kept], diameter[kept]) = (from, d);
+                    kept += 1;
+                }
                 continue;
             }
             let exits = network.exits(from);
@@ -50,8 +56,17 @@ pub(super) fn step(
 /// The first exit whose threshold exceeds the draw; sixteen bits decide unless they are equal.
 #[inline]
 fn choose(thresholds: &[u64], draw: u16, index: usize, extension: Extension) -> Option<usize> {
-    thresholds.iter().position(|&threshold| {
+    let is_above = |threshold: u64| {
         let top = (threshold >> 48) as u16;
         draw < top || (draw == top && extension.complete(draw, index as u64) < threshold)
-    })
+    };
+    if thresholds.len() <= FEW_EXITS {
+        return thresholds.iter().position(|&threshold| is_above(threshold));
+    }
+    // Thresholds rise. A reservoir has thousands.
+    let first = thresholds.partition_point(|&threshold| !is_above(threshold));
+    (first < thresholds.len()).then_some(first)
 }
+
+/// Up to so many exits are looked at one after another.
+const FEW_EXITS: usize = 16;

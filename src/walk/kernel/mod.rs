@@ -48,7 +48,7 @@ pub(super) fn step(
         let key = Key { chunk, ..key };
         events.lend_buffer(moving + 16);
         let kept = step_chunk(&exits, key, &mut void[..moving], &mut diameter[..moving], events);
-        events.moves = (moving - events.stopped.len() - events.stranded.len()) as u64;
+        events.moves = (moving - events.stopped.len() - events.stranded.len()) as u64 - events.waiting;
         events.sum(classes, exits.passive_limit);
         *live = kept as u32;
     });

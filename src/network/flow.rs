@@ -1,0 +1,334 @@
+//! Water through a network: pressures, fluxes, and how well the whole conducts.
+//!
+//! At every void what flows in flows out, `sum over its constrictions of g (p - p_other) = 0`, with pressure 1 in
+//! the reservoir and 0 behind the filter. A blocked constriction keeps a part `rho` of its conductance. The
+//! system is symmetric and positive, and is solved by conjugate gradients with an incomplete Cholesky
+//! factor, from the last answer on. Sums run over fixed blocks in a fixed order, so that an answer is the
+//! same to the bit on any number of threads.
+
+use bitvec::slice::BitSlice;
+use rayon::prelude::*;
+
+use super::{END, Network};
+
+/// The residual is below this part of what flows in.
+const CONVERGED: f64 = 1e-10;
+
+/// A flux below this part of what an inlet passes on average is none: pressures are no more exact.
+const NO_FLUX: f64 = 1e-8;
+
+/// Rounds after which a system that has not converged is given up, for each layer and a hundred besides.
+const ROUNDS: usize = 100;
+
+/// Entries whose sum is made at once: fixed, so that threads change nothing.
+const BLOCK: usize = 1 << 12;
+
+/// Why no flow is known.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FlowError {
+    /// Conductances so far apart that numbers do not tell.
+    #[error(
+        "the flow through the network cannot be solved: after {rounds} rounds the residual is still {residual:.1e} \
+         of the inflow; constrictions whose conductances lie many orders apart do that"
+    )]
+    NotConverged {
+        /// Rounds.
+        rounds: usize,
+        /// Residual over inflow.
+        residual: f64,
+    },
+}
+
+/// How well a network conducts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Permeability {
+    /// Flow times viscosity for a pressure of 1 across the whole.
+    pub conductance: f64,
+    /// Permeability (mm2), where the network knows its own lengths.
+    pub k_mm2: Option<f64>,
+}
+
+/// The flow through an undirected network, solved again and again as constrictions close.
+pub struct Flow {
+    /// Void that each exit leads to: END is one more void, without pressure.
+    other: Vec<u32>,
+    /// Pressure by void, and behind the filter.
+    pressure: Vec<f64>,
+    /// Conductance by exit, as it is now.
+    open: Vec<f64>,
+}
+
+impl Flow {
+    /// Before anything is known.
+    pub fn new(network: &Network) -> Self {
+        let outside = network.voids() as u32;
+        let other = network.targets().iter().map(|&to| if to == END { outside } else { to }).collect();
+        let mut pressure = vec![0.0; network.voids() + 1];
+        if let Some(reservoir) = network.reservoir() {
+            // Falls evenly from layer to layer.
+            let layers = network.layers().max(1) as f64;
+            for (p, &layer) in pressure.iter_mut().zip(network.layer_of()) {
+                *p = 1.0 - (f64::from(layer) + 0.5) / layers;
+            }
+            pressure[reservoir as usize] = 1.0;
+        }
+        Self { other, pressure, open: vec![0.0; network.constrictions()] }
+    }
+
+    /// Pressure by void (1 in the reservoir), and 0 behind the filter.
+    pub fn pressure(&self) -> &[f64] {
+        &self.pressure
+    }
+
+    /// Flow times viscosity out of a void through one of its exits.
+    pub fn flux(&self, void: u32, exit: usize) -> f64 {
+        self.open[exit] * (self.pressure[void as usize] - self.pressure[self.other[exit] as usize])
+    }
+
+    /// Solves for the constrictions that `blocked` leaves open.
+    ///
+    /// # Errors
+    /// Conductances too far apart.
+    pub fn solve(&mut self, network: &Network, blocked: &BitSlice<u64>) -> Result<Permeability, FlowError> {
+        let undirected = network.undirected.as_ref();
+        let rho = undirected.map_or(0.0, |u| u.rho);
+        for (c, open) in self.open.iter_mut().enumerate() {
+            *open = match (network.diameter[c] == 0.0, blocked[c]) {
+                (true, _) => 0.0,
+                (false, false) => network.conductance(c),
+                (false, true) => rho * network.conductance(c),
+            };
+        }
+        let Some(reservoir) = network.reservoir() else {
+            return Ok(Permeability { conductance: 0.0, k_mm2: None });
+        };
+        // Water flows where it comes in and gets out; elsewhere it stands under the pressure of the one side.
+        let from_reservoir = self.joined(network, reservoir, reservoir);
+        let to_end = self.joined(network, reservoir, network.voids() as u32);
+        let inside: Vec<bool> = from_reservoir.iter().zip(&to_end).map(|(a, b)| *a && *b).collect();
+        for (void, pressure) in self.pressure.iter_mut().enumerate().take(network.voids()) {
+            if !inside[void] && void != reservoir as usize {
+                *pressure = f64::from(u8::from(from_reservoir[void]));
+            }
+        }
+        let system = System::new(network, self, &inside, reservoir);
+        system.solve(&mut self.pressure, network.layers())?;
+        let conductance = network.exits(reservoir).map(|c| self.flux(reservoir, c)).sum::<f64>().max(0.0);
+        let factor = undirected.and_then(|u| u.permeability_mm2);
+        Ok(Permeability { conductance, k_mm2: factor.map(|factor| factor * conductance) })
+    }
+
+    /// Gives each exit of the network its weight by the flow that was solved last.
+    pub fn direct(&self, network: &mut Network, blocked: &BitSlice<u64>) {
+        let Some(reservoir) = network.reservoir() else { return };
+        let rule = network.exit_rule();
+        let inlets = network.exits(reservoir);
+        let through: f64 = inlets.clone().map(|c| self.flux(reservoir, c)).sum();
+        let least = NO_FLUX * (through / inlets.len().max(1) as f64).max(f64::MIN_POSITIVE);
+        let mut weight = std::mem::take(&mut network.undirected.as_mut().expect("it has a reservoir").weight);
+        for void in 0..network.voids() as u32 {
+            for c in network.exits(void) {
+                let area = f64::from(network.diameter[c]) * f64::from(network.diameter[c]);
+                weight[c] = if blocked[c] { 0.0 } else { rule.weight(area, self.flux(void, c), least) };
+            }
+        }
+        network.undirected.as_mut().expect("it has a reservoir").weight = weight;
+    }
+
+    /// Voids that hang together with one side, the reservoir or the end, without the other.
+    fn joined(&self, network: &Network, reservoir: u32, side: u32) -> Vec<bool> {
+        let outside = network.voids() as u32;
+        let mut joined = vec![false; network.voids()];
+        let mut stack: Vec<u32> = Vec::new();
+        for void in (0..outside).filter(|&v| v != reservoir) {
+            if network.exits(void).any(|c| self.open[c] > 0.0 && self.other[c] == side) {
+                joined[void as usize] = true;
+                stack.push(void);
+            }
+        }
+        while let Some(void) = stack.pop() {
+            for c in network.exits(void).filter(|&c| self.open[c] > 0.0) {
+                let to = self.other[c];
+                if to != reservoir && to != outside && !std::mem::replace(&mut joined[to as usize], true) {
+                    stack.push(to);
+                }
+            }
+        }
+        joined
+    }
+}
+
+/// The equations of the voids inside, as columns: row `i` has its neighbours before it, then those after it.
+pub(super) struct System {
+    /// Void by row.
+    void: Vec<u32>,
+    begin: Vec<u32>,
+    /// First neighbour after the row itself.
+    after: Vec<u32>,
+    row: Vec<u32>,
+    conductance: Vec<f64>,
+    diagonal: Vec<f64>,
+    /// Flow in from the reservoir at pressure 1.
+    inflow: Vec<f64>,
+    /// Reciprocal of the diagonal of the incomplete factor.
+    pivot: Vec<f64>,
+}
+
+impl System {
+    fn new(network: &Network, flow: &Flow, inside: &[bool], reservoir: u32) -> Self {
+        let outside = network.voids() as u32;
+        let of = |v: u32, neighbours: &mut Vec<(u32, f64)>| {
+            let (mut diagonal, mut inflow) = (0.0, 0.0);
+            for c in network.exits(v).filter(|&c| flow.open[c] > 0.0) {
+                let (to, g) = (flow.other[c], flow.open[c]);
+                diagonal += g;
+                if to == reservoir {
+                    inflow += g;
+                } else if to != outside {
+                    neighbours.push((to, g));
+                }
+            }
+            (diagonal, inflow)
+        };
+        Self::of_voids(inside, of)
+    }
+
+    /// The equations of the voids `inside`; `of` gives the diagonal and the right side of a void, and its
+    /// neighbours with their conductances, those that are not inside at pressure 0.
+    pub(super) fn of_voids(inside: &[bool], of: impl Fn(u32, &mut Vec<(u32, f64)>) -> (f64, f64)) -> Self {
+        const NONE: u32 = u32::MAX;
+        let void: Vec<u32> = (0u32..).zip(inside).filter(|(_, inside)| **inside).map(|(v, _)| v).collect();
+        let mut row_of = vec![NONE; inside.len()];
+        void.iter().zip(0..).for_each(|(&v, row)| row_of[v as usize] = row);
+        let mut system = Self {
+            begin: vec![0],
+            after: Vec::with_capacity(void.len()),
+            row: Vec::new(),
+            conductance: Vec::new(),
+            diagonal: Vec::with_capacity(void.len()),
+            inflow: Vec::with_capacity(void.len()),
+            pivot: Vec::new(),
+            void,
+        };
+        let (mut all, mut neighbours) = (Vec::new(), Vec::<(u32, f64)>::new());
+        for (own, &v) in (0u32..).zip(&system.void) {
+            all.clear();
+            neighbours.clear();
+            let (diagonal, inflow) = of(v, &mut all);
+            for &(to, g) in all.iter().filter(|(to, _)| row_of[*to as usize] != NONE) {
+                let to = row_of[to as usize];
+                match neighbours.iter_mut().find(|(other, _)| *other == to) {
+                    Some((_, sum)) => *sum += g,
+                    None => neighbours.push((to, g)),
+                }
+            }
+            neighbours.sort_unstable_by_key(|&(to, _)| to);
+            let before = neighbours.partition_point(|&(to, _)| to < own);
+            system.after.push((system.row.len() + before) as u32);
+            system.row.extend(neighbours.iter().map(|&(to, _)| to));
+            system.conductance.extend(neighbours.iter().map(|&(_, g)| g));
+            system.begin.push(system.row.len() as u32);
+            system.diagonal.push(diagonal);
+            system.inflow.push(inflow);
+        }
+        system.factor();
+        system
+    }
+
+    /// Incomplete Cholesky without fill in: only the diagonal differs from that of the system itself.
+    fn factor(&mut self) {
+        let mut pivot: Vec<f64> = Vec::with_capacity(self.diagonal.len());
+        for i in 0..self.diagonal.len() {
+            let before = self.begin[i] as usize..self.after[i] as usize;
+            let less: f64 =
+                before.map(|k| self.conductance[k] * self.conductance[k] * pivot[self.row[k] as usize]).sum();
+            // Diagonally dominant, so positive but for rounding.
+            pivot.push(1.0 / (self.diagonal[i] - less).max(1e-12 * self.diagonal[i]));
+        }
+        self.pivot = pivot;
+    }
+
+    /// Conjugate gradients from the pressures that there are.
+    pub(super) fn solve(&self, pressure: &mut [f64], layers: usize) -> Result<(), FlowError> {
+        let rows = self.void.len();
+        if rows == 0 {
+            return Ok(());
+        }
+        let mut x: Vec<f64> = self.void.iter().map(|&v| pressure[v as usize]).collect();
+        let mut product = vec![0.0; rows];
+        self.times(&x, &mut product);
+        let mut residual: Vec<f64> = self.inflow.iter().zip(&product).map(|(b, a)| b - a).collect();
+        let scale = dot(&self.inflow, &self.inflow).sqrt();
+        let mut direction = vec![0.0; rows];
+        let mut solved = vec![0.0; rows];
+        let mut before = 0.0;
+        let most = ROUNDS * (layers + 100);
+        for round in 0.. {
+            let size = dot(&residual, &residual).sqrt();
+            if size <= CONVERGED * scale || scale == 0.0 {
+                break;
+            }
+            if round == most || !size.is_finite() {
+                return Err(FlowError::NotConverged { rounds: round, residual: size / scale });
+            }
+            self.precondition(&residual, &mut solved);
+            let now = dot(&residual, &solved);
+            let keep = if round == 0 { 0.0 } else { now / before };
+            direction.par_chunks_mut(BLOCK).zip(solved.par_chunks(BLOCK)).for_each(|(d, s)| {
+                d.iter_mut().zip(s).for_each(|(d, s)| *d = s + keep * *d);
+            });
+            before = now;
+            self.times(&direction, &mut product);
+            let step = now / dot(&direction, &product);
+            let blocks = x.par_chunks_mut(BLOCK).zip(residual.par_chunks_mut(BLOCK));
+            blocks.zip(direction.par_chunks(BLOCK).zip(product.par_chunks(BLOCK))).for_each(
+                |((x, r), (d, p))| {
+                    x.iter_mut().zip(d).for_each(|(x, d)| *x += step * d);
+                    r.iter_mut().zip(p).for_each(|(r, p)| *r -= step * p);
+                },
+            );
+        }
+        self.void.iter().zip(&x).for_each(|(&v, &p)| pressure[v as usize] = p);
+        Ok(())
+    }
+
+    /// The matrix times a column.
+    fn times(&self, x: &[f64], out: &mut [f64]) {
+        out.par_chunks_mut(BLOCK).enumerate().for_each(|(block, out)| {
+            for (k, out) in out.iter_mut().enumerate() {
+                let i = block * BLOCK + k;
+                let of = self.begin[i] as usize..self.begin[i + 1] as usize;
+                let others: f64 = self.row[of.clone()]
+                    .iter()
+                    .zip(&self.conductance[of])
+                    .map(|(&j, g)| g * x[j as usize])
+                    .sum();
+                *out = self.diagonal[i] * x[i] - others;
+            }
+        });
+    }
+
+    /// Solves the incomplete factor: once down, once up.
+    fn precondition(&self, residual: &[f64], out: &mut [f64]) {
+        for i in 0..out.len() {
+            let before = self.begin[i] as usize..self.after[i] as usize;
+            let sum: f64 = before.map(|k| self.conductance[k] * out[self.row[k] as usize]).sum();
+            out[i] = self.pivot[i] * (residual[i] + sum);
+        }
+        for i in (0..out.len()).rev() {
+            let after = self.after[i] as usize..self.begin[i + 1] as usize;
+            let sum: f64 = after.map(|k| self.conductance[k] * out[self.row[k] as usize]).sum();
+            out[i] += self.pivot[i] * sum;
+        }
+    }
+}
+
+/// Sum of products, block by block.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let parts: Vec<f64> = a
+        .par_chunks(BLOCK)
+        .zip(b.par_chunks(BLOCK))
+        .map(|(a, b)| a.iter().zip(b).map(|(a, b)| a * b).sum())
+        .collect();
+    parts.iter().sum()
+}

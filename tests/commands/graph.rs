@@ -1,0 +1,153 @@
+//! The voids of a packing as the network: measured, walked, resumed, refused.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::program::{call, done, refused};
+
+/// Grains of several sizes on a disturbed lattice in a periodic cell, as CSV.
+fn grains(n: usize) -> String {
+    let mut seed = 5u64;
+    let mut random = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / 9_007_199_254_740_992.0
+    };
+    let mut text = format!("# cell_mm = {n}, {n}, {n}\nx_mm,y_mm,z_mm,diameter_mm\n");
+    for i in 0..n * n * n {
+        let [x, y, z] = [i % n, i / n % n, i / n / n].map(|at| at as f64 + 0.06 * random());
+        writeln!(text, "{x},{y},{z},{}", 0.9 + 0.1 * random()).unwrap();
+    }
+    text
+}
+
+const SCENE: &str = r#"
+replicates = 2
+[base]
+cu = 3
+d15f_over_d85b = 4
+mass_ratio = 0.02
+[network]
+kind = "graph"
+packing = "grains.csv"
+copies = 2
+[record]
+sensitivity = []
+"#;
+
+fn prepared(root: &Path) {
+    fs::write(root.join("grains.csv"), grains(6)).unwrap();
+    fs::write(root.join("scene.toml"), SCENE).unwrap();
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
+}
+
+#[test]
+fn constrictions_writes_the_graph_and_its_permeability() {
+    let root = tempfile::tempdir().unwrap();
+    prepared(root.path());
+    done(&call(root.path(), &["constrictions", "grains.csv", "--out", "c"]));
+    let summary = json(&root.path().join("c/constrictions.json"));
+    let k = summary["k_over_d32_squared"].as_f64().unwrap();
+    let by_rule = summary["kozeny_carman_over_d32_squared"].as_f64().unwrap();
+    // Not a random packing, but near one.
+    assert!((0.5..2.0).contains(&(k / by_rule)), "{k} {by_rule}");
+    let graph = fs::read_to_string(root.path().join("c/graph.csv")).unwrap();
+    let mut lines = graph.lines();
+    assert_eq!(lines.next(), Some("from,to,shift_x,shift_y,shift_z,diameter_mm,conductance_mm3"));
+    assert_eq!(lines.count() as u64, summary["constrictions"].as_u64().unwrap());
+    // Those of a packing without a cell have no graph.
+    let free = grains(4).replacen("# cell_mm = 4, 4, 4", "# cell = none", 1);
+    fs::write(root.path().join("free.csv"), free).unwrap();
+    let said = call(root.path(), &["constrictions", "free.csv", "--out", "f"]);
+    done(&said);
+    assert!(String::from_utf8_lossy(&said.stdout).contains("no void graph"));
+    assert!(!root.path().join("f/graph.csv").exists());
+}
+
+#[test]
+fn the_graph_is_walked_and_its_folder_says_what_it_is() {
+    let root = tempfile::tempdir().unwrap();
+    prepared(root.path());
+    done(&call(root.path(), &["check", "scene.toml"]));
+    done(&call(root.path(), &["run", "scene.toml", "--out", "one", "--threads", "1"]));
+    let outcome = json(&root.path().join("one/outcome.json"));
+    let network = &outcome["network"];
+    assert_eq!((&network["kind"], &network["exit"]), (&"graph".into(), &"flux".into()));
+    assert_eq!((&network["copies"], &network["thickness_mm"]), (&2.into(), &12.0.into()));
+    assert!(network["voids"].as_u64().unwrap() > 150 && network["inlets"].as_u64().unwrap() > 20);
+    assert!(network["k0_m2"].as_f64().unwrap() > 0.0 && network["k0_m_per_s"].as_f64().unwrap() > 0.0);
+    for replicate in outcome["replicates"].as_array().unwrap() {
+        for run in replicate["runs"].as_array().unwrap() {
+            let k = run["k_over_k0"].as_f64().unwrap();
+            assert!((0.0..=1.0).contains(&k), "{k}");
+            assert!(run["fullness_max"].as_f64().unwrap() >= 0.0);
+            assert_eq!(run["trapped"], 0);
+        }
+    }
+    let flow = fs::read_to_string(root.path().join("one/flow.csv")).unwrap();
+    assert!(flow.starts_with("replicate,run,increment,k_over_k0\n1,1,0,1.0\n"), "{flow}");
+    // Again on other threads, and from what the folder keeps.
+    done(&call(root.path(), &["run", "scene.toml", "--out", "three", "--threads", "3"]));
+    done(&call(root.path(), &["run", "one/scene.toml", "--out", "again", "--threads", "2"]));
+    for other in ["three", "again"] {
+        for file in ["series.csv", "layers.csv", "retained.csv", "eroded.csv", "flow.csv"] {
+            let read = |folder: &str| fs::read(root.path().join(folder).join(file)).unwrap();
+            assert!(read("one") == read(other), "{other}/{file}");
+        }
+    }
+}
+
+#[test]
+fn a_graph_and_its_exits_are_refused_by_name_where_they_do_not_go_together() {
+    let root = tempfile::tempdir().unwrap();
+    prepared(root.path());
+    for (set, message) in [
+        ("walk.exit=area", "walk.exit: `area` is not allowed; \"flux\", \"area-along-flow\", \"height\""),
+        ("walk.exit=up", "walk.exit: `up` is not allowed"),
+        ("walk.rho=2", "walk.rho: `2` is not allowed; a part from 0 to 1"),
+        ("network.copies=0", "network.copies: `0` is not allowed"),
+        ("walk.conductance_exponent=3", "is for a lattice"),
+        ("network.packing=none.csv", "none.csv"),
+    ] {
+        refused(&call(root.path(), &["check", "scene.toml", "--set", set]), message);
+    }
+    refused(&call(root.path(), &["check", "--set", "network.packing=grains.csv"]), "goes with network.kind");
+    refused(&call(root.path(), &["check", "--set", "network.kind=graph"]), "needs grains");
+    refused(&call(root.path(), &["check", "--set", "walk.rho=0.1"]), "says nothing where no water flows");
+    refused(&call(root.path(), &["check", "--set", "walk.exit=height"]), "`height` is not allowed");
+    // Grains without a cell, and voids that run through it.
+    let free = grains(4).replacen("# cell_mm = 4, 4, 4", "# cell = none", 1);
+    fs::write(root.path().join("free.csv"), free).unwrap();
+    let packing = "network.packing=free.csv";
+    refused(&call(root.path(), &["check", "scene.toml", "--set", packing]), "have no periodic cell");
+    let broken = grains(4).replacen("\n0", "\nNaN", 1);
+    fs::write(root.path().join("nan.csv"), broken).unwrap();
+    refused(&call(root.path(), &["check", "scene.toml", "--set", "network.packing=nan.csv"]), "NaN");
+}
+
+/// A thickness is layers of a lattice, and copies of a packing.
+#[test]
+fn thickness_is_layers_or_copies() {
+    let root = tempfile::tempdir().unwrap();
+    prepared(root.path());
+    let of = |args: &[&str]| {
+        let small = ["--set", "replicates=1", "--set", "record.sensitivity=[]", "--overwrite", "--out", "t"];
+        let all: Vec<&str> = [&["run"], args, &small].concat();
+        done(&call(root.path(), &all));
+        json(&root.path().join("t/outcome.json"))
+    };
+    let lattice = of(&["--set", "network.thickness_mm=30", "--set", "network.nx=5", "--set", "network.ny=5"]);
+    let thickness = lattice["inputs"]["network"]["thickness_mm"].as_f64().unwrap();
+    let layers = lattice["inputs"]["network"]["nz"].as_f64().unwrap();
+    assert!((thickness - 30.0).abs() <= 0.5 * thickness / layers, "{thickness} {layers}");
+    let graph = of(&["scene.toml", "--set", "network.thickness_mm=13"]);
+    assert_eq!((&graph["network"]["copies"], &graph["network"]["thickness_mm"]), (&3.into(), &18.0.into()));
+    let flowing = of(&["--set", "walk.exit=flux", "--set", "network.nx=5", "--set", "network.ny=5"]);
+    assert_eq!(flowing["network"]["kind"], "lattice");
+    assert!(flowing["replicates"][0]["runs"][0]["k_over_k0"].as_f64().unwrap() <= 1.0);
+}
