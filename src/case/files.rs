@@ -6,7 +6,6 @@ use std::path::Path;
 use super::CaseError;
 use super::packed_filter::PackedError;
 use super::packed_filter::{GRAINS, PackedFilter, RECORD};
-use super::void_graph::KEPT_GRAINS;
 use crate::constrictions::{Curve, ShippedFilter, find};
 use crate::gradation::{Gradation, Soil, file_and_soil};
 use crate::network::Network;
@@ -43,6 +42,9 @@ const INPUTS: &str = "inputs";
 
 /// What the user called the files in that folder, by their names there.
 pub const INPUT_NAMES: &str = "inputs/names.json";
+
+/// Name under which a run keeps the grains whose voids it walks.
+pub(super) const KEPT_GRAINS: &str = "network-packing.csv";
 
 /// Every file that may be kept there.
 pub const INPUT_FILES: [&str; 14] = [

@@ -160,7 +160,8 @@ impl Case {
         })
     }
 
-    /// Modelled filter thickness: layers times D50F by number, or copies of a packing; `None` where a layer has no thickness.
+    /// Modelled filter thickness: layers times D50F by number, or copies of a packing; `None` where a layer
+    /// has no thickness.
     pub fn thickness(&self) -> Option<f64> {
         let d50 = self.filter.d_by_number(50.0).unwrap_or(f64::NAN);
         match (self.copies, &self.fixed_network) {

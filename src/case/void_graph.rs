@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::CaseError;
-use super::files::Files;
+use super::files::{Files, KEPT_GRAINS};
 use super::packed_filter::PackedFilter;
 use crate::constrictions::{Curve, VoidGraph};
 use crate::gradation::Gradation;
@@ -13,9 +13,6 @@ use crate::scene::{Extent, Scene, USUAL_LAYERS};
 
 /// Points of the gradation that is read off the grains.
 const GRADATION_POINTS: usize = 200;
-
-/// Name under which a run keeps the grains.
-pub(super) const KEPT_GRAINS: &str = "network-packing.csv";
 
 /// What is measured on the grains of a graph's packing.
 pub(super) struct GraphPacking {
@@ -28,7 +25,8 @@ pub(super) struct GraphPacking {
 }
 
 impl GraphPacking {
-    /// Of the file that the scene names, or of the filter's own packing; `None` where that is still to be made.
+    /// Of the file that the scene names, or of the filter's own packing; `None` where that is still to be
+    /// made.
     pub fn read(
         scene: &Scene,
         file: Option<&PathBuf>,

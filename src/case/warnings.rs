@@ -177,7 +177,8 @@ impl Case {
         if let Some((copies, _)) = self.copies {
             let equal = if copies > 1 { format!(", {copies} equal copies of it,") } else { String::new() };
             warnings.push(format!(
-                "all replicates walk the voids of one packing{equal} so that their spread is that of the walk \
+                "all replicates walk the voids of one packing{equal} so that their spread is that of the \
+                 walk \
                  alone, not that between packings"
             ));
         }

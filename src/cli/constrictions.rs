@@ -38,7 +38,8 @@ pub fn constrictions(args: &ConstrictionsArgs) -> Result<(), RunError> {
     let permeability = summary.k_over_d32_squared.zip(summary.kozeny_carman_over_d32_squared);
     lines[3] = match permeability {
         Some((k, kc)) => format!(
-            "permeability {k:.3e} d32 squared along z, {:.2} times Kozeny and Carman's; the void graph: graph.csv",
+            "permeability {k:.3e} d32 squared along z, {:.2} times Kozeny and Carman's; the void \
+             graph: graph.csv",
             k / kc
         ),
         None => "no void graph: it needs a periodic cell through which no void runs from end to end".into(),

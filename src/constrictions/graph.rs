@@ -14,8 +14,8 @@ const LEAST_WAY: f64 = 0.05;
 
 /// The voids of a periodic packing and the constrictions between them, as a graph that repeats in x, y and z.
 ///
-/// Constriction `c` is constriction `c` of the [`Constrictions`] that it was measured with: it leads from void
-/// `from[c]` in the cell to void `to[c]` in the cell that is shifted by `shift[c]`, and back.
+/// Constriction `c` is constriction `c` of the [`Constrictions`] that it was measured with: it leads from
+/// void `from[c]` in the cell to void `to[c]` in the cell that is shifted by `shift[c]`, and back.
 ///
 /// ```
 /// use voidwalk::constrictions::VoidGraph;
@@ -30,7 +30,8 @@ const LEAST_WAY: f64 = 0.05;
 /// let (_, graph) = VoidGraph::measure(&packing, 0.1)?;
 /// assert_eq!((graph.voids(), graph.from.len()), (27, 81));
 /// // A cube's window, with the hydraulic radius of the cube: volume of water over surface of grains.
-/// let (window, radius) = (1.0 - std::f64::consts::FRAC_PI_4, (1.0 - std::f64::consts::PI / 6.0) / std::f64::consts::PI);
+/// let pi = std::f64::consts::PI;
+/// let (window, radius) = (1.0 - pi / 4.0, (1.0 - pi / 6.0) / pi);
 /// assert!(graph.conductance_mm3.iter().all(|g| (g / (window * radius * radius / 2.0) - 1.0).abs() < 1e-9));
 /// # Ok::<(), voidwalk::constrictions::ConstrictionsError>(())
 /// ```

@@ -1,16 +1,16 @@
 //! The room for water around a facet: what it conducts.
 //!
-//! After Chareyre, Cortis, Catalano & Barthelemy (2012), *Pore-scale modeling of viscous flow and induced forces
-//! in dense sphere packings*, doi:10.1007/s11242-011-9915-6. A throat is the bipyramid of a facet and the power
-//! centres on either side of it. Its hydraulic radius is the volume of water in it over the surface of grains in
-//! it, `R_h = phi / gamma`, and it conducts
+//! After Chareyre, Cortis, Catalano & Barthelemy (2012), *Pore-scale modeling of viscous flow and induced
+//! forces in dense sphere packings*, doi:10.1007/s11242-011-9915-6. A throat is the bipyramid of a facet and
+//! the power centres on either side of it. Its hydraulic radius is the volume of water in it over the surface
+//! of grains in it, `R_h = phi / gamma`, and it conducts
 //!
 //! ```text
 //! g = A_f R_h^2 / (2 mu L)
 //! ```
-//! with `A_f` the part of the facet outside the grains and `L` the way between the two voids. Volumes and solid
-//! angles have a sign: a power centre on the far side of a facet takes away. So those of all facets sum to the
-//! volume of the voids and the surface of the grains, exactly.
+//! with `A_f` the part of the facet outside the grains and `L` the way between the two voids. Volumes and
+//! solid angles have a sign: a power centre on the far side of a facet takes away. So those of all facets sum
+//! to the volume of the voids and the surface of the grains, exactly.
 
 use super::tangent::cross;
 use super::triangulation::GrainPoint;

@@ -219,8 +219,8 @@ impl Sets {
         (at as u32, shift)
     }
 
-    /// Joins the sets of `a` and `b`, where translate `by` of `b` goes with the stored one of `a`. False where
-    /// they are of one set already, by another translate.
+    /// Joins the sets of `a` and `b`, where translate `by` of `b` goes with the stored one of `a`. False
+    /// where they are of one set already, by another translate.
     fn unite(&mut self, a: u32, b: u32, by: Shift) -> bool {
         let ((root_a, of_a), (root_b, of_b)) = (self.root(a), self.root(b));
         let between = of_a.plus(by).minus(of_b);

@@ -1,8 +1,8 @@
 //! Water through a network: pressures, fluxes, and how well the whole conducts.
 //!
-//! At every void what flows in flows out, `sum over its constrictions of g (p - p_other) = 0`, with pressure 1 in
-//! the reservoir and 0 behind the filter. A blocked constriction keeps a part `rho` of its conductance. The
-//! system is symmetric and positive, and is solved by conjugate gradients with an incomplete Cholesky
+//! At every void what flows in flows out, `sum over its constrictions of g (p - p_other) = 0`, with pressure
+//! 1 in the reservoir and 0 behind the filter. A blocked constriction keeps a part `rho` of its conductance.
+//! The system is symmetric and positive, and is solved by conjugate gradients with an incomplete Cholesky
 //! factor, from the last answer on. Sums run over fixed blocks in a fixed order, so that an answer is the
 //! same to the bit on any number of threads.
 
@@ -28,7 +28,8 @@ const BLOCK: usize = 1 << 12;
 pub enum FlowError {
     /// Conductances so far apart that numbers do not tell.
     #[error(
-        "the flow through the network cannot be solved: after {rounds} rounds the residual is still {residual:.1e} \
+        "the flow through the network cannot be solved: after {rounds} rounds the residual is \
+         still {residual:.1e} \
          of the inflow; constrictions whose conductances lie many orders apart do that"
     )]
     NotConverged {

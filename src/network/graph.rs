@@ -20,9 +20,9 @@ pub struct GraphShape {
 
 impl Network {
     /// The voids of a packing, in `copies` equal cells one behind the other along z and periodic in x and y:
-    /// void `v` of copy `k` is void `k N + v`. A constriction that leads into the first copy from before it is
-    /// an inlet, one that leads out of the last an outlet. Layers are as thick as the edge of the cube that a
-    /// void has on average.
+    /// void `v` of copy `k` is void `k N + v`. A constriction that leads into the first copy from before it
+    /// is an inlet, one that leads out of the last an outlet. Layers are as thick as the edge of the cube
+    /// that a void has on average.
     ///
     /// # Errors
     /// What [`Network::linked`] refuses, as no way through.

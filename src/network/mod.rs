@@ -23,6 +23,7 @@ mod percolation;
 mod permeability;
 mod reach;
 mod stratified;
+mod twins;
 mod undirected;
 
 pub use connectivity::{Connectivity, TABLE_3, TOLERANCE_PERCENT};
@@ -37,7 +38,7 @@ pub use permeability::permeability_mm2;
 pub use reach::Reachability;
 pub use undirected::{Link, LinkEnd, LinkedVoids, WIDE};
 
-use undirected::Undirected;
+use twins::Undirected;
 
 /// Target of an exit that leaves the filter.
 pub const END: u32 = u32::MAX;
@@ -69,8 +70,8 @@ pub struct Network {
 
 impl Network {
     /// How a constriction weighs in the choice among the open exits of its void: its area, but for a factor
-    /// that all have (the paper's Fig. 4), or what its [`ExitRule`] makes of area and flow. One that is closed
-    /// from the start weighs nothing.
+    /// that all have (the paper's Fig. 4), or what its [`ExitRule`] makes of area and flow. One that is
+    /// closed from the start weighs nothing.
     ///
     /// Engines, first passage and Eq. (1) all take it from here; the slow reference of the walk works it out
     /// by itself, on purpose.

@@ -1,52 +1,17 @@
 //! Networks whose constrictions can be passed both ways, until a rule gives them a direction.
 //!
 //! A constriction between two voids is an exit of both: two exits that are each other's *twin*, and one
-//! blocking closes both. Two more kinds end at the filter's faces: an *inlet* leads from the reservoir, a void
-//! of its own and the only start node, into a void; an *outlet* leaves the filter.
+//! blocking closes both. Two more kinds end at the filter's faces: an *inlet* leads from the reservoir, a
+//! void of its own and the only start node, into a void; an *outlet* leaves the filter.
 //!
 //! The reservoir is the last void, so that all others keep their numbers.
 
 use super::exit_rule::ExitRule;
+use super::twins::{NO_TWIN, Undirected};
 use super::{END, Network, NetworkError};
-
-/// The twin of an exit that has none.
-pub const NO_TWIN: u32 = u32::MAX;
 
 /// Diameter, in units of the network, of a way in that nothing can block.
 pub const WIDE: f32 = 1e30;
-
-/// What a network has besides where its constrictions have no direction of their own.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Undirected {
-    /// The same constriction as an exit of its other void, or [`NO_TWIN`].
-    pub(super) twin: Vec<u32>,
-    /// Conductance times viscosity, in any one unit, by exit.
-    pub(super) conductance: Vec<f64>,
-    /// How an exit weighs now, by exit.
-    pub(super) weight: Vec<f64>,
-    /// How particles choose.
-    pub(super) rule: ExitRule,
-    /// Part of its conductance that a blocked constriction keeps.
-    pub(super) rho: f64,
-    /// Volume by void, in units of the network's reference length cubed; empty where it is not known.
-    pub(super) volume: Vec<f64>,
-    /// Constrictions: each pair of twins once, and none that nothing can block.
-    pub(super) passages: usize,
-    /// What the conductance of the whole is to be multiplied by for its permeability, in mm2.
-    pub(super) permeability_mm2: Option<f64>,
-}
-
-impl Undirected {
-    /// Adds what a walk takes from it; the weights follow from the rest.
-    pub(super) fn hash(&self, hash: &mut xxhash_rust::xxh3::Xxh3) {
-        let Self { twin, conductance, weight: _, rule, rho, volume, passages: _, permeability_mm2: _ } = self;
-        hash.update(bytemuck::cast_slice(twin));
-        hash.update(bytemuck::cast_slice(conductance));
-        hash.update(rule.name().as_bytes());
-        hash.update(&rho.to_bits().to_le_bytes());
-        hash.update(bytemuck::cast_slice(volume));
-    }
-}
 
 /// A constriction of an undirected network.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,8 +58,8 @@ impl Network {
     /// A network of voids joined by constrictions without a direction of their own.
     ///
     /// # Errors
-    /// A diameter or a conductance that is negative or not a number; a void that is none; no inlet; no outlet;
-    /// no open way from an inlet to an outlet; more exits than 32 bits can number.
+    /// A diameter or a conductance that is negative or not a number; a void that is none; no inlet; no
+    /// outlet; no open way from an inlet to an outlet; more exits than 32 bits can number.
     pub fn linked(voids: LinkedVoids, links: &[Link]) -> Result<Self, NetworkError> {
         let reservoir = voids.layer.len() as u32;
         check(links, reservoir)?;

@@ -52,7 +52,8 @@ pub const MODEL_LEAVES_OUT: [&str; 6] = [
 ];
 
 /// What stands in the place of the first where water gives particles their way.
-const LEAVES_OUT_OF_FLOW: &str = "hydraulics but for the direction and the shares of slow flow: no gradient, no \
+const LEAVES_OUT_OF_FLOW: &str = "hydraulics but for the direction and the shares of slow flow: no gradient, \
+    no \
     time; an increment is not an interval of time";
 
 /// What the model does not contain where particles choose by this rule.

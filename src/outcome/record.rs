@@ -365,8 +365,8 @@ pub struct NetworkRecord {
     /// Rows of (connectivity, percent of the voids), rising; empty where all voids have the same.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub connectivity: Vec<[f64; 2]>,
-    /// Modelled filter thickness: layers times D50F by number, or copies of a packing; `None` where a layer has
-    /// no thickness.
+    /// Modelled filter thickness: layers times D50F by number, or copies of a packing; `None` where a layer
+    /// has no thickness.
     pub thickness_mm: Option<f64>,
     /// Equal copies of a packing, one behind the other; `None` but for a graph.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -347,7 +347,8 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
                     format!("{} by mass; {}", percent(base.tail_mass_fraction),
                         match outcome.pan_bounds {
                             Some(_) => "walked as passive and as all of the finest sieve’s size",
-                            None => "taken as too fine to block any constriction (passive); only its mass is counted",
+                            None => "taken as too fine to block any constriction (passive); only its \
+                                     mass is counted",
                         })))
             }
             (fact("D15F/D85B, D15F/D95B", format!("{}, {}", significant(outcome.ratios.d15f_over_d85b),

@@ -1,5 +1,5 @@
-//! What is walked of a case besides itself, where its inputs leave open what it is: the other reading of a pan
-//! fraction, and the ends of the range of its constriction curve.
+//! What is walked of a case besides itself, where its inputs leave open what it is: the other reading of a
+//! pan fraction, and the ends of the range of its constriction curve.
 
 use super::curve_range::curve_range;
 use super::error::RunError;

@@ -134,27 +134,28 @@ section! {
 section! {
     /// How particles choose their way.
     pub struct ExitKeys in "walk" {
-        /// How a particle chooses among the open exits of its void: in proportion to "area" on a network whose
-        /// constrictions have a direction (the paper's); to the "flux" of water; to "area-along-flow", among
-        /// the exits that water leaves by; or by "height", to area among those that lead further along the
-        /// axis. Without it "area" on a lattice, "flux" on a graph.
+        /// How a particle chooses among the open exits of its void: in proportion to "area" on a network
+        /// whose constrictions have a direction (the paper's); to the "flux" of water; to "area-along-flow",
+        /// among the exits that water leaves by; or by "height", to area among those that lead further along
+        /// the axis. Without it "area" on a lattice, "flux" on a graph.
         pub exit: Option<ExitRule> = None, off "\"flux\"", words(&ExitRule::ALL.map(ExitRule::name));
         /// Part of its conductance that a blocked constriction keeps, where water flows.
         pub rho: Option<f64> = None, off "0.0", within(0.0..=1.0, "a part from 0 to 1");
-        /// Power of its diameter that a lattice's constriction conducts water in proportion to; 4 unless it is
-        /// given.
+        /// Power of its diameter that a lattice's constriction conducts water in proportion to; 4 unless it
+        /// is given.
         pub conductance_exponent: Option<f64> = None, off "4.0", within(0.0..=10.0, "a number from 0 to 10");
     }
 }
 
 section! {
-    /// The network: a directed cubic lattice, z being the direction of flow, one from a file, or the voids of a
-    /// packing themselves.
+    /// The network: a directed cubic lattice, z being the direction of flow, one from a file, or the voids of
+    /// a packing themselves.
     pub struct NetworkKeys in "network" {
         /// "lattice", or "graph": the voids of the filter's own packing and the constrictions between them.
-        pub kind: Option<NetworkKind> = None, off "\"graph\"", words(&NetworkKind::ALL.map(NetworkKind::name));
-        /// The packing whose voids are walked, where it is not made here: grains in a periodic cell (CSV, LAMMPS
-        /// dump).
+        pub kind: Option<NetworkMadeOf> = None, off "\"graph\"",
+            words(&NetworkMadeOf::ALL.map(NetworkMadeOf::name));
+        /// The packing whose voids are walked, where it is not made here: grains in a periodic cell (CSV,
+        /// LAMMPS dump).
         pub packing: Option<PathBuf> = None, off "\"grains.csv\"", any("a file name in quotes");
         /// Equal copies of that packing one behind the other along the flow; as many as 60 layers of voids
         /// need unless they or the thickness are given.
@@ -311,14 +312,14 @@ impl ExitKeys {
 /// What a network is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum NetworkKind {
+pub enum NetworkMadeOf {
     /// A cubic lattice of voids.
     Lattice,
     /// The voids of a packing.
     Graph,
 }
 
-impl NetworkKind {
+impl NetworkMadeOf {
     /// Both.
     pub const ALL: [Self; 2] = [Self::Lattice, Self::Graph];
 
@@ -331,7 +332,7 @@ impl NetworkKind {
     }
 }
 
-impl Leaf for NetworkKind {}
+impl Leaf for NetworkMadeOf {}
 impl Leaf for ExitRule {}
 /// Whether a base is walked regraded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use super::keys::{Base, CurveSource, Filter, NetworkKeys, NetworkKind, Record};
+use super::keys::{Base, CurveSource, Filter, NetworkKeys, NetworkMadeOf, Record};
 use super::{PackingKeys, SceneError};
 use crate::network::Connectivity;
 use crate::outcome::Wanted;
@@ -160,7 +160,7 @@ impl Base {
 
 impl NetworkKeys {
     pub(super) fn fill_in(&mut self) {
-        if self.file.is_some() || self.kind == Some(NetworkKind::Graph) {
+        if self.file.is_some() || self.kind == Some(NetworkMadeOf::Graph) {
             return;
         }
         let is_thick = self.extent() != Extent::Usual;
@@ -190,7 +190,7 @@ impl NetworkKeys {
 
     /// Where it comes from.
     pub fn source(&self) -> NetworkSource {
-        if self.kind == Some(NetworkKind::Graph) {
+        if self.kind == Some(NetworkMadeOf::Graph) {
             return NetworkSource::Graph(self.packing.clone(), self.extent());
         }
         if let Some(path) = &self.file {

@@ -18,7 +18,7 @@ use serde::Serialize;
 
 pub use crate::schema::{Origin, SceneError};
 pub use keys::{
-    About, Base, CurveSource, Density, ExitKeys, Filter, FilterPacking, NetworkKeys, NetworkKind, Record,
+    About, Base, CurveSource, Density, ExitKeys, Filter, FilterPacking, NetworkKeys, NetworkMadeOf, Record,
     Regrade, WalkKeys,
 };
 pub use meaning::{
@@ -242,7 +242,7 @@ impl Scene {
 
     /// Refuses a network that is half a lattice and half a graph, and an exit rule that does not go with it.
     fn check_network(&self, s: &GivenSettings) -> Result<(), SceneError> {
-        let graph = self.network.kind == Some(NetworkKind::Graph);
+        let graph = self.network.kind == Some(NetworkMadeOf::Graph);
         let wrong = |names: &[&str], problem: &str| match names.iter().find(|name| s.has(name)) {
             Some(name) => Err(s.clash(format!("{name} {problem}"))),
             None => Ok(()),
@@ -275,10 +275,16 @@ impl Scene {
             let words: Vec<String> = allowed.iter().map(|rule| format!("\"{}\"", rule.name())).collect();
             return Err(s.refuse(
                 "walk.exit",
-                format!("{} on this network: {}", words.join(", "), match graph {
-                    true => "the constrictions of a graph have no direction of their own, so that area alone leads nowhere",
-                    false => "the rule needs to know which way is which",
-                }),
+                format!(
+                    "{} on this network: {}",
+                    words.join(", "),
+                    match graph {
+                        true =>
+                            "the constrictions of a graph have no direction of their own, so that area alone \
+                             leads nowhere",
+                        false => "the rule needs to know which way is which",
+                    }
+                ),
             ));
         }
         if !rule.needs_flow() {
@@ -293,7 +299,7 @@ impl Scene {
     /// How particles choose among the exits of a void.
     pub fn exit_rule(&self) -> ExitRule {
         self.exits.exit.unwrap_or(match self.network.kind {
-            Some(NetworkKind::Graph) => ExitRule::Flux,
+            Some(NetworkMadeOf::Graph) => ExitRule::Flux,
             _ => ExitRule::Area,
         })
     }

@@ -1,11 +1,11 @@
 //! Which way constrictions lead, where water decides: when the flow is solved again, and what it came to.
 //!
 //! The flow is solved before the first increment, and at the beginning of an increment when the constrictions
-//! blocked since the last time are one in a hundred of all, or when there are any and ten increments have gone
-//! by; and once more at the end. In between directions stay as they are, and a particle in a void whose exits
-//! have all been blocked since waits where it is. When to solve follows from the history of blocking alone, so a
-//! walk that continues from a checkpoint solves again what was solved before, in the same order, to the same
-//! bits.
+//! blocked since the last time are one in a hundred of all, or when there are any and ten increments have
+//! gone by; and once more at the end. In between directions stay as they are, and a particle in a void whose
+//! exits have all been blocked since waits where it is. When to solve follows from the history of blocking
+//! alone, so a walk that continues from a checkpoint solves again what was solved before, in the same order,
+//! to the same bits.
 
 use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
@@ -73,7 +73,8 @@ impl Directions {
         Ok(directions)
     }
 
-    /// Whether the flow is to be solved at the beginning of an increment, after so many blockings of this run.
+    /// Whether the flow is to be solved at the beginning of an increment, after so many blockings of this
+    /// run.
     fn is_due(&self, network: &Network, increment: u64, blocked: u64) -> bool {
         let since = blocked - self.blocked_then;
         since > 0

@@ -66,7 +66,8 @@ pub(super) struct General {
 
 /// Stands for "no open exit".
 pub(super) const NONE: u32 = u32::MAX;
-/// Stands for "no exit has been open since the flow was solved last": particles wait until it is solved again.
+/// Stands for "no exit has been open since the flow was solved last": particles wait until it is solved
+/// again.
 pub(super) const WAIT: u32 = u32::MAX - 1;
 
 /// Whether particles in a void without open exits wait: water left it when the flow was solved last, by exits

@@ -86,8 +86,8 @@ impl Events {
     }
 }
 
-/// Adds the events of all chunks to the state; returns the constrictions that have just closed, ascending, each
-/// as the exit by which it was blocked.
+/// Adds the events of all chunks to the state; returns the constrictions that have just closed, ascending,
+/// each as the exit by which it was blocked.
 pub(super) fn merge(
     network: &Network,
     events: &mut [Events],

@@ -164,8 +164,8 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// What is left of a walk at the end of its run: the network with the directions that it has then, and how
-    /// the permeability fell, where water gives them.
+    /// What is left of a walk at the end of its run: the network with the directions that it has then, and
+    /// how the permeability fell, where water gives them.
     ///
     /// # Errors
     /// [`WalkError::Flow`].

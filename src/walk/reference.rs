@@ -1,7 +1,7 @@
 //! The slow, obvious walk that the fast one is held against.
 //!
-//! One particle after another, every weight computed afresh from the network, in the words of the
-//! model. It shares nothing with the kernel but the network, the flow that is solved on it, the base's sizes, the
+//! One particle after another, every weight computed afresh from the network, in the words of the model. It
+//! shares nothing with the kernel but the network, the flow that is solved on it, the base's sizes, the
 //! strata and the streams.
 
 use std::borrow::Cow;

@@ -30,7 +30,7 @@ use crate::store::checkpoint::{Checkpoint, CheckpointError, Section};
 /// | `retained_in_voids` | u64 | by void |
 /// | `eroded_number`, `retained_number` | u64 | particles by size class |
 /// | `eroded_mass`, `retained_mass` | f64 | mass by size class |
-/// | `retained_cubes` | f64 | sum of diameters cubed of what is retained, by void; only where voids have a volume |
+/// | `retained_cubes` | f64 | diameters cubed of what is retained, by void; only where voids have a volume |
 ///
 /// The record holds, in these fields, those of [`State`] of the same names: `seed`, `run`, `increment`,
 /// `finished`, `passive_limit` (`null` where no constriction was open when the run began) and `tally` (all

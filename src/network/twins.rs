@@ -1,0 +1,39 @@
+//! What a network has besides where its constrictions have no direction of their own: columns by exit.
+
+use super::exit_rule::ExitRule;
+
+/// The twin of an exit that has none.
+pub(super) const NO_TWIN: u32 = u32::MAX;
+
+/// What a network has besides where its constrictions have no direction of their own.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Undirected {
+    /// The same constriction as an exit of its other void, or [`NO_TWIN`].
+    pub(super) twin: Vec<u32>,
+    /// Conductance times viscosity, in any one unit, by exit.
+    pub(super) conductance: Vec<f64>,
+    /// How an exit weighs now, by exit.
+    pub(super) weight: Vec<f64>,
+    /// How particles choose.
+    pub(super) rule: ExitRule,
+    /// Part of its conductance that a blocked constriction keeps.
+    pub(super) rho: f64,
+    /// Volume by void, in units of the network's reference length cubed; empty where it is not known.
+    pub(super) volume: Vec<f64>,
+    /// Constrictions: each pair of twins once, and none that nothing can block.
+    pub(super) passages: usize,
+    /// What the conductance of the whole is to be multiplied by for its permeability, in mm2.
+    pub(super) permeability_mm2: Option<f64>,
+}
+
+impl Undirected {
+    /// Adds what a walk takes from it; the weights follow from the rest.
+    pub(super) fn hash(&self, hash: &mut xxhash_rust::xxh3::Xxh3) {
+        let Self { twin, conductance, weight: _, rule, rho, volume, passages: _, permeability_mm2: _ } = self;
+        hash.update(bytemuck::cast_slice(twin));
+        hash.update(bytemuck::cast_slice(conductance));
+        hash.update(rule.name().as_bytes());
+        hash.update(&rho.to_bits().to_le_bytes());
+        hash.update(bytemuck::cast_slice(volume));
+    }
+}
