@@ -11,6 +11,7 @@
 //! Diameters are held in units of a reference length ([`Network::unit_mm`]), so that a change of
 //! units by a power of two changes no bit of a walk.
 
+mod coarse;
 mod connectivity;
 mod cubic;
 mod exit_rule;
