@@ -87,7 +87,8 @@ impl RuleRole {
             Self::Retention => "a verdict of no erosion",
             Self::Continuation => "a verdict of no or of some erosion",
             Self::Stability => "any verdict: without its fines it is not the filter that was walked",
-            Self::Drainage | Self::Walk => "no verdict",
+            Self::Drainage => "a verdict of no erosion, as of a filter that practice would not build",
+            Self::Walk => "no verdict",
         }
     }
 }

@@ -319,7 +319,7 @@ fn every_role_says_what_it_speaks_against() {
     for rule in rules {
         assert_eq!(rule.speaks_against, rule.role.speaks_against());
     }
-    assert_eq!(RuleRole::Drainage.speaks_against(), "no verdict");
+    assert_eq!(RuleRole::Walk.speaks_against(), "no verdict");
 }
 
 /// No number of the boundary of excessive erosion was read: it has no result, and says so.
