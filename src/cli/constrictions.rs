@@ -18,7 +18,7 @@ pub fn constrictions(args: &ConstrictionsArgs) -> Result<(), RunError> {
         to_stdout(&json(&summary)?);
         return Ok(());
     }
-    let mut lines = vec![
+    let mut lines = [
         format!("{} grains, void ratio {:.4}", count(summary.grains as u64), summary.void_ratio),
         format!(
             "{} voids, {:.3} grains per void (Eq. 2), {:.2} constrictions a void on average",

@@ -99,6 +99,9 @@ fn summary(run: &FinishedRun) -> String {
     if let Some(thickness) = inputs.network.thickness_mm {
         line(format!("  modelled filter thickness: {thickness:.1} {unit} along the flow"));
     }
+    for said in [outcome.flow_sentence(), outcome.overfull_sentence()].into_iter().flatten() {
+        line(format!("  {said}"));
+    }
     line(format!(
         "  {} of {} base particles, {} voids; D15F/D85B {:.2}, D15F/D95B {:.2}, {}",
         counted(outcome.replicates.len() as u64, "replicate", "replicates"),

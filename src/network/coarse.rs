@@ -1,7 +1,7 @@
 //! A coarse picture of a system of pressures: one unknown for each part of the voids.
 //!
-//! What is slow to converge is what is smooth: a pressure that is wrong by layers. Where parts are layers, the
-//! small system of their mean pressures takes that away at once (a two-level method with the layers as
+//! What is slow to converge is what is smooth: a pressure that is wrong by layers. Where parts are layers,
+//! the small system of their mean pressures takes that away at once (a two-level method with the layers as
 //! aggregates), so that the number of rounds no longer grows with the thickness of the filter.
 
 /// A system of at most so many parts.

@@ -3,8 +3,8 @@
 //! At every void what flows in flows out, `sum over its constrictions of g (p - p_other) = 0`, with pressure
 //! 1 in the reservoir and 0 behind the filter. A blocked constriction keeps a part `rho` of its conductance.
 //! The system is symmetric and positive, and is solved by conjugate gradients with a modified incomplete
-//! Cholesky factor, from the last answer on. Sums run over fixed blocks in a fixed order, so that an answer is the
-//! same to the bit on any number of threads.
+//! Cholesky factor, from the last answer on. Sums run over fixed blocks in a fixed order, so that an answer
+//! is the same to the bit on any number of threads.
 
 use bitvec::slice::BitSlice;
 use rayon::prelude::*;
@@ -21,8 +21,8 @@ const NO_FLUX: f64 = 1e-8;
 /// Rounds after which a system that has not converged is given up, for each layer and a hundred besides.
 const ROUNDS: usize = 100;
 
-/// Part of what would be filled in that is taken from the diagonal: all of it converges fastest, but where voids
-/// end dead it would leave nothing.
+/// Part of what would be filled in that is taken from the diagonal: all of it converges fastest, but where
+/// voids end dead it would leave nothing.
 const FILL_TAKEN: f64 = 0.97;
 
 /// Entries whose sum is made at once: fixed, so that threads change nothing.
@@ -205,8 +205,8 @@ impl System {
         Self::of_voids(inside, part, of)
     }
 
-    /// The equations of the voids `inside`, which belong to parts; `of` gives the diagonal and the right side of a void, and its
-    /// neighbours with their conductances, those that are not inside at pressure 0.
+    /// The equations of the voids `inside`, which belong to parts; `of` gives the diagonal and the right side
+    /// of a void, and its neighbours with their conductances, those that are not inside at pressure 0.
     pub(super) fn of_voids(
         inside: &[bool],
         part: impl Fn(u32) -> u32,
@@ -256,7 +256,8 @@ impl System {
     }
 
     /// Modified incomplete Cholesky without fill in (Gustafsson 1978, doi:10.1007/BF01931691): only the
-    /// diagonal differs from that of the system itself, and nearly all that would be filled in is taken from it.
+    /// diagonal differs from that of the system itself, and nearly all that would be filled in is taken from
+    /// it.
     fn factor(&mut self) {
         let mut pivot: Vec<f64> = Vec::with_capacity(self.diagonal.len());
         let after = |i: usize| self.after[i] as usize..self.begin[i + 1] as usize;

@@ -122,7 +122,7 @@ mod tests {
         for axis in 0..3 {
             let k = permeability_mm2(&graph, axis).unwrap();
             assert!((k / scheme - 1.0).abs() < 1e-9, "{k}");
-            assert!((k / (1.0 / (18.0 * 0.5236 * 42.1)) - 1.0).abs() < 0.03, "{k}");
+            assert!((k / (1.0 / (18.0 * pi / 6.0 * 42.1)) - 1.0).abs() < 0.03, "{k}");
         }
     }
 

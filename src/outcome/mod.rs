@@ -16,6 +16,7 @@ mod applied;
 pub mod by_connectivity;
 pub mod confidence;
 mod curve_range;
+mod flow_words;
 mod infiltration;
 mod least_squares;
 pub mod ledger;

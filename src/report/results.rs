@@ -66,6 +66,9 @@ pub(super) fn results(outcome: &Outcome) -> Markup {
     html! {
         h2 { "Results" }
         (table)
+        @for said in [outcome.flow_sentence(), outcome.overfull_sentence()].into_iter().flatten() {
+            p { (capital(&said)) "." }
+        }
     }
 }
 

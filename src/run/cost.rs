@@ -61,6 +61,12 @@ const GRAIN_BYTES: u64 = 20_000;
 /// Bytes of the program itself and of a page that is being written.
 const PROGRAM_BYTES: u64 = 100_000_000;
 
+/// Increments after which the flow is solved again.
+const SOLVED_EVERY: f64 = 10.0;
+
+/// Solving the flow takes so long for a constriction (s): 0.185 s for 288,000 of them.
+const SOLVE_S: f64 = 6.5e-7;
+
 impl Case {
     /// Seconds that one thread of a machine of today takes for the whole case, its packing apart: a rough
     /// guess. What a rule that adds replicates may ask for besides is not foreseen.
@@ -77,7 +83,12 @@ impl Case {
             let increments = self.increments() as f64 + SPREAD * layers.sqrt();
             let slower = if self.is_cubic() { 1.0 } else { OTHER_NETWORK };
             let counted = if each { 0.0 } else { slower * voids };
-            walk_seconds(0.0, increments, counted, one_by_one, one_by_one * self.moves_of_each(n_base))
+            let solved = match self.scene.exit_rule().needs_flow() {
+                true => (increments / SOLVED_EVERY + 2.0) * constrictions * SOLVE_S,
+                false => 0.0,
+            };
+            solved
+                + walk_seconds(0.0, increments, counted, one_by_one, one_by_one * self.moves_of_each(n_base))
         };
         let [replicates, studied] = networks_to_walk(self).map(|n| n as f64);
         let own = replicates * (1 + self.curve_ends().len()) as f64 * one_run(self.n_base);

@@ -78,8 +78,7 @@ impl Directions {
     fn is_due(&self, network: &Network, increment: u64, blocked: u64) -> bool {
         let since = blocked - self.blocked_then;
         since > 0
-            && (since * PART_BLOCKED >= network.passages() as u64
-                || increment - 1 >= self.solved_at + INCREMENTS)
+            && (since * PART_BLOCKED >= network.passages() as u64 || increment > self.solved_at + INCREMENTS)
     }
 
     /// Solves the flow where the increment that `state` begins is due for it; whether it did.

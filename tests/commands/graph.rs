@@ -74,7 +74,12 @@ fn the_graph_is_walked_and_its_folder_says_what_it_is() {
     let root = tempfile::tempdir().unwrap();
     prepared(root.path());
     done(&call(root.path(), &["check", "scene.toml"]));
-    done(&call(root.path(), &["run", "scene.toml", "--out", "one", "--threads", "1"]));
+    let run = call(root.path(), &["run", "scene.toml", "--out", "one", "--threads", "1"]);
+    done(&run);
+    let said = String::from_utf8_lossy(&run.stdout).into_owned();
+    assert!(said.contains("permeability at the end of the first and second run: "), "{said}");
+    let page = fs::read_to_string(root.path().join("one/report.html")).unwrap();
+    assert!(page.contains("Permeability at the end of the first and second run: "));
     let outcome = json(&root.path().join("one/outcome.json"));
     let network = &outcome["network"];
     assert_eq!((&network["kind"], &network["exit"]), (&"graph".into(), &"flux".into()));
