@@ -190,7 +190,8 @@ mod tests {
         assert!(reasons[0].contains("too fine to drain") && reasons[0].contains("nothing of retention"));
         let gap = [(1.0, 0.0), (1.2, 15.0), (8.0, 15.0), (20.0, 100.0)];
         let (confidence, reasons) = judge(Verdict::None, &rules(&gap, &SAND), Vec::new());
-        assert_eq!(confidence, Confidence::Outside, "{reasons:?}");
+        // Its Cu is more than practice takes, too.
+        assert_eq!(confidence, Confidence::Contradicted, "{reasons:?}");
         assert!(reasons[0].contains("lose its own fines"), "{reasons:?}");
     }
 
