@@ -37,7 +37,7 @@ fn files(folder: &Path) {
     write("utf16.toml", &[&[0xff, 0xfe], &utf_16[..]].concat());
     write("latin.toml", b"# gr\xf6\xdfer\nseed = 1\n");
     write("key.toml", b"[walk]\nbias = 1\n");
-    write("table.toml", b"[walks]\nbias = 1\n");
+    write("other.toml", b"[quxxy]\nbias = 1\n");
     write("table.toml", b"[filtre]\ncu = 1\n");
     let grains = "# cell = none\nx_mm,y_mm,z_mm,diameter_mm\n0,0,0,1\n1,0,0,1\n0,1,0,1\n";
     write("three.csv", grains.as_bytes());
@@ -73,7 +73,11 @@ fn every_mistake_is_answered_with_a_way_out() {
         ("campaign utf16.toml", 2, &["utf16.toml: is UTF-16 text", "save it as UTF-8"]),
         ("check latin.toml", 2, &["latin.toml: is not UTF-8 text (line 1); save it as UTF-8"]),
         ("check key.toml", 2, &["line 2: there is no setting `walk.bias`; [walk] has exit, rho"]),
-        ("check table.toml", 2, &["line 1: there is no setting `walks`;"]),
+        (
+            "check other.toml",
+            2,
+            &["line 1: there is no setting `quxxy`; there are [stop], [filter]", "seed, "],
+        ),
         ("check table.toml", 2, &["line 1: there is no setting `filtre`; did you mean [filter]?"]),
         (
             "check --set stop.bias=1",
