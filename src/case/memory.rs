@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::{Case, CaseError};
+use crate::network::ExitRule;
 use crate::store::Placement;
 use crate::walk::{CHUNK, Engine};
 
@@ -15,6 +16,10 @@ const EVENT_BYTES: u64 = 16 << 10;
 
 /// What a worker keeps to move counts: for a void, its particles there; and a batch of voids (bytes).
 const COUNTS_A_WORKER: (u64, u64) = (8, 32 << 10);
+
+/// Bytes for a constriction where water flows: two exits of 28 in the network and in its copy, 12 of the
+/// flow, 12 of the system and 24 of tables each.
+const FLOW_BYTES: u64 = 2 * (2 * 28 + 12 + 12 + 24);
 
 /// What the walks of a case may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,7 +83,18 @@ impl Case {
         chunks
             .saturating_mul(EVENT_BYTES)
             .saturating_add(voids * 140 + constrictions * 25)
+            .saturating_add(self.flow_bytes())
             .saturating_add(workers)
+    }
+
+    /// Bytes that a network without directions of its own takes besides: each constriction is two exits with
+    /// conductance, weight and flow, in the network, in a copy of it that the walk directs, and in the
+    /// system.
+    fn flow_bytes(&self) -> u64 {
+        match self.scene.exit_rule() {
+            ExitRule::Area => 0,
+            _ => self.counts[1].saturating_mul(FLOW_BYTES),
+        }
     }
 
     /// Bytes that each thread of a walk keeps for itself: with counts a column of the whole network, into

@@ -252,7 +252,7 @@ impl Case {
                 sizes::of_connected(*shape, wanted, &curve, unit_mm, replicate_seed(scene.walk.seed, 1))?
             }
             (None, source) => {
-                let shape = source.shape().unwrap_or_else(|| placeholder_shape(&scene));
+                let shape = source.shape().unwrap_or_else(|| placeholder_shape(&scene, &filter));
                 (sizes::of_lattice(shape)?, Vec::new())
             }
         };
@@ -333,7 +333,7 @@ impl Case {
             }
             // A packing that is still to be made.
             (None, NetworkSource::Graph(..)) => {
-                let shape = placeholder_shape(&self.scene);
+                let shape = placeholder_shape(&self.scene, &self.filter);
                 self.with_directions(Network::cubic(shape, &self.curve, self.unit_mm, seed)?)
             }
             (None, NetworkSource::Connected(_, wanted)) => {
@@ -422,12 +422,16 @@ fn guesses_grains_per_void(scene: &Scene) -> bool {
 const CONDUCTANCE_EXPONENT: f64 = 4.0;
 
 /// A lattice about as large as the graph of a packing that is still to be made.
-fn placeholder_shape(scene: &Scene) -> [u32; 3] {
+fn placeholder_shape(scene: &Scene, filter: &Gradation) -> [u32; 3] {
     let grains = scene.packing.as_ref().and_then(|packing| packing.filter.grains).unwrap_or(9_000);
     let across = libm::cbrt(grains as f64 / PLACEHOLDER_GRAINS_PER_VOID).ceil().clamp(1.0, 1000.0) as u32;
     let along = match scene.network.extent() {
         Extent::Copies(copies) => copies.saturating_mul(across).min(1_000_000),
-        _ => USUAL_LAYERS as u32,
+        extent => {
+            let layer = filter.d_by_number(50.0).unwrap_or(filter.smallest_mm());
+            let thickness = extent.thickness_mm(filter.d(50.0).unwrap_or(layer));
+            thickness.map_or(USUAL_LAYERS as u32, |mm| (mm / layer).ceil().clamp(1.0, 1e6) as u32)
+        }
     };
     [across, across, along]
 }

@@ -48,10 +48,11 @@ impl Case {
             NetworkSource::Graph(..) => {
                 let copies = self.copies.map_or(1, |(copies, _)| copies);
                 let times = if copies == 1 { String::new() } else { format!(", {copies} times") };
-                (
-                    record::NetworkKind::Graph,
-                    format!("the voids of {}{times}", self.name_of("network.packing")),
-                )
+                let grains = match self.name_of("network.packing") {
+                    none if none.is_empty() => "the filter's packing".into(),
+                    name => name,
+                };
+                (record::NetworkKind::Graph, format!("the voids of {grains}{times}"))
             }
         };
         let shape = match self.scene.network.source().shape() {

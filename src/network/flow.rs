@@ -130,7 +130,9 @@ impl Flow {
         let rule = network.exit_rule();
         let inlets = network.exits(reservoir);
         let through: f64 = inlets.clone().map(|c| self.flux(reservoir, c)).sum();
-        let least = NO_FLUX * (through / inlets.len().max(1) as f64).max(f64::MIN_POSITIVE);
+        let inflow: f64 = inlets.clone().map(|c| self.open[c] * self.open[c]).sum();
+        // Nor is one that the residual may stand for.
+        let least = (NO_FLUX * through / inlets.len().max(1) as f64).max(CONVERGED * inflow.sqrt());
         let mut weight = std::mem::take(&mut network.undirected.as_mut().expect("it has a reservoir").weight);
         for void in 0..network.voids() as u32 {
             for c in network.exits(void) {

@@ -196,7 +196,7 @@ pub struct Run {
     /// Permeability of the clean filter (mm2), where the network knows its lengths.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub k0_mm2: Option<f64>,
-    /// Retained volume over void volume of the fullest void, where voids have a volume.
+    /// Volume that this run retained over void volume, of the fullest void; where voids have a volume.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fullness_max: Option<f64>,
     /// Share of the voids that are filled by more than 0.6 of their volume, likewise.

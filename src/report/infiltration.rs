@@ -14,7 +14,8 @@ pub(super) fn infiltration(outcome: &Outcome) -> Markup {
         h2 { "Infiltration depth, Eq. (1)" }
         @match &outcome.infiltration {
             None => p {
-                "Not given: Eq. (1) speaks of a regular cubic lattice, and this network is none."
+                "Not given: Eq. (1) speaks of a regular cubic lattice in which particles choose by area, and \
+                 this network is none."
             },
             Some(found) => {
                 p {

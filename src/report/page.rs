@@ -291,6 +291,12 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
     let (filter, base, network) = (&inputs.filter, &inputs.base, &inputs.network);
     let mm = |value: f64| size(value, inputs.scale_free);
     let kind = match (network.kind, network.nx, network.ny, network.nz) {
+        (NetworkKind::Cubic, Some(nx), Some(ny), Some(nz)) if outcome.network.is_some() => {
+            format!(
+                "cubic lattice, {nx} × {ny} × {nz} voids ({nz} along the flow), whose constrictions have the \
+                 direction that water gives them"
+            )
+        }
         (NetworkKind::Cubic, Some(nx), Some(ny), Some(nz)) => {
             format!("directed cubic lattice, {nx} × {ny} × {nz} voids ({nz} along the flow)")
         }
@@ -307,6 +313,10 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
     html! {
         h2 { "Filter thickness and inputs" }
         @match network.thickness_mm {
+            Some(thickness) if network.kind == NetworkKind::Graph => p {
+                "Modelled filter thickness: " b { (mm(thickness)) } " along the flow, "
+                (whole(network.layers)) " layers of voids."
+            },
             Some(thickness) => p {
                 "Modelled filter thickness: " b { (mm(thickness)) } " along the flow, "
                 (whole(network.layers)) " layers, each D50F by number, " (mm(filter.d50_by_number_mm)) "."

@@ -73,7 +73,10 @@ pub(super) const GROUPS: &[Group] = &[
         alternatives: &[
             Alternative::by(&["network.nx", "network.ny", "network.nz", "network.connectivity"]),
             Alternative::by(&["network.file"]),
-            Alternative::by(&["network.packing", "network.copies"]),
+            Alternative {
+                resets: &["filter.curve", "filter.estimate"],
+                ..Alternative::by(&["network.packing", "network.copies"])
+            },
         ],
     },
     Group {

@@ -253,6 +253,14 @@ impl Scene {
                 "does not go with network.kind = \"graph\": a packing has its voids where they are",
             )?;
             wrong(&["walk.conductance_exponent"], "is for a lattice: a packing's voids conduct as they do")?;
+            if self.network.packing.is_some() {
+                let own = "says what the constrictions are, but network.packing brings its own: keep one";
+                wrong(&["filter.curve", "filter.estimate"], own)?;
+                // A run keeps the grains of the filter that it packed, and says both.
+                if self.filter.measured.is_none() {
+                    wrong(&["filter.density", "filter.friction"], own)?;
+                }
+            }
             if self.network.packing.is_none() && self.packing.is_none() {
                 return Err(s.clash(
                     "network.kind = \"graph\" needs grains: filter.density packs them, or network.packing \

@@ -58,6 +58,8 @@ impl Directions {
         };
         state.history.iter().for_each(|blocking| close(&mut blocked, blocking.constriction, false));
         directions.solve(network, &blocked, 0, 0)?;
+        // What was blocked when the flow was solved last: exits blocked since still lead on once it is again.
+        let mut at_solve = blocked.clone();
         let mut history = state.history.iter().peekable();
         let mut so_far = 0;
         for increment in 1..=state.increment {
@@ -67,9 +69,10 @@ impl Directions {
             }
             if directions.is_due(network, increment, so_far) {
                 directions.solve(network, &blocked, increment - 1, so_far)?;
+                at_solve.copy_from_bitslice(&blocked);
             }
         }
-        directions.flow.direct(network, &blocked);
+        directions.flow.direct(network, &at_solve);
         Ok(directions)
     }
 

@@ -92,7 +92,7 @@ impl RunPlan {
         let limit = network.finest_open(|c| blocked[c]);
         let passive_words = sampler.word_limit(limit);
         let engine = match wanted {
-            wanted if wanted.takes_each(share, network.start().len() as u64) => Engine::Particles,
+            wanted if wanted.takes_each(share, network.entries() as u64) => Engine::Particles,
             _ if passive_words == 0 => Engine::Particles,
             Engine::Auto => Engine::Counts,
             chosen => chosen,
@@ -107,7 +107,7 @@ impl RunPlan {
                 "None is kept as a count: {share} base particles an increment for {} start nodes are so \
                  few that walking each by \
                  itself is faster, and the distribution is the same.",
-                network.start().len()
+                network.entries()
             ));
         }
         Self { engine, passive_words, sampling: Sampling::Independent, left_out }

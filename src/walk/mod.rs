@@ -221,6 +221,7 @@ impl<'a> Walk<'a> {
             if let Some(passive) = &mut self.passive {
                 passive.renew(&self.network, state);
             }
+            (self.trap, self.all_caught) = (trapped::Search::new(&self.network), false);
         }
         Ok(())
     }

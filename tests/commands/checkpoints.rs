@@ -40,6 +40,40 @@ fn shown(state: &State) -> String {
     )
 }
 
+/// So much base that voids lose all their exits between two solutions of the flow, and their particles wait: what
+/// waits is known after any increment.
+#[test]
+fn a_walk_with_flow_goes_on_while_particles_wait() {
+    let root = tempfile::tempdir().unwrap();
+    let network = network(4).undirected_lattice(ExitRule::Flux, 0.0, 4.0).unwrap();
+    let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
+    for (engine, cu, n) in [(Engine::Particles, 1.2, 3_000), (Engine::Counts, 2.0, 150_000)] {
+        let gradation = Gradation::linear_from_dx(85.0, 0.33, cu).unwrap();
+        let sampler = SizeSampler::new(&gradation, 1.0).unwrap();
+        let supply = RunPlan::new(engine, &network, &sampler, &open, n / 50).supply(sampler, n, 50, 3, 1);
+        let mut whole = fresh(&network, &supply, &open, 3, 1);
+        Walk::new(&network, &supply, &whole)
+            .run(&mut whole, &mut |state| {
+                let label = Label { generation: state.increment, ..Label::default() };
+                let folder = root.path().join(format!("{engine:?}-{}", state.increment));
+                fs::create_dir(&folder).unwrap();
+                save(&folder, "x", &label, &SavedState::new(state).sections()).unwrap();
+                WalkControl::Continue
+            })
+            .unwrap();
+        assert!(whole.tally.blocked > 50 && whole.tally.retained_in_voids > 20, "{:?}", whole.tally);
+        for increment in 1..whole.increment {
+            let folder = root.path().join(format!("{engine:?}-{increment}"));
+            let saved = newest(&folder, "x", &Identity::default()).unwrap().0.unwrap();
+            let mut state = fresh(&network, &supply, &open, 3, 1);
+            state.restore(&network, &supply, &saved).unwrap();
+            let mut walk = Walk::new(&network, &supply, &state);
+            walk.run(&mut state, &mut |_| WalkControl::Continue).unwrap();
+            assert_eq!(shown(&state), shown(&whole), "{engine:?}, from increment {increment}");
+        }
+    }
+}
+
 #[test]
 fn a_walk_goes_on_from_every_increment_with_every_engine_on_any_threads() {
     let root = tempfile::tempdir().unwrap();
