@@ -79,24 +79,25 @@ def walk(options, text, sets, folder):
 
 
 def crossing(points):
-    """Smallest ratio at which the eroded part passes the threshold, linear between steps; None where it does not."""
+    """Smallest ratio at which the eroded part passes the threshold, linear between steps; None where no step does, and minus infinity
+    where the first does."""
     before = None
     for ratio, eroded in points:
         if eroded >= THRESHOLD:
             if before is None:
-                return ratio
+                return -math.inf
             return before[0] + (THRESHOLD - before[1]) / (eroded - before[1]) * (ratio - before[0])
         before = (ratio, eroded)
     return None
 
 
-def spread(values, last):
+def spread(values, first, last):
     known = sorted(v if v is not None else math.inf for v in values)
     if not known:
         return None
     at = lambda share: known[min(len(known) - 1, int(share * len(known)))]
     middle = known[len(known) // 2] if len(known) % 2 else 0.5 * (known[len(known) // 2 - 1] + known[len(known) // 2])
-    show = lambda v: f"> {last:g}" if math.isinf(v) else f"{v:.2f}"
+    show = lambda v: f"{v:.2f}" if math.isfinite(v) else f"> {last:g}" if v > 0 else f"< {first:g}"
     return show(middle), show(at(0.0)), show(at(0.999))
 
 
@@ -159,10 +160,10 @@ def report(options, rows):
     lines, bars = [], []
     for key in sorted(cases):
         of = cases[key]
-        last = max(ratio for points in of.values() for ratio, _ in points)
+        steps = [ratio for points in of.values() for ratio, _ in points]
         found = []
         for run in (1, 2):
-            found.append(spread([crossing(sorted(points)) for (_, r), points in sorted(of.items()) if r == run], last))
+            found.append(spread([crossing(sorted(points)) for (_, r), points in sorted(of.items()) if r == run], min(steps), max(steps)))
         (ne, ne_low, ne_high), (ce, ce_low, ce_high) = found
         replicates = len({r for r, _ in of})
         lines.append(f"| {key[0]} | {key[1]} | {key[2]:g} | {key[3]} | {ne} ({ne_low} to {ne_high}) | {ce} ({ce_low} to {ce_high}) | {replicates} |")
@@ -172,7 +173,8 @@ def report(options, rows):
 
 D15F/D85B at which the eroded mass passes 7.5 %: in the first run (no erosion turns to some) and in the second (some turns to continuing).
 Median over replicates, and in brackets the smallest and the largest of them. `{version}`, {platform.machine()}, seed {options.seed};
-made by `scripts/four_way.py`, every walk in `{options.out.name}.csv`. `> x` says that the last step walked, x, does not reach it.
+made by `scripts/four_way.py`, every walk in `{options.out.name}.csv`. `> x` says that the last step walked, x, does not
+reach it, `< x` that the first one is beyond it.
 
 | packing | model | Cu of the base | layers | no erosion up to | some erosion up to | replicates |
 |---|---|---|---|---|---|---|
@@ -190,7 +192,7 @@ def figure(bars, options):
     left, right, row = 420, 980, 26
     low, high = 2.0, max(12.0, max(options.steps))
     x = lambda ratio: left + (min(ratio, high) - low) / (high - low) * (right - left)
-    number = lambda text: float(text.lstrip("> "))
+    number = lambda text: float(text.lstrip("<> "))
     height = 90 + row * (len(bars) + len(LABORATORY))
     parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1000 {height}" font-family="sans-serif" font-size="13">',
              f'<rect width="1000" height="{height}" fill="white"/>']
