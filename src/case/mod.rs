@@ -19,6 +19,7 @@ pub use curve_ends::OtherCurve;
 use files::Files;
 pub use files::{INPUT_FILES, INPUT_NAMES, Input};
 pub use memory::{ResourceLimits, in_words};
+use packed_filter::GUESSED_GRAINS_PER_VOID;
 pub use packed_filter::{GRAINS, PackedError, PackedFilter, RECORD};
 pub use packing_plan::PackingPlan;
 use supply::Against;
@@ -213,7 +214,7 @@ impl Case {
             (NetworkSource::Graph(_, extent), Some(graph)) => {
                 let count = graph.copies(*extent, d50f_mm);
                 copies = Some((count, f64::from(count) * graph.graph.cell_mm[2]));
-                fixed_network = Some(graph.network(&scene, *extent, d50f_mm, unit_mm)?);
+                fixed_network = Some(graph.network(&scene, count, unit_mm)?);
             }
             (NetworkSource::Cubic(_), _) => {
                 if let Some(mm) = scene.network.extent().thickness_mm(d50f_mm) {
@@ -406,10 +407,6 @@ impl Case {
     }
 }
 
-/// Filter grains per void where the constrictions are a guess and the user gives none: that of loose packings
-/// (`results/filters-*.md`).
-const GUESSED_GRAINS_PER_VOID: f64 = 0.6;
-
 /// Whether Eq. (2) needs grains per void that nobody gives: where the constrictions are a guess.
 fn guesses_grains_per_void(scene: &Scene) -> bool {
     let filter = &scene.filter;
@@ -424,7 +421,7 @@ const CONDUCTANCE_EXPONENT: f64 = 4.0;
 /// A lattice about as large as the graph of a packing that is still to be made.
 fn placeholder_shape(scene: &Scene, filter: &Gradation) -> [u32; 3] {
     let grains = scene.packing.as_ref().and_then(|packing| packing.filter.grains).unwrap_or(9_000);
-    let across = libm::cbrt(grains as f64 / PLACEHOLDER_GRAINS_PER_VOID).ceil().clamp(1.0, 1000.0) as u32;
+    let across = libm::cbrt(grains as f64 / GUESSED_GRAINS_PER_VOID).ceil().clamp(1.0, 1000.0) as u32;
     let along = match scene.network.extent() {
         Extent::Copies(copies) => copies.saturating_mul(across).min(1_000_000),
         extent => {
@@ -435,9 +432,6 @@ fn placeholder_shape(scene: &Scene, filter: &Gradation) -> [u32; 3] {
     };
     [across, across, along]
 }
-
-/// Grains per void of a packing that is still to be made.
-const PLACEHOLDER_GRAINS_PER_VOID: f64 = 0.6;
 
 /// The constriction curve of a given network (mm): its open diameters by number, at most a thousand points.
 fn curve_of(network: &Network) -> Result<Curve, CaseError> {

@@ -17,6 +17,10 @@ pub const RECORD: &str = "packing.json";
 /// The grains.
 pub const GRAINS: &str = "grains.csv";
 
+/// Filter grains per void where the constrictions are a guess and the user gives none, or the packing is
+/// still to be made: that of loose packings (`results/filters-*.md`).
+pub(super) const GUESSED_GRAINS_PER_VOID: f64 = 0.6;
+
 /// A filter that has been packed: what a walk needs of it.
 #[derive(Clone, Debug)]
 pub struct PackedFilter {
@@ -207,7 +211,7 @@ impl PackedFilter {
             files: None,
             curve: Curve::from_points(&points, CurveUnit::Mm)?,
             curve_csv: String::new(),
-            grains_per_void: 0.6,
+            grains_per_void: GUESSED_GRAINS_PER_VOID,
             record: Vec::new(),
             void_ratio: None,
             part: order.part,

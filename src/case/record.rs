@@ -139,14 +139,14 @@ impl Case {
     }
 
     /// The network that was walked, where its constrictions have no direction of their own.
-    pub fn network_summary(&self, replicates: &[record::Replicate]) -> Option<record::NetworkSummary> {
+    /// `k0_mm2` is the permeability of the clean filter, where it is known.
+    pub fn network_summary(&self, k0_mm2: Option<f64>) -> Option<record::NetworkSummary> {
         let rule = self.scene.exit_rule();
         if rule == ExitRule::Area {
             return None;
         }
         let [voids, constrictions, inlets, layers] = self.counts;
-        let of_first = replicates.first().and_then(|replicate| replicate.runs.first());
-        let k0_m2 = of_first.and_then(|run| run.k0_mm2).filter(|_| !self.is_scale_free()).map(|k| k * 1e-6);
+        let k0_m2 = k0_mm2.filter(|_| !self.is_scale_free()).map(|k| k * 1e-6);
         Some(record::NetworkSummary {
             kind: if self.copies.is_some() { "graph" } else { "lattice" }.into(),
             exit: rule.name().into(),

@@ -60,20 +60,10 @@ impl GraphPacking {
         libm::ceil(thickness / cell - 1e-9).clamp(1.0, 1e6) as u32
     }
 
-    /// The network that a scene makes of it, with lengths in units of `unit_mm`.
-    pub fn network(
-        &self,
-        scene: &Scene,
-        extent: Extent,
-        d50f_mm: f64,
-        unit_mm: f64,
-    ) -> Result<Network, CaseError> {
-        let shape = GraphShape {
-            copies: self.copies(extent, d50f_mm),
-            rule: scene.exit_rule(),
-            rho: scene.exits.rho.unwrap_or(0.0),
-            unit_mm,
-        };
+    /// The network that a scene makes of so many copies, with lengths in units of `unit_mm`.
+    pub fn network(&self, scene: &Scene, copies: u32, unit_mm: f64) -> Result<Network, CaseError> {
+        let shape =
+            GraphShape { copies, rule: scene.exit_rule(), rho: scene.exits.rho.unwrap_or(0.0), unit_mm };
         Ok(Network::of_graph(&self.graph, shape)?)
     }
 

@@ -1,6 +1,7 @@
 //! Where a case leaves the range in which the model was checked, and what else a reader must know.
 
-use super::{Case, GUESSED_GRAINS_PER_VOID, Input, guesses_grains_per_void, replicate_seed};
+use super::packed_filter::GUESSED_GRAINS_PER_VOID;
+use super::{Case, Input, guesses_grains_per_void, replicate_seed};
 use crate::gradation::{FEW_FINES, FINES_MM};
 use crate::network::ExitRule;
 use crate::outcome::Mistake;

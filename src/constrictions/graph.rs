@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::measure::{Constrictions, ConstrictionsError, Facets, Passages};
+use super::measure::{Constrictions, ConstrictionsError, Facets, Passages, merged};
 use super::throat::{Throat, power_centre, solid_angle};
 use super::triangulation::{GrainPoint, Positions, Shift, Triangulation};
 use super::voids::{Insphere, Voids};
@@ -76,9 +76,10 @@ impl VoidGraph {
         merge_overlap: f64,
     ) -> Result<(Constrictions, Self), ConstrictionsError> {
         let t = Triangulation::new(packing)?;
-        let constrictions = Constrictions::from_triangulation(&t, merge_overlap, Facets::All)?;
-        let graph = Self::of(&t, merge_overlap)?;
-        Ok((constrictions, graph))
+        let voids = merged(&t, merge_overlap)?;
+        let passages = Passages::new(&t, &t.positions(), &voids, Facets::All);
+        let constrictions = Constrictions::between(&t, &voids, &passages, merge_overlap, Facets::All);
+        Ok((constrictions, Self::between(&t, &voids, &passages, merge_overlap)?))
     }
 
     /// The graph of a triangulation.
@@ -86,18 +87,28 @@ impl VoidGraph {
     /// # Errors
     /// A triangulation without a periodic cell; a void that meets itself through the cell.
     pub fn of(t: &Triangulation, merge_overlap: f64) -> Result<Self, ConstrictionsError> {
+        let voids = merged(t, merge_overlap)?;
+        let passages = Passages::new(t, &t.positions(), &voids, Facets::All);
+        Self::between(t, &voids, &passages, merge_overlap)
+    }
+
+    /// The graph of the voids of a triangulation and of all facets between them.
+    fn between(
+        t: &Triangulation,
+        voids: &Voids,
+        passages: &Passages,
+        merge_overlap: f64,
+    ) -> Result<Self, ConstrictionsError> {
         let cell = t.cell().ok_or(ConstrictionsError::NoCell)?;
         let positions = t.positions();
-        let voids = Voids::merge(t, &positions, merge_overlap);
         if let Some(void) = voids.endless.iter().position(|&endless| endless) {
             return Err(ConstrictionsError::Endless { void: void as u32, merge_overlap });
         }
         let unit = t.unit_mm();
         let smallest = t.spheres().iter().map(|s| s[3]).fold(f64::INFINITY, f64::min);
-        let points = void_points(t, &positions, &voids);
+        let points = void_points(t, &positions, voids);
         let folds: Vec<Shift> = points.iter().map(|p| fold(p, &cell)).collect();
-        let centres = power_centres(t, &positions, &voids);
-        let passages = Passages::new(t, &positions, &voids, Facets::All);
+        let centres = power_centres(t, &positions, voids);
         let mut graph = Self {
             cell_mm: cell.map(|l| l * unit),
             from: Vec::new(),
@@ -108,7 +119,7 @@ impl VoidGraph {
             point_mm: (points.iter().zip(&folds))
                 .map(|(p, &fold)| place(&moved(p, &positions.displacement(fold)), t))
                 .collect(),
-            volume_mm3: volumes(t, &positions, &voids, unit),
+            volume_mm3: volumes(t, &positions, voids, unit),
             grains: 0,
             cubes_mm3: 0.0,
             d32_mm: 0.0,

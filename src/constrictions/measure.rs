@@ -149,6 +149,17 @@ impl Region {
     }
 }
 
+/// The voids of a triangulation.
+///
+/// # Errors
+/// A `merge_overlap` that is negative or not finite.
+pub(super) fn merged(t: &Triangulation, merge_overlap: f64) -> Result<Voids, ConstrictionsError> {
+    if !(merge_overlap.is_finite() && merge_overlap >= 0.0) {
+        return Err(ConstrictionsError::MergeOverlap { value: merge_overlap });
+    }
+    Ok(Voids::merge(t, &t.positions(), merge_overlap))
+}
+
 /// An open facet between two voids, and the constriction that it is, or is a part of.
 pub(super) struct Passage {
     /// Tetrahedron and corner opposite the facet, on the side that comes first.
@@ -242,14 +253,22 @@ impl Constrictions {
         merge_overlap: f64,
         counted: Facets,
     ) -> Result<Self, ConstrictionsError> {
-        if !(merge_overlap.is_finite() && merge_overlap >= 0.0) {
-            return Err(ConstrictionsError::MergeOverlap { value: merge_overlap });
-        }
+        let voids = merged(t, merge_overlap)?;
+        let passages = Passages::new(t, &t.positions(), &voids, counted);
+        Ok(Self::between(t, &voids, &passages, merge_overlap, counted))
+    }
+
+    /// Measures the facets between the voids of a triangulation.
+    pub(super) fn between(
+        t: &Triangulation,
+        voids: &Voids,
+        passages: &Passages,
+        merge_overlap: f64,
+        counted: Facets,
+    ) -> Self {
         let positions = t.positions();
-        let voids = Voids::merge(t, &positions, merge_overlap);
-        let passages = Passages::new(t, &positions, &voids, counted);
         let frame = Frame::new(t);
-        let mut found = Self::empty(t, &voids, &frame);
+        let mut found = Self::empty(t, voids, &frame);
         (found.merge_overlap, found.counted) = (merge_overlap, counted);
         found.closed = passages.closed;
         for passage in &passages.of {
@@ -266,7 +285,7 @@ impl Constrictions {
             found.upstream.push(if up { a } else { b });
             found.downstream.push(if up { b } else { a });
         }
-        Ok(found)
+        found
     }
 
     /// Everything but the constrictions.

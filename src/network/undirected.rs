@@ -195,6 +195,14 @@ impl Network {
         (twin != NO_TWIN).then_some(twin as usize)
     }
 
+    /// Marks a constriction as blocked, or as open again, both ways.
+    pub fn set_blocked(&self, blocked: &mut bitvec::slice::BitSlice<u64>, exit: usize, is: bool) {
+        blocked.set(exit, is);
+        if let Some(twin) = self.twin(exit) {
+            blocked.set(twin, is);
+        }
+    }
+
     /// Whether an exit stands for its constriction where each is to be counted once: it has no twin, or comes
     /// first; ways in that nothing can block are none.
     #[inline]

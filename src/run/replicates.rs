@@ -312,16 +312,12 @@ impl RunContext<'_> {
 /// itself.
 fn blocked_at_start(network: &Network, saved: &Checkpoint) -> Result<BitVec<u64>, RunError> {
     let mut blocked = BitVec::from_vec(saved.read::<u64>("blocked")?);
-    blocked.truncate(network.constrictions());
+    blocked.resize(network.constrictions(), false);
     for constriction in saved.read::<u32>("history_constriction")? {
-        let exits = [Some(constriction as usize), network.twin(constriction as usize)];
-        for exit in exits.into_iter().flatten() {
-            if let Some(mut bit) = blocked.get_mut(exit) {
-                *bit = false;
-            }
+        if (constriction as usize) < blocked.len() {
+            network.set_blocked(&mut blocked, constriction as usize, false);
         }
     }
-    blocked.resize(network.constrictions(), false);
     Ok(blocked)
 }
 

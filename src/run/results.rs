@@ -79,7 +79,7 @@ pub fn outcome(
         left_out: left_out(case, walked),
         model_leaves_out: leaves_out(case.scene.exit_rule()),
         inputs: case.record(),
-        network: case.network_summary(&walked.iter().map(|w| w.replicate.clone()).collect::<Vec<_>>()),
+        network: case.network_summary(walked.first().and_then(|w| w.replicate.runs.first()?.k0_mm2)),
         ratios: case.ratios(),
         rules,
         infiltration: match case.scene.network.source() {

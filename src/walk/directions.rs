@@ -10,7 +10,7 @@
 use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
 
-use super::State;
+use super::{Blocking, State};
 use crate::network::{Flow, FlowError, Network};
 
 /// The flow is solved again when one in so many constrictions has been blocked since the last time.
@@ -50,13 +50,10 @@ impl Directions {
         let clean = clean.conductance;
         let mut directions = Self { flow, record, clean, solved_at: 0, blocked_then: 0 };
         blocked.copy_from_bitslice(&state.blocked);
-        let close = |blocked: &mut BitVec<u64>, c: u32, closed: bool| {
-            blocked.set(c as usize, closed);
-            if let Some(twin) = network.twin(c as usize) {
-                blocked.set(twin, closed);
-            }
+        let set = |blocked: &mut BitVec<u64>, blocking: &Blocking, is| {
+            network.set_blocked(blocked, blocking.constriction as usize, is);
         };
-        state.history.iter().for_each(|blocking| close(&mut blocked, blocking.constriction, false));
+        state.history.iter().for_each(|blocking| set(&mut blocked, blocking, false));
         directions.solve(network, &blocked, 0, 0)?;
         // What was blocked when the flow was solved last: exits blocked since still lead on once it is again.
         let mut at_solve = blocked.clone();
@@ -65,7 +62,7 @@ impl Directions {
         for increment in 1..=state.increment {
             while let Some(blocking) = history.next_if(|blocking| blocking.increment < increment) {
                 so_far += 1;
-                close(&mut blocked, blocking.constriction, true);
+                set(&mut blocked, blocking, true);
             }
             if directions.is_due(network, increment, so_far) {
                 directions.solve(network, &blocked, increment - 1, so_far)?;

@@ -121,12 +121,9 @@ pub(super) fn merge(
                 if let Some(cubes) = state.retained_cubes.get_mut(void) {
                     *cubes += cube(diameter);
                 }
-                if !state.blocked.replace(constriction as usize, true) {
+                if !state.blocked[constriction as usize] {
                     closed.push(constriction);
-                    // One blocking closes a constriction both ways.
-                    if let Some(twin) = network.twin(constriction as usize) {
-                        state.blocked.set(twin, true);
-                    }
+                    network.set_blocked(&mut state.blocked, constriction as usize, true);
                 }
             }
             for &(void, diameter) in &events.stranded {
