@@ -35,6 +35,13 @@ SCENES = {
     "cap 200 000": ["base.cu=3", "base.cap=2e5"],
     "connectivity of Table 3": ["network.connectivity=table3", "replicates=3", "record.sensitivity=[]"],
     "one coarse size, n_base 1e6": ["base.cu=none", "base.d85_at_dc=none", "base.single_mm=0.3", "base.n_base=1e6", "replicates=4"],
+    "one fine size, n_base 1e6": ["base.cu=none", "base.d85_at_dc=none", "base.single_mm=0.2", "base.n_base=1e6", "replicates=4", "record.sensitivity=[]"],
+    "engine expected": ["engine=expected", "replicates=4", "record.sensitivity=[]"],
+    "base coarser, D85B at Dc25": ["base.d85_at_dc=25", "replicates=4", "record.sensitivity=[]"],
+    "base much coarser, D85B at Dc10": ["base.d85_at_dc=10", "replicates=4", "record.sensitivity=[]"],
+    "20 x 20 x 300": ["network.nz=300", "network.nx=20", "network.ny=20", "replicates=4", "record.sensitivity=[]"],
+    "80 x 80 x 30": ["network.nz=30", "network.nx=80", "network.ny=80", "replicates=4", "record.sensitivity=[]"],
+    "flow, exit rule flux": ["walk.exit=flux", "replicates=1", "record.sensitivity=[]"],
     "100 layers": ["network.nz=100", "network.nx=30", "network.ny=30", "replicates=4", "record.sensitivity=[]"],
 }
 FILES = {
@@ -42,6 +49,7 @@ FILES = {
     "dense 3 000 grains, fine sand": ("coarse", "sand", 'density = "dense"', 3000),
     "linear Cu 3 loose 5 000 grains": ("cu 3", "", 'density = "loose"', 5000),
     "linear Cu 1.5 loose, default grains": ("cu 1.5", "", 'density = "loose"', 0),
+    "C33 loose, till": ("c33", "till", 'density = "loose"', 0),
     "estimate C33, till": ("c33", "till", "estimate = 0.5\ngrains_per_void = 0.6", 0),
     "estimate gravel, sand": ("gravel", "sand", "estimate = 0.5\ngrains_per_void = 0.6", 0),
     "estimate coarse, till": ("coarse", "till", "estimate = 0.5\ngrains_per_void = 0.6", 0),

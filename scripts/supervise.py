@@ -49,12 +49,16 @@ FILES = {
     f"[base]\ncu = 1.5\nd85_at_dc = 5\nn_base = 4000\n{SMALL}",
     "pack.toml": '[filter]\ncu = 1.5\ndensity = "loose"\n[packing]\ngrains = 300\nstiffness_ratio = 0.01\n',
     "filter.csv": "opening_mm,percent_finer\n4,100\n2,50\n1,0\n",
+    "other.csv": "opening_mm,percent_finer\n2,100\n1.4,50\n0.7,0\n",
     "base.csv": "opening_mm,percent_finer\n0.4,100\n0.2,50\n0.08,0\n",
     "plan.toml": 'title = "two"\nseed = 5\n[set]\nreplicates = 2\nnetwork = { nx = 5, ny = 5, nz = 6 }\nbase = { n_base = 20000 }\n'
     'engine = "particles"\nrecord = { sensitivity = [] }\n[[factor]]\nname = "cu_b"\nsetting = "base.cu"\nvalues = [1.5, 3]\n',
 }
 EVERY = ["--checkpoint-every", "10increments"]
 STUDY = ["--set", "base.n_base=300", "--set", "network.nx=4", "--set", "network.ny=4", "--set", "network.nz=5", "-q"]
+TABLES = ["--set", "replicates=2", "--set", "base.n_base=20000", "--set", "network.nx=5", "--set", "network.ny=5", "--set",
+          "network.nz=6", "--set", "engine=particles", "--set", "record.sensitivity=[]"]
+DESIGN = ["design", "base.csv", "--out", "r", "-q", "--set", "network.nx=5", "--set", "network.ny=5", "--set", "replicates=3"]
 PERCOLATION = ["percolation", "--out", "r", "--sizes", "4,6,8", "--realisations", "40"]
 
 # Command: the work; what was done in the folder before; the folders that are compared.
@@ -74,12 +78,21 @@ WORKS = {
         ["r"],
     ),
     "campaign": (["campaign", "plan.toml", "--out", "r", "-q", *EVERY], None, ["r"]),
+    "judge": (["judge", "base.csv", "filter.csv", "--out", "r", "-q", *TABLES, *EVERY], None, ["r"]),
+    "compare": (["compare", "--base", "base.csv", "filter.csv", "other.csv", "--out", "r", "-q", *TABLES, *EVERY], None, ["r"]),
+    "compare-overwrite": (
+        ["compare", "--base", "base.csv", "filter.csv", "other.csv", "--out", "r", "-q", "--overwrite", *TABLES, *EVERY],
+        ["compare", "--filter", "filter.csv", "base.csv", "other.csv", "--out", "r", "-q", *TABLES],
+        ["r"],
+    ),
     "constrictions": (["constrictions", "grains.csv", "--out", "r"], None, ["r"]),
     "constrictions-overwrite": (
         ["constrictions", "grains.csv", "--out", "r", "--overwrite"], ["constrictions", "fewer.csv", "--out", "r"], ["r"]
     ),
     "percolation": (PERCOLATION, None, ["r"]),
     "percolation-overwrite": ([*PERCOLATION, "--overwrite"], [*PERCOLATION[:3], "--sizes", "5", "--realisations", "2"], ["r"]),
+    "design": ([*DESIGN, "--thickness", "6layers"], None, ["r"]),
+    "design-overwrite": ([*DESIGN, "--thickness", "6layers", "--overwrite"], [*DESIGN, "--thickness", "5layers"], ["r"]),
     "precision": (["precision", "--out", "r", "--budget", "100ms", "--tier", "sampling", "bias", "scaling", *STUDY], None, ["r"]),
     "precision-overwrite": (
         ["precision", "--out", "r", "--budget", "100ms", "--tier", "sampling", "scaling", "--overwrite", *STUDY],
@@ -93,8 +106,8 @@ HARMS = ["kill", "kill", "kill", "kill", "kill", "stop", "full", "cut", "flip", 
 TIMES = {"seconds", "made", "threads", "host", "machine", "started", "finished", "command", "core_seconds", "wall_seconds",
          "triangulate_seconds", "measure_seconds", "merit", "merit_low", "merit_high", "spent"}
 LOCK, MARK, PART = ".voidwalk.lock", ".voidwalk.unfinished", ".voidwalk-part-"
-RECORDS = ("outcome.json", "packing.json", "percolation.json", "precision.json", "constrictions.json", "case.json")
-PAGES = ("report.html", "precision.html")
+RECORDS = ("outcome.json", "packing.json", "percolation.json", "precision.json", "design.json", "constrictions.json", "compare.json", "case.json")
+PAGES = ("report.html", "precision.html", "design.html", "compare.html")
 
 
 class Find(Exception):
@@ -266,7 +279,7 @@ class Trial:
         if self.old is not None and self.is_old():
             return work
         plain = [word for word in work if word != "--overwrite"]
-        if work[0] == "run" and os.path.isfile(os.path.join(self.out, "scene.toml")):
+        if work[0] in ("run", "judge") and os.path.isfile(os.path.join(self.out, "scene.toml")):
             return ["resume", "r", "-q"] + (["--checkpoint-every", "5increments"] if self.chance.random() < 0.3 else [])
         return plain
 
@@ -472,15 +485,17 @@ class Trial:
             "run": ["run", "run.toml", "--out", "r", "-q"],
             "pack": ["pack", "pack.toml", "--out", "r", "-q"],
             "campaign": ["campaign", "plan.toml", "--out", "r", "-q"],
+            "compare": ["compare", "--base", "base.csv", "filter.csv", "other.csv", "--out", "r", "-q", *TABLES],
             "constrictions": ["constrictions", "fewer.csv", "--out", "r"],
             "percolation": ["percolation", "--sizes", "3", "--realisations", "2", "--out", "r"],
             "precision": ["precision", "--out", "r", "--budget", "100ms", "--tier", "scaling", *STUDY],
+            "design": DESIGN,
         }
         if not os.path.exists(os.path.join(self.out, MARK)) and self.command != "campaign":
             return False
         if self.command == "campaign" and not os.path.isdir(os.path.join(self.out, "cases")):
             return False
-        own = WORKS[self.command][0][0]
+        own = WORKS[self.command][0][0].replace("judge", "run")
         other = self.chance.choice(sorted(set(kinds) - {own}))
         more = ["--overwrite"] if other != "campaign" and self.chance.random() < 0.5 else []
         kept = lambda: {n: d for n, d in files_of(self.out).items() if os.path.basename(n) != LOCK and PART not in n}

@@ -20,15 +20,15 @@
 //! ```text
 //! sieve curves -> Packing -> Constrictions -> Network -> Walk -> Outcome      the stages, each usable alone
 //! Scene -> Case -> run, campaign, study                                       the application
-//! report, cli                                                                 its faces
+//! report, serve, cli                                                          its faces
 //! ```
 //!
 //! [`docs`] has the pages for users, `CONTRIBUTING.md` the map for those who extend it. The model is that of
 //! Shire & O'Sullivan, *A network model to assess base-filter combinations*.
 //!
 //! # Features
-//! `report`: pages and figures. `cli`: the command line. Both are on by default; the rest is the library that
-//! every face calls.
+//! `report`: pages and figures. `serve`: the page on this machine. `cli`: the command line. All are on by
+//! default; the rest is the library that every face calls.
 
 pub mod text;
 
@@ -62,6 +62,9 @@ pub mod study;
 
 #[cfg(feature = "report")]
 pub mod report;
+
+#[cfg(feature = "serve")]
+pub mod serve;
 
 #[cfg(feature = "cli")]
 pub mod cli;

@@ -33,6 +33,17 @@ pub fn is_hidden(character: char) -> bool {
     character.is_control() || turns_direction(character) || without_width()
 }
 
+/// Whether a character means the same in a file name, an address and a table.
+pub fn is_plain(character: char) -> bool {
+    character.is_ascii_alphanumeric() || "=.,-_".contains(character)
+}
+
+/// Whether a part of a path leads down into a folder or to a file, by plain characters alone: no hidden file,
+/// and not up.
+pub fn is_plain_part(part: &str) -> bool {
+    !part.is_empty() && !part.starts_with('.') && part.chars().all(is_plain)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -49,5 +60,13 @@ mod tests {
             assert!(is_hidden(hidden), "{hidden:?}");
         }
         assert!(!"größer, µm, Å, ≤ 5 %, 砂, رمل, नदी".chars().any(is_hidden));
+    }
+
+    #[test]
+    fn plain_parts_of_a_path_lead_down() {
+        assert!("walks/cases/fine-0.5,a=b/report.html".split('/').all(is_plain_part));
+        for wrong in ["", ".", "..", ".hidden", "a b", "a\\b", "javascript:x", "a%2f", "é"] {
+            assert!(!is_plain_part(wrong), "{wrong}");
+        }
     }
 }

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms in the order in which data flows; a room uses only those before it.
-const ORDER: [&str; 18] = [
+const ORDER: [&str; 19] = [
     "text",
     "stream",
     "store",
@@ -25,6 +25,7 @@ const ORDER: [&str; 18] = [
     "campaign",
     "study",
     "report",
+    "serve",
     "cli",
     "docs",
 ];

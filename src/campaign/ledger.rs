@@ -123,7 +123,7 @@ fn table(factors: &[String], lines: &[LedgerLine]) -> Result<Vec<u8>, RunError> 
 }
 
 /// A cell that no spreadsheet takes for a formula.
-fn inert(cell: &str) -> String {
+pub(crate) fn inert(cell: &str) -> String {
     let formula = cell.starts_with(['=', '+', '-', '@', '\t', '\r']) && cell.parse::<f64>().is_err();
     if formula { format!("'{cell}") } else { cell.to_owned() }
 }

@@ -33,7 +33,7 @@ use serde::Deserialize;
 use crate::scene::{Origin, Scene, SceneError};
 use crate::schema::hints;
 use crate::store::read_regular;
-use crate::text::is_hidden;
+use crate::text::{is_hidden, is_plain};
 
 /// More cases than this are a mistake.
 const MOST_CASES: usize = 100_000;
@@ -289,7 +289,7 @@ impl PlannedCase {
 }
 
 fn folder_name(name: &str) -> String {
-    let safe = |c: char| if c.is_ascii_alphanumeric() || "=.,-_".contains(c) { c } else { '_' };
+    let safe = |c: char| if is_plain(c) { c } else { '_' };
     let plain: String = name.chars().take(120).map(safe).collect();
     if plain == name {
         return plain;

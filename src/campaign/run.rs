@@ -149,20 +149,35 @@ pub fn run(
         command: options.command.clone(),
     };
     let result = runner.run(&cases);
-    let mut lines = None;
-    if options.part == CasePart::All {
-        // The whole plan is collected, whichever of its cases this process was at, and whatever has ended it.
-        lines = Some(write_ledger(plan, &cases, out, &callbacks.run)?);
+    if options.part != CasePart::All {
+        failed.extend(result?);
+        return Ok(FinishedCampaign { lines: None, failed, cases: count });
     }
+    // The whole plan is collected, whichever of its cases this process was at, and whatever has ended it.
+    let mut lines = write_ledger(plan, &cases, out, &callbacks.run)?;
     failed.extend(result?);
-    // Cases that were done, by this process or before, and whose results are gone now.
-    let in_ledger = |name: &str| lines.iter().flatten().any(|line| line.case == name);
-    let lost: Vec<String> = cases
-        .iter()
-        .map(|case| case.planned.name.clone())
-        .filter(|name| lines.is_some() && !in_ledger(name) && failed.iter().all(|f| f.case != *name))
-        .collect();
-    failed.extend(lost.into_iter().map(|case| FailedCase { case, problem: LOST.into() }));
+    // Cases that were done, by this process or before, and are not there now.
+    let absent = |lines: &[LedgerLine], failed: &[FailedCase]| -> Vec<&PreparedCase> {
+        let is_absent = |case: &&PreparedCase| {
+            let name = &case.planned.name;
+            lines.iter().all(|line| line.case != *name) && failed.iter().all(|f| f.case != *name)
+        };
+        cases.iter().filter(is_absent).collect()
+    };
+    let mut gone = absent(&lines, &failed);
+    if !gone.is_empty() {
+        // Another process may be replacing their files with the same ones at this moment.
+        for case in gone {
+            runner.is_lost(case);
+        }
+        lines = write_ledger(plan, &cases, out, &callbacks.run)?;
+        gone = absent(&lines, &failed);
+    }
+    let lost =
+        gone.into_iter().map(|case| FailedCase { case: case.planned.name.clone(), problem: LOST.into() });
+    let lost: Vec<FailedCase> = lost.collect();
+    failed.extend(lost);
+    let lines = Some(lines);
     Ok(FinishedCampaign { lines, failed, cases: count })
 }
 

@@ -140,7 +140,7 @@ impl CaseRunner<'_> {
 
     /// Whether a case that was finished stays gone: where locks reach one machine only, another process may
     /// be replacing its files with the same ones at this moment.
-    fn is_lost(&self, case: &PreparedCase) -> bool {
+    pub(super) fn is_lost(&self, case: &PreparedCase) -> bool {
         let until = Instant::now() + REPLACING;
         while !self.is_done(case) {
             if Instant::now() >= until {

@@ -122,14 +122,22 @@ impl Case {
         (self.n_base as f64 * largest) as u64
     }
 
+    /// The case with the thickest lattice of the study of its thickness, where that is thicker than its own.
+    /// A graph's packing is not measured again for this.
+    fn thickest(&self) -> Option<Case> {
+        let factor = self.thickness_factors().into_iter().fold(1.0, f64::max);
+        let is_lattice = self.copies.is_none();
+        (factor > 1.0 && is_lattice).then(|| self.of_thickness(factor).ok()).flatten()
+    }
+
     /// The most bytes that the whole case takes at once on this many threads, all columns in memory.
     pub fn peak_bytes(&self, threads: u64) -> u64 {
         let of = |case: &Case| {
             let n_base = case.most_particles();
             case.bytes(n_base, threads).saturating_mul(case.side_by_side(n_base, threads))
         };
-        // One reading is walked after the other.
-        self.readings().map(of).max().unwrap_or(0)
+        // One reading is walked after the other, and then the thickest filter.
+        self.readings().map(of).chain(self.thickest().as_ref().map(of)).max().unwrap_or(0)
     }
 
     /// Replicates of `n_base` particles that walk at the same time on this many threads: one, unless they are
@@ -149,10 +157,17 @@ impl Case {
             other.place(room, threads, folder)?;
         }
         self.memory = room.memory;
+        let thickest =
+            self.thickest().map(|mut case| case.place(room, threads, folder).map(|()| case.placement));
+        let thickest = thickest.transpose()?;
         let n_base = self.most_particles();
         let needed = self.bytes(n_base, threads).saturating_mul(self.side_by_side(n_base, threads));
         if needed <= room.memory {
             self.placement = Placement::Memory;
+            // Where the thickest filter of its study needs files, it and its like get them.
+            if let Some(placement) = thickest {
+                self.placement = placement;
+            }
         } else if self.other_bytes(n_base, threads) <= room.memory && self.column_bytes(n_base) <= room.disk {
             self.placement = Placement::Mapped(folder.to_owned());
         } else {

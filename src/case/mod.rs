@@ -10,8 +10,10 @@ mod pan;
 mod record;
 mod regrade;
 mod resolved;
+mod scaled;
 mod sizes;
 mod supply;
+mod thickness;
 mod void_graph;
 mod warnings;
 
@@ -22,12 +24,13 @@ pub use memory::{ResourceLimits, in_words};
 use packed_filter::GUESSED_GRAINS_PER_VOID;
 pub use packed_filter::{GRAINS, PackedError, PackedFilter, RECORD};
 pub use packing_plan::PackingPlan;
+pub use scaled::StatedBase;
 use supply::Against;
 use void_graph::GraphPacking;
 
 use crate::constrictions::{Curve, CurveError, CurveUnit, ShippedFilter, inscribed};
 use crate::gradation::{Gradation, GradationError, NumberError, SizeSampler};
-use crate::network::{ExitRule, Network, NetworkError};
+use crate::network::{CONDUCTANCE_EXPONENT, ExitRule, Network, NetworkError};
 use crate::outcome::Mistake;
 use crate::outcome::record::{PanSize, Ratios};
 use crate::scene::{
@@ -403,6 +406,14 @@ impl Case {
         if self.scene.record.sensitivity.is_empty() {
             left_out.push("sensitivity to the number of base particles: it was not asked for".into());
         }
+        for factor in self.thickness_factors() {
+            if let Err(error) = self.of_thickness(factor) {
+                left_out.push(format!("a filter {factor} times as thick: {error}"));
+            }
+        }
+        if self.thickness_factors().is_empty() && self.copies.is_none() && self.fixed_network.is_none() {
+            left_out.push("how the verdict moves with the filter's thickness: it was not asked for".into());
+        }
         left_out
     }
 }
@@ -414,9 +425,6 @@ fn guesses_grains_per_void(scene: &Scene) -> bool {
         && filter.grains_per_void.is_none()
         && matches!(scene.base.amount(), Amount::MassRatio(..))
 }
-
-/// Power of its diameter that a constriction of a lattice conducts water in proportion to (Poiseuille).
-const CONDUCTANCE_EXPONENT: f64 = 4.0;
 
 /// A lattice about as large as the graph of a packing that is still to be made.
 fn placeholder_shape(scene: &Scene, filter: &Gradation) -> [u32; 3] {

@@ -126,6 +126,12 @@ impl PackingPlan {
         Err(CaseError::NarrowCell { file: recipe.file.clone(), problem, would_do: Box::new(self.clone()) })
     }
 
+    /// Grains that are packed of a gradation where nobody says how many: enough for a cell 5.4 times as wide
+    /// as the largest, 9,000 to 60,000.
+    pub fn usual_grains(gradation: &Gradation) -> usize {
+        grains_for(gradation)
+    }
+
     /// Fingerprint of everything that the grains follow from.
     pub fn fingerprint(&self) -> String {
         self.fingerprint_of(&self.gradation.points())

@@ -121,6 +121,7 @@ impl Case {
     pub(super) fn read_as(&self, walked: WalkedBase) -> Self {
         let mut scene = self.scene.clone();
         scene.record.sensitivity.clear();
+        scene.record.thickness = Some(Vec::new());
         Self {
             pan_size: walked.pan_size,
             n_base_eq2: walked.n_base_eq2(),

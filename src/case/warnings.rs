@@ -15,6 +15,13 @@ const MANY_LOOSE: f64 = 0.5;
 /// without load with 30 % of the mass in the finer one, 19 % with 40 % (`results/cuts-2026-11-22.md`).
 const SKELETON: f64 = 0.9;
 
+/// With fewer replicates than these their number is said beside the verdict: their scatter is hardly known.
+const FEW_REPLICATES: u64 = 5;
+
+/// What a first look leaves out.
+const NOT_STUDIED: &str =
+    "; how the verdict moves with the amount of base and with thickness was not studied";
+
 /// Constrictions that are looked at to find that out, each as often as it is looked at.
 const LOOKED_AT: u64 = 50_000_000;
 
@@ -24,6 +31,7 @@ impl Case {
         let mut doubts = Vec::new();
         doubts.extend(self.fines());
         doubts.extend(self.errs_unsafe());
+        doubts.extend(self.not_walked());
         doubts.extend(self.too_thick());
         for (whose, soil, low, high) in [("filter", &self.filter, 1.2, 6.0), ("base", &self.base, 1.2, 4.5)] {
             match soil.cu() {
@@ -82,7 +90,49 @@ impl Case {
                 100.0 * loose
             ));
         }
+        doubts.extend(self.few_replicates());
         doubts
+    }
+
+    /// What the scene says of the soils that the model does not know.
+    fn not_walked(&self) -> Vec<String> {
+        let dispersive = self.scene.base.dispersive == Some(true);
+        let dispersive = dispersive.then(|| {
+            "the base is dispersive: the model knows its sizes alone; the rules of practice take their \
+             limits for dispersive soils"
+                .to_owned()
+        });
+        let joint = self.scene.filter.joint_mm.map(|joint| {
+            format!(
+                "an open joint of {joint} mm was not walked: the rules of practice say how likely erosion \
+                 continues into it"
+            )
+        });
+        dispersive.into_iter().chain(joint).collect()
+    }
+
+    /// That the replicates say little of their own scatter, and what a first look leaves out besides. Where a
+    /// rule adds replicates, it says itself whether they are enough.
+    fn few_replicates(&self) -> Option<String> {
+        let (scene, record) = (&self.scene, &self.scene.record);
+        let few = match scene.walk.replicates {
+            _ if scene.stop.is_set() => return None,
+            1 => "one replicate: the scatter is unknown; walk more before relying on this (replicates = 10)"
+                .to_owned(),
+            few if few < FEW_REPLICATES => format!("only {few} replicates"),
+            _ => return None,
+        };
+        // Without a list of its own the study of the thickness goes with the other.
+        let studied = |list: &[f64]| list.iter().any(|factor| *factor != 1.0);
+        match studied(&record.sensitivity) || studied(record.thickness.as_deref().unwrap_or_default()) {
+            true => Some(few),
+            false => Some(few + NOT_STUDIED),
+        }
+    }
+
+    /// The same where no such study belongs to the answer.
+    pub fn without_studies(doubt: &str) -> String {
+        doubt.replace(NOT_STUDIED, "")
     }
 
     /// A real filter layer that is thinner than the modelled one.

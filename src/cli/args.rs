@@ -10,6 +10,8 @@ use crate::campaign::CasePart;
 use crate::constrictions::{DEFAULT_MERGE_OVERLAP, Facets};
 use crate::run::CheckpointInterval;
 use crate::run::machine::bytes_from_words;
+use crate::scene::Density;
+use crate::study::design::Thickness;
 use crate::study::precision::Tier;
 
 /// Will this filter hold this soil? A random-walk network model of base-filter combinations.
@@ -26,6 +28,13 @@ pub struct Arguments {
 pub enum Command {
     /// Walk a scene's base through its filter, and judge
     Run(RunArgs),
+    /// Judge a base and a filter by their two sieve tables: pack or guess, walk, and write the page
+    Judge(JudgeArgs),
+    /// Compare filters on one base, bases on one filter, or scenes: verdicts and differences
+    Compare(CompareArgs),
+    /// Open a page in the browser of this machine: drop two sheets, see curves, rules, walks and verdict
+    #[cfg(feature = "serve")]
+    Serve(ServeArgs),
     /// Continue a run that was stopped or killed, with the same bits
     Resume(ResumeArgs),
     /// Say what a run would do: number of base particles, memory, parts that are needed
@@ -39,6 +48,8 @@ pub enum Command {
         /// File to write; the scene goes to stdout without one
         path: Option<PathBuf>,
     },
+    /// Find how coarse a filter may be for a base: where erosion begins, where it continues, and the band
+    Design(DesignArgs),
     /// Walk every case of a plan that is not done, and compare them
     Campaign(CampaignArgs),
     /// Pack a filter's grains from its gradation and density, and measure the constrictions
@@ -97,6 +108,14 @@ pub struct WalkArgs {
 pub struct SceneArgs {
     /// Scene (TOML); without one the built-in scene: the loose Cu 1.5 filter, a base with Cu 1.5 at Dc5
     pub scene: Option<PathBuf>,
+    /// What is set in it, and how it is prepared.
+    #[command(flatten)]
+    pub set: SettingArgs,
+}
+
+/// What is set in a scene, and how it is prepared.
+#[derive(Debug, Args)]
+pub struct SettingArgs {
     /// Replace a setting, as in --set base.cu=3; can be given again
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
     pub settings: Vec<String>,
@@ -156,6 +175,99 @@ pub struct RunArgs {
     pub walk: WalkArgs,
 }
 
+/// How two sieve tables become a scene.
+#[derive(Debug, Args)]
+pub struct TableArgs {
+    /// How densely the filter lies, by which its grains are packed: loose, medium or dense. Without it the
+    /// constrictions are guessed from the gradation, and the verdict is that of the whole range of the guess
+    #[arg(long, value_name = "WORD", value_parser = density)]
+    pub density: Option<Density>,
+    /// A first look: four replicates, and no studies of the amount of base and of the thickness
+    #[arg(long)]
+    pub quick: bool,
+    /// The base is dispersive: stricter limits where it has many fines (base.dispersive)
+    #[arg(long)]
+    pub dispersive: bool,
+    /// Width of an open joint beside the base: the probability of continuing erosion into it
+    /// (filter.joint_mm)
+    #[arg(long, value_name = "MM", value_parser = millimetres, allow_hyphen_values = true)]
+    pub joint_mm: Option<f64>,
+    /// What is set in it besides, and how it is prepared.
+    #[command(flatten)]
+    pub set: SettingArgs,
+}
+
+/// Which two soils are judged, and where the answer goes.
+#[derive(Debug, Args)]
+pub struct JudgeArgs {
+    /// The base soil: CSV, .xlsx, .ods or AGS4; FILE#NAME for one of several soils
+    pub base: PathBuf,
+    /// The filter, likewise
+    pub filter: PathBuf,
+    /// How the two become a scene.
+    #[command(flatten)]
+    pub tables: TableArgs,
+    /// Folder for the results: new, empty, or made by voidwalk [default: the first free of voidwalk-run,
+    /// voidwalk-run-2, ...]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace the results of an earlier run in --out
+    #[arg(long)]
+    pub overwrite: bool,
+    /// How it is walked.
+    #[command(flatten)]
+    pub walk: WalkArgs,
+}
+
+/// What is compared, and where the answer goes.
+#[derive(Debug, Args)]
+pub struct CompareArgs {
+    /// Two to six filters with --base, bases with --filter, or scenes (TOML) with neither
+    #[arg(required = true)]
+    pub files: Vec<PathBuf>,
+    /// The base that all filters are to hold: CSV, .xlsx, .ods or AGS4; FILE#NAME for one of several soils
+    #[arg(long, value_name = "FILE", conflicts_with = "filter")]
+    pub base: Option<PathBuf>,
+    /// The filter that is to hold all bases, likewise
+    #[arg(long, value_name = "FILE")]
+    pub filter: Option<PathBuf>,
+    /// How tables become scenes.
+    #[command(flatten)]
+    pub tables: TableArgs,
+    /// Folder for the results: new, empty, or with a comparison that was stopped, which continues
+    #[arg(long, value_name = "DIR", default_value = "voidwalk-compare")]
+    pub out: PathBuf,
+    /// Replace an earlier comparison in --out; cases that are asked for again are kept
+    #[arg(long)]
+    pub overwrite: bool,
+    /// How it is walked.
+    #[command(flatten)]
+    pub walk: WalkArgs,
+}
+
+/// Where the page is, and how its jobs are walked.
+#[cfg(feature = "serve")]
+#[derive(Debug, Args)]
+pub struct ServeArgs {
+    /// Port of the loopback address [default: a free one]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub port: u16,
+    /// Folder for sheets and results: new, empty, or of an earlier start [default: a new one, voidwalk-serve,
+    /// voidwalk-serve-2, ...]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Folder in which packings of filters are kept, so that each is made once
+    #[arg(long, value_name = "DIR", default_value = "voidwalk-packings")]
+    pub packings: PathBuf,
+    /// Memory that the walks may take, as 4GB: base particles that do not fit live in files in the run
+    /// folder, mapped into memory [default: 80 % of what is available]; it changes no bit of the result
+    #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
+    pub memory: Option<u64>,
+    /// Worker threads [default: one per core]; they change no bit of the result
+    #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
+    pub threads: Option<usize>,
+}
+
 /// Which run, and how it continues.
 #[derive(Debug, Args)]
 pub struct ResumeArgs {
@@ -171,6 +283,62 @@ pub struct ResumeArgs {
     /// Print JSON
     #[arg(long)]
     pub json: bool,
+}
+
+/// Which base, and what shape of filter.
+#[derive(Debug, Args)]
+pub struct DesignArgs {
+    /// The base: a sieve table, as base.sieve in a scene (FILE#NAME for one of several soils); without one
+    /// the settings say it, as --set base.cu=3
+    pub base: Option<PathBuf>,
+    /// The filter's shape, whose size is searched: a sieve table, a Cu, or a shipped curve's name [default:
+    /// shire2016-cu1.5-loose, or what --set says]
+    #[arg(long, value_name = "SHAPE", allow_hyphen_values = true)]
+    pub filter: Option<String>,
+    /// How densely it is packed: dense, intermediate or loose, friction=F, or estimate=D (a relative density,
+    /// without a packing); can be given again [default for a table or a Cu: loose]
+    #[arg(long = "density", value_name = "DENSITY", value_delimiter = ',', allow_hyphen_values = true)]
+    pub densities: Vec<String>,
+    /// How thick the filter is: 60layers, 500mm or 75D50F; can be given again [default: 60layers]
+    #[arg(long = "thickness", value_name = "THICKNESS", value_delimiter = ',', allow_hyphen_values = true)]
+    pub thicknesses: Vec<Thickness>,
+    /// Find the finest base that the filter holds instead: the filter is as large as it is, the base's shape
+    /// is scaled
+    #[arg(long)]
+    pub inverse: bool,
+    /// Set a key of a scene, as --set filter.grains_per_void=0.43 or --set replicates=20; can be given again
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
+    pub settings: Vec<String>,
+    /// Seed; the same seed gives the same bits
+    #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
+    pub seed: Option<u64>,
+    /// D15F/D85B between which boundaries are searched, outwards to steps of 8 %; beside an end a boundary
+    /// can go unseen
+    #[arg(long, value_name = "LOW,HIGH", default_value = "0.5,100", value_parser = bracket,
+          allow_hyphen_values = true)]
+    pub bracket: (f64, f64),
+    /// Folder for the results
+    #[arg(long, value_name = "DIR", default_value = "voidwalk-design")]
+    pub out: PathBuf,
+    /// Replace the results of an earlier call in --out
+    #[arg(long)]
+    pub overwrite: bool,
+    /// Folder in which packings are kept, so that each is made once
+    #[arg(long, value_name = "DIR", default_value = "voidwalk-packings")]
+    pub packings: PathBuf,
+    /// Memory that the walks may take, as 4GB [default: 80 % of what is available]; it changes no bit of the
+    /// result
+    #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
+    pub memory: Option<u64>,
+    /// Worker threads [default: one per core]; they change no bit of the result
+    #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
+    pub threads: Option<usize>,
+    /// Print design.json
+    #[arg(long)]
+    pub json: bool,
+    /// No progress and no summary
+    #[arg(long, short)]
+    pub quiet: bool,
 }
 
 /// Which plan, and where its results go.
@@ -330,6 +498,15 @@ pub struct PrecisionArgs {
     pub quiet: bool,
 }
 
+/// Two ratios.
+fn bracket(text: &str) -> Result<(f64, f64), String> {
+    let parts = text.split_once(',').map(|(low, high)| (low.trim().parse(), high.trim().parse()));
+    match parts {
+        Some((Ok(low), Ok(high))) => Ok((low, high)),
+        _ => Err("write two D15F/D85B, as 0.5,100".into()),
+    }
+}
+
 /// A setting and its value.
 fn assignment(text: &str) -> Result<String, String> {
     match text.split_once('=') {
@@ -338,7 +515,19 @@ fn assignment(text: &str) -> Result<String, String> {
     }
 }
 
-/// A seed.
+/// How densely a filter lies. A number could be a void ratio, a relative density or a friction.
+fn density(text: &str) -> Result<Density, String> {
+    match text {
+        "medium" => Ok(Density::Intermediate),
+        word => Density::ALL.into_iter().find(|density| density.name() == word).ok_or_else(|| {
+            "write loose, medium or dense; the friction between grains while they are compressed is a \
+             number: --set filter.friction=0.2"
+                .into()
+        }),
+    }
+}
+
+/// Which facets between voids are counted.
 fn facets(text: &str) -> Result<Facets, String> {
     match text {
         "all" => Ok(Facets::All),
@@ -347,6 +536,7 @@ fn facets(text: &str) -> Result<Facets, String> {
     }
 }
 
+/// A seed.
 fn seed(text: &str) -> Result<u64, String> {
     text.trim().parse().map_err(|_| format!("write a whole number from 0 to {}", u64::MAX))
 }

@@ -2,36 +2,44 @@
 
 use std::fmt::Write;
 
-use super::args::SceneArgs;
+use super::args::{SceneArgs, SettingArgs};
 use super::print::{count, json, plain, to_stdout};
 use crate::constrictions::shipped;
 use crate::run::cost::duration;
 use crate::run::{self, Check, PackingCheck, PrepareOptions, RunError};
 use crate::scene::Scene;
 
-impl SceneArgs {
-    /// The scene that the arguments name, with their settings applied.
-    pub fn scene(&self) -> Result<Scene, RunError> {
+impl SettingArgs {
+    /// All settings that the arguments give.
+    pub fn settings(&self) -> Vec<String> {
         let mut settings = self.settings.clone();
         settings.extend(self.seed.map(|seed| format!("seed={seed}")));
         settings.extend(self.target_error.map(|pp| format!("stop.target_error_pp={pp:?}")));
         settings.extend(self.decide.map(|percent| format!("stop.decide_percent={percent:?}")));
-        Ok(match &self.scene {
-            Some(path) => Scene::read(path, &settings)?,
-            None => Scene::built_in(&settings)?,
-        })
+        settings
     }
 
-    /// How it is prepared.
+    /// How the scene is prepared.
     pub fn prepare(&self, threads: Option<usize>) -> PrepareOptions {
         PrepareOptions { packings: self.packings.clone(), memory: self.memory, threads }
     }
 }
 
+impl SceneArgs {
+    /// The scene that the arguments name, with their settings applied.
+    pub fn scene(&self) -> Result<Scene, RunError> {
+        let settings = self.set.settings();
+        Ok(match &self.scene {
+            Some(path) => Scene::read(path, &settings)?,
+            None => Scene::built_in(&settings)?,
+        })
+    }
+}
+
 /// Says what a run would do.
 pub fn check(args: &SceneArgs) -> Result<(), RunError> {
-    let check = run::check(args.scene()?, &args.prepare(None))?;
-    to_stdout(&if args.json { json(&check)? } else { words(&check) });
+    let check = run::check(args.scene()?, &args.set.prepare(None))?;
+    to_stdout(&if args.set.json { json(&check)? } else { words(&check) });
     check.refusal.map_or(Ok(()), |refusal| Err(refusal.into()))
 }
 

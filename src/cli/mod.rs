@@ -6,8 +6,11 @@ mod args;
 mod campaign;
 mod case_progress;
 mod check;
+mod compare;
 mod constrictions;
+mod design;
 mod init;
+mod judge;
 mod pack;
 mod percolation;
 mod precision;
@@ -16,6 +19,8 @@ mod progress;
 mod report;
 mod rules;
 mod run;
+#[cfg(feature = "serve")]
+mod serve;
 mod soil;
 
 use std::process::ExitCode;
@@ -30,10 +35,15 @@ pub fn main() -> ExitCode {
     progress::outlive_large_files();
     let done = match Arguments::parse().command {
         Command::Run(args) => run::run(&args),
+        Command::Judge(args) => judge::judge(&args),
+        Command::Compare(args) => compare::compare(&args),
+        #[cfg(feature = "serve")]
+        Command::Serve(args) => serve::serve(&args),
         Command::Resume(args) => run::resume(&args),
         Command::Soil(args) => soil::soil(&args),
         Command::Check(args) => check::check(&args),
         Command::Init { path } => init::init(path.as_deref()),
+        Command::Design(args) => design::design(&args),
         Command::Campaign(args) => campaign::campaign(&args),
         Command::Pack(args) => pack::pack(&args),
         Command::Constrictions(args) => constrictions::constrictions(&args),

@@ -16,10 +16,10 @@ pub fn precision(args: &PrecisionArgs) -> Result<(), RunError> {
         overwrite: args.overwrite,
         tiers: args.tiers.clone(),
         budget: args.budget,
-        prepare: args.scene.prepare(args.threads),
+        prepare: args.scene.set.prepare(args.threads),
     };
     let precision = followed(args.quiet, |callbacks| precision::run(scene, &options, callbacks))?;
-    if args.scene.json {
+    if args.scene.set.json {
         to_stdout(&json(&precision)?);
     } else if !args.quiet {
         let page = shown(&args.out.join("precision.html"));

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
+pub use crate::outcome::digits::{count, percent};
 use crate::report::figures::visible;
 use crate::run::RunError;
 
@@ -34,23 +35,9 @@ pub fn json(value: &impl Serialize) -> Result<String, RunError> {
     Ok(serde_json::to_string_pretty(value)? + "\n")
 }
 
-/// A count with thin groups: `2 620 000`.
-pub fn count(n: u64) -> String {
-    let digits = n.to_string();
-    let groups: Vec<&str> =
-        digits.as_bytes().rchunks(3).rev().map(|g| std::str::from_utf8(g).unwrap_or_default()).collect();
-    groups.join(" ")
-}
-
 /// A count and what is counted, one or many: `1 replicate`.
 pub fn counted(n: u64, one: &str, many: &str) -> String {
     format!("{} {}", count(n), if n == 1 { one } else { many })
-}
-
-/// A percentage with digits that mean something.
-pub fn percent(fraction: f64) -> String {
-    let p = 100.0 * fraction;
-    if p == 0.0 || p >= 10.0 { format!("{p:.1} %") } else { format!("{p:.2} %") }
 }
 
 #[cfg(test)]
@@ -58,13 +45,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_read_well() {
-        assert_eq!(count(2_620_000), "2 620 000");
-        assert_eq!(count(12), "12");
-        assert_eq!(
-            [percent(0.0), percent(0.0666), percent(0.4), percent(1.0)],
-            ["0.0 %", "6.66 %", "40.0 %", "100.0 %"]
-        );
+    fn counts_and_names_read_well() {
+        assert_eq!(counted(1, "replicate", "replicates"), "1 replicate");
+        assert_eq!(counted(1200, "replicate", "replicates"), "1 200 replicates");
         assert_eq!(plain("a\u{1b}[31mb"), "a?[31mb");
     }
 }

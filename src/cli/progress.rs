@@ -46,7 +46,7 @@ pub fn unfollowed() -> Callbacks<'static> {
 ///
 /// SIGTERM may come several times: a cluster's scheduler sends it to a job's script, which hands it on, and
 /// to all of the job's processes.
-fn stop_on_signals() -> Result<Arc<AtomicBool>, RunError> {
+pub fn stop_on_signals() -> Result<Arc<AtomicBool>, RunError> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXCPU};
     let stop = Arc::new(AtomicBool::new(false));
     signal_hook::flag::register_conditional_shutdown(SIGINT, 1, Arc::clone(&stop))
@@ -136,6 +136,7 @@ impl Display {
             Event::Studying(what) => {
                 to_stderr(&format!("{:6.1} s  {}\n", self.begun.elapsed().as_secs_f64(), plain(what)));
             }
+            Event::RunWalked { .. } => {}
             Event::Packing(_) | Event::Increment { .. } | Event::RunDone | Event::MoreRuns { .. } => {
                 if let Some(shown) = self.shown.lock().ok().as_mut().and_then(|shown| shown.as_mut()) {
                     shown.tell(event);

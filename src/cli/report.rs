@@ -9,9 +9,10 @@ use crate::run::{FolderKind, RunError};
 
 /// Writes the report of a finished folder again.
 pub fn report(folder: &Path) -> Result<(), RunError> {
-    let Some(kind) = FolderKind::of(folder).filter(|kind| *kind != FolderKind::Constrictions) else {
-        let problem = "holds no outcome.json, packing.json, campaign.json, percolation.json or \
-            precision.json; name the folder of a finished run, packing, campaign or study";
+    let Some(kind) = FolderKind::of(folder).filter(|kind| kind.has_page()) else {
+        let problem = "holds no outcome.json, packing.json, campaign.json, compare.json, percolation.json, \
+            precision.json or design.json; name the folder of a finished run, packing, campaign, comparison, \
+            study or design";
         return Err(RunError::Refused(format!("{}: {problem}", shown(folder))));
     };
     let claimed = claim(folder, kind, true)?;
@@ -20,7 +21,8 @@ pub fn report(folder: &Path) -> Result<(), RunError> {
     Ok(())
 }
 
-/// Writes the page of results that are whole; a set of constrictions has none.
+/// Writes the page of results that are whole; a set of constrictions has none, and neither has
+/// a server's folder.
 pub fn page(kind: FolderKind, folder: &Path) -> Result<PathBuf, report::ReportError> {
     let written = match kind {
         FolderKind::Run => report::write(folder),
@@ -28,7 +30,9 @@ pub fn page(kind: FolderKind, folder: &Path) -> Result<PathBuf, report::ReportEr
         FolderKind::Campaign => report::write_campaign(folder),
         FolderKind::Percolation => report::write_percolation(folder),
         FolderKind::Precision => report::write_precision(folder),
-        FolderKind::Constrictions => return Ok(folder.to_owned()),
+        FolderKind::Comparison => report::write_comparison(folder),
+        FolderKind::Design => report::write_design(folder),
+        FolderKind::Constrictions | FolderKind::Serve => return Ok(folder.to_owned()),
     };
     written.map(|written| written.page)
 }

@@ -14,12 +14,12 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
     let options = RunOptions {
         out: args.out.clone(),
         overwrite: args.overwrite,
-        prepare: args.scene.prepare(args.walk.threads),
+        prepare: args.scene.set.prepare(args.walk.threads),
         checkpoint_interval: args.walk.checkpoint_every,
         command: command_line(),
     };
     let run = followed(args.walk.quiet, |callbacks| run::walk_scene(scene, &options, callbacks))?;
-    show(&run, args.scene.json, args.walk.quiet)
+    show(&run, args.scene.set.json, args.walk.quiet)
 }
 
 /// Continues a run that was stopped or killed.
@@ -41,7 +41,8 @@ pub fn command_line() -> String {
     words.join(" ")
 }
 
-fn show(run: &FinishedRun, as_json: bool, quiet: bool) -> Result<(), RunError> {
+/// Prints what came of a run.
+pub fn show(run: &FinishedRun, as_json: bool, quiet: bool) -> Result<(), RunError> {
     if as_json {
         to_stdout(&json(&run.outcome)?);
     } else if !quiet {
@@ -65,41 +66,7 @@ fn summary(run: &FinishedRun) -> String {
     for run in &outcome.summary {
         line(format!("  {}", run_line(run)));
     }
-    if let Some(bounds) = &outcome.pan_bounds {
-        line(
-            "  those are of the base with its finest part finer than every constriction; both readings:"
-                .into(),
-        );
-        for reading in &bounds.readings {
-            let verdict = reading.verdict.words();
-            let runs: Vec<String> = reading.runs.iter().map(|run| percent(run.mean)).collect();
-            line(format!("    {}: {verdict}, {} eroded", bounds.words(reading), runs.join(" and ")));
-        }
-    }
-    if outcome.replicates.len() == 1 {
-        line(
-            "  one replicate: the scatter is unknown; walk more before relying on this (replicates = 10)"
-                .into(),
-        );
-    }
-    if let Some(sentence) = outcome.stopping.as_ref().and_then(|stopping| stopping.sentence.as_ref()) {
-        line(format!("  {sentence}"));
-    }
-    if let Some(next) = outcome.what_would_decide() {
-        line(format!("  {next}"));
-    }
-    let trapped: u64 = outcome.replicates.iter().flat_map(|r| &r.runs).map(|r| r.trapped).sum();
-    if trapped > 0 {
-        line(format!("  {} particles trapped in closed loops; they count as retained", count(trapped)));
-    }
-    if let (true, Some(eq2)) = (outcome.capped, outcome.n_base_eq2) {
-        line(format!("  capped; Eq. (2) requires {} base particles", count(eq2)));
-    }
-    let unit = if inputs.scale_free { "D0F" } else { "mm" };
-    if let Some(thickness) = inputs.network.thickness_mm {
-        line(format!("  modelled filter thickness: {thickness:.1} {unit} along the flow"));
-    }
-    for said in [outcome.flow_sentence(), outcome.overfull_sentence()].into_iter().flatten() {
+    for said in outcome.beside_the_verdict() {
         line(format!("  {said}"));
     }
     line(format!(

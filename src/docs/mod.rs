@@ -3,11 +3,20 @@
 #[doc = include_str!("soils.md")]
 pub mod soils {}
 
+#[doc = include_str!("compare.md")]
+pub mod compare {}
+
+#[doc = include_str!("serve.md")]
+pub mod serve {}
+
 #[doc = include_str!("graph.md")]
 pub mod graph {}
 
 #[doc = include_str!("rules.md")]
 pub mod rules {}
+
+#[doc = include_str!("design.md")]
+pub mod design {}
 
 #[doc = include_str!("campaigns.md")]
 pub mod campaigns {}
@@ -17,6 +26,9 @@ pub mod uncertainty {}
 
 #[doc = include_str!("long_runs.md")]
 pub mod long_runs {}
+
+#[doc = include_str!("python.md")]
+pub mod python {}
 
 #[doc = include_str!("files.md")]
 pub mod files {}

@@ -239,19 +239,11 @@ impl Rows {
                 return Err(whole(format!("void {id} is made a start node twice")));
             }
         }
-        let mut exit_begin = vec![0u32; voids + 1];
-        for &from in &self.from {
-            exit_begin[from as usize + 1] += 1;
-        }
-        for void in 0..voids {
-            exit_begin[void + 1] += exit_begin[void];
-        }
-        let mut next = exit_begin.clone();
+        let (exit_begin, slots) = in_order_of_voids(voids, &self.from);
         let mut target = vec![END; self.from.len()];
         let mut diameter = vec![0f32; self.from.len()];
-        for ((&from, &to), &mm) in self.from.iter().zip(&self.to).zip(&self.diameter_mm) {
-            let slot = next[from as usize] as usize;
-            next[from as usize] += 1;
+        for ((&slot, &to), &mm) in slots.iter().zip(&self.to).zip(&self.diameter_mm) {
+            let slot = slot as usize;
             target[slot] = to;
             diameter[slot] = (mm / unit_mm) as f32;
             if !diameter[slot].is_finite() || (mm > 0.0 && diameter[slot] < f32::MIN_POSITIVE) {
@@ -281,6 +273,25 @@ impl Rows {
         network.layer = network.distances(|_| true);
         Ok(network)
     }
+}
+
+/// First exit of each void, and one more entry, and the place of each constriction among the exits, for those
+/// that lead from these voids.
+pub(super) fn in_order_of_voids(voids: usize, from: &[u32]) -> (Vec<u32>, Vec<u32>) {
+    let mut exit_begin = vec![0u32; voids + 1];
+    for &from in from {
+        exit_begin[from as usize + 1] += 1;
+    }
+    for void in 0..voids {
+        exit_begin[void + 1] += exit_begin[void];
+    }
+    let mut next = exit_begin.clone();
+    let place = |&from: &u32| {
+        next[from as usize] += 1;
+        next[from as usize] - 1
+    };
+    let slots = from.iter().map(place).collect();
+    (exit_begin, slots)
 }
 
 fn parse_shape(text: &str) -> Option<[u32; 3]> {

@@ -12,6 +12,7 @@
 //! units by a power of two changes no bit of a walk.
 
 mod coarse;
+mod columns;
 mod connectivity;
 mod cubic;
 mod exit_rule;
@@ -27,6 +28,7 @@ mod stratified;
 mod twins;
 mod undirected;
 
+pub use columns::{CONDUCTANCE_EXPONENT, NO_EXIT, NetworkColumns};
 pub use connectivity::{Connectivity, TABLE_3, TOLERANCE_PERCENT};
 pub use exit_rule::ExitRule;
 pub use file::NetworkError;

@@ -61,6 +61,14 @@ impl Network {
     /// A diameter or a conductance that is negative or not a number; a void that is none; no inlet; no
     /// outlet; no open way from an inlet to an outlet; more exits than 32 bits can number.
     pub fn linked(voids: LinkedVoids, links: &[Link]) -> Result<Self, NetworkError> {
+        Ok(Self::linked_numbered(voids, links)?.0)
+    }
+
+    /// The same, and of each link its exit, the first of two; `u32::MAX` where it has none.
+    pub(super) fn linked_numbered(
+        voids: LinkedVoids,
+        links: &[Link],
+    ) -> Result<(Self, Vec<u32>), NetworkError> {
         let reservoir = voids.layer.len() as u32;
         check(links, reservoir)?;
         // Two exits by link, or one: from where, to where, of which link.
@@ -123,7 +131,7 @@ impl Network {
             })),
         };
         network.leads_through()?;
-        Ok(network)
+        Ok((network, first))
     }
 
     /// The lattice of [`Network::cubic_from_diameters`] without its directions: six neighbours a void. Water

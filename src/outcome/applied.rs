@@ -93,8 +93,8 @@ impl RuleRole {
     }
 }
 
-/// How far a verdict can be relied on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+/// How far a verdict can be relied on; the worst is the greatest.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Confidence {
     /// The model was checked for such soils, and no rule of practice speaks against the verdict.
     #[serde(rename = "within checked range")]

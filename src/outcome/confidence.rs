@@ -98,7 +98,9 @@ fn short(value: f64) -> String {
 impl Outcome {
     /// What to do where the replicates leave the class open and nothing was to add to them.
     pub fn what_would_decide(&self) -> Option<&'static str> {
-        let said = self.stopping.is_some() || self.pan_bounds.as_ref().is_some_and(|bounds| bounds.differ());
+        let said = self.stopping.is_some()
+            || self.pan_bounds.as_ref().is_some_and(|bounds| bounds.differ())
+            || self.curve_range.as_ref().is_some_and(|range| range.whole() != range.verdict);
         if self.verdict != Verdict::Undecided || said {
             return None;
         }
@@ -129,7 +131,7 @@ impl Outcome {
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
-    use crate::outcome::PairRules;
+    use crate::outcome::{PairOptions, PairRules};
 
     fn rules(filter: &[(f64, f64)], base: &[(f64, f64)]) -> Vec<AppliedRule> {
         let soil = |points| Gradation::from_points(points, None).unwrap();
@@ -180,6 +182,22 @@ mod tests {
         assert_eq!(judge(Verdict::None, &good, Vec::new()), (Confidence::Within, Vec::new()));
         let (confidence, reasons) = judge(Verdict::None, &good, vec!["a guess".into()]);
         assert_eq!((confidence, reasons.len()), (Confidence::Outside, 1));
+    }
+
+    /// D15F 0.6 mm on a silt: 0.7 mm is allowed, 0.5 mm where it is dispersive.
+    #[test]
+    fn a_dispersive_base_that_breaks_a_rule_is_contradicted() {
+        let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
+        let filter = [("f".to_owned(), soil(&[(0.5, 0.0), (0.6, 15.0), (1.0, 70.0), (1.5, 100.0)]))];
+        let base = [("b".to_owned(), soil(&[(0.01, 0.0), (0.05, 40.0), (0.075, 55.0), (0.3, 100.0)]))];
+        let judged = |dispersive| {
+            let options = PairOptions { dispersive, ..PairOptions::default() };
+            judge(Verdict::None, &PairRules::of_envelopes(&filter, &base, options).rules, Vec::new())
+        };
+        assert_eq!(judged(false), (Confidence::Within, Vec::new()));
+        let (confidence, reasons) = judged(true);
+        assert_eq!(confidence, Confidence::Contradicted);
+        assert!(reasons[0].starts_with("practice allows D15F 0.50 mm, this is 0.60 mm"), "{reasons:?}");
     }
 
     #[test]

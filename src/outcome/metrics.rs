@@ -65,17 +65,36 @@ pub(crate) fn eroded_mass_fraction(tally: &Tally, end: &Tally, pan_fraction: f64
     (1.0 - pan_fraction) * sized + pan_fraction * of_pan
 }
 
+/// What a finished run eroded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Eroded {
+    /// Mass eroded over the mass inserted.
+    pub mass_fraction: f64,
+    /// Whether less than 7.5 % of the mass eroded.
+    pub below_threshold: bool,
+}
+
+impl Eroded {
+    /// Of a run that has ended, of a base with this pan fraction by mass only.
+    pub fn of(state: &State, pan_fraction: f64) -> Self {
+        let tally = &state.tally;
+        let mass_fraction = eroded_mass_fraction(tally, tally, pan_fraction);
+        let one_size = state.classes.upper().len() == 1 && pan_fraction == 0.0;
+        let below_threshold = match one_size {
+            true => below_by_count(tally.eroded, tally.inserted),
+            false if pan_fraction == 0.0 => below_by_mass(tally.eroded_mass, tally.inserted_mass),
+            false => below_by_mass(mass_fraction, 1.0),
+        };
+        Self { mass_fraction, below_threshold }
+    }
+}
+
 impl RunMetrics {
     /// The numbers of a finished run, which took `seconds` of wall time, on the network as it was at its end.
     pub fn new(network: &Network, state: &State, flow: Option<&FlowRecord>, of: RunId, seconds: f64) -> Self {
         let tally = &state.tally;
-        let eroded_mass_fraction = eroded_mass_fraction(tally, tally, of.pan_fraction);
-        let one_size = state.classes.upper().len() == 1 && of.pan_fraction == 0.0;
-        let below_threshold = match one_size {
-            true => below_by_count(tally.eroded, tally.inserted),
-            false if of.pan_fraction == 0.0 => below_by_mass(tally.eroded_mass, tally.inserted_mass),
-            false => below_by_mass(eroded_mass_fraction, 1.0),
-        };
+        let Eroded { mass_fraction: eroded_mass_fraction, below_threshold } =
+            Eroded::of(state, of.pan_fraction);
         let largest_mm = (tally.eroded > 0).then(|| f64::from(tally.largest_eroded) * network.unit_mm());
         let retained = tally.retained_in_constrictions + tally.retained_in_voids + tally.trapped;
         let [deepest, most] = retained_layers(network, state);

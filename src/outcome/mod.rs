@@ -10,12 +10,18 @@
 //! - [`confidence`] says how far a verdict can be relied on, and why no further.
 //! - [`infiltration()`] is Eq. (1) beside the walk.
 //! - [`percolation`] fits percolation thresholds of several lattice sizes.
-//! - [`precision`] is error against run time.
+//! - [`thickness`] is how the verdict moves with the thickness of the filter.
+//! - [`precision`] is error against run time; [`comparison`] is several cases side by side.
+//! - [`design`] is how coarse a filter may be, and the band of a specification.
 
 mod applied;
+mod beside;
 pub mod by_connectivity;
+pub mod comparison;
 pub mod confidence;
 mod curve_range;
+pub mod design;
+pub(crate) mod digits;
 mod flow_words;
 mod infiltration;
 mod least_squares;
@@ -33,12 +39,13 @@ pub mod rules;
 mod statistic;
 pub mod stopping;
 pub(crate) mod student;
+pub mod thickness;
 pub mod verdict;
 
 pub use infiltration::infiltration;
 pub(crate) use least_squares::log_log_slope;
 pub(crate) use metrics::eroded_mass_fraction;
-pub use metrics::{Recorded, RunId, RunMetrics};
+pub use metrics::{Eroded, Recorded, RunId, RunMetrics};
 pub use pair::{BaseSizes, FilterSizes, Mistake, PairOptions, PairRules};
 pub use recorder::{Recorder, Wanted};
 

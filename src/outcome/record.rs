@@ -78,6 +78,10 @@ pub struct Outcome {
     pub curve_range: Option<CurveRange>,
     /// How the verdict moves with the number of base particles; empty when it was not asked for.
     pub sensitivity: Vec<Sensitivity>,
+    /// How the verdict moves with the thickness of the filter, itself included; empty when it was not asked
+    /// for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub thickness: Vec<OfThickness>,
     /// Wall time of everything, s.
     pub seconds: f64,
 }
@@ -477,6 +481,25 @@ pub struct Sensitivity {
     pub grains_per_void: Option<f64>,
     /// Mass ratio to which this factor corresponds at the scene's grains per void.
     pub mass_ratio: Option<f64>,
+    /// How many replicates were walked.
+    pub replicates: u64,
+    /// Their class.
+    pub verdict: Verdict,
+    /// Eroded mass fraction, one per run.
+    pub runs: Vec<Statistic>,
+}
+
+/// The same case with a filter of this thickness.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OfThickness {
+    /// Multiple of the outcome's own thickness.
+    pub factor: f64,
+    /// Layers of voids along the flow.
+    pub layers: u64,
+    /// Modelled thickness (mm, or D0F as all its sizes); `None` where a layer has none.
+    pub thickness_mm: Option<f64>,
+    /// Base particles inserted in each run.
+    pub n_base: u64,
     /// How many replicates were walked.
     pub replicates: u64,
     /// Their class.

@@ -215,10 +215,22 @@ impl Compression {
     /// Those of [`Compression::advance`]; stopped by `progress`; not settled after the most steps allowed.
     pub fn run(
         &mut self,
+        progress: impl FnMut(&CompressionProgress) -> bool,
+    ) -> Result<PackReport, PackingError> {
+        self.run_reporting(1000, progress)
+    }
+
+    /// The same to the same bits, reporting every `every` steps: how soon it can be stopped.
+    ///
+    /// # Errors
+    /// As [`Compression::run`].
+    pub fn run_reporting(
+        &mut self,
+        every: u64,
         mut progress: impl FnMut(&CompressionProgress) -> bool,
     ) -> Result<PackReport, PackingError> {
         while self.stage != Stage::Done {
-            self.advance(1000)?;
+            self.advance(every.max(1))?;
             if !progress(&self.progress()) {
                 return Err(PackingError::Stopped(self.steps));
             }

@@ -12,6 +12,7 @@ use super::table::Table;
 use crate::outcome::ledger::{Campaign, LedgerLine};
 use crate::outcome::record::{Confidence, Statistic, Verdict};
 use crate::outcome::rules::RULES;
+use crate::text::is_plain_part;
 
 /// Cases listed in the page; all are in `cases.csv`.
 const LISTED: usize = 2000;
@@ -110,13 +111,8 @@ fn replicates_by_class(line: &LedgerLine) -> String {
 
 /// Where a case's own page is, as seen from the campaign's: nowhere else than in a folder inside it.
 fn page_of(folder: &Path, line: &LedgerLine) -> Option<String> {
-    let plain = |part: &str| {
-        !part.is_empty()
-            && !part.starts_with('.')
-            && part.chars().all(|c| c.is_ascii_alphanumeric() || "=.,-_".contains(c))
-    };
     let page = format!("{}/report.html", line.folder);
-    (page.split('/').all(plain) && folder.join(&page).is_file()).then_some(page)
+    (page.split('/').all(is_plain_part) && folder.join(&page).is_file()).then_some(page)
 }
 
 fn with_interval(statistic: &Statistic) -> Markup {

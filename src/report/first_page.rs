@@ -11,6 +11,7 @@ use super::numbers::{in_digits, significant, size, whole};
 use super::shell::clean;
 use super::table::Table;
 use crate::outcome::record::{AppliedRule, Outcome, RuleRole};
+use crate::outcome::thickness;
 
 /// Characters of a text of the user's that are shown.
 const LINE: usize = 120;
@@ -117,7 +118,8 @@ fn thickness(outcome: &Outcome) -> Markup {
         @if let Some(thickness) = network.thickness_mm {
             p.thickness {
                 "Thickness modelled: " b { (size(thickness, outcome.inputs.scale_free)) } " along the flow, "
-                (whole(network.layers)) " layers of voids."
+                (whole(network.layers)) " layers of voids. "
+                @if let Some(sentence) = thickness::sentence(&outcome.thickness) { (clean(&sentence)) }
             }
         }
     }

@@ -4,7 +4,8 @@
 //! `layers.csv`, `retained.csv`, `eroded.csv`; see [`crate::outcome::record`]) and runs nothing;
 //! [`write_packing()`] reads the folder of a packing, [`write_campaign()`] that of a campaign,
 //! [`write_percolation()`] that of a percolation study, and [`write_precision()`] that of a study of error
-//! against run time. They write `figures/*.svg`, each a file of its own, and `report.html`.
+//! against run time; [`write_comparison()`] that of several cases side by side. They write `figures/*.svg`,
+//! each a file of its own, and `report.html`.
 //!
 //! # Pages of others
 //! A program with a page of its own over the same results, as `scripts/paper`, builds it from these:
@@ -26,7 +27,9 @@ mod appendix;
 mod boundaries;
 mod campaign;
 mod campaign_cases;
+mod comparison;
 mod connectivity;
+mod design;
 mod error;
 pub mod figures;
 pub mod files;
@@ -45,9 +48,12 @@ mod run_figures;
 pub mod shell;
 mod soils;
 mod table;
+mod varied;
 mod written;
 
 pub use campaign::{campaign_page, write_campaign};
+pub use comparison::write_comparison;
+pub use design::write_design;
 pub use error::ReportError;
 pub use packing::write_packing;
 pub use page::write;

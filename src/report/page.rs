@@ -14,11 +14,12 @@ use super::names::soil_name;
 use super::numbers::{
     capital, duration, interval, known, percent, percent_interval, significant, size, threshold, whole,
 };
-use super::results::{fraction, replicates, results, run_heading, sensitivity};
+use super::results::{fraction, replicates, results, run_heading, sensitivity, thickness};
 use super::rules::rules;
 use super::run_figures::{self, run_name};
 use super::shell::{self, Drawn, clean, drawing, fact, whole_page};
 use super::table::Table;
+use super::varied;
 use super::written::{Written, write_page};
 use super::{appendix, packing, shell::leaves_out};
 use crate::outcome::packing::PackingRecord;
@@ -44,7 +45,8 @@ pub fn write(folder: &Path) -> Result<Written, ReportError> {
         run_figures::eroded(&run),
         run_figures::layers(&run),
         run_figures::retained(&run),
-        run_figures::sensitivity(&run),
+        varied::sensitivity(&run),
+        varied::thickness(&run),
         run.packing.as_ref().map(packing::slice),
     ]
     .into_iter()
@@ -88,6 +90,7 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
         (by_connectivity(outcome))
         (replicates(outcome))
         (sensitivity(outcome))
+        (thickness(outcome))
         (inputs(outcome, folder.packing.as_ref()))
         (appendix::gradations(outcome))
         (provenance(folder))
@@ -274,6 +277,7 @@ fn missing(folder: &RunFolder, figures: &[Drawn]) -> Markup {
             "retained.csv and eroded.csv have no rows for the first run: size curves are not drawn.",
         ),
         ("sensitivity", "Sensitivity to the number of base particles was not asked for."),
+        ("thickness", "Filters of other thicknesses were not asked for."),
     ];
     html! {
         @for (name, reason) in reasons { @if !has(name) { p.small { (reason) } } }

@@ -7,7 +7,7 @@ use super::numbers::{
 };
 use super::run_figures::run_name;
 use super::table::Table;
-use crate::outcome::record::{Outcome, Replicate, Run, RunSummary, Sensitivity, Statistic};
+use crate::outcome::record::{OfThickness, Outcome, Replicate, Run, RunSummary, Sensitivity, Statistic};
 
 /// Replicates listed one by one; all are in `outcome.json`.
 const LISTED: usize = 100;
@@ -118,6 +118,27 @@ pub(super) fn replicates(outcome: &Outcome) -> Markup {
                  moves and times are not printed; outcome.json holds them."
             }
         }
+    }
+}
+
+/// Filters of other thicknesses, collapsed.
+pub(super) fn thickness(outcome: &Outcome) -> Markup {
+    let scale_free = outcome.inputs.scale_free;
+    let mut table = Table::of(&outcome.thickness)
+        .number("Times the thickness", |row| format!("×{}", trimmed(row.factor)))
+        .number("Layers of voids", |row| whole(row.layers))
+        .number("Thickness", move |row| known(row.thickness_mm, |t| size(t, scale_free)))
+        .number("Base particles, N_base", |row| whole(row.n_base))
+        .number("Replicates", |row| row.replicates);
+    for (index, run) in outcome.summary.iter().enumerate() {
+        let of = move |row: &OfThickness| row.runs.get(index).map_or_else(|| html! { "–" }, fraction);
+        table = table.number(capital(run_name(run.run)), of);
+    }
+    html! {
+        @if !outcome.thickness.is_empty() { details {
+            summary { "Filters of other thicknesses, in numbers" }
+            (table.text("Verdict", |row| row.verdict.words()))
+        } }
     }
 }
 

@@ -27,7 +27,7 @@ pub(super) fn rules(outcome: &Outcome) -> Markup {
 }
 
 /// Rules as a table.
-fn table(rules: &[&AppliedRule]) -> Markup {
+pub(super) fn table(rules: &[&AppliedRule]) -> Markup {
     let table = Table::of(rules)
         .class("rules")
         .name("Rule, what it is for, source", |rule| {

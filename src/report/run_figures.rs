@@ -5,13 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::boundaries::{self, boundaries};
 use super::figures::{
     Across, Area, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Point, Rule,
-    Shape, Tick, VERMILLION, positive_range, ramp, shorten,
+    Shape, VERMILLION, positive_range, ramp, shorten,
 };
 use super::folder::RunFolder;
 use super::names::soil_name;
-use super::numbers::{
-    capital, interval, interval_in_percent, known, percent, significant, size, threshold, trimmed, whole,
-};
+use super::numbers::{capital, interval, interval_in_percent, percent, significant, size, threshold, whole};
 use super::shell::Drawn;
 use crate::outcome::record::{LayerRow, SeriesRow, SizeRow, Statistic, Verdict};
 
@@ -24,7 +22,7 @@ pub(super) fn run_name(run: u64) -> &'static str {
 }
 
 /// The colour, symbol and dashes of a run in every figure.
-fn run_look(run: u64) -> (Colour, Shape, Dash) {
+pub(super) fn run_look(run: u64) -> (Colour, Shape, Dash) {
     if run == 1 { (BLUE, Shape::Circle, Dash::Solid) } else { (PURPLE, Shape::Square, Dash::Dashed) }
 }
 
@@ -50,17 +48,17 @@ fn points(rows: &[[f64; 2]]) -> Vec<(f64, f64)> {
 }
 
 /// The upper end of an interval, or the mean where there is none.
-fn upper(statistic: &Statistic) -> f64 {
+pub(super) fn upper(statistic: &Statistic) -> f64 {
     interval(statistic).map_or(statistic.mean, |(_, high)| high)
 }
 
-fn threshold_rule(folder: &RunFolder, across: Across) -> Rule {
+pub(super) fn threshold_rule(folder: &RunFolder, across: Across) -> Rule {
     let limit = folder.outcome.threshold;
     Rule::new(across, limit * 100.0, BLACK).dash(Dash::Dashed).label(&threshold(limit))
 }
 
 /// An axis from 0 that holds these percentages and the threshold, and never less than 10 %.
-fn eroded_axis(label: &str, folder: &RunFolder, highest: f64) -> Axis {
+pub(super) fn eroded_axis(label: &str, folder: &RunFolder, highest: f64) -> Axis {
     let high = highest.max(folder.outcome.threshold * 100.0 * 1.3).min(100.0);
     if high > 60.0 { Axis::percent(label) } else { Axis::linear(label, 0.0, high) }
 }
@@ -313,61 +311,4 @@ pub(super) fn retained(folder: &RunFolder) -> Option<Drawn> {
         caption.push_str(" Nothing was retained.");
     }
     Some(Drawn::new("retained", figure, caption))
-}
-
-/// Eroded mass against the number of base particles, and the class that each number gives.
-pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
-    let mut cases: Vec<_> = folder.outcome.sensitivity.iter().filter(|case| case.factor > 0.0).collect();
-    cases.sort_by(|a, b| a.factor.total_cmp(&b.factor));
-    let (least, most) = (cases.first()?.factor, cases.last()?.factor);
-    let ticks = cases.iter().map(|case| {
-        let mut tick = Tick::new(
-            case.factor,
-            &[&format!("×{}", trimmed(case.factor)), &known(case.grains_per_void, significant)],
-        );
-        tick.rank = u8::from(case.factor != 1.0);
-        tick
-    });
-    let x = Axis::log("Times the base particles of this scene; below, grains per void", least, most)
-        .with_ticks(ticks.collect())
-        .within(least / 1.25, most * 1.25);
-    let highest = 100.0 * cases.iter().flat_map(|case| &case.runs).map(upper).fold(0.0, f64::max);
-    let y = eroded_axis("Base eroded, by mass (%)", folder, (highest * 1.3).min(100.0));
-    let what = "Percent of the base mass eroded in each run against multiples of the number of base \
-                particles; the colour behind is the verdict";
-    let mut figure = Figure::new("How the verdict moves with the number of base particles", what, "", x, y);
-    let edge = |left: f64, right: f64| libm::sqrt(left * right);
-    let mut left = least / 1.25;
-    for same in cases.chunk_by(|a, b| a.verdict == b.verdict) {
-        let (Some(first), Some(last)) = (same.first(), same.last()) else { continue };
-        let next = cases.iter().find(|case| case.factor > last.factor);
-        let right = next.map_or(most * 1.25, |next| edge(last.factor, next.factor));
-        let outline = vec![(left, 0.0), (left, 100.0), (right, 100.0), (right, 0.0)];
-        let area = Area::new(outline, verdict_colour(first.verdict), 0.2);
-        figure.add(area.label(&first.verdict.words().replace(' ', "\n")));
-        left = right;
-    }
-    figure.add(threshold_rule(folder, Across::Y));
-    for run in folder.runs() {
-        let (colour, shape, dash) = run_look(run);
-        // the runs stand a little apart, so that their bars do not overlap
-        let apart = if run == 1 { 0.985 } else { 1.015 };
-        let found =
-            || cases.iter().filter_map(|case| Some((case.factor * apart, case.runs.get(run as usize - 1)?)));
-        let means = found().map(|(factor, statistic)| (factor, statistic.mean * 100.0)).collect();
-        figure.add(Line::new(means, colour).dash(dash).label(run_name(run)));
-        for (factor, statistic) in found() {
-            let point = Point::new(factor, statistic.mean * 100.0, colour, shape);
-            figure.add(point.y_interval(interval_in_percent(statistic)));
-        }
-    }
-    let caption = format!(
-        "How the verdict moves with the number of base particles, N_base. Grains per void and mass ratio \
-         enter N_base only as a product (Eq. 2), so this one axis answers for both: ×2 is twice the grains \
-         per void or twice the mass ratio. ×1 is this scene: {} grains per void, mass ratio {}. Bars: 95 % \
-         intervals.",
-        known(folder.outcome.grains_per_void, significant),
-        known(folder.outcome.inputs.mass_ratio, percent),
-    );
-    Some(Drawn::new("sensitivity", figure, caption))
 }

@@ -48,12 +48,16 @@ impl Drawn {
     }
 }
 
-/// A page as text: `title` for the browser, and what stands in each part of its body.
-pub fn whole_page(title: &str, header: &Markup, main: &Markup, footer: &Markup) -> String {
+/// What every page may do: nothing but show itself.
+pub fn content_policy() -> String {
     // the style is named by its hash: a style that a hostile name might bring along would not be obeyed
     let hash = BASE64_STANDARD.encode(Sha256::digest(STYLE.as_bytes()));
-    let policy =
-        format!("default-src 'none'; style-src 'sha256-{hash}'; base-uri 'none'; form-action 'none'");
+    format!("default-src 'none'; style-src 'sha256-{hash}'; base-uri 'none'; form-action 'none'")
+}
+
+/// A page as text: `title` for the browser, and what stands in each part of its body.
+pub fn whole_page(title: &str, header: &Markup, main: &Markup, footer: &Markup) -> String {
+    let policy = content_policy();
     html! {
         (DOCTYPE)
         html lang="en" {

@@ -44,6 +44,17 @@ pub enum Event<'a> {
     },
     /// A run is done.
     RunDone,
+    /// What came of a run of the case itself, with its own curve and amount of base.
+    RunWalked {
+        /// Replicate, counted from 1.
+        replicate: u64,
+        /// Run, counted from 1.
+        run: u64,
+        /// Mass eroded over mass inserted.
+        eroded_mass_fraction: f64,
+        /// Whether that is below the threshold, exactly.
+        below_threshold: bool,
+    },
     /// More runs are needed than was known.
     MoreRuns {
         /// How many.

@@ -5,18 +5,34 @@
 //! processor of 2024 that is shared with other work; `results/check-*.md` and `results/slurm-*.md` hold
 //! estimates against measured times (`scripts/check_times.py`).
 
+use super::pilot::{WorkByVoid, pilot};
 use super::replicates::networks_to_walk;
 use crate::case::{Case, PackingPlan};
 use crate::scene::NetworkSource;
+use crate::walk::Engine;
 
-/// Seconds for one move of a particle that is walked by itself.
-const MOVE_S: f64 = 2.5e-9;
-/// Seconds to insert such a particle.
-const INSERTION_S: f64 = 1.5e-8;
-/// Seconds to part the counts of a void that holds some, in an increment, on a cubic lattice ...
-const VOID_S: f64 = 1.7e-8;
-/// ... and this many times longer on a network of any other kind, whose voids have any number of exits.
-const OTHER_NETWORK: f64 = 3.5;
+/// Seconds that parts of a walk take on a cubic lattice.
+struct Rates {
+    /// One move of a particle that is walked by itself.
+    moved_s: f64,
+    /// Inserting such a particle.
+    inserted_s: f64,
+    /// Splitting the counts of a void in an increment.
+    void_s: f64,
+    /// Finding out, in an increment, whether a void of a layer that holds counts holds any.
+    looked_at_s: f64,
+}
+
+/// Of a walk whose occupied voids are counted.
+const WALK: Rates = Rates { moved_s: 3.05e-9, inserted_s: 2.85e-8, void_s: 2.8e-8, looked_at_s: 1.35e-8 };
+/// With engine `expected` the counts of a void take so many times as long.
+const EXPECTED: f64 = 0.4;
+/// Of a walk of which only the number of voids is known, empty ones included. A study of precision plans by
+/// these: another number changes what it walks.
+const COUNTED: Rates = Rates { moved_s: 2.5e-9, inserted_s: 1.5e-8, void_s: 1.7e-8, looked_at_s: 0.0 };
+/// On a network of any other kind, whose voids have any number of exits, the counts of a void take this many
+/// times as long.
+const OTHER_NETWORK: f64 = 3.9;
 /// A void holds counts for the increments of insertion and, as the front that passes it is spread out, this
 /// many times the root of the number of layers.
 const SPREAD: f64 = 24.0;
@@ -29,21 +45,25 @@ const PARTS: usize = 64;
 const CONSTRICTION_S: f64 = 3.5e-8;
 /// Seconds to build a network, by its voids and constrictions.
 const NETWORK_S: f64 = 1e-7;
-/// Seconds to write a case's files and page.
-const FILES_S: f64 = 0.1;
+/// Seconds to write a case's files and page ...
+const FILES_S: f64 = 0.12;
+/// ... and those of a packing besides.
+const PACKED_FILES_S: f64 = 0.1;
+/// The most that a pilot walk of a case may take.
+const PILOT_S: f64 = 0.2;
 /// Share of a case's threads that walks keep busy.
 const BUSY: f64 = 0.7;
 /// Seconds for one grain in one step of a compression of `GRAINS` grains; more fit the cache less well, and
 /// their seconds grow with the power `GRAINS_POWER` of their number.
-const GRAIN_STEP_S: f64 = 7e-8;
+const GRAIN_STEP_S: f64 = 7.5e-8;
 /// See `GRAIN_STEP_S`.
 const GRAINS: f64 = 9_000.0;
 /// See `GRAIN_STEP_S`.
-const GRAINS_POWER: f64 = 0.2;
-/// Steps that packings with friction took at Cu 1.5, and the power of Cu with which they grow (10,000 to
-/// 12,800 at Cu 1.5, 19,800 at Cu 2, 21,200 to 33,100 at Cu 3, 92,500 at Cu 6;
-/// `results/filters-2026-11-21.md`).
-const STEPS: (f64, f64) = (10_500.0, 1.4);
+const GRAINS_POWER: f64 = 0.3;
+/// Steps that packings with friction took at Cu 1.5 (11,200 to 14,100), the power of Cu with which they grow
+/// (15,300 to 19,400 at Cu 2, 22,400 to 33,100 at Cu 3), and the number at which they stay (30,500 to 43,300
+/// from Cu 4 to Cu 6).
+const STEPS: (f64, f64, f64) = (12_000.0, 1.1, 40_000.0);
 /// Steps that packings without friction took at the least (38,700 to 52,500).
 const DENSE_STEPS: f64 = 45_000.0;
 /// Seconds to measure the constrictions around a grain, and to write it.
@@ -71,36 +91,72 @@ impl Case {
     /// Seconds that one thread of a machine of today takes for the whole case, its packing apart: a rough
     /// guess. What a rule that adds replicates may ask for besides is not foreseen.
     pub fn core_seconds(&self) -> f64 {
-        self.readings().map(Case::reading_seconds).sum::<f64>() + FILES_S
+        let packed = if self.packed.is_some() { PACKED_FILES_S } else { 0.0 };
+        self.readings().map(Case::reading_seconds).sum::<f64>() + FILES_S + packed
     }
 
     /// The same for one reading of its base, its files apart.
     fn reading_seconds(&self) -> f64 {
-        let [voids, constrictions, start_nodes, layers] = self.counts.map(|n| n as f64);
-        let one_run = |n_base: u64| {
-            let each = self.scene.walk.engine.takes_each(n_base / self.increments(), start_nodes as u64);
-            let one_by_one = self.one_by_one(n_base) as f64;
-            let increments = self.increments() as f64 + SPREAD * layers.sqrt();
-            let slower = if self.is_cubic() { 1.0 } else { OTHER_NETWORK };
-            let counted = if each { 0.0 } else { slower * voids };
-            let solved = match self.scene.exit_rule().needs_flow() {
-                true => (increments / SOLVED_EVERY + 2.0) * constrictions * SOLVE_S,
-                false => 0.0,
-            };
-            solved
-                + walk_seconds(0.0, increments, counted, one_by_one, one_by_one * self.moves_of_each(n_base))
-        };
+        let factors = self.sensitivity_factors();
+        let most_s = PILOT_S / (1 + factors.len() + self.thickness_factors().len()) as f64;
+        let own = self.replicate_seconds(self.n_base, most_s);
+        let of_factor = |f: f64| self.replicate_seconds((self.n_base as f64 * f) as u64, most_s);
+        let others: f64 = factors.into_iter().map(of_factor).sum();
         let [replicates, studied] = networks_to_walk(self).map(|n| n as f64);
-        let own = replicates * (1 + self.curve_ends().len()) as f64 * one_run(self.n_base);
-        let of_factor = |factor: f64| one_run((self.n_base as f64 * factor) as u64);
-        let others: f64 = self.sensitivity_factors().into_iter().map(of_factor).sum();
-        let of_each = self.scene.record.sensitivity_replicates as f64;
+        let [voids, constrictions, ..] = self.counts.map(|n| n as f64);
         let networks = (replicates + studied) * (voids + constrictions) * NETWORK_S;
-        self.scene.walk.runs as f64 * (own + of_each * others) + networks
+        let of_thickness = |factor: f64| match self.copies {
+            None => {
+                self.of_thickness(factor).map_or(own, |other| other.replicate_seconds(other.n_base, most_s))
+            }
+            // As many times the base on as many times the copies.
+            Some(_) => own * factor * factor.max(1.0),
+        };
+        let thick: f64 = self.thickness_factors().into_iter().map(of_thickness).sum();
+        let others = others + thick;
+        replicates * (1 + self.curve_ends().len()) as f64 * own
+            + self.scene.record.sensitivity_replicates as f64 * others
+            + networks
     }
 
-    fn is_cubic(&self) -> bool {
-        matches!(self.scene.network.source(), NetworkSource::Cubic(_))
+    /// Seconds of all runs of a replicate with so many base particles: by a pilot walk, else by a guess.
+    fn replicate_seconds(&self, n_base: u64, most_s: f64) -> f64 {
+        let runs = self.scene.walk.runs as f64;
+        let guess = self.guessed(n_base);
+        let walked = pilot(self, n_base, runs * guess.seconds, most_s).map(|work| self.walked(&work));
+        walked.unwrap_or(runs * guess.seconds) + runs * guess.solved
+    }
+
+    /// Seconds of all runs of a replicate that do so much work for each void.
+    fn walked(&self, work: &WorkByVoid) -> f64 {
+        let voids = self.counts[0] as f64;
+        let counted = |of_void: f64| voids * of_void * self.slower();
+        let [occupied, looked_at] = [work.occupied, work.looked_at].map(counted);
+        WALK.seconds(occupied, looked_at, voids * work.one_by_one, voids * work.moves)
+    }
+
+    /// Seconds of one run that meets a clean network all the way.
+    fn guessed(&self, n_base: u64) -> Guess {
+        let [voids, constrictions, start_nodes, layers] = self.counts.map(|n| n as f64);
+        let each = self.scene.walk.engine.takes_each(n_base / self.increments(), start_nodes as u64);
+        let one_by_one = self.one_by_one(n_base) as f64;
+        let increments = self.increments() as f64 + SPREAD * layers.sqrt();
+        let occupied = if each { 0.0 } else { self.slower() * voids * increments };
+        let solved = match self.scene.exit_rule().needs_flow() {
+            true => (increments / SOLVED_EVERY + 2.0) * constrictions * SOLVE_S,
+            false => 0.0,
+        };
+        let seconds = COUNTED.seconds(occupied, 0.0, one_by_one, one_by_one * self.moves_of_each(n_base));
+        Guess { seconds, solved }
+    }
+
+    /// How many times as long as on a cubic lattice by engine `counts` the counts of a void take.
+    fn slower(&self) -> f64 {
+        let of_network = match self.scene.network.source() {
+            NetworkSource::Cubic(_) => 1.0,
+            _ => OTHER_NETWORK,
+        };
+        of_network * if self.scene.walk.engine == Engine::Expected { EXPECTED } else { 1.0 }
     }
 
     /// Moves of a particle that is walked by itself, on average: until a finer constriction stops it, with
@@ -128,10 +184,21 @@ impl Case {
     }
 }
 
-/// Seconds of a walk, those of its network included: its increments, voids that hold counts, particles walked
-/// by themselves, and moves of those.
-fn walk_seconds(network_s: f64, increments: f64, voids: f64, one_by_one: f64, moves: f64) -> f64 {
-    network_s + VOID_S * increments * voids + INSERTION_S * one_by_one + MOVE_S * moves
+impl Rates {
+    /// Seconds for voids that hold counts and voids that are looked at, both summed over the increments,
+    /// particles that are walked by themselves, and moves of those.
+    fn seconds(&self, voids: f64, looked_at: f64, one_by_one: f64, moves: f64) -> f64 {
+        self.void_s * voids
+            + self.looked_at_s * looked_at
+            + self.inserted_s * one_by_one
+            + self.moved_s * moves
+    }
+}
+
+/// Seconds of a run, those in which the flow is solved apart.
+struct Guess {
+    seconds: f64,
+    solved: f64,
 }
 
 /// What a first run did, counted: the same on every machine.
@@ -162,7 +229,7 @@ impl CountedWork {
             false => (each * 4.0, self.voids as f64),
         };
         let network_s = CONSTRICTION_S * self.constrictions as f64;
-        walk_seconds(network_s, self.increments as f64, voids, each, moves)
+        network_s + COUNTED.seconds(self.increments as f64 * voids, 0.0, each, moves)
     }
 }
 
@@ -179,8 +246,8 @@ impl PackingPlan {
     /// Steps that packings of this friction and width of gradation took: that of a straight line of this Cu.
     pub fn usual_steps(&self) -> u64 {
         let cu = libm::sqrt(self.gradation.largest_mm() / self.gradation.smallest_mm());
-        let (at_1_5, power) = STEPS;
-        let steps = at_1_5 * libm::pow(cu / 1.5, power);
+        let (at_1_5, power, most) = STEPS;
+        let steps = (at_1_5 * libm::pow(cu / 1.5, power)).min(most);
         let steps = if self.compression.friction == 0.0 { steps.max(DENSE_STEPS) } else { steps };
         100 * (steps / 100.0).round() as u64
     }

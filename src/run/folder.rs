@@ -15,6 +15,9 @@ pub(super) const STATES: [&str; 2] = ["compression.0", "compression.1"];
 /// The files of the checkpoint of a precision study that is not finished.
 pub(crate) const STUDY: [&str; 2] = ["study.0", "study.1"];
 
+/// The files of the checkpoint of a design that is not finished.
+pub(crate) const DESIGN: [&str; 2] = ["networks.0", "networks.1"];
+
 /// What a folder holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FolderKind {
@@ -28,14 +31,29 @@ pub enum FolderKind {
     Percolation,
     /// A study of error against run time.
     Precision,
+    /// Several cases side by side.
+    Comparison,
+    /// How coarse a filter may be.
+    Design,
+    /// Sheets and jobs of a page on this machine.
+    Serve,
     /// Constrictions of a packing from elsewhere.
     Constrictions,
 }
 
 impl FolderKind {
     /// Every kind; a packing holds constrictions of its own and so comes before them.
-    pub const ALL: [Self; 6] =
-        [Self::Run, Self::Packing, Self::Campaign, Self::Percolation, Self::Precision, Self::Constrictions];
+    pub const ALL: [Self; 9] = [
+        Self::Run,
+        Self::Packing,
+        Self::Campaign,
+        Self::Percolation,
+        Self::Precision,
+        Self::Comparison,
+        Self::Design,
+        Self::Serve,
+        Self::Constrictions,
+    ];
 
     /// What a user calls it.
     pub fn name(self) -> &'static str {
@@ -45,6 +63,9 @@ impl FolderKind {
             Self::Campaign => "campaign",
             Self::Percolation => "percolation study",
             Self::Precision => "precision study",
+            Self::Comparison => "comparison",
+            Self::Design => "design",
+            Self::Serve => "page's sheets and jobs",
             Self::Constrictions => "set of constrictions",
         }
     }
@@ -57,8 +78,16 @@ impl FolderKind {
             Self::Campaign => "campaign.json",
             Self::Percolation => "percolation.json",
             Self::Precision => "precision.json",
+            Self::Comparison => "compare.json",
+            Self::Design => "design.json",
+            Self::Serve => "serve.json",
             Self::Constrictions => "constrictions.json",
         }
+    }
+
+    /// Whether a page is made of its record.
+    pub fn has_page(self) -> bool {
+        !matches!(self, Self::Constrictions | Self::Serve)
     }
 
     /// What else marks such a folder, finished or not.
@@ -68,6 +97,10 @@ impl FolderKind {
             Self::Packing => &STATES,
             Self::Campaign => &["cases"],
             Self::Precision => &STUDY,
+            Self::Comparison => &["walks"],
+            Self::Design => &DESIGN,
+            // Versions that wrote no record had them.
+            Self::Serve => &["sheets"],
             _ => &[],
         }
     }
@@ -98,7 +131,7 @@ impl FolderKind {
                 STATES[0],
                 STATES[1],
             ],
-            Self::Campaign => &[],
+            Self::Campaign | Self::Serve => &[],
             Self::Percolation => &["percolation.json", "report.html", "percolation.csv"],
             Self::Precision => &[
                 "precision.json",
@@ -118,6 +151,9 @@ impl FolderKind {
                 STUDY[0],
                 STUDY[1],
             ],
+            // Its cases stay, as all that a campaign holds.
+            Self::Comparison => &["compare.json", "compare.html", "compare.csv", "compare_pairs.csv"],
+            Self::Design => &["design.json", "design.html", "design.csv", DESIGN[0], DESIGN[1]],
             Self::Constrictions => {
                 &["constrictions.json", "constrictions.csv", "constrictions.vtp", "graph.csv", "grains.vtp"]
             }
@@ -127,7 +163,16 @@ impl FolderKind {
     /// The figures of its page, in `figures`; those of a campaign stay, as all that it holds.
     pub fn figures(self) -> &'static [&'static str] {
         match self {
-            Self::Run => &["verdict", "gradations", "eroded", "layers", "retained", "sensitivity", "slice"],
+            Self::Run => &[
+                "verdict",
+                "gradations",
+                "eroded",
+                "layers",
+                "retained",
+                "sensitivity",
+                "thickness",
+                "slice",
+            ],
             Self::Packing => &["curves", "slice", "connectivity"],
             Self::Percolation => &["percolation-sd", "percolation-threshold"],
             Self::Precision => &[
@@ -143,7 +188,9 @@ impl FolderKind {
                 "packing",
                 "triangulation",
             ],
-            Self::Campaign | Self::Constrictions => &[],
+            Self::Comparison => &["compared-runs", "compared-differences"],
+            Self::Design => &["design"],
+            Self::Campaign | Self::Serve | Self::Constrictions => &[],
         }
     }
 
@@ -152,9 +199,12 @@ impl FolderKind {
         Self::ALL.into_iter().find(|kind| folder.join(kind.record()).is_file())
     }
 
-    /// Whether the work in a folder is finished, its page included; that of a campaign can always be added
-    /// to.
-    pub(super) fn is_finished(self, folder: &Path) -> Result<bool, RunError> {
+    /// Whether the work in a folder is finished, its page included; that of a campaign or a server can always
+    /// be added to.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn is_finished(self, folder: &Path) -> Result<bool, RunError> {
         let has = |name: &str| folder.join(name).symlink_metadata().is_ok();
         Ok(!has(unfinished::FILE)
             && match self {
@@ -162,7 +212,7 @@ impl FolderKind {
                 Self::Run => has("scene.toml") && has("manifest.json") && !Checkpoints::is_in(folder)?,
                 // With a state beside it, whoever wrote the record was killed before all was done.
                 Self::Packing => has(RECORD) && !STATES.iter().any(|state| has(state)),
-                Self::Campaign => false,
+                Self::Campaign | Self::Serve => false,
                 other => has(other.record()),
             })
     }
@@ -313,7 +363,7 @@ mod tests {
             assert_eq!(FolderKind::of(&path), Some(kind));
             assert!(claim(&path, kind, true).is_ok());
             match (kind, claim(&path, kind, false)) {
-                (FolderKind::Campaign, claimed) => assert!(claimed.is_ok()),
+                (FolderKind::Campaign | FolderKind::Serve, claimed) => assert!(claimed.is_ok()),
                 (_, claimed) => {
                     let message =
                         format!("holds a {} already; name another folder or add --overwrite", kind.name());

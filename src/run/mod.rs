@@ -1,6 +1,7 @@
 //! The application: what every face of the program calls, the command line as much as any other.
 //!
-//! - [`walk_scene`] and [`resume`] walk a scene into a folder, [`walk_case`] walks a case in memory.
+//! - [`walk_scene`] and [`resume`] walk a scene into a folder, [`walk_case`] walks a case in memory,
+//!   [`walk_networks`] networks from elsewhere.
 //! - [`pack`](pack::pack) packs a filter, [`measure_constrictions`] measures a packing from elsewhere.
 //! - [`check`](check::check) says what a run would do, by the one model of [`cost`].
 //! - [`Callbacks`] follow the work and stop it, [`RunError`] says how it ended, [`folder::claim`] guards
@@ -17,15 +18,19 @@ pub mod checkpoints;
 pub mod constrictions;
 pub mod cost;
 mod curve_range;
+pub mod erosion;
 pub mod error;
 pub mod folder;
 pub mod machine;
+mod network_walk;
 pub mod other_walks;
 pub mod pack;
 mod packing_record;
+mod pilot;
 pub mod prepare;
 pub mod replicates;
 pub mod results;
+mod thickness;
 pub mod unfinished;
 pub mod walk;
 
@@ -35,6 +40,7 @@ pub use checkpoints::CheckpointInterval;
 pub use constrictions::{ConstrictionsOptions, measure_constrictions};
 pub use error::{Exit, RunError};
 pub use folder::FolderKind;
+pub use network_walk::{NetworkOutcome, NetworkWalk, WalkedNetwork, walk_networks};
 pub use pack::{FinishedPacking, PackOptions, pack};
 pub use prepare::{PrepareOptions, prepare, write_built_in, write_new};
-pub use walk::{FinishedRun, RunOptions, resume, walk_case, walk_scene};
+pub use walk::{FinishedRun, RunOptions, resume, walk_case, walk_case_recorded, walk_scene};

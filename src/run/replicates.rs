@@ -13,7 +13,7 @@ use super::checkpoints::{Checkpoints, Done, WalkId};
 use super::error::RunError;
 use crate::case::{Case, replicate_seed};
 use crate::network::Network;
-use crate::outcome::record::{Replicate, RunSummary, Sensitivity, Statistic, Stopping, Verdict};
+use crate::outcome::record::{Replicate, Run, RunSummary, Sensitivity, Statistic, Stopping, Verdict};
 use crate::outcome::stopping::Look;
 use crate::outcome::verdict::{below_by_interval, classify};
 use crate::outcome::{Recorded, RunId, RunMetrics};
@@ -46,15 +46,17 @@ pub struct ReplicateResult {
     pub engine: Engine,
     /// What the first run did not need.
     pub left_out: Vec<String>,
-    below: Vec<bool>,
+    /// Whether less than 7.5 % of the mass eroded, by run.
+    pub(super) below: Vec<bool>,
 }
 
-/// Number of runs that [`replicates`], the ends of the curve's range and [`sensitivity`] walk for a case, as
-/// far as it is known before.
+/// Number of runs that [`replicates`], the ends of the curve's range, other thicknesses and [`sensitivity`]
+/// walk for a case, as far as it is known before.
 pub fn runs_to_walk(case: &Case) -> u64 {
     let of_readings: u64 = case.readings().map(|case| networks_to_walk(case).iter().sum::<u64>()).sum();
     let at_ends = case.curve_ends().len() as u64 * first_replicates(case);
-    case.scene.walk.runs * (of_readings + at_ends)
+    let thicknesses = case.thickness_factors().len() as u64 * case.scene.record.sensitivity_replicates;
+    case.scene.walk.runs * (of_readings + at_ends + thicknesses)
 }
 
 /// Networks that one reading of a case is walked on, as far as it is known before: for itself, and for its
@@ -163,6 +165,7 @@ fn walk_replicate(
     };
     if done.complete {
         done.runs.iter().for_each(|_| context.tell(Event::RunDone));
+        done.runs.iter().zip(&done.below).for_each(|(run, below)| tell_walked(id, run, *below, context));
     }
     while !done.complete {
         let of = RunId {
@@ -185,6 +188,9 @@ fn walk_replicate(
         done.complete = done.runs.len() as u64 == case.scene.walk.runs;
         blocked = state.blocked;
         context.tell(Event::RunDone);
+        if let (Some(run), Some(below)) = (done.runs.last(), done.below.last()) {
+            tell_walked(id, run, *below, context);
+        }
         if let (true, Some(checkpoints)) = (done.complete, context.checkpoints) {
             checkpoints.save_finished(id, &done);
         }
@@ -199,7 +205,16 @@ fn walk_replicate(
     })
 }
 
-fn plan(case: &Case, network: &Network, blocked: &BitSlice<u64>, n_base: u64) -> RunPlan {
+/// Says what came of a run, if it is one of the case itself.
+fn tell_walked(id: WalkId, run: &Run, below_threshold: bool, context: &ReplicateContext) {
+    let (replicate, run, eroded_mass_fraction) = (id.replicate, run.run, run.eroded_mass_fraction);
+    if id.part == 0 {
+        context.tell(Event::RunWalked { replicate, run, eroded_mass_fraction, below_threshold });
+    }
+}
+
+/// How a run with these constrictions blocked is walked.
+pub(super) fn plan(case: &Case, network: &Network, blocked: &BitSlice<u64>, n_base: u64) -> RunPlan {
     RunPlan::new(case.scene.walk.engine, network, &case.sampler, blocked, n_base / case.increments())
         .sampled(case.scene.walk.sampling)
 }

@@ -90,6 +90,7 @@ pub fn outcome(
         },
         curve_range: other.range.clone(),
         sensitivity,
+        thickness: other.thickness.clone(),
         seconds,
     }
 }
@@ -169,8 +170,8 @@ fn rule_inputs<'a>(case: &'a Case, walked: &[ReplicateResult]) -> RuleInputs<'a>
         base_soil: BaseSoil::of(case.base_as_given(), case.is_scale_free()),
         scale_free: case.is_scale_free(),
         filter_curves: Vec::new(),
-        dispersive: false,
-        joint_mm: None,
+        dispersive: case.scene.base.dispersive == Some(true),
+        joint_mm: case.scene.filter.joint_mm,
         largest_eroded_over_d15f: (!largest.is_empty()).then(|| Statistic::of(&largest).mean),
     }
 }

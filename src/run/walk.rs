@@ -14,6 +14,7 @@ use super::replicates::{ReplicateContext, ReplicateResult, replicates, runs_to_w
 use super::results;
 use super::unfinished::{self, Unfinished};
 use crate::case::Case;
+use crate::outcome::Recorded;
 use crate::outcome::record::{Outcome, Sensitivity};
 use crate::scene::Scene;
 use crate::store::Folder;
@@ -110,6 +111,14 @@ pub fn resume(folder: &Path, options: &RunOptions, callbacks: &Callbacks) -> Res
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn walk_case(case: &Case, callbacks: &Callbacks) -> Result<Outcome, RunError> {
+    Ok(walk_case_recorded(case, callbacks)?.0)
+}
+
+/// The same, and the rows of the CSV files of a run folder.
+///
+/// # Errors
+/// As [`walk_case`].
+pub fn walk_case_recorded(case: &Case, callbacks: &Callbacks) -> Result<(Outcome, Recorded), RunError> {
     let walk = || {
         let begun = Instant::now();
         let context = ReplicateContext { callbacks, checkpoints: None };
@@ -117,7 +126,10 @@ pub fn walk_case(case: &Case, callbacks: &Callbacks) -> Result<Outcome, RunError
         let walked = replicates(case, &context)?;
         let other = OtherWalks::walk(case, &walked, &context)?;
         let sensitivity = sensitivity(case, &context)?;
-        Ok(results::outcome(case, &walked, &other, sensitivity, begun.elapsed().as_secs_f64()))
+        let outcome = results::outcome(case, &walked, &other, sensitivity, begun.elapsed().as_secs_f64());
+        let mut recorded = Recorded::default();
+        walked.into_iter().for_each(|replicate| recorded.append(replicate.recorded));
+        Ok((outcome, recorded))
     };
     match rayon::current_thread_index() {
         Some(_) => walk(),

@@ -76,6 +76,9 @@ section! {
         /// Thickness of the real filter layer (mm): where the modelled one is thicker, that is said of the
         /// verdict.
         pub thickness_mm: Option<f64> = None, off "500.0", above_zero();
+        /// Width of an open joint at the exit (mm) that is asked about: the rules of practice give the
+        /// probability of continuing erosion into it, and the verdict, which knows no joint, is in doubt.
+        pub joint_mm: Option<f64> = None, off "5.0", above_zero();
         /// N_p / N_voids of Eq. (2): filter grains per void of the packing (a shipped curve or a packing
         /// knows its own).
         pub grains_per_void: Option<f64> = None, off "0.61", above_zero();
@@ -119,6 +122,9 @@ section! {
         /// Whether the base is walked as filter practice regrades it ("practice": to 100 % finer than 4.75 mm
         /// or a gap, where practice does), or as it is ("no", the default). Needs sizes in mm.
         pub regrade: Option<Regrade> = None, off "\"practice\"", any("\"practice\" or \"no\"");
+        /// Whether the base is a dispersive clay or silt: the rules of practice take their limits for such
+        /// soils, and the verdict is in doubt.
+        pub dispersive: Option<bool> = None, off "true", any("true or false");
         /// Instead of a gradation: one size (mm).
         pub single_mm: Option<f64> = None, off "0.18", above_zero();
         /// How much base: mass of base over mass of filter, Eq. (2).
@@ -197,7 +203,11 @@ section! {
         /// Multiples of N_base that show how the verdict moves; [] leaves the study out.
         pub sensitivity: Vec<f64> = vec![0.25, 0.5, 2.0, 4.0], set,
             only("a list of numbers above 0", |list: &Vec<f64>| list.iter().all(|factor| *factor > 0.0));
-        /// Replicates of each.
+        /// Multiples of the filter's thickness that show how the verdict moves; [] leaves the study out. By
+        /// default half and twice, where `sensitivity` is walked.
+        pub thickness: Option<Vec<f64>> = None, off "[0.5, 2.0]",
+            only("a list of numbers above 0", |list: &Vec<f64>| list.iter().all(|factor| *factor > 0.0));
+        /// Replicates of each of both.
         pub sensitivity_replicates: u64 = 3, set, whole(1..=1000);
     }
 }

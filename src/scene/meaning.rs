@@ -188,6 +188,12 @@ impl NetworkKeys {
         (self.thickness_mm, self.thickness_d50f) = (None, None);
     }
 
+    /// Says how many copies of a packing its graph is made of.
+    pub fn set_copies(&mut self, copies: u64) {
+        self.copies = Some(copies);
+        (self.thickness_mm, self.thickness_d50f) = (None, None);
+    }
+
     /// Where it comes from.
     pub fn source(&self) -> NetworkSource {
         if self.kind == Some(NetworkMadeOf::Graph) {

@@ -10,6 +10,7 @@ mod groups;
 mod init;
 mod keys;
 mod meaning;
+mod tables;
 
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -24,6 +25,7 @@ pub use keys::{
 pub use meaning::{
     Amount, BaseGradation, D85, Extent, FilterGradation, NetworkSource, PackingSpec, USUAL_LAYERS,
 };
+pub use tables::{TableOptions, keep_soils};
 
 use crate::network::ExitRule;
 use crate::outcome::stopping::StopRule;

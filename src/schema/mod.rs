@@ -117,6 +117,7 @@ pub trait Leaf: Serialize + DeserializeOwned {
     }
 }
 
+impl Leaf for bool {}
 impl Leaf for u64 {}
 impl Leaf for f64 {}
 impl Leaf for String {}

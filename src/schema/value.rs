@@ -115,6 +115,14 @@ impl<'de> Deserializer<'de> for &'de Value {
         }
     }
 
+    fn deserialize_bool<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        match self {
+            Value::Other(word) if word == "true" => visitor.visit_bool(true),
+            Value::Other(word) if word == "false" => visitor.visit_bool(false),
+            _ => Err(Error::custom("not true or false")),
+        }
+    }
+
     fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
         visitor.visit_f64(self.number().ok_or_else(|| Error::custom("not a finite number"))?)
     }
@@ -144,7 +152,7 @@ impl<'de> Deserializer<'de> for &'de Value {
     }
 
     forward_to_deserialize_any! {
-        bool i8 i16 i32 i64 i128 u8 u16 u32 u128 f32 char str string bytes byte_buf option unit
+        i8 i16 i32 i64 i128 u8 u16 u32 u128 f32 char str string bytes byte_buf option unit
         unit_struct seq tuple tuple_struct map struct identifier ignored_any
     }
 }

@@ -156,3 +156,17 @@ fn thickness_is_layers_or_copies() {
     assert_eq!(flowing["network"]["kind"], "lattice");
     assert!(flowing["replicates"][0]["runs"][0]["k_over_k0"].as_f64().unwrap() <= 1.0);
 }
+
+#[test]
+fn a_graph_of_twice_the_copies_is_walked_beside_it() {
+    let root = tempfile::tempdir().unwrap();
+    prepared(root.path());
+    let thick = ["run", "scene.toml", "--out", "o", "--set", "record.thickness=[2]", "--set", "replicates=3"];
+    done(&call(root.path(), &thick));
+    let asked = ["run", "scene.toml", "--out", "thick", "--set", "network.copies=4", "--set", "replicates=3"];
+    done(&call(root.path(), &asked));
+    let [row, whole] = ["o", "thick"].map(|folder| json(&root.path().join(folder).join("outcome.json")));
+    let row = &row["thickness"][1];
+    assert_eq!((&row["n_base"], &row["verdict"]), (&whole["n_base"], &whole["verdict"]));
+    assert_eq!(row["runs"][1], whole["summary"][1]["eroded_mass_fraction"]);
+}

@@ -645,12 +645,13 @@ fn no_command_writes_into_a_folder_of_another_kind() {
         grains += &format!("{}.5{},{}.5{},{}.5,0.9\n", i % 3, 37 * i % 11, i / 3 % 3, 17 * i % 7, i / 9);
     }
     write("grains.csv", &grains);
-    let commands: [(&str, &[&str]); 6] = [
+    let commands: [(&str, &[&str]); 7] = [
         ("run", &["run"]),
         ("packing", &["pack", "filter.toml"]),
         ("campaign", &["campaign", "plan.toml"]),
         ("percolation study", &["percolation", "--sizes", "4", "--realisations", "2"]),
         ("precision study", &["precision"]),
+        ("design", &["design"]),
         ("set of constrictions", &["constrictions", "grains.csv"]),
     ];
     let marks = [
@@ -661,6 +662,8 @@ fn no_command_writes_into_a_folder_of_another_kind() {
         ("campaign", "cases"),
         ("percolation study", "percolation.json"),
         ("precision study", "precision.json"),
+        ("design", "design.json"),
+        ("design", "networks.1"),
         ("set of constrictions", "constrictions.json"),
     ];
     for (held, mark) in marks {
@@ -699,15 +702,15 @@ fn check_says_what_packing_and_walks_take() {
     let args = ["check", scene.to_str().unwrap(), "--packings", packings.to_str().unwrap()];
     let words = String::from_utf8(voidwalk(&args).stdout).unwrap();
     let line = |name: &str| words.lines().find(|line| line.starts_with(name)).unwrap().to_owned();
-    assert!(line("time to pack").contains("some 10 500 steps"), "{words}");
+    assert!(line("time to pack").contains("some 12 000 steps"), "{words}");
     assert!(line("time to walk").contains("of one core"), "{words}");
     let output = voidwalk(&[&args[..], &["--json"]].concat());
     let json: Value = serde_json::from_slice(&output.stdout).unwrap();
     let packing = &json["packing"];
-    assert_eq!((&packing["steps"], &packing["is_made"]), (&10_500.into(), &false.into()));
+    assert_eq!((&packing["steps"], &packing["is_made"]), (&12_000.into(), &false.into()));
     let seconds = packing["core_seconds"].as_f64().unwrap();
     let grains = packing["grains"].as_f64().unwrap();
-    let expected = grains * (10_500.0 * 7e-8 * (grains / 9_000.0).powf(0.2) + 5e-5);
+    let expected = grains * (12_000.0 * 7.5e-8 * (grains / 9_000.0).powf(0.3) + 5e-5);
     assert!((seconds / expected - 1.0).abs() < 1e-9, "{seconds} for {expected}");
     assert!(json["core_seconds"].as_f64().unwrap() > 0.0);
 }

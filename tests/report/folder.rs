@@ -96,6 +96,16 @@ pub fn outcome(replicates: u64) -> Outcome {
         blocked_first_three_layers_fraction: statistic(0.21 + 0.03 * run as f64, 0.004, replicates),
         backbone_fraction: statistic(0.81 - 0.05 * run as f64, 0.006, replicates),
     });
+    let thickness =
+        [(0.5, 0.301), (1.0, mean(1)), (2.0, 0.052)].into_iter().map(|(factor, first)| OfThickness {
+            factor,
+            layers: (60.0 * factor) as u64,
+            thickness_mm: Some(70.6 * factor),
+            n_base: (21_443_871.0 * factor) as u64,
+            replicates: 4,
+            verdict: if first < 0.075 { Verdict::None } else { Verdict::Some },
+            runs: vec![statistic(first, 0.01, 4), statistic(0.25 * first, 0.005, 4)],
+        });
     let verdicts = [Verdict::Continuing, Verdict::Continuing, Verdict::Some, Verdict::Some, Verdict::None];
     let sensitivity =
         [0.25, 0.5, 1.0, 2.0, 4.0].into_iter().zip(verdicts).enumerate().map(|(i, (factor, verdict))| {
@@ -260,6 +270,7 @@ pub fn outcome(replicates: u64) -> Outcome {
         }),
         curve_range: None,
         sensitivity: sensitivity.collect(),
+        thickness: thickness.collect(),
         seconds: 239.4,
     }
 }

@@ -128,7 +128,7 @@ fn nothing_may_run_or_be_fetched() {
     for forbidden in ["<script", "style=\"", "src=", "href=", "@import", "url(http", "http://", "https://"] {
         assert!(!page.contains(forbidden), "{forbidden}");
     }
-    assert_eq!(figures.len(), 6);
+    assert_eq!(figures.len(), 7);
     for (name, figure) in figures {
         assert!(
             figure.starts_with("<?xml") && figure.contains("viewBox=") && figure.contains("<title"),
@@ -235,7 +235,7 @@ fn a_run_in_which_nothing_erodes_or_is_retained_has_a_page() {
     let written = report::write(folder.path()).unwrap();
     let text = words(&fs::read_to_string(written.page).unwrap());
     assert!(text.contains("nothing eroded") && text.contains("series.csv has no rows"));
-    assert_eq!(written.figures.len(), 3);
+    assert_eq!(written.figures.len(), 4);
 }
 
 #[test]

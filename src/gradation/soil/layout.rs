@@ -117,6 +117,12 @@ fn head(rows: &[GridRow], column: usize) -> String {
 fn with_headings(grid: &Grid, at: usize, first: usize, heads: Vec<String>) -> Result<Layout, TableError> {
     let rows = &grid.rows[first..];
     let line = grid.rows[at].line;
+    if is_constriction_curve(&heads) {
+        let header = heads.join(&grid.delimiter.to_string());
+        let allowed = "opening_mm and percent_finer; this is the header of a constriction curve, which goes \
+                       to filter.curve (--set filter.curve=FILE)";
+        return Err(grid.refused_heading(line, &header, allowed));
+    }
     if rows.is_empty() {
         return Err(TableError::NoRows { file: grid.place(), header: true });
     }
@@ -186,6 +192,13 @@ fn with_headings(grid: &Grid, at: usize, first: usize, heads: Vec<String>) -> Re
     }
     let other_size = sizes.get(1).copied();
     Ok(Layout { size, other_size, unit, soils, first, headed: true })
+}
+
+/// Whether a table has the header of a constriction curve: percents by number of constrictions, not by mass.
+fn is_constriction_curve(heads: &[String]) -> bool {
+    let named = |name: &str| heads.iter().any(|head| words(head).join("_") == name);
+    let is_diameter = named("diameter_mm") || named("diameter_over_d0f");
+    heads.len() == 2 && named("percent_smaller") && is_diameter
 }
 
 /// A heading that is merged over several columns stands in the first of them; the rows below name each.

@@ -35,7 +35,8 @@ mod tables;
 mod twin;
 mod work;
 
-use kept::{Found, Kept};
+use super::kept::Kept;
+use kept::{Found, KEPT};
 pub use study::{PrecisionStudy, Tier};
 use tables::tables;
 
@@ -102,7 +103,7 @@ pub fn run(scene: Scene, options: &PrecisionOptions, callbacks: &Callbacks) -> R
     let (kind, name) = (FolderKind::Precision, FolderKind::Precision.record());
     let work = format!("{} {tiers:?} {:?}", case.fingerprint(), options.budget);
     let mark = Unfinished { kind: kind.name().into(), work, ..Unfinished::default() };
-    let kept = Kept::new(&folder, &mark.work);
+    let kept = Kept::new(&KEPT, &folder, &mark.work);
     let whole = || {
         callbacks.results(kind, folder.path())?;
         kept.discard()?;
@@ -158,7 +159,7 @@ impl PrecisionStudy<'_> {
             })?;
             found.precision.spent.push((name.into(), work::all_threads() - before));
             found.precision.seconds = seconds_before + begun.elapsed().as_secs_f64();
-            kept.keep(&found)?;
+            kept.keep(found.precision.spent.len(), &found)?;
         }
         Ok(found)
     }

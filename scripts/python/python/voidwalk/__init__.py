@@ -1,0 +1,42 @@
+"""Will this filter hold this soil? Packings, constrictions, void networks and walking base particles.
+
+The calls are those of the program voidwalk and give the same bits. Lengths are in mm unless a name says otherwise.
+
+Examples
+--------
+>>> import voidwalk as vw
+>>> network = vw.Network.cubic([10, 10, 20], "cu1.5-loose")
+>>> base = vw.Gradation.linear(1.5, 0.2, percent=85)
+>>> vw.walk(network, base, n_base=20_000, replicates=3).verdict
+'continuing erosion'
+"""
+
+from ._grains import Constrictions, Packing, constrictions, pack
+from ._network import Network
+from ._result import CampaignResult, Result
+from ._soil import Curve, Gradation
+from ._voidwalk import Progress, VoidwalkError, __version__
+from ._walk import campaign, init_text, read, replicate_seed, resume, run, scene_text, walk
+
+__all__ = [
+    "CampaignResult",
+    "Constrictions",
+    "Curve",
+    "Gradation",
+    "Network",
+    "Packing",
+    "Progress",
+    "Result",
+    "VoidwalkError",
+    "__version__",
+    "campaign",
+    "constrictions",
+    "init_text",
+    "pack",
+    "read",
+    "replicate_seed",
+    "resume",
+    "run",
+    "scene_text",
+    "walk",
+]

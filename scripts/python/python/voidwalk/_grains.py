@@ -1,0 +1,293 @@
+"""Packings of filter grains, and the constrictions between them."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import Any, Dict, Iterator, Mapping, Optional, Tuple, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _voidwalk
+from ._arrays import Floats, cell_lengths, floats, frozen, threads_or_none, whole
+from ._progress import Follower, Following
+from ._soil import Curve, Gradation
+
+__all__ = ["Constrictions", "Packing", "constrictions", "pack"]
+
+#: Overlap of two inscribed spheres from which their tetrahedra are one void.
+MERGE_OVERLAP = 0.1
+
+
+class Packing:
+    """Grains of a filter.
+
+    Parameters
+    ----------
+    coords : array_like of float, shape (n, 3)
+        Centres x, y, z (mm).
+    diameter : array_like of float, shape (n,)
+        Diameters (mm).
+    cell : None, float or array_like of float, shape (3,)
+        Lengths (mm) of a periodic cell with a corner at the origin; ``None`` for grains without one.
+
+    Attributes
+    ----------
+    coords, diameter : ndarray
+        As given, read-only.
+    cell : tuple of float or None
+        As given.
+    reached : dict
+        Of a packing that :func:`pack` made: void ratio, pressure (kPa), coordination number, share of
+        rattlers, steps, friction and seed; else empty.
+
+    Examples
+    --------
+    >>> import numpy as np, voidwalk as vw
+    >>> grid = np.stack(np.meshgrid(*[np.arange(3.0)] * 3), axis=-1).reshape(-1, 3)
+    >>> vw.Packing(grid, np.ones(27), cell=3.0)
+    Packing(27 grains, 1 to 1 mm, cell 3 x 3 x 3 mm)
+    """
+
+    __slots__ = ("coords", "diameter", "cell", "reached")
+    coords: Floats
+    diameter: Floats
+    cell: Optional[Tuple[float, float, float]]
+    reached: Dict[str, Any]
+
+    def __init__(self, coords: Any, diameter: Any, cell: Any = None) -> None:
+        self.coords = frozen(floats("coords", coords, None, 3))
+        self.diameter = frozen(floats("diameter", diameter, len(self.coords)))
+        if (self.diameter <= 0).any():
+            grain = int(np.argmax(self.diameter <= 0))
+            raise ValueError(f"diameter[{grain}] = {self.diameter[grain]} is not allowed; a size above 0 is needed")
+        self.cell = cell_lengths(cell)
+        self.reached = {}
+
+    @classmethod
+    def from_arrays(cls, coords: Any, diameter: Any, cell: Any = None) -> Packing:
+        """The class itself, by another name."""
+        return cls(coords, diameter, cell)
+
+    @classmethod
+    def from_file(cls, path: Union[str, os.PathLike[str]]) -> Packing:
+        """Grains from a CSV file with the columns x_mm, y_mm, z_mm and diameter_mm below a first line ``# cell_mm =
+        Lx, Ly, Lz`` or ``# cell = none``, or from a text dump of LAMMPS or LIGGGHTS: the last frame, `radius` or
+        `diameter`.
+
+        What a user must know of how the file was understood is warned of.
+        """
+        import warnings
+
+        (coords, diameter, cell), notes = _voidwalk.read_packing(os.fspath(path))
+        for note in notes:
+            warnings.warn(note, stacklevel=2)
+        return cls(coords, diameter, cell)
+
+    from_lammps = from_file
+
+    def constrictions(self, **options: Any) -> Constrictions:
+        """:func:`constrictions` of this packing."""
+        return constrictions(self, **options)
+
+    def __len__(self) -> int:
+        return len(self.diameter)
+
+    def __reduce__(self) -> Tuple[Any, ...]:
+        return _packing, (np.asarray(self.coords), np.asarray(self.diameter), self.cell, self.reached)
+
+    def __repr__(self) -> str:
+        cell = "no cell"
+        if self.cell is not None:
+            cell = "cell " + " x ".join(f"{length:g}" for length in self.cell) + " mm"
+        sizes = f"{self.diameter.min():g} to {self.diameter.max():g} mm" if len(self) else "no sizes"
+        return f"Packing({len(self)} grains, {sizes}, {cell})"
+
+
+def _packing(coords: Floats, diameter: Floats, cell: Any, reached: Dict[str, Any]) -> Packing:
+    packing = Packing(coords, diameter, cell)
+    packing.reached = reached
+    return packing
+
+
+def pack(
+    gradation: Gradation,
+    density: Union[str, float] = "loose",
+    grains: Optional[int] = None,
+    seed: int = 1,
+    threads: Optional[int] = None,
+    progress: Follower = None,
+) -> Packing:
+    """Packs grains of a gradation into a periodic cell, as ``voidwalk pack`` does, to the same bits.
+
+    Parameters
+    ----------
+    gradation : Gradation
+        Of the filter.
+    density : {"loose", "intermediate", "dense"} or float
+        How dense; or the friction between grains while they are compressed (0.3, 0.1 and 0).
+    grains : int, optional
+        How many; enough for a cell 5.4 times as wide as the largest grain without it, 9,000 to 60,000.
+    seed : int
+        The same seed gives the same bits.
+    threads : int, optional
+        One per core without it.
+    progress : callable, True or None
+        Told of each look at the work, a :class:`Progress`; ``True`` shows a bar where tqdm is installed.
+
+    Returns
+    -------
+    Packing
+
+    Raises
+    ------
+    ValueError
+        What is refused before any work.
+    VoidwalkError
+        Grains that do not come to rest.
+
+    Examples
+    --------
+    >>> import voidwalk as vw
+    >>> packing = vw.pack(vw.Gradation.linear(1.2), density="dense", grains=100)
+    >>> packing.coords.shape, packing.diameter.shape
+    ((100, 3), (100,))
+    """
+    number = None if grains is None else whole("grains", grains, 1)
+    with Following(progress) as callback:
+        (coords, diameter, cell), reached = _voidwalk.pack(
+            gradation._native, density, number, whole("seed", seed), threads_or_none(threads), callback
+        )
+    return _packing(coords, diameter, cell, reached)
+
+
+class Constrictions(Mapping[str, NDArray[Any]]):
+    """Voids and constrictions of a packing as arrays by key; lengths in mm.
+
+    ==========================  ==========  ========================================================
+    key                         shape       what
+    ==========================  ==========  ========================================================
+    ``pore.coords``             (v, 3)      centre of the largest sphere of each void (mm)
+    ``pore.diameter``           (v,)        its diameter (mm); 0 where there is none
+    ``pore.volume``             (v,)        volume outside the grains (mm3); periodic cells only
+    ``throat.conns``            (c, 2)      the two voids that each constriction joins
+    ``throat.shift``            (c, 3)      cells by which the second stands aside; periodic only
+    ``throat.coords``           (c, 3)      its centre (mm)
+    ``throat.diameter``         (c,)        its diameter (mm)
+    ``throat.conductance``      (c,)        conductance times viscosity (mm3); periodic only
+    ``csd.percent_smaller``     (k,)        the curve of constriction sizes by number
+    ``csd.diameter``            (k,)        its diameters (mm)
+    ==========================  ==========  ========================================================
+
+    Attributes
+    ----------
+    summary : dict
+        The figures that ``voidwalk constrictions`` writes as constrictions.json, without permeability.
+    """
+
+    __slots__ = ("_arrays", "summary", "packing", "merge_overlap")
+
+    def __init__(
+        self, arrays: Dict[str, NDArray[Any]], summary: Dict[str, Any], packing: Packing, merge_overlap: float
+    ) -> None:
+        self._arrays, self.summary, self.packing = arrays, summary, packing
+        self.merge_overlap = merge_overlap
+
+    def __getitem__(self, key: str) -> NDArray[Any]:
+        return self._arrays[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._arrays)
+
+    def __len__(self) -> int:
+        return len(self._arrays)
+
+    @property
+    def grains_per_void(self) -> float:
+        """Filter grains per void, N_p / N_voids of Eq. (2)."""
+        return float(self.summary["grains_per_void"])
+
+    @property
+    def curve(self) -> Curve:
+        """The curve of constriction sizes by number, as a :class:`Curve`."""
+        curve = Curve(self["csd.percent_smaller"], self["csd.diameter"])
+        curve.grains_per_void = self.grains_per_void
+        return curve
+
+    def to_openpnm(self) -> Dict[str, NDArray[Any]]:
+        """The voids and constrictions as a dict that OpenPNM's ``Network`` is updated with; lengths in m."""
+        si = {"pore.coords": 1e-3, "pore.diameter": 1e-3, "throat.diameter": 1e-3, "pore.volume": 1e-9}
+        named = {key: self[key] * factor for key, factor in si.items() if key in self}
+        return {**named, "throat.conns": self["throat.conns"]}
+
+    def __repr__(self) -> str:
+        voids, constrictions = len(self["pore.coords"]), len(self["throat.conns"])
+        return f"Constrictions({voids} voids, {constrictions} constrictions)"
+
+
+def constrictions(
+    coords: Any,
+    diameter: Any = None,
+    cell: Any = None,
+    *,
+    merge_overlap: float = MERGE_OVERLAP,
+    facets: str = "all",
+    threads: Optional[int] = None,
+) -> Constrictions:
+    """Measures the voids and constrictions between grains.
+
+    Parameters
+    ----------
+    coords : Packing, or array_like of float, shape (n, 3)
+        Grains, or their centres x, y, z (mm).
+    diameter : array_like of float, shape (n,)
+        Their diameters (mm); not with a packing.
+    cell : None, float or array_like of float, shape (3,)
+        Lengths (mm) of their periodic cell; not with a packing.
+    merge_overlap : float
+        Overlap of two inscribed spheres, by the radius of the smaller, from which they are one void.
+    facets : {"all", "on_both_hulls"}
+        Which facets between two voids count as constrictions.
+    threads : int, optional
+        One per core without it.
+
+    Returns
+    -------
+    Constrictions
+        A mapping with ``pore.coords``, ``pore.diameter``, ``throat.conns``, ``throat.diameter`` and more.
+
+    Raises
+    ------
+    ValueError
+        Grains that cannot be triangulated.
+
+    Examples
+    --------
+    >>> import numpy as np, voidwalk as vw
+    >>> grid = np.stack(np.meshgrid(*[np.arange(3.0)] * 3), axis=-1).reshape(-1, 3)
+    >>> found = vw.constrictions(grid, np.ones(27), cell=3.0)
+    >>> found
+    Constrictions(27 voids, 81 constrictions)
+    >>> round(float(found["throat.diameter"].max()), 6)
+    0.414214
+    """
+    if isinstance(coords, Packing):
+        if diameter is not None or cell is not None:
+            raise ValueError("diameter and cell are those of the packing: give neither")
+        packing = coords
+    elif diameter is None:
+        raise ValueError("diameter is missing: an array of shape (n,), in mm")
+    else:
+        packing = Packing(coords, diameter, cell)
+    if facets not in ("all", "on_both_hulls"):
+        raise ValueError(f"facets = {facets} is not allowed; one of all, on_both_hulls")
+    arrays, summary = _voidwalk.measure(
+        packing.coords,
+        packing.diameter,
+        packing.cell,
+        merge_overlap,
+        facets == "on_both_hulls",
+        threads_or_none(threads),
+    )
+    return Constrictions(arrays, json.loads(summary), packing, merge_overlap)

@@ -1,0 +1,210 @@
+"""What came of a walk: verdict, statistics, columns."""
+
+from __future__ import annotations
+
+import csv
+import html
+import json
+import os
+import shutil
+from importlib import import_module
+from pathlib import Path
+from typing import Any, Dict, Iterator, List, Optional, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _voidwalk
+
+__all__ = ["CampaignResult", "Result"]
+
+#: Columns by their names.
+Table = Dict[str, NDArray[Any]]
+
+#: Columns of the tables that are no whole numbers.
+_FRACTIONS = ("eroded_mass_fraction", "diameter_mm", "percent_finer_by_mass", "percent_finer_by_number", "k_over_k0")
+
+_TABLES = ("series", "layers", "retained", "eroded", "flow")
+
+
+class Result:
+    """What came of a walk.
+
+    Attributes
+    ----------
+    outcome : dict
+        Everything that ``outcome.json`` says of a scene; of a network the verdict, the summary and every
+        replicate.
+    series : dict of ndarray
+        Counts of particles after each recorded increment, by replicate and run: inserted, moving, eroded,
+        retained_in_constrictions, retained_in_voids, trapped, blocked (constrictions), eroded_mass_fraction.
+    layers : dict of ndarray
+        Constrictions, blocked ones and retained particles by replicate, run and layer.
+    retained, eroded : dict of ndarray
+        Size curves of the particles that were retained and that were eroded: diameter_mm,
+        percent_finer_by_mass, percent_finer_by_number, by replicate, run and increment.
+    flow : dict of ndarray
+        Conductance of the network over its first one, by replicate, run and increment, where water flows.
+    blocked : ndarray of bool, shape (replicates, runs, constrictions), or None
+        Of a walk on a network: which constrictions were blocked at the end of each run.
+    folder : pathlib.Path or None
+        Folder of the run, where it has one.
+    """
+
+    outcome: Dict[str, Any]
+    series: Table
+    layers: Table
+    retained: Table
+    eroded: Table
+    flow: Table
+    blocked: Optional[NDArray[np.bool_]]
+    folder: Optional[Path]
+
+    def __init__(
+        self,
+        outcome: Dict[str, Any],
+        tables: Dict[str, Table],
+        blocked: Optional[NDArray[np.bool_]] = None,
+        folder: Optional[Path] = None,
+    ) -> None:
+        self.outcome, self.blocked, self.folder = outcome, blocked, folder
+        self.series, self.layers = tables["series"], tables["layers"]
+        self.retained, self.eroded = tables["retained"], tables["eroded"]
+        self.flow = tables.get("flow", {})
+
+    @property
+    def verdict(self) -> str:
+        """Class of erosion: ``"no erosion"``, ``"some erosion"``, ``"continuing erosion"`` or ``"undecided"``."""
+        return str(self.outcome["verdict"])
+
+    @property
+    def summary(self) -> List[Dict[str, Any]]:
+        """Statistics over the replicates, a dict for each run: each a dict of mean, sd and the 95 % interval low to
+        high. The ``summary`` of ``outcome.json``."""
+        summary: List[Dict[str, Any]] = self.outcome["summary"]
+        return summary
+
+    @property
+    def replicates(self) -> List[Dict[str, Any]]:
+        """Every replicate: its seed, verdict and runs."""
+        replicates: List[Dict[str, Any]] = self.outcome["replicates"]
+        return replicates
+
+    def eroded_mass_fraction(self, run: int = 1) -> NDArray[np.float64]:
+        """Mass eroded over mass inserted in a run (1 or 2), shape (replicates,)."""
+        return np.array([replicate["runs"][run - 1]["eroded_mass_fraction"] for replicate in self.replicates])
+
+    def to_pandas(self, table: str = "series") -> Any:
+        """One of the tables series, layers, retained, eroded and flow as a pandas.DataFrame."""
+        pandas: Any = import_module("pandas")
+        if table not in _TABLES:
+            raise ValueError(f"table = {table} is not allowed; one of {', '.join(_TABLES)}")
+        return pandas.DataFrame(getattr(self, table))
+
+    def to_xarray(self, table: str = "series") -> Any:
+        """One of the tables as an xarray.Dataset over replicate, run and increment, or layer, or size."""
+        over = ["replicate", "run", "layer" if table == "layers" else "increment"]
+        if table in ("retained", "eroded"):
+            over.append("diameter_mm")
+        return self.to_pandas(table).set_index(over).to_xarray()
+
+    def report(self, path: Union[None, str, os.PathLike[str]] = None) -> Path:
+        """Writes the page of a run again from its folder's files.
+
+        Parameters
+        ----------
+        path : path-like, optional
+            Where to; ``report.html`` in the folder without it.
+
+        Returns
+        -------
+        pathlib.Path
+            The page: one file that shows itself alone.
+
+        Raises
+        ------
+        ValueError
+            A result without a folder: a page shows files, which ``run(scene, out="folder")`` writes.
+        """
+        if self.folder is None:
+            raise ValueError('this result has no folder to make a page of: run(scene, out="folder") writes one')
+        page = Path(_voidwalk.report(os.fspath(self.folder)))
+        if path is None:
+            return page
+        return Path(shutil.copyfile(page, path))
+
+    def _rows(self) -> Iterator[List[str]]:
+        for run in self.summary:
+            eroded, blocked = run["eroded_mass_fraction"], run["blocked_fraction"]
+            interval = ""
+            if eroded.get("low") is not None and eroded.get("high") is not None:
+                interval = f"{100 * eroded['low']:.2f} to {100 * eroded['high']:.2f} %"
+            yield [str(run["run"]), f"{100 * eroded['mean']:.2f} %", interval, f"{100 * blocked['mean']:.2f} %"]
+
+    def __repr__(self) -> str:
+        rows = "; ".join(f"run {run}: {mean} of the mass eroded" for run, mean, _, _ in self._rows())
+        count = len(self.replicates)
+        return f"Result({self.verdict}: {rows}; {count} {'replicate' if count == 1 else 'replicates'})"
+
+    def _repr_html_(self) -> str:
+        heads = ["run", "mass eroded", "95 % interval", "constrictions blocked"]
+        head = "".join(f"<th>{name}</th>" for name in heads)
+        cells = ("".join(f"<td>{html.escape(cell)}</td>" for cell in row) for row in self._rows())
+        body = "".join(f"<tr>{row}</tr>" for row in cells)
+        said = html.escape(self.verdict)
+        return f"<p><b>{said}</b></p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+class CampaignResult:
+    """The folder of a campaign.
+
+    Attributes
+    ----------
+    folder : pathlib.Path
+        The folder.
+    cases : dict of ndarray
+        The columns of ``cases.csv``: a row a case.
+    """
+
+    folder: Path
+    cases: Table
+
+    def __init__(self, folder: Path) -> None:
+        self.folder, self.cases = folder, _read_csv(folder / "cases.csv")
+
+    def to_pandas(self) -> Any:
+        """The cases as a pandas.DataFrame."""
+        pandas: Any = import_module("pandas")
+        return pandas.DataFrame(self.cases)
+
+    def __len__(self) -> int:
+        return len(next(iter(self.cases.values()), []))
+
+    def __repr__(self) -> str:
+        return f"CampaignResult({len(self)} cases in {self.folder})"
+
+
+def _column(name: str, cells: List[str]) -> NDArray[Any]:
+    """A column of a CSV file: of whole numbers, of numbers (no number where a cell is empty), or of words."""
+    kinds: List[Any] = [np.float64] if name in _FRACTIONS else [np.uint64, np.float64]
+    for kind in kinds:
+        try:
+            return np.array([float("nan") if kind is np.float64 and c == "" else c for c in cells]).astype(kind)
+        except ValueError:
+            continue
+    return np.array(cells)
+
+
+def _read_csv(path: Path) -> Table:
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    names = rows[0]
+    columns: List[List[str]] = [[row[i] for row in rows[1:]] for i in range(len(names))]
+    return {name: _column(name, cells) for name, cells in zip(names, columns)}
+
+
+def read_run(folder: Path) -> Result:
+    """The result of a run folder."""
+    outcome = json.loads((folder / "outcome.json").read_text(encoding="utf-8"))
+    tables = {name: _read_csv(folder / f"{name}.csv") for name in _TABLES if (folder / f"{name}.csv").exists()}
+    return Result(outcome, tables, folder=folder)

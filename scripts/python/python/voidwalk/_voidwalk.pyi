@@ -1,0 +1,221 @@
+"""What the classes of voidwalk call: the library, with arrays for columns and JSON for records."""
+
+import os
+from typing import Any, Callable, Dict, List, Optional, Tuple, Union, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+_Floats = NDArray[np.float64]
+_Ints = NDArray[np.int64]
+_Path = Union[str, os.PathLike[str]]
+_Cell = Optional[Tuple[float, float, float]]
+_Grains = Tuple[_Floats, _Floats, _Cell]
+_Tables = Dict[str, Dict[str, NDArray[Any]]]
+_Callback = Optional[Callable[[Progress], object]]
+
+__all__ = [
+    "measure",
+    "pack",
+    "read_packing",
+    "Network",
+    "VoidwalkError",
+    "campaign",
+    "init_text",
+    "report",
+    "resume",
+    "run",
+    "scene_text",
+    "Curve",
+    "Gradation",
+    "replicate_seed",
+    "walk",
+    "Progress",
+    "__version__",
+]
+
+__version__: str
+
+class VoidwalkError(Exception): ...
+
+@final
+class Progress:
+    @property
+    def stage(self) -> str: ...
+    @property
+    def done(self) -> int: ...
+    @property
+    def total(self) -> int: ...
+    @property
+    def replicate(self) -> int: ...
+    @property
+    def run(self) -> int: ...
+    @property
+    def increment(self) -> int: ...
+    @property
+    def moving(self) -> int: ...
+    @property
+    def finished(self) -> bool: ...
+
+@final
+class Gradation:
+    @staticmethod
+    def linear(percent: float, size_mm: float, cu: float) -> Gradation: ...
+    @staticmethod
+    def single(size_mm: float) -> Gradation: ...
+    @staticmethod
+    def from_points(size_mm: _Floats, percent_finer: _Floats, d0_mm: Optional[float] = None) -> Gradation: ...
+    @staticmethod
+    def in_file(path: _Path, d0_mm: Optional[float] = None) -> List[Tuple[str, Gradation]]: ...
+    def d(self, percent: float) -> Optional[float]: ...
+    def d_by_number(self, percent: float) -> Optional[float]: ...
+    def percent_finer(self, size_mm: float) -> float: ...
+    @property
+    def cu(self) -> Optional[float]: ...
+    @property
+    def pan_fraction(self) -> float: ...
+    def points(self) -> Tuple[_Floats, _Floats]: ...
+    def base_particles(self, filter: Gradation, mass_ratio: float, grains_per_void: float, voids: int) -> int: ...
+
+@final
+class Curve:
+    @staticmethod
+    def from_points(percent_smaller: _Floats, diameter_mm: _Floats) -> Curve: ...
+    @staticmethod
+    def shipped(name: str, d0_mm: float) -> Tuple[Curve, float]: ...
+    @staticmethod
+    def from_file(path: _Path, d0_mm: float) -> Curve: ...
+    def dc(self, percent: float) -> Optional[float]: ...
+    def percent_smaller(self, diameter_mm: float) -> float: ...
+    @property
+    def cu(self) -> float: ...
+    def points(self) -> Tuple[_Floats, _Floats]: ...
+
+@final
+class Network:
+    @staticmethod
+    def from_columns(
+        pores: int,
+        conns: _Ints,
+        diameter: _Floats,
+        conductance: Optional[_Floats],
+        inlets: _Ints,
+        outlets: _Ints,
+        exit: str,
+        rho: float,
+        unit_mm: float,
+    ) -> Network: ...
+    @staticmethod
+    def cubic(
+        shape: Tuple[int, int, int],
+        curve: Curve,
+        unit_mm: float,
+        seed: int,
+        exit: str,
+        rho: float,
+        exponent: Optional[float],
+    ) -> Network: ...
+    @staticmethod
+    def of_packing(
+        coords: _Floats,
+        diameter: _Floats,
+        cell: _Cell,
+        merge_overlap: float,
+        copies: int,
+        exit: str,
+        rho: float,
+        unit_mm: Optional[float],
+    ) -> Network: ...
+    @staticmethod
+    def from_csv(path: _Path, unit_mm: float) -> Network: ...
+    def to_csv(self) -> bytes: ...
+    @property
+    def pores(self) -> int: ...
+    @property
+    def throats(self) -> int: ...
+    @property
+    def unit_mm(self) -> float: ...
+    @property
+    def exit(self) -> str: ...
+    @property
+    def layers(self) -> int: ...
+    @property
+    def fingerprint(self) -> str: ...
+    def conns(self) -> _Ints: ...
+    def diameter(self) -> _Floats: ...
+    def inlets(self) -> _Ints: ...
+    def outlets(self) -> _Ints: ...
+    def layer(self) -> _Ints: ...
+    def first_passage(self, diameter_mm: float) -> Tuple[float, float]: ...
+    def flow(self) -> Tuple[_Floats, _Floats]: ...
+
+def pack(
+    gradation: Gradation,
+    density: Union[str, float],
+    grains: Optional[int],
+    seed: int,
+    threads: Optional[int],
+    progress: _Callback,
+) -> Tuple[_Grains, Dict[str, float]]: ...
+def read_packing(path: _Path) -> Tuple[_Grains, List[str]]: ...
+def measure(
+    coords: _Floats,
+    diameter: _Floats,
+    cell: _Cell,
+    merge_overlap: float,
+    on_both_hulls: bool,
+    threads: Optional[int],
+) -> Tuple[Dict[str, NDArray[Any]], str]: ...
+def replicate_seed(seed: int, replicate: int) -> int: ...
+def walk(
+    networks: List[Network],
+    base: Gradation,
+    n_base: int,
+    increments: int,
+    engine: str,
+    sampling: str,
+    seed: int,
+    runs: int,
+    replicates: int,
+    series_every: int,
+    size_curves: List[int],
+    size_classes: int,
+    d15f_mm: Optional[float],
+    threads: Optional[int],
+    progress: _Callback,
+) -> Tuple[str, _Tables, NDArray[np.bool_]]: ...
+def init_text() -> str: ...
+def scene_text(path: Optional[_Path], json: Optional[str], settings: List[str]) -> str: ...
+def run(
+    path: Optional[_Path],
+    json: Optional[str],
+    settings: List[str],
+    out: Optional[_Path],
+    overwrite: bool,
+    packings: _Path,
+    memory: Optional[int],
+    threads: Optional[int],
+    checkpoint_every: Optional[str],
+    command: str,
+    progress: _Callback,
+) -> Tuple[Optional[os.PathLike[str]], str, Optional[_Tables]]: ...
+def resume(
+    folder: _Path,
+    memory: Optional[int],
+    threads: Optional[int],
+    checkpoint_every: Optional[str],
+    command: str,
+    progress: _Callback,
+) -> None: ...
+def campaign(
+    path: _Path,
+    json: Optional[str],
+    out: _Path,
+    packings: Optional[_Path],
+    memory: Optional[int],
+    threads: Optional[int],
+    checkpoint_every: Optional[str],
+    command: str,
+    progress: _Callback,
+) -> None: ...
+def report(folder: _Path) -> os.PathLike[str]: ...

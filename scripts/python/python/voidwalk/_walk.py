@@ -1,0 +1,402 @@
+"""Walks: of networks, of scenes, of campaigns."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from pathlib import Path
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from . import _voidwalk
+from ._arrays import threads_or_none, whole
+from ._grains import Packing
+from ._network import Network
+from ._progress import Follower, Following
+from ._result import CampaignResult, Result, read_run
+from ._soil import Gradation
+
+__all__ = ["campaign", "init_text", "read", "replicate_seed", "resume", "run", "scene_text", "walk"]
+
+#: A file, or what it would say.
+Scene = Union[None, str, "os.PathLike[str]", Mapping[str, Any]]
+
+#: Base particles of a walk that is not told how many.
+USUAL_PARTICLES = 100_000
+
+
+def replicate_seed(seed: int, replicate: int) -> int:
+    """Seed of the network and the walk of a replicate, counted from 1, of a scene with this seed.
+
+    Examples
+    --------
+    >>> import voidwalk as vw
+    >>> vw.replicate_seed(1, 1) != vw.replicate_seed(1, 2)
+    True
+    """
+    return _voidwalk.replicate_seed(whole("seed", seed), whole("replicate", replicate, 1))
+
+
+def walk(
+    network: Union[Network, Callable[[int], Network]],
+    base: Union[Gradation, float],
+    *,
+    n_base: Optional[int] = None,
+    filter: Optional[Gradation] = None,
+    grains_per_void: Optional[float] = None,
+    mass_ratio: float = 0.05,
+    engine: str = "auto",
+    sampling: str = "independent",
+    seed: int = 1,
+    runs: int = 2,
+    replicates: int = 10,
+    increments: int = 100,
+    series_every: int = 1,
+    size_curves: Sequence[int] = (),
+    size_classes: int = 64,
+    threads: Optional[int] = None,
+    progress: Follower = None,
+) -> Result:
+    """Walks base particles through a network, as a scene does through one that it names, to the same bits.
+
+    Parameters
+    ----------
+    network : Network or callable
+        The network of all replicates; or what makes the network of each from its seed, as the paper does.
+    base : Gradation or float
+        The base, or the one size (mm) of its particles.
+    n_base : int, optional
+        Base particles of a run. By Eq. (2) where `filter` and `grains_per_void` are given, else 100,000.
+    filter : Gradation, optional
+        The filter: its D15 scales the largest eroded particle.
+    grains_per_void, mass_ratio : float
+        Of Eq. (2), see :meth:`Gradation.base_particles`.
+    engine : {"auto", "particles", "counts", "expected"}
+        How passive particles, which can block nothing, are walked; "expected" follows their expectation only.
+    sampling : {"independent", "stratified"}
+        Sampling of sizes and start nodes.
+    seed : int
+        The same seed gives the same bits, for any number of threads.
+    runs : {1, 2}
+        The second offers fresh base to what the first left blocked.
+    replicates : int
+        Walks with random numbers of their own.
+    increments : int
+        Equal parts in which the base is inserted.
+    series_every : int
+        The series has every such increment, and the last; 0 the last only.
+    size_curves : sequence of int
+        Increments whose size curves are recorded besides the last one's.
+    size_classes : int
+        Points of a size curve.
+    threads : int, optional
+        One per core without it.
+    progress : callable, True or None
+        Told of the walk some twenty times a second, a :class:`Progress`; an exception in it ends the walk and
+        is raised. ``True`` shows a bar where tqdm is installed.
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    ValueError
+        What is refused before any work.
+    VoidwalkError
+        Work that failed.
+    KeyboardInterrupt
+        After Ctrl-C, when the increment under way is done.
+
+    Examples
+    --------
+    >>> import voidwalk as vw
+    >>> base = vw.Gradation.linear(1.5, 0.2, percent=85)
+    >>> result = vw.walk(vw.Network.cubic([10, 10, 20]), base, n_base=20_000, replicates=3)
+    >>> result.verdict, len(result.summary), result.blocked.shape
+    ('continuing erosion', 2, (3, 2, 6000))
+
+    A new network for each replicate:
+
+    >>> made = lambda seed: vw.Network.cubic([10, 10, 20], "cu1.5-loose", seed=seed)
+    >>> vw.walk(made, base, n_base=20_000, replicates=3).verdict
+    'continuing erosion'
+    """
+    soil = base if isinstance(base, Gradation) else Gradation.single(float(base))
+    seed, count = whole("seed", seed), whole("replicates", replicates, 1)
+    if count > 100_000:
+        raise ValueError(f"replicates = {count} is not allowed; a whole number from 1 to 100000")
+    networks: List[Network]
+    if isinstance(network, Network):
+        networks = [network]
+    elif callable(network):
+        networks = [network(replicate_seed(seed, replicate)) for replicate in range(1, count + 1)]
+    else:
+        raise ValueError(f"network = {type(network).__name__} is not allowed; a Network, or what makes one")
+    if n_base is not None:
+        particles = whole("n_base", n_base, 1)
+    elif filter is not None and grains_per_void is not None:
+        particles = soil.base_particles(filter, networks[0].count, grains_per_void, mass_ratio)
+    else:
+        particles = USUAL_PARTICLES
+    with Following(progress) as callback:
+        said, tables, blocked = _voidwalk.walk(
+            [network._native for network in networks],
+            soil._native,
+            particles,
+            whole("increments", increments, 1),
+            engine,
+            sampling,
+            seed,
+            whole("runs", runs, 1),
+            count,
+            whole("series_every", series_every),
+            [whole("size_curves", increment, 1) for increment in size_curves],
+            whole("size_classes", size_classes, 1),
+            None if filter is None else filter.d(15),
+            threads_or_none(threads),
+            callback,
+        )
+    return Result(json.loads(said), tables, blocked=blocked)
+
+
+def _plain(value: Any) -> Any:
+    """Values of arrays and paths as JSON knows them."""
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    raise ValueError(f"{value!r} is not allowed in a scene; numbers, words, lists and tables are")
+
+
+def _stated(value: Any) -> Any:
+    """A dict without the settings that are ``None``: those are not given."""
+    if isinstance(value, Mapping):
+        return {str(key): _stated(of) for key, of in value.items() if of is not None}
+    return value
+
+
+def _given(scene: Scene, settings: Optional[Mapping[str, Any]]) -> Tuple[Optional[str], Optional[str], List[str]]:
+    """A scene as a path or as JSON, and the settings that change it as ``key=value``."""
+    values = [] if settings is None else list(_stated(settings).items())
+    changes = [f"{key}={json.dumps(value, default=_plain, allow_nan=False)}" for key, value in values]
+    if scene is None:
+        return None, None, changes
+    if isinstance(scene, Mapping):
+        try:
+            return None, json.dumps(_stated(scene), default=_plain, allow_nan=False), changes
+        except TypeError as error:
+            raise ValueError(f"scene: {error}") from None
+    return os.fspath(scene), None, changes
+
+
+def _command(call: str) -> str:
+    """What the manifest says that the work was started with."""
+    return f"voidwalk.{call} of Python {sys.version_info.major}.{sys.version_info.minor}"
+
+
+def scene_text(scene: Scene = None, settings: Optional[Mapping[str, Any]] = None) -> str:
+    """A scene with every setting that it has, as TOML; the built-in scene without one.
+
+    Examples
+    --------
+    >>> import voidwalk as vw
+    >>> "cu = 3" in vw.scene_text(settings={"base.cu": 3})
+    True
+    """
+    return _voidwalk.scene_text(*_given(scene, settings))
+
+
+def init_text() -> str:
+    """The built-in scene as TOML, with every setting there is and what it means, as ``voidwalk init`` writes it."""
+    return _voidwalk.init_text()
+
+
+def run(
+    scene: Scene = None,
+    out: Union[None, str, os.PathLike[str]] = None,
+    threads: Optional[int] = None,
+    *,
+    settings: Optional[Mapping[str, Any]] = None,
+    overwrite: bool = False,
+    packings: Union[str, os.PathLike[str]] = "voidwalk-packings",
+    memory: Optional[int] = None,
+    checkpoint_every: Optional[str] = None,
+    progress: Follower = None,
+) -> Result:
+    """Walks a scene, as ``voidwalk run`` does, to the same bits.
+
+    Parameters
+    ----------
+    scene : path-like, mapping or None
+        A scene's file, or a dict with what it would say; the built-in scene without one. Paths in a dict are
+        taken from the working directory.
+    out : path-like, optional
+        Folder for the results: all files that ``voidwalk run`` writes, the page too. A run that was stopped
+        there goes on. Without it everything stays in memory.
+    threads : int, optional
+        One per core, or as a cluster's job has, without it; they change no bit.
+    settings : mapping, optional
+        Settings that change the scene, as ``{"base.cu": 3}``.
+    overwrite : bool
+        Whether the results of an earlier run in `out` are replaced.
+    packings : path-like
+        Folder in which packings of filters are kept.
+    memory : int, optional
+        Bytes that the walks may take.
+    checkpoint_every : str, optional
+        How often the walks are saved, as ``"30s"`` or ``"10min"``.
+    progress : callable, True or None
+        As for :func:`walk`.
+
+    Returns
+    -------
+    Result
+        With ``verdict``, ``summary`` and ``outcome``, and the columns of the CSV files.
+
+    Raises
+    ------
+    ValueError
+        What is refused before any work, in the words of the command line.
+    VoidwalkError
+        Work that failed.
+    KeyboardInterrupt
+        After Ctrl-C, when the increment under way is done: with `out` the progress is saved, and the same call
+        goes on.
+
+    Examples
+    --------
+    >>> import voidwalk as vw
+    >>> small = {"network": {"nx": 8, "ny": 8, "nz": 12}, "record": {"sensitivity": []}, "replicates": 2}
+    >>> filter, base = {"curve": "shire2016-cu1.5-loose"}, {"cu": 1.5, "d85_at_dc": 5}
+    >>> vw.run({**small, "filter": filter, "base": base}).verdict
+    'continuing erosion'
+    """
+    path, text, changes = _given(scene, settings)
+    with Following(progress) as callback:
+        folder, said, tables = _voidwalk.run(
+            path,
+            text,
+            changes,
+            None if out is None else os.fspath(out),
+            bool(overwrite),
+            os.fspath(packings),
+            None if memory is None else whole("memory", memory, 1),
+            threads_or_none(threads),
+            checkpoint_every,
+            _command("run"),
+            callback,
+        )
+    if tables is None:
+        assert folder is not None
+        return read_run(Path(folder))
+    return Result(json.loads(said), tables)
+
+
+def resume(
+    folder: Union[str, os.PathLike[str]],
+    threads: Optional[int] = None,
+    *,
+    memory: Optional[int] = None,
+    checkpoint_every: Optional[str] = None,
+    progress: Follower = None,
+) -> Result:
+    """Continues a run that was stopped or killed, with the same bits, as ``voidwalk resume`` does.
+
+    Parameters
+    ----------
+    folder : path-like
+        Its folder.
+    threads, memory, checkpoint_every, progress
+        As for :func:`run`.
+
+    Returns
+    -------
+    Result
+    """
+    bytes_ = None if memory is None else whole("memory", memory, 1)
+    with Following(progress) as callback:
+        _voidwalk.resume(
+            os.fspath(folder), bytes_, threads_or_none(threads), checkpoint_every, _command("resume"), callback
+        )
+    return read_run(Path(folder))
+
+
+def campaign(
+    plan: Union[str, os.PathLike[str], Mapping[str, Any]],
+    out: Union[str, os.PathLike[str]] = "voidwalk-campaign",
+    threads: Optional[int] = None,
+    *,
+    packings: Union[None, str, os.PathLike[str]] = None,
+    memory: Optional[int] = None,
+    checkpoint_every: Optional[str] = None,
+    progress: Follower = None,
+) -> CampaignResult:
+    """Walks the cases of a plan, each once, as ``voidwalk campaign`` does.
+
+    Parameters
+    ----------
+    plan : path-like or mapping
+        The plan's file, or a dict with what it would say.
+    out : path-like
+        Folder for the campaign; cases that are done there are not walked again.
+    threads, memory, checkpoint_every, progress
+        As for :func:`run`; progress counts cases.
+    packings : path-like, optional
+        Folder in which packings of filters are kept; one in `out` without it.
+
+    Returns
+    -------
+    CampaignResult
+
+    Raises
+    ------
+    ValueError
+        What is refused before any work.
+    VoidwalkError
+        Cases that could not be walked; the others are done.
+    """
+    is_dict = isinstance(plan, Mapping)
+    path, text, _ = _given(plan, None)
+    with Following(progress) as callback:
+        _voidwalk.campaign(
+            "plan.toml" if is_dict or path is None else path,
+            text,
+            os.fspath(out),
+            None if packings is None else os.fspath(packings),
+            None if memory is None else whole("memory", memory, 1),
+            threads_or_none(threads),
+            checkpoint_every,
+            _command("campaign"),
+            callback,
+        )
+    return CampaignResult(Path(out))
+
+
+def read(folder: Union[str, os.PathLike[str]]) -> Union[Result, CampaignResult, Packing]:
+    """What lies in a finished folder of a run, a campaign or a packing.
+
+    Parameters
+    ----------
+    folder : path-like
+        The folder.
+
+    Returns
+    -------
+    Result, CampaignResult or Packing
+    """
+    place = Path(folder)
+    if (place / "outcome.json").is_file():
+        return read_run(place)
+    if (place / "cases.csv").is_file():
+        return CampaignResult(place)
+    if (place / "packing.json").is_file():
+        packing = Packing.from_file(place / "grains.csv")
+        recorded: Dict[str, Any] = json.loads((place / "packing.json").read_text(encoding="utf-8"))
+        packing.reached = {**recorded.get("after", {}), "seed": recorded.get("seed")}
+        return packing
+    raise ValueError(f"{place}: holds no outcome.json, cases.csv or packing.json; name a finished folder")

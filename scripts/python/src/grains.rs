@@ -1,0 +1,135 @@
+//! Packings, and the constrictions between their grains.
+
+use numpy::{IntoPyArray, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use voidwalk::campaign::CampaignCallbacks;
+use voidwalk::case::PackingPlan;
+use voidwalk::constrictions::{Constrictions, ConstrictionsError, Facets, Triangulation, VoidGraph};
+use voidwalk::packing::{Compression, Packing, PackingError, Settings, draw, random_start};
+use voidwalk::run::machine::threads as pool;
+use voidwalk::run::{Event, RunError};
+use voidwalk::scene::Density;
+
+use crate::arrays::{of_packing, of_rows, packing};
+use crate::problem::{of_constrictions, refused};
+use crate::soil::Gradation;
+use crate::work::at_work;
+
+/// Steps of a compression between two looks whether it is to stop.
+const STEPS: u64 = 50;
+
+type Arrays<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, Option<[f64; 3]>);
+
+/// Draws grains from a gradation and compresses them; grains, and what was reached.
+#[pyfunction]
+#[pyo3(signature = (gradation, density, grains, seed, threads, progress))]
+pub fn pack<'py>(
+    py: Python<'py>,
+    gradation: &Gradation,
+    density: &Bound<'py, PyAny>,
+    grains: Option<usize>,
+    seed: u64,
+    threads: Option<usize>,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<(Arrays<'py>, Bound<'py, PyDict>)> {
+    let gradation = &gradation.inner;
+    let friction = match density.extract::<f64>() {
+        Ok(friction) => friction,
+        Err(_) => {
+            let word: String = density.extract()?;
+            let known = Density::ALL.into_iter().find(|density| density.name() == word);
+            let words = Density::ALL.map(Density::name).join(", ");
+            known
+                .ok_or_else(|| {
+                    refused(format!("density = {word} is not allowed; one of {words}, or a friction"))
+                })?
+                .friction()
+        }
+    };
+    let grains = grains.unwrap_or_else(|| PackingPlan::usual_grains(gradation));
+    let settings = Settings { grains, friction, seed, ..Settings::default() };
+    let (found, report) = at_work(py, progress, |callbacks| {
+        let on = |callbacks: &CampaignCallbacks| {
+            settings.check()?;
+            let start = random_start(&draw(gradation, settings.grains, settings.seed), &settings)?;
+            let mut compression = Compression::new(&start, &settings)?;
+            let report = compression.run_reporting(STEPS, |at| {
+                (callbacks.run.on_event)(Event::Packing(at));
+                !callbacks.run.is_stopped()
+            });
+            Ok((compression.packing(), report?))
+        };
+        let packed: Result<_, PackingError> = pool(threads)?.install(|| on(callbacks));
+        packed.map_err(|error| match error {
+            PackingError::Stopped(_) => RunError::Stopped(String::new()),
+            error => error.into(),
+        })
+    })?;
+    let reached = PyDict::new(py);
+    reached.set_item("void_ratio", report.after.void_ratio)?;
+    reached.set_item("pressure_kpa", report.after.pressure_kpa)?;
+    reached.set_item("coordination", report.after.coordination)?;
+    reached.set_item("rattlers", report.after.rattlers)?;
+    reached.set_item("friction", friction)?;
+    reached.set_item("seed", seed)?;
+    reached.set_item("steps", report.steps)?;
+    Ok((of_packing(py, found)?, reached))
+}
+
+/// Grains from a CSV file or a LAMMPS text dump, and how the file was understood.
+#[pyfunction]
+pub fn read_packing(py: Python<'_>, path: std::path::PathBuf) -> PyResult<(Arrays<'_>, Vec<String>)> {
+    let (found, notes) = py.detach(|| Packing::read_with_notes(path)).map_err(refused)?;
+    Ok((of_packing(py, found)?, notes))
+}
+
+/// Voids and constrictions between grains, as a dict of arrays, and a summary as JSON.
+#[pyfunction]
+#[pyo3(signature = (coords, diameter, cell, merge_overlap, on_both_hulls, threads))]
+pub fn measure<'py>(
+    py: Python<'py>,
+    coords: PyReadonlyArray2<'py, f64>,
+    diameter: PyReadonlyArray1<'py, f64>,
+    cell: Option<[f64; 3]>,
+    merge_overlap: f64,
+    on_both_hulls: bool,
+    threads: Option<usize>,
+) -> PyResult<(Bound<'py, PyDict>, String)> {
+    let grains = packing(&coords, &diameter, cell)?;
+    let facets = if on_both_hulls { Facets::OnBothHulls } else { Facets::All };
+    let (found, graph, curve, summary) = at_work(py, None, |_| {
+        pool(threads)?.install(|| {
+            let refused = |error: ConstrictionsError| of_constrictions(&error);
+            let t = Triangulation::new(&grains).map_err(|error| refused(error.into()))?;
+            let found = Constrictions::from_triangulation(&t, merge_overlap, facets).map_err(refused)?;
+            // Grains without a cell, and voids that run through it, have no graph; nor do only some facets.
+            let graph = VoidGraph::of(&t, merge_overlap).ok().filter(|_| facets == Facets::All);
+            let curve = found.curve().map_err(RunError::refused)?;
+            let summary = serde_json::to_string(&found.summary().map_err(RunError::refused)?)?;
+            Ok((found, graph, curve, summary))
+        })
+    })?;
+    let arrays = PyDict::new(py);
+    let pairs = |a: &[u32], b: &[u32]| -> Vec<[i64; 2]> {
+        a.iter().zip(b).map(|(&a, &b)| [i64::from(a), i64::from(b)]).collect()
+    };
+    let Constrictions { diameter_mm, centre_mm, upstream, downstream, .. } = found;
+    arrays.set_item("pore.coords", of_rows(py, found.void_centre_mm)?)?;
+    arrays.set_item("pore.diameter", found.void_diameter_mm.into_pyarray(py))?;
+    if let Some(graph) = graph {
+        // The same constrictions, with the cell in which the other void stands.
+        arrays.set_item("throat.conns", of_rows(py, pairs(&graph.from, &graph.to))?)?;
+        arrays.set_item("pore.volume", graph.volume_mm3.into_pyarray(py))?;
+        arrays.set_item("throat.shift", of_rows(py, graph.shift)?)?;
+        arrays.set_item("throat.conductance", graph.conductance_mm3.into_pyarray(py))?;
+    } else {
+        arrays.set_item("throat.conns", of_rows(py, pairs(&upstream, &downstream))?)?;
+    }
+    arrays.set_item("throat.coords", of_rows(py, centre_mm)?)?;
+    arrays.set_item("throat.diameter", diameter_mm.into_pyarray(py))?;
+    let (percent, size): (Vec<f64>, Vec<f64>) = curve.points().into_iter().unzip();
+    arrays.set_item("csd.percent_smaller", percent.into_pyarray(py))?;
+    arrays.set_item("csd.diameter", size.into_pyarray(py))?;
+    Ok((arrays, summary))
+}

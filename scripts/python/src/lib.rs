@@ -1,0 +1,42 @@
+//! The Python face of voidwalk: arrays and dicts in, calls of the library, arrays and dicts out.
+//!
+//! Nothing of the model is here. `work` lets a call run without the interpreter and hears Ctrl-C; the other files
+//! each turn the arguments of one stage into those of the library, and what comes back into arrays. The classes that
+//! a user sees are written in Python (`python/voidwalk`), over these.
+
+mod arrays;
+mod grains;
+mod network;
+mod problem;
+mod scenes;
+mod soil;
+mod walks;
+mod work;
+
+use pyo3::prelude::*;
+
+/// What voidwalk's Python classes call. It keeps no state that threads could share, so an interpreter without a
+/// global lock needs none for it.
+#[pymodule(gil_used = false)]
+mod _voidwalk {
+    #[pymodule_export]
+    use crate::grains::{measure, pack, read_packing};
+    #[pymodule_export]
+    use crate::network::Network;
+    #[pymodule_export]
+    use crate::problem::VoidwalkError;
+    #[pymodule_export]
+    use crate::scenes::{campaign, init_text, report, resume, run, scene_text};
+    #[pymodule_export]
+    use crate::soil::{Curve, Gradation};
+    #[pymodule_export]
+    use crate::walks::{replicate_seed, walk};
+    #[pymodule_export]
+    use crate::work::Progress;
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -1,0 +1,161 @@
+//! Gradations and constriction curves.
+
+use numpy::{IntoPyArray, PyReadonlyArray1};
+use pyo3::prelude::*;
+use voidwalk::constrictions::{self, CurveUnit};
+use voidwalk::gradation::{self, curves_in_file};
+
+use crate::arrays::column;
+use crate::problem::refused;
+
+/// A sieve curve of the library.
+#[pyclass(frozen, module = "voidwalk._voidwalk", skip_from_py_object)]
+pub struct Gradation {
+    pub inner: gradation::Gradation,
+}
+
+type Points<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
+
+fn points(py: Python<'_>, points: Vec<(f64, f64)>) -> Points<'_> {
+    let (first, second): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
+    (first.into_pyarray(py).into_any(), second.into_pyarray(py).into_any())
+}
+
+#[pymethods]
+impl Gradation {
+    #[staticmethod]
+    fn linear(percent: f64, size_mm: f64, cu: f64) -> PyResult<Self> {
+        let inner = match percent {
+            0.0 => gradation::Gradation::linear_from_d0(size_mm, cu),
+            percent => gradation::Gradation::linear_from_dx(percent, size_mm, cu),
+        };
+        Ok(Self { inner: inner.map_err(refused)? })
+    }
+
+    #[staticmethod]
+    fn single(size_mm: f64) -> PyResult<Self> {
+        Ok(Self { inner: gradation::Gradation::single(size_mm).map_err(refused)? })
+    }
+
+    #[staticmethod]
+    #[pyo3(signature = (size_mm, percent_finer, d0_mm=None))]
+    fn from_points(
+        size_mm: PyReadonlyArray1<'_, f64>,
+        percent_finer: PyReadonlyArray1<'_, f64>,
+        d0_mm: Option<f64>,
+    ) -> PyResult<Self> {
+        let (sizes, percent) = (column("size_mm", &size_mm)?, column("percent_finer", &percent_finer)?);
+        if sizes.len() != percent.len() {
+            let (sizes, percents) = (sizes.len(), percent.len());
+            return Err(refused(format!("size_mm has {sizes} entries, but percent_finer has {percents}")));
+        }
+        let points: Vec<(f64, f64)> = sizes.iter().copied().zip(percent.iter().copied()).collect();
+        Ok(Self { inner: gradation::Gradation::from_points(&points, d0_mm).map_err(refused)? })
+    }
+
+    /// Every soil in a file, by name.
+    #[staticmethod]
+    #[pyo3(signature = (path, d0_mm=None))]
+    fn in_file(path: std::path::PathBuf, d0_mm: Option<f64>) -> PyResult<Vec<(String, Self)>> {
+        let curves = curves_in_file(&path, d0_mm).map_err(refused)?;
+        Ok(curves.into_iter().map(|(name, inner)| (name, Self { inner })).collect())
+    }
+
+    fn d(&self, percent: f64) -> Option<f64> {
+        self.inner.d(percent)
+    }
+
+    fn d_by_number(&self, percent: f64) -> Option<f64> {
+        self.inner.d_by_number(percent)
+    }
+
+    fn percent_finer(&self, size_mm: f64) -> f64 {
+        self.inner.percent_finer_by_mass(size_mm)
+    }
+
+    #[getter]
+    fn cu(&self) -> Option<f64> {
+        self.inner.cu()
+    }
+
+    #[getter]
+    fn pan_fraction(&self) -> f64 {
+        self.inner.pan_fraction()
+    }
+
+    fn points<'py>(&self, py: Python<'py>) -> Points<'py> {
+        points(py, self.inner.points())
+    }
+
+    /// Base particles by Eq. (2), with this gradation as the base.
+    fn base_particles(
+        &self,
+        filter: &Self,
+        mass_ratio: f64,
+        grains_per_void: f64,
+        voids: u64,
+    ) -> PyResult<u64> {
+        let supply =
+            gradation::base_particles(mass_ratio, grains_per_void, voids, &self.inner, &filter.inner, None);
+        Ok(supply.map_err(refused)?.n_base)
+    }
+}
+
+/// A constriction curve of the library, in mm.
+#[pyclass(frozen, module = "voidwalk._voidwalk", skip_from_py_object)]
+pub struct Curve {
+    pub inner: constrictions::Curve,
+}
+
+#[pymethods]
+impl Curve {
+    #[staticmethod]
+    fn from_points(
+        percent_smaller: PyReadonlyArray1<'_, f64>,
+        diameter_mm: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<Self> {
+        let (percent, size) =
+            (column("percent_smaller", &percent_smaller)?, column("diameter_mm", &diameter_mm)?);
+        if percent.len() != size.len() {
+            let (percents, sizes) = (percent.len(), size.len());
+            return Err(refused(format!(
+                "percent_smaller has {percents} entries, but diameter_mm has {sizes}"
+            )));
+        }
+        let points: Vec<(f64, f64)> = percent.iter().copied().zip(size.iter().copied()).collect();
+        let inner = constrictions::Curve::from_points(&points, CurveUnit::Mm).map_err(refused)?;
+        Ok(Self { inner })
+    }
+
+    /// The shipped curve of this name, of a filter with this smallest grain, and its grains per void.
+    #[staticmethod]
+    fn shipped(name: &str, d0_mm: f64) -> PyResult<(Self, f64)> {
+        let filter = constrictions::find(name).map_err(refused)?;
+        let inner = filter.curve().and_then(|curve| curve.in_mm(d0_mm)).map_err(refused)?;
+        Ok((Self { inner }, filter.grains_per_void))
+    }
+
+    #[staticmethod]
+    fn from_file(path: std::path::PathBuf, d0_mm: f64) -> PyResult<Self> {
+        let inner =
+            constrictions::Curve::from_csv(path).and_then(|curve| curve.in_mm(d0_mm)).map_err(refused)?;
+        Ok(Self { inner })
+    }
+
+    fn dc(&self, percent: f64) -> Option<f64> {
+        self.inner.dc(percent)
+    }
+
+    fn percent_smaller(&self, diameter_mm: f64) -> f64 {
+        self.inner.percent_smaller(diameter_mm)
+    }
+
+    #[getter]
+    fn cu(&self) -> f64 {
+        self.inner.cu()
+    }
+
+    fn points<'py>(&self, py: Python<'py>) -> Points<'py> {
+        points(py, self.inner.points())
+    }
+}

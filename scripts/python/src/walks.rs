@@ -1,0 +1,96 @@
+//! Walks of given networks.
+
+use std::sync::Arc;
+
+use numpy::IntoPyArray;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use voidwalk::case;
+use voidwalk::outcome::{Recorded, Wanted};
+use voidwalk::run::machine::threads as pool;
+use voidwalk::run::{NetworkWalk, walk_networks};
+use voidwalk::walk::{Engine, Sampling};
+
+use crate::arrays::tables;
+use crate::network::Network;
+use crate::problem::{failed, refused};
+use crate::soil::Gradation;
+use crate::work::at_work;
+
+/// The seed of a replicate, counted from 1.
+#[pyfunction]
+pub fn replicate_seed(seed: u64, replicate: u64) -> u64 {
+    case::replicate_seed(seed, replicate)
+}
+
+/// Walks networks; what came of it as JSON, the tables of a run, and which throats were blocked by replicate and run.
+#[pyfunction]
+#[pyo3(signature = (
+    networks, base, n_base, increments, engine, sampling, seed, runs, replicates, series_every, size_curves,
+    size_classes, d15f_mm, threads, progress
+))]
+#[allow(clippy::too_many_arguments)]
+pub fn walk<'py>(
+    py: Python<'py>,
+    networks: Vec<PyRef<'py, Network>>,
+    base: &Gradation,
+    n_base: u64,
+    increments: u64,
+    engine: &str,
+    sampling: &str,
+    seed: u64,
+    runs: u64,
+    replicates: u64,
+    series_every: u64,
+    size_curves: Vec<u64>,
+    size_classes: usize,
+    d15f_mm: Option<f64>,
+    threads: Option<usize>,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<(String, Bound<'py, PyDict>, Bound<'py, PyAny>)> {
+    let word = |name: &str, given: &str, words: String| {
+        refused(format!("{name} = {given} is not allowed; one of {words}"))
+    };
+    let engines = || word("engine", engine, Engine::ALL.map(Engine::name).join(", "));
+    let samplings = || word("sampling", sampling, Sampling::ALL.map(Sampling::name).join(", "));
+    let plan = NetworkWalk {
+        base: base.inner.clone(),
+        n_base,
+        increments,
+        engine: Engine::ALL.into_iter().find(|known| known.name() == engine).ok_or_else(engines)?,
+        sampling: Sampling::ALL.into_iter().find(|known| known.name() == sampling).ok_or_else(samplings)?,
+        seed,
+        runs,
+        replicates,
+        wanted: Wanted { series_every, size_curves, size_classes },
+        d15f_mm,
+    };
+    let throats = networks.first().map_or(0, |network| network.throat_count());
+    if networks.iter().any(|network| network.throat_count() != throats) {
+        return Err(refused("the networks of the replicates differ in their number of throats"));
+    }
+    let given: Vec<Arc<voidwalk::Network>> = networks.iter().map(|network| network.inner.clone()).collect();
+    let outcome = at_work(py, progress, |callbacks| {
+        pool(threads)?.install(|| walk_networks(&given, &plan, &callbacks.run))
+    })?;
+    let mut blocked = Vec::with_capacity(replicates as usize * runs as usize * throats);
+    for (i, walked) in outcome.replicates.iter().enumerate() {
+        let network = &networks[i % networks.len()];
+        walked.blocked.iter().for_each(|exits| blocked.extend(network.blocked(exits)));
+    }
+    let blocked =
+        blocked.into_pyarray(py).call_method1("reshape", ((replicates as usize, runs as usize, throats),))?;
+    let first = outcome.replicates.first().map(|walked| &walked.result);
+    let said = serde_json::json!({
+        "verdict": outcome.verdict,
+        "seed": seed,
+        "n_base": n_base,
+        "engine": first.map(|first| first.engine),
+        "left_out": first.map(|first| &first.left_out),
+        "replicates": outcome.replicates.iter().map(|walked| &walked.result.replicate).collect::<Vec<_>>(),
+        "summary": outcome.summary,
+    });
+    let mut recorded = Recorded::default();
+    outcome.replicates.into_iter().for_each(|walked| recorded.append(walked.result.recorded));
+    Ok((serde_json::to_string(&said).map_err(failed)?, tables(py, &recorded)?, blocked))
+}

@@ -1,0 +1,194 @@
+"""How long calls behave: Ctrl-C, callbacks, threads, processes."""
+
+from __future__ import annotations
+
+import json
+import multiprocessing
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+from typing import Any, Dict, List
+
+import numpy as np
+import pytest
+from conftest import lattice
+
+import voidwalk as vw
+
+#: Runs a scene from the command line's first argument, and says how it ended and when.
+CHILD = """
+import json, signal, sys, time, voidwalk as vw
+# A shell that starts something in the background has it ignore Ctrl-C.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+print("begun", flush=True)
+try:
+    vw.run(json.loads(sys.argv[1]), out=sys.argv[2] or None, checkpoint_every="1s" if sys.argv[2] else None)
+    print("ended")
+except KeyboardInterrupt as error:
+    print("interrupted", time.time(), error)
+"""
+
+
+def interrupted(scene: Dict[str, Any], out: str) -> "tuple[float, str]":
+    """Seconds from Ctrl-C to the end of a walk in a process of its own, and what it said."""
+    child = subprocess.Popen(
+        [sys.executable, "-c", CHILD, json.dumps(scene), out], stdout=subprocess.PIPE, text=True
+    )
+    assert child.stdout is not None and child.stdout.readline() == "begun\n"
+    time.sleep(1.5)
+    sent = time.time()
+    child.send_signal(signal.SIGINT)
+    word, at, *text = child.communicate(timeout=60)[0].split(maxsplit=2)
+    assert word == "interrupted"
+    return float(at) - sent, " ".join(text)
+
+
+def test_ctrl_c_ends_a_walk_within_a_second(long: Dict[str, Any]) -> None:
+    seconds, _ = interrupted(long, "")
+    assert seconds < 1.0
+
+
+def test_ctrl_c_loses_nothing_that_was_saved(small: Dict[str, Any], tmp_path: Path) -> None:
+    scene = {**small, "replicates": 3, "engine": "particles"}
+    scene["base"] = {**small["base"], "n_base": 2_000_000}
+    seconds, text = interrupted(scene, str(tmp_path / "run"))
+    assert "progress saved" in text and not (tmp_path / "run" / "outcome.json").exists()
+    resumed = vw.resume(tmp_path / "run")
+    whole = vw.run(scene)
+    assert resumed.summary == whole.summary
+    for key in whole.series:
+        assert np.array_equal(resumed.series[key], whole.series[key]), key
+
+
+def test_ctrl_c_ends_a_packing() -> None:
+    code = (
+        "import signal, time, voidwalk as vw\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "print('begun', flush=True)\n"
+        "try:\n    vw.pack(vw.Gradation.linear(1.5), grains=9000)\n"
+        "except KeyboardInterrupt:\n    print('interrupted', time.time())\n"
+    )
+    child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
+    assert child.stdout is not None and child.stdout.readline() == "begun\n"
+    time.sleep(2)
+    sent = time.time()
+    child.send_signal(signal.SIGINT)
+    word, at = child.communicate(timeout=60)[0].split()
+    # Fifty steps of nine thousand grains; in a build without optimisation a few seconds.
+    assert word == "interrupted" and float(at) - sent < 10.0
+
+
+def test_other_threads_run_while_a_walk_walks(small: Dict[str, Any]) -> None:
+    ticks: List[float] = []
+    done = threading.Event()
+
+    def tick() -> None:
+        while not done.is_set():
+            ticks.append(time.perf_counter())
+            time.sleep(0.005)
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    begun = time.perf_counter()
+    vw.walk(lattice(), vw.Gradation.linear(1.5, 0.2, 85), n_base=1_000_000, replicates=2, engine="particles", threads=1)
+    ended = time.perf_counter()
+    done.set()
+    thread.join()
+    inside = [t for t in ticks if begun < t < ended]
+    assert ended - begun > 0.2 and len(inside) > (ended - begun) / 0.005 / 10
+
+
+def test_a_callback_is_told_how_far_the_walk_is(small: Dict[str, Any]) -> None:
+    told: List[vw.Progress] = []
+    vw.run(small, progress=told.append)
+    last = told[-1]
+    assert (last.stage, last.done, last.total, last.finished) == ("walking", 4, 4, True)
+    assert all(not p.finished for p in told[:-1]) and "stage='walking'" in repr(last)
+    packed: List[vw.Progress] = []
+    vw.pack(vw.Gradation.linear(1.2), grains=60, progress=packed.append)
+    assert packed[-1].finished and packed[-1].increment > 0
+
+
+def test_an_exception_in_a_callback_ends_the_walk_and_is_raised(long: Dict[str, Any], tmp_path: Path) -> None:
+    class Enough(Exception):
+        pass
+
+    def enough(progress: vw.Progress) -> None:
+        if progress.increment > 0:
+            raise Enough(progress.increment)
+
+    begun = time.time()
+    with pytest.raises(Enough):
+        vw.run(long, progress=enough)
+    assert time.time() - begun < 30
+    with pytest.raises(Enough):
+        vw.walk(lattice(), 0.2, n_base=10_000, replicates=100_000, progress=enough)
+    with pytest.raises(ValueError, match="progress = 3 is not allowed"):
+        vw.walk(lattice(), 0.2, progress=3)  # type: ignore[arg-type]
+
+
+def test_a_bar_is_shown_where_there_is_one(capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("tqdm")
+    vw.walk(lattice(), 0.2, n_base=1000, replicates=2, progress=True)
+    assert "run" in capsys.readouterr().err
+
+
+def test_threads_change_no_bit() -> None:
+    base = vw.Gradation.linear(3.0, 0.25, 85)
+    first, *others = (vw.walk(lattice(), base, n_base=20_000, replicates=3, threads=n) for n in (1, 2, 5, None))
+    for other in others:
+        assert other.summary == first.summary and np.array_equal(other.blocked, first.blocked)
+
+
+def test_results_are_pickled_whole() -> None:
+    result = vw.walk(lattice(), 0.25, n_base=2000, replicates=2)
+    again = pickle.loads(pickle.dumps(result))
+    assert again.outcome == result.outcome and np.array_equal(again.blocked, result.blocked)
+    assert repr(again) == repr(result) and again.eroded_mass_fraction(2).shape == (2,)
+
+
+def work(seed: int) -> float:
+    """What a child process does."""
+    walked = vw.walk(lattice(), vw.Gradation.linear(1.5, 0.2, 85), n_base=5000, replicates=2, seed=seed)
+    return float(walked.eroded_mass_fraction().mean())
+
+
+@pytest.mark.parametrize("method", ["fork", "spawn", "forkserver"])
+@pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
+def test_processes_walk_as_this_one_does(method: str) -> None:
+    """After a walk here, so that a pool of threads that outlived it would hang a forked child."""
+    here = [work(seed) for seed in (1, 2, 3)]
+    context: Any = multiprocessing.get_context(method)
+    with context.Pool(2) as pool:
+        assert pool.map_async(work, (1, 2, 3)).get(timeout=120) == here
+
+
+def test_threads_of_python_walk_side_by_side() -> None:
+    found: Dict[int, float] = {}
+    threads = [threading.Thread(target=lambda s=seed: found.__setitem__(s, work(s))) for seed in (1, 2, 3, 4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(120)
+    assert found == {seed: work(seed) for seed in (1, 2, 3, 4)}
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork here")
+@pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
+def test_a_fork_in_a_callback_lets_both_go_on() -> None:
+    """The child ends at once; what waits for the walk is the parent alone."""
+    children: List[int] = []
+
+    def fork(progress: vw.Progress) -> None:
+        if not children:
+            child = os.fork()
+            if child == 0:
+                os._exit(7)
+            children.append(child)
+
+    vw.walk(lattice(), 0.2, n_base=50_000, replicates=5, progress=fork)
+    assert os.waitstatus_to_exitcode(os.waitpid(children[0], 0)[1]) == 7

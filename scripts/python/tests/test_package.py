@@ -1,0 +1,55 @@
+"""The package itself: version, types, the names that are a contract."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import ROOT
+
+import voidwalk as vw
+
+
+def test_the_version_is_that_of_the_crate() -> None:
+    manifests = [ROOT / "Cargo.toml", ROOT / "scripts" / "python" / "Cargo.toml"]
+    for manifest in manifests:
+        found = re.search(r'^version = "(.*)"', manifest.read_text(), re.MULTILINE)
+        assert found is not None and found[1] == vw.__version__, manifest
+
+
+def test_the_names_that_others_call_are_there() -> None:
+    assert list(inspect.signature(vw.run).parameters)[:3] == ["scene", "out", "threads"]
+    assert list(inspect.signature(vw.Network).parameters)[:4] == ["conns", "diameter", "inlets", "outlets"]
+    assert list(inspect.signature(vw.constrictions).parameters)[:3] == ["coords", "diameter", "cell"]
+    assert list(inspect.signature(vw.walk).parameters)[:2] == ["network", "base"]
+
+
+def test_every_name_says_what_it_is() -> None:
+    for name in vw.__all__:
+        thing = getattr(vw, name)
+        if name == "__version__":
+            continue
+        assert inspect.getdoc(thing), name
+        if inspect.isclass(thing) and thing.__module__.startswith("voidwalk."):
+            for member, value in vars(thing).items():
+                if not member.startswith("_") and (callable(value) or isinstance(value, (classmethod, property))):
+                    assert inspect.getdoc(value), f"{name}.{member}"
+
+
+def test_the_stubs_are_those_of_the_binary(tmp_path: Path) -> None:
+    pytest.importorskip("mypy")
+    command = [sys.executable, "-m", "mypy.stubtest", "voidwalk._voidwalk", "--mypy-config-file", "/dev/null"]
+    said = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
+    assert said.returncode == 0, said.stdout + said.stderr
+
+
+def test_the_package_is_typed_strictly(tmp_path: Path) -> None:
+    pytest.importorskip("mypy")
+    assert (Path(vw.__file__).parent / "py.typed").exists()
+    command = [sys.executable, "-m", "mypy", "--strict", "-p", "voidwalk"]
+    said = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
+    assert said.returncode == 0, said.stdout + said.stderr

@@ -1,0 +1,130 @@
+//! A case in other sizes: its filter against a base that is scaled, as a design tries many of.
+//!
+//! A walk knows sizes as multiples of the finest filter grain alone. So a filter that is s times as large is
+//! walked as a base 1/s times as large: its network stays the same to the bit, and with it every random
+//! number that does not hang on the base.
+
+use super::files::Files;
+use super::supply::Against;
+use super::{Case, CaseError, base_gradation, regrade, sizes};
+use crate::gradation::Gradation;
+use crate::network::{Network, NetworkError};
+use crate::scene::{NetworkSource, Scene};
+
+/// A base as a scene states it, with its sizes as they are.
+#[derive(Clone, Debug)]
+pub struct StatedBase {
+    /// The scene that states it.
+    pub scene: Scene,
+    /// Its gradation, as it is walked.
+    pub gradation: Gradation,
+    /// The gradation as it was given, and the size (mm) that it was regraded on, where it is walked regraded.
+    pub regraded_from: Option<(Gradation, f64)>,
+    /// Files that were read.
+    pub inputs: Vec<super::Input>,
+}
+
+impl Case {
+    /// The base that another scene states, read beside this case's filter.
+    ///
+    /// # Errors
+    /// A file that is refused.
+    pub fn base_of(&self, scene: &Scene) -> Result<StatedBase, CaseError> {
+        let mut files = Files::default();
+        let given = base_gradation(scene, &self.filter, &self.curve, self.unit_mm, &mut files)?;
+        let (gradation, regraded_from) = regrade::walked(scene, given)?;
+        Ok(StatedBase { scene: scene.clone(), gradation, regraded_from, inputs: files.0 })
+    }
+
+    /// The same filter and network against a base of this gradation, which is in this filter's own unit;
+    /// `layers` says how many layers a lattice has instead.
+    ///
+    /// # Errors
+    /// A base that cannot be walked: Eq. (2) gives too few or too many particles, or sizes are out of range;
+    /// more constrictions than 32 bits can number.
+    pub fn with_base(&self, base: Gradation, layers: Option<u64>) -> Result<Self, CaseError> {
+        let mut case = self.clone();
+        if let (Some(layers), NetworkSource::Cubic([nx, ny, _])) = (layers, self.scene.network.source()) {
+            let shape = [nx, ny, u32::try_from(layers).unwrap_or(u32::MAX)];
+            case.counts = sizes::of_lattice(shape)?;
+            case.scene.network.set_layers(layers);
+        }
+        let against = Against {
+            scene: &case.scene,
+            filter: &case.filter,
+            curve: &case.curve,
+            unit_mm: case.unit_mm,
+            grains_per_void: case.grains_per_void,
+            voids: case.counts[0],
+            is_packed: false,
+        };
+        let (walked, other) = against.readings(&base)?;
+        let mut case = Self { base, regraded_from: None, other_reading: None, ..case }.read_as(walked);
+        case.other_reading = other.map(|walked| Box::new(case.read_as(walked)));
+        Ok(case)
+    }
+
+    /// This case with its filter `factor` times as large against a stated base as it is: not to be walked,
+    /// but to be judged by what knows millimetres.
+    ///
+    /// # Errors
+    /// Sizes out of range.
+    pub fn enlarged(&self, factor: f64, base: &StatedBase) -> Result<Self, CaseError> {
+        let mut case = self.clone();
+        (case.filter, case.curve) = (self.filter.scaled(factor)?, self.curve.scaled(factor)?);
+        case.unit_mm = case.filter.smallest_mm();
+        if case.scene.filter.sieve.is_none() {
+            // Its sizes are no longer multiples of D0F.
+            case.scene.filter.d0_mm = Some(case.unit_mm);
+        }
+        case.scene.base = base.scene.base.clone();
+        (case.base, case.regraded_from) = (base.gradation.clone(), base.regraded_from.clone());
+        case.inputs.extend(base.inputs.iter().cloned());
+        Ok(case)
+    }
+
+    /// The network of the replicate with this seed, made anew only where `kept` is not already one with as
+    /// many layers.
+    ///
+    /// # Errors
+    /// As [`Case::network`].
+    pub fn network_unless(&self, kept: Option<Network>, seed: u64) -> Result<Network, NetworkError> {
+        match kept {
+            Some(kept) if kept.layers() as u64 == self.counts[3] => Ok(kept),
+            _ => self.network(seed),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn built_in(set: &[&str]) -> Scene {
+        Scene::built_in(&set.iter().map(ToString::to_string).collect::<Vec<_>>()).unwrap()
+    }
+
+    #[test]
+    fn a_base_that_is_scaled_is_the_base_that_a_scene_states_in_that_size() {
+        let case = Case::new(built_in(&["base.cu=3"])).unwrap();
+        for ratio in [4.0, 6.5] {
+            let stated = built_in(&["base.cu=3", &format!("base.d15f_over_d85b={ratio}")]);
+            let wanted = Case::new(stated.clone()).unwrap();
+            let base = case.base_of(&stated).unwrap().gradation;
+            let made = case.with_base(base, None).unwrap();
+            assert_eq!(made.base, wanted.base);
+            assert_eq!((made.n_base, made.counts), (wanted.n_base, wanted.counts));
+        }
+    }
+
+    #[test]
+    fn more_layers_take_more_base() {
+        let case = Case::new(built_in(&[])).unwrap();
+        let thick = case.with_base(case.base.clone(), Some(120)).unwrap();
+        assert_eq!(thick.counts[3], 120);
+        assert!(thick.n_base.abs_diff(2 * case.n_base) <= 1);
+        let kept = case.network(7).unwrap();
+        assert_eq!(case.network_unless(Some(kept.clone()), 7).unwrap(), kept);
+        assert_eq!(thick.network_unless(Some(kept), 7).unwrap().layers(), 120);
+    }
+}

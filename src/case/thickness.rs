@@ -1,0 +1,86 @@
+//! The same case with a filter of another thickness.
+
+use super::{Case, CaseError};
+use crate::scene::NetworkSource;
+
+/// Multiples of the thickness that are walked by default.
+const HALF_AND_TWICE: [f64; 2] = [0.5, 2.0];
+
+impl Case {
+    /// Multiples of the thickness that the study walks: those asked for, else half and twice where the study
+    /// of the number of base particles is walked. None of a network from a file, which is as thick as it is.
+    pub fn thickness_factors(&self) -> Vec<f64> {
+        let record = &self.scene.record;
+        let factors = match (self.scene.network.source(), &record.thickness) {
+            (NetworkSource::File(_), _) => return Vec::new(),
+            (_, Some(factors)) => factors,
+            (_, None) if record.sensitivity.is_empty() => return Vec::new(),
+            (_, None) => &HALF_AND_TWICE.to_vec(),
+        };
+        let parts = self.thickness_parts();
+        factors.iter().copied().filter(|&factor| times(parts, factor) != parts).collect()
+    }
+
+    /// What its network is made of along the flow: copies of a packing, or layers.
+    fn thickness_parts(&self) -> u64 {
+        self.copies.map_or(self.counts[3], |(copies, _)| copies.into())
+    }
+
+    /// The same case with a filter so many times as thick, to the nearest layer (of a lattice) or copy (of a
+    /// packing); by Eq. (2) it gets as many times the base, up to its cap, and a number that was given stays.
+    ///
+    /// # Errors
+    /// More constrictions than 32 bits can number, less than one base particle by Eq. (2).
+    pub fn of_thickness(&self, factor: f64) -> Result<Self, CaseError> {
+        let parts = times(self.thickness_parts(), factor);
+        let mut scene = self.scene.clone();
+        scene.record.sensitivity.clear();
+        scene.record.thickness = Some(Vec::new());
+        match self.copies {
+            Some(_) => scene.network.set_copies(parts),
+            None => scene.network.set_layers(parts),
+        }
+        let mut other = Self::with_packed(scene, self.packed.clone())?;
+        (other.memory, other.placement) = (self.memory, self.placement.clone());
+        Ok(other)
+    }
+}
+
+fn times(parts: u64, factor: f64) -> u64 {
+    ((parts as f64 * factor).round() as u64).max(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    fn case(changes: &[&str]) -> Case {
+        let changes: Vec<String> = changes.iter().map(|c| c.to_string()).collect();
+        Case::new(Scene::built_in(&changes).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn twice_the_thickness_is_the_case_of_twice_the_layers() {
+        let thick = case(&["network.nz=20"]).of_thickness(2.0).unwrap();
+        let asked = case(&["network.nz=40"]);
+        assert_eq!(
+            (thick.counts, thick.n_base, thick.n_base_eq2),
+            (asked.counts, asked.n_base, asked.n_base_eq2)
+        );
+        assert_eq!(thick.network(5).unwrap().fingerprint(), asked.network(5).unwrap().fingerprint());
+        assert!(case(&["network.nz=20", "record.thickness=[1.01]"]).thickness_factors().is_empty());
+        let given = case(&["base.n_base=1000"]).of_thickness(0.5).unwrap();
+        assert_eq!((given.n_base, given.counts[3]), (1000, 30));
+        let capped = case(&["base.cap=5000"]).of_thickness(2.0).unwrap();
+        assert_eq!((capped.n_base, capped.capped), (5000, true));
+    }
+
+    #[test]
+    fn what_is_asked_for_is_walked_and_by_default_half_and_twice() {
+        assert_eq!(case(&[]).thickness_factors(), HALF_AND_TWICE);
+        assert!(case(&["record.sensitivity=[]"]).thickness_factors().is_empty());
+        assert_eq!(case(&["record.sensitivity=[]", "record.thickness=[3]"]).thickness_factors(), [3.0]);
+        assert!(case(&["record.thickness=[]"]).thickness_factors().is_empty());
+    }
+}

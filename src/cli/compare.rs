@@ -1,0 +1,100 @@
+//! `voidwalk compare`: filters on one base, bases on one filter, or scenes, side by side.
+
+use std::fmt::Write;
+
+use super::args::CompareArgs;
+use super::case_progress::CaseProgress;
+use super::print::{json, percent, plain, shown, to_stderr, to_stdout};
+use super::progress::followed;
+use super::run::command_line;
+use crate::campaign::CampaignCallbacks;
+use crate::outcome::comparison::Comparison;
+use crate::outcome::record::Statistic;
+use crate::run::RunError;
+use crate::study::compare::{self, CompareOptions, ComparePlan, Compared};
+
+impl CompareArgs {
+    fn compared(&self) -> Compared {
+        let files = self.files.clone();
+        match (&self.base, &self.filter) {
+            (Some(base), _) => Compared::Filters { base: base.clone(), filters: files },
+            (None, Some(filter)) => Compared::Bases { filter: filter.clone(), bases: files },
+            (None, None) => Compared::Scenes(files),
+        }
+    }
+}
+
+/// Walks the cases, and compares them.
+pub fn compare(args: &CompareArgs) -> Result<(), RunError> {
+    let (tables, quiet) = (&args.tables, args.walk.quiet);
+    let plan = ComparePlan::new(&args.compared(), &tables.options())?;
+    if plan.seeds_differed && !quiet {
+        to_stderr(&format!("the scenes' seeds differ; all are walked with seed {}\n", plan.seed));
+    }
+    let options = CompareOptions {
+        out: args.out.clone(),
+        overwrite: args.overwrite,
+        packings: tables.set.packings.clone(),
+        memory: tables.set.memory,
+        threads: args.walk.threads,
+        checkpoint_interval: args.walk.checkpoint_every.unwrap_or_default(),
+        command: command_line(),
+    };
+    let progress = CaseProgress::new(quiet, false);
+    let comparison = followed(quiet, |run| {
+        let callbacks = CampaignCallbacks {
+            run: *run,
+            on_cases: &|total, done| progress.begin(total, done),
+            on_case: &|case, event| progress.tell(case, event),
+        };
+        let done = compare::run(&plan, &options, &callbacks);
+        progress.end();
+        done
+    })?;
+    if tables.set.json {
+        to_stdout(&json(&comparison)?);
+    } else if !quiet {
+        let constrictions = plan.constrictions_in_words().into_iter().map(|said| plain(&said) + "\n");
+        to_stdout(&constrictions.collect::<String>());
+        to_stdout(&words(&comparison));
+        to_stdout(&format!("report: {}\n", shown(&args.out.join("compare.html"))));
+    }
+    Ok(())
+}
+
+fn words(comparison: &Comparison) -> String {
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let mut line = |said: String| {
+        let _ = writeln!(text, "{}", plain(&said));
+    };
+    for case in &comparison.cases {
+        let runs: Vec<String> = case.runs.iter().map(eroded).collect();
+        line(format!("{}: {} ({})", case.name, case.verdict.words(), case.confidence.words()));
+        line(format!("  {} of the mass eroded; D15F/D85B {:.2}", runs.join(", then "), {
+            case.ratios.d15f_over_d85b
+        }));
+        for reason in case.reasons.iter().chain(&case.beside) {
+            line(format!("  {reason}"));
+        }
+        for ([low, high], run) in case.curve_range.iter().zip(["first", "second"]) {
+            let (low, high) = (percent(*low), percent(*high));
+            line(format!("  {run} run over the range of the constriction curve: {low} to {high}"));
+        }
+        if !case.rules_not_kept.is_empty() {
+            line(format!("  rules not kept: {}", case.rules_not_kept.join("; ")));
+        }
+    }
+    comparison.pairs.iter().for_each(|pair| line(pair.sentence()));
+    if let Some(what) = comparison.not_in_intervals() {
+        line(format!("Not in these intervals: {what}"));
+    }
+    text
+}
+
+fn eroded(run: &Statistic) -> String {
+    match run.low.zip(run.high) {
+        Some((low, high)) => format!("{} ({} to {})", percent(run.mean), percent(low), percent(high)),
+        None => percent(run.mean),
+    }
+}

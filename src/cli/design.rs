@@ -1,0 +1,128 @@
+//! `voidwalk design`: how coarse a filter may be.
+
+use super::args::DesignArgs;
+use super::print::{counted, json, plain, shown, to_stdout};
+use super::progress::followed;
+use crate::outcome::design::{Boundary, Design, DesignRow, Range};
+use crate::outcome::record::Confidence;
+use crate::run::{PrepareOptions, RunError};
+use crate::study::design::{self, DesignOptions};
+
+/// Finds the boundaries and writes them into a folder.
+pub fn design(args: &DesignArgs) -> Result<(), RunError> {
+    let mut settings = args.settings.clone();
+    settings.extend(args.seed.map(|seed| format!("seed={seed}")));
+    let options = DesignOptions {
+        base: args.base.clone(),
+        filter: args.filter.clone(),
+        densities: args.densities.clone(),
+        thicknesses: args.thicknesses.clone(),
+        settings,
+        inverse: args.inverse,
+        bracket: [args.bracket.0, args.bracket.1],
+        out: args.out.clone(),
+        overwrite: args.overwrite,
+        prepare: PrepareOptions {
+            packings: args.packings.clone(),
+            memory: args.memory,
+            threads: args.threads,
+        },
+    };
+    let found = followed(args.quiet, |callbacks| design::run(&options, callbacks))?;
+    if args.json {
+        to_stdout(&json(&found)?);
+    } else if !args.quiet {
+        to_stdout(&format!("{}report: {}\n", words(&found), shown(&args.out.join("design.html"))));
+    }
+    Ok(())
+}
+
+/// The answer in some lines.
+fn words(design: &Design) -> String {
+    let mut lines = vec![match design.inverse {
+        false => format!("How coarse may the filter be? Base {}, filter {}", design.base.name, design.filter),
+        true => format!(
+            "How fine may the base be? Filter {}, base {} in any size",
+            design.filter, design.base.name
+        ),
+    }];
+    for row in &design.boundaries {
+        lines.extend(of_row(row, design));
+    }
+    lines.push(match (design.confidence, design.reasons.first()) {
+        (Confidence::Within, _) => "within the range in which the model was checked".into(),
+        (confidence, Some(reason)) => format!("{}: {reason}", confidence.words()),
+        (confidence, None) => confidence.words().into(),
+    });
+    let more = design.reasons.len().saturating_sub(1);
+    if more > 0 {
+        lines.push(format!("  and {more} more reason{} on the page", if more == 1 { "" } else { "s" }));
+    }
+    if !design.products.is_empty() {
+        let fit = design.products_that_fit();
+        lines.push(match (design.confidence, fit.is_empty()) {
+            (Confidence::Within, true) => "none of the standard products fits within the band".into(),
+            (Confidence::Within, false) => {
+                format!("D15 within the band (their own shapes were not walked): {}", fit.join(", "))
+            }
+            _ => "of the standard products none is said to fit, as the answer is in doubt".into(),
+        });
+    }
+    let left_out = design.model_leaves_out.iter().filter_map(|item| item.split(':').next());
+    lines.push(format!("The model leaves out: {}.", left_out.collect::<Vec<_>>().join("; ")));
+    lines.push(format!("{:.1} s, {} networks each, seed {}", design.seconds, design.replicates, design.seed));
+    lines.into_iter().map(|line| plain(&line) + "\n").collect()
+}
+
+fn of_row(row: &DesignRow, design: &Design) -> Vec<String> {
+    let what = match design.inverse {
+        false => ["no erosion up to", "continuing erosion from"],
+        true => ["no erosion down to", "continuing erosion below"],
+    };
+    let boundaries = [(&row.no_erosion, &row.no_erosion_note), (&row.continuing, &row.continuing_note)];
+    let mut lines = vec![format!("{}, {}:", row.density, row.thickness)];
+    for (what, (boundary, note)) in what.into_iter().zip(boundaries) {
+        let said = boundary.as_ref().map(|boundary| ratio(boundary, design));
+        lines.push(match (said, note) {
+            (Some(said), Some(note)) => format!("  {what} {said}; {note}"),
+            (Some(said), None) => format!("  {what} {said}"),
+            (None, note) => {
+                format!("  {what}: no number, {}", note.as_deref().unwrap_or("it lies beyond the search"))
+            }
+        });
+    }
+    if let Some(band) = &row.band {
+        let practice = band.practice.map(|limit| format!("; practice allows up to {limit:.3} {}", band.unit));
+        lines.push(format!("  band: {}{}", band.said, practice.unwrap_or_default()));
+    }
+    if let Some(note) = &row.band_note {
+        lines.push(format!("  no band: {note}"));
+    }
+    if row.not_monotone > 0 {
+        lines.push(format!(
+            "  not monotone on {}: the smallest ratio seen to erode counts",
+            counted(row.not_monotone, "network", "networks")
+        ));
+    }
+    lines
+}
+
+fn ratio(boundary: &Boundary, design: &Design) -> String {
+    let between = |low: Option<f64>, high: Option<f64>| {
+        if design.replicates == 1 {
+            return "of one network".to_owned();
+        }
+        let end = |value: Option<f64>| value.map_or("unknown".into(), |v| format!("{v:.3}"));
+        format!("5 to 95 % of networks: {} to {}", end(low), end(high))
+    };
+    let Boundary { median, low, high, .. } = boundary;
+    let size = |name: &str, range: &Range| {
+        format!("{name} {:.3} mm ({}); ", range.median, between(range.low, range.high))
+    };
+    let size = match (&boundary.d15f_mm, &boundary.d85b_mm) {
+        (Some(range), _) => size("D15F", range),
+        (None, Some(range)) if design.inverse => size("D85B", range),
+        _ => String::new(),
+    };
+    format!("{size}D15F/D85B {median:.2} ({})", between(*low, *high))
+}

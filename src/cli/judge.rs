@@ -1,0 +1,44 @@
+//! `voidwalk judge`: two sieve tables in, the whole answer out.
+
+use super::args::{JudgeArgs, TableArgs};
+use super::print::{plain, shown, to_stdout};
+use super::progress::followed;
+use super::run::{command_line, show};
+use crate::run::{self, RunError, RunOptions};
+use crate::scene::{Scene, TableOptions};
+
+impl TableArgs {
+    /// What a scene of two tables is given besides them.
+    pub fn options(&self) -> TableOptions {
+        let mut changes = self.set.settings();
+        changes.extend(self.dispersive.then(|| "base.dispersive=true".to_owned()));
+        changes.extend(self.joint_mm.map(|mm| format!("filter.joint_mm={mm:?}")));
+        TableOptions { density: self.density, quick: self.quick, changes }
+    }
+}
+
+/// Judges a base and a filter.
+pub fn judge(args: &JudgeArgs) -> Result<(), RunError> {
+    let (tables, quiet) = (&args.tables, args.walk.quiet);
+    let scene = Scene::of_tables(&args.base, &args.filter, &tables.options())?;
+    let words = scene.constrictions_in_words();
+    let options = RunOptions {
+        out: args.out.clone(),
+        overwrite: args.overwrite,
+        prepare: tables.set.prepare(args.walk.threads),
+        checkpoint_interval: args.walk.checkpoint_every,
+        command: command_line(),
+    };
+    let run = followed(quiet, |callbacks| run::walk_scene(scene, &options, callbacks))?;
+    let in_words = !tables.set.json && !quiet;
+    if in_words {
+        to_stdout(&format!("base {}, filter {}\n", shown(&args.base), shown(&args.filter)));
+        to_stdout(&format!("{}\n", plain(&words)));
+    }
+    show(&run, tables.set.json, quiet)?;
+    if in_words {
+        let scene = shown(&run.folder.join("scene.toml"));
+        to_stdout(&format!("to go on from: voidwalk run {scene} --set replicates=30\n"));
+    }
+    Ok(())
+}

@@ -1,0 +1,171 @@
+//! Standard products beside a band: which of them have their D15 between its two sides. Their own shapes are
+//! not walked.
+//!
+//! Only products whose limits could be read in a public source are here; of ASTM's No. 78 and No. 8 stone no
+//! readable source was found.
+
+use serde::{Deserialize, Serialize};
+
+use super::band::Band;
+
+/// A product as its standard limits it.
+pub struct Product {
+    /// Its name.
+    pub name: &'static str,
+    /// Sieve (mm), least and greatest percent finer; rising.
+    pub limits: &'static [(f64, f64, f64)],
+    /// Where its limits were read.
+    pub source: &'static str,
+}
+
+/// Products that are sold by name.
+pub const PRODUCTS: [Product; 3] = [
+    Product {
+        name: "ASTM C33 fine aggregate",
+        limits: &[
+            (0.075, 0.0, 3.0),
+            (0.15, 0.0, 10.0),
+            (0.3, 5.0, 30.0),
+            (0.6, 25.0, 60.0),
+            (1.18, 50.0, 85.0),
+            (2.36, 80.0, 100.0),
+            (4.75, 95.0, 100.0),
+            (9.5, 100.0, 100.0),
+        ],
+        source: "civilengineer.co.in/articles/grading-requirements-of-fine-aggregates, which cites Table 1 \
+                 of ASTM C33",
+    },
+    Product {
+        name: "ASTM C33/D448 No. 67 stone",
+        limits: &[
+            (2.36, 0.0, 5.0),
+            (4.75, 0.0, 10.0),
+            (9.5, 20.0, 55.0),
+            (19.0, 90.0, 100.0),
+            (25.0, 100.0, 100.0),
+        ],
+        source: "Iowa DOT, Matls. IM 209, appendix D (April 2017), gradation No. 5 (67), which sets \
+                 limits at these sieves and one of its own at 0.075 mm: \
+                 iowadot.gov/erl/current/IM/content/209ad.htm",
+    },
+    Product {
+        name: "ASTM C33/D448 No. 57 stone",
+        limits: &[
+            (2.36, 0.0, 5.0),
+            (4.75, 0.0, 10.0),
+            (12.5, 25.0, 60.0),
+            (25.0, 95.0, 100.0),
+            (37.5, 100.0, 100.0),
+        ],
+        source: "Iowa DOT, Matls. IM 209, appendix D (April 2017), gradation No. 3 (57), which sets \
+                 limits at these sieves and one of its own at 0.075 mm: \
+                 iowadot.gov/erl/current/IM/content/209ad.htm",
+    },
+];
+
+/// A product beside a band.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Fit {
+    /// Its name.
+    pub name: String,
+    /// D15 (mm) of its fine and of its coarse side.
+    pub d15_mm: [f64; 2],
+    /// Whether its fine side drains.
+    pub drains: bool,
+    /// Whether the walk holds the base with its coarse side.
+    pub holds: bool,
+    /// Whether its coarse side keeps the strictest rule of retention; `None` where there is none.
+    pub practice: Option<bool>,
+    /// Where its limits were read.
+    pub source: String,
+}
+
+impl Fit {
+    /// Whether the D15 of both its sides lies within the band and practice does not speak against it. D15
+    /// lies between sieves and is interpolated: a delivery within the limits may have another.
+    pub fn fits(&self) -> bool {
+        self.drains && self.holds && self.practice != Some(false)
+    }
+}
+
+/// D15 (mm) of a side, straight in percent over log size; the finest sieve where even that passes more.
+fn d15(limits: &[(f64, f64, f64)], side: fn(&(f64, f64, f64)) -> f64) -> f64 {
+    let above = limits.iter().position(|row| side(row) >= 15.0).unwrap_or(limits.len() - 1);
+    let (high, b) = (limits[above].0, side(&limits[above]));
+    let Some(below) = above.checked_sub(1) else { return high };
+    let (low, a) = (limits[below].0, side(&limits[below]));
+    low * libm::exp((15.0 - a) / (b - a) * libm::log(high / low))
+}
+
+impl Product {
+    /// D15 (mm) of its fine and of its coarse side.
+    pub fn d15_mm(&self) -> [f64; 2] {
+        [d15(self.limits, |row| row.2), d15(self.limits, |row| row.1)]
+    }
+}
+
+/// Every product beside a band in mm.
+pub fn fits(band: &Band) -> Vec<Fit> {
+    let one = |product: &Product| {
+        let [fine, coarse] = product.d15_mm();
+        Fit {
+            name: product.name.into(),
+            d15_mm: [fine, coarse],
+            drains: fine >= band.least,
+            holds: coarse <= band.greatest,
+            practice: band.practice.map(|practice| coarse <= practice),
+            source: product.source.into(),
+        }
+    };
+    PRODUCTS.iter().map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_rise_and_end_at_all() {
+        for product in &PRODUCTS {
+            let rising = |side: fn(&(f64, f64, f64)) -> f64| {
+                product.limits.windows(2).all(|w| w[0].0 < w[1].0 && side(&w[0]) <= side(&w[1]))
+            };
+            assert!(rising(|row| row.1) && rising(|row| row.2), "{}", product.name);
+            assert!(product.limits.iter().all(|row| row.1 <= row.2), "{}", product.name);
+            assert_eq!(product.limits.last().unwrap().1, 100.0);
+        }
+    }
+
+    #[test]
+    fn sides_of_products_by_hand() {
+        let near = |found: f64, wanted: f64| (found / wanted - 1.0).abs() < 1e-9;
+        let [fine, coarse] = PRODUCTS[0].d15_mm();
+        // 10 to 30 % between 0.15 and 0.3 mm, 5 to 25 % between 0.3 and 0.6 mm.
+        assert!(near(fine, 0.15 * libm::pow(2.0, 0.25)) && near(coarse, 0.3 * libm::pow(2.0, 0.5)));
+        let [fine, coarse] = PRODUCTS[2].d15_mm();
+        let step = 12.5 / 4.75;
+        assert!(near(fine, 4.75 * libm::pow(step, 0.1)) && near(coarse, 4.75 * libm::pow(step, 0.6)));
+    }
+
+    #[test]
+    fn a_product_fits_where_both_its_sides_do() {
+        let band = |least, greatest| Band {
+            least,
+            greatest,
+            practice: Some(0.4),
+            practice_rule: String::new(),
+            unit: "mm".into(),
+            is_empty: false,
+            said: String::new(),
+        };
+        let sand = |least, greatest| fits(&band(least, greatest)).remove(0);
+        assert!(sand(0.17, 0.43).drains && sand(0.17, 0.43).holds);
+        // Practice allows 0.4 mm.
+        assert!(sand(0.17, 0.43).practice == Some(false) && !sand(0.17, 0.43).fits());
+        let allowed = Band { practice: Some(0.43), ..band(0.17, 0.43) };
+        assert!(fits(&allowed)[0].fits() && fits(&Band { practice: None, ..allowed })[0].fits());
+        assert!(!sand(0.18, 0.43).drains && !sand(0.17, 0.42).holds);
+        let wide = Band { practice: Some(1.0), ..band(0.1, 1.0) };
+        assert_eq!(fits(&wide).iter().filter(|fit| fit.fits()).count(), 1);
+    }
+}

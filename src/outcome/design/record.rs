@@ -1,0 +1,263 @@
+//! The shapes of `design.json` and `design.csv`, shared by who writes and who reads them.
+
+use serde::{Deserialize, Serialize};
+
+use super::band::Band;
+use super::products::Fit;
+use super::spread;
+use crate::outcome::record::{AppliedRule, Confidence};
+
+/// Steps of the scale of ratios on which boundaries are found: half a percent, in ln(D15F/D85B).
+pub const BETWEEN_STEPS: f64 = 0.005;
+
+/// On which side of all that was searched something lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Beyond {
+    /// At smaller ratios.
+    Below,
+    /// At larger ratios.
+    Above,
+}
+
+/// The whole of `design.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Design {
+    /// Version of voidwalk.
+    pub version: String,
+    /// One per density and thickness, in the order in which they were asked for.
+    pub boundaries: Vec<DesignRow>,
+    /// Whether the base was scaled against a filter of given size, to find the finest base that it holds.
+    pub inverse: bool,
+    /// The base.
+    pub base: BaseStated,
+    /// The filter's shape in words.
+    pub filter: String,
+    /// Cu of the filter.
+    pub filter_cu: Option<f64>,
+    /// The filter's own D15F (mm), where its sizes are given; only the inverse hangs on it.
+    pub filter_d15_mm: Option<f64>,
+    /// Unit of the sizes in `rules`, `band` and `products`: `mm`, or `D85B` where the base has no size of its
+    /// own.
+    pub unit: String,
+    /// Mass eroded from which a run erodes.
+    pub threshold: f64,
+    /// Networks of each boundary.
+    pub replicates: u64,
+    /// The user's seed.
+    pub seed: u64,
+    /// D15F/D85B between which boundaries were searched.
+    pub bracket: [f64; 2],
+    /// Steps of the search, as a part of D15F/D85B.
+    pub step: f64,
+    /// How far "no erosion" at the coarsest filter that holds can be relied on, of the row that can be relied
+    /// on least; never within the checked range where a row has no such filter, or an empty band.
+    pub confidence: Confidence,
+    /// Why no further; the weightiest first.
+    pub reasons: Vec<String>,
+    /// Every rule of practice, of the coarsest filter that holds; of another where none is known.
+    pub rules: Vec<AppliedRule>,
+    /// D15F/D85B that the rules are read at.
+    pub rules_at: f64,
+    /// Standard products beside the narrowest band.
+    pub products: Vec<Fit>,
+    /// What else a reader must know.
+    pub warnings: Vec<String>,
+    /// What the model does not contain.
+    pub model_leaves_out: Vec<String>,
+    /// Settings that were given, as on the command line.
+    pub settings: Vec<String>,
+    /// Wall time (s).
+    pub seconds: f64,
+}
+
+/// What is known of the base.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BaseStated {
+    /// Its name.
+    pub name: String,
+    /// D60/D10.
+    pub cu: Option<f64>,
+    /// D15 (mm) before regrading; `None` without a size of its own.
+    pub d15_mm: Option<f64>,
+    /// D85 (mm) as walked; `None` without a size of its own.
+    pub d85_mm: Option<f64>,
+    /// D95/D85.
+    pub d95_over_d85: Option<f64>,
+}
+
+/// The boundaries of one density and thickness.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DesignRow {
+    /// How densely the filter is packed.
+    pub density: String,
+    /// The thickness that was asked for, in words.
+    pub thickness: String,
+    /// Layers of voids, at the no-erosion boundary where the thickness is in mm.
+    pub layers: u64,
+    /// Thickness (mm), at the no-erosion boundary where it is in layers; `None` where sizes have no unit.
+    pub thickness_mm: Option<f64>,
+    /// Filter grains per void, Eq. (2).
+    pub grains_per_void: Option<f64>,
+    /// Where no erosion turns into some; `None` where that lies beyond what can be walked.
+    pub no_erosion: Option<Boundary>,
+    /// Why there is none, or what else is to be said of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub no_erosion_note: Option<String>,
+    /// Where some erosion turns into continuing.
+    pub continuing: Option<Boundary>,
+    /// Why there is none, or what else is to be said of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub continuing_note: Option<String>,
+    /// Networks on which a larger ratio was seen to hold than one that erodes: their smallest that erodes
+    /// counts.
+    pub not_monotone: u64,
+    /// What each network says.
+    pub networks: Vec<NetworkBoundaries>,
+    /// The band of a specification; `None` for the inverse, where nothing limits it, and where no ratio is
+    /// known that all but 5 % of networks hold.
+    pub band: Option<Band>,
+    /// Why there is no band, where networks erode at every ratio that was searched.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub band_note: Option<String>,
+}
+
+/// A boundary over networks: D15F/D85B, and the same in mm.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Boundary {
+    /// Median over networks.
+    pub median: f64,
+    /// 5 % of networks lie below; `None` where that hangs on networks beyond the search, and of one network.
+    pub low: Option<f64>,
+    /// 5 % of networks lie above; `None` likewise.
+    pub high: Option<f64>,
+    /// On which side of the search the 5 percentile lies, where it lies beyond: below, networks erode at
+    /// every ratio that was searched.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub low_beyond: Option<Beyond>,
+    /// D15F (mm) of the filter, where the base has a size.
+    pub d15f_mm: Option<Range>,
+    /// D85B (mm) of the base, for the inverse, where the filter has a size.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub d85b_mm: Option<Range>,
+}
+
+/// Median and band of a size (mm).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Range {
+    /// Median over networks.
+    pub median: f64,
+    /// 5 percentile.
+    pub low: Option<f64>,
+    /// 95 percentile.
+    pub high: Option<f64>,
+}
+
+/// What one network says; `None` where its boundary lies beyond the search.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NetworkBoundaries {
+    /// Network, counted from 1.
+    pub network: u64,
+    /// D15F/D85B from which its first run erodes.
+    pub no_erosion: Option<f64>,
+    /// D15F/D85B from which its second run does.
+    pub continuing: Option<f64>,
+}
+
+/// A row of `design.csv`: every ratio that was walked.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WalkRow {
+    /// Density, as in `design.json`.
+    pub density: String,
+    /// Thickness, as in `design.json`.
+    pub thickness: String,
+    /// Network, counted from 1.
+    pub network: u64,
+    /// The ratio.
+    pub d15f_over_d85b: f64,
+    /// Mass eroded in the first run, over the mass inserted.
+    pub eroded_first: f64,
+    /// The same in the second run; empty where it was not walked.
+    pub eroded_second: Option<f64>,
+}
+
+impl Design {
+    /// Names of the standard products that are said to fit: none where the answer is in doubt.
+    pub fn products_that_fit(&self) -> Vec<&str> {
+        let fit = self.products.iter().filter(|of| self.confidence == Confidence::Within && of.fits());
+        fit.map(|of| of.name.as_str()).collect()
+    }
+}
+
+impl Boundary {
+    /// Puts networks together; `None` where their median lies beyond the search. `d85b_mm` is the base's
+    /// size, where the filter is scaled.
+    pub fn of(networks: &[Result<f64, Beyond>], d85b_mm: Option<f64>) -> Option<Self> {
+        let [low, median, high] = spread(networks);
+        let median = median.ok()?;
+        let low_beyond = low.err();
+        // One network has no percentiles.
+        let [low, high] = [low, high].map(|end| end.ok().filter(|_| networks.len() > 1));
+        let mm = |d85| Range { median: median * d85, low: low.map(|r| r * d85), high: high.map(|r| r * d85) };
+        Some(Self { median, low, high, low_beyond, d15f_mm: d85b_mm.map(mm), d85b_mm: None })
+    }
+
+    /// The same for a base that is scaled against a filter of this D15F (mm).
+    pub fn inverted(self, d15f_mm: Option<f64>) -> Self {
+        let mm = |d15: f64| Range {
+            median: d15 / self.median,
+            low: self.high.map(|r| d15 / r),
+            high: self.low.map(|r| d15 / r),
+        };
+        Self { d15f_mm: None, d85b_mm: d15f_mm.map(mm), ..self }
+    }
+
+    /// The ratio that all but a few networks hold: the 5 percentile, or the median where there is one network
+    /// only; `None` where more than a few erode at every ratio that was searched, so that none is known.
+    pub fn cautious(&self) -> Option<f64> {
+        let median = (self.low_beyond != Some(Beyond::Below)).then_some(self.median);
+        self.low.or(median)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn networks_that_erode_at_every_ratio_leave_no_ratio_that_nearly_all_hold() {
+        let of = |networks: &[Result<f64, Beyond>]| Boundary::of(networks, Some(0.2)).unwrap();
+        let eroding =
+            of(&[Err(Beyond::Below), Ok(2.1), Ok(2.2), Err(Beyond::Below), Ok(2.3), Ok(2.4), Ok(2.5)]);
+        assert_eq!((eroding.low, eroding.low_beyond), (None, Some(Beyond::Below)));
+        assert_eq!((eroding.median, eroding.cautious()), (2.2, None));
+        assert_eq!(eroding.d15f_mm.unwrap().low, None);
+        // What holds up to the end of the search does not take the lower end away.
+        let holding = of(&[Ok(2.0), Ok(2.2), Err(Beyond::Above)]);
+        assert!((holding.cautious().unwrap() - 2.02).abs() < 1e-12 && holding.high.is_none());
+    }
+
+    #[test]
+    fn one_network_has_a_boundary_and_no_band() {
+        let alone = Boundary::of(&[Ok(0.901)], None).unwrap();
+        assert_eq!((alone.median, alone.low, alone.high), (0.901, None, None));
+        assert_eq!(alone.cautious(), Some(0.901));
+    }
+
+    #[test]
+    fn the_finest_base_has_its_ends_exchanged() {
+        let boundary = Boundary::of(&[Ok(4.0), Ok(5.0)], None).unwrap().inverted(Some(1.0));
+        let d85 = boundary.d85b_mm.unwrap();
+        assert!(d85.low.unwrap() < d85.median && d85.median < d85.high.unwrap());
+        assert!((d85.median - 1.0 / 4.5).abs() < 1e-12 && boundary.d15f_mm.is_none());
+    }
+
+    #[test]
+    fn a_record_is_read_as_it_was_written() {
+        let boundary = Boundary::of(&[Ok(4.37), Err(Beyond::Above), Ok(4.41)], Some(0.17)).unwrap();
+        assert!(boundary.high.is_none());
+        let text = serde_json::to_string(&boundary).unwrap();
+        assert!(text.contains("\"high\":null,\"d15f_mm\":{\"median\":"), "{text}");
+        assert_eq!(serde_json::from_str::<Boundary>(&text).unwrap(), boundary);
+    }
+}

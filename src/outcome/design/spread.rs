@@ -1,0 +1,58 @@
+//! Median and 5 to 95 % band of the networks' boundaries, where some lie beyond what was searched.
+
+use super::Beyond;
+
+/// Percentiles of a boundary over networks (percent).
+const PERCENTILES: [f64; 3] = [5.0, 50.0, 95.0];
+
+/// The 5, 50 and 95 percentile of values of which some are only known to lie above or below all that was
+/// searched: where a percentile hangs on one of those, on which side it lies (below where it hangs on both:
+/// the cautious one). Between two values a percentile is straight in
+/// its rank, from the least at 0 to the greatest at 100 (Hyndman and Fan's seventh definition).
+///
+/// # Panics
+/// Without any value.
+pub fn spread(values: &[Result<f64, Beyond>]) -> [Result<f64, Beyond>; 3] {
+    let place = |value: &Result<f64, Beyond>| match value {
+        Ok(value) => *value,
+        Err(Beyond::Below) => f64::NEG_INFINITY,
+        Err(Beyond::Above) => f64::INFINITY,
+    };
+    let mut sorted: Vec<f64> = values.iter().map(place).collect();
+    sorted.sort_by(f64::total_cmp);
+    PERCENTILES.map(|percent| {
+        let rank = percent / 100.0 * (sorted.len() - 1) as f64;
+        let (low, part) = (rank.floor() as usize, rank - rank.floor());
+        let at = sorted[low];
+        let value = match sorted.get(low + 1).filter(|next| part > 0.0 && **next != at) {
+            Some(next) => at + part * (next - at),
+            None => at,
+        };
+        match value {
+            f64::INFINITY => Err(Beyond::Above),
+            value if value.is_finite() => Ok(value),
+            _ => Err(Beyond::Below),
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn percentiles_by_hand() {
+        let eleven: Vec<_> = (0..=10).rev().map(|k| Ok(f64::from(k))).collect();
+        assert_eq!(spread(&eleven), [Ok(0.5), Ok(5.0), Ok(9.5)]);
+        assert_eq!(spread(&[Ok(3.0)]), [Ok(3.0); 3]);
+    }
+
+    #[test]
+    fn what_hangs_on_a_network_beyond_the_search_has_no_number() {
+        let some = [Ok(1.0), Ok(2.0), Ok(3.0), Err(Beyond::Above), Err(Beyond::Below)];
+        assert_eq!(spread(&some), [Err(Beyond::Below), Ok(2.0), Err(Beyond::Above)]);
+        assert_eq!(spread(&[Err(Beyond::Above), Ok(1.0)]), [Err(Beyond::Above); 3]);
+        assert_eq!(spread(&[Err(Beyond::Above); 2]), [Err(Beyond::Above); 3]);
+        assert_eq!(spread(&[Err(Beyond::Above), Err(Beyond::Below)]), [Err(Beyond::Below); 3]);
+    }
+}

@@ -1,0 +1,51 @@
+//! How the verdict moves with the thickness of the filter.
+
+use super::record::OfThickness;
+
+/// What the rows say, in a sentence: whether the verdict stays, and how much erodes; `None` without another
+/// thickness.
+pub fn sentence(rows: &[OfThickness]) -> Option<String> {
+    let own = rows.iter().find(|row| row.factor == 1.0)?;
+    let others: Vec<&OfThickness> = rows.iter().filter(|row| row.factor != 1.0).collect();
+    if others.is_empty() {
+        return None;
+    }
+    let stays = others.iter().all(|row| row.verdict == own.verdict);
+    let of_row = |row: &&OfThickness| {
+        let eroded: Vec<String> = row.runs.iter().map(|s| format!("{:.2} %", 100.0 * s.mean)).collect();
+        let times = format!("{:.3}", row.factor);
+        let times = times.trim_end_matches('0').trim_end_matches('.');
+        format!("{times} times as thick: {}, {} eroded", row.verdict.words(), eroded.join(" then "))
+    };
+    let each: Vec<String> = others.iter().map(of_row).collect();
+    let said = if stays { "The verdict stays with thickness" } else { "The verdict moves with thickness" };
+    Some(format!("{said} ({}).", each.join("; ")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::outcome::record::{Statistic, Verdict};
+
+    fn row(factor: f64, verdict: Verdict, mean: f64) -> OfThickness {
+        let runs = vec![Statistic { mean, sd: None, low: None, high: None }];
+        let layers = (60.0 * factor) as u64;
+        OfThickness { factor, layers, thickness_mm: None, n_base: 100, replicates: 1, verdict, runs }
+    }
+
+    #[test]
+    fn a_sentence_says_whether_the_verdict_moves() {
+        let own = row(1.0, Verdict::Some, 0.12);
+        assert_eq!(sentence(std::slice::from_ref(&own)), None);
+        let stays = sentence(&[own.clone(), row(2.0, Verdict::Some, 0.1)]).unwrap();
+        assert_eq!(
+            stays,
+            "The verdict stays with thickness (2 times as thick: some erosion, 10.00 % eroded)."
+        );
+        let moves = sentence(&[row(0.5, Verdict::Some, 0.2), own, row(2.5, Verdict::None, 0.04)]).unwrap();
+        assert!(
+            moves.starts_with("The verdict moves with thickness (0.5 times as thick: some erosion, 20.00 %")
+        );
+        assert!(moves.ends_with("2.5 times as thick: no erosion, 4.00 % eroded)."), "{moves}");
+    }
+}

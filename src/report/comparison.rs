@@ -1,0 +1,293 @@
+//! The page of a comparison, from `compare.json` alone.
+
+use std::path::Path;
+
+use maud::{Markup, Render, html};
+
+use super::error::ReportError;
+use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, PURPLE, Point, Rule, Shape, shorten};
+use super::files::json;
+use super::numbers::{
+    capital, interval_in_percent, percent, percent_interval, significant, size, threshold, whole,
+};
+use super::run_figures::run_name;
+use super::shell::{Drawn, citation, clean, figures, leaves_out, whole_page};
+use super::table::Table;
+use super::written::{Written, write_page_as};
+use crate::outcome::MODEL_LEAVES_OUT;
+use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
+use crate::outcome::record::{Confidence, Statistic, Verdict};
+use crate::text::is_plain_part;
+
+const RECORD: &str = "compare.json";
+
+/// Writes `compare.html` and `figures/*.svg` into the folder of a comparison.
+///
+/// # Errors
+/// A file that is missing or malformed; nothing is written then.
+pub fn write_comparison(folder: &Path) -> Result<Written, ReportError> {
+    let path = folder.join(RECORD);
+    let comparison: Comparison = json(&path)?;
+    if comparison.cases.is_empty() {
+        let (field, value, allowed) = ("cases".into(), "empty".into(), "two or more".into());
+        return Err(ReportError::Value { path, field, value, allowed });
+    }
+    let figures: Vec<Drawn> =
+        [Some(both_runs(&comparison)), differences(&comparison)].into_iter().flatten().collect();
+    write_page_as("compare.html", folder, &figures, &page(folder, &comparison, &figures))
+}
+
+fn name(name: &str) -> String {
+    clean(&shorten(name, 60))
+}
+
+/// Rows of a figure, from the top, and its height.
+fn rows(names: impl ExactSizeIterator<Item = String>) -> (Axis, f64) {
+    let height = 110.0 + 26.0 * names.len() as f64;
+    (Axis::rows(names), height)
+}
+
+/// First and second run of each case.
+fn both_runs(comparison: &Comparison) -> Drawn {
+    let cases = &comparison.cases;
+    let (y, height) = rows(cases.iter().map(|case| shorten(&case.name, 34)));
+    let what =
+        "Percent of the base mass eroded in the first and second run of each case, with 95 % intervals";
+    let mut figure =
+        Figure::new("Both runs of each case", what, "", Axis::percent("Base eroded, by mass (%)"), y)
+            .sizes((720.0, height), (358.0, height))
+            .names_above();
+    let limit = 100.0 * comparison.threshold;
+    figure.add(Rule::new(Across::X, limit, BLACK).dash(Dash::Dashed).label(&format!("{limit} %")));
+    for (run, colour, shape) in [(0, BLUE, Shape::Circle), (1, PURPLE, Shape::Square)] {
+        let points = (1..).zip(cases).filter_map(|(row, case): (u32, _)| {
+            let statistic = case.runs.get(run)?;
+            let point = Point::new(100.0 * statistic.mean, f64::from(row), colour, shape);
+            Some(point.x_interval(interval_in_percent(statistic)))
+        });
+        figure.add_points(run_name(run as u64 + 1), points);
+    }
+    let caption = "Base eroded in the first and in the second run of each case, with 95 % intervals over its \
+                   replicates.";
+    Drawn::new("compared-runs", figure, caption)
+}
+
+/// Every difference with its interval; none where no two cases share a run.
+fn differences(comparison: &Comparison) -> Option<Drawn> {
+    let pairs = &comparison.pairs;
+    let ends = |pair: &ComparedPair| {
+        let of = &pair.difference;
+        [of.mean, of.low.unwrap_or(of.mean), of.high.unwrap_or(of.mean)].map(|share| 100.0 * share)
+    };
+    let all = || pairs.iter().flat_map(ends);
+    let (low, high) = (all().fold(0.0, f64::min), all().fold(0.0, f64::max));
+    let margin = 0.06 * (high - low).max(0.1);
+    let label = |pair: &ComparedPair| {
+        let [one, other] = [&pair.first, &pair.second].map(|name| shorten(name, 15));
+        format!("{one} − {other}, {}", if pair.run == 1 { "1st" } else { "2nd" })
+    };
+    if pairs.is_empty() {
+        return None;
+    }
+    let (y, height) = rows(pairs.iter().map(label));
+    let x = Axis::linear("Difference of the mass eroded (percentage points)", low - margin, high + margin);
+    let what = "Difference of the percent of base mass eroded between every two cases, with 95 % intervals";
+    let mut figure =
+        Figure::new("Differences", what, "", x, y).sizes((720.0, height), (358.0, height)).names_above();
+    figure.add(Rule::new(Across::X, 0.0, BLACK).dash(Dash::Dashed).label("no difference"));
+    for (run, colour, shape) in [(1, BLUE, Shape::Circle), (2, PURPLE, Shape::Square)] {
+        let of_run = (1..).zip(pairs).filter(|(_, pair): &(u32, _)| pair.run == run);
+        let points = of_run.map(|(row, pair)| {
+            let [mean, low, high] = ends(pair);
+            let interval = pair.difference.low.map(|_| (low, high));
+            Point::new(mean, f64::from(row), colour, shape).x_interval(interval)
+        });
+        figure.add_points(run_name(run), points);
+    }
+    let caption = "Mass eroded of the one case less that of the other, replicate by replicate on the same \
+                   random numbers, with the 95 % interval of each difference by itself.";
+    Some(Drawn::new("compared-differences", figure, caption))
+}
+
+fn page(folder: &Path, comparison: &Comparison, drawn: &[Drawn]) -> String {
+    let (question, common) = match comparison.of.as_str() {
+        "filters" => ("Which of these filters hold this base?", "base"),
+        "bases" => ("Which of these bases does this filter hold?", "filter"),
+        _ => ("Which of these filters hold?", ""),
+    };
+    let header = html! {
+        h1 { (question) }
+        p.names { @if !common.is_empty() { (capital(common)) " " b { bdi { (name(&comparison.common)) } } } }
+    };
+    let main = html! {
+        div.first {
+            section {
+                p.lead { (lead(comparison)) }
+                @if comparison.cases.iter().any(|case| case.verdict == Verdict::Undecided) {
+                    p { "Undecided is no verdict: the page of the case says what would decide it." }
+                }
+                (doubts(comparison))
+            }
+            (leaves_out(&MODEL_LEAVES_OUT, &html! {
+                p { "The verdicts are the model’s. They do not replace a filter test or a designer’s \
+                     judgement." }
+            }))
+        }
+        h2 { "Cases" }
+        (cases(folder, comparison))
+        p.small {
+            "Class: with a link to the page of the case. Confidence: within or outside the range in which \
+             the model was checked, or contradicted by a rule of practice. Below a number its 95 % interval \
+             over the replicates; the threshold between the classes is " (threshold(comparison.threshold))
+            "."
+        }
+        h2 { "Differences" }
+        (pairs(comparison))
+        h2 { "Figures" }
+        (figures(drawn))
+        (reasons(comparison))
+        h2 { "How this was made" }
+        p {
+            "voidwalk " (clean(&comparison.version)) ", seed " (comparison.seed) " for every case. Each case \
+             has a folder of its own with its report; " code { "compare.json" } " holds this page’s numbers, "
+            code { "compare.csv" } " and " code { "compare_pairs.csv" } " its tables."
+        }
+    };
+    whole_page(&format!("Comparison of {}", clean(&comparison.of)), &header, &main, &citation())
+}
+
+/// How many verdicts of each class there are, and how many of them can be relied on.
+fn lead(comparison: &Comparison) -> String {
+    let count = |class| comparison.cases.iter().filter(|case| case.verdict == class).count();
+    let classes: Vec<String> = Verdict::ALL
+        .into_iter()
+        .filter(|class| count(*class) > 0)
+        .map(|class| format!("{} {}", count(class), class.words()))
+        .collect();
+    let within = comparison.cases.iter().filter(|case| case.confidence == Confidence::Within).count();
+    let relied = match (within, comparison.cases.len()) {
+        (0, _) => "None of these verdicts is within the range in which the model was checked.".to_owned(),
+        (within, all) if within == all => "All are within the range in which the model was checked.".into(),
+        (within, all) => {
+            format!("{within} of these {all} verdicts are within the range in which the model was checked.")
+        }
+    };
+    format!("In the model: {}. {relied}", classes.join(", "))
+}
+
+fn doubts(comparison: &Comparison) -> Markup {
+    html! { @for doubt in [Confidence::Contradicted, Confidence::Outside] {
+        @let named: Vec<String> = comparison.cases.iter().filter(|case| case.confidence == doubt)
+            .map(|case| name(&case.name)).collect();
+        @if !named.is_empty() {
+            p { span.amber { (capital(doubt.words())) } ": " bdi { (named.join(", ")) } }
+        }
+    } }
+}
+
+fn with_interval(statistic: Option<&Statistic>, range: Option<&[f64; 2]>) -> Markup {
+    html! {
+        @match statistic {
+            None => "–",
+            Some(statistic) => {
+                (percent(statistic.mean))
+                @if let Some(interval) = percent_interval(statistic) { br; span.small { (interval) } }
+                @if let Some([low, high]) = range {
+                    br; span.small { "curve: " (percent(*low)) " to " (percent(*high)) }
+                }
+            }
+        }
+    }
+}
+
+fn cases(folder: &Path, comparison: &Comparison) -> Markup {
+    let confidence = |case: &ComparedCase| match case.confidence {
+        Confidence::Within => html! { "within" },
+        Confidence::Outside => html! { span.amber { "outside" } },
+        Confidence::Contradicted => html! { span.amber { "contradicted" } },
+    };
+    Table::of(&comparison.cases)
+        .class("cases")
+        .name("Case", |case| html! { bdi { (name(&case.name)) } })
+        .text("Class", move |case| {
+            let words = case.verdict.words();
+            html! { @match page_of(folder, case) {
+                Some(page) => a href=(page) { b { (words) } },
+                None => b { (words) },
+            } }
+        })
+        .text("Confidence", confidence)
+        .number("Rules not kept", |case| match case.rules_not_kept.len() {
+            0 => html! { "0" },
+            count => html! { span.amber { (count) } },
+        })
+        .number("Eroded, first run", |case| with_interval(case.runs.first(), case.curve_range.first()))
+        .number("second run", |case| with_interval(case.runs.get(1), case.curve_range.get(1)))
+        .number("D15F/ D85B", |case| significant(case.ratios.d15f_over_d85b))
+        .number("D15F/ D95B", |case| significant(case.ratios.d15f_over_d95b))
+        .number("Thickness", |case| {
+            case.thickness_mm.map_or_else(|| "–".to_owned(), |thickness| size(thickness, case.scale_free))
+        })
+        .number("Replicates", |case| case.replicates)
+        .number("Base particles", |case| whole(case.n_base))
+        .render()
+}
+
+/// Where a case's own page is, as seen from the comparison's: nowhere else than in a folder inside it.
+fn page_of(folder: &Path, case: &ComparedCase) -> Option<String> {
+    let page = format!("{}/report.html", case.folder);
+    (page.split('/').all(is_plain_part) && folder.join(&page).is_file()).then_some(page)
+}
+
+fn pairs(comparison: &Comparison) -> Markup {
+    let doubted = |name: &String| {
+        let of = |case: &&ComparedCase| case.name == *name && case.confidence != Confidence::Within;
+        comparison.cases.iter().any(|case| of(&case))
+    };
+    let any_doubted = comparison.pairs.iter().any(|pair| doubted(&pair.first) || doubted(&pair.second));
+    let uncertain = comparison.pairs.iter().any(|pair| pair.differ.is_none());
+    html! {
+        @if comparison.pairs.is_empty() { p { "No two cases share a replicate." } }
+        ul { @for pair in &comparison.pairs { li { (clean(&capital(&pair.sentence()))) "." } } }
+        p.small {
+            "Mass eroded as a part of the base’s, replicate by replicate: replicates of the same number \
+             share their random numbers, so that what chance does to both cases alike is not in the \
+             difference (common random numbers; paired t interval). Each interval holds by itself at \
+             95 %; that two cases differ is said only where the interval that holds for all "
+            (comparison.pairs.len()) " differences at once leaves 0 out."
+            @if uncertain { " One replicate says nothing of chance." }
+        }
+        @if let Some(what) = comparison.not_in_intervals() {
+            p {
+                span.amber { "Not in these intervals" } ": " (what)
+                ". Its range stands in the table, as “curve”."
+            }
+        }
+        @if any_doubted {
+            p { span.amber { "A difference is the model’s" } ": where the verdict of a case is in doubt, so \
+                is what the case is compared with." }
+        }
+    }
+}
+
+/// Why the verdicts are in doubt, which rules are not kept, and what else stands beside each.
+fn reasons(comparison: &Comparison) -> Markup {
+    let said = |case: &&ComparedCase| {
+        !case.reasons.is_empty() || !case.rules_not_kept.is_empty() || !case.beside.is_empty()
+    };
+    html! { @for case in comparison.cases.iter().filter(said) {
+        section.warnings {
+            h2 { bdi { (name(&case.name)) } ": "
+                @if case.confidence == Confidence::Within { "what else to know" }
+                @else { "why this verdict is in doubt" } }
+            ul { @for reason in &case.reasons { li { (clean(reason)) } } }
+            @if !case.rules_not_kept.is_empty() {
+                p { "Rules of practice that are not kept: " (clean(&case.rules_not_kept.join("; "))) "." }
+            }
+            @if !case.beside.is_empty() {
+                p { "Beside the verdict:" }
+                ul { @for said in &case.beside { li { (clean(said)) } } }
+            }
+        }
+    } }
+}

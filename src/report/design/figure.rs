@@ -1,0 +1,134 @@
+//! Erosion against D15F: what every network eroded, the three zones, and the limits of practice on one axis.
+
+use crate::outcome::design::band::limits;
+use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow};
+use crate::outcome::record::AppliedRule;
+use crate::report::figures::{
+    Across, Area, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Rule,
+    VERMILLION,
+};
+use crate::report::numbers::significant;
+use crate::report::shell::Drawn;
+
+/// Names of rules beside their lines.
+const NAMES: [(&str, &str); 8] = [
+    ("permeability", "drains"),
+    ("sherard-dunnigan", "design"),
+    ("terzaghi", "Terzaghi"),
+    ("paper-no-erosion", "paper, no erosion"),
+    ("foster-fell-no-erosion", "NE"),
+    ("paper-continuing", "paper, continuing"),
+    ("foster-fell-excessive", "EE"),
+    ("foster-fell-continuing", "CE"),
+];
+
+/// The figure, of the first row that has a boundary or was walked at all.
+pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
+    let is_of =
+        |row: &DesignRow, walk: &&WalkRow| walk.density == row.density && walk.thickness == row.thickness;
+    let has_walks = |row: &&DesignRow| walks.iter().any(|walk| is_of(row, &walk));
+    let with_boundary = |row: &&DesignRow| row.no_erosion.is_some();
+    let rows = || design.boundaries.iter().filter(has_walks);
+    let row = rows().find(with_boundary).or_else(|| rows().next())?;
+    let walks: Vec<&WalkRow> = walks.iter().filter(|walk| is_of(row, walk)).collect();
+    // In mm where the base has a size and stays as it is.
+    let (d85, unit) = match design.base.d85_mm.filter(|_| !design.inverse) {
+        Some(d85) => (d85, "D15F (mm)"),
+        None => (1.0, "D15F/D85B (–)"),
+    };
+    let limits = of_rules(design, d85);
+    let shown = walks.iter().map(|walk| walk.d15f_over_d85b * d85).chain(limits.iter().map(|of| of.1));
+    let shown: Vec<f64> = shown.filter(|at| *at > 0.0 && at.is_finite()).collect();
+    let low = shown.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = shown.iter().copied().fold(0.0, f64::max);
+    if low > high {
+        return None;
+    }
+    let x = Axis::log(unit, low, if high > low { high } else { 2.0 * low });
+    let ends = (x.low, x.high);
+    let what = "Percent of the base eroded against D15F in both runs of every network, with the zones of no, \
+                some and continuing erosion and the limits of practice";
+    let mut figure =
+        Figure::new("Erosion against D15F", what, "", x, Axis::percent("Base eroded, by mass (%)"))
+            .sizes((760.0, 480.0), (358.0, 420.0));
+    zones(&mut figure, row, d85, ends);
+    for (rule, at) in &limits {
+        let name = NAMES.iter().find(|(id, _)| *id == rule.id).map_or(rule.id.as_str(), |(_, name)| *name);
+        figure.add(
+            Rule::new(Across::X, *at, if rule.at_least { BLACK } else { GREY })
+                .dash(Dash::Dotted)
+                .label(name),
+        );
+    }
+    figure.add(Rule::new(Across::Y, 100.0 * design.threshold, BLACK).dash(Dash::Dashed).label("7.5 %"));
+    draw_runs(&mut figure, &walks, d85);
+    let mut caption = format!(
+        "Base eroded against D15F: {}, {}. Each thin line is a network, blue its first run, purple its \
+         second where it was walked. Green: no erosion, orange: some, red: continuing; where colours run \
+         into each other are 5 to 95 % of networks.",
+        row.density, row.thickness
+    );
+    if design.boundaries.len() > 1 {
+        caption += " The other densities and thicknesses are in the table.";
+    }
+    let lines: Vec<String> =
+        limits.iter().map(|(rule, at)| format!("{} {}", rule.name, significant(*at))).collect();
+    if !lines.is_empty() {
+        caption += &format!(" Dotted: {}.", lines.join("; "));
+    }
+    Some(Drawn::new("design", figure, caption))
+}
+
+/// Limits of D15F on the figure's axis.
+fn of_rules(design: &Design, d85: f64) -> Vec<(&AppliedRule, f64)> {
+    // Rules are in the unit of the design, which the inverse has another of.
+    if design.inverse {
+        return Vec::new();
+    }
+    limits(&design.rules, d85, design.base.d95_over_d85.map(|ratio| ratio * d85))
+}
+
+/// The zones, as wide as the figure is.
+fn zones(figure: &mut Figure, row: &DesignRow, d85: f64, (left, right): (f64, f64)) {
+    let Some(first) = &row.no_erosion else { return };
+    let of = |boundary: &Boundary| {
+        let at = |ratio: f64| (ratio * d85).clamp(left, right);
+        // Where no ratio is known that nearly all networks hold, some erosion begins at the left.
+        [at(boundary.cautious().unwrap_or(0.0)), at(boundary.high.unwrap_or(boundary.median))]
+    };
+    let [from, to] = of(first);
+    let continuing = row.continuing.as_ref().map(of);
+    let mut zone = |low: f64, high: f64, colour: Colour, opacity: f64, name: &str| {
+        if high > low {
+            let area = Area::new(vec![(low, 0.0), (high, 0.0), (high, 100.0), (low, 100.0)], colour, opacity);
+            figure.add(if name.is_empty() { area } else { area.label(name) });
+        }
+    };
+    zone(left, to, GREEN, 0.10, "no erosion");
+    let [end, most] = continuing.unwrap_or([right, right]);
+    zone(from, most, ORANGE, 0.14, if end > 1.05 * to { "some" } else { "" });
+    if most < right || continuing.is_some() {
+        zone(end, right, VERMILLION, 0.12, "continuing");
+    }
+}
+
+/// Both runs of every network.
+fn draw_runs(figure: &mut Figure, walks: &[&WalkRow], d85: f64) {
+    let mut networks: Vec<u64> = walks.iter().map(|walk| walk.network).collect();
+    networks.dedup();
+    for (index, network) in networks.iter().enumerate() {
+        let of_network = || walks.iter().filter(|walk| walk.network == *network);
+        let first = of_network().map(|walk| (walk.d15f_over_d85b * d85, 100.0 * walk.eroded_first));
+        let second =
+            of_network().filter_map(|walk| Some((walk.d15f_over_d85b * d85, 100.0 * walk.eroded_second?)));
+        for (points, colour, name) in
+            [(first.collect(), BLUE, "first run"), (second.collect::<Vec<_>>(), PURPLE, "second run")]
+        {
+            if points.is_empty() {
+                continue;
+            }
+            let line = Line::new(points, colour).width(1.2).opacity(0.7);
+            figure.add(if index == 0 { line.label(name) } else { line });
+        }
+    }
+}

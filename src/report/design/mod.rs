@@ -1,0 +1,445 @@
+//! The page of a design: how coarse the filter may be, from `design.json` and `design.csv` alone.
+
+mod figure;
+
+use std::path::Path;
+
+use maud::{Markup, Render, html};
+
+use super::error::ReportError;
+use super::files::{json, rows};
+use super::numbers::{capital, duration, significant, threshold, trimmed, whole};
+use super::rules;
+use super::shell::{self, clean, fact, leaves_out, whole_page};
+use super::table::Table;
+use super::written::{Written, write_page_as};
+use crate::outcome::design::{Boundary, Design, DesignRow, Range, WalkRow};
+use crate::outcome::record::{AppliedRule, Confidence, RuleRole};
+
+/// Writes `design.html` and its figure into the folder of a design, from `design.json` and `design.csv`
+/// there.
+///
+/// # Errors
+/// A file is missing or malformed, or cannot be written.
+pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
+    let design: Design = json(&folder.join("design.json"))?;
+    let walks: Vec<(u64, WalkRow)> = rows(&folder.join("design.csv"))?;
+    let walks: Vec<WalkRow> = walks.into_iter().map(|(_, row)| row).collect();
+    let drawn: Vec<shell::Drawn> = figure::erosion(&design, &walks).into_iter().collect();
+    let title = match design.inverse {
+        false => "How coarse may the filter be?",
+        true => "How fine may the base be?",
+    };
+    let header = html! {
+        h1 { (title) }
+        p.names {
+            "Base " b { bdi { (clean(&design.base.name)) } } ", filter of the shape "
+            b { bdi { (clean(&design.filter)) } }
+        }
+    };
+    let main = html! {
+        section.sheet {
+            div.first {
+                (answer(&design))
+                (leaves_out(&design.model_leaves_out, &html! {
+                    p { "The boundaries are the model’s. They do not replace a filter test or a designer’s \
+                         judgement." }
+                }))
+            }
+            (said("Why this is in doubt", &design.reasons, design.confidence))
+            (said("Before you rely on this", &design.warnings, Confidence::Outside))
+        }
+        @for (number, drawn) in (1..).zip(&drawn) { (shell::figure(number, drawn)) }
+        (boundaries(&design))
+        (bands(&design))
+        (products(&design))
+        (practice(&design))
+        (networks(&design))
+        (made(&design, &walks))
+    };
+    let footer = html! {
+        (shell::citation())
+        p { "The classes: Foster and Fell, as that paper uses them." }
+        p.small { "voidwalk " (design.version) ", " (duration(design.seconds)) "." }
+    };
+    write_page_as("design.html", folder, &drawn, &whole_page(title, &header, &main, &footer))
+}
+
+/// The boundary that is safe to name, and the ratio that nearly all networks hold, of the row of which it
+/// is the least.
+fn cautious(design: &Design) -> Option<(&DesignRow, &Boundary, f64)> {
+    let known = design.boundaries.iter().filter_map(|row| {
+        let boundary = row.no_erosion.as_ref()?;
+        Some((row, boundary, boundary.cautious()?))
+    });
+    known.min_by(|a, b| a.2.total_cmp(&b.2))
+}
+
+fn answer(design: &Design) -> Markup {
+    let found = cautious(design);
+    let others = design.boundaries.iter().filter(|row| row.no_erosion.is_none() || row.band_note.is_some());
+    let others = others.count();
+    let is_empty = |row: &DesignRow| row.band.as_ref().is_some_and(|band| band.is_empty);
+    let class = match (design.confidence, &found) {
+        (_, None) => "undecided",
+        (Confidence::Within, Some(_)) if others == 0 && !design.boundaries.iter().any(is_empty) => "none",
+        // Never in green where the model was not checked, practice does not agree, or a row has no answer.
+        (_, Some(_)) => "doubted",
+    };
+    html! {
+        section class=(format!("verdict {class}")) {
+            p.word.long {
+                @match &found {
+                    Some((_, boundary, held)) => {
+                        (headline(boundary, *held, design.inverse))
+                        @if design.confidence != Confidence::Within { " in the model" }
+                    },
+                    None => "No ratio is known that nearly all networks hold",
+                }
+            }
+            @if design.confidence != Confidence::Within {
+                p { b { (capital(design.confidence.words())) } "; see below." }
+            }
+            @if let Some((row, boundary, _)) = &found {
+                p.lead {
+                    "No erosion (less than " (threshold(design.threshold)) " of the base in the first run) \
+                     up to D15F/D85B " b { (ratio(boundary.median)) }
+                    @if design.replicates == 1 { " on one network: " } @else {
+                        " in the median of " (whole(design.replicates)) " networks, "
+                        (between(boundary.low, boundary.high, ratio)) " in 5 to 95 % of them: "
+                    }
+                    (clean(&row.density)) ", " (clean(&row.thickness)) "."
+                }
+                @if let Some(band) = &row.band {
+                    p { b { "Band: " (clean(&band.said)) } "." }
+                    @if let Some(practice) = band.practice {
+                        p {
+                            "Practice allows up to " (significant(practice)) " " (band.unit) " ("
+                            (clean(&band.practice_rule)) ")"
+                            @if !band.is_empty {
+                                ", both together up to " b { (significant(band.greatest_of_both())) }
+                                " " (band.unit)
+                            }
+                            "."
+                        }
+                    }
+                }
+            }
+            @for row in &design.boundaries {
+                @if let Some(note) = &row.band_note {
+                    p {
+                        b { "No band: " } (clean(&row.density)) ", " (clean(&row.thickness)) ": "
+                        (clean(note)) "."
+                    }
+                }
+            }
+            @if design.boundaries.len() > 1 {
+                p.small {
+                    "Of several densities and thicknesses, the one that holds least"
+                    @if others > 0 {
+                        "; of those that have an answer: " (others) " of " (design.boundaries.len())
+                        " have none"
+                    }
+                    "."
+                }
+            }
+        }
+    }
+}
+
+/// The answer in a few words, on the cautious side.
+fn headline(boundary: &Boundary, held: f64, inverse: bool) -> String {
+    let cautious = |range: &Range| range.low.unwrap_or(range.median);
+    match (&boundary.d15f_mm, &boundary.d85b_mm) {
+        (Some(range), _) => format!("D15F up to {} mm", significant(cautious(range))),
+        (None, Some(range)) if inverse => {
+            format!("D85B down to {} mm", significant(range.high.unwrap_or(range.median)))
+        }
+        _ => format!("D15F up to {} D85B", ratio(held)),
+    }
+}
+
+fn ratio(value: f64) -> String {
+    format!("{value:.2}")
+}
+
+fn between(low: Option<f64>, high: Option<f64>, words: fn(f64) -> String) -> String {
+    let end = |value: Option<f64>| value.map_or_else(|| "unknown".to_owned(), words);
+    format!("{} to {}", end(low), end(high))
+}
+
+fn said(heading: &str, sentences: &[String], confidence: Confidence) -> Markup {
+    html! {
+        @if !sentences.is_empty() {
+            section.warnings {
+                h2 { @if confidence == Confidence::Within { "What else to know" } @else { (heading) } }
+                ul { @for sentence in sentences { li { (clean(sentence)) } } }
+            }
+        }
+    }
+}
+
+fn boundaries(design: &Design) -> Markup {
+    let cell = |boundary: Option<&Boundary>, note: Option<&String>| {
+        html! {
+            @match boundary {
+                Some(boundary) => {
+                    b { (ratio(boundary.median)) } " (" (between(boundary.low, boundary.high, ratio)) ")"
+                    @for range in [&boundary.d15f_mm, &boundary.d85b_mm].into_iter().flatten() {
+                        br; (significant(range.median)) " mm ("
+                        (between(range.low, range.high, significant)) ")"
+                    }
+                },
+                None => "no number",
+            }
+            @if let Some(note) = note { br; span.small { (clean(note)) } }
+        }
+    };
+    let thick = |row: &DesignRow| {
+        let mm = row.thickness_mm.map(|mm| format!(", {} mm", significant(mm))).unwrap_or_default();
+        format!("{} layers{mm}", whole(row.layers))
+    };
+    html! {
+        h2 { "Boundaries" }
+        p {
+            "D15F/D85B, median and 5 to 95 % of " (whole(design.replicates)) " networks; below it the "
+            @if design.inverse { "finest D85B" } @else { "D15F" } " in mm where sizes have a unit."
+        }
+        (Table::of(&design.boundaries).class("study")
+            .name("Density", |row| clean(&row.density))
+            .text("Thickness, at the no-erosion boundary", |row| {
+                html! { (clean(&row.thickness)) br; span.small { (thick(row)) } }
+            })
+            .text("No erosion up to", |row| cell(row.no_erosion.as_ref(), row.no_erosion_note.as_ref()))
+            .text("Continuing erosion from", |row| {
+                cell(row.continuing.as_ref(), row.continuing_note.as_ref())
+            })
+            .number("Not monotone", |row| {
+                format!("{} of {}", row.not_monotone, row.networks.len())
+            })
+            .render())
+        p.small {
+            "No erosion: less than " (threshold(design.threshold)) " of the mass of the base erodes in the \
+             first run. Continuing: at least as much in the second run, too. Between the two lies some \
+             erosion. Thickness matters most: thicker filters hold more."
+        }
+    }
+}
+
+fn bands(design: &Design) -> Markup {
+    let rows: Vec<&DesignRow> = design.boundaries.iter().filter(|row| row.band.is_some()).collect();
+    let size = |row: &DesignRow, of: fn(&crate::outcome::design::band::Band) -> Option<f64>| {
+        let band = row.band.as_ref().expect("rows without one were left out");
+        of(band).map_or_else(|| "–".to_owned(), |value| format!("{} {}", significant(value), band.unit))
+    };
+    html! {
+        @if !rows.is_empty() {
+            h2 { "The band of a specification" }
+            p {
+                "D15F from the least that drains the base to the greatest at which all but 5 % of networks \
+                 show no erosion, and what the strictest rule of retention allows. It is empty where the \
+                 least is more than either of the two."
+            }
+            (Table::of(rows.iter().copied()).class("study")
+                .name("Density, thickness", |row| clean(&format!("{}, {}", row.density, row.thickness)))
+                .number("Least (drains)", |row| size(row, |band| Some(band.least)))
+                .number("Greatest (walk)", |row| size(row, |band| Some(band.greatest)))
+                .number("Greatest (practice)", |row| size(row, |band| band.practice))
+                .text("", |row| match row.band.as_ref().is_some_and(|band| band.is_empty) {
+                    true => html! { span.breaks { "✗ empty" } },
+                    false => html! { span.keeps { "✓" } },
+                })
+                .render())
+            @for row in &rows {
+                @if let Some(band) = row.band.as_ref().filter(|band| band.is_empty) {
+                    p { b { (clean(&capital(&band.said))) } "." }
+                }
+            }
+        }
+    }
+}
+
+fn products(design: &Design) -> Markup {
+    let yes = |holds: bool| match holds {
+        true => html! { span.keeps { "✓" } },
+        false => html! { span.breaks { "✗" } },
+    };
+    html! {
+        @if !design.products.is_empty() {
+            h2 { "Standard products" }
+            p {
+                "Which of them have the D15 of both their sides within the narrowest band, with practice \
+                 agreeing. D15 is interpolated between sieves. Their own shapes were not walked: another \
+                 shape holds to another D15."
+                @if design.confidence != Confidence::Within {
+                    " Nothing is said to fit here, as the answer is in doubt."
+                }
+            }
+            (Table::of(&design.products)
+                .name("Product, source of its limits", |fit| {
+                    html! { (clean(&fit.name)) br; span.small { (clean(&fit.source)) } }
+                })
+                .number("D15, fine to coarse side (mm)", |fit| {
+                    format!("{} to {}", significant(fit.d15_mm[0]), significant(fit.d15_mm[1]))
+                })
+                .text("Drains", |fit| yes(fit.drains))
+                .text("Holds (walk)", |fit| yes(fit.holds))
+                .text("Practice", |fit| fit.practice.map_or_else(|| html! { "–" }, yes))
+                .number("", |fit| match (fit.fits(), design.confidence) {
+                    (true, Confidence::Within) => html! { b { "fits" } },
+                    (true, _) => html! { "in doubt" },
+                    (false, _) => html! { "does not fit" },
+                })
+                .render())
+        }
+    }
+}
+
+fn practice(design: &Design) -> Markup {
+    let rules: Vec<&AppliedRule> = design.rules.iter().filter(|rule| rule.role != RuleRole::Walk).collect();
+    html! {
+        @if !rules.is_empty() {
+            h2 { "Rules of practice" }
+            p {
+                "Of a filter with D15F/D85B " (ratio(design.rules_at))
+                @if cautious(design).is_some() { ", the coarsest that is said to hold" } "."
+            }
+            (rules::table(&rules))
+        }
+    }
+}
+
+fn networks(design: &Design) -> Markup {
+    let digits = |value: Option<f64>| value.map_or_else(|| "beyond".to_owned(), |v| format!("{v:.3}"));
+    html! {
+        h2 { "Network by network" }
+        @for row in &design.boundaries {
+            h3 { (clean(&format!("{}, {}", row.density, row.thickness))) }
+            (Table::of(&row.networks)
+                .number("Network", |of| of.network)
+                .number("No erosion up to D15F/D85B", |of| digits(of.no_erosion))
+                .number("Continuing from", |of| digits(of.continuing))
+                .render())
+        }
+    }
+}
+
+fn made(design: &Design, walks: &[WalkRow]) -> Markup {
+    let [low, high] = design.bracket;
+    let size = |value: Option<f64>| value.map_or_else(|| "no unit".to_owned(), |mm| format!("{mm:.4} mm"));
+    let grains = design.boundaries.iter().find_map(|row| row.grains_per_void);
+    let asked = design.settings.join(" ");
+    html! {
+        h2 { "How this was made" }
+        table.facts { tbody {
+            (fact("Base", &design.base.name))
+            (fact("Cu of the base; D15, D85", format!(
+                "{}; {}, {}",
+                design.base.cu.map_or_else(|| "not known".to_owned(), trimmed),
+                size(design.base.d15_mm),
+                size(design.base.d85_mm)
+            )))
+            (fact("Filter", &design.filter))
+            (fact("Cu of the filter", design.filter_cu.map_or_else(|| "not known".to_owned(), trimmed)))
+            (fact("Grains per void, Eq. (2)", grains.map_or_else(|| "not given".to_owned(), trimmed)))
+            (fact("Networks, seed", format!("{}, {}", whole(design.replicates), design.seed)))
+            (fact("Searched", format!(
+                "D15F/D85B {low} to {high}, outwards to steps of 8 %, in steps of {} %; {} ratios walked \
+                 (design.csv)",
+                trimmed(100.0 * design.step),
+                whole(walks.len() as u64)
+            )))
+            (fact("Asked for", if asked.is_empty() { "the built-in scene" } else { &asked }))
+        } }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::outcome::design::BaseStated;
+
+    fn written(design: &Design, csv: &str) -> String {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("design.json"), serde_json::to_vec(design).unwrap()).unwrap();
+        std::fs::write(folder.path().join("design.csv"), csv).unwrap();
+        let written = write_design(folder.path()).unwrap();
+        assert!(written.page.ends_with("design.html"));
+        std::fs::read_to_string(written.page).unwrap()
+    }
+
+    fn design(no_erosion: Option<Boundary>, confidence: Confidence) -> Design {
+        Design {
+            version: "1".into(),
+            boundaries: vec![DesignRow {
+                density: "<loose>".into(),
+                thickness: "60 layers".into(),
+                layers: 60,
+                thickness_mm: None,
+                grains_per_void: Some(0.61),
+                no_erosion_note: no_erosion.is_none().then(|| "nothing erodes".into()),
+                no_erosion,
+                continuing: None,
+                continuing_note: None,
+                not_monotone: 0,
+                networks: Vec::new(),
+                band: None,
+                band_note: None,
+            }],
+            inverse: false,
+            base: BaseStated { name: "b".into(), cu: None, d15_mm: None, d85_mm: None, d95_over_d85: None },
+            filter: "f".into(),
+            filter_cu: None,
+            filter_d15_mm: None,
+            unit: "mm".into(),
+            threshold: 0.075,
+            replicates: 3,
+            seed: 1,
+            bracket: [0.5, 100.0],
+            step: 0.005,
+            confidence,
+            reasons: vec!["a doubt".into()],
+            rules: Vec::new(),
+            rules_at: 4.0,
+            products: Vec::new(),
+            warnings: Vec::new(),
+            model_leaves_out: vec!["water".into()],
+            settings: Vec::new(),
+            seconds: 1.0,
+        }
+    }
+
+    const CSV: &str = "density,thickness,network,d15f_over_d85b,eroded_first,eroded_second\n\
+                       <loose>,60 layers,1,4.0,0.01,\n<loose>,60 layers,1,5.0,0.5,0.4\n";
+
+    #[test]
+    fn only_what_was_checked_is_green_and_names_are_inert() {
+        let boundary = || {
+            let networks = [Ok(4.3), Ok(4.5)];
+            Boundary::of(&networks, Some(0.2))
+        };
+        let page = written(&design(boundary(), Confidence::Within), CSV);
+        assert!(page.contains("verdict none") && page.contains("D15F up to 0.862 mm"), "{page}");
+        assert!(page.contains("&lt;loose&gt;") && !page.contains("<loose>"));
+        assert!(page.contains("default-src 'none'") && page.contains("<li>water</li>"));
+        for confidence in [Confidence::Outside, Confidence::Contradicted] {
+            let page = written(&design(boundary(), confidence), CSV);
+            assert!(page.contains("verdict doubted") && !page.contains("verdict none"));
+            assert!(page.contains("a doubt"));
+        }
+        let none = written(&design(None, Confidence::Outside), CSV);
+        assert!(none.contains("verdict undecided") && none.contains("nothing erodes"));
+    }
+
+    #[test]
+    fn a_folder_that_was_changed_is_refused_with_file_and_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let text = serde_json::to_vec(&design(None, Confidence::Outside)).unwrap();
+        std::fs::write(folder.path().join("design.json"), text).unwrap();
+        std::fs::write(folder.path().join("design.csv"), CSV.replace("0.01", "much")).unwrap();
+        let error = write_design(folder.path()).unwrap_err().to_string();
+        assert!(error.contains("design.csv") && error.contains('2'), "{error}");
+        std::fs::remove_file(folder.path().join("design.json")).unwrap();
+        assert!(write_design(folder.path()).unwrap_err().to_string().contains("design.json"));
+    }
+}

@@ -1,0 +1,114 @@
+//! Figures of what moves the verdict: the number of base particles, the thickness of the filter.
+
+use super::figures::{Across, Area, Axis, Figure, Line, Point, Tick};
+use super::folder::RunFolder;
+use super::numbers::{interval_in_percent, known, percent, significant, size, trimmed, whole};
+use super::run_figures::{eroded_axis, run_look, run_name, threshold_rule, upper, verdict_colour};
+use super::shell::Drawn;
+use crate::outcome::record::{OfThickness, Statistic, Verdict};
+
+/// One of several filters or bases that differ in one thing: how many times that of this scene.
+struct Varied<'a> {
+    factor: f64,
+    /// What stands below the factor on the axis.
+    below: String,
+    verdict: Verdict,
+    runs: &'a [Statistic],
+}
+
+/// Eroded mass against the number of base particles, and the class that each number gives.
+pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
+    let cases = folder.outcome.sensitivity.iter().filter(|case| case.factor > 0.0);
+    let cases = cases.map(|case| Varied {
+        factor: case.factor,
+        below: known(case.grains_per_void, significant),
+        verdict: case.verdict,
+        runs: &case.runs,
+    });
+    let titles = [
+        "How the verdict moves with the number of base particles",
+        "Percent of the base mass eroded in each run against multiples of the number of base particles; the \
+         colour behind is the verdict",
+        "Times the base particles of this scene; below, grains per void",
+    ];
+    let figure = varied(folder, cases.collect(), titles)?;
+    let caption = format!(
+        "How the verdict moves with the number of base particles, N_base. Grains per void and mass ratio \
+         enter N_base only as a product (Eq. 2), so this one axis answers for both: ×2 is twice the grains \
+         per void or twice the mass ratio. ×1 is this scene: {} grains per void, mass ratio {}. Bars: 95 % \
+         intervals.",
+        known(folder.outcome.grains_per_void, significant),
+        known(folder.outcome.inputs.mass_ratio, percent),
+    );
+    Some(Drawn::new("sensitivity", figure, caption))
+}
+
+/// Eroded mass against the thickness of the filter, and the class that each thickness gives.
+pub(super) fn thickness(folder: &RunFolder) -> Option<Drawn> {
+    let scale_free = folder.outcome.inputs.scale_free;
+    let of_row = |row: &'_ OfThickness| known(row.thickness_mm, |thickness| size(thickness, scale_free));
+    let rows = folder.outcome.thickness.iter().filter(|row| row.factor > 0.0);
+    let rows = rows.map(|row| Varied {
+        factor: row.factor,
+        below: of_row(row),
+        verdict: row.verdict,
+        runs: &row.runs,
+    });
+    let titles = [
+        "How the verdict moves with the thickness of the filter",
+        "Percent of the base mass eroded in each run against multiples of the filter's thickness; the \
+         colour behind is the verdict",
+        "Times the thickness of this scene; below, the thickness modelled",
+    ];
+    let figure = varied(folder, rows.collect(), titles)?;
+    let caption = format!(
+        "How the verdict moves with the thickness of the filter: more layers are more constrictions to \
+         pass. ×1 is this scene, {} layers of voids. By Eq. (2) a thicker filter is offered as many times \
+         the base. Bars: 95 % intervals.",
+        whole(folder.outcome.inputs.network.layers),
+    );
+    Some(Drawn::new("thickness", figure, caption))
+}
+
+/// Eroded mass against multiples of one thing, with title, description and name of the axis; `None` without
+/// cases.
+fn varied(folder: &RunFolder, mut cases: Vec<Varied>, titles: [&str; 3]) -> Option<Figure> {
+    let [title, what, axis] = titles;
+    cases.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+    let (least, most) = (cases.first()?.factor, cases.last()?.factor);
+    let ticks = cases.iter().map(|case| {
+        let mut tick = Tick::new(case.factor, &[&format!("×{}", trimmed(case.factor)), &case.below]);
+        tick.rank = u8::from(case.factor != 1.0);
+        tick
+    });
+    let x = Axis::log(axis, least, most).with_ticks(ticks.collect()).within(least / 1.25, most * 1.25);
+    let highest = 100.0 * cases.iter().flat_map(|case| case.runs).map(upper).fold(0.0, f64::max);
+    let y = eroded_axis("Base eroded, by mass (%)", folder, (highest * 1.3).min(100.0));
+    let mut figure = Figure::new(title, what, "", x, y);
+    let edge = |left: f64, right: f64| libm::sqrt(left * right);
+    let mut left = least / 1.25;
+    for same in cases.chunk_by(|a, b| a.verdict == b.verdict) {
+        let (Some(first), Some(last)) = (same.first(), same.last()) else { continue };
+        let next = cases.iter().find(|case| case.factor > last.factor);
+        let right = next.map_or(most * 1.25, |next| edge(last.factor, next.factor));
+        let outline = vec![(left, 0.0), (left, 100.0), (right, 100.0), (right, 0.0)];
+        let area = Area::new(outline, verdict_colour(first.verdict), 0.2);
+        figure.add(area.label(&first.verdict.words().replace(' ', "\n")));
+        left = right;
+    }
+    figure.add(threshold_rule(folder, Across::Y));
+    for run in folder.runs() {
+        let (colour, shape, dash) = run_look(run);
+        // the runs stand a little apart, so that their bars do not overlap
+        let apart = if run == 1 { 0.985 } else { 1.015 };
+        let found =
+            || cases.iter().filter_map(|case| Some((case.factor * apart, case.runs.get(run as usize - 1)?)));
+        let means = found().map(|(factor, statistic)| (factor, statistic.mean * 100.0)).collect();
+        figure.add(Line::new(means, colour).dash(dash).label(run_name(run)));
+        for (factor, statistic) in found() {
+            let point = Point::new(factor, statistic.mean * 100.0, colour, shape);
+            figure.add(point.y_interval(interval_in_percent(statistic)));
+        }
+    }
+    Some(figure)
+}

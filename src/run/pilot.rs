@@ -1,0 +1,92 @@
+//! A pilot walk: the runs of a case on a slim lattice as deep as its own, which counts their work.
+//!
+//! How long a run takes depends on what its base does: a filter that seals leaves the voids below empty, a
+//! base of one size blocks what would stop it and then walks to the end. A lattice a few voids wide meets
+//! the same base per void and so does the same work per void, in a fraction of the time.
+
+use std::ops::Range;
+
+use bitvec::vec::BitVec;
+
+use crate::case::{Case, replicate_seed};
+use crate::network::Network;
+use crate::walk::{Passive, SizeClasses, State, Walk, WalkControl};
+
+use super::replicates::plan;
+
+/// Work of all runs of one replicate, for each void of its network.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct WorkByVoid {
+    /// Voids that held counts, summed over the increments.
+    pub occupied: f64,
+    /// Voids in layers of which any held counts, summed likewise: they are looked at.
+    pub looked_at: f64,
+    /// Moves that were attempted by particles that are walked by themselves.
+    pub moves: f64,
+    /// Particles that are walked by themselves.
+    pub one_by_one: f64,
+}
+
+/// Greatest width of the slim lattice: voids along x and y.
+const WIDEST: u32 = 10;
+/// Least width: narrower ones meet themselves.
+const NARROWEST: u32 = 4;
+
+/// Size classes of its records, which nobody reads.
+const CLASSES: usize = 2;
+
+/// Work of the runs of the case's first replicate, with `n_base` particles in all, on a slim lattice; `None`
+/// where its own is as slim, where even the narrowest takes more than `most_s`, or where it cannot be walked.
+/// On its own lattice these runs are guessed to take `whole_s`.
+pub(super) fn pilot(case: &Case, n_base: u64, whole_s: f64, most_s: f64) -> Option<WorkByVoid> {
+    let [voids, _, start_nodes, layers] = case.counts;
+    let depth = u32::try_from(layers).ok()?;
+    let seconds = |width: u32| whole_s * (f64::from(width).powi(2) * f64::from(depth) / voids as f64);
+    let width = (NARROWEST..=WIDEST).rev().find(|&width| seconds(width) <= most_s)?;
+    if u64::from(width).pow(2) >= start_nodes {
+        return None;
+    }
+    let seed = replicate_seed(case.scene.walk.seed, 1);
+    let network = Network::cubic([width, width, depth], &case.curve, case.unit_mm, seed).ok()?;
+    let share = network.voids() as f64 / voids as f64;
+    let n_base = ((n_base as f64 * share).round() as u64).max(1);
+    let across = width as usize * width as usize;
+    let mut work = WorkByVoid::default();
+    let mut blocked = BitVec::repeat(false, network.constrictions());
+    for run in 1..=case.scene.walk.runs {
+        let plan = plan(case, &network, &blocked, n_base);
+        let supply = plan.supply(case.sampler.clone(), n_base, case.increments(), seed, run);
+        let classes = SizeClasses::logarithmic(case.sampler.smallest(), case.sampler.largest(), CLASSES);
+        let mut state = State::new(&network, &supply, classes, blocked, seed, run);
+        work.one_by_one += supply.total() as f64;
+        Walk::new(&network, &supply, &state)
+            .run(&mut state, &mut |state| {
+                work.moves += state.particles.live.iter().map(|&live| f64::from(live)).sum::<f64>();
+                for layer in 0..depth {
+                    let held =
+                        occupied(&state.passive, layer as usize * across..(layer as usize + 1) * across);
+                    work.occupied += held as f64;
+                    work.looked_at += if held > 0 { across as f64 } else { 0.0 };
+                }
+                WalkControl::Continue
+            })
+            .ok()?;
+        blocked = state.blocked;
+    }
+    let each = network.voids() as f64;
+    Some(WorkByVoid {
+        occupied: work.occupied / each,
+        looked_at: work.looked_at / each,
+        moves: work.moves / each,
+        one_by_one: work.one_by_one / each,
+    })
+}
+
+/// How many of these voids hold counts.
+fn occupied(passive: &Passive, voids: Range<usize>) -> usize {
+    match passive {
+        Passive::OneByOne => 0,
+        Passive::Counts(counts) => counts[voids].iter().filter(|&&n| n > 0).count(),
+        Passive::Expected(expected) => expected.moving[voids].iter().filter(|&&n| n > 0.0).count(),
+    }
+}

@@ -1,0 +1,202 @@
+//! The scene of two sieve tables: what a user means who names a base and a filter and nothing else.
+
+use std::path::Path;
+
+use super::keys::Density;
+use super::{Origin, Scene, SceneError};
+
+/// What a scene of two tables is given besides them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TableOptions {
+    /// How densely the filter lies: its grains are packed so. Without it, and where `changes` do not say what
+    /// the constrictions are, they are guessed from the gradation, over the whole range of the guess.
+    pub density: Option<Density>,
+    /// A first look: fewer replicates, and no studies of the amount of base and of the thickness.
+    pub quick: bool,
+    /// Further settings, as `name=value`; they go before all of these.
+    pub changes: Vec<String>,
+}
+
+/// The middle of the range of the guess, both of whose ends are walked besides.
+const MIDDLE: f64 = 0.5;
+
+/// Replicates of a first look.
+const QUICK: u64 = 4;
+
+/// Settings that say what the filter's constrictions are.
+const CONSTRICTIONS: [&str; 6] = [
+    "filter.curve",
+    "filter.density",
+    "filter.friction",
+    "filter.estimate",
+    "network.file",
+    "network.packing",
+];
+
+/// Settings that say how many replicates are walked.
+const REPLICATES: [&str; 3] = ["replicates", "stop.target_error_pp", "stop.decide_percent"];
+
+/// Settings that say what the base is.
+const BASE: [&str; 3] = ["base.sieve", "base.cu", "base.single_mm"];
+
+/// Settings that say what the filter is.
+const FILTER: [&str; 2] = ["filter.sieve", "filter.cu"];
+
+impl TableOptions {
+    /// The settings that say all of this.
+    pub fn settings(&self) -> Vec<String> {
+        let density = self.density.map(|density| format!("filter.density=\"{}\"", density.name()));
+        let mut settings: Vec<String> = density.into_iter().collect();
+        if self.quick && !self.is_set(&REPLICATES) {
+            settings.push(format!("replicates={QUICK}"));
+        }
+        if self.quick && !self.is_set(&["record.sensitivity"]) {
+            settings.push("record.sensitivity=[]".into());
+        }
+        settings.extend(self.changes.iter().cloned());
+        settings
+    }
+
+    fn is_set(&self, names: &[&str]) -> bool {
+        set_among(&self.changes, names).is_some()
+    }
+}
+
+impl Scene {
+    /// The scene of a base and a filter that are sieve tables (`FILE#NAME` for one of several soils); the
+    /// rest is that of the built-in scene.
+    ///
+    /// # Errors
+    /// As [`Scene::built_in`]; a change would replace one of the two; or a name is not UTF-8.
+    pub fn of_tables(base: &Path, filter: &Path, options: &TableOptions) -> Result<Self, SceneError> {
+        let [named_base, named_filter] = [base, filter].map(|path| path.display().to_string());
+        keep_soils(&options.changes, Some(&named_base), Some(&named_filter))?;
+        let mut settings = Vec::new();
+        for (name, path) in [("filter.sieve", filter), ("base.sieve", base)] {
+            settings.push(format!("{name}={}", quoted(path)?));
+        }
+        if options.density.is_none() && !options.is_set(&CONSTRICTIONS) {
+            settings.push(format!("filter.estimate={MIDDLE}"));
+        }
+        settings.extend(options.settings());
+        Self::built_in(&settings)
+    }
+
+    /// What the filter's constrictions come from, in a sentence.
+    pub fn constrictions_in_words(&self) -> String {
+        let filter = &self.filter;
+        if let Some(friction) = filter.friction {
+            return format!("The filter's grains are packed, with friction {friction}.");
+        }
+        if let Some(density) = filter.density {
+            return format!("The filter's grains are packed: {}.", density.name());
+        }
+        match (&filter.estimate, &filter.curve) {
+            (Some(estimate), _) => format!(
+                "The filter's constrictions are guessed from its gradation at {estimate}, and at both ends \
+                 of the range from 0 (loose) to 1 (dense): how densely it lies was not given."
+            ),
+            (None, Some(_)) => "The filter's constrictions are those of filter.curve.".into(),
+            (None, None) => "The constrictions are those of the network that was given.".into(),
+        }
+    }
+}
+
+/// Refuses settings that would put another soil in the place of one that is named besides them: what is said
+/// of the named soil would be said of the other.
+///
+/// # Errors
+/// [`SceneError::Clash`], with the setting and the soil.
+pub fn keep_soils(changes: &[String], base: Option<&str>, filter: Option<&str>) -> Result<(), SceneError> {
+    for (role, named, names) in [("base", base, &BASE[..]), ("filter", filter, &FILTER)] {
+        if let (Some(named), Some(name)) = (named, set_among(changes, names)) {
+            return Err(SceneError::Clash {
+                file: Origin::CommandLine.to_string(),
+                problem: format!(
+                    "{name} would put another soil in the place of the {role}, {named}: name the other \
+                     instead, or leave {name} out"
+                ),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// The first of these settings that is among the changes.
+fn set_among<'a>(changes: &[String], names: &[&'a str]) -> Option<&'a str> {
+    let name_of = |change: &String| change.split_once('=').map_or("", |(name, _)| name).trim().to_owned();
+    let set: Vec<String> = changes.iter().map(name_of).collect();
+    names.iter().copied().find(|name| set.iter().any(|set| set == name))
+}
+
+/// A path as a TOML string, so that one like `1e5` stays a name.
+fn quoted(path: &Path) -> Result<String, SceneError> {
+    let text = path.to_str().ok_or_else(|| SceneError::Clash {
+        file: path.display().to_string(),
+        problem: "its name is not UTF-8 text; give it another".into(),
+    })?;
+    Ok(toml::Value::String(text.to_owned()).to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scene(options: &TableOptions) -> Result<Scene, SceneError> {
+        Scene::of_tables(Path::new("1e5"), Path::new("a \"b\".xlsx#Filter A"), options)
+    }
+
+    fn with(changes: &[&str]) -> TableOptions {
+        TableOptions { changes: changes.iter().map(ToString::to_string).collect(), ..Default::default() }
+    }
+
+    #[test]
+    fn two_names_are_a_scene() {
+        let scene = scene(&TableOptions::default()).unwrap();
+        assert_eq!(scene.filter.sieve.as_deref(), Some(Path::new("a \"b\".xlsx#Filter A")));
+        assert_eq!(scene.base.sieve.as_deref(), Some(Path::new("1e5")));
+        assert_eq!((scene.filter.curve, scene.filter.estimate, scene.filter.cu), (None, Some(MIDDLE), None));
+        assert_eq!((scene.base.cu, scene.walk.replicates), (None, 10));
+    }
+
+    #[test]
+    fn a_density_packs_and_changes_go_before_all() {
+        let dense = TableOptions { density: Some(Density::Dense), ..Default::default() };
+        let packed = scene(&dense).unwrap();
+        assert!(packed.packing.is_some() && packed.filter.estimate.is_none());
+        let given = scene(&with(&["filter.curve=cu3-loose", "replicates=3"])).unwrap();
+        assert!(given.filter.estimate.is_none() && given.walk.replicates == 3);
+        let both = TableOptions { density: Some(Density::Loose), ..with(&["filter.estimate=1"]) };
+        assert!(scene(&both).unwrap_err().to_string().contains("both say what the filter's constrictions"));
+        let odd = scene(&with(&["base.uc=3"])).unwrap_err().to_string();
+        assert!(odd.contains("there is no setting `base.uc`"), "{odd}");
+    }
+
+    #[test]
+    fn no_change_replaces_a_soil_that_is_named() {
+        for change in [
+            "base.sieve=\"other.csv\"",
+            " base.sieve = other",
+            "base.cu=2",
+            "base.single_mm=0.2",
+            "filter.cu=3",
+        ] {
+            let said = scene(&with(&[change])).unwrap_err().to_string();
+            assert!(said.contains("would put another soil in the place of the"), "{change}: {said}");
+        }
+        let said = scene(&with(&["filter.sieve=b.csv"])).unwrap_err().to_string();
+        assert!(said.contains("in the place of the filter, a \"b\".xlsx#Filter A: name the other"), "{said}");
+        assert!(scene(&with(&["base.d0_mm=0.01", "filter.d0_mm=0.1", "base.mass_ratio=0.1"])).is_ok());
+        assert!(keep_soils(&["base.cu=2".into()], None, Some("f")).is_ok());
+    }
+
+    #[test]
+    fn a_quick_look_walks_fewer_replicates_of_the_same_model() {
+        let quick = scene(&TableOptions { quick: true, ..with(&[]) }).unwrap();
+        assert_eq!((quick.walk.replicates, quick.record.sensitivity.len()), (QUICK, 0));
+        let whole = scene(&with(&[])).unwrap();
+        assert_eq!(quick.network, whole.network);
+        let told = scene(&TableOptions { quick: true, ..with(&["replicates=7"]) }).unwrap();
+        assert_eq!(told.walk.replicates, 7);
+    }
+}

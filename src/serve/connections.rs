@@ -1,0 +1,82 @@
+//! How many connections are answered at a time, and which goes where there are too many: whoever has shown no
+//! secret keeps nobody waiting for long.
+
+use std::io;
+use std::net::{Shutdown, TcpStream};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Connections that are answered at the same time; others wait.
+const MOST: usize = 64;
+
+/// How long a connection that has not shown the secret is left alone, however many wait.
+const GRACE: Duration = Duration::from_secs(1);
+
+/// How often it is looked whether one of them has had its time.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// The connections that are answered now.
+#[derive(Default)]
+pub struct Connections {
+    /// In the order in which they came.
+    open: Mutex<Vec<Connection>>,
+    freed: Condvar,
+}
+
+struct Connection {
+    id: u64,
+    /// The way to end it; `None` where it has shown the secret.
+    shed: Option<TcpStream>,
+    since: Instant,
+}
+
+/// The place of a connection, until it is dropped.
+pub struct Place {
+    connections: Arc<Connections>,
+    id: u64,
+}
+
+impl Connections {
+    fn locked(&self) -> MutexGuard<'_, Vec<Connection>> {
+        self.open.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A place for a connection, as soon as there is one: where all are taken, the oldest connection without
+    /// the secret is ended.
+    ///
+    /// # Errors
+    /// There are no more file handles.
+    pub fn place(self: &Arc<Self>, stream: &TcpStream) -> io::Result<Place> {
+        let shed = Some(stream.try_clone()?);
+        let mut open = self.locked();
+        while open.len() >= MOST {
+            let oldest = open.iter().position(|one| one.shed.is_some() && one.since.elapsed() >= GRACE);
+            if let Some(at) = oldest {
+                // Its thread finds the connection ended.
+                let ended = open.remove(at).shed.map(|stream| stream.shutdown(Shutdown::Both));
+                drop(ended);
+                continue;
+            }
+            open = self.freed.wait_timeout(open, LOOK).unwrap_or_else(PoisonError::into_inner).0;
+        }
+        let id = open.last().map_or(0, |last| last.id + 1);
+        open.push(Connection { id, shed, since: Instant::now() });
+        Ok(Place { connections: Arc::clone(self), id })
+    }
+}
+
+impl Place {
+    /// The connection has shown the secret: it is not ended for others.
+    pub fn keep(&self) {
+        if let Some(one) = self.connections.locked().iter_mut().find(|one| one.id == self.id) {
+            one.shed = None;
+        }
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        self.connections.locked().retain(|one| one.id != self.id);
+        self.connections.freed.notify_one();
+    }
+}

@@ -1,0 +1,204 @@
+//! How coarse may the filter be, as the page asks: what it may say, and what it is shown.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use super::sheets::Sheets;
+use crate::constrictions;
+use crate::outcome::design::Design;
+use crate::run::{PrepareOptions, RunError};
+use crate::study::design::{DesignOptions, Thickness};
+
+/// What the page asks for.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AskedDesign {
+    /// The sheet of the base, by its number.
+    pub base: String,
+    /// The sheet whose form the filter has, by its number; empty where `shape` says it.
+    #[serde(default)]
+    pub filter: String,
+    /// A Cu, or the name of a shipped curve; empty where the settings say it.
+    #[serde(default)]
+    pub shape: String,
+    /// Densities and thicknesses as on the command line, with commas between them.
+    #[serde(default)]
+    pub density: String,
+    #[serde(default)]
+    pub thickness: String,
+    #[serde(default)]
+    pub inverse: bool,
+    #[serde(default)]
+    pub changes: Vec<String>,
+}
+
+/// The same with its sheets found. Paths are below the server's folder, which may be moved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct KeptDesign {
+    base: PathBuf,
+    filter: FilterShape,
+    densities: Vec<String>,
+    thicknesses: Vec<String>,
+    inverse: bool,
+    settings: Vec<String>,
+}
+
+/// Where a filter's form comes from. What a browser writes is never the name of a file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum FilterShape {
+    /// A sheet.
+    Sheet(PathBuf),
+    /// A Cu or the name of a shipped curve.
+    Named(String),
+    /// The settings say it.
+    Settings,
+}
+
+impl AskedDesign {
+    /// Finds the sheets, and that a shape in words is no file.
+    ///
+    /// # Errors
+    /// There is no such sheet, or no such shape.
+    pub fn found(self, sheets: &Sheets, root: &Path) -> Result<KeptDesign, String> {
+        let path = |sheet: &str| -> Result<PathBuf, String> {
+            let path = sheets.path(sheet)?;
+            Ok(path.strip_prefix(root).map(Path::to_owned).unwrap_or(path))
+        };
+        let shape = self.shape.trim();
+        let filter = match (self.filter.is_empty(), shape.is_empty()) {
+            (false, true) => FilterShape::Sheet(path(&self.filter)?),
+            (true, true) => FilterShape::Settings,
+            (true, false) => {
+                if shape.parse::<f64>().is_err() {
+                    constrictions::find(shape).map_err(|error| error.to_string())?;
+                }
+                FilterShape::Named(shape.to_owned())
+            }
+            (false, false) => return Err("a sheet and a shape both say the filter's form: keep one".into()),
+        };
+        Ok(KeptDesign {
+            base: path(&self.base)?,
+            filter,
+            densities: listed(&self.density),
+            thicknesses: listed(&self.thickness),
+            inverse: self.inverse,
+            settings: self.changes,
+        })
+    }
+}
+
+impl KeptDesign {
+    /// As the library is asked for it, with its results in `out`.
+    ///
+    /// # Errors
+    /// A thickness that is none.
+    pub fn options(
+        &self,
+        root: &Path,
+        out: &Path,
+        prepare: &PrepareOptions,
+    ) -> Result<DesignOptions, RunError> {
+        let thicknesses = self.thicknesses.iter().map(|text| text.parse::<Thickness>());
+        let filter = match &self.filter {
+            FilterShape::Sheet(path) => Some(root.join(path).display().to_string()),
+            FilterShape::Named(shape) => Some(shape.clone()),
+            FilterShape::Settings => None,
+        };
+        Ok(DesignOptions {
+            base: Some(root.join(&self.base)),
+            filter,
+            densities: self.densities.clone(),
+            thicknesses: thicknesses.collect::<Result<_, _>>().map_err(RunError::Refused)?,
+            settings: self.settings.clone(),
+            inverse: self.inverse,
+            out: out.to_owned(),
+            prepare: prepare.clone(),
+            ..DesignOptions::default()
+        })
+    }
+
+    /// What it is called in the list of jobs.
+    pub fn title(&self) -> String {
+        let named = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let filter = match &self.filter {
+            FilterShape::Sheet(path) => named(path),
+            FilterShape::Named(shape) if shape.parse::<f64>().is_ok() => format!("Cu {shape}"),
+            FilterShape::Named(shape) => shape.clone(),
+            FilterShape::Settings => "its settings".into(),
+        };
+        match self.inverse {
+            false => format!("How coarse may a filter as of {filter} be for {}?", named(&self.base)),
+            true => format!("How fine may a base as of {} be for {filter}?", named(&self.base)),
+        }
+    }
+}
+
+/// What stands between commas.
+fn listed(text: &str) -> Vec<String> {
+    text.split(',').map(str::trim).filter(|one| !one.is_empty()).map(str::to_owned).collect()
+}
+
+/// What the page shows of a design: its boundaries as they stand in `design.json`, without each network.
+///
+/// # Errors
+/// A number that is none.
+pub fn of_design(design: &Design) -> Result<Value, serde_json::Error> {
+    let mut boundaries = serde_json::to_value(&design.boundaries)?;
+    for row in boundaries.as_array_mut().into_iter().flatten().filter_map(Value::as_object_mut) {
+        row.shift_remove("networks");
+    }
+    Ok(json!({
+        "inverse": design.inverse,
+        "base": design.base.name,
+        "filter": design.filter,
+        "boundaries": boundaries,
+        "replicates": design.replicates,
+        "confidence": design.confidence.words(),
+        "reasons": design.reasons,
+        "warnings": design.warnings,
+        "compared": design.products.len(),
+        "fit": design.products_that_fit(),
+        "model_leaves_out": design.model_leaves_out,
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn asked(filter: &str, shape: &str) -> AskedDesign {
+        let [filter, shape] = [filter, shape].map(str::to_owned);
+        AskedDesign {
+            base: "1".into(),
+            filter,
+            shape,
+            density: "loose, dense,".into(),
+            thickness: "8layers".into(),
+            inverse: false,
+            changes: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn a_shape_is_a_sheet_a_number_or_a_shipped_name_and_never_a_file() {
+        let root = tempfile::tempdir().unwrap();
+        let sheets = Sheets::new(root.path());
+        sheets.add("base.csv", b"size_mm,percent\n1,0\n2,100\n").unwrap();
+        let outside = root.path().join("outside.csv").display().to_string();
+        std::fs::write(&outside, "size_mm,percent\n1,0\n2,100\n").unwrap();
+        let found = |filter: &str, shape: &str| asked(filter, shape).found(&sheets, root.path());
+        for wrong in [&outside, "sheets/1/base.csv", "outside.csv", "cu1.5-lose", "Cargo.toml"] {
+            assert!(found("", wrong).unwrap_err().contains("no shipped filter is called"), "{wrong}");
+        }
+        assert!(found("7", "").is_err() && found("../1", "").is_err() && found("1", "3").is_err());
+        for (filter, shape) in [("1", ""), ("", "3"), ("", "cu1.5-loose"), ("", "")] {
+            let kept = found(filter, shape).unwrap();
+            assert_eq!(kept.base, Path::new("sheets/1/base.csv"), "below the folder, which may be moved");
+            assert_eq!(kept.densities, ["loose", "dense"]);
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! What is known of a job while it is walked.
+
+use std::collections::BTreeMap;
+
+use serde_json::{Value, json};
+
+use crate::campaign::CaseEvent;
+use crate::outcome::record::{Statistic, Verdict};
+use crate::outcome::verdict::{below_by_interval, classify};
+use crate::run::Event;
+
+/// Fewer replicates have no class while more are to come.
+const FEW: usize = 4;
+
+/// Most warnings that are kept.
+const WARNINGS: usize = 50;
+
+/// Lines of a study that are kept: the newest.
+const LINES: usize = 12;
+
+/// What is known of a job while it is walked.
+#[derive(Clone, Debug, Default)]
+pub struct Live {
+    /// Grains of the packing, its steps, and how many it usually takes.
+    packing: Option<[u64; 3]>,
+    waits_for_packing: bool,
+    /// Runs that are done, and that are to be walked, as far as it is known.
+    runs: [u64; 2],
+    /// Mass eroded, and whether it is below the threshold, by run and replicate.
+    walked: BTreeMap<u64, BTreeMap<u64, (f64, bool)>>,
+    /// Cases that are done, and all.
+    cases: [usize; 2],
+    /// Cases with what came of them.
+    done: Vec<Value>,
+    case: String,
+    /// What a study has said, the newest last.
+    lines: Vec<String>,
+    /// What a user must know.
+    pub warnings: Vec<String>,
+}
+
+impl Live {
+    /// An event of a walk.
+    pub fn tell(&mut self, event: Event) {
+        match event {
+            Event::PackingElsewhere { .. } => self.waits_for_packing = true,
+            Event::PackingBegun(plan) => {
+                self.waits_for_packing = false;
+                self.packing = Some([plan.compression.grains as u64, 0, plan.usual_steps()]);
+            }
+            Event::Packing(progress) => {
+                if let Some(packing) = &mut self.packing {
+                    packing[1] = progress.steps;
+                }
+            }
+            Event::PackingEnded => self.packing = None,
+            Event::WalkBegun { runs } => {
+                self.waits_for_packing = false;
+                self.runs = [0, runs];
+            }
+            Event::MoreRuns { runs } => self.runs[1] += runs,
+            Event::RunDone => self.runs[0] += 1,
+            Event::RunWalked { replicate, run, eroded_mass_fraction, below_threshold } => {
+                let of_run = self.walked.entry(run).or_default();
+                of_run.insert(replicate, (eroded_mass_fraction, below_threshold));
+            }
+            Event::Studying(line) => {
+                self.lines.push(line.to_owned());
+                self.lines.drain(..self.lines.len().saturating_sub(LINES));
+            }
+            Event::Increment { .. } => {}
+        }
+    }
+
+    /// The cases of a comparison are counted.
+    pub fn cases(&mut self, all: usize, done: usize) {
+        self.cases = [done, all];
+    }
+
+    /// An event of a case of a comparison.
+    pub fn tell_case(&mut self, case: &str, event: CaseEvent) {
+        match event {
+            CaseEvent::Begun { .. } | CaseEvent::Waiting => self.case = case.to_owned(),
+            CaseEvent::Done(line) => {
+                self.cases[0] += 1;
+                let confidence = line.confidence.map(|confidence| confidence.words());
+                let words = line.verdict.words();
+                self.done.push(json!({ "case": case, "verdict": words, "confidence": confidence }));
+            }
+            CaseEvent::Failed(problem) => self.warn(&format!("{case}: {problem}")),
+        }
+    }
+
+    /// What a user must know.
+    pub fn warn(&mut self, warning: &str) {
+        if self.warnings.len() < WARNINGS && !self.warnings.iter().any(|said| said == warning) {
+            self.warnings.push(warning.to_owned());
+        }
+    }
+
+    /// All of it, for a case that is walked in `runs` runs.
+    pub fn snapshot(&self, runs: u64) -> Value {
+        json!({
+            "packing": self.packing.map(|[grains, steps, usual]| json!({
+                "grains": grains, "steps": steps, "usual": usual
+            })),
+            "waits_for_packing": self.waits_for_packing,
+            "runs_done": self.runs[0],
+            "runs": self.runs[1],
+            "cases_done": self.cases[0],
+            "cases": self.cases[1],
+            "case": self.case,
+            "done": self.done,
+            "lines": self.lines,
+            "warnings": self.warnings,
+            "so_far": self.so_far(runs),
+        })
+    }
+
+    /// What the replicates that are whole come to. It is no verdict: others are to come, and whoever looks
+    /// at an interval again and again sees it on the wrong side more often than its level says.
+    fn so_far(&self, runs: u64) -> Value {
+        let whole = |replicate: &&u64| {
+            (1..=runs).all(|run| self.walked.get(&run).is_some_and(|of| of.contains_key(replicate)))
+        };
+        let Some(first) = self.walked.get(&1) else { return Value::Null };
+        let replicates: Vec<u64> = first.keys().filter(whole).copied().collect();
+        if replicates.is_empty() {
+            return Value::Null;
+        }
+        let (mut below, mut eroded) = (Vec::new(), Vec::new());
+        for run in 1..=runs {
+            let of = &self.walked[&run];
+            let (values, each): (Vec<f64>, Vec<bool>) = replicates.iter().map(|r| of[r]).unzip();
+            let statistic = Statistic::of_fraction(&values);
+            below.push(below_by_interval(&statistic, &each));
+            eroded.push(statistic);
+        }
+        let class = classify(below.first().copied().flatten(), below.get(1).copied().flatten());
+        let class = Some(class).filter(|_| replicates.len() >= FEW).map(Verdict::words);
+        json!({ "replicates": replicates.len(), "class": class, "runs": eroded, "few": FEW })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn walked(live: &mut Live, replicate: u64, run: u64, eroded_mass_fraction: f64) {
+        let below_threshold = eroded_mass_fraction < 0.075;
+        live.tell(Event::RunWalked { replicate, run, eroded_mass_fraction, below_threshold });
+    }
+
+    #[test]
+    fn few_replicates_have_numbers_and_no_class() {
+        let mut live = Live::default();
+        assert!(live.snapshot(2)["so_far"].is_null());
+        walked(&mut live, 1, 1, 0.5);
+        assert!(live.snapshot(2)["so_far"].is_null(), "half a replicate");
+        for (replicate, eroded) in [(1, 0.50), (2, 0.52), (3, 0.51), (4, 0.49)] {
+            walked(&mut live, replicate, 1, eroded);
+            walked(&mut live, replicate, 2, 0.01);
+            let said = live.snapshot(2)["so_far"].clone();
+            assert_eq!(said["replicates"], replicate);
+            assert_eq!(said["runs"][0]["low"].is_null(), replicate == 1);
+            assert_eq!(said["class"].as_str(), (replicate == 4).then_some("some erosion"));
+        }
+        // An interval that straddles the threshold is no class either.
+        walked(&mut live, 5, 1, 0.0);
+        walked(&mut live, 5, 2, 0.9);
+        assert_eq!(live.snapshot(2)["so_far"]["class"], "undecided");
+    }
+}

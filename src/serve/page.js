@@ -1,0 +1,577 @@
+"use strict";
+// The page asks the program for everything that it shows, and shows texts as texts.
+
+const $ = (selector, from = document) => from.querySelector(selector);
+const $$ = (selector, from = document) => [...from.querySelectorAll(selector)];
+
+/** An element with attributes and children; what is no element is text. */
+function el(name, attributes = {}, ...children) {
+  const svg = ["svg", "line", "rect", "circle", "text"].includes(name);
+  const made = svg ? document.createElementNS("http://www.w3.org/2000/svg", name) : document.createElement(name);
+  for (const [key, value] of Object.entries(attributes)) {
+    if (key === "onclick") made.addEventListener("click", value);
+    else if (value !== null && value !== undefined && value !== false) made.setAttribute(key, value === true ? "" : value);
+  }
+  made.append(...children.flat().filter((child) => child !== null && child !== undefined && child !== ""));
+  return made;
+}
+
+function show(node, text) {
+  node.textContent = text || "";
+  node.hidden = !text;
+}
+
+const number = (value) => {
+  if (value === null || value === undefined) return "not known";
+  return value !== 0 && (Math.abs(value) >= 1e5 || Math.abs(value) < 1e-3) ? value.toExponential(2)
+    : String(Number(value.toPrecision(3)));
+};
+const whole = (value) => String(value).replace(/\B(?=(\d{3})+$)/g, "\u202f");
+const percent = (share) => {
+  const value = 100 * share;
+  return (value === 0 || value >= 10 ? value.toFixed(1) : value.toFixed(2)) + "\u202f%";
+};
+
+/** What the program says; a problem is an Error with its words. */
+async function ask(path, body, type) {
+  const request = { cache: "no-store", credentials: "same-origin" };
+  if (body !== undefined) {
+    request.method = "POST";
+    request.body = body instanceof Blob || typeof body === "string" ? body : JSON.stringify(body);
+    request.headers = { "Content-Type": type || "application/json" };
+  }
+  let answer;
+  try {
+    answer = await fetch(path, request);
+  } catch {
+    throw new Error("the program does not answer");
+  }
+  const said = await answer.json();
+  if (!answer.ok) throw new Error(said.problem || `status ${answer.status}`);
+  return said;
+}
+
+const state = { sheets: [], jobs: [], curves: [], shape: null, base: "", filter: "", more: [], largest: 32, seen: "" };
+
+// --- What is taken: kept in the address, so that a page that is loaded again has it.
+
+function remember() {
+  const words = new URLSearchParams({ b: state.base, f: state.filter, m: state.more.join("\n") });
+  history.replaceState(null, "", "#" + words);
+}
+
+function recall() {
+  const words = new URLSearchParams(location.hash.slice(1));
+  state.base = words.get("b") || "";
+  state.filter = words.get("f") || "";
+  state.more = (words.get("m") || "").split("\n").filter(Boolean);
+}
+
+/** Every soil of every sheet: what names it, and what it is called. */
+function soils() {
+  return state.sheets.flatMap((sheet) => sheet.soils.map((soil) => ({
+    key: sheet.soils.length > 1 ? `${sheet.id}#${soil.name}` : String(sheet.id),
+    label: sheet.soils.length > 1 ? `${sheet.name}: ${soil.name}` : sheet.name,
+    soil,
+  })));
+}
+
+const soilOf = (key) => soils().find((one) => one.key === key);
+
+// --- Sheets.
+
+async function add(box, name, content) {
+  const problem = $(".problem", box);
+  show(problem, "");
+  try {
+    if (content.size > state.largest * 2 ** 20) throw new Error(`${name}: too large: at most ${state.largest} MB`);
+    const sheet = await ask(`api/sheet?name=${encodeURIComponent(name)}`, content, "application/octet-stream");
+    if (!state.sheets.some((one) => one.id === sheet.id)) state.sheets.push(sheet);
+    const pasted = $("details", box);
+    if (pasted) pasted.open = false;
+    take(box.dataset.role, sheet.soils.length > 1 ? `${sheet.id}#${sheet.soils[0].name}` : String(sheet.id));
+  } catch (error) {
+    show(problem, error.message);
+  }
+}
+
+function take(role, key) {
+  if (role === "more") {
+    if (key && !state.more.includes(key) && state.more.length < 5) state.more.push(key);
+  } else {
+    state[role] = key;
+  }
+  remember();
+  showSheets();
+  showPair();
+}
+
+function setUpSheets() {
+  for (const box of $$(".sheet")) {
+    const role = box.dataset.role;
+    const file = $("input[type=file]", box);
+    file.addEventListener("change", async () => {
+      for (const one of [...file.files]) await add(box, one.name, one);
+      file.value = "";
+    });
+    for (const kind of ["dragenter", "dragover"]) {
+      box.addEventListener(kind, (event) => { event.preventDefault(); box.classList.add("over"); });
+    }
+    box.addEventListener("dragleave", () => box.classList.remove("over"));
+    box.addEventListener("drop", async (event) => {
+      event.preventDefault();
+      box.classList.remove("over");
+      const files = [...event.dataTransfer.files];
+      const text = event.dataTransfer.getData("text");
+      if (!files.length && text) await add(box, `${role}.csv`, new Blob([text]));
+      for (const one of role === "more" ? files : files.slice(0, 1)) await add(box, one.name, one);
+    });
+    const paste = $(".paste", box);
+    if (paste) paste.addEventListener("click", () => add(box, `${role}.csv`, new Blob([$("textarea", box).value])));
+    $(".which select", box).addEventListener("change", (event) => take(role, event.target.value));
+  }
+  for (const field of ["#dispersive", "#joint"]) $(field).addEventListener("change", showPair);
+  for (const kind of ["dragover", "drop"]) document.addEventListener(kind, (event) => event.preventDefault());
+}
+
+function showSheets() {
+  const all = soils();
+  for (const role of ["base", "filter"]) if (!all.some((one) => one.key === state[role])) state[role] = "";
+  state.more = state.more.filter((key) => all.some((one) => one.key === key));
+  for (const box of $$(".sheet")) {
+    const role = box.dataset.role;
+    const select = $(".which select", box);
+    const none = role === "more" ? "a sheet that is here" : "none yet";
+    select.replaceChildren(el("option", { value: "" }, none),
+      ...all.map((one) => el("option", { value: one.key, selected: one.key === state[role] }, one.label)));
+    $(".which", box).hidden = all.length === 0;
+    box.classList.toggle("taken", role === "more" ? state.more.length > 0 : Boolean(state[role]));
+  }
+  $("#more").replaceChildren(...state.more.map((key) => el("li", {}, soilOf(key).label, el("button", {
+    type: "button", "aria-label": "remove",
+    onclick: () => { state.more = state.more.filter((one) => one !== key); take("none", ""); },
+  }, "×"))));
+  $("#compare").disabled = state.more.length === 0;
+  showShapes();
+}
+
+// --- Curves and rules.
+
+const SIZES = [["D5", "d5_mm"], ["D15", "d15_mm"], ["D50", "d50_mm"], ["D85", "d85_mm"], ["D95", "d95_mm"],
+  ["D100", "d100_mm"]];
+
+async function showPair() {
+  const both = Boolean(state.base && state.filter);
+  const any = state.base || state.filter || state.more.length;
+  $("#seen").hidden = !any;
+  $("#how").hidden = !both;
+  $("#coarse").hidden = !state.base;
+  $("#compare").title = state.more.length ? "" : "add more sheets to compare with";
+  const query = new URLSearchParams();
+  if (state.base) query.set("base", state.base);
+  if (state.filter) query.set("filter", state.filter);
+  if (state.more.length) query.set("more", state.more.join("\n"));
+  if ($("#dispersive").checked) query.set("dispersive", "1");
+  if ($("#joint").value.trim()) query.set("joint_mm", $("#joint").value.trim());
+  $("#soil-options").hidden = !both;
+  if (!any || state.seen === String(query)) return;
+  state.seen = String(query);
+  $("#curves").src = "api/curves.svg?" + query;
+  const shown = [["Base", state.base], ["Filter", state.filter], ...state.more.map((key) => ["More", key])]
+    .filter(([, key]) => key).map(([role, key]) => [role, soilOf(key).soil]);
+  const row = (name, of, long) => el("tr", { class: long ? "long" : null }, el("th", {}, name), ...shown.map(([, soil]) => el("td", { class: "n" }, of(soil))));
+  $("#sizes").replaceChildren(
+    el("thead", {}, el("tr", {}, el("th", {}), ...shown.map(([role, soil]) => el("th", { class: "n" }, role, el("br"), soil.name)))),
+    el("tbody", {}, ...SIZES.map(([name, field]) => row(`${name}, mm`, (soil) => number(soil[field]))),
+      row("Cu", (soil) => number(soil.cu)), row("Cc", (soil) => number(soil.cc)),
+      row("fines, %", (soil) => number(soil.fines_percent)),
+      row("ASTM D2487", (soil) => soil.class || "–", true),
+      ...(shown.some(([, soil]) => soil.notes.length) ? [row("read as", (soil) => soil.notes.join("; ") || "–", true)] : [])));
+  show($("#rules-problem"), "");
+  if (!both) { $("#rules").replaceChildren(); return; }
+  try {
+    const pair = await ask("api/rules?" + query);
+    if (state.seen === String(query)) showRules(pair);
+  } catch (error) {
+    $("#rules").replaceChildren();
+    show($("#rules-problem"), error.message);
+  }
+}
+
+const ROLES = [["retention", "The filter retains the base"],
+  ["continuation", "Coarser filters: where erosion still ends"],
+  ["drainage", "The filter drains and can be placed"], ["stability", "The filter holds its own fines"]];
+
+function result(rule) {
+  if (rule.met === true) return el("span", { class: "keeps" }, "met");
+  if (rule.met === false) return el("span", { class: rule.applies ? "breaks" : "none" }, rule.applies ? "NOT MET" : "not met");
+  if (!rule.applies) return el("span", { class: "none" }, "not for it");
+  return el("span", { class: "none" }, !rule.needs && rule.limit === null ? "no limit" : "no result");
+}
+
+function showRules(pair) {
+  const broken = pair.rules.filter((rule) => rule.applies && rule.met === false);
+  const parts = pair.warnings.map((warning) => el("p", { class: "problem" }, warning));
+  parts.push(el("p", {}, broken.length
+    ? el("span", {}, el("b", { class: "breaks" }, `${broken.length} not met: `), broken.map((rule) => rule.name).join("; "))
+    : "Every rule that was made for these soils and has a result is met. What the walk says is another question."));
+  const rows = (role) => pair.rules.filter((rule) => rule.role === role).map((rule) => {
+    const unit = rule.unit ? ` ${rule.unit}` : "";
+    return el("tr", {}, el("td", {}, result(rule)), el("td", {}, rule.name),
+      el("td", {}, rule.quantity), el("td", { class: "n" }, rule.value === null ? "–" : number(rule.value) + unit),
+      el("td", { class: "n" }, rule.limit === null ? "–" : `${rule.at_least ? "≥" : "≤"} ${number(rule.limit)}${unit}`),
+      el("td", { class: "small" }, [rule.note, rule.needs, rule.source].filter(Boolean).join(" – ")));
+  });
+  const table = el("table", { class: "rules" }, el("thead", {}, el("tr", {},
+    ...["Result", "Rule", "Quantity"].map((text) => el("th", {}, text)),
+    ...["Value", "Limit"].map((text) => el("th", { class: "n" }, text)), el("th", {}, "Note, source"))),
+    ...ROLES.map(([role, title]) => el("tbody", {}, el("tr", {}, el("th", { colspan: 6 }, el("b", {}, title))), ...rows(role))));
+  parts.push(el("details", { open: true }, el("summary", {}, "Every rule"), el("div", { class: "scroll" }, table)));
+  $("#rules").replaceChildren(...parts);
+}
+
+// --- The form: every setting of a scene.
+
+const FIRST = [["replicates", "Replicates"], ["seed", "Seed"], ["network.nz", "Layers"],
+  ["network.thickness_mm", "Thickness to walk, mm"], ["filter.thickness_mm", "Real thickness, mm"],
+  ["filter.grains_per_void", "Grains per void"], ["stop.decide_percent", "Certain to, % (adds replicates)"],
+  ["base.mass_ratio", "Base by mass of filter"]];
+
+async function setUpForm() {
+  const form = await ask("api/form");
+  setUpDesign(form);
+  const about = Object.fromEntries(form.keys.map((key) => [key.name, key]));
+  const input = (key) => el("input", { type: "text", "data-key": key.name, title: key.doc, autocomplete: "off",
+    placeholder: (key.is_set ? "" : "e.g. ") + key.shown });
+  $("#density").append(...form.densities.map((word) => el("option", { value: word }, `${word}: its grains are packed`)));
+  $("#first").append(
+    el("label", {}, "Published curve", el("select", { "data-key": "filter.curve", title: about["filter.curve"].doc },
+      el("option", { value: "" }, "none"), ...form.curves.map((curve) => el("option", { value: curve.name }, `${curve.name}: ${curve.title}`)))),
+    ...FIRST.filter(([name]) => about[name]).map(([name, label]) => el("label", {}, label, input(about[name]))));
+  const own = ["base.sieve", "filter.sieve", "filter.measured", "filter.density", "filter.curve", "base.dispersive", "filter.joint_mm", ...FIRST.map(([name]) => name)];
+  const sections = [...new Set(form.keys.map((key) => key.section))];
+  $("#all").append(...sections.map((section) => {
+    const keys = form.keys.filter((key) => key.section === section && !own.includes(key.name));
+    return keys.length ? el("div", {}, el("h3", {}, section || "of the whole walk"), el("div", { class: "fields" },
+      ...keys.map((key) => el("label", {}, el("code", {}, key.name), input(key), el("span", {}, key.doc))))) : null;
+  }).filter(Boolean));
+  $("#form").addEventListener("submit", (event) => { event.preventDefault(); start("judge"); });
+  $("#compare").addEventListener("click", () => start("compare"));
+  $("#check").addEventListener("click", check);
+}
+
+/** What is ticked beside the rules, as settings. */
+function ofSoils() {
+  const joint = $("#joint").value.trim();
+  return [...($("#dispersive").checked ? ["base.dispersive=true"] : []), ...(joint ? [`filter.joint_mm=${joint}`] : [])];
+}
+
+function asked(compare) {
+  const changes = $$("[data-key]").filter((field) => field.value.trim())
+    .map((field) => `${field.dataset.key}=${field.value.trim()}`);
+  changes.push(...ofSoils());
+  changes.push(...$("#free").value.split("\n").map((line) => line.trim()).filter(Boolean));
+  const what = { base: state.base, filter: state.filter, density: $("#density").value, quick: $("#quick").checked, changes };
+  if (compare) what[$("input[name=as]:checked").value] = state.more;
+  return what;
+}
+
+async function start(kind) {
+  show($("#form-problem"), "");
+  $("#checked").hidden = true;
+  try {
+    await ask("api/" + kind, asked(kind === "compare"));
+    await poll();
+    $("#results").scrollIntoView({ block: "start" });
+  } catch (error) {
+    show($("#form-problem"), error.message);
+  }
+}
+
+// --- How coarse: the base, and the form of a filter.
+
+const CU = "Cu";
+
+function setUpDesign(form) {
+  state.curves = form.curves;
+  $("#shape").addEventListener("change", () => { state.shape = $("#shape").value; $("#cu-of").hidden = state.shape !== CU; });
+  $("#design-form").addEventListener("submit", (event) => { event.preventDefault(); design(); });
+  showShapes();
+}
+
+/** The filter's sheet where there is one, else a curve that ships with the program. */
+function showShapes() {
+  const select = $("#shape");
+  const filter = state.filter && soilOf(state.filter);
+  select.replaceChildren(
+    ...(filter ? [el("option", { value: "" }, `the filter's sheet: ${filter.label}`)] : []),
+    ...state.curves.map((curve) => el("option", { value: curve.name }, `${curve.name}: ${curve.title}`)),
+    el("option", { value: CU }, "a Cu, which is packed"));
+  if (state.shape !== null && [...select.options].some((one) => one.value === state.shape)) select.value = state.shape;
+  $("#cu-of").hidden = select.value !== CU;
+}
+
+async function design() {
+  show($("#design-problem"), "");
+  const [shape, cu] = [$("#shape").value, $("#shape-cu").value.trim()];
+  const changes = $$("[data-design]").filter((field) => field.value.trim())
+    .map((field) => `${field.dataset.design}=${field.value.trim()}`);
+  changes.push(...ofSoils());
+  changes.push(...$("#design-free").value.split("\n").map((line) => line.trim()).filter(Boolean));
+  try {
+    if (shape === CU && !cu) throw new Error("give the Cu of the filter");
+    await ask("api/design", { base: state.base, filter: shape ? "" : state.filter, shape: shape === CU ? cu : shape,
+      density: $("#design-density").value, thickness: $("#design-thickness").value, inverse: $("#inverse").checked, changes });
+    await poll();
+    $("#results").scrollIntoView({ block: "start" });
+  } catch (error) {
+    show($("#design-problem"), error.message);
+  }
+}
+
+async function check() {
+  show($("#form-problem"), "");
+  const into = $("#checked");
+  into.hidden = true;
+  try {
+    const check = await ask("api/check", asked(false));
+    const rows = [["base particles", whole(check.n_base) + " a run"], ["runs to walk", whole(check.runs_to_walk)],
+      ["voids", whole(check.inputs.network.voids)], ["memory", check.memory],
+      ["time to walk", `about ${number(check.core_seconds)} s of one core, a rough guess`]];
+    if (check.packing) {
+      rows.push(["packing", check.packing.is_made ? "made already"
+        : `${whole(check.packing.grains)} grains, about ${number(check.packing.core_seconds)} s of one core, once`]);
+    }
+    into.replaceChildren(el("table", {}, el("tbody", {}, ...rows.map(([name, value]) => el("tr", {}, el("th", {}, name), el("td", {}, value))))),
+      ...(check.refusal ? [el("p", { class: "problem" }, check.refusal)] : []),
+      ...(check.warnings.length ? [el("ul", {}, ...check.warnings.map((warning) => el("li", {}, warning)))] : []));
+    into.hidden = false;
+  } catch (error) {
+    show($("#form-problem"), error.message);
+  }
+}
+
+// --- Jobs.
+
+const RUNS = ["first run", "second run"];
+
+/** Eroded mass of each run with its interval, and the threshold, drawn. */
+function plot(runs) {
+  const bottom = 26 * runs.length + 16;
+  const x = (share) => 84 + 290 * Math.min(1, Math.max(0, share));
+  const parts = [el("rect", { x: 84, y: 8, width: 290, height: bottom - 8, fill: "none", stroke: "#888" })];
+  for (const share of [0, 0.25, 0.5, 0.75, 1]) {
+    parts.push(el("text", { x: x(share), y: bottom + 16, "text-anchor": "middle" }, `${100 * share}`));
+  }
+  parts.push(el("line", { x1: x(0.075), x2: x(0.075), y1: 8, y2: bottom, stroke: "#1a1a1a", "stroke-dasharray": "5 4" }));
+  runs.forEach((run, at) => {
+    const [y, colour] = [25 + 26 * at, at ? "#8E3F6C" : "#00598C"];
+    parts.push(el("text", { x: 78, y: y + 4, "text-anchor": "end" }, RUNS[at]));
+    if (run.low !== null) {
+      parts.push(el("line", { x1: x(run.low), x2: x(run.high), y1: y, y2: y, stroke: colour, "stroke-width": 3 }));
+      for (const end of [run.low, run.high]) parts.push(el("line", { x1: x(end), x2: x(end), y1: y - 7, y2: y + 7, stroke: colour, "stroke-width": 1.5 }));
+    }
+    parts.push(el("circle", { cx: x(run.mean), cy: y, r: 3.5, fill: run.low === null ? "#fff" : colour, stroke: colour, "stroke-width": 1.5 }));
+  });
+  const label = runs.map((run, at) => `${RUNS[at]} ${eroded(run)}`).join(", ");
+  return [el("svg", { class: "plot", viewBox: `0 0 390 ${bottom + 24}`, role: "img", "aria-label": label }, ...parts),
+    el("p", { class: "small" }, "Base eroded, percent by mass; dashed: 7.5\u202f%, which divides the classes.")];
+}
+
+const eroded = (run) => percent(run.mean) + (run.low === null ? ", no interval from one replicate"
+  : ` (95 % interval ${percent(run.low)} to ${percent(run.high)})`);
+
+function colour(verdict, confidence) {
+  if (verdict === "no erosion") return confidence === "within checked range" ? "green" : "amber";
+  return { "some erosion": "amber", "continuing erosion": "red" }[verdict] || "";
+}
+
+const list = (items) => (items && items.length ? el("ul", {}, ...items.map((item) => el("li", {}, item))) : null);
+const confidenceOf = (words) => (words === "within checked range" ? el("span", {}, words) : el("span", { class: "mark" }, words));
+
+/** What a walk has come to so far: never a verdict. */
+function soFar(job) {
+  const live = job.live;
+  const parts = [];
+  if (live.packing) {
+    parts.push(el("p", {}, `Packing the filter: ${whole(live.packing.grains)} grains, step ${whole(live.packing.steps)} of about ${whole(live.packing.usual)}`),
+      el("progress", { max: Math.max(1, live.packing.usual), value: Math.min(live.packing.steps, live.packing.usual) }));
+  } else if (live.waits_for_packing) {
+    parts.push(el("p", {}, "Another process packs this filter; it is waited for."));
+  } else if (live.cases) {
+    parts.push(el("p", {}, `${live.cases_done} of ${live.cases} cases are done` + (live.case && live.cases_done < live.cases ? `; at ${live.case}` : "")),
+      el("progress", { max: live.cases, value: live.cases_done }),
+      list(live.done.map((one) => `${one.case}: ${one.verdict} (${one.confidence})`)));
+  } else if (live.runs) {
+    parts.push(el("p", {}, `${whole(live.runs_done)} of ${whole(live.runs)} runs are walked`), el("progress", { max: live.runs, value: live.runs_done }));
+  } else if (!live.lines.length) {
+    parts.push(el("p", {}, "Begins."));
+  }
+  if (live.lines.length) parts.push(list(live.lines));
+  if (live.so_far) {
+    const { replicates, runs, few } = live.so_far;
+    const of = job.replicates ? ` of ${job.replicates}` : "";
+    const words = live.so_far.class ? `So far: ${live.so_far.class}, by the curve itself` : `Too few replicates for a class (fewer than ${few})`;
+    parts.push(el("p", { class: "so-far" }, words), el("p", { class: "small" },
+      `${replicates}${of} replicates. This is no verdict: more are to come, and so are the rules, the doubts and what else is walked.`),
+      ...plot(runs), list(runs.map((run, at) => `${RUNS[at]}: ${eroded(run)}`)));
+  }
+  return parts;
+}
+
+const between = (range) => (range.low === null && range.high === null ? "band not known"
+  : `${number(range.low)} to ${number(range.high)} in 5 to 95\u202f% of networks`);
+
+/** A boundary over networks, or why there is none. */
+function boundary(of, note) {
+  if (!of) return [el("b", {}, "no number"), el("br"), el("span", { class: "small" }, note || "it lies beyond the search")];
+  const sized = of.d85b_mm ? ["D85B", of.d85b_mm] : of.d15f_mm ? ["D15F", of.d15f_mm] : null;
+  return [
+    ...(sized ? [el("b", {}, `${sized[0]} ${number(sized[1].median)} mm`), el("br"), between(sized[1]), el("br")] : []),
+    sized ? `D15F/D85B ${number(of.median)}` : el("b", {}, `D15F/D85B ${number(of.median)}`), el("br"), between(of),
+    note ? el("span", { class: "small" }, el("br"), note) : null];
+}
+
+function boundariesOf(done) {
+  const head = done.inverse ? ["No erosion down to", "Continuing erosion below"] : ["No erosion up to", "Continuing erosion from"];
+  const rows = done.boundaries.map((row) => el("tr", {}, el("th", {}, row.density, el("br"), row.thickness),
+    el("td", {}, boundary(row.no_erosion, row.no_erosion_note)), el("td", {}, boundary(row.continuing, row.continuing_note)),
+    el("td", {}, row.band ? row.band.said : row.band_note || "–", row.band && row.band.practice !== null
+      ? [el("br"), el("span", { class: "small" }, `practice allows up to ${number(row.band.practice)} ${row.band.unit}`)] : null,
+    row.not_monotone ? [el("br"), el("span", { class: "small" }, `not monotone on ${row.not_monotone} network${row.not_monotone === 1 ? "" : "s"}: the smallest ratio seen to erode counts`)] : null)));
+  return [el("p", {}, `Base ${done.base}, filter ${done.filter}; median of ${done.replicates} networks.`),
+    el("p", {}, "Confidence: ", confidenceOf(done.confidence), "."),
+    el("div", { class: "scroll" }, el("table", { class: "boundaries" },
+      el("thead", {}, el("tr", {}, ...["Density, thickness", ...head, "Band"].map((text) => el("th", {}, text)))), el("tbody", {}, ...rows))),
+    done.compared ? el("p", {}, done.fit.length ? `Standard products with their D15 within the band (their own shapes were not walked): ${done.fit.join(", ")}.`
+      : done.confidence === "within checked range" ? "None of the standard products fits within the band." : "No standard product is said to fit, as the answer is in doubt.") : null,
+    done.reasons.length ? el("details", { open: done.confidence !== "within checked range" }, el("summary", {}, "Why no further"), list(done.reasons)) : null,
+    done.warnings.length ? el("details", {}, el("summary", {}, `${done.warnings.length} to know`), list(done.warnings)) : null,
+    el("p", { class: "small" }, `The model leaves out: ${done.model_leaves_out.map((one) => one.split(":")[0]).join("; ")}.`)].filter(Boolean);
+}
+
+/** No green where no boundary is known, where it cannot be relied on, or where no filter drains and holds. */
+const colourOfDesign = (done) => (done.confidence !== "within checked range"
+  || done.boundaries.some((row) => row.band && row.band.is_empty) ? "amber"
+  : done.boundaries.every((row) => row.no_erosion && !row.band_note) ? "green" : "");
+
+function verdictOf(job) {
+  const done = job.result;
+  if (job.kind === "design") return boundariesOf(done);
+  if (job.kind === "compare") {
+    return [el("div", { class: "scroll" }, el("table", {}, el("thead", {}, el("tr", {},
+      ...["Case", "Class", "Confidence", "Rules not kept", "Eroded, first run", "second run"].map((text) => el("th", {}, text)))),
+      el("tbody", {}, ...done.cases.map((one) => el("tr", {}, el("th", {}, one.name), el("td", {}, el("b", {}, one.verdict)),
+        el("td", {}, confidenceOf(one.confidence)), el("td", {}, one.rules_not_kept.length ? el("span", { class: "mark" }, String(one.rules_not_kept.length)) : "0"),
+        ...[0, 1].map((at) => el("td", {}, one.runs[at] ? percent(one.runs[at].mean) : "–",
+          one.runs[at] && one.runs[at].low !== null ? el("span", { class: "small" }, ` ${percent(one.runs[at].low)} to ${percent(one.runs[at].high)}`) : "")))))) ),
+      ...done.cases.map((one) => el("details", { open: one.confidence !== "within checked range" }, el("summary", {}, `${one.name}: to know beside its verdict`),
+        list([...one.reasons, ...one.beside]))),
+      el("p", { class: "small" }, "Differences, each with its interval, are on the page of this comparison.")];
+  }
+  const text = done.headline.charAt(0).toUpperCase() + done.headline.slice(1);
+  return [el("p", { class: "word" }, text + "."),
+    el("p", {}, "Confidence: ", confidenceOf(done.confidence), `; ${done.replicates} ${done.replicates === 1 ? "replicate: the scatter is unknown" : "replicates"}.`),
+    ...plot(done.runs), list(done.runs.map((run, at) => `${RUNS[at]}: ${eroded(run)}`)),
+    done.range ? el("p", {}, el("span", { class: "mark" }, "Over the range of the constriction curve"), `: ${percent(done.range[0][0])} to ${percent(done.range[0][1])} in the first run.`) : null,
+    list(done.beside),
+    done.reasons.length ? el("details", { open: done.confidence !== "within checked range" }, el("summary", {}, "Why no further"), list(done.reasons)) : null];
+}
+
+function card(job) {
+  const act = (what) => async () => {
+    let problem = "";
+    try { await ask(`api/${what}?id=${job.id}`, ""); } catch (error) { problem = error.message; }
+    await poll();
+    const shown = $(`.job[data-id="${job.id}"] .actions .small`);
+    if (problem && shown) shown.textContent = problem;
+  };
+  const isDone = job.state === "done" && job.result;
+  const kind = isDone && job.kind === "judge" ? colour(job.result.verdict, job.result.confidence)
+    : isDone && job.kind === "design" ? colourOfDesign(job.result) : job.state;
+  const words = { waiting: `waits, ${job.before} before it`, running: job.stopping ? "stops, and saves what is done" : "is walked", stopped: "stopped",
+    done: "", refused: "refused", failed: "failed" }[job.state];
+  const parts = [el("h3", {}, job.title, words ? el("span", { class: "small" }, ` ${words}`) : "")];
+  if (job.message) parts.push(el("p", { class: job.state === "stopped" ? "small" : "problem" }, job.message));
+  if (job.state === "running") parts.push(...soFar(job));
+  if (job.state === "done" && job.result) parts.push(...verdictOf(job));
+  const warnings = job.live.warnings;
+  if (job.state === "running" && warnings.length) parts.push(el("details", {}, el("summary", {}, `${warnings.length} to know`), list(warnings)));
+  parts.push(el("p", { class: "actions" },
+    job.page ? el("a", { href: job.page, target: "_blank", rel: "noopener" }, "The page, to read or print") : null,
+    ["done", "stopped"].includes(job.state) ? el("a", { href: `zip/${job.folder}.zip` }, "The folder (.zip)") : null,
+    ["waiting", "running"].includes(job.state) && !job.stopping ? el("button", { type: "button", onclick: act("stop") }, "Stop") : null,
+    job.can_continue ? el("button", { type: "button", onclick: act("continue") }, "Continue") : null,
+    el("span", { class: "small" }, job.path)));
+  return el("article", { class: `job ${kind}`, "data-id": job.id, "data-state": job.state }, ...parts);
+}
+
+const cards = new Map();
+
+// A card that is replaced between a press and its release would take the click with it.
+let pressed = false;
+addEventListener("pointerdown", () => { pressed = true; });
+for (const kind of ["pointerup", "pointercancel"]) addEventListener(kind, () => setTimeout(() => { pressed = false; }, 50));
+
+function showJobs() {
+  if (pressed) return;
+  $("#results").hidden = state.jobs.length === 0;
+  const shown = state.jobs.map((job) => {
+    const text = JSON.stringify(job);
+    const old = cards.get(job.id);
+    if (old && old.text === text) return old.card;
+    const made = card(job);
+    // What was opened or closed by hand stays so while the numbers change.
+    if (old) $$("details", made).forEach((one, at) => { const before = $$("details", old.card)[at]; if (before && old.state === job.state) one.open = before.open; });
+    cards.set(job.id, { text, card: made, state: job.state });
+    return made;
+  });
+  const into = $("#jobs");
+  if (shown.length === into.children.length && shown.every((one, at) => into.children[at] === one)) return;
+  // Nor does whoever goes by keys lose the place.
+  const at = document.activeElement;
+  const held = at && into.contains(at) ? [at.closest(".job").dataset.id, at.textContent] : null;
+  into.replaceChildren(...shown);
+  const same = held && $$("a, button, summary", into).find((one) => one.closest(".job").dataset.id === held[0] && one.textContent === held[1]);
+  if (same) same.focus();
+}
+
+let timer = 0;
+
+async function poll() {
+  clearTimeout(timer);
+  let wait = 2500;
+  try {
+    const said = await ask(`api/state?have=${state.sheets.length}`);
+    $("#gone").hidden = true;
+    show($("#version"), said.version);
+    show($("#folder"), said.folder);
+    show($("#again"), said.folder);
+    show($("#largest"), String(said.largest_mb));
+    state.largest = said.largest_mb;
+    state.jobs = said.jobs;
+    if (said.sheets) {
+      state.sheets = said.sheets;
+      showSheets();
+    }
+    showJobs();
+    if (said.jobs.some((job) => ["running", "waiting"].includes(job.state))) wait = 500;
+  } catch {
+    $("#gone").hidden = false;
+  }
+  timer = setTimeout(poll, wait);
+}
+
+async function begin() {
+  recall();
+  setUpSheets();
+  await poll();
+  // A new tab takes what the newest job was asked for.
+  const newest = state.jobs.find((job) => job.asked);
+  if (!state.base && !state.filter && newest) [state.base, state.filter] = [newest.asked.base, newest.asked.filter];
+  showSheets();
+  try { await setUpForm(); } catch (error) { show($("#form-problem"), error.message); }
+  showPair();
+}
+
+begin();

@@ -1,0 +1,387 @@
+//! What is answered to which request: each answer is a call of the library.
+
+use std::fs::File;
+use std::io;
+use std::net::TcpStream;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
+
+use super::archive::archive;
+use super::designs::AskedDesign;
+use super::guard::Guard;
+use super::http::{Answer, BODY, Request, read_body};
+use super::job_file::JobFile;
+use super::jobs::{JobQueue, Work};
+use super::sheets::Sheets;
+use crate::constrictions::shipped;
+use crate::gradation::{curves_in_file, soils_in_file};
+use crate::outcome::{PairOptions, PairRules};
+use crate::report;
+use crate::run::error::Exit;
+use crate::run::{self, PrepareOptions, RunError};
+use crate::scene::{Density, Scene, TableOptions};
+use crate::study::compare::{ComparePlan, Compared};
+use crate::study::design;
+use crate::text::is_plain_part;
+
+const PAGE: &str = include_str!("page.html");
+const SCRIPT: &str = include_str!("page.js");
+const STYLE: &str = include_str!("page.css");
+const ICON: &str = include_str!("icon.svg");
+
+/// What the page may do: its own script and style, its own pictures and requests, and nothing else.
+const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; \
+    connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+/// What a drawing may do.
+const POLICY_OF_DRAWING: &str = "default-src 'none'; style-src 'unsafe-inline'; sandbox";
+
+/// Longest list of settings, and longest setting.
+const SETTINGS: (usize, usize) = (200, 2000);
+
+/// What the page asks to be walked.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Asked {
+    base: String,
+    filter: String,
+    /// Further filters to compare; or further bases.
+    #[serde(default)]
+    filters: Vec<String>,
+    #[serde(default)]
+    bases: Vec<String>,
+    #[serde(default)]
+    density: String,
+    #[serde(default)]
+    quick: bool,
+    #[serde(default)]
+    changes: Vec<String>,
+}
+
+impl Asked {
+    /// The two sheets.
+    fn sheets(&self) -> Value {
+        json!({ "base": self.base, "filter": self.filter })
+    }
+}
+
+/// A request, understood.
+struct Planned {
+    /// Title of the job's card.
+    title: String,
+    /// The sheets of its card.
+    asked: Value,
+    work: Work,
+}
+
+/// Everything that a request may reach.
+pub struct Routes {
+    /// Who may ask.
+    pub guard: Guard,
+    /// The sheets.
+    pub sheets: Sheets,
+    /// The jobs.
+    pub jobs: JobQueue,
+    /// Threads, memory and the folder of packings.
+    pub prepare: PrepareOptions,
+    /// The server's folder.
+    pub root: PathBuf,
+}
+
+/// An answer that is no success: its status and words.
+type Problem = (u16, String);
+
+/// What the input says is wrong with it.
+fn wrong(error: impl std::fmt::Display) -> Problem {
+    (422, error.to_string())
+}
+
+impl Routes {
+    /// The answer to a request.
+    ///
+    /// # Errors
+    /// The connection ends before the request does.
+    pub fn answer(&self, mut request: Request, stream: &mut TcpStream) -> io::Result<Answer> {
+        let Some(path) = self.guard.path(&request).map(str::to_owned) else {
+            let words = "not allowed: open the address that voidwalk serve has printed, with its secret";
+            return Ok(Answer::problem(403, words));
+        };
+        let answered = match request.method.as_str() {
+            "GET" => self.get(&path, &request),
+            "POST" => match read_body(&mut request, stream)? {
+                Ok(body) => self.post(&path, &request, &body),
+                Err(refusal) => return Ok(refusal),
+            },
+            _ => Err((405, "GET or POST".into())),
+        };
+        Ok(answered.unwrap_or_else(|(status, words)| Answer::problem(status, &self.sheets.as_named(&words))))
+    }
+
+    fn get(&self, path: &str, request: &Request) -> Result<Answer, Problem> {
+        let page = |kind, text: &str| Answer { policy: Some(POLICY.into()), ..Answer::new(200, kind, text) };
+        match path {
+            "" => Ok(page("text/html; charset=utf-8", PAGE)),
+            "page.js" => Ok(page("text/javascript; charset=utf-8", SCRIPT)),
+            "icon.svg" => Ok(page("image/svg+xml", ICON)),
+            "page.css" => Ok(page("text/css; charset=utf-8", STYLE)),
+            "api/state" => Ok(Answer::json(200, &self.state(request))),
+            "api/form" => Ok(Answer::json(200, &form())),
+            "api/rules" => self.rules(request),
+            "api/curves.svg" => self.curves(request),
+            _ => match path.split_once('/') {
+                Some(("files", file)) => self.file(file),
+                Some(("zip", folder)) => self.zip(folder),
+                _ => Err((404, "there is no such page".into())),
+            },
+        }
+    }
+
+    fn post(&self, path: &str, request: &Request, body: &[u8]) -> Result<Answer, Problem> {
+        let id = || {
+            let id = request.parameter("id").and_then(|id| id.parse().ok());
+            id.ok_or((400, "which job?".to_owned()))
+        };
+        let accepted = |id: usize| Answer::json(200, &json!({ "id": id }));
+        match path {
+            "api/sheet" => {
+                let name = request.parameter("name").unwrap_or_default();
+                let sheet = self.sheets.add(&name, body).map_err(wrong)?;
+                Ok(Answer::json(200, &json!(sheet)))
+            }
+            "api/judge" | "api/compare" | "api/design" => {
+                let request: Value =
+                    serde_json::from_slice(body).map_err(|error| (400, error.to_string()))?;
+                let kind = path.trim_start_matches("api/").to_owned();
+                let Planned { title, asked, work } = self.planned(&kind, &request)?;
+                let file = JobFile { kind, title, asked, request, ended: None };
+                let status = |error: RunError| match error.exit() {
+                    Exit::Refused => (429, error.to_string()),
+                    _ => (500, error.to_string()),
+                };
+                self.jobs.add(file, work).map(accepted).map_err(status)
+            }
+            "api/check" => {
+                let check = run::check(self.scene(&asked(body)?)?, &self.prepare).map_err(wrong)?;
+                let refusal =
+                    check.refusal.as_ref().map(|refusal| self.sheets.as_named(&refusal.to_string()));
+                let mut value = serde_json::to_value(&check).map_err(wrong)?;
+                value["refusal"] = json!(refusal);
+                Ok(Answer::json(200, &value))
+            }
+            "api/stop" => id().and_then(|id| self.jobs.stop(id).map(|()| accepted(id)).map_err(conflict)),
+            "api/continue" => {
+                let id = id()?;
+                let work = match self.jobs.kept(id).map_err(conflict)? {
+                    Some(file) => self.planned(&file.kind, &file.request)?.work,
+                    None => Work::Resume,
+                };
+                self.jobs.resume(id, work).map(|()| accepted(id)).map_err(conflict)
+            }
+            _ => Err((404, "there is no such page".into())),
+        }
+    }
+
+    /// What a request of this kind asks to be done, now or when it continues.
+    fn planned(&self, kind: &str, request: &Value) -> Result<Planned, Problem> {
+        match kind {
+            "judge" => {
+                let asked: Asked = read(request)?;
+                let title = format!("{} on {}", self.title(&asked.base), self.title(&asked.filter));
+                let work = Work::Judge(Box::new(self.scene(&asked)?));
+                Ok(Planned { title, asked: asked.sheets(), work })
+            }
+            "compare" => {
+                let asked: Asked = read(request)?;
+                let plan = self.comparison(&asked)?;
+                let title = plan.names().collect::<Vec<_>>().join(", ");
+                Ok(Planned { title, asked: asked.sheets(), work: Work::Compare(plan) })
+            }
+            "design" => {
+                let asked: AskedDesign = read(request)?;
+                let sheets = json!({ "base": asked.base, "filter": asked.filter });
+                bounded(&asked.changes)?;
+                let kept = asked.found(&self.sheets, &self.root).map_err(wrong)?;
+                let options = kept.options(&self.root, &self.root, &self.prepare).map_err(wrong)?;
+                design::check(&options).map_err(wrong)?;
+                Ok(Planned { title: kept.title(), asked: sheets, work: Work::Design(kept) })
+            }
+            _ => Err((404, "there is no such work".into())),
+        }
+    }
+
+    /// All that changes; the sheets only where the page has not as many of them.
+    fn state(&self, request: &Request) -> Value {
+        let sheets = self.sheets.all();
+        let has_all = request.parameter("have") == Some(sheets.len().to_string());
+        json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "folder": self.root.display().to_string(),
+            "largest_mb": BODY >> 20,
+            "sheets": if has_all { Value::Null } else { json!(sheets) },
+            "jobs": self.jobs.snapshot(|words| self.sheets.as_named(words)),
+        })
+    }
+
+    fn title(&self, sheet: &str) -> String {
+        let path = self.sheets.path(sheet).unwrap_or_default();
+        self.sheets.as_named(&path.display().to_string())
+    }
+
+    fn path(&self, sheet: &str) -> Result<PathBuf, Problem> {
+        self.sheets.path(sheet).map_err(wrong)
+    }
+
+    fn scene(&self, asked: &Asked) -> Result<Scene, Problem> {
+        let (base, filter) = (self.path(&asked.base)?, self.path(&asked.filter)?);
+        Scene::of_tables(&base, &filter, &options(asked)?).map_err(wrong)
+    }
+
+    fn comparison(&self, asked: &Asked) -> Result<ComparePlan, Problem> {
+        let all = |first: &String, more: &[String]| -> Result<Vec<PathBuf>, Problem> {
+            std::iter::once(first).chain(more).map(|sheet| self.path(sheet)).collect()
+        };
+        let compared = match (asked.filters.is_empty(), asked.bases.is_empty()) {
+            (false, true) => Compared::Filters {
+                base: self.path(&asked.base)?,
+                filters: all(&asked.filter, &asked.filters)?,
+            },
+            (true, false) => {
+                Compared::Bases { filter: self.path(&asked.filter)?, bases: all(&asked.base, &asked.bases)? }
+            }
+            _ => return Err(wrong("compare further filters, or further bases")),
+        };
+        ComparePlan::new(&compared, &options(asked)?).map_err(wrong)
+    }
+
+    /// Every rule of practice on two sheets.
+    fn rules(&self, request: &Request) -> Result<Answer, Problem> {
+        let curves = |name: &str| {
+            let path = self.path(&request.parameter(name).unwrap_or_default())?;
+            curves_in_file(&path, None).map_err(RunError::refused).map_err(wrong)
+        };
+        let joint_mm = match request.parameter("joint_mm").map(|text| text.parse::<f64>()) {
+            None => None,
+            Some(Ok(mm)) if mm > 0.0 && mm.is_finite() => Some(mm),
+            Some(_) => return Err(wrong("the open joint: write a number of millimetres above 0")),
+        };
+        let options = PairOptions { dispersive: request.parameter("dispersive").is_some(), joint_mm };
+        let pair = PairRules::of_envelopes(&curves("filter")?, &curves("base")?, options);
+        Ok(Answer::json(200, &serde_json::to_value(pair).map_err(wrong)?))
+    }
+
+    /// The sieve curves of the sheets that are named, in one drawing.
+    fn curves(&self, request: &Request) -> Result<Answer, Problem> {
+        let mut soils = Vec::new();
+        for (name, role) in [("base", "base"), ("filter", "filter"), ("more", "")] {
+            for sheet in request.parameter(name).iter().flat_map(|all| all.split('\n')) {
+                for soil in soils_in_file(&self.path(sheet)?, None).map_err(wrong)? {
+                    let named = if role.is_empty() { soil.name } else { format!("{role}: {}", soil.name) };
+                    soils.push((named, soil.points));
+                }
+            }
+        }
+        let drawn = report::soils_figure(soils.iter().map(|(name, points)| (name.as_str(), &points[..])));
+        let answer = Answer::new(200, "image/svg+xml", drawn);
+        Ok(Answer { policy: Some(POLICY_OF_DRAWING.into()), ..answer })
+    }
+
+    /// A file of a job's folder: no other folder, and no link.
+    fn file(&self, named: &str) -> Result<Answer, Problem> {
+        let missing = || (404, "there is no such file".to_owned());
+        let (folder, rest) = named.split_once('/').ok_or_else(missing)?;
+        if !rest.split('/').all(is_plain_part) {
+            return Err(missing());
+        }
+        let folder = self.jobs.folder(folder).filter(|folder| is_own(folder)).ok_or_else(missing)?;
+        let path = folder.join(rest);
+        let real = |path: &Path| path.canonicalize().ok();
+        if !real(&path).zip(real(&folder)).is_some_and(|(path, folder)| path.starts_with(folder)) {
+            return Err(missing());
+        }
+        let file = File::open(&path).ok().filter(|file| file.metadata().is_ok_and(|meta| meta.is_file()));
+        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+        let kind = match ending {
+            "html" => "text/html; charset=utf-8",
+            "svg" => "image/svg+xml",
+            "json" => "application/json; charset=utf-8",
+            "csv" | "toml" | "txt" | "jsonl" => "text/plain; charset=utf-8",
+            _ => "application/octet-stream",
+        };
+        let answer =
+            Answer::file(kind, file.ok_or_else(missing)?).map_err(|error| (500, error.to_string()))?;
+        let policy = match ending {
+            // A page of results runs nothing; its links lead to other files here.
+            "html" => Some(format!("{}; frame-ancestors 'none'", report::shell::content_policy())),
+            "svg" => Some(POLICY_OF_DRAWING.to_owned()),
+            _ => None,
+        };
+        Ok(Answer { policy, ..answer })
+    }
+
+    /// A job's folder, to take away.
+    fn zip(&self, named: &str) -> Result<Answer, Problem> {
+        let name = named.strip_suffix(".zip").unwrap_or(named);
+        let folder = self.jobs.folder(name).filter(|folder| is_own(folder));
+        let folder = folder.ok_or_else(|| (404, "there is no such folder yet".to_owned()))?;
+        let packed =
+            archive(&folder, name, &self.root).and_then(|file| Answer::file("application/zip", file));
+        let answer = packed.map_err(|error| (500, error.to_string()))?;
+        Ok(Answer { download: Some(format!("voidwalk-{name}.zip")), ..answer })
+    }
+}
+
+/// Whether a job's folder is there itself, and no link to one elsewhere.
+fn is_own(folder: &Path) -> bool {
+    folder.symlink_metadata().is_ok_and(|meta| meta.is_dir())
+}
+
+fn read<T: DeserializeOwned>(request: &Value) -> Result<T, Problem> {
+    serde_json::from_value(request.clone()).map_err(|error| (400, error.to_string()))
+}
+
+fn conflict(words: String) -> Problem {
+    (409, words)
+}
+
+fn asked<T: DeserializeOwned>(body: &[u8]) -> Result<T, Problem> {
+    serde_json::from_slice(body).map_err(|error| (400, error.to_string()))
+}
+
+/// What a scene of tables is given besides them.
+fn options(asked: &Asked) -> Result<TableOptions, Problem> {
+    let density = match asked.density.as_str() {
+        "" => None,
+        word => Some(Density::ALL.into_iter().find(|density| density.name() == word).ok_or_else(|| {
+            let words = Density::ALL.map(Density::name).join(", ");
+            wrong(format!("density: {words}"))
+        })?),
+    };
+    bounded(&asked.changes)?;
+    Ok(TableOptions { density, quick: asked.quick, changes: asked.changes.clone() })
+}
+
+fn bounded(changes: &[String]) -> Result<(), Problem> {
+    if changes.len() > SETTINGS.0 || changes.iter().any(|change| change.len() > SETTINGS.1) {
+        return Err(wrong(format!("at most {} settings of {} characters", SETTINGS.0, SETTINGS.1)));
+    }
+    Ok(())
+}
+
+/// Every setting of a scene with what it means, and what ships with the program.
+fn form() -> Value {
+    let keys: Vec<Value> = Scene::keys()
+        .iter()
+        .map(|key| {
+            json!({
+                "section": key.section, "name": key.full_name(), "doc": key.doc, "shown": key.shown,
+                "is_set": key.is_set,
+            })
+        })
+        .collect();
+    let curves: Vec<Value> =
+        shipped().iter().map(|curve| json!({ "name": curve.name, "title": curve.title })).collect();
+    json!({ "keys": keys, "curves": curves, "densities": Density::ALL.map(Density::name) })
+}

@@ -1,0 +1,211 @@
+//! What is compared, as the cases of a campaign that share one seed.
+
+use std::path::{Path, PathBuf};
+
+use crate::campaign::CampaignPlan;
+use crate::campaign::plan::PlannedCase;
+use crate::gradation::file_and_soil;
+use crate::run::error::RunError;
+use crate::run::folder::shown;
+use crate::scene::{Scene, TableOptions};
+
+/// Fewer cases have no difference; more have no page that anybody reads, and are a campaign.
+const CASES: std::ops::RangeInclusive<usize> = 2..=6;
+
+/// What is compared.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Compared {
+    /// Filters on one base.
+    Filters {
+        /// The base: a sieve table.
+        base: PathBuf,
+        /// The filters, likewise.
+        filters: Vec<PathBuf>,
+    },
+    /// Bases on one filter.
+    Bases {
+        /// The filter: a sieve table.
+        filter: PathBuf,
+        /// The bases, likewise.
+        bases: Vec<PathBuf>,
+    },
+    /// Scenes as they are, but for their seed.
+    Scenes(Vec<PathBuf>),
+}
+
+/// A comparison, its cases worked out.
+#[derive(Clone, Debug)]
+pub struct ComparePlan {
+    /// What is compared: `filters`, `bases` or `scenes`.
+    pub of: &'static str,
+    /// What the cases have in common; empty where they are scenes.
+    pub common: String,
+    /// The seed of all cases.
+    pub seed: u64,
+    /// Whether scenes had seeds of their own, which are not taken.
+    pub seeds_differed: bool,
+    /// The cases.
+    pub(super) campaign: CampaignPlan,
+}
+
+impl ComparePlan {
+    /// The cases of a comparison, with the same settings for all.
+    ///
+    /// # Errors
+    /// Fewer than two cases or more than six; the same file twice; a scene that is refused.
+    pub fn new(compared: &Compared, options: &TableOptions) -> Result<Self, RunError> {
+        let (of, common, files) = match compared {
+            Compared::Filters { base, filters } => ("filters", Some(base), filters),
+            Compared::Bases { filter, bases } => ("bases", Some(filter), bases),
+            Compared::Scenes(scenes) => ("scenes", None, scenes),
+        };
+        if !CASES.contains(&files.len()) {
+            return Err(RunError::Refused(format!(
+                "{of} named: {}; compare {} to {}, or walk a plan of many by `voidwalk campaign`",
+                files.len(),
+                CASES.start(),
+                CASES.end()
+            )));
+        }
+        let real: Vec<PathBuf> = files.iter().map(|file| real(file)).collect();
+        if let Some(twice) = (1..files.len()).find(|&at| real[..at].contains(&real[at])) {
+            return Err(RunError::Refused(format!("{} is named twice", shown(&files[twice]))));
+        }
+        let mut cases = Vec::new();
+        for (name, file) in names(files).into_iter().zip(files) {
+            let scene = match compared {
+                Compared::Filters { base, .. } => Scene::of_tables(base, file, options)?,
+                Compared::Bases { filter, .. } => Scene::of_tables(file, filter, options)?,
+                Compared::Scenes(_) => Scene::read(file, &options.settings())?,
+            };
+            cases.push(PlannedCase { name, levels: Vec::new(), scene });
+        }
+        let seed = cases[0].scene.walk.seed;
+        let seeds_differed = cases.iter().any(|case| case.scene.walk.seed != seed);
+        cases.iter_mut().for_each(|case| case.scene.walk.seed = seed);
+        let title = format!("comparison of {of}");
+        let campaign = CampaignPlan { file: title.clone(), title, factors: Vec::new(), cases };
+        let common = common.map_or(String::new(), |path| shown(path));
+        Ok(Self { of, common, seed, seeds_differed, campaign })
+    }
+
+    /// The names of the cases.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.campaign.cases.iter().map(|case| case.name.as_str())
+    }
+
+    /// What the constrictions of each case come from, in sentences, each once.
+    pub fn constrictions_in_words(&self) -> Vec<String> {
+        let mut all: Vec<String> = Vec::new();
+        for said in self.campaign.cases.iter().map(|case| case.scene.constrictions_in_words()) {
+            if !all.contains(&said) {
+                all.push(said);
+            }
+        }
+        all
+    }
+}
+
+/// A table's file as the disk knows it, with the soil's name where one is given; a file that is not there is
+/// told apart by its name alone.
+fn real(file: &Path) -> PathBuf {
+    let (path, soil) = file_and_soil(file);
+    let path = path.canonicalize().unwrap_or(path);
+    match soil {
+        Some(soil) => format!("{}#{soil}", path.display()).into(),
+        None => path,
+    }
+}
+
+/// Short names, no two the same: the file's without its ending, with the soil's where it is one of several;
+/// the whole path where two would be the same, and in front of that its number where even those are.
+fn names(files: &[PathBuf]) -> Vec<String> {
+    let mut names: Vec<String> = files.iter().map(|file| short_name(file)).collect();
+    // A longer name can be another's short one.
+    for _ in files {
+        let again = shared(&names);
+        again.into_iter().for_each(|at| names[at] = shown(&files[at]));
+    }
+    // They are names of folders, too.
+    let hidden = |name: &String| name.is_empty() || name.starts_with('.');
+    for (at, name) in names.iter_mut().enumerate().filter(|(_, name)| hidden(name)) {
+        *name = format!("{} {name}", at + 1);
+    }
+    // Those with a number in front differ from each other: this ends.
+    loop {
+        let again = shared(&names);
+        if again.is_empty() {
+            return names;
+        }
+        again.into_iter().for_each(|at| names[at] = format!("{} {}", at + 1, names[at]));
+    }
+}
+
+/// Where names stand that are not alone; large and small letters are the same to some disks.
+fn shared(names: &[String]) -> Vec<usize> {
+    let lower: Vec<String> = names.iter().map(|name| name.to_lowercase()).collect();
+    (0..names.len()).filter(|&at| lower.iter().filter(|name| **name == lower[at]).count() > 1).collect()
+}
+
+fn short_name(file: &Path) -> String {
+    let text = shown(file);
+    let (path, soil) = text.split_once('#').map_or((text.as_str(), ""), |(path, soil)| (path, soil));
+    let stem = Path::new(path).file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned());
+    match (soil, stem.as_str()) {
+        ("", stem) => stem.to_owned(),
+        (soil, stem) => format!("{stem}: {soil}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn named(files: &[&str]) -> Vec<String> {
+        names(&files.iter().map(PathBuf::from).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn names_are_short_where_they_are_alone() {
+        assert_eq!(named(&["a/f.csv", "g.csv", "s.xlsx#Filter A"]), ["f", "g", "s: Filter A"]);
+        assert_eq!(named(&["a/f.csv", "b/f.csv"]), ["a/f.csv", "b/f.csv"]);
+        assert_eq!(named(&["f.csv", "f.tsv", "f.csv.csv"]), ["f.csv", "f.tsv", "f.csv.csv"]);
+        assert_eq!(named(&["a/F.csv", "b/f.csv"]), ["a/F.csv", "b/f.csv"]);
+        assert_eq!(named(&["a/2 .f.csv", ".f"]), ["1 2 .f", "2 2 .f"]);
+        // None is the name of a folder that is there already.
+        assert_eq!(named(&["...csv", ".f"]), ["1 ..", "2 .f"]);
+    }
+
+    #[test]
+    fn one_file_under_two_names_is_named_twice() {
+        let at = tempfile::tempdir().unwrap();
+        let name = |text: &str| at.path().join(text);
+        std::fs::write(name("f.csv"), "").unwrap();
+        std::fs::create_dir(name("d")).unwrap();
+        for (one, other) in [("f.csv", "./f.csv"), ("f.csv#A", "d/../f.csv#A"), ("none.csv", "./none.csv")] {
+            let bases = vec![name(one), name(other)];
+            let twice = Compared::Bases { filter: name("g.csv"), bases };
+            let said = ComparePlan::new(&twice, &TableOptions::default()).unwrap_err().to_string();
+            assert!(said.contains("is named twice"), "{said}");
+        }
+        assert_ne!(real(&name("f.csv#A")), real(&name("f.csv#B")));
+    }
+
+    #[test]
+    fn cases_share_a_seed_and_their_number_is_bounded() {
+        let filters = |n: usize| Compared::Filters {
+            base: "b.csv".into(),
+            filters: (0..n).map(|n| format!("f{n}.csv").into()).collect(),
+        };
+        let options = TableOptions { changes: vec!["seed=7".into()], ..Default::default() };
+        let plan = ComparePlan::new(&filters(3), &options).unwrap();
+        assert!(plan.campaign.cases.iter().all(|case| case.scene.walk.seed == 7));
+        assert_eq!((plan.names().collect::<Vec<_>>(), plan.seed), (vec!["f0", "f1", "f2"], 7));
+        for n in [0, 1, 7] {
+            let error = ComparePlan::new(&filters(n), &options).unwrap_err();
+            assert!(error.to_string().contains("compare 2 to 6"), "{error}");
+        }
+        let twice = Compared::Bases { filter: "f".into(), bases: vec!["b".into(), "b".into()] };
+        assert!(ComparePlan::new(&twice, &options).unwrap_err().to_string().contains("named twice"));
+    }
+}

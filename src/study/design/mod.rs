@@ -1,0 +1,274 @@
+//! How coarse may a filter be? Finds, for a base and a filter's shape, the D15F/D85B at which no erosion
+//! turns into some, and some into continuing; and the band of a specification between drainage and retention.
+//!
+//! # Method
+//! One packing a shape and density. Packings are free of scale: a filter s times as large holds a base as it
+//! would hold one 1/s times as large itself, so nothing is packed again. Each network of a boundary is a
+//! replicate of a run, with its own streams of random numbers; they are the same at every ratio, and the
+//! network is the same to the bit. What is searched, and how, stands in `search`; median and band over
+//! networks in [`crate::outcome::design`]. A thickness in mm is another number of layers at every ratio,
+//! whose first layers are always the same.
+//!
+//! A base that is twice as large takes a filter twice as large, to the bit, for a thickness in layers or
+//! multiples of D50F.
+
+mod kept;
+mod options;
+mod plan;
+mod row;
+mod search;
+mod summary;
+#[cfg(test)]
+mod tests;
+
+use std::sync::Mutex;
+use std::time::Instant;
+
+use rayon::prelude::*;
+
+pub use options::{DesignOptions, Thickness};
+
+use super::kept::Kept;
+use crate::outcome::design::Design;
+use crate::run::callbacks::{Callbacks, Event};
+use crate::run::error::{Exit, RunError};
+use crate::run::folder::{FolderKind, claim, clear};
+use crate::run::machine::on_threads;
+use crate::run::pack::provide;
+use crate::run::prepare::Draft;
+use crate::run::replicates::have_networks;
+use crate::run::results::json;
+use crate::run::unfinished::{self, Unfinished};
+use crate::scene::{BaseGradation, D85};
+use crate::store::Folder;
+use kept::{Done, KEPT};
+use plan::{Wanted, wanted};
+use row::Row;
+use search::{BRACKETS, METHOD, NARROWEST, Start};
+
+/// A base coarser than this (D85, mm) is none: its sizes are in another unit.
+const NO_BASE_MM: f64 = 100.0;
+
+/// Finds the boundaries and writes `design.csv` and, last, `design.json`.
+///
+/// # Errors
+/// Settings that are wrong and a folder that cannot be claimed are refused before any work; then what a
+/// packing or a walk brings. After a stop or a kill the same command continues with the networks that are
+/// left.
+pub fn run(options: &DesignOptions, callbacks: &Callbacks) -> Result<Design, RunError> {
+    on_threads(options.prepare.threads, || run_here(options, callbacks))
+}
+
+/// Finds whatever is wrong, as [`run`] would before any work; claims and writes nothing.
+///
+/// # Errors
+/// The same.
+pub fn check(options: &DesignOptions) -> Result<(), RunError> {
+    on_threads(options.prepare.threads, || drafts(options).map(drop))
+}
+
+fn run_here(options: &DesignOptions, callbacks: &Callbacks) -> Result<Design, RunError> {
+    let begun = Instant::now();
+    let drafts = drafts(options)?;
+    let kind = FolderKind::Design;
+    let folder = claim(&options.out, kind, options.overwrite)?;
+    let rows = drafts.into_iter().map(|draft| draft.packed(options, callbacks));
+    let rows: Vec<Row> = rows.collect::<Result<_, _>>()?;
+    let work = work(&rows, options.bracket);
+    let mark = Unfinished { kind: kind.name().into(), work, ..Unfinished::default() };
+    let kept = Kept::new(&KEPT, &folder, &mark.work);
+    if let Some(design) = mark.whole(&folder, kind.record())?.filter(|_| !options.overwrite) {
+        whole(&folder, &kept, callbacks)?;
+        return Ok(design);
+    }
+    let done = if options.overwrite { Vec::new() } else { kept.newest(callbacks)?.unwrap_or_default() };
+    if done.is_empty() {
+        clear(&folder, kind)?;
+    }
+    mark.begin(&folder)?;
+    let done = searched(&rows, options.bracket, done, &kept, callbacks)?;
+    let design = summary::design(&rows, &done, options, begun.elapsed().as_secs_f64())?;
+    folder.write("design.csv", &summary::csv(&rows, &done)?)?;
+    // The page is made of both.
+    folder.write(kind.record(), &json(kind.record(), &design)?)?;
+    whole(&folder, &kept, callbacks)?;
+    Ok(design)
+}
+
+/// The page is written, and nothing is left to continue.
+fn whole(folder: &Folder, kept: &Kept, callbacks: &Callbacks) -> Result<(), RunError> {
+    callbacks.results(FolderKind::Design, folder.path())?;
+    kept.discard()?;
+    Ok(unfinished::end(folder)?)
+}
+
+/// A density and thickness that has been found sound.
+struct DraftedRow {
+    draft: Draft,
+    /// With a guess at a filter that is to be packed.
+    row: Row,
+}
+
+/// Whatever is wrong, before any work.
+fn drafts(options: &DesignOptions) -> Result<Vec<DraftedRow>, RunError> {
+    let [low, high] = options.bracket;
+    let [from, to] = BRACKETS;
+    let allowed = from..=to;
+    if !(allowed.contains(&low) && allowed.contains(&high) && high >= NARROWEST * low) {
+        return Err(RunError::Refused(format!(
+            "bracket {low},{high}: allowed: two D15F/D85B that rise, from {from} to {to}, the second at \
+             least {NARROWEST} times the first"
+        )));
+    }
+    wanted(options)?.into_iter().map(|wanted| DraftedRow::new(wanted, options)).collect()
+}
+
+impl DraftedRow {
+    fn new(wanted: Wanted, options: &DesignOptions) -> Result<Self, RunError> {
+        let (draft, mut case) = Draft::new(wanted.of_filter.clone())?;
+        let stated = case.base_of(&wanted.scene)?;
+        let refuse =
+            |problem: String| Err(RunError::from(crate::case::CaseError::from(wanted.scene.clash(problem))));
+        let Some(d85) = stated.gradation.d(85.0) else {
+            return refuse(
+                "the base's D85 lies in the pan fraction (finer than the finest sieve): add finer sieves, or \
+                 base.d0_mm"
+                    .into(),
+            );
+        };
+        // One millimetre where it is stated, else the unit.
+        let filter_has_size = wanted.states_d0 || !case.is_scale_free();
+        let has_size = match wanted.scene.base.gradation() {
+            BaseGradation::Sieve(..) | BaseGradation::Single(_) => true,
+            BaseGradation::Linear { d85, .. } => matches!(d85, D85::Mm(_)),
+        };
+        if has_size && d85 > NO_BASE_MM {
+            return refuse(format!(
+                "the base's D85 is {d85:.0} mm, and no filter holds such stones: are its sizes micrometres \
+                 under a header in mm?"
+            ));
+        }
+        if matches!(wanted.thickness, Thickness::Mm(_)) && !has_size && !options.inverse {
+            return refuse(
+                "a thickness in mm needs a base in mm: give BASE, base.d85_mm, or a thickness in layers or \
+                 multiples of D50F"
+                    .into(),
+            );
+        }
+        if matches!(wanted.thickness, Thickness::Mm(_)) && options.inverse && !filter_has_size {
+            return refuse(
+                "a thickness in mm needs a filter in mm for the finest base that it holds: a sieve table, or \
+                 filter.d0_mm"
+                    .into(),
+            );
+        }
+        let base = stated.gradation.scaled(1.0 / d85).map_err(crate::case::CaseError::from)?;
+        case.place(&limits(options), rayon::current_num_threads() as u64, &options.out)?;
+        have_networks(&case)?;
+        let row = Row {
+            case,
+            wanted,
+            stated,
+            base,
+            d85_mm: has_size.then_some(d85),
+            filter_has_size,
+            inverse: options.inverse,
+            limits: limits(options),
+        };
+        row.check_room(options.bracket)?;
+        Ok(Self { draft, row })
+    }
+
+    /// With its filter packed.
+    fn packed(self, options: &DesignOptions, callbacks: &Callbacks) -> Result<Row, RunError> {
+        let packed = match &self.draft.packing {
+            Some(plan) => Some(provide(plan, &options.prepare.packings, callbacks)?),
+            None => None,
+        };
+        Ok(Row { case: self.draft.case(packed)?, ..self.row })
+    }
+}
+
+fn limits(options: &DesignOptions) -> crate::case::ResourceLimits {
+    options.prepare.limits(&options.out)
+}
+
+/// Everything that the results follow from, in words.
+fn work(rows: &[Row], bracket: [f64; 2]) -> String {
+    let of_row = |row: &Row| {
+        let base = row.stated.gradation.points();
+        let (thickness, d85) = (row.wanted.thickness, row.d85_mm);
+        let sizes = (row.inverse, row.filter_has_size);
+        format!("{} {thickness:?} {base:?} {d85:?} {sizes:?}", row.case.fingerprint())
+    };
+    let rows: Vec<String> = rows.iter().map(of_row).collect();
+    let text = format!("{METHOD} {bracket:?} {rows:?}");
+    format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes()))
+}
+
+/// Searches every network of every row that is not done, side by side, and keeps each as soon as it is done.
+fn searched(
+    rows: &[Row],
+    bracket: [f64; 2],
+    done: Vec<Done>,
+    kept: &Kept,
+    callbacks: &Callbacks,
+) -> Result<Vec<Done>, RunError> {
+    let networks = |row: &Row| row.case.scene.walk.replicates;
+    let all = rows.iter().enumerate().flat_map(|(row, of)| (1..=networks(of)).map(move |n| (row, n)));
+    let all: Vec<(usize, u64)> = all.collect();
+    let is_done = |job: &(usize, u64)| done.iter().any(|done| (done.row, done.network) == *job);
+    let open: Vec<(usize, u64)> = all.iter().copied().filter(|job| !is_done(job)).collect();
+    if !done.is_empty() {
+        let text = format!("{} of {} networks are done already", done.len(), all.len());
+        (callbacks.on_event)(Event::Studying(&text));
+    }
+    let text = format!("searching {} networks", open.len());
+    (callbacks.on_event)(Event::Studying(&text));
+    let done = Mutex::new(done);
+    let one = |(row, network): (usize, u64), hint: [Option<f64>; 2]| {
+        let of = &rows[row];
+        let start = Start { ratio: of.start(), hint };
+        let found = of.search(network, (bracket, start), callbacks)?;
+        let words = |ratio: Option<f64>| ratio.map_or("beyond the search".into(), |r| format!("{r:.3}"));
+        let text = format!(
+            "{}, {}, network {network} of {}: no erosion to D15F/D85B {}, continuing from {} ({} ratios \
+             walked)",
+            of.wanted.density,
+            of.wanted.thickness,
+            networks(of),
+            words(found.no_erosion),
+            words(found.continuing),
+            found.walks.len()
+        );
+        (callbacks.on_event)(Event::Studying(&text));
+        let mut done = done.lock().expect("no search panics while it keeps");
+        done.push(Done { row, network, found });
+        kept.keep(done.len(), &*done)
+    };
+    // The first network of each row says where to look on the others.
+    let (first, others): (Vec<_>, Vec<_>) = open.into_iter().partition(|(_, network)| *network == 1);
+    let mut ended = first.into_par_iter().map(|job| one(job, [None; 2])).find_any(Result::is_err);
+    if ended.is_none() {
+        let hints = hints(rows.len(), &done.lock().expect("no search panics while it keeps"));
+        ended = others.into_par_iter().map(|job| one(job, hints[job.0])).find_any(Result::is_err);
+    }
+    let mut done = done.into_inner().expect("no search panics while it keeps");
+    if let Some(Err(error)) = ended {
+        return Err(match error.exit() {
+            Exit::Stopped => kept.stopped(done.len(), all.len()),
+            _ => error,
+        });
+    }
+    done.sort_by_key(|done| (done.row, done.network));
+    Ok(done)
+}
+
+/// The boundaries of the first network of every row.
+fn hints(rows: usize, done: &[Done]) -> Vec<[Option<f64>; 2]> {
+    let mut hints = vec![[None; 2]; rows];
+    for done in done.iter().filter(|done| done.network == 1) {
+        hints[done.row] = [done.found.no_erosion, done.found.continuing];
+    }
+    hints
+}

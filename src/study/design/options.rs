@@ -1,0 +1,110 @@
+//! What a design is asked for, and where it goes.
+
+use std::path::PathBuf;
+
+use crate::run::prepare::PrepareOptions;
+
+/// D15F/D85B between which boundaries are searched where the user does not say.
+pub(super) const BRACKET: [f64; 2] = [0.5, 100.0];
+
+/// What a design is asked for, and where it goes.
+#[derive(Clone, Debug)]
+pub struct DesignOptions {
+    /// Sieve table of the base; the settings say it where there is none.
+    pub base: Option<PathBuf>,
+    /// The filter's shape: a sieve table, a Cu, or a shipped curve's name; the settings say it without one.
+    pub filter: Option<String>,
+    /// Densities: a word, `friction=F` or `estimate=D`.
+    pub densities: Vec<String>,
+    /// Thicknesses.
+    pub thicknesses: Vec<Thickness>,
+    /// Settings of the built-in scene, as `base.cu=3`.
+    pub settings: Vec<String>,
+    /// Whether the finest base that the filter holds is looked for, the filter being as large as it is.
+    pub inverse: bool,
+    /// D15F/D85B between which boundaries are searched.
+    pub bracket: [f64; 2],
+    /// Folder for the results.
+    pub out: PathBuf,
+    /// Whether earlier results there are replaced.
+    pub overwrite: bool,
+    /// Threads, memory and the folder of packings.
+    pub prepare: PrepareOptions,
+}
+
+impl Default for DesignOptions {
+    fn default() -> Self {
+        Self {
+            base: None,
+            filter: None,
+            densities: Vec::new(),
+            thicknesses: Vec::new(),
+            settings: Vec::new(),
+            inverse: false,
+            bracket: BRACKET,
+            out: "voidwalk-design".into(),
+            overwrite: false,
+            prepare: PrepareOptions::default(),
+        }
+    }
+}
+
+/// What a filter's thickness is stated in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Thickness {
+    /// Layers of voids.
+    Layers(u64),
+    /// Millimetres.
+    Mm(f64),
+    /// Multiples of D50F by mass.
+    D50F(f64),
+}
+
+impl std::str::FromStr for Thickness {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let lower = text.trim().to_lowercase();
+        let refused = || {
+            format!(
+                "--thickness {text}: allowed: a length above 0 as 500mm, layers of voids as 60layers, or a \
+                 multiple of D50F as 75D50F"
+            )
+        };
+        let number = |rest: &str| rest.trim().parse::<f64>().ok().filter(|v| v.is_finite() && *v > 0.0);
+        if let Some(rest) = lower.strip_suffix("d50f") {
+            return number(rest).map(Self::D50F).ok_or_else(refused);
+        }
+        if let Some(rest) = lower.strip_suffix("layers") {
+            let layers = rest.trim().parse().ok().filter(|n| (1..=1_000_000).contains(n));
+            return layers.map(Self::Layers).ok_or_else(refused);
+        }
+        number(lower.strip_suffix("mm").unwrap_or(&lower)).map(Self::Mm).ok_or_else(refused)
+    }
+}
+
+impl std::fmt::Display for Thickness {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Layers(n) => write!(f, "{n} layers"),
+            Self::Mm(mm) => write!(f, "{mm} mm"),
+            Self::D50F(multiple) => write!(f, "{multiple} D50F"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thickness_says_what_it_is_in() {
+        let of = |text: &str| text.parse::<Thickness>();
+        assert_eq!(of("60layers"), Ok(Thickness::Layers(60)));
+        assert_eq!((of("500mm"), of("500")), (Ok(Thickness::Mm(500.0)), Ok(Thickness::Mm(500.0))));
+        assert_eq!(of("75 D50F"), Ok(Thickness::D50F(75.0)));
+        for wrong in ["0", "0mm", "-3mm", "0layers", "2.5layers", "nanmm", "inf", "thick", ""] {
+            assert!(of(wrong).unwrap_err().contains("allowed: a length above 0"), "{wrong}");
+        }
+    }
+}

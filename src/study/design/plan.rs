@@ -1,0 +1,271 @@
+//! What a design is asked for, as scenes: one for each density and thickness.
+
+use std::path::{Path, PathBuf};
+
+use crate::outcome::stopping::StopRule;
+use crate::run::error::RunError;
+use crate::scene::{Base, Density, Extent, NetworkSource, Scene, keep_soils};
+
+use super::options::{DesignOptions, Thickness};
+
+/// One density and thickness.
+#[derive(Clone, Debug)]
+pub(super) struct Wanted {
+    /// The scene as it is stated, base and all.
+    pub scene: Scene,
+    /// The same with a base that any filter can be drafted with.
+    pub of_filter: Scene,
+    /// The density in words.
+    pub density: String,
+    /// The thickness.
+    pub thickness: Thickness,
+    /// Whether the finest filter grain is stated (mm).
+    pub states_d0: bool,
+}
+
+/// Every density with every thickness.
+///
+/// # Errors
+/// Settings that are refused.
+pub(super) fn wanted(options: &DesignOptions) -> Result<Vec<Wanted>, RunError> {
+    let thicknesses: Vec<Option<Thickness>> = match options.thicknesses.is_empty() {
+        true => vec![None],
+        false => options.thicknesses.iter().copied().map(Some).collect(),
+    };
+    let densities: Vec<Option<String>> = match (options.densities.is_empty(), default_density(options)) {
+        (true, default) => vec![default],
+        (false, _) => options.densities.iter().cloned().map(Some).collect(),
+    };
+    let mut all = Vec::new();
+    for density in &densities {
+        for &thickness in &thicknesses {
+            all.push(one(options, density.as_deref(), thickness)?);
+        }
+    }
+    let same = |a: &Wanted, b: &Wanted| a.density == b.density && a.thickness == b.thickness;
+    for (index, wanted) in all.iter().enumerate() {
+        if all[..index].iter().any(|before| same(before, wanted)) {
+            let problem = format!("{}, {}: asked for twice", wanted.density, wanted.thickness);
+            return Err(RunError::Refused(problem));
+        }
+    }
+    Ok(all)
+}
+
+/// The density of a shape that has none of its own: loose, whose constrictions are the widest.
+fn default_density(options: &DesignOptions) -> Option<String> {
+    let stated = |setting: &String| {
+        ["filter.density", "filter.friction", "filter.estimate", "filter.curve"].contains(&key_of(setting))
+    };
+    let needs_one = options.filter.as_deref().is_some_and(|shape| !shape_setting(shape).0);
+    (needs_one && !options.settings.iter().any(stated)).then(|| Density::Loose.name().to_owned())
+}
+
+/// Whether a shape has its constrictions, and the setting that says it: a Cu, a sieve table or a shipped
+/// name.
+fn shape_setting(shape: &str) -> (bool, String) {
+    let file = shape.split('#').next().unwrap_or(shape);
+    let is_file = shape.contains(['/', '\\', '#']) || Path::new(file).is_file();
+    let ending = Path::new(file).extension().and_then(|e| e.to_str()).map(str::to_lowercase);
+    let is_table = ending.is_some_and(|e| ["csv", "txt", "tsv", "xlsx", "ods", "ags"].contains(&&*e));
+    match shape.trim().parse::<f64>() {
+        Ok(_) => (false, format!("filter.cu={}", shape.trim())),
+        Err(_) if is_file || is_table => (false, format!("filter.sieve={shape}")),
+        Err(_) => (true, format!("filter.curve={shape}")),
+    }
+}
+
+/// The setting that says a density.
+fn density_setting(density: &str) -> Result<String, RunError> {
+    if let Some((name @ ("friction" | "estimate"), value)) = density.split_once('=') {
+        return Ok(format!("filter.{name}={value}"));
+    }
+    if Density::ALL.iter().any(|word| word.name() == density) {
+        return Ok(format!("filter.density={density}"));
+    }
+    Err(RunError::Refused(format!(
+        "--density {density}: allowed: dense, intermediate or loose, friction=0.2 (0 to 10), or \
+         estimate=0.5 (a relative density from 0 to 1, without a packing)"
+    )))
+}
+
+fn one(
+    options: &DesignOptions,
+    density: Option<&str>,
+    thickness: Option<Thickness>,
+) -> Result<Wanted, RunError> {
+    let mut settings = options.settings.clone();
+    let base = options.base.as_ref().map(|base| base.display().to_string());
+    keep_soils(&settings, base.as_deref(), options.filter.as_deref())?;
+    let of_base = base.map(|base| format!("base.sieve={base}"));
+    let of_filter = options.filter.as_deref().map(|shape| shape_setting(shape).1);
+    let of_density = density.map(density_setting).transpose()?;
+    let of_thickness = thickness.map(|thickness| match thickness {
+        Thickness::Layers(layers) => format!("network.nz={layers}"),
+        Thickness::D50F(multiple) => format!("network.thickness_d50f={multiple:?}"),
+        Thickness::Mm(mm) => format!("network.thickness_mm={mm:?}"),
+    });
+    for (whose, said) in [("BASE", of_base), ("--filter", of_filter), ("--thickness", of_thickness)] {
+        refuse_twice(options, whose, said.as_deref())?;
+        settings.extend(said);
+    }
+    // Without --density the default is none that was said.
+    refuse_twice(options, "--density", of_density.as_deref().filter(|_| !options.densities.is_empty()))?;
+    settings.extend(of_density);
+    let mut scene = Scene::built_in(&settings)?;
+    refuse(&scene)?;
+    let thickness = thickness.or(match scene.network.extent() {
+        Extent::Mm(mm) => Some(Thickness::Mm(mm)),
+        Extent::D50F(multiple) => Some(Thickness::D50F(multiple)),
+        Extent::Copies(_) | Extent::Usual => None,
+    });
+    let is_lattice = matches!(scene.network.source(), NetworkSource::Cubic(_));
+    if let (Some(Thickness::Mm(_)), false, false) = (thickness, is_lattice, options.inverse) {
+        return Err(RunError::refused(
+            "a thickness in mm goes with a lattice: of a packing's own voids the filter's size says how many \
+             copies there are, and it is searched for; give network.copies or a multiple of D50F",
+        ));
+    }
+    if matches!(thickness, Some(Thickness::Mm(_))) && !options.inverse {
+        // How many layers that is hangs on the ratio.
+        scene.network.set_layers(crate::scene::USUAL_LAYERS);
+    }
+    scene.walk.runs = 2;
+    scene.record.sensitivity.clear();
+    let mut of_filter = scene.clone();
+    of_filter.base = Base {
+        cu: Some(1.5),
+        d15f_over_d85b: Some(5.0),
+        d85_at_dc: None,
+        d85_mm: None,
+        dc_curve: None,
+        sieve: None,
+        d0_mm: None,
+        single_mm: None,
+        regrade: None,
+        ..scene.base.clone()
+    };
+    let layers = scene.network.source().shape().map_or(crate::scene::USUAL_LAYERS, |[_, _, nz]| nz.into());
+    let density = density_words(&scene);
+    let thickness = thickness.unwrap_or(Thickness::Layers(layers));
+    let states_d0 = options.settings.iter().any(|setting| key_of(setting) == "filter.d0_mm");
+    Ok(Wanted { scene, of_filter, density, thickness, states_d0 })
+}
+
+/// The key of a setting.
+fn key_of(setting: &str) -> &str {
+    setting.split('=').next().unwrap_or_default().trim()
+}
+
+/// Refuses a setting that says again what an argument of its own has said.
+fn refuse_twice(options: &DesignOptions, whose: &str, said: Option<&str>) -> Result<(), RunError> {
+    let Some(said) = said else { return Ok(()) };
+    let alike = |key: &str| match whose {
+        "--thickness" => THICKNESSES.contains(&key),
+        _ => key == key_of(said),
+    };
+    match options.settings.iter().find(|setting| alike(key_of(setting))) {
+        Some(setting) => {
+            Err(RunError::Refused(format!("{whose} and --set {setting} say the same thing twice: give one")))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Settings that say how thick a filter is.
+const THICKNESSES: [&str; 4] =
+    ["network.nz", "network.copies", "network.thickness_mm", "network.thickness_d50f"];
+
+/// Refuses what a scene may say and a design cannot do.
+fn refuse(scene: &Scene) -> Result<(), RunError> {
+    if scene.stop != StopRule::default() {
+        let problem = "stop.target_error_pp and stop.decide_percent do not go with a design: replicates says \
+                       how many networks its bands are taken over";
+        return Err(RunError::refused(problem));
+    }
+    if scene.walk.runs != 2 {
+        let problem = "runs = 1 does not go with a design: continuing erosion is what the second run erodes";
+        return Err(RunError::refused(problem));
+    }
+    Ok(())
+}
+
+/// How densely a scene's filter is packed, in words.
+fn density_words(scene: &Scene) -> String {
+    let filter = &scene.filter;
+    match (filter.density, filter.friction, filter.estimate, &filter.curve) {
+        (Some(word), ..) => word.name().to_owned(),
+        (None, Some(friction), ..) => format!("friction {friction}"),
+        (.., Some(estimate), _) => format!("estimate {estimate}"),
+        (.., Some(crate::scene::CurveSource::Shipped(name))) => {
+            name.rsplit('-').next().unwrap_or(name).to_owned()
+        }
+        (.., Some(crate::scene::CurveSource::File(path))) => file_words("of the curve", path),
+        _ => "as given".into(),
+    }
+}
+
+fn file_words(what: &str, path: &Path) -> String {
+    format!("{what} {}", path.file_name().map_or_else(PathBuf::new, PathBuf::from).display())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shape_is_a_cu_a_file_or_a_shipped_name() {
+        assert_eq!(shape_setting("3").1, "filter.cu=3");
+        assert_eq!(shape_setting("soils/f.csv").1, "filter.sieve=soils/f.csv");
+        assert_eq!(shape_setting("f.xlsx#Zone 2").1, "filter.sieve=f.xlsx#Zone 2");
+        assert_eq!(shape_setting("cu1.5-loose"), (true, "filter.curve=cu1.5-loose".into()));
+    }
+
+    #[test]
+    fn no_setting_replaces_a_soil_that_is_named() {
+        let refused = |filter: &str, setting: &str| {
+            let options = DesignOptions {
+                base: Some("b.csv".into()),
+                filter: Some(filter.into()),
+                settings: vec![setting.into()],
+                ..DesignOptions::default()
+            };
+            let error = wanted(&options).unwrap_err();
+            assert_eq!(error.exit().code(), 2);
+            error.to_string()
+        };
+        for (filter, setting, said) in [
+            ("3", "base.sieve=other.csv", "in the place of the base, b.csv"),
+            ("3", "filter.cu=1.5", "in the place of the filter, 3"),
+            ("f.csv", "filter.sieve=g.csv", "in the place of the filter, f.csv"),
+            ("cu3-loose", "filter.curve=cu6-loose", "say the same thing twice"),
+        ] {
+            let error = refused(filter, setting);
+            assert!(error.contains(said), "{error}");
+        }
+    }
+
+    #[test]
+    fn every_density_goes_with_every_thickness() {
+        let options = |densities: &[&str], thicknesses: &[&str]| DesignOptions {
+            filter: Some("3".into()),
+            densities: densities.iter().map(ToString::to_string).collect(),
+            thicknesses: thicknesses.iter().map(|text| text.parse().unwrap()).collect(),
+            ..DesignOptions::default()
+        };
+        let all = wanted(&options(&["loose", "friction=0.1"], &["500mm", "30layers"])).unwrap();
+        let names: Vec<String> = all.iter().map(|w| format!("{}, {}", w.density, w.thickness)).collect();
+        assert_eq!(
+            names,
+            ["loose, 500 mm", "loose, 30 layers", "friction 0.1, 500 mm", "friction 0.1, 30 layers"]
+        );
+        let plain = wanted(&options(&[], &[])).unwrap();
+        assert_eq!((plain[0].density.as_str(), plain[0].thickness), ("loose", Thickness::Layers(60)));
+        let twice = wanted(&options(&["loose", "loose"], &[])).unwrap_err();
+        assert!(twice.to_string().contains("asked for twice") && twice.exit().code() == 2);
+        let wrong = wanted(&options(&["2"], &[])).unwrap_err().to_string();
+        assert!(wrong.contains("dense, intermediate or loose"), "{wrong}");
+        let wrong = wanted(&options(&["estimate=1.5"], &[])).unwrap_err().to_string();
+        assert!(wrong.contains("relative density from 0 (loose) to 1"), "{wrong}");
+    }
+}

@@ -1,0 +1,198 @@
+//! One density and thickness, ready to be walked at any ratio.
+
+use std::collections::BTreeMap;
+
+use bitvec::vec::BitVec;
+
+use super::options::Thickness;
+use super::plan::Wanted;
+use super::search::{Found, Start, Trial, Walker, search};
+use crate::case::{Case, CaseError, ResourceLimits, StatedBase, replicate_seed};
+use crate::gradation::Gradation;
+use crate::network::{Network, Passage};
+use crate::outcome::Eroded;
+use crate::outcome::design::Beyond;
+use crate::outcome::verdict::THRESHOLD;
+use crate::run::callbacks::Callbacks;
+use crate::run::erosion::eroded;
+use crate::run::error::RunError;
+use crate::scene::Amount;
+
+/// Ratio at which a first guess takes the layers of a thickness in mm.
+const USUAL_RATIO: f64 = 5.0;
+
+/// One density and thickness with its filter packed.
+pub(super) struct Row {
+    /// What was asked for.
+    pub wanted: Wanted,
+    /// The filter and its network, with some base.
+    pub case: Case,
+    /// The base as it is stated.
+    pub stated: StatedBase,
+    /// The base in units of its D85.
+    pub base: Gradation,
+    /// D85B (mm), where the base has a size of its own.
+    pub d85_mm: Option<f64>,
+    /// Whether the filter has a size of its own.
+    pub filter_has_size: bool,
+    /// Whether the base is scaled, and the filter is as large as it is.
+    pub inverse: bool,
+    /// What the walks may take.
+    pub limits: ResourceLimits,
+}
+
+impl Row {
+    /// Whether filter and base have sizes at a ratio.
+    pub fn has_size(&self) -> bool {
+        if self.inverse { self.filter_has_size } else { self.d85_mm.is_some() }
+    }
+
+    /// D15F in the case's own unit.
+    pub fn d15f(&self) -> f64 {
+        self.case.filter.d(15.0).unwrap_or(f64::NAN)
+    }
+
+    /// How much larger the filter is than the case has it at a ratio, where the base has a size.
+    pub fn factor(&self, ratio: f64) -> Option<f64> {
+        match self.inverse {
+            true => Some(1.0),
+            false => Some(ratio * self.d85_mm? / self.d15f()),
+        }
+    }
+
+    /// Layers at a ratio, where they hang on it.
+    pub fn layers(&self, ratio: f64) -> Option<u64> {
+        let Thickness::Mm(mm) = self.wanted.thickness else { return None };
+        let layer = self.case.filter.d_by_number(50.0).unwrap_or(self.case.unit_mm);
+        let layers = (mm / (layer * self.factor(ratio)?)).round();
+        (!self.inverse).then(|| layers.clamp(1.0, f64::from(u32::MAX)) as u64)
+    }
+
+    /// The case at a ratio.
+    ///
+    /// # Errors
+    /// It cannot be walked.
+    pub fn at(&self, ratio: f64) -> Result<Case, CaseError> {
+        let base = self.base.scaled(self.d15f() / ratio)?;
+        let mut case = self.case.with_base(base, self.layers(ratio))?;
+        case.place(&self.limits, rayon::current_num_threads() as u64, std::path::Path::new("."))?;
+        Ok(case)
+    }
+
+    /// Refuses more layers, or more memory, than there is, at a ratio near which the search begins.
+    ///
+    /// # Errors
+    /// What is too large.
+    pub fn check_room(&self, bracket: [f64; 2]) -> Result<(), RunError> {
+        let ratio = self.start().clamp(bracket[0], bracket[1]);
+        match self.at(ratio) {
+            Err(error) if !is_of_base(&error) => Err(RunError::Refused(format!(
+                "{}, {}, at D15F/D85B {ratio:.2}: {error}",
+                self.wanted.density, self.wanted.thickness
+            ))),
+            _ => Ok(()),
+        }
+    }
+
+    /// On which side a ratio lies that cannot be walked.
+    fn side(&self, ratio: f64) -> Beyond {
+        let too_few = || -> Option<bool> {
+            let Amount::MassRatio(mass_ratio, _) = self.case.scene.base.amount() else { return None };
+            let base = self.base.scaled(self.d15f() / ratio).ok()?;
+            let per_grain = base.particles_per_unit_volume() / self.case.filter.particles_per_unit_volume();
+            Some(mass_ratio * self.case.grains_per_void? * self.case.counts[0] as f64 * per_grain < 1.0)
+        };
+        if too_few() == Some(true) { Beyond::Below } else { Beyond::Above }
+    }
+
+    /// Where a lone particle of one size has its boundary, by the closed form: a start for the search.
+    pub fn start(&self) -> f64 {
+        let layers = self.layers(USUAL_RATIO).unwrap_or(self.case.counts[3]).max(1);
+        self.d15f() / Passage::new(&self.case.curve).coarsest_through(layers, 1.0 - THRESHOLD)
+    }
+
+    /// Searches the boundaries of network `number`, counted from 1.
+    ///
+    /// # Errors
+    /// A walk that goes wrong, or was stopped.
+    pub fn search(
+        &self,
+        number: u64,
+        (bracket, start): ([f64; 2], Start),
+        callbacks: &Callbacks,
+    ) -> Result<Found, RunError> {
+        let seed = replicate_seed(self.case.scene.walk.seed, number);
+        let mut walker = OneNetwork { row: self, seed, network: None, blocked: BTreeMap::new(), callbacks };
+        search(&mut walker, bracket, start)
+    }
+}
+
+/// Whether the base itself cannot be walked: Eq. (2) gives too few particles or too many, or sizes are out of
+/// range.
+fn is_of_base(error: &CaseError) -> bool {
+    matches!(error, CaseError::Scene(_) | CaseError::Gradation(_) | CaseError::Number(_))
+}
+
+/// One network, walked at one ratio after another.
+struct OneNetwork<'a> {
+    row: &'a Row,
+    seed: u64,
+    /// The network that was walked last.
+    network: Option<Network>,
+    /// What the first run left blocked, by step, of each reading of the base.
+    blocked: BTreeMap<i64, Vec<BitVec<u64>>>,
+    callbacks: &'a Callbacks<'a>,
+}
+
+impl OneNetwork<'_> {
+    /// Run `run` at a ratio. Of a base with two readings the one that erodes more counts.
+    fn walk(&mut self, run: u64, step: i64, ratio: f64) -> Result<Trial, RunError> {
+        let case = match self.row.at(ratio) {
+            Ok(case) => case,
+            Err(error) if is_of_base(&error) => {
+                return Ok(Trial::CannotBe(self.row.side(ratio), error.to_string()));
+            }
+            // What this machine cannot walk says nothing of the filter.
+            Err(error) => {
+                let text = format!(
+                    "at D15F/D85B {ratio:.2}: {error}; networks that are done are kept: repeat the command \
+                     with more --memory, or begin again with another --bracket and --overwrite"
+                );
+                return Err(RunError::Failed(text.into()));
+            }
+        };
+        let network = case.network_unless(self.network.take(), self.seed)?;
+        let before = self.blocked.remove(&step);
+        let (mut all, mut left): (Option<Eroded>, Vec<BitVec<u64>>) = (None, Vec::new());
+        for (reading, case) in case.readings().enumerate() {
+            let open = || BitVec::repeat(false, network.constrictions());
+            let blocked = match run {
+                1 => open(),
+                _ => before.as_ref().and_then(|before| before.get(reading)).cloned().unwrap_or_else(open),
+            };
+            let (found, blocked) = eroded(case, &network, (self.seed, run), blocked, self.callbacks)?;
+            left.push(blocked);
+            let worse = |all: Eroded| Eroded {
+                mass_fraction: all.mass_fraction.max(found.mass_fraction),
+                below_threshold: all.below_threshold && found.below_threshold,
+            };
+            all = Some(all.map_or(found, worse));
+        }
+        self.network = Some(network);
+        let all = all.expect("a case has a reading");
+        if run == 1 && !all.below_threshold {
+            self.blocked.insert(step, left);
+        }
+        Ok(Trial::Eroded(all))
+    }
+}
+
+impl Walker for OneNetwork<'_> {
+    fn first(&mut self, step: i64, ratio: f64) -> Result<Trial, RunError> {
+        self.walk(1, step, ratio)
+    }
+
+    fn second(&mut self, step: i64, ratio: f64) -> Result<Trial, RunError> {
+        self.walk(2, step, ratio)
+    }
+}

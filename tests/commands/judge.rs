@@ -1,0 +1,164 @@
+//! `judge`: two sieve tables in, a run folder out, as of the scene that says the same.
+
+use std::fs;
+use std::path::PathBuf;
+
+use serde_json::Value;
+
+use crate::program::{call, done, refused};
+
+pub const BASE: &str = "size_mm,percent\n0.08,0\n0.15,40\n0.2,70\n0.3,100\n";
+pub const FINE: &str = "size_mm,percent\n0.5,0\n0.7,30\n1.0,70\n1.5,100\n";
+pub const COARSE: &str = "size_mm,percent\n1.0,0\n1.5,30\n2.0,70\n3.0,100\n";
+
+/// Settings of a network that is walked at once.
+pub const SMALL: [&str; 6] = ["--set", "network.nx=6", "--set", "network.ny=6", "--set", "network.nz=8"];
+
+pub fn soils() -> (tempfile::TempDir, PathBuf) {
+    let root = tempfile::tempdir().unwrap();
+    for (name, text) in [("base.csv", BASE), ("fine.csv", FINE), ("coarse.csv", COARSE)] {
+        fs::write(root.path().join(name), text).unwrap();
+    }
+    let path = root.path().to_owned();
+    (root, path)
+}
+
+fn json(path: PathBuf) -> Value {
+    serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
+}
+
+#[test]
+fn two_tables_are_judged_as_the_scene_that_says_the_same() {
+    let (_root, at) = soils();
+    let said = call(&at, &[&["judge", "base.csv", "fine.csv", "--quick", "--out", "a"][..], &SMALL].concat());
+    done(&said);
+    let text = String::from_utf8(said.stdout).unwrap();
+    assert!(text.contains("guessed from its gradation") && text.contains("Verdict: "), "{text}");
+    assert!(text.contains("to go on from: voidwalk run a/scene.toml"), "{text}");
+    for file in ["outcome.json", "report.html", "manifest.json", "scene.toml", "inputs/base-sieve.csv"] {
+        assert!(at.join("a").join(file).is_file(), "{file}");
+    }
+    // The scene beside the results walks to the same numbers.
+    done(&call(&at, &["run", "a/scene.toml", "--out", "b", "-q"]));
+    let [a, b] = ["a", "b"].map(|folder| json(at.join(folder).join("outcome.json")));
+    assert_eq!(a["summary"], b["summary"]);
+    assert_eq!(a["curve_range"], b["curve_range"]);
+    assert_eq!(a["replicates"].as_array().unwrap().len(), 4);
+    // A guess is never within the range that was checked.
+    assert_ne!(a["confidence"], "within checked range");
+}
+
+/// Where its curve is no guess and the pair a good one, a first look is all that there is to doubt.
+#[test]
+fn a_first_look_says_so_beside_the_verdict() {
+    let (_root, at) = soils();
+    let scene = "[base]\ncu = 1.5\nd85_at_dc = 40\n";
+    fs::write(at.join("good.toml"), format!("replicates = 5\n[filter]\ncurve = \"cu1.5-loose\"\n{scene}"))
+        .unwrap();
+    let run = |more: &[&str]| {
+        let said = call(
+            &at,
+            &[&["run", "good.toml", "--json", "--overwrite", "--out", "a"][..], &SMALL, more].concat(),
+        );
+        done(&said);
+        serde_json::from_slice::<Value>(&said.stdout).unwrap()
+    };
+    let whole = run(&["--set", "record.sensitivity=[]"]);
+    assert_eq!(
+        (&whole["confidence"], &whole["reasons"]),
+        (&"within checked range".into(), &Value::Array(vec![]))
+    );
+    let few = run(&["--set", "replicates=4", "--set", "record.sensitivity=[]"]);
+    let said =
+        "only 4 replicates; how the verdict moves with the amount of base and with thickness was not studied";
+    assert_eq!(
+        (&few["confidence"], &few["reasons"]),
+        (&"outside checked range".into(), &vec![Value::from(said)].into())
+    );
+    assert_eq!(run(&["--set", "replicates=4"])["reasons"][0], "only 4 replicates");
+    let one = run(&["--set", "replicates=1"]);
+    assert!(one["reasons"][0].as_str().unwrap().starts_with("one replicate: the scatter is unknown"));
+    // Without a curve it is one doubt of several.
+    let judged =
+        call(&at, &[&["judge", "base.csv", "fine.csv", "--quick", "--out", "b"][..], &SMALL].concat());
+    done(&judged);
+    let text = String::from_utf8(judged.stdout).unwrap();
+    assert!(text.contains(&format!("also: {said}")), "{text}");
+    assert!(fs::read_to_string(at.join("b/report.html")).unwrap().contains(said));
+}
+
+/// Silt, and a filter whose D15F of 0.6 mm lies between the limits: 0.5 mm where the base is dispersive, 0.7 mm.
+#[test]
+fn a_dispersive_base_and_an_open_joint_reach_the_verdict() {
+    let (_root, at) = soils();
+    fs::write(at.join("silt.csv"), "size_mm,percent\n0.01,0\n0.05,40\n0.075,55\n0.2,85\n0.3,100\n").unwrap();
+    fs::write(at.join("sand.csv"), "size_mm,percent\n0.5,0\n0.6,15\n1.0,70\n1.5,100\n").unwrap();
+    let judge = |more: &[&str]| {
+        let words = ["judge", "silt.csv", "sand.csv", "--quick", "--json", "--overwrite", "--out", "a"];
+        let said = call(&at, &[&words[..], &SMALL, more].concat());
+        done(&said);
+        serde_json::from_slice::<Value>(&said.stdout).unwrap()
+    };
+    let rule = |outcome: &Value, id: &str| {
+        let rules = outcome["rules"].as_array().unwrap();
+        rules.iter().find(|rule| rule["id"] == id).cloned().unwrap_or_default()
+    };
+    let plain = judge(&[]);
+    let design = rule(&plain, "sherard-dunnigan");
+    assert_eq!((&design["limit"], &design["met"]), (&0.7.into(), &true.into()));
+    assert!(rule(&plain, "constricted-exit").is_null());
+    let told = judge(&["--dispersive", "--joint-mm", "2"]);
+    let design = rule(&told, "sherard-dunnigan");
+    assert_eq!((&design["limit"], &design["met"]), (&0.5.into(), &false.into()));
+    assert!(rule(&told, "constricted-exit")["value"].as_f64().unwrap() > 50.0);
+    assert_eq!(
+        (&told["summary"], &told["n_base"]),
+        (&plain["summary"], &plain["n_base"]),
+        "the walk is the same"
+    );
+    let reasons = told["reasons"].to_string();
+    for said in ["the base is dispersive", "an open joint of 2 mm was not walked"] {
+        assert!(reasons.contains(said), "{reasons}");
+    }
+    assert_ne!(told["confidence"], "within checked range");
+    // The scene beside the results says it again, and a word that is neither is refused.
+    let scene = fs::read_to_string(at.join("a/scene.toml")).unwrap();
+    assert!(scene.contains("dispersive = true") && scene.contains("joint_mm = 2.0"), "{scene}");
+    let wrong = ["judge", "silt.csv", "sand.csv", "--set", "base.dispersive=perhaps"];
+    refused(&call(&at, &wrong), "true or false");
+}
+
+#[test]
+fn a_density_packs_the_filter() {
+    let (_root, at) = soils();
+    let words = ["judge", "base.csv", "coarse.csv", "--density", "medium", "--quick", "--json", "--out", "a"];
+    let small = ["--set", "packing.grains=150", "--set", "packing.stiffness_ratio=0.01"];
+    let said = call(&at, &[&words[..], &SMALL, &small].concat());
+    done(&said);
+    let outcome: Value = serde_json::from_slice(&said.stdout).unwrap();
+    assert_eq!(outcome["replicates"].as_array().unwrap().len(), 4);
+    let scene = fs::read_to_string(at.join("a/scene.toml")).unwrap();
+    assert!(scene.contains("density = \"intermediate\"") && scene.contains("inputs/filter-curve.csv"));
+    assert!(at.join("voidwalk-packings").is_dir());
+}
+
+#[test]
+fn what_is_wrong_is_refused_before_anything_is_written() {
+    let (_root, at) = soils();
+    let judge = |more: &[&str]| call(&at, &[&["judge", "base.csv"][..], more].concat());
+    refused(&judge(&["fine.csv", "--density", "0.45"]), "write loose, medium or dense");
+    refused(&judge(&["no.csv"]), "no.csv");
+    refused(&judge(&["fine.csv", "--set", "base.uc=3"]), "did you mean `base.cu`");
+    refused(&judge(&["fine.csv", "--density", "loose", "--set", "filter.estimate=1"]), "keep one");
+    // Else the answer for one soil would stand under the name of another.
+    let other = "would put another soil in the place of the base, base.csv";
+    refused(&judge(&["fine.csv", "--set", "base.sieve=\"coarse.csv\""]), other);
+    fs::write(at.join("bad.csv"), "size_mm,percent\n0.1,10\n0.2,5\n").unwrap();
+    refused(&judge(&["bad.csv"]), "bad.csv");
+    assert_eq!(fs::read_dir(&at).unwrap().count(), 4, "nothing was written");
+    done(&call(
+        &at,
+        &[&["judge", "base.csv", "fine.csv", "--quick", "--out", "a", "-q"][..], &SMALL].concat(),
+    ));
+    refused(&judge(&["fine.csv", "--out", "a"]), "holds a run already");
+}
