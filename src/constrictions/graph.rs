@@ -268,13 +268,14 @@ fn power_centres(t: &Triangulation, positions: &Positions<'_>, voids: &Voids) ->
     centres
 }
 
-/// Volume of each void outside the grains (mm3).
+/// Volume of each void outside the grains (mm3); 0 where they overlap so far that the sum has nothing left.
 fn volumes(t: &Triangulation, positions: &Positions<'_>, voids: &Voids, unit_mm: f64) -> Vec<f64> {
     let mut volumes = vec![0.0; voids.count];
     for i in 0..t.tetrahedra() {
         volumes[voids.of[i] as usize] +=
             water(&t.at(positions, i, Shift::ZERO)) * unit_mm * unit_mm * unit_mm;
     }
+    volumes.iter_mut().for_each(|volume| *volume = volume.max(0.0));
     volumes
 }
 

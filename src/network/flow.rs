@@ -91,7 +91,8 @@ impl Flow {
         self.open[exit] * (self.pressure[void as usize] - self.pressure[self.other[exit] as usize])
     }
 
-    /// Solves for the constrictions that `blocked` leaves open.
+    /// Solves for the constrictions that `blocked` leaves open. A conductance below 1e-10 of the inlets' is 0:
+    /// pressures are no more exact.
     ///
     /// # Errors
     /// Conductances too far apart.
@@ -119,7 +120,10 @@ impl Flow {
         }
         let system = System::new(network, self, &inside, reservoir);
         system.solve(&mut self.pressure, network.layers())?;
-        let conductance = network.exits(reservoir).map(|c| self.flux(reservoir, c)).sum::<f64>().max(0.0);
+        let inlets = network.exits(reservoir);
+        let least = CONVERGED * inlets.clone().map(|c| self.open[c]).sum::<f64>();
+        let through: f64 = inlets.map(|c| self.flux(reservoir, c)).sum();
+        let conductance = if through > least { through } else { 0.0 };
         let factor = undirected.and_then(|u| u.permeability_mm2);
         Ok(Permeability { conductance, k_mm2: factor.map(|factor| factor * conductance) })
     }

@@ -186,13 +186,16 @@ impl Recorded {
 /// A void is overfull above this part of its volume: no packing of the particles in it is denser.
 const OVERFULL: f64 = 0.6;
 
-/// Retained volume over volume of each void; nothing where volumes are not known.
+/// Retained volume over volume of each void, 0 for one that has none; nothing where volumes are not known.
 fn fullness(network: &Network, state: &State) -> Vec<f64> {
     // Of an expectation only the number by void is known.
     if state.passive.expected().is_some() {
         return Vec::new();
     }
-    let full = |(&volume, &cubes): (&f64, &f64)| std::f64::consts::FRAC_PI_6 * cubes / volume;
+    let full = |(&volume, &cubes): (&f64, &f64)| match volume > 0.0 {
+        true => std::f64::consts::FRAC_PI_6 * cubes / volume,
+        false => 0.0,
+    };
     network.volumes().iter().zip(&state.retained_cubes).map(full).collect()
 }
 

@@ -152,6 +152,21 @@ fn packings_and_dumps() {
 }
 
 #[test]
+fn graphs_of_voids() {
+    check("graph", &["tests/seeds/packing"], 600, readers::graph);
+}
+
+#[test]
+fn networks_of_columns() {
+    check("columns", &[], 20_000, readers::columns);
+}
+
+#[test]
+fn requests_to_the_page() {
+    check("request", &[], 300, readers::request);
+}
+
+#[test]
 fn checkpoints() {
     check("checkpoint", &[], 15_000, readers::checkpoint);
 }

@@ -7,17 +7,23 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::RefCell;
 use std::fmt::Display;
+use std::io::{Read, Write};
+use std::net::{Shutdown, TcpStream};
 use std::path::Path;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::Duration;
 
 use bitvec::vec::BitVec;
 use voidwalk::campaign::CampaignPlan;
 use voidwalk::case::Case;
-use voidwalk::constrictions::Curve;
+use voidwalk::constrictions::{Curve, DEFAULT_MERGE_OVERLAP, VoidGraph};
 use voidwalk::gradation::{Gradation, SizeSampler, Soil, SoilSummary};
-use voidwalk::network::Network;
+use voidwalk::network::{END, ExitRule, Flow, GraphShape, Network, NetworkColumns};
 use voidwalk::packing::Packing;
+use voidwalk::run::PrepareOptions;
 use voidwalk::scene::{CurveSource, Scene};
+use voidwalk::serve::{ServeOptions, Server};
 use voidwalk::store::checkpoint::{Checkpoint, Identity, Label, Section, save};
 use voidwalk::walk::{Engine, RunPlan, SavedState, SizeClasses, State, Supply, Walk, WalkControl, WalkError};
 use xxhash_rust::xxh3::xxh3_64;
@@ -143,6 +149,97 @@ pub fn packing(bytes: &[u8]) {
     assert_eq!((again.cell, bits(&again)), (packing.cell, bits(&packing)));
 }
 
+/// Grains as the network of their own voids: measured or refused; water gets through without loss, or its flow is
+/// refused.
+pub fn graph(bytes: &[u8]) {
+    let Some(packing) = shown(Packing::parse("packing", bytes)) else { return };
+    // As many as are triangulated in milliseconds.
+    if packing.diameter.len() > 64 {
+        return;
+    }
+    let Some((curve, graph)) = shown(VoidGraph::measure(&packing, DEFAULT_MERGE_OVERLAP)) else { return };
+    shown(curve.curve());
+    let sizes = graph.diameter_mm.iter().chain(&graph.conductance_mm3).chain(&graph.volume_mm3);
+    assert!(sizes.clone().all(|size| size.is_finite() && *size >= 0.0), "{:?}", sizes.collect::<Vec<_>>());
+    for rule in [ExitRule::Flux, ExitRule::AreaAlongFlow, ExitRule::Height] {
+        let shape = GraphShape { copies: 2, rule, rho: 0.01, unit_mm: graph.d0_mm };
+        let Some(network) = shown(Network::of_graph(&graph, shape)) else { continue };
+        flow(network, graph.conductance_mm3.iter().sum());
+    }
+}
+
+/// A network given as columns, read from bytes.
+pub fn columns(bytes: &[u8]) {
+    let [voids, rule, ends @ ..] = bytes else { return };
+    // Each constriction: two voids, a size and a conductance in one byte each, of which some are no numbers.
+    let size = |byte: u8| match byte {
+        0 => 0.0,
+        255 => f64::NAN,
+        254 => f64::INFINITY,
+        253 => -1.0,
+        252 => f64::MIN_POSITIVE,
+        251 => 1e300,
+        byte => 1.1f64.powi(i32::from(byte) - 128),
+    };
+    let rows: Vec<[u8; 4]> = ends.as_chunks::<4>().0.iter().take(200).copied().collect();
+    let conns: Vec<[i64; 2]> =
+        rows.iter().map(|row| [i64::from(row[0] as i8), i64::from(row[1] as i8)]).collect();
+    let diameter_mm: Vec<f64> = rows.iter().map(|row| size(row[2])).collect();
+    let conductance: Vec<f64> = rows.iter().map(|row| size(row[3])).collect();
+    let outlets = [u32::from(*voids).saturating_sub(1)];
+    for conductance in [None, Some(conductance.as_slice())] {
+        let rule = [ExitRule::Area, ExitRule::Flux, ExitRule::AreaAlongFlow, ExitRule::Height]
+            [usize::from(*rule % 4)];
+        let columns = NetworkColumns {
+            voids: usize::from(*voids),
+            conns: &conns,
+            diameter_mm: &diameter_mm,
+            conductance,
+            inlets: &[0],
+            outlets: &outlets,
+            rule,
+            rho: 0.0,
+            unit_mm: 1.0,
+        };
+        let Some((network, exits)) = shown(Network::from_columns(&columns)) else { continue };
+        assert_eq!(exits.len(), conns.len());
+        if rule == ExitRule::Area {
+            let mut text = Vec::new();
+            network.write_csv(&mut text).unwrap();
+            assert!(!text.is_empty());
+        } else {
+            let all = conductance.unwrap_or(&[]).iter().sum::<f64>();
+            flow(
+                network,
+                if conductance.is_some() { all } else { diameter_mm.iter().map(|d| d.powi(4)).sum() },
+            );
+        }
+    }
+}
+
+/// Water through an undirected network, whose conductances have this sum: what goes in comes out, but for the residual
+/// that a solution may leave.
+fn flow(network: Network, conductances: f64) {
+    let mut flow = Flow::new(&network);
+    let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
+    let Some(all) = shown(flow.solve(&network, &open)) else { return };
+    assert!(all.conductance.is_finite() && all.conductance >= 0.0, "{all:?}");
+    assert!(flow.pressure().iter().all(|p| p.is_finite()), "{:?}", flow.pressure());
+    let Some(reservoir) = network.reservoir() else { return };
+    let (mut inflow, mut outflow) = (0.0, 0.0);
+    for void in 0..network.voids() as u32 {
+        for exit in network.exits(void) {
+            inflow += if void == reservoir { flow.flux(void, exit) } else { 0.0 };
+            outflow += if network.targets()[exit] == END { flow.flux(void, exit) } else { 0.0 };
+        }
+    }
+    let residual = 1e-9 * conductances * network.voids() as f64;
+    assert!((inflow - outflow).abs() <= 1e-6 * inflow.abs() + residual, "{inflow} in, {outflow} out");
+    let mut network = network;
+    flow.direct(&mut network, &open);
+    assert!((0..network.constrictions()).all(|exit| network.exit_weight(exit) >= 0.0));
+}
+
 /// A checkpoint: as it is, and with its checksums made right, so that what they protect is reached.
 pub fn checkpoint(bytes: &[u8]) {
     for content in [bytes.to_vec(), with_right_sums(bytes.to_vec())] {
@@ -179,6 +276,56 @@ pub fn ledger(bytes: &[u8]) {
     if let Some(page) = shown(voidwalk::report::campaign_page(about, lines)) {
         assert!(!page.to_lowercase().contains("<script"), "a script got into the page");
     }
+}
+
+/// A request to the page on this machine, in which `{A}` stands for its address with the secret, and `{H}` for its
+/// name: it is answered, or the connection ends; and nobody is let in, or told the secret, who does not know it. What
+/// would walk is left out by name.
+pub fn request(bytes: &[u8]) {
+    static ADDRESS: OnceLock<String> = OnceLock::new();
+    let address = ADDRESS.get_or_init(page);
+    let (host, secret) = address.trim_matches('/').split_once('/').unwrap();
+    let text = String::from_utf8_lossy(bytes);
+    if ["check", "judge", "compare", "design", "continue"].iter().any(|work| text.contains(work)) {
+        return;
+    }
+    let sent = text.replace("{A}", &format!("/{secret}/")).replace("{H}", host);
+    let mut stream = TcpStream::connect(host).expect("the page answers");
+    stream.set_read_timeout(Some(Duration::from_secs(30))).unwrap();
+    // A page that refuses what is sent may end the connection before all of it has gone.
+    let _ = stream.write_all(sent.as_bytes());
+    let _ = stream.shutdown(Shutdown::Write);
+    let mut answer = Vec::new();
+    let _ = stream.read_to_end(&mut answer);
+    if answer.is_empty() {
+        return;
+    }
+    let answer = String::from_utf8_lossy(&answer);
+    let status = answer.strip_prefix("HTTP/1.1 ").and_then(|rest| rest.get(..3)?.parse::<u16>().ok());
+    let status = status.unwrap_or_else(|| panic!("no answer to HTTP: {answer}"));
+    assert!((100..600).contains(&status), "{answer}");
+    if !sent.contains(secret) {
+        assert!(status >= 400, "let in: {answer}");
+        assert!(!answer.contains(secret), "told the secret: {answer}");
+    }
+}
+
+/// A page that answers and never walks; its address without `http:/`. It ends with the process.
+fn page() -> String {
+    let folder = option_env!("CARGO_TARGET_TMPDIR").map_or_else(std::env::temp_dir, Into::into);
+    let folder = folder.join(format!("requests-{}", std::process::id()));
+    let options = ServeOptions {
+        port: 0,
+        folder: Some(folder),
+        prepare: PrepareOptions::default(),
+        on_results: |_, _| Ok(()),
+        command: "voidwalk serve".into(),
+    };
+    let server = Server::open(options).unwrap();
+    let address = server.address().trim_start_matches("http:/").to_owned();
+    // Jobs are over at once; connections are answered on.
+    server.run(&AtomicBool::new(true)).unwrap();
+    address
 }
 
 /// A run of a lattice that is made in microseconds.
