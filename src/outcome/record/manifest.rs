@@ -1,0 +1,37 @@
+//! What made a run folder: `manifest.json`.
+
+use serde::{Deserialize, Serialize};
+
+/// The whole of `manifest.json`: what made the folder.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Version of voidwalk.
+    pub version: String,
+    /// Commit it was built from, where known.
+    pub commit: Option<String>,
+    /// The user's seed.
+    pub seed: u64,
+    /// Every file that was read.
+    pub inputs: Vec<InputFile>,
+    /// Worker threads.
+    pub threads: u64,
+    /// Name of the machine.
+    pub host: String,
+    /// Kind of machine: system, processor, memory.
+    pub machine: String,
+    /// When the work began, RFC 3339.
+    pub started: String,
+    /// When it ended, RFC 3339.
+    pub finished: String,
+    /// The command line.
+    pub command: String,
+}
+
+/// A file that was read.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct InputFile {
+    /// Its name as given.
+    pub name: String,
+    /// XXH3 of its bytes, hexadecimal. Finds accidents, not attackers.
+    pub xxh3: String,
+}

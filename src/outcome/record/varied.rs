@@ -1,0 +1,72 @@
+//! The same case with one thing changed: base particles, thickness, constriction curve.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Statistic, Verdict};
+
+/// The outcome with another number of base particles.
+///
+/// `N_base` holds grains per void and mass ratio only as a product (Eq. 2), so one factor answers for both.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sensitivity {
+    /// Multiple of the outcome's own `n_base`.
+    pub factor: f64,
+    /// Base particles inserted in each run.
+    pub n_base: u64,
+    /// Grains per void to which this factor corresponds at the scene's mass ratio.
+    pub grains_per_void: Option<f64>,
+    /// Mass ratio to which this factor corresponds at the scene's grains per void.
+    pub mass_ratio: Option<f64>,
+    /// How many replicates were walked.
+    pub replicates: u64,
+    /// Their class.
+    pub verdict: Verdict,
+    /// Eroded mass fraction, one per run.
+    pub runs: Vec<Statistic>,
+}
+
+/// The same case with a filter of this thickness.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OfThickness {
+    /// Multiple of the outcome's own thickness.
+    pub factor: f64,
+    /// Layers of voids along the flow.
+    pub layers: u64,
+    /// Modelled thickness (mm, or D0F as all its sizes); `None` where a layer has none.
+    pub thickness_mm: Option<f64>,
+    /// Base particles inserted in each run.
+    pub n_base: u64,
+    /// How many replicates were walked.
+    pub replicates: u64,
+    /// Their class.
+    pub verdict: Verdict,
+    /// Eroded mass fraction, one per run.
+    pub runs: Vec<Statistic>,
+}
+
+/// The walks at the ends of the range of a constriction curve.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CurveRange {
+    /// The class by the curve itself.
+    pub verdict: Verdict,
+    /// The other curves of the range: its ends.
+    pub ends: Vec<CurveEnd>,
+    /// Least and most eroded over the whole range, one pair per run: the ends of the 95 % intervals, or the
+    /// means of a single replicate (fraction of the mass).
+    pub eroded_mass_fraction: Vec<[f64; 2]>,
+}
+
+/// The replicates walked with another constriction curve, all else and all random numbers the same.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CurveEnd {
+    /// Which curve it is, in words.
+    pub curve: String,
+    /// Its median constriction by that of the curve itself.
+    pub dc50_factor: f64,
+    /// How many replicates were walked.
+    pub replicates: u64,
+    /// Their class.
+    pub verdict: Verdict,
+    /// Eroded mass fraction, one per run.
+    pub runs: Vec<Statistic>,
+}
