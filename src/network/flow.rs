@@ -91,8 +91,8 @@ impl Flow {
         self.open[exit] * (self.pressure[void as usize] - self.pressure[self.other[exit] as usize])
     }
 
-    /// Solves for the constrictions that `blocked` leaves open. A conductance below 1e-10 of the inlets' is 0:
-    /// pressures are no more exact.
+    /// Solves for the constrictions that `blocked` leaves open. A conductance below 1e-10 of the inlets' is
+    /// 0: pressures are no more exact.
     ///
     /// # Errors
     /// Conductances too far apart.
