@@ -268,7 +268,8 @@ macro_rules! section {
                         crate::schema::Setting::value(&default).map(crate::schema::in_toml)
                     },
                     allowed: {
-                        let allowed: crate::schema::Allowed<<$Type as crate::schema::Setting>::Value> = $allowed;
+                        type Checked = crate::schema::Allowed<<$Type as crate::schema::Setting>::Value>;
+                        let allowed: Checked = $allowed;
                         allowed.words
                     },
                     shown: {
