@@ -7,6 +7,7 @@ fence with `file=NAME` is written to that file first, one with `append=NAME` is 
 that the commands left.
 """
 
+import difflib
 import os
 import pathlib
 import re
@@ -20,7 +21,7 @@ TIME = re.compile(r"\b\d+(?:\.\d+)? (?:s|min|h)\b")
 # Of the machine, too.
 MEMORY = re.compile(r"\b\d+(?:\.\d+)? [kMGT]B\b")
 # A command that hangs must not hang the build.
-LONGEST = 120
+LONGEST = 600
 
 
 class Stale(Exception):
@@ -121,10 +122,10 @@ def of_any_machine(line):
 
 
 def difference(where, command, printed, expected):
-    """What a person needs to see what changed."""
-    lines = [f"{where}: `{command}` prints something else:"]
-    lines += [f"  - {line}" for line in expected] + [f"  + {line}" for line in printed]
-    return "\n".join(lines)
+    """What a person needs to see what changed: `-` is what the page says, `+` what was printed."""
+    changes = difflib.unified_diff([*map(of_any_machine, expected)], [*map(of_any_machine, printed)], n=0, lineterm="")
+    lines = [f"  {line}" for line in changes if not line.startswith(("---", "+++", "@@"))]
+    return "\n".join([f"{where}: `{command}` prints something else:", *lines])
 
 
 def take_files(text, name, folder, assets):
