@@ -1,6 +1,6 @@
 """Builds the book: build.py VOIDWALK FOLDER [--update]
 
-    sources, src/docs, results, the program's own help and schema -> one folder of Markdown -> mdBook -> every link is followed
+    sources, src/docs, results, the program's own help and schema -> one folder of Markdown -> mdBook -> links and names are checked
 
 FOLDER/html is the book. The commands of the tutorials run in FOLDER/work. With --update what they print is written into the tutorials where
 it differs; read the text around it again. Exit codes: 0 done, 1 where a page says what is not so or a link is dead.
@@ -17,6 +17,7 @@ import time
 
 import console
 import links
+import mentions
 import pages
 import reference
 
@@ -49,11 +50,12 @@ def main():
     write_summary(source, docs, commands, results)
     subprocess.run([os.environ.get("MDBOOK", "mdbook"), "build", HERE, "--dest-dir", out / "html"],
                    check=True, env={**os.environ, "MDBOOK_BOOK__SRC": str(source), "MDBOOK_LOG": "warn"})
-    faults, outside = links.dead(out / "html")
-    for fault in faults:
+    dead, outside = links.dead(out / "html")
+    wrong = wrong_names(source, binary, commands)
+    for fault in dead + wrong:
         print(fault, file=sys.stderr)
-    if faults:
-        raise SystemExit(f"{len(faults)} dead links")
+    if dead or wrong:
+        raise SystemExit(f"{len(dead)} dead links, {len(wrong)} names that the program does not know")
     print(f"{out / 'html' / 'index.html'}: {len(list(source.rglob('*.md'))) - 1} pages, no dead link, {outside} links to the web not "
           f"followed, {time.monotonic() - begun:.0f} s")
 
@@ -72,6 +74,12 @@ def run_tutorials(source, work, binary, update):
 
     with concurrent.futures.ThreadPoolExecutor(len(TUTORIALS)) as pool:
         list(pool.map(one, TUTORIALS))
+
+
+def wrong_names(source, binary, commands):
+    """Commands, options and settings that the pages name and the program does not know; results are of their date."""
+    texts = {path.name: path.read_text() for path in [*source.glob("*.md"), ROOT / "README.md"]}
+    return mentions.faults(texts, {name: reference.options(binary, name) for name in commands}, reference.settings(binary))
 
 
 def write_commands(source, binary):

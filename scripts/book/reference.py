@@ -34,6 +34,19 @@ def command_page(binary, name):
     return escaped(about), "\n".join(page)
 
 
+def options(binary, name):
+    """The long names of a command's options."""
+    _, _, sections = parts_of_help(ask(binary, name, "--help"), name)
+    terms = [term for _, lines in sections for term, _ in entries_of(lines) or []]
+    return {option for term in terms for option in re.findall(r"--[\w-]+", term)}
+
+
+def settings(binary):
+    """The names of a scene's settings."""
+    sections = json.loads(ask(binary, "init", "--json"))["sections"]
+    return {setting["name"] for section in sections for setting in section["settings"]}
+
+
 def parts_of_help(text, name):
     """What it does, how it is called, and the sections below."""
     about, rest = text.split("\nUsage: ", 1)
