@@ -4,8 +4,9 @@
 #   scripts/book.sh [BINARY] [--update]      target/release/voidwalk unless given
 #
 # Runs every command of the tutorials, makes the pages of commands and settings from the binary, follows every link, and looks up every
-# command, option and setting that a page names. Fails where a page says what is not so, or a link is dead. --update writes into the tutorials what the commands print now. mdBook (prebuilt) and what
-# turns equations into MathML come from PyPI into target/book-environment, by their checksums; MDBOOK names another mdBook.
+# command, option and setting that a page names. Fails where a page says what is not so, or a link is dead. --update writes into the
+# tutorials what the commands print now. mdBook (prebuilt) and what turns equations into MathML come from PyPI into
+# target/book-environment, by their checksums; MDBOOK names another mdBook.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 binary=target/release/voidwalk
