@@ -47,6 +47,9 @@ pub enum Command {
     Init {
         /// File to write; the scene goes to stdout without one
         path: Option<PathBuf>,
+        /// Print every setting as JSON instead: type, default, what is allowed, what it means
+        #[arg(long, conflicts_with = "path")]
+        json: bool,
     },
     /// Find how coarse a filter may be for a base: where erosion begins, where it continues, and the band
     Design(DesignArgs),

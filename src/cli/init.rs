@@ -2,12 +2,16 @@
 
 use std::path::Path;
 
-use super::print::{shown, to_stdout};
+use super::print::{json, shown, to_stdout};
 use crate::run::{RunError, write_built_in};
 use crate::scene::Scene;
 
-/// Writes the built-in scene.
-pub fn init(path: Option<&Path>) -> Result<(), RunError> {
+/// Writes the built-in scene, or says what may be set.
+pub fn init(path: Option<&Path>, as_json: bool) -> Result<(), RunError> {
+    if as_json {
+        to_stdout(&json(&Scene::reference())?);
+        return Ok(());
+    }
     let Some(path) = path else {
         to_stdout(&Scene::init_text());
         return Ok(());

@@ -42,7 +42,7 @@ pub fn main() -> ExitCode {
         Command::Resume(args) => run::resume(&args),
         Command::Soil(args) => soil::soil(&args),
         Command::Check(args) => check::check(&args),
-        Command::Init { path } => init::init(path.as_deref()),
+        Command::Init { path, json } => init::init(path.as_deref(), json),
         Command::Design(args) => design::design(&args),
         Command::Campaign(args) => campaign::campaign(&args),
         Command::Pack(args) => pack::pack(&args),

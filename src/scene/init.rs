@@ -39,9 +39,7 @@ pub(super) fn text() -> String {
         if !section.is_empty() {
             text.push('\n');
         }
-        // The first paragraph; what follows is for programmers.
-        let first = about.iter().take_while(|line| !line.trim().is_empty());
-        comment(&mut text, &first.copied().collect::<String>());
+        comment(&mut text, &for_users(about));
         match section {
             "" => text.push('\n'),
             name => line(&mut text, keys.iter().any(|key| key.is_set), format!("[{name}]")),
@@ -52,6 +50,11 @@ pub(super) fn text() -> String {
         }
     }
     text
+}
+
+/// The first paragraph of what is said of a section; what follows is for programmers.
+pub(super) fn for_users(about: &[&str]) -> String {
+    about.iter().take_while(|line| !line.trim().is_empty()).copied().collect::<String>().trim().to_owned()
 }
 
 /// Appends words as comment lines.

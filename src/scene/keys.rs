@@ -399,4 +399,6 @@ impl<'de> Deserialize<'de> for VoidConnectivity {
     }
 }
 
-impl Leaf for VoidConnectivity {}
+impl Leaf for VoidConnectivity {
+    const TOML_TYPE: &'static str = "string or table";
+}

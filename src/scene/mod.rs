@@ -10,6 +10,7 @@ mod groups;
 mod init;
 mod keys;
 mod meaning;
+mod reference;
 mod tables;
 
 use std::path::{Path, PathBuf};
@@ -25,6 +26,7 @@ pub use keys::{
 pub use meaning::{
     Amount, BaseGradation, D85, Extent, FilterGradation, NetworkSource, PackingSpec, USUAL_LAYERS,
 };
+pub use reference::{ExclusiveSettings, SceneReference, SectionReference, SettingReference, WayReference};
 pub use tables::{TableOptions, keep_soils};
 
 use crate::network::ExitRule;
@@ -99,6 +101,11 @@ impl Scene {
     /// The built-in scene as commented TOML: what `voidwalk init` writes, with every setting there is.
     pub fn init_text() -> String {
         init::text()
+    }
+
+    /// The same for programs: every setting with its type, default and what is allowed.
+    pub fn reference() -> SceneReference {
+        reference::reference()
     }
 
     /// The built-in scene, with `name=value` settings applied.

@@ -30,6 +30,12 @@ pub struct KeyInfo {
     pub name: &'static str,
     /// What it means, in words.
     pub doc: String,
+    /// The type of its value in TOML: `float`, `array of integers`.
+    pub toml_type: &'static str,
+    /// The value that it has where a scene does not set it, in TOML.
+    pub default: Option<String>,
+    /// What is allowed, in the words of the errors.
+    pub allowed: String,
     /// A value of it, in TOML.
     pub shown: String,
     /// Whether the built-in scene has that value; else it is an example.
@@ -110,6 +116,9 @@ pub fn words<T>(all: &[&str]) -> Allowed<T> {
 
 /// The type of a setting's value.
 pub trait Leaf: Serialize + DeserializeOwned {
+    /// Its type in TOML; most are one of a few words.
+    const TOML_TYPE: &'static str = "string";
+
     /// The value with its relative paths starting from `folder`.
     fn placed(self, folder: &Path) -> Self {
         let _ = folder;
@@ -117,12 +126,22 @@ pub trait Leaf: Serialize + DeserializeOwned {
     }
 }
 
-impl Leaf for bool {}
-impl Leaf for u64 {}
-impl Leaf for f64 {}
+impl Leaf for bool {
+    const TOML_TYPE: &'static str = "boolean";
+}
+impl Leaf for u64 {
+    const TOML_TYPE: &'static str = "integer";
+}
+impl Leaf for f64 {
+    const TOML_TYPE: &'static str = "float";
+}
 impl Leaf for String {}
-impl Leaf for Vec<u64> {}
-impl Leaf for Vec<f64> {}
+impl Leaf for Vec<u64> {
+    const TOML_TYPE: &'static str = "array of integers";
+}
+impl Leaf for Vec<f64> {
+    const TOML_TYPE: &'static str = "array of floats";
+}
 impl Leaf for PathBuf {
     fn placed(self, folder: &Path) -> Self {
         folder.join(self)
@@ -243,6 +262,16 @@ macro_rules! section {
                     section: $section,
                     name: stringify!($name),
                     doc: [$($doc),*].concat().trim().to_owned(),
+                    toml_type: <<$Type as crate::schema::Setting>::Value as crate::schema::Leaf>::TOML_TYPE,
+                    default: {
+                        let default: $Type = $default;
+                        crate::schema::Setting::value(&default).map(crate::schema::in_toml)
+                    },
+                    allowed: {
+                        type Checked = crate::schema::Allowed<<$Type as crate::schema::Setting>::Value>;
+                        let allowed: Checked = $allowed;
+                        allowed.words
+                    },
                     shown: {
                         let default: $Type = $default;
                         let written = crate::schema::Setting::value(&default).map(crate::schema::in_toml);

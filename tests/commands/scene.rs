@@ -401,6 +401,26 @@ fn hostile_names_are_inert() {
 }
 
 #[test]
+fn init_lists_for_programs_every_setting_that_it_writes() {
+    let output = voidwalk(&["init", "--json"]);
+    let reference: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let sections = reference["sections"].as_array().unwrap();
+    let settings: Vec<&Value> = sections.iter().flat_map(|s| s["settings"].as_array().unwrap()).collect();
+    let text = String::from_utf8(voidwalk(&["init"]).stdout).unwrap();
+    let written = |line: &&str| !line.starts_with("# ") && line.contains(" = ");
+    assert_eq!(text.lines().filter(written).count(), settings.len());
+    let named = |name: &str| *settings.iter().find(|s| s["name"] == name).unwrap();
+    let cu = named("base.cu");
+    assert_eq!(
+        (&cu["type"], &cu["default"], &cu["built_in"]),
+        (&"float".into(), &Value::Null, &"1.5".into())
+    );
+    let groups = reference["exclusive"].as_array().unwrap();
+    assert!(groups.iter().any(|group| group["alternatives"][1]["by"] == serde_json::json!(["base.sieve"])));
+    refused(&voidwalk(&["init", "--json", "s.toml"]), &["cannot be used with"]);
+}
+
+#[test]
 fn a_closed_pipe_is_no_panic() {
     for args in [&["init"][..], &["check"]] {
         let mut child = Command::new(env!("CARGO_BIN_EXE_voidwalk"))
