@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Uses the page of `voidwalk serve` as somebody would who has two workbooks and no habit of terminals, and says how long each step took.
 
-    scripts/first_use.py [--binary target/release/voidwalk] [--pictures target/first-use]
+    scripts/first_use.py [--binary target/release/voidwalk] [--pictures target/first-use] [--density loose]
 
 Makes two workbooks as a laboratory would (needs openpyxl: pip install openpyxl): three soils of a core in one sheet with title rows and
 percent cells, and a filter by the names of its sieves. Then clicks with the mouse at what can be seen, by its words alone, in a headless
@@ -138,7 +138,7 @@ def opened(browser, before):
     raise SystemExit("the link opens nothing")
 
 
-def use(person, core, sand, density):
+def use(person, core, sand, density, settings):
     person.until("document.querySelector('#version').textContent")
     person.step("opened", "the address that the program prints, opened")
     person.choose_file("base", core)
@@ -151,6 +151,11 @@ def use(person, core, sand, density):
     if density:
         person.pick("#density", density)
         person.step("density", f"density: {density}")
+    if settings:
+        person.press("Settings as text", "#form")
+        person.press("One key=value a line", "#form")
+        person.browser.ask("Input.insertText", person.tab, text=settings.replace(",", "\n"))
+        person.step("settings", f"settings as text: {settings}")
     person.press("Judge")
     person.until("document.querySelector('.job')")
     person.step("begun", "Judge")
@@ -176,6 +181,7 @@ def main():
     parser.add_argument("--binary", type=pathlib.Path, default=pathlib.Path("target/release/voidwalk"))
     parser.add_argument("--pictures", type=pathlib.Path, default=pathlib.Path("target/first-use"))
     parser.add_argument("--density", default="", help="what is picked of how densely the filter lies; nothing unless given")
+    parser.add_argument("--settings", default="", help="what is typed into the settings as text, with commas: for a program that is slow")
     parser.add_argument("--think", type=float, default=0.0)
     args = parser.parse_args()
     args.pictures.mkdir(parents=True, exist_ok=True)
@@ -187,7 +193,7 @@ def main():
         started = time.monotonic() - begun
         try:
             person = Person(browser, url, args.pictures, args.think)
-            use(person, core, sand, args.density)
+            use(person, core, sand, args.density, args.settings)
             found = complaints(browser)
         finally:
             process.send_signal(signal.SIGTERM)

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""How coarse may the filter be, for ten bases: the boundaries of `voidwalk design` with its default settings, and what they cost.
+"""How coarse may the filter be, for ten bases: the boundaries of `voidwalk design`, and what they cost.
 
-    scripts/ten_bases.py [--out target/ten-bases] [--binary target/release/voidwalk] [--filter cu1.5-loose] [--threads 2]
+    scripts/ten_bases.py [--out target/ten-bases] [--binary target/release/voidwalk] [--filter cu1.5-loose] [--threads 2] [--set KEY=VALUE]
 
 Five bases that are linear on semi-log paper (D85 0.2 mm) and five sieve tables. A base that is done is not walked again: the same command
-continues. Prints a table in Markdown: boundaries with their 5 to 95 % over networks, ratios walked, processor time, wall time, and the
+continues. Settings are the program's defaults but for --set. Prints a table in Markdown: boundaries with their 5 to 95 % over networks, ratios walked, processor time, wall time, and the
 machine's load when each began and ended. Python 3's standard library only.
 """
 
@@ -43,6 +43,7 @@ def walk(args, name, told):
     folder = args.out / "design"
     shutil.rmtree(folder, ignore_errors=True)
     command = [args.binary, "design", *told, "--filter", args.filter, "--threads", args.threads, "--out", folder, "--quiet"]
+    command += [part for setting in args.set for part in ("--set", setting)]
     load, before, begun = os.getloadavg()[0], resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
     code = subprocess.call([str(part) for part in command])
     wall, after = time.monotonic() - begun, resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -83,6 +84,7 @@ def main():
     parser.add_argument("--binary", type=pathlib.Path, default=ROOT / "target/release/voidwalk")
     parser.add_argument("--filter", default="cu1.5-loose")
     parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
     kept = args.out / "done.jsonl"
