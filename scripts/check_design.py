@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Boundaries of `voidwalk design` beside fine scans: 40 seeded cases on small lattices, each scanned by a plain loop of `voidwalk run`.
 
-    scripts/check_design.py [--out target/check-design] [--binary target/release/voidwalk] [--cases 40] [--threads N]
+    scripts/check_design.py [--out target/check-design] [--binary target/release/voidwalk] [--cases 40] [--first 1] [--threads N]
 
 A case is a shipped constriction curve, a Cu of the base, a lattice of 8 to 11 voids across and 8 to 16 layers, and a seed, all drawn by
 Python's random.Random(CASE). It is searched twice: with the bracket that design has by default, and with one that is drawn. Then every
@@ -152,7 +152,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "target/check-design")
     parser.add_argument("--binary", type=pathlib.Path, default=ROOT / "target/release/voidwalk")
-    parser.add_argument("--cases", type=int, default=40)
+    parser.add_argument("--cases", type=int, default=40, help="number of the last case")
+    parser.add_argument("--first", type=int, default=1, help="number of the first case")
     parser.add_argument("--threads", type=int)
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
@@ -161,13 +162,13 @@ def main():
     subprocess.run([args.binary, "init", args.scene], check=True, stdout=subprocess.DEVNULL)
     kept = args.out / "cases.jsonl"
     done = {case["case"]: case for case in map(json.loads, kept.read_text().splitlines())} if kept.exists() else {}
-    for number in range(1, args.cases + 1):
+    for number in range(args.first, args.cases + 1):
         if number not in done:
             done[number] = one(args, number)
             with kept.open("a") as file:
                 file.write(json.dumps(done[number]) + "\n")
             print(f"case {number} of {args.cases}", file=sys.stderr)
-    table([done[number] for number in range(1, args.cases + 1)])
+    table([done[number] for number in range(args.first, args.cases + 1)])
 
 
 if __name__ == "__main__":

@@ -162,6 +162,11 @@ def use(person, core, sand, density, settings):
     person.until("['done', 'failed', 'refused'].includes(document.querySelector('.job').dataset.state)", 1800)
     person.step("verdict", "the verdict is there")
     before = {target["targetId"] for target in person.browser.ask("Target.getTargets")["targetInfos"]}
+    # A browser without a window has no dialog to show: that it is asked for is what is seen.
+    person.run("""(() => { const real = window.open; window.open = (...how) => {
+      const opened = real.apply(window, how);
+      opened.addEventListener('load', () => { opened.print = () => { window.asked = true; }; });
+      return opened; }; })()""")
     person.press("Print, or save as PDF", ".job")
     tab = opened(person.browser, before)
     for _ in range(100):
@@ -169,6 +174,7 @@ def use(person, core, sand, density, settings):
         if ready["result"].get("value") == "complete":
             break
         time.sleep(0.1)
+    person.until("window.asked")
     page = person.browser.ask("Page.captureScreenshot", tab, captureBeyondViewport=True)["data"]
     (person.pictures / "page.png").write_bytes(base64.b64decode(page))
     pdf = person.browser.ask("Page.printToPDF", tab, printBackground=True, paperWidth=8.27, paperHeight=11.69)["data"]
