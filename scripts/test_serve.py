@@ -17,6 +17,9 @@ FINE = "size_mm,percent\n0.5,0\n0.7,30\n1.0,70\n1.5,100\n"
 COARSE = "size_mm,percent\n1.0,0\n1.5,30\n2.0,70\n3.0,100\n"
 SMALL = "network.nx=8\nnetwork.ny=8\nnetwork.nz=10\nrecord.sensitivity=[]"
 
+# Every wait is so many times as long: for a debug build, or a machine that has other things to do.
+PATIENCE = float(os.environ.get("PATIENCE", "1"))
+
 # A run that does not end while it is looked at.
 LONG = "network.nx=12\nnetwork.ny=12\nnetwork.nz=20\nreplicates=2000\nrecord.sensitivity=[]"
 
@@ -37,7 +40,7 @@ class Tab:
         return answer["result"].get("value")
 
     def until(self, script, seconds=30):
-        end = time.monotonic() + seconds
+        end = time.monotonic() + PATIENCE * seconds
         while time.monotonic() < end:
             if self.run(f"Boolean({script})"):
                 return

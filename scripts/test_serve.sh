@@ -2,7 +2,7 @@
 # Uses the page of `voidwalk serve` in a headless Chromium, as a person would: pastes and drops sheets, gives wrong input, judges, stops,
 # loads the page again, continues, compares; and takes a picture of every state into target/serve/.
 #
-#   scripts/test_serve.sh [BINARY]      target/release/voidwalk unless given
+#   [PATIENCE=5] scripts/test_serve.sh [BINARY]      target/release/voidwalk unless given; every wait PATIENCE times as long
 #
 # Fails where a state is not reached, where the page logs an error, breaks its content security policy or is wider than its window.
 set -eu

@@ -20,7 +20,7 @@ use std::time::{Duration, Instant, SystemTime};
 
 use super::cases::{CASES, FailedCase, LINE, PROBLEM, PreparedCase};
 use crate::outcome::ledger::{LedgerLine, Made};
-use crate::run::callbacks::Callbacks;
+use crate::run::callbacks::{Callbacks, Event};
 use crate::run::checkpoints::{self, CheckpointInterval, Checkpoints};
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, clear, shown};
@@ -51,6 +51,13 @@ pub enum CaseEvent<'a> {
         /// Whether there are checkpoints.
         resumes: bool,
     },
+    /// A run of it is done.
+    Walked {
+        /// Runs that are done.
+        done: u64,
+        /// Runs to walk, as far as is known.
+        runs: u64,
+    },
     /// It is done.
     Done(&'a LedgerLine),
     /// It cannot be walked.
@@ -62,12 +69,12 @@ pub enum CaseEvent<'a> {
 /// How a caller follows a campaign, and stops it.
 #[derive(Clone, Copy)]
 pub struct CampaignCallbacks<'a> {
-    /// How the caller follows packings, stops the campaign and takes finished results; walks of single cases
-    /// are not followed.
+    /// How the caller follows packings, stops the campaign and takes finished results; of walks
+    /// of single cases `on_case` is told.
     pub run: Callbacks<'a>,
     /// Told how many cases there are before the first is walked, and how many of them are done already.
     pub on_cases: &'a (dyn Fn(usize, usize) + Sync),
-    /// Told of every case that this process begins, has finished or waits for.
+    /// Told of every case that this process begins, walks a run of, has finished or waits for.
     pub on_case: &'a (dyn Fn(&str, CaseEvent) + Sync),
 }
 
@@ -226,8 +233,20 @@ impl CaseRunner<'_> {
         (self.callbacks.on_case)(name, CaseEvent::Begun { resumes });
         let (begun, started) = (Instant::now(), SystemTime::now());
         let checkpoints = Checkpoints::new(folder, &prepared.fingerprint, self.checkpoint_interval)?;
-        let silent = Callbacks { stop: self.callbacks.run.stop, ..Callbacks::default() };
-        let context = ReplicateContext { callbacks: &silent, checkpoints: Some(&checkpoints) };
+        let runs = Mutex::new([0, replicates::runs_to_walk(case)]);
+        let count = |event: Event| {
+            let Ok(mut runs) = runs.lock() else { return };
+            match event {
+                Event::RunDone => runs[0] += 1,
+                Event::MoreRuns { runs: more } => runs[1] += more,
+                _ => return,
+            }
+            let [done, runs] = *runs;
+            (self.callbacks.on_case)(name, CaseEvent::Walked { done, runs });
+        };
+        let stop = self.callbacks.run.stop;
+        let counting = Callbacks { on_event: &count, stop, ..Callbacks::default() };
+        let context = ReplicateContext { callbacks: &counting, checkpoints: Some(&checkpoints) };
         let walked = replicates::replicates(case, &context)
             .and_then(|walked| Ok((OtherWalks::walk(case, &walked, &context)?, walked)))
             .and_then(|(other, walked)| Ok((other, replicates::sensitivity(case, &context)?, walked)));

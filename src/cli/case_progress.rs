@@ -12,6 +12,9 @@ use crate::campaign::CaseEvent;
 /// Plain lines come at most this often, outside of a cluster's job.
 const BETWEEN_LINES: Duration = Duration::from_secs(2);
 
+/// Where nothing else was said for this long, it is said how far a case is.
+const BETWEEN_RUNS: Duration = Duration::from_secs(5);
+
 /// Progress over cases.
 pub struct CaseProgress {
     quiet: bool,
@@ -60,6 +63,9 @@ impl CaseProgress {
         match (bar, event) {
             (Some(bar), CaseEvent::Begun { .. }) => bar.set_message(case),
             (Some(bar), CaseEvent::Waiting) => bar.set_message(format!("waiting for {case}")),
+            (Some(bar), CaseEvent::Walked { done, runs }) => {
+                bar.set_message(format!("{case}: {done} of {runs} runs"));
+            }
             (Some(bar), CaseEvent::Done(_)) => bar.inc(1),
             (Some(bar), CaseEvent::Failed(problem)) => {
                 bar.suspend(|| to_stderr(&format!("failed: {case}: {}\n", plain(problem))));
@@ -73,7 +79,14 @@ impl CaseProgress {
             (None, CaseEvent::Waiting) if self.each => {
                 to_stderr(&format!("waits: {case}: another process is at it\n"));
             }
-            (None, CaseEvent::Begun { .. } | CaseEvent::Waiting) => {}
+            (None, CaseEvent::Walked { done, runs }) if !self.each => {
+                let Ok(mut lines) = lines.lock() else { return };
+                if lines.last.elapsed() >= BETWEEN_RUNS {
+                    lines.last = Instant::now();
+                    to_stderr(&format!("{case}: {done} of {runs} runs\n"));
+                }
+            }
+            (None, CaseEvent::Begun { .. } | CaseEvent::Waiting | CaseEvent::Walked { .. }) => {}
             (None, CaseEvent::Done(line)) => {
                 let Ok(mut lines) = lines.lock() else { return };
                 lines.done += 1;

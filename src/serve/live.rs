@@ -32,6 +32,8 @@ pub struct Live {
     cases: [usize; 2],
     /// Cases with what came of them.
     done: Vec<Value>,
+    /// Cases that are walked, with their runs that are done and that are to be walked.
+    walking: BTreeMap<String, [u64; 2]>,
     case: String,
     /// What a study has said, the newest last.
     lines: Vec<String>,
@@ -81,13 +83,20 @@ impl Live {
     pub fn tell_case(&mut self, case: &str, event: CaseEvent) {
         match event {
             CaseEvent::Begun { .. } | CaseEvent::Waiting => self.case = case.to_owned(),
+            CaseEvent::Walked { done, runs } => {
+                self.walking.insert(case.to_owned(), [done, runs]);
+            }
             CaseEvent::Done(line) => {
+                self.walking.remove(case);
                 self.cases[0] += 1;
                 let confidence = line.confidence.map(|confidence| confidence.words());
                 let words = line.verdict.words();
                 self.done.push(json!({ "case": case, "verdict": words, "confidence": confidence }));
             }
-            CaseEvent::Failed(problem) => self.warn(&format!("{case}: {problem}")),
+            CaseEvent::Failed(problem) => {
+                self.walking.remove(case);
+                self.warn(&format!("{case}: {problem}"));
+            }
         }
     }
 
@@ -110,6 +119,9 @@ impl Live {
             "cases_done": self.cases[0],
             "cases": self.cases[1],
             "case": self.case,
+            "walking": self.walking.iter().map(|(case, [done, runs])| json!({
+                "case": case, "done": done, "runs": runs
+            })).collect::<Vec<_>>(),
             "done": self.done,
             "lines": self.lines,
             "warnings": self.warnings,

@@ -67,11 +67,11 @@ function recall() {
   state.more = (words.get("m") || "").split("\n").filter(Boolean);
 }
 
-/** Every soil of every sheet: what names it, and what it is called. */
+/** Every soil of every sheet: what names it, and what it is called: its own name first, as a narrow list cuts the rest off. */
 function soils() {
   return state.sheets.flatMap((sheet) => sheet.soils.map((soil) => ({
     key: sheet.soils.length > 1 ? `${sheet.id}#${soil.name}` : String(sheet.id),
-    label: sheet.soils.length > 1 ? `${sheet.name}: ${soil.name}` : sheet.name,
+    label: sheet.soils.length > 1 ? `${soil.name} (${sheet.name})` : sheet.name,
     soil,
   })));
 }
@@ -145,6 +145,9 @@ function showSheets() {
     select.replaceChildren(el("option", { value: "" }, none),
       ...all.map((one) => el("option", { value: one.key, selected: one.key === state[role] }, one.label)));
     $(".which", box).hidden = all.length === 0;
+    const several = $(".several", box);
+    const sheet = several && state.sheets.find((one) => state[role].startsWith(`${one.id}#`));
+    if (several) show(several, sheet ? `This sheet has ${sheet.soils.length} soils: is it this one?` : "");
     box.classList.toggle("taken", role === "more" ? state.more.length > 0 : Boolean(state[role]));
   }
   $("#more").replaceChildren(...state.more.map((key) => el("li", {}, soilOf(key).label, el("button", {
@@ -214,7 +217,8 @@ function showRules(pair) {
   const parts = pair.warnings.map((warning) => el("p", { class: "problem" }, warning));
   parts.push(el("p", {}, broken.length
     ? el("span", {}, el("b", { class: "breaks" }, `${broken.length} not met: `), broken.map((rule) => rule.name).join("; "))
-    : "Every rule that was made for these soils and has a result is met. What the walk says is another question."));
+    : "Every rule that was made for these soils and has a result is met. What the walk says is another question."),
+  el("p", {}, el("button", { type: "button", onclick: () => $("#how").scrollIntoView({ block: "start" }) }, "On to the walk")));
   const rows = (role) => pair.rules.filter((rule) => rule.role === role).map((rule) => {
     const unit = rule.unit ? ` ${rule.unit}` : "";
     return el("tr", {}, el("td", {}, result(rule)), el("td", {}, rule.name),
@@ -399,8 +403,9 @@ function soFar(job) {
   } else if (live.waits_for_packing) {
     parts.push(el("p", {}, "Another process packs this filter; it is waited for."));
   } else if (live.cases) {
-    parts.push(el("p", {}, `${live.cases_done} of ${live.cases} cases are done` + (live.case && live.cases_done < live.cases ? `; at ${live.case}` : "")),
-      el("progress", { max: live.cases, value: live.cases_done }),
+    parts.push(el("p", {}, `${live.cases_done} of ${live.cases} cases are done` + (live.case && !live.walking.length && live.cases_done < live.cases ? `; at ${live.case}` : "")),
+      el("progress", { max: live.cases, value: live.cases_done + live.walking.reduce((sum, one) => sum + one.done / Math.max(1, one.runs), 0) }),
+      list(live.walking.map((one) => `${one.case}: ${whole(one.done)} of ${whole(one.runs)} runs are walked`)),
       list(live.done.map((one) => `${one.case}: ${one.verdict} (${one.confidence})`)));
   } else if (live.runs) {
     parts.push(el("p", {}, `${whole(live.runs_done)} of ${whole(live.runs)} runs are walked`), el("progress", { max: live.runs, value: live.runs_done }));
@@ -499,11 +504,18 @@ function card(job) {
   if (job.state === "running" && warnings.length) parts.push(el("details", {}, el("summary", {}, `${warnings.length} to know`), list(warnings)));
   parts.push(el("p", { class: "actions" },
     job.page ? el("a", { href: job.page, target: "_blank", rel: "noopener" }, "The page, to read or print") : null,
+    job.page ? el("button", { type: "button", onclick: () => printPage(job.page) }, "Print, or save as PDF") : null,
     ["done", "stopped"].includes(job.state) ? el("a", { href: `zip/${job.folder}.zip` }, "The folder (.zip)") : null,
     ["waiting", "running"].includes(job.state) && !job.stopping ? el("button", { type: "button", onclick: act("stop") }, "Stop") : null,
     job.can_continue ? el("button", { type: "button", onclick: act("continue") }, "Continue") : null,
     el("span", { class: "small" }, job.path)));
   return el("article", { class: `job ${kind}`, "data-id": job.id, "data-state": job.state }, ...parts);
+}
+
+/** Opens a page of results and the browser's own dialog to print it, which saves PDFs as well; that page runs no script itself. */
+function printPage(page) {
+  const opened = open(page, "_blank");
+  if (opened) opened.addEventListener("load", () => opened.print());
 }
 
 const cards = new Map();

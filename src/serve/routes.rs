@@ -215,10 +215,11 @@ impl Routes {
     /// All that changes; the sheets only where the page has not as many of them.
     fn state(&self, request: &Request) -> Value {
         let sheets = self.sheets.all();
+        let folder = std::path::absolute(&self.root).unwrap_or_else(|_| self.root.clone());
         let has_all = request.parameter("have") == Some(sheets.len().to_string());
         json!({
             "version": env!("CARGO_PKG_VERSION"),
-            "folder": self.root.display().to_string(),
+            "folder": folder.display().to_string(),
             "largest_mb": BODY >> 20,
             "sheets": if has_all { Value::Null } else { json!(sheets) },
             "jobs": self.jobs.snapshot(|words| self.sheets.as_named(words)),

@@ -1,3 +1,5 @@
+use serde_json::json;
+
 use super::*;
 
 fn queue(root: &Path) -> JobQueue {
@@ -9,7 +11,7 @@ fn file() -> JobFile {
     JobFile { kind: "judge".into(), title, asked, request: json!({}), ended: None }
 }
 
-fn set(queue: &JobQueue, id: usize, state: State) {
+fn set(queue: &JobQueue, id: usize, state: JobState) {
     let mut all = queue.locked();
     let job = all.iter_mut().find(|job| job.id == id).unwrap();
     (job.state, job.message) = (state, format!("it is {}", state.words()));
@@ -21,19 +23,20 @@ fn how_a_server_ends_is_how_what_was_under_way_ended() {
     let queue = queue(root.path());
     let ids = [(); 4].map(|()| queue.add(file(), Work::Kept).unwrap());
     // The first is walked, the second was stopped before, the others wait.
-    set(&queue, ids[0], State::Running);
-    set(&queue, ids[1], State::Stopped);
+    set(&queue, ids[0], JobState::Running);
+    set(&queue, ids[1], JobState::Stopped);
     let open = queue.stop_all();
     assert_eq!(open, [ids[0], ids[2], ids[3]]);
     assert!(queue.add(file(), Work::Kept).is_err() && queue.resume(ids[1], Work::Kept).is_err());
-    set(&queue, ids[0], State::Done);
+    set(&queue, ids[0], JobState::Done);
     let error = queue.ended(&open).unwrap_err();
     assert_eq!(error.exit(), Exit::Stopped);
     assert!(error.to_string().contains("run-3") && !error.to_string().contains("run-1"), "{error}");
-    set(&queue, ids[0], State::Failed);
+    set(&queue, ids[0], JobState::Failed);
     let error = queue.ended(&open).unwrap_err();
     assert!(error.exit() == Exit::Failed && error.to_string().ends_with("run-1: it is failed"), "{error}");
-    for (state, ends_well) in [(State::Done, true), (State::Refused, true), (State::Stopped, false)] {
+    for (state, ends_well) in [(JobState::Done, true), (JobState::Refused, true), (JobState::Stopped, false)]
+    {
         set(&queue, ids[0], state);
         assert_eq!(queue.ended(&ids[..1]).is_ok(), ends_well, "{state:?}");
     }
@@ -55,7 +58,7 @@ fn every_job_of_an_earlier_server_is_listed_and_no_number_is_too_large() {
     let root = tempfile::tempdir().unwrap();
     let before = queue(root.path());
     let ids = [(); 3].map(|()| before.add(file(), Work::Kept).unwrap());
-    for (id, state) in [(ids[1], State::Refused), (ids[2], State::Failed)] {
+    for (id, state) in [(ids[1], JobState::Refused), (ids[2], JobState::Failed)] {
         let ended = Some((state.words().to_owned(), "why".to_owned()));
         JobFile { ended, ..file() }.write(&root.path().join(format!("run-{id}"))).unwrap();
     }
@@ -88,10 +91,10 @@ fn every_job_of_an_earlier_server_is_listed_and_no_number_is_too_large() {
 
 #[test]
 fn of_very_many_jobs_the_first_to_end_are_left_out() {
-    let job = |id| Job::new(id, String::new(), format!("run-{id}"), Work::Kept, State::Stopped);
+    let job = |id| Job::new(id, String::new(), format!("run-{id}"), Work::Kept, JobState::Stopped);
     let mut all: Vec<Job> = (1..=LISTED + 3).map(job).collect();
-    all[0].state = State::Running;
-    all[2].state = State::Waiting;
+    all[0].state = JobState::Running;
+    all[2].state = JobState::Waiting;
     shorten(&mut all);
     let ids: Vec<usize> = all.iter().map(|job| job.id).collect();
     assert_eq!((all.len(), &ids[..3]), (LISTED, &[1, 3, 6][..]));

@@ -73,7 +73,7 @@ fn run_here(options: &DesignOptions, callbacks: &Callbacks) -> Result<Design, Ru
     let kind = FolderKind::Design;
     let folder = claim(&options.out, kind, options.overwrite)?;
     let rows = drafts.into_iter().map(|draft| draft.packed(options, callbacks));
-    let rows: Vec<Row> = rows.collect::<Result<_, _>>()?;
+    let rows = with_curve_ends(rows.collect::<Result<_, _>>()?);
     let work = work(&rows, options.bracket);
     let mark = Unfinished { kind: kind.name().into(), work, ..Unfinished::default() };
     let kept = Kept::new(&KEPT, &folder, &mark.work);
@@ -187,6 +187,23 @@ impl DraftedRow {
         };
         Ok(Row { case: self.draft.case(packed)?, ..self.row })
     }
+}
+
+/// Every row, and after it those of the ends of the range in which its constriction curve is known, as a run
+/// walks them: of a guess the densest and the loosest, of a filter whose finer part was packed the coarser
+/// curve. What was asked for as a row of its own is none again.
+fn with_curve_ends(rows: Vec<Row>) -> Vec<Row> {
+    let same =
+        |a: &Row, b: &Row| a.wanted.density == b.wanted.density && a.wanted.thickness == b.wanted.thickness;
+    let mut all: Vec<Row> = Vec::new();
+    for row in &rows {
+        let ends = row.at_curve_ends();
+        let asked_for = |end: &Row| rows.iter().chain(&all).any(|other| same(end, other));
+        let ends: Vec<Row> = ends.into_iter().filter(|end| !asked_for(end)).collect();
+        all.push(row.clone());
+        all.extend(ends);
+    }
+    all
 }
 
 fn limits(options: &DesignOptions) -> crate::case::ResourceLimits {

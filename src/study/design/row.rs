@@ -7,7 +7,7 @@ use bitvec::vec::BitVec;
 use super::options::Thickness;
 use super::plan::Wanted;
 use super::search::{Found, Start, Trial, Walker, search};
-use crate::case::{Case, CaseError, ResourceLimits, StatedBase, replicate_seed};
+use crate::case::{Case, CaseError, OtherCurve, ResourceLimits, StatedBase, replicate_seed};
 use crate::gradation::Gradation;
 use crate::network::{Network, Passage};
 use crate::outcome::Eroded;
@@ -22,6 +22,7 @@ use crate::scene::Amount;
 const USUAL_RATIO: f64 = 5.0;
 
 /// One density and thickness with its filter packed.
+#[derive(Clone)]
 pub(super) struct Row {
     /// What was asked for.
     pub wanted: Wanted,
@@ -42,6 +43,20 @@ pub(super) struct Row {
 }
 
 impl Row {
+    /// The same at the ends of the range in which the constriction curve is known.
+    pub fn at_curve_ends(&self) -> Vec<Self> {
+        let is_guess = self.case.scene.filter.estimate.is_some();
+        let of = |end: OtherCurve| {
+            let density = match is_guess {
+                true => end.name.replace(" = ", " "),
+                false => format!("{}, {}", self.wanted.density, end.name),
+            };
+            let wanted = Wanted { density, ..self.wanted.clone() };
+            Self { case: self.case.with_curve(end.curve), wanted, ..self.clone() }
+        };
+        self.case.curve_ends().into_iter().map(of).collect()
+    }
+
     /// Whether filter and base have sizes at a ratio.
     pub fn has_size(&self) -> bool {
         if self.inverse { self.filter_has_size } else { self.d85_mm.is_some() }

@@ -381,8 +381,7 @@ impl Judged {
 
     /// How far "no erosion" can be relied on, why no further, and what else is to be said.
     fn confidence(&self, row: &Row, rules: &[AppliedRule]) -> Said {
-        // Here nothing is walked at the ends of a guess.
-        let told = |said: String| Case::without_studies(&said).replace(", so both are walked besides", "");
+        let told = |said: String| Case::without_studies(&said);
         let doubts: Vec<String> = self.case.doubts().into_iter().map(told).collect();
         let coarse = self.d85_mm.filter(|d85| *d85 > COARSE_BASE_MM).map(|d85| {
             format!("the base's D85 is {d85:.1} mm: are its sizes micrometres under a header in mm?")

@@ -390,3 +390,31 @@ fn a_boundary_below_the_bracket_is_no_band() {
     assert!(beside.confidence == Confidence::Outside && beside.products.is_empty(), "{beside:?}");
     assert!(beside.reasons[0].contains("at every ratio that was searched"), "{:?}", beside.reasons);
 }
+
+/// A guess at the constrictions is known over a range only, whose ends a run walks besides: so does a design.
+#[test]
+fn a_guess_at_the_constrictions_is_found_at_both_ends_of_its_range() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |name: &str, densities: &[&str]| {
+        let densities = densities.iter().map(ToString::to_string).collect();
+        let filter = Some("1.5".into());
+        let options = tiny(&folder.path().join(name), &["network.nz=6"]);
+        found(&DesignOptions { densities, filter, ..options })
+    };
+    let rows = |design: &Design| -> Vec<(String, f64)> {
+        let median = |row: &DesignRow| row.no_erosion.as_ref().unwrap().median;
+        design.boundaries.iter().map(|row| (row.density.clone(), median(row))).collect()
+    };
+    let guess = of("one", &["estimate=0.5"]);
+    let found = rows(&guess);
+    let names: Vec<&str> = found.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["estimate 0.5", "estimate 1", "estimate 0"]);
+    // The denser, the finer its constrictions, and the coarser it may be.
+    assert!(found[1].1 > 1.2 * found[0].1 && found[0].1 > 1.2 * found[2].1, "{found:?}");
+    let said = guess.reasons.iter().find(|reason| reason.contains("is a guess from circles"));
+    assert!(said.unwrap().contains("so both are walked besides"), "{said:?}");
+    // An end that is asked for itself is found once, with the same bits.
+    let asked = rows(&of("all", &["estimate=0", "estimate=1"]));
+    assert_eq!(asked.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ["estimate 0", "estimate 1"]);
+    assert_eq!((asked[0].1.to_bits(), asked[1].1.to_bits()), (found[2].1.to_bits(), found[1].1.to_bits()));
+}

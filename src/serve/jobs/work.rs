@@ -1,0 +1,143 @@
+//! What a job does: a call of the library into a folder of its own.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use std::sync::{Mutex, PoisonError};
+
+use serde_json::{Value, json};
+
+use crate::campaign::CampaignCallbacks;
+use crate::outcome::record::Outcome;
+use crate::run::callbacks::Callbacks;
+use crate::run::checkpoints::CheckpointInterval;
+use crate::run::error::AnyError;
+use crate::run::{self, FolderKind, PrepareOptions, RunError, RunOptions};
+use crate::scene::Scene;
+use crate::serve::designs::{KeptDesign, of_design};
+use crate::serve::live::Live;
+use crate::study::compare::{self, CompareOptions, ComparePlan};
+use crate::study::design;
+
+/// What is done with results that are whole.
+pub type OnResults = fn(FolderKind, &Path) -> Result<(), AnyError>;
+
+/// What a job does.
+#[derive(Clone)]
+pub enum Work {
+    /// Walks a scene.
+    Judge(Box<Scene>),
+    /// Walks several cases.
+    Compare(ComparePlan),
+    /// Finds how coarse a filter may be; the networks that are done in its folder are kept.
+    Design(KeptDesign),
+    /// What its folder keeps: it is planned again when the job continues.
+    Kept,
+    /// Continues a run whose folder does not keep what was asked.
+    Resume,
+    /// Nothing: nobody knows what was asked.
+    Nothing,
+}
+
+impl Work {
+    /// With what the name of its folder begins.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Compare(_) => "compare",
+            Self::Design(_) => "design",
+            _ => "run",
+        }
+    }
+}
+
+/// What is the same for all jobs of a server.
+pub struct WorkContext {
+    /// The server's folder.
+    pub root: PathBuf,
+    /// Threads, memory and the folder of packings.
+    pub prepare: PrepareOptions,
+    /// What a folder says that it was started with.
+    pub command: String,
+    /// What is done with results that are whole.
+    pub on_results: OnResults,
+}
+
+impl WorkContext {
+    /// Does a job, and gives what the page shows of its result.
+    ///
+    /// # Errors
+    /// Those of the call.
+    pub fn work(
+        &self,
+        folder: &Path,
+        work: &Work,
+        live: &Mutex<Live>,
+        stop: &AtomicBool,
+    ) -> Result<Value, RunError> {
+        let live = || live.lock().unwrap_or_else(PoisonError::into_inner);
+        let callbacks = Callbacks {
+            on_event: &|event| {
+                // An increment changes nothing that is shown, and there are many.
+                if !matches!(event, run::Event::Increment { .. }) {
+                    live().tell(event);
+                }
+            },
+            stop,
+            warn: &|warning| live().warn(warning),
+            on_results: &|kind, folder| (self.on_results)(kind, folder),
+        };
+        let options = RunOptions {
+            out: Some(folder.to_owned()),
+            overwrite: false,
+            prepare: self.prepare.clone(),
+            checkpoint_interval: Some(often()),
+            command: self.command.clone(),
+        };
+        match work {
+            Work::Judge(scene) => {
+                run::walk_scene((**scene).clone(), &options, &callbacks).map(|run| of_run(&run.outcome))
+            }
+            Work::Resume => run::resume(folder, &options, &callbacks).map(|run| of_run(&run.outcome)),
+            Work::Compare(plan) => {
+                let options = CompareOptions {
+                    out: folder.to_owned(),
+                    overwrite: false,
+                    packings: self.prepare.packings.clone(),
+                    memory: self.prepare.memory,
+                    threads: self.prepare.threads,
+                    checkpoint_interval: often(),
+                    command: self.command.clone(),
+                };
+                let callbacks = CampaignCallbacks {
+                    run: callbacks,
+                    on_cases: &|all, done| live().cases(all, done),
+                    on_case: &|case, event| live().tell_case(case, event),
+                };
+                Ok(serde_json::to_value(compare::run(plan, &options, &callbacks)?)?)
+            }
+            Work::Design(kept) => {
+                let options = kept.options(&self.root, folder, &self.prepare)?;
+                Ok(of_design(&design::run(&options, &callbacks)?)?)
+            }
+            Work::Kept | Work::Nothing => Ok(Value::Null),
+        }
+    }
+}
+
+/// A server that is killed loses no more than this.
+fn often() -> CheckpointInterval {
+    "1min".parse().unwrap_or_default()
+}
+
+/// What the page shows of an outcome.
+pub fn of_run(outcome: &Outcome) -> Value {
+    json!({
+        "headline": outcome.headline(),
+        "verdict": outcome.verdict.words(),
+        "confidence": outcome.confidence.words(),
+        "reasons": outcome.reasons,
+        "beside": outcome.beside_the_verdict(),
+        "replicates": outcome.replicates.len(),
+        "runs": outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect::<Vec<_>>(),
+        "range": outcome.curve_range.as_ref().map(|range| range.eroded_mass_fraction.clone()),
+    })
+}

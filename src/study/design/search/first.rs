@@ -1,0 +1,111 @@
+//! The boundary of the first run: the least ratio at which it erodes 7.5 %.
+
+use super::trials::{Pair, STOP, Search, Trial, ratio_at};
+use crate::outcome::design::Beyond;
+use crate::run::error::RunError;
+
+/// Steps below the smallest ratio that erodes, at which the first run is tried besides: to 10 % below.
+const BELOW: [i64; 8] = [2, 3, 4, 6, 8, 11, 15, 20];
+
+impl Search<'_> {
+    /// The boundary of the first run near a hint, below which two stops hold as well; `None` where that is
+    /// not so.
+    pub(super) fn near_hint(&mut self, hint: Option<i64>) -> Result<Option<Pair>, RunError> {
+        let Some(pair) = self.away_from(hint, Self::try_first)? else { return Ok(None) };
+        let below = (pair.0 - 1).div_euclid(STOP) * STOP;
+        let lowest = self.stops[0];
+        for stop in [below, below - STOP].into_iter().filter(|stop| *stop >= lowest) {
+            if let Trial::Eroded(eroded) = self.try_first(stop)?
+                && !eroded.below_threshold
+            {
+                return Ok(None);
+            }
+        }
+        Ok(Some(pair))
+    }
+
+    pub(super) fn no_erosion(&mut self, start: i64) -> Result<Result<Pair, (Beyond, String)>, RunError> {
+        let lowest = self.stops[0];
+        let top = match self.stop_that_erodes(start)? {
+            Ok(top) => top,
+            Err(beyond) => return Ok(Err(beyond)),
+        };
+        // Down to two stops in a row that hold.
+        let (mut least, mut held, mut at) = (top, 0, top);
+        while held < 2 {
+            at -= STOP;
+            if at < lowest {
+                break;
+            }
+            match self.try_first(at)? {
+                Trial::Eroded(eroded) if eroded.below_threshold => held += 1,
+                Trial::Eroded(_) => (least, held) = (at, 0),
+                Trial::CannotBe(_, why) if held == 0 => {
+                    let ratio = ratio_at(least);
+                    let why = format!("7.5 % or more erodes down to D15F/D85B {ratio:.2}, below which {why}");
+                    return Ok(Err((Beyond::Below, why)));
+                }
+                Trial::CannotBe(..) => break,
+            }
+        }
+        if held == 0 && !self.first.contains_key(&(least - STOP)) {
+            let ratio = ratio_at(least);
+            let why = format!("7.5 % or more erodes down to D15F/D85B {ratio:.2}, where the search ends");
+            return Ok(Err((Beyond::Below, why)));
+        }
+        self.halved((least - STOP, least), Self::try_first).map(Ok)
+    }
+
+    /// The smallest ratio that is seen to erode in the first run, after single ratios below have been tried.
+    pub(super) fn smallest_that_erodes(&mut self, boundary: i64) -> Result<i64, RunError> {
+        let (mut least, lowest) = (boundary, self.stops[0]);
+        'again: loop {
+            for step in BELOW.map(|below| least - below).into_iter().filter(|step| *step >= lowest) {
+                match self.try_first(step)? {
+                    Trial::Eroded(eroded) if !eroded.below_threshold => {
+                        least = step;
+                        continue 'again;
+                    }
+                    Trial::Eroded(_) => {}
+                    Trial::CannotBe(..) => break,
+                }
+            }
+            break;
+        }
+        let erodes = |trial: &Trial| matches!(trial, Trial::Eroded(of) if !of.below_threshold);
+        let seen = self.first.iter().find(|(_, trial)| erodes(trial));
+        Ok(seen.map_or(least, |(step, _)| *step))
+    }
+
+    /// The first stop from `start` on upwards that erodes; where the base is too fine for any of them, the
+    /// first downwards that can be walked.
+    fn stop_that_erodes(&mut self, start: i64) -> Result<Result<i64, (Beyond, String)>, RunError> {
+        let [lowest, highest] = self.stops;
+        let (mut at, mut too_fine) = (start, None);
+        loop {
+            let trial = self.try_first(at)?;
+            match (trial, &too_fine) {
+                (Trial::Eroded(eroded), _) if !eroded.below_threshold => return Ok(Ok(at)),
+                (Trial::CannotBe(Beyond::Above, why), _) if at <= start && at > lowest => {
+                    too_fine = Some(why);
+                    at -= STOP;
+                }
+                (Trial::CannotBe(Beyond::Above, why), _) => return Ok(Err((Beyond::Above, why))),
+                (_, Some(why)) => return Ok(Err((Beyond::Above, why.clone()))),
+                (trial, None) if at + STOP > highest => {
+                    let ratio = ratio_at(at);
+                    return Ok(Err(match trial {
+                        Trial::CannotBe(beyond, why) => (beyond, why),
+                        Trial::Eroded(_) => (
+                            Beyond::Above,
+                            format!(
+                                "less than 7.5 % erodes up to D15F/D85B {ratio:.1}, where the search ends"
+                            ),
+                        ),
+                    }));
+                }
+                _ => at += STOP,
+            }
+        }
+    }
+}

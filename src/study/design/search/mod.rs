@@ -1,0 +1,133 @@
+//! The search of one network: the least D15F/D85B at which its first run, and its second, erodes 7.5 %.
+//!
+//! # Method
+//! Ratios are tried on one fixed scale, steps of 0.5 %, whatever the bracket; every sixteenth step (8 %) is a
+//! *stop*. From a stop near the closed form for a lone particle the search goes by stops to one that holds
+//! and below which another holds too, and up to the first that erodes; between these two neighbours it
+//! halves the steps until two neighbouring ones are left. The second run goes by every other stop. So the
+//! result hangs neither on a bracket that is wider than what is tried nor on where the search began, unless
+//! what erodes does not rise with the ratio: then the smallest ratio that was seen to erode counts, and that
+//! is said.
+//!
+//! A walk scatters: on small networks of broad bases single ratios up to 8.7 % below this boundary were found
+//! to erode. So single steps down to 10 % below are tried besides, closer ones more often, and again below
+//! each that erodes.
+//!
+//! Networks of one filter and base lie close together: with the boundaries of the first of them as a hint,
+//! the search of another steps away from there, 2 % and then ever more, until it has one that holds and one
+//! that erodes; two stops below are tried all the same. Where that finds nothing, it goes by stops.
+//!
+//! The second run is walked only at ratios whose first run erodes, and only near where it begins to erode
+//! itself.
+
+mod first;
+mod second;
+#[cfg(test)]
+mod tests;
+mod trials;
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::outcome::design::{BETWEEN_STEPS, Beyond};
+use crate::run::error::RunError;
+use trials::{STOP, Search, between, ratio_at};
+pub(super) use trials::{Trial, Walker};
+
+/// Names this search: networks that another has found are not continued with.
+pub(super) const METHOD: &str = "design search 2";
+
+/// What a bracket may be.
+pub(super) const BRACKETS: [f64; 2] = [0.1, 1000.0];
+
+/// A bracket spans two stops at least.
+pub(super) const NARROWEST: f64 = 1.18;
+
+/// What one network was found to be.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Found {
+    /// D15F/D85B from which the first run erodes 7.5 %.
+    pub no_erosion: Option<f64>,
+    /// Why there is none.
+    pub no_erosion_beyond: Option<(Beyond, String)>,
+    /// D15F/D85B from which the second run does too.
+    pub continuing: Option<f64>,
+    /// Why there is none.
+    pub continuing_beyond: Option<(Beyond, String)>,
+    /// Whether some larger ratio was seen to hold.
+    pub is_not_monotone: bool,
+    /// Every ratio that was walked, rising, with what eroded in the first run and in the second.
+    pub walks: Vec<(f64, f64, Option<f64>)>,
+}
+
+/// The stop nearest to a ratio, in steps.
+fn stop_near(ratio: f64) -> i64 {
+    (libm::log(ratio) / BETWEEN_STEPS / STOP as f64).round() as i64 * STOP
+}
+
+/// Where a search begins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Start {
+    /// A ratio to begin at where there is no hint.
+    pub ratio: f64,
+    /// Both boundaries of another network, where it has them.
+    pub hint: [Option<f64>; 2],
+}
+
+/// Searches between the ratios of a bracket.
+///
+/// # Errors
+/// A walk that goes wrong, or was stopped.
+pub(super) fn search(walker: &mut dyn Walker, bracket: [f64; 2], start: Start) -> Result<Found, RunError> {
+    let up = |ratio: f64| (libm::log(ratio) / BETWEEN_STEPS / STOP as f64 - 1e-9).ceil() as i64 * STOP;
+    let down = |ratio: f64| (libm::log(ratio) / BETWEEN_STEPS / STOP as f64 + 1e-9).floor() as i64 * STOP;
+    // Outwards, within what is allowed.
+    let stops = [down(bracket[0]).max(up(BRACKETS[0])), up(bracket[1]).min(down(BRACKETS[1]))];
+    let mut search = Search { walker, stops, first: BTreeMap::new(), second: BTreeMap::new() };
+    let mut found = Found::default();
+    let hints = start.hint.map(|hint| hint.map(|ratio| (libm::log(ratio) / BETWEEN_STEPS).round() as i64));
+    let start = stop_near(start.ratio).clamp(stops[0], stops[1].max(stops[0]));
+    let first = match search.near_hint(hints[0])? {
+        Some(pair) => Ok(pair),
+        None => search.no_erosion(start)?,
+    };
+    match first {
+        Ok(pair) => {
+            let least = search.smallest_that_erodes(pair.1)?;
+            if least > stops[0] {
+                found.no_erosion = Some(between((least - 1, least), |step| search.eroded(1, step)));
+            } else {
+                let ratio = ratio_at(least);
+                let why = format!("7.5 % or more erodes down to D15F/D85B {ratio:.2}, where the search ends");
+                found.no_erosion_beyond = Some((Beyond::Below, why));
+            }
+            let second = match search.away_from(hints[1], Search::try_second)? {
+                Some(pair) => Ok(pair),
+                None => search.continuing(pair)?,
+            };
+            match second {
+                // What does not erode in the first run does not continue.
+                Ok(pair) => {
+                    let second = between(pair, |step| search.eroded(2, step));
+                    found.continuing = Some(found.no_erosion.map_or(second, |first| second.max(first)));
+                }
+                Err(beyond) => found.continuing_beyond = Some(beyond),
+            }
+        }
+        Err(beyond) => {
+            found.no_erosion_beyond = Some(beyond.clone());
+            found.continuing_beyond = Some(beyond);
+        }
+    }
+    found.is_not_monotone = search.is_not_monotone();
+    let eroded = |trial: &Trial| match trial {
+        Trial::Eroded(eroded) => Some(eroded.mass_fraction),
+        Trial::CannotBe(..) => None,
+    };
+    let walk = |(step, trial): (&i64, &Trial)| {
+        Some((ratio_at(*step), eroded(trial)?, search.second.get(step).and_then(eroded)))
+    };
+    found.walks = search.first.iter().filter_map(walk).collect();
+    Ok(found)
+}

@@ -1,0 +1,149 @@
+//! The ratios of one network that have been tried, each once, and the steps that both runs are searched with.
+
+use std::collections::BTreeMap;
+
+use crate::outcome::Eroded;
+use crate::outcome::design::{BETWEEN_STEPS, Beyond};
+use crate::outcome::verdict::THRESHOLD;
+use crate::run::error::RunError;
+
+/// Steps from stop to stop.
+pub(super) const STOP: i64 = 16;
+
+/// First step away from a hint.
+const NEAR: i64 = 4;
+
+/// What a trial of one ratio comes to.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Trial {
+    /// So much eroded.
+    Eroded(Eroded),
+    /// The base cannot be walked at this ratio: it is too coarse (below) or too fine (above), and why.
+    CannotBe(Beyond, String),
+}
+
+/// What walks at a ratio; asked once for each.
+pub trait Walker {
+    /// The first run at D15F/D85B `ratio`.
+    fn first(&mut self, step: i64, ratio: f64) -> Result<Trial, RunError>;
+    /// The second run, where the first has been walked.
+    fn second(&mut self, step: i64, ratio: f64) -> Result<Trial, RunError>;
+}
+
+/// D15F/D85B at a step.
+pub(super) fn ratio_at(step: i64) -> f64 {
+    libm::exp(BETWEEN_STEPS * step as f64)
+}
+
+/// Two neighbouring steps: the last that holds and the first that erodes; `None` where nothing holds below.
+pub(super) type Pair = (i64, i64);
+
+/// A search under way.
+pub(super) struct Search<'a> {
+    pub(super) walker: &'a mut dyn Walker,
+    /// The first stop and the last.
+    pub(super) stops: [i64; 2],
+    pub(super) first: BTreeMap<i64, Trial>,
+    pub(super) second: BTreeMap<i64, Trial>,
+}
+
+impl Search<'_> {
+    pub(super) fn eroded(&self, run: u64, step: i64) -> Option<f64> {
+        match if run == 1 { &self.first } else { &self.second }.get(&step)? {
+            Trial::Eroded(eroded) => Some(eroded.mass_fraction),
+            Trial::CannotBe(..) => None,
+        }
+    }
+
+    pub(super) fn try_first(&mut self, step: i64) -> Result<Trial, RunError> {
+        if !self.first.contains_key(&step) {
+            let trial = self.walker.first(step, ratio_at(step))?;
+            self.first.insert(step, trial);
+        }
+        Ok(self.first[&step].clone())
+    }
+
+    /// Whether erosion continues at a step: both runs erode.
+    pub(super) fn try_second(&mut self, step: i64) -> Result<Trial, RunError> {
+        match self.try_first(step)? {
+            Trial::Eroded(first) if !first.below_threshold => {}
+            other => return Ok(other),
+        }
+        if !self.second.contains_key(&step) {
+            let trial = self.walker.second(step, ratio_at(step))?;
+            self.second.insert(step, trial);
+        }
+        Ok(self.second[&step].clone())
+    }
+
+    /// Steps away from a hint, ever farther, to one that holds and one that erodes, and halves the steps
+    /// between; `None` where there is no hint, or a base that cannot be walked.
+    pub(super) fn away_from(
+        &mut self,
+        hint: Option<i64>,
+        trial: fn(&mut Self, i64) -> Result<Trial, RunError>,
+    ) -> Result<Option<Pair>, RunError> {
+        let Some(hint) = hint.filter(|hint| (self.stops[0]..=self.stops[1]).contains(hint)) else {
+            return Ok(None);
+        };
+        let erodes = |trial: Trial| match trial {
+            Trial::Eroded(eroded) => Some(!eroded.below_threshold),
+            Trial::CannotBe(..) => None,
+        };
+        let Some(first) = erodes(trial(self, hint)?) else { return Ok(None) };
+        let (mut at, mut far) = (hint, NEAR);
+        loop {
+            let next = if first { at - far } else { at + far };
+            if !(self.stops[0]..=self.stops[1]).contains(&next) {
+                return Ok(None);
+            }
+            match erodes(trial(self, next)?) {
+                None => return Ok(None),
+                Some(erodes) if erodes != first => {
+                    return self.halved((at.min(next), at.max(next)), trial).map(Some);
+                }
+                Some(_) => (at, far) = (next, 2 * far),
+            }
+        }
+    }
+
+    /// Halves the steps between one that holds and one that erodes.
+    pub(super) fn halved(
+        &mut self,
+        (mut low, mut high): Pair,
+        trial: fn(&mut Self, i64) -> Result<Trial, RunError>,
+    ) -> Result<Pair, RunError> {
+        while high - low > 1 {
+            let middle = low + (high - low) / 2;
+            match trial(self, middle)? {
+                Trial::Eroded(eroded) if !eroded.below_threshold => high = middle,
+                _ => low = middle,
+            }
+        }
+        Ok((low, high))
+    }
+
+    /// Whether a ratio holds above one that erodes, in either run.
+    pub(super) fn is_not_monotone(&self) -> bool {
+        [&self.first, &self.second].into_iter().any(|trials| {
+            let mut eroded = false;
+            trials.values().any(|trial| match trial {
+                Trial::Eroded(found) => {
+                    eroded |= !found.below_threshold;
+                    eroded && found.below_threshold
+                }
+                Trial::CannotBe(..) => false,
+            })
+        })
+    }
+}
+
+/// The ratio at which 7.5 % erode, straight between two neighbouring steps; halfway where the lower one was
+/// not walked.
+pub(super) fn between((low, high): Pair, eroded: impl Fn(i64) -> Option<f64>) -> f64 {
+    let part = match (eroded(low), eroded(high)) {
+        (Some(a), Some(b)) if b > a && a <= THRESHOLD => ((THRESHOLD - a) / (b - a)).clamp(0.0, 1.0),
+        _ => 0.5,
+    };
+    libm::exp(BETWEEN_STEPS * (low as f64 + part * (high - low) as f64))
+}
