@@ -125,7 +125,7 @@ fn page(record: &NetworkWalkRecord, walks: &Walks, figures: &[Drawn]) -> String 
                 (verdict_section(record, walks))
                 (leaves_out(&record.model_leaves_out, &html! {
                     p {
-                        "The network was given, and the filter’s gradation is not known: no rule of \
+                        "The network was given, and the gradation of the filter was not: no rule of \
                          practice is applied, and nothing says how far the verdict can be relied on."
                     }
                 }))
