@@ -49,7 +49,7 @@ for name, (filter, scale, cu, dc, colour) in CASES.items():
 axes.axhline(7.5, color="grey", lw=0.8)
 axes.annotate("7.5 %", (0.995, 7.5), xycoords=("axes fraction", "data"), ha="right", va="bottom", color="grey",
               fontsize=8)
-axes.set(xlim=(0, 350), ylim=(0, 100), xlabel="increment of the run", ylabel="base eroded (% of its mass)",
+axes.set(xlim=(0, 350), ylim=(0, None), xlabel="increment of the run", ylabel="base eroded (% of its mass)",
          title="Fig. 13: progress of erosion")
 axes.legend(fontsize=8)
 path = sys.argv[1] if len(sys.argv) > 1 else "paper_figure_13.png"
