@@ -8,7 +8,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 rounds=${1:-1}
 disturbances=${2-kill requeue controller node}
-cargo build --release --quiet
+cargo build --release --workspace --bins --quiet
 work=$(mktemp -d)
 # A copy: a build meanwhile changes nothing.
 voidwalk=$work/voidwalk

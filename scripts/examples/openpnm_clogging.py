@@ -45,20 +45,22 @@ print(network)
 print(result)
 
 blocked = result.blocked[:, 0].mean(axis=0)
-where = network.coords[network.conns].mean(axis=1)[:, 2]
+ends = network.coords[network.conns][:, :, 2]
+where, is_along = ends.mean(axis=1), np.abs(ends[:, 1] - ends[:, 0]) > 0.5
 figure, (left, right) = plt.subplots(1, 2, figsize=(9, 4), layout="constrained")
-depths = np.unique(np.round(where, 6))
-share = [100 * blocked[np.isclose(where, depth)].mean() for depth in depths]
-left.plot(share, depths, marker="o", ms=3)
+# Water runs downwards: more of it goes through the constrictions between two layers than through those within one.
+for label, these, colour in [("between layers", is_along, "C0"), ("within a layer", ~is_along, "C1")]:
+    depths = np.unique(np.round(where[these], 6))
+    share = [100 * blocked[these & np.isclose(where, depth)].mean() for depth in depths]
+    left.plot(share, depths, marker="o", ms=3, color=colour, label=label)
 left.invert_yaxis()
+left.legend(fontsize=8)
 left.set(xlabel="constrictions blocked (%)", ylabel="depth (mm)", title="After the first run")
 for replicate in range(1, 5):
-    for run, style in [(1, "-"), (2, "--")]:
-        rows = (result.flow["replicate"] == replicate) & (result.flow["run"] == run)
-        right.plot(result.flow["increment"][rows], result.flow["k_over_k0"][rows], style, lw=0.9,
-                   color=f"C{replicate - 1}", label=f"replicate {replicate}, run {run}")
-right.set(xlabel="increment", ylabel="conductance over the first one", title="Water")
-right.legend(fontsize=7)
+    rows = (result.flow["replicate"] == replicate) & (result.flow["run"] == 1)
+    right.plot(result.flow["increment"][rows], result.flow["k_over_k0"][rows], lw=0.9, label=f"replicate {replicate}")
+right.set(xlabel="increment of the first run", ylabel="conductance over the first one", title="Water")
+right.legend(fontsize=8)
 path = sys.argv[1] if len(sys.argv) > 1 else "openpnm_clogging.png"
 figure.savefig(path, dpi=150)
 print(path)

@@ -33,7 +33,7 @@ for (cu, run), part in frame.groupby(["Cu of the base", "run"]):
     axes.errorbar(part["D15F/D85B"], 100 * part["mean"], yerr=[low, high], marker="o", ms=4, capsize=2,
                   ls="-" if run == 1 else "--", color="C0" if cu == 1.5 else "C1", label=f"Cu {cu}, run {run}")
 axes.axhline(7.5, color="grey", lw=0.8)
-axes.annotate("7.5 %", (3.5, 8.5), color="grey", fontsize=8)
+axes.annotate("7.5 %", (0.995, 7.5), xycoords=("axes fraction", "data"), ha="right", va="bottom", color="grey", fontsize=8)
 axes.set(xlabel="D15F / D85B", ylabel="base eroded (% of its mass)", title="Filter of Cu 1.5, loose")
 axes.legend()
 path = sys.argv[1] if len(sys.argv) > 1 else "parameter_study.png"

@@ -24,6 +24,7 @@ pub use memory::{ResourceLimits, in_words};
 use packed_filter::GUESSED_GRAINS_PER_VOID;
 pub use packed_filter::{GRAINS, PackedError, PackedFilter, RECORD};
 pub use packing_plan::PackingPlan;
+pub use record::base_record;
 pub use scaled::StatedBase;
 use supply::Against;
 use void_graph::GraphPacking;

@@ -32,8 +32,6 @@ impl Case {
 
     /// What went in, as a run folder records it.
     pub fn record(&self) -> record::Inputs {
-        let d = |gradation: &Gradation, percent| gradation.d(percent).unwrap_or(f64::NAN);
-        let pairs = |points: Vec<(f64, f64)>| points.into_iter().map(|(a, b)| [a, b]).collect();
         let [voids, constrictions, start_nodes, layers] = self.counts;
         let cubic = |n: &[u32; 3]| format!("cubic {} x {} x {}", n[0], n[1], n[2]);
         let (kind, name) = match &self.scene.network.source() {
@@ -99,24 +97,8 @@ impl Case {
                 curve_name,
             },
             base: record::BaseRecord {
-                name: match &self.scene.base.gradation() {
-                    BaseGradation::Sieve(..) => self.name_of("base.sieve"),
-                    BaseGradation::Single(_) => "one size".into(),
-                    BaseGradation::Linear { cu, .. } => format!("linear, Cu {cu}"),
-                } + &self
-                    .regraded_from
-                    .as_ref()
-                    .map_or(String::new(), |(_, at)| format!(", regraded on {at:.3} mm")),
-                cu: self.base.cu(),
-                d0_mm: self.base.smallest_mm(),
-                d15_mm: self.base.d(15.0),
-                d50_mm: self.base.d(50.0),
-                d85_mm: d(&self.base, 85.0),
-                d95_mm: d(&self.base, 95.0),
-                d100_mm: self.base.largest_mm(),
-                tail_mass_fraction: self.base.pan_fraction(),
                 regraded_at_mm: self.regraded_from.as_ref().map(|(_, at)| *at),
-                gradation: pairs(self.base.points()),
+                ..base_record(self.base_name(), &self.base)
             },
             network: record::NetworkRecord {
                 kind,
@@ -136,6 +118,17 @@ impl Case {
             inject_share: self.scene.walk.inject_share,
             scale_free: self.is_scale_free(),
         }
+    }
+
+    /// What the user called the base, or what it is.
+    fn base_name(&self) -> String {
+        let name = match &self.scene.base.gradation() {
+            BaseGradation::Sieve(..) => self.name_of("base.sieve"),
+            BaseGradation::Single(_) => "one size".into(),
+            BaseGradation::Linear { cu, .. } => format!("linear, Cu {cu}"),
+        };
+        let regraded = self.regraded_from.as_ref();
+        name + &regraded.map_or(String::new(), |(_, at)| format!(", regraded on {at:.3} mm"))
     }
 
     /// The network that was walked, where its constrictions have no direction of their own.
@@ -187,6 +180,32 @@ impl Case {
                 BaseGradation::Linear { d85: D85::AtDc(..) | D85::Ratio(_), .. } | BaseGradation::Single(_)
             )
     }
+}
+
+/// A base, as records of results hold it.
+pub fn base_record(name: String, base: &Gradation) -> record::BaseRecord {
+    record::BaseRecord {
+        name,
+        cu: base.cu(),
+        d0_mm: base.smallest_mm(),
+        d15_mm: base.d(15.0),
+        d50_mm: base.d(50.0),
+        d85_mm: d(base, 85.0),
+        d95_mm: d(base, 95.0),
+        d100_mm: base.largest_mm(),
+        tail_mass_fraction: base.pan_fraction(),
+        regraded_at_mm: None,
+        gradation: pairs(base.points()),
+    }
+}
+
+/// A characteristic size (mm), where the gradation reaches down to it.
+fn d(gradation: &Gradation, percent: f64) -> f64 {
+    gradation.d(percent).unwrap_or(f64::NAN)
+}
+
+fn pairs(points: Vec<(f64, f64)>) -> Vec<[f64; 2]> {
+    points.into_iter().map(|(a, b)| [a, b]).collect()
 }
 
 /// Kinematic viscosity of water of 10 C (m2/s).

@@ -9,6 +9,7 @@
 //! - [`rules`] applies the rules of filter practice to the same two curves; [`PairRules`] without a walk.
 //! - [`confidence`] says how far a verdict can be relied on, and why no further.
 //! - [`infiltration()`] is Eq. (1) beside the walk.
+//! - [`network_walk`] is what comes of walks on given networks, without a scene.
 //! - [`percolation`] fits percolation thresholds of several lattice sizes.
 //! - [`thickness`] is how the verdict moves with the thickness of the filter.
 //! - [`precision`] is error against run time; [`comparison`] is several cases side by side.
@@ -27,6 +28,7 @@ mod infiltration;
 mod least_squares;
 pub mod ledger;
 mod metrics;
+pub mod network_walk;
 pub mod packing;
 mod pair;
 mod pan;

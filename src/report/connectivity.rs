@@ -5,15 +5,15 @@ use maud::{Markup, html};
 use super::numbers::{percent, significant, whole};
 use super::run_figures::run_name;
 use super::table::Table;
+use super::walks::Walks;
 use crate::outcome::by_connectivity::of_replicates;
-use crate::outcome::record::{ByConnectivity, Outcome};
+use crate::outcome::record::ByConnectivity;
 
 /// Nothing where all voids have the same connectivity.
-pub(super) fn by_connectivity(outcome: &Outcome) -> Markup {
-    let runs: Vec<(u64, Vec<ByConnectivity>)> = outcome
-        .summary
-        .iter()
-        .map(|run| (run.run, of_replicates(&outcome.replicates, run.run)))
+pub(super) fn by_connectivity(walks: &Walks) -> Markup {
+    let runs: Vec<(u64, Vec<ByConnectivity>)> = walks
+        .runs()
+        .map(|run| (run, of_replicates(walks.replicates, run)))
         .filter(|(_, rows)| !rows.is_empty())
         .collect();
     html! {

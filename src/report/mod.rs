@@ -7,6 +7,11 @@
 //! against run time; [`write_comparison()`] that of several cases side by side. They write `figures/*.svg`,
 //! each a file of its own, and `report.html`.
 //!
+//! # Pages without a folder
+//! What was walked in memory has the same page, as text: [`run_page()`] from what its files would say, and
+//! [`network_walk_page()`] from the record of walks on given networks; [`run_brief()`] and
+//! [`network_walk_brief()`] are the verdict alone, for a notebook.
+//!
 //! # Pages of others
 //! A program with a page of its own over the same results, as `scripts/paper`, builds it from these:
 //! [`files`] reads what lies in a folder, [`figures`] draws, [`numbers`] writes a number as the other pages
@@ -37,6 +42,7 @@ mod first_page;
 mod folder;
 mod infiltration;
 mod names;
+mod network_walk;
 pub mod numbers;
 mod packing;
 mod page;
@@ -49,14 +55,18 @@ pub mod shell;
 mod soils;
 mod table;
 mod varied;
+mod verdict_box;
+mod walks;
 mod written;
 
 pub use campaign::{campaign_page, write_campaign};
 pub use comparison::write_comparison;
 pub use design::write_design;
 pub use error::ReportError;
+pub use folder::RunTexts;
+pub use network_walk::{network_walk_brief, network_walk_page};
 pub use packing::write_packing;
-pub use page::write;
+pub use page::{run_brief, run_page, write};
 pub use percolation::{percolation_spread, write_percolation};
 pub use precision::{precision_judgements, write_precision};
 pub use soils::soils_figure;

@@ -7,25 +7,24 @@ use maud::{Markup, html};
 use super::connectivity::by_connectivity;
 use super::error::ReportError;
 use super::figures::{shorten, visible};
+use super::files::json_of;
 use super::first_page::{self, in_short};
-use super::folder::RunFolder;
+use super::folder::{RunFolder, RunTexts, checked, walks};
 use super::infiltration::infiltration;
 use super::names::soil_name;
-use super::numbers::{
-    capital, duration, interval, known, percent, percent_interval, significant, size, threshold, whole,
-};
-use super::results::{fraction, replicates, results, run_heading, sensitivity, thickness};
+use super::numbers::{capital, duration, known, percent, significant, size, whole};
+use super::results::{fraction, replicates, results, sensitivity, thickness};
 use super::rules::rules;
 use super::run_figures::{self, run_name};
 use super::shell::{self, Drawn, clean, drawing, fact, whole_page};
 use super::table::Table;
 use super::varied;
+use super::verdict_box;
+use super::walks::RunRows;
 use super::written::{Written, write_page};
 use super::{appendix, packing, shell::leaves_out};
 use crate::outcome::packing::PackingRecord;
-use crate::outcome::record::{
-    Confidence, NetworkKind, Outcome, PanBounds, PanReading, RunSummary, Stopping, Verdict,
-};
+use crate::outcome::record::{Confidence, NetworkKind, Outcome, PanBounds, PanReading, Stopping, Verdict};
 
 /// Characters of `scene.toml` that are shown.
 const SCENE: usize = 100_000;
@@ -38,24 +37,52 @@ const SCENE: usize = 100_000;
 /// [`ReportError`] names the file, and where there is one the line and field, that is missing, malformed or
 /// contradicts another. Nothing is written then.
 pub fn write(folder: &Path) -> Result<Written, ReportError> {
-    let run = RunFolder::read(folder)?;
-    let verdict = run_figures::verdict(&run);
-    let gradations = run_figures::gradations(&run);
+    let (page, figures) = drawn(&RunFolder::read(folder)?);
+    write_page(folder, &figures, &page)
+}
+
+/// The page of a run whose files would hold these texts; writes nothing.
+///
+/// # Errors
+/// As [`write()`], with the names that the files would have.
+pub fn run_page(texts: RunTexts) -> Result<String, ReportError> {
+    Ok(drawn(&RunFolder::of_texts(texts)?).0)
+}
+
+/// The verdict of a run whose `outcome.json` holds this text, as a piece of a page: its numbers, a figure,
+/// what the model leaves out.
+///
+/// # Errors
+/// A text that is malformed.
+pub fn run_brief(outcome: &str) -> Result<String, ReportError> {
+    let path = Path::new("outcome.json");
+    let outcome = checked(path, json_of(path, outcome)?)?;
+    let rows = RunRows::default();
+    Ok(verdict_box::brief(&walks(&outcome, &rows), &outcome.headline(), REPLICATE, &outcome.model_leaves_out))
+}
+
+/// What a replicate of a run is: the only one, and each of several.
+const REPLICATE: [&str; 2] = ["one network, one walk", "a new network and a new walk"];
+
+/// The page of a run and all its figures.
+fn drawn(run: &RunFolder) -> (String, Vec<Drawn>) {
+    let walks = run.walks();
+    let verdict = run_figures::verdict(&walks);
+    let gradations = run_figures::gradations(run);
     let figures: Vec<Drawn> = [
-        run_figures::eroded(&run),
-        run_figures::layers(&run),
-        run_figures::retained(&run),
-        varied::sensitivity(&run),
-        varied::thickness(&run),
+        run_figures::eroded(&walks),
+        run_figures::layers(&walks),
+        run_figures::retained(&walks),
+        varied::sensitivity(run),
+        varied::thickness(run),
         run.packing.as_ref().map(packing::slice),
     ]
     .into_iter()
     .flatten()
     .collect();
 
-    let page = page(&run, &verdict, &gradations, &figures);
-    let all: Vec<Drawn> = [verdict, gradations].into_iter().chain(figures).collect();
-    write_page(folder, &all, &page)
+    let page = page(run, &verdict, &gradations, &figures);
+    (page, [verdict, gradations].into_iter().chain(figures).collect())
 }
 
 /// The page as text. `verdict` and `gradations` stand on its first sheet, `figures` below it.
@@ -67,7 +94,7 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
     let main = html! {
         section.sheet {
             div.first {
-                (verdict_box(outcome, verdict))
+                (verdict_section(folder, verdict))
                 (leaves_out(&outcome.model_leaves_out, &html! {
                     @if outcome.model_leaves_out.is_empty() { p { "outcome.json does not say." } }
                     p { "The verdict is the model’s. It does not replace a filter test or a designer’s \
@@ -85,10 +112,10 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
         @for (number, drawn) in (2..).zip(figures) { (shell::figure(number, drawn)) }
         (missing(folder, figures))
         (rules(outcome))
-        (results(outcome))
+        (results(&folder.walks(), &[outcome.flow_sentence(), outcome.overfull_sentence()]))
         (infiltration(outcome))
-        (by_connectivity(outcome))
-        (replicates(outcome))
+        (by_connectivity(&folder.walks()))
+        (replicates(&folder.walks()))
         (sensitivity(outcome))
         (thickness(outcome))
         (inputs(outcome, folder.packing.as_ref()))
@@ -98,7 +125,8 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
     whole_page(&title, &first_page::header(folder), &main, &citation(outcome))
 }
 
-fn verdict_box(outcome: &Outcome, verdict: &Drawn) -> Markup {
+fn verdict_section(folder: &RunFolder, verdict: &Drawn) -> Markup {
+    let (outcome, walks) = (&folder.outcome, &folder.walks());
     let doubted = outcome.confidence != Confidence::Within;
     let class = match outcome.verdict {
         // Never in green where the model was not checked, or practice does not agree.
@@ -108,30 +136,17 @@ fn verdict_box(outcome: &Outcome, verdict: &Drawn) -> Markup {
         Verdict::Continuing => "continuing",
         Verdict::Undecided => "undecided",
     };
-    let count = outcome.replicates.len();
-    let table = Table::of(&outcome.summary)
-        .name("Base eroded, by mass", |run| run_heading(run.run))
-        .number("mean", |run| percent(run.eroded_mass_fraction.mean))
-        .number("95 % interval", |run| {
-            percent_interval(&run.eroded_mass_fraction).unwrap_or_else(|| "none".to_owned())
-        });
     html! {
         section.verdict.(class) {
             p.word.long[!outcome.reasons.is_empty()] { (clean(&capital(&outcome.headline()))) "." }
             @if doubted { p { "Confidence: " b { (outcome.confidence.words()) } "." } }
-            p.lead { (in_words(outcome)) }
+            p.lead { (in_words(folder)) }
             div { (drawing(verdict)) }
-            (table)
+            (verdict_box::eroded_table(walks))
             @if let Some(bounds) = &outcome.pan_bounds { (both_readings(bounds)) }
             @if let Some(stopping) = &outcome.stopping { p { (stopped(stopping)) } }
             @if let Some(next) = outcome.what_would_decide() { p { (capital(next)) "." } }
-            p { (tally(outcome)) " Threshold between the classes: " (threshold(outcome.threshold)) "." }
-            @if count == 1 {
-                p {
-                    b { "One replicate: the scatter is unknown." }
-                    " Walk more replicates before relying on this."
-                }
-            }
+            (verdict_box::replicates_in_words(walks, REPLICATE))
         }
     }
 }
@@ -177,59 +192,14 @@ fn stopped(stopping: &Stopping) -> String {
 }
 
 /// What the class means, in a sentence.
-fn in_words(outcome: &Outcome) -> String {
-    let limit = threshold(outcome.threshold);
-    match outcome.verdict {
-        Verdict::None => format!(
-            "In the model the filter holds this base: less than {limit} of its mass passes in the first run."
-        ),
-        Verdict::Some => format!(
-            "In the model the filter seals after some erosion: {limit} or more of the base passes in the \
-             first run, less in the second, on the constrictions that the first left blocked."
-        ),
-        Verdict::Continuing => format!(
-            "In the model the filter does not hold this base: {limit} or more of its mass passes in the \
-             first run and again in the second."
-        ),
-        Verdict::Undecided if outcome.pan_bounds.as_ref().is_some_and(PanBounds::differ) => {
-            "Inconclusive: the finest part of the base, whose sizes the sieves do not tell, decides between \
-             the classes."
-                .to_owned()
-        }
-        Verdict::Undecided => {
-            let straddles = |run: &&RunSummary| {
-                interval(&run.eroded_mass_fraction)
-                    .is_some_and(|(low, high)| low < outcome.threshold && outcome.threshold <= high)
-            };
-            let runs: Vec<&str> =
-                outcome.summary.iter().filter(straddles).map(|run| run_name(run.run)).collect();
-            if !runs.is_empty() {
-                let plural = if runs.len() > 1 { "intervals of the " } else { "interval of the " };
-                format!("Inconclusive: the {plural}{} includes {limit}.", runs.join(" and the "))
-            } else if outcome.summary.len() == 1 {
-                "Inconclusive: some and continuing erosion differ by the second run, and only a first was \
-                 asked for."
-                    .to_owned()
-            } else {
-                "Inconclusive: these replicates do not separate the classes.".to_owned()
-            }
-        }
+fn in_words(folder: &RunFolder) -> String {
+    let differ = folder.outcome.pan_bounds.as_ref().is_some_and(PanBounds::differ);
+    if folder.outcome.verdict == Verdict::Undecided && differ {
+        return "Inconclusive: the finest part of the base, whose sizes the sieves do not tell, decides \
+                between the classes."
+            .to_owned();
     }
-}
-
-/// The classes of the replicates, counted.
-fn tally(outcome: &Outcome) -> String {
-    let count = outcome.replicates.len();
-    if count == 1 {
-        return "1 replicate (one network, one walk).".to_owned();
-    }
-    let classes = Verdict::ALL.into_iter().filter_map(|class| {
-        let found = outcome.replicates.iter().filter(|replicate| replicate.verdict == class).count();
-        let of = if found == count { "all".to_owned() } else { found.to_string() };
-        (found > 0).then(|| format!("{} in {of}", class.words()))
-    });
-    let classes = classes.collect::<Vec<_>>().join(", ");
-    format!("{count} replicates, each a new network and a new walk: {classes}.")
+    verdict_box::in_words(&folder.walks())
 }
 
 /// Why the verdict cannot be relied on as it stands.
@@ -282,7 +252,7 @@ fn missing(folder: &RunFolder, figures: &[Drawn]) -> Markup {
     html! {
         @for (name, reason) in reasons { @if !has(name) { p.small { (reason) } } }
         @if has("eroded")
-            && folder.series.len() != folder.outcome.replicates.len() * folder.outcome.summary.len()
+            && folder.rows.series.len() != folder.outcome.replicates.len() * folder.outcome.summary.len()
         {
             p.small { "series.csv does not hold every replicate and run: the mean is over those that it \
                        holds." }

@@ -7,6 +7,7 @@ use super::numbers::{
 };
 use super::run_figures::run_name;
 use super::table::Table;
+use super::walks::Walks;
 use crate::outcome::record::{OfThickness, Outcome, Replicate, Run, RunSummary, Sensitivity, Statistic};
 
 /// Replicates listed one by one; all are in `outcome.json`.
@@ -31,9 +32,9 @@ pub(super) fn fraction(statistic: &Statistic) -> Markup {
 }
 
 /// Means over the replicates.
-pub(super) fn results(outcome: &Outcome) -> Markup {
+pub(super) fn results(walks: &Walks, sentences: &[Option<String>]) -> Markup {
     type Row<'a> = (&'static str, &'a dyn Fn(&RunSummary) -> Markup);
-    let (filter, scale_free) = (&outcome.inputs.filter, outcome.inputs.scale_free);
+    let scale_free = walks.scale_free;
     let nothing = || html! { "nothing eroded" };
     let largest_ratio = |run: &RunSummary| match &run.largest_eroded_over_d15f {
         Some(of) => {
@@ -43,42 +44,54 @@ pub(super) fn results(outcome: &Outcome) -> Markup {
         }
         None => nothing(),
     };
-    let largest = |run: &RunSummary| match &run.largest_eroded_over_d15f {
-        Some(of) => html! { (size(of.mean * filter.d15_mm, scale_free)) },
-        None => nothing(),
+    let largest = |run: &RunSummary| match (&run.largest_eroded_over_d15f, walks.d15f_mm) {
+        (Some(of), Some(d15f_mm)) => html! { (size(of.mean * d15f_mm, scale_free)) },
+        _ => nothing(),
+    };
+    let largest_of_all = |run: &RunSummary| {
+        let of_run = |replicate: &Replicate| replicate.runs.get(run.run as usize - 1)?.largest_eroded_mm;
+        let largest = walks.replicates.iter().filter_map(of_run).reduce(f64::max);
+        largest.map_or_else(nothing, |mm| html! { (size(mm, scale_free)) })
     };
     let sd =
         |run: &RunSummary| html! { (run.eroded_mass_fraction.sd.map_or_else(|| "none".to_owned(), percent)) };
-    let rows: [Row; 8] = [
+    let of_largest: &[Row] = match walks.d15f_mm {
+        Some(_) => {
+            &[("Largest particle eroded, over D15F", &largest_ratio), ("Largest particle eroded", &largest)]
+        }
+        None => &[("Largest particle eroded in any replicate", &largest_of_all)],
+    };
+    let of_eroded: [Row; 3] = [
         ("Base eroded, by mass", &|run| fraction(&run.eroded_mass_fraction)),
         ("Its scatter from replicate to replicate (SD)", &sd),
         ("Base eroded, by number", &|run| fraction(&run.eroded_number_fraction)),
-        ("Largest particle eroded, over D15F", &largest_ratio),
-        ("Largest particle eroded", &largest),
+    ];
+    let of_network: [Row; 3] = [
         ("Constrictions blocked at the end", &|run| fraction(&run.blocked_fraction)),
         ("Blocked in the first three layers", &|run| fraction(&run.blocked_first_three_layers_fraction)),
         ("Constrictions on an open path (backbone)", &|run| fraction(&run.backbone_fraction)),
     ];
-    let mut table = Table::of(&rows).name("Mean, and 95 % interval", |row| row.0);
-    for run in &outcome.summary {
+    let rows = of_eroded.iter().chain(of_largest).chain(&of_network);
+    let mut table = Table::of(rows).name("Mean, and 95 % interval", |row| row.0);
+    for run in walks.summary {
         table = table.number(run_heading(run.run), move |row| (row.1)(run));
     }
     html! {
         h2 { "Results" }
         (table)
-        @for said in [outcome.flow_sentence(), outcome.overfull_sentence()].into_iter().flatten() {
-            p { (capital(&said)) "." }
+        @for said in sentences.iter().flatten() {
+            p { (capital(said)) "." }
         }
     }
 }
 
 /// Each replicate, collapsed.
-pub(super) fn replicates(outcome: &Outcome) -> Markup {
-    let unit = size_unit(outcome.inputs.scale_free);
+pub(super) fn replicates(walks: &Walks) -> Markup {
+    let unit = size_unit(walks.scale_free);
     let of_known = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), significant);
-    let listed = outcome.replicates.len().min(LISTED);
+    let listed = walks.replicates.len().min(LISTED);
     let rows: Vec<(usize, &Replicate, &Run)> = (1..)
-        .zip(outcome.replicates.iter().take(LISTED))
+        .zip(walks.replicates.iter().take(LISTED))
         .flat_map(|(number, replicate)| replicate.runs.iter().map(move |run| (number, replicate, run)))
         .collect();
     let table = Table::of(&rows)
@@ -108,7 +121,7 @@ pub(super) fn replicates(outcome: &Outcome) -> Markup {
         details {
             summary {
                 "Each replicate (" (listed)
-                @if listed < outcome.replicates.len() { " of " (outcome.replicates.len()) } ")"
+                @if listed < walks.replicates.len() { " of " (walks.replicates.len()) } ")"
             }
             (table)
             p.small {

@@ -11,6 +11,7 @@ use super::folder::RunFolder;
 use super::names::soil_name;
 use super::numbers::{capital, interval, interval_in_percent, percent, significant, size, threshold, whole};
 use super::shell::Drawn;
+use super::walks::Walks;
 use crate::outcome::record::{LayerRow, SeriesRow, SizeRow, Statistic, Verdict};
 
 /// Replicates drawn one by one; with more, the mean and the first ones are drawn.
@@ -37,9 +38,9 @@ pub(super) fn verdict_colour(verdict: Verdict) -> Colour {
 }
 
 /// A logarithmic axis around sizes.
-fn size_axis(folder: &RunFolder, sizes: impl Iterator<Item = f64>) -> Axis {
+pub(super) fn size_axis(scale_free: bool, sizes: impl Iterator<Item = f64>) -> Axis {
     let (low, high) = positive_range(sizes);
-    Axis::log(if folder.outcome.inputs.scale_free { "Size / D0F (–)" } else { "Size (mm)" }, low, high)
+    Axis::log(if scale_free { "Size / D0F (–)" } else { "Size (mm)" }, low, high)
 }
 
 /// Rows of (size, percent finer) as points.
@@ -52,28 +53,28 @@ pub(super) fn upper(statistic: &Statistic) -> f64 {
     interval(statistic).map_or(statistic.mean, |(_, high)| high)
 }
 
-pub(super) fn threshold_rule(folder: &RunFolder, across: Across) -> Rule {
-    let limit = folder.outcome.threshold;
+pub(super) fn threshold_rule(walks: &Walks, across: Across) -> Rule {
+    let limit = walks.threshold;
     Rule::new(across, limit * 100.0, BLACK).dash(Dash::Dashed).label(&threshold(limit))
 }
 
 /// An axis from 0 that holds these percentages and the threshold, and never less than 10 %.
-pub(super) fn eroded_axis(label: &str, folder: &RunFolder, highest: f64) -> Axis {
-    let high = highest.max(folder.outcome.threshold * 100.0 * 1.3).min(100.0);
+pub(super) fn eroded_axis(label: &str, walks: &Walks, highest: f64) -> Axis {
+    let high = highest.max(walks.threshold * 100.0 * 1.3).min(100.0);
     if high > 60.0 { Axis::percent(label) } else { Axis::linear(label, 0.0, high) }
 }
 
 /// Mean and interval of both runs against the threshold, for the eye, beside the verdict.
-pub(super) fn verdict(folder: &RunFolder) -> Drawn {
-    let summary = &folder.outcome.summary;
+pub(super) fn verdict(walks: &Walks) -> Drawn {
+    let summary = walks.summary;
     let highest = 100.0 * summary.iter().map(|run| upper(&run.eroded_mass_fraction)).fold(0.0, f64::max);
-    let x = eroded_axis("Base eroded, by mass (%)", folder, highest * 1.08);
+    let x = eroded_axis("Base eroded, by mass (%)", walks, highest * 1.08);
     let y = Axis::rows(summary.iter().map(|run| capital(run_name(run.run))));
     let height = 84.0 + 48.0 * summary.len() as f64;
     let what = "Mean and 95 % interval of the eroded mass in each run, against the threshold";
     let mut figure =
         Figure::new("Base eroded in each run", what, "", x, y).sizes((540.0, height), (330.0, height));
-    figure.add(threshold_rule(folder, Across::X));
+    figure.add(threshold_rule(walks, Across::X));
     for run in summary {
         let statistic = &run.eroded_mass_fraction;
         let (colour, shape, _) = run_look(run.run);
@@ -89,7 +90,8 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     let (filter, base) = (&inputs.filter, &inputs.base);
     let limits = boundaries(&folder.outcome);
     let rows = filter.gradation.iter().chain(&filter.constrictions).chain(&base.gradation);
-    let x = size_axis(folder, rows.map(|row| row[0]).chain(limits.iter().map(|(_, limit)| *limit)));
+    let x =
+        size_axis(inputs.scale_free, rows.map(|row| row[0]).chain(limits.iter().map(|(_, limit)| *limit)));
     let y = Axis::percent("Percent finer (%)");
     let what = format!(
         "Percent finer against size for the filter (by mass), its constrictions (by number) and the base (by \
@@ -138,32 +140,32 @@ fn eroded_at(rows: &[SeriesRow], increment: f64) -> f64 {
 }
 
 /// Eroded mass against increment for each run: every replicate thin, the mean bold.
-pub(super) fn eroded(folder: &RunFolder) -> Option<Drawn> {
-    let last = folder.series.values().flatten().map(|row| row.increment).max()?;
+pub(super) fn eroded(walks: &Walks) -> Option<Drawn> {
+    let last = walks.rows.series.values().flatten().map(|row| row.increment).max()?;
     // where every curve has come within a thousandth of its end; the rest of a long tail is left out
-    let settled = folder.series.values().filter_map(|rows| {
+    let settled = walks.rows.series.values().filter_map(|rows| {
         let end = rows.last()?.eroded_mass_fraction;
         rows.iter().find(|row| end - row.eroded_mass_fraction <= 0.001).map(|row| row.increment)
     });
-    let settled = settled.max().unwrap_or(last).max((1.0 / folder.outcome.inputs.inject_share) as u64);
+    let settled = settled.max().unwrap_or(last).max((1.0 / walks.inject_share) as u64);
     let shown = if last as f64 > 1.6 * settled as f64 { (settled as f64 * 1.25) as u64 } else { last };
     let highest =
-        100.0 * folder.series.values().flatten().map(|row| row.eroded_mass_fraction).fold(0.0, f64::max);
+        100.0 * walks.rows.series.values().flatten().map(|row| row.eroded_mass_fraction).fold(0.0, f64::max);
     let x = Axis::linear("Increment (–)", 0.0, shown as f64);
-    let y = eroded_axis("Base eroded, by mass (%)", folder, highest * 1.05);
+    let y = eroded_axis("Base eroded, by mass (%)", walks, highest * 1.05);
     let what = "Percent of the base mass eroded against increment, for each run";
     let mut figure = Figure::new("Progress of erosion", what, "", x, y);
-    let end = libm::ceil(1.0 / folder.outcome.inputs.inject_share);
+    let end = libm::ceil(1.0 / walks.inject_share);
     if end < shown as f64 {
         figure.add(Rule::new(Across::X, end, GREY).dash(Dash::Dotted).label("all base inserted"));
     }
-    figure.add(threshold_rule(folder, Across::Y));
-    let replicates = folder.outcome.replicates.len();
+    figure.add(threshold_rule(walks, Across::Y));
+    let replicates = walks.replicates.len();
     let mut bold = Vec::new();
-    for run in folder.runs() {
+    for run in walks.runs() {
         let (colour, _, dash) = run_look(run);
         let all: Vec<&[SeriesRow]> =
-            folder.series.range((run, 0)..=(run, u64::MAX)).map(|(_, rows)| rows.as_slice()).collect();
+            walks.rows.series.range((run, 0)..=(run, u64::MAX)).map(|(_, rows)| rows.as_slice()).collect();
         if all.is_empty() {
             continue;
         }
@@ -205,12 +207,12 @@ pub(super) fn eroded(folder: &RunFolder) -> Option<Drawn> {
 }
 
 /// Blocked constrictions by layer, depth downward, for each run.
-pub(super) fn layers(folder: &RunFolder) -> Option<Drawn> {
-    let deepest = folder.layers.values().flatten().map(|row| row.layer).max()?;
+pub(super) fn layers(walks: &Walks) -> Option<Drawn> {
+    let deepest = walks.rows.layers.values().flatten().map(|row| row.layer).max()?;
     let share = |row: &LayerRow| {
         if row.constrictions == 0 { 0.0 } else { 100.0 * row.blocked as f64 / row.constrictions as f64 }
     };
-    let highest = folder.layers.values().flatten().map(share).fold(0.0, f64::max);
+    let highest = walks.rows.layers.values().flatten().map(share).fold(0.0, f64::max);
     let x_label = "Constrictions blocked (% of the layer’s)";
     let x =
         if highest > 60.0 { Axis::percent(x_label) } else { Axis::linear(x_label, 0.0, highest.max(1.0)) };
@@ -225,10 +227,10 @@ pub(super) fn layers(folder: &RunFolder) -> Option<Drawn> {
         .sizes((720.0, 460.0), (358.0, 420.0))
         .names_above();
     let mut bold = Vec::new();
-    for run in folder.runs() {
+    for run in walks.runs() {
         let (colour, _, dash) = run_look(run);
         let mut by_layer: BTreeMap<u64, Vec<f64>> = BTreeMap::new();
-        for rows in folder.layers.range((run, 0)..=(run, u64::MAX)).map(|(_, rows)| rows) {
+        for rows in walks.rows.layers.range((run, 0)..=(run, u64::MAX)).map(|(_, rows)| rows) {
             for row in rows {
                 by_layer.entry(row.layer).or_default().push(share(row));
             }
@@ -238,7 +240,7 @@ pub(super) fn layers(folder: &RunFolder) -> Option<Drawn> {
         };
         let least = at(|shares| shares.iter().copied().fold(f64::MAX, f64::min));
         let most: Vec<_> = at(|shares| shares.iter().copied().fold(0.0, f64::max)).collect();
-        if folder.outcome.replicates.len() > 1 {
+        if walks.replicates.len() > 1 {
             figure.add(Area::new(least.chain(most.into_iter().rev()).collect(), colour, 0.22));
         }
         let mean = at(|shares| shares.iter().sum::<f64>() / shares.len() as f64).collect();
@@ -250,11 +252,11 @@ pub(super) fn layers(folder: &RunFolder) -> Option<Drawn> {
         "Constrictions blocked at the end of each run, by layer; the second run starts with what the \
                        first left blocked."
             .to_owned();
-    if folder.outcome.replicates.len() > 1 {
+    if walks.replicates.len() > 1 {
         caption.push_str(" Lines: mean of the replicates; shaded: from the least to the most of them.");
     }
-    if let Some(thickness) = folder.outcome.inputs.network.thickness_mm {
-        let depth = size(thickness, folder.outcome.inputs.scale_free);
+    if let Some(thickness) = walks.thickness_mm {
+        let depth = size(thickness, walks.scale_free);
         caption.push_str(&format!(" All layers together are {depth} of filter."));
     }
     Some(Drawn::new("layers", figure, caption))
@@ -262,16 +264,17 @@ pub(super) fn layers(folder: &RunFolder) -> Option<Drawn> {
 
 /// Size curves of what the first run of the first replicate retained, after chosen increments, beside base
 /// and eroded.
-pub(super) fn retained(folder: &RunFolder) -> Option<Drawn> {
+pub(super) fn retained(walks: &Walks) -> Option<Drawn> {
     const CURVES: usize = 6;
     let (run, replicate) = (1, 1);
     let of_run = (run, replicate, 0)..=(run, replicate, u64::MAX);
-    let all: Vec<(u64, &[SizeRow])> = folder
+    let all: Vec<(u64, &[SizeRow])> = walks
+        .rows
         .retained
         .range(of_run.clone())
         .map(|((_, _, increment), rows)| (*increment, rows.as_slice()))
         .collect();
-    let gone = folder.eroded.range(of_run).next_back().map(|(_, rows)| rows.as_slice());
+    let gone = walks.rows.eroded.range(of_run).next_back().map(|(_, rows)| rows.as_slice());
     if all.is_empty() && gone.is_none() {
         return None;
     }
@@ -279,9 +282,9 @@ pub(super) fn retained(folder: &RunFolder) -> Option<Drawn> {
     let count = all.len().min(CURVES);
     let chosen: Vec<_> =
         (0..count).map(|i| all[if count > 1 { i * (all.len() - 1) / (count - 1) } else { 0 }]).collect();
-    let base = &folder.outcome.inputs.base.gradation;
+    let base = walks.base;
     let drawn = chosen.iter().map(|(_, rows)| *rows).chain(gone).flatten().map(|row| row.diameter_mm);
-    let x = size_axis(folder, drawn.chain(base.iter().map(|row| row[0])));
+    let x = size_axis(walks.scale_free, drawn.chain(base.iter().map(|row| row[0])));
     let y = Axis::percent("Percent finer by mass (%)");
     let what = "Size curves of the base, of what is retained after some increments, and of what is eroded";
     let mut figure = Figure::new("What is retained and what is eroded", what, "", x, y)
@@ -298,7 +301,7 @@ pub(super) fn retained(folder: &RunFolder) -> Option<Drawn> {
     if let Some(rows) = gone {
         figure.add(Line::new(curve(rows), BLACK).dash(Dash::Dashed).label("eroded, the end"));
     }
-    let of = if folder.outcome.replicates.len() > 1 { " of the first replicate" } else { "" };
+    let of = if walks.replicates.len() > 1 { " of the first replicate" } else { "" };
     let mut caption = format!(
         "What the filter has retained after chosen increments of the first run{of}, what has left it, and \
          the base as inserted. Retained curves that move to the left show self-filtering: what coarse \

@@ -5,6 +5,7 @@ use super::folder::RunFolder;
 use super::numbers::{interval_in_percent, known, percent, significant, size, trimmed, whole};
 use super::run_figures::{eroded_axis, run_look, run_name, threshold_rule, upper, verdict_colour};
 use super::shell::Drawn;
+use super::walks::Walks;
 use crate::outcome::record::{OfThickness, Statistic, Verdict};
 
 /// One of several filters or bases that differ in one thing: how many times that of this scene.
@@ -31,7 +32,7 @@ pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
          colour behind is the verdict",
         "Times the base particles of this scene; below, grains per void",
     ];
-    let figure = varied(folder, cases.collect(), titles)?;
+    let figure = varied(&folder.walks(), cases.collect(), titles)?;
     let caption = format!(
         "How the verdict moves with the number of base particles, N_base. Grains per void and mass ratio \
          enter N_base only as a product (Eq. 2), so this one axis answers for both: ×2 is twice the grains \
@@ -60,7 +61,7 @@ pub(super) fn thickness(folder: &RunFolder) -> Option<Drawn> {
          colour behind is the verdict",
         "Times the thickness of this scene; below, the thickness modelled",
     ];
-    let figure = varied(folder, rows.collect(), titles)?;
+    let figure = varied(&folder.walks(), rows.collect(), titles)?;
     let caption = format!(
         "How the verdict moves with the thickness of the filter: more layers are more constrictions to \
          pass. ×1 is this scene, {} layers of voids. By Eq. (2) a thicker filter is offered as many times \
@@ -72,7 +73,7 @@ pub(super) fn thickness(folder: &RunFolder) -> Option<Drawn> {
 
 /// Eroded mass against multiples of one thing, with title, description and name of the axis; `None` without
 /// cases.
-fn varied(folder: &RunFolder, mut cases: Vec<Varied>, titles: [&str; 3]) -> Option<Figure> {
+fn varied(walks: &Walks, mut cases: Vec<Varied>, titles: [&str; 3]) -> Option<Figure> {
     let [title, what, axis] = titles;
     cases.sort_by(|a, b| a.factor.total_cmp(&b.factor));
     let (least, most) = (cases.first()?.factor, cases.last()?.factor);
@@ -83,7 +84,7 @@ fn varied(folder: &RunFolder, mut cases: Vec<Varied>, titles: [&str; 3]) -> Opti
     });
     let x = Axis::log(axis, least, most).with_ticks(ticks.collect()).within(least / 1.25, most * 1.25);
     let highest = 100.0 * cases.iter().flat_map(|case| case.runs).map(upper).fold(0.0, f64::max);
-    let y = eroded_axis("Base eroded, by mass (%)", folder, (highest * 1.3).min(100.0));
+    let y = eroded_axis("Base eroded, by mass (%)", walks, (highest * 1.3).min(100.0));
     let mut figure = Figure::new(title, what, "", x, y);
     let edge = |left: f64, right: f64| libm::sqrt(left * right);
     let mut left = least / 1.25;
@@ -96,8 +97,8 @@ fn varied(folder: &RunFolder, mut cases: Vec<Varied>, titles: [&str; 3]) -> Opti
         figure.add(area.label(&first.verdict.words().replace(' ', "\n")));
         left = right;
     }
-    figure.add(threshold_rule(folder, Across::Y));
-    for run in folder.runs() {
+    figure.add(threshold_rule(walks, Across::Y));
+    for run in walks.runs() {
         let (colour, shape, dash) = run_look(run);
         // the runs stand a little apart, so that their bars do not overlap
         let apart = if run == 1 { 0.985 } else { 1.015 };

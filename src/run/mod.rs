@@ -22,6 +22,7 @@ pub mod erosion;
 pub mod error;
 pub mod folder;
 pub mod machine;
+mod network_record;
 mod network_walk;
 pub mod other_walks;
 pub mod pack;

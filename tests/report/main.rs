@@ -3,6 +3,7 @@
 mod campaign;
 mod first_page;
 mod folder;
+mod in_memory;
 
 use std::fs;
 use std::path::Path;

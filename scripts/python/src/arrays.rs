@@ -2,8 +2,6 @@
 
 use numpy::{Element, IntoPyArray, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
-use voidwalk::outcome::Recorded;
 use voidwalk::packing::{Cell, Packing};
 
 use crate::problem::refused;
@@ -31,21 +29,24 @@ pub fn voids(name: &str, numbers: &[i64]) -> PyResult<Vec<u32>> {
     numbers.iter().map(number).collect()
 }
 
-/// Grains from arrays, as the library keeps them: a column an axis.
-pub fn packing(
-    coords: &PyReadonlyArray2<'_, f64>,
-    diameter: &PyReadonlyArray1<'_, f64>,
-    cell: Option<[f64; 3]>,
-) -> PyResult<Packing> {
-    let points: &[[f64; 3]] = rows("coords", coords)?;
-    let along = |axis: usize| points.iter().map(|p| p[axis]).collect();
-    Ok(Packing {
-        cell: cell.map_or(Cell::Free, Cell::Periodic),
-        x: along(0),
-        y: along(1),
-        z: along(2),
-        diameter: column("diameter", diameter)?.to_vec(),
-    })
+/// Grains as Python hands them in: coords, diameter and the lengths of the cell.
+#[derive(FromPyObject)]
+pub struct Grains<'py>(PyReadonlyArray2<'py, f64>, PyReadonlyArray1<'py, f64>, Option<[f64; 3]>);
+
+impl Grains<'_> {
+    /// The grains as the library keeps them: a column an axis.
+    pub fn packing(&self) -> PyResult<Packing> {
+        let Self(coords, diameter, cell) = self;
+        let points: &[[f64; 3]] = rows("coords", coords)?;
+        let along = |axis: usize| points.iter().map(|p| p[axis]).collect();
+        Ok(Packing {
+            cell: cell.map_or(Cell::Free, Cell::Periodic),
+            x: along(0),
+            y: along(1),
+            z: along(2),
+            diameter: column("diameter", diameter)?.to_vec(),
+        })
+    }
 }
 
 /// Rows of three as an array that takes their memory over.
@@ -71,69 +72,4 @@ pub fn of_packing<'py>(
         Cell::Free => None,
     };
     Ok((of_rows(py, points)?, diameter.into_pyarray(py).into_any(), cell))
-}
-
-/// A dict of one array for each field of some rows.
-macro_rules! columns {
-    ($py:expr, $rows:expr, $($field:ident),*) => {{
-        let dict = PyDict::new($py);
-        $(dict.set_item(
-            stringify!($field),
-            $rows.iter().map(|row| row.$field).collect::<Vec<_>>().into_pyarray($py),
-        )?;)*
-        dict
-    }};
-}
-
-/// The rows of the CSV files of a run as a dict of tables, each a dict of columns.
-pub fn tables<'py>(py: Python<'py>, recorded: &Recorded) -> PyResult<Bound<'py, PyDict>> {
-    let Recorded { series, layers, retained, eroded, flow } = recorded;
-    let tables = PyDict::new(py);
-    tables.set_item(
-        "series",
-        columns!(
-            py,
-            series,
-            replicate,
-            run,
-            increment,
-            inserted,
-            moving,
-            eroded,
-            retained_in_constrictions,
-            retained_in_voids,
-            trapped,
-            blocked,
-            eroded_mass_fraction
-        ),
-    )?;
-    let of_layers = columns!(
-        py,
-        layers,
-        replicate,
-        run,
-        layer,
-        constrictions,
-        blocked,
-        retained_in_constrictions,
-        retained_in_voids
-    );
-    tables.set_item("layers", of_layers)?;
-    for (name, rows) in [("retained", retained), ("eroded", eroded)] {
-        let of_sizes = columns!(
-            py,
-            rows,
-            replicate,
-            run,
-            increment,
-            diameter_mm,
-            percent_finer_by_mass,
-            percent_finer_by_number
-        );
-        tables.set_item(name, of_sizes)?;
-    }
-    if !flow.is_empty() {
-        tables.set_item("flow", columns!(py, flow, replicate, run, increment, k_over_k0))?;
-    }
-    Ok(tables)
 }

@@ -1,6 +1,6 @@
 //! Packings, and the constrictions between their grains.
 
-use numpy::{IntoPyArray, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use voidwalk::campaign::CampaignCallbacks;
@@ -11,7 +11,7 @@ use voidwalk::run::machine::threads as pool;
 use voidwalk::run::{Event, RunError};
 use voidwalk::scene::Density;
 
-use crate::arrays::{of_packing, of_rows, packing};
+use crate::arrays::{Grains, of_packing, of_rows};
 use crate::problem::{of_constrictions, refused};
 use crate::soil::Gradation;
 use crate::work::at_work;
@@ -86,17 +86,15 @@ pub fn read_packing(py: Python<'_>, path: std::path::PathBuf) -> PyResult<(Array
 
 /// Voids and constrictions between grains, as a dict of arrays, and a summary as JSON.
 #[pyfunction]
-#[pyo3(signature = (coords, diameter, cell, merge_overlap, on_both_hulls, threads))]
+#[pyo3(signature = (grains, merge_overlap, on_both_hulls, threads))]
 pub fn measure<'py>(
     py: Python<'py>,
-    coords: PyReadonlyArray2<'py, f64>,
-    diameter: PyReadonlyArray1<'py, f64>,
-    cell: Option<[f64; 3]>,
+    grains: Grains<'py>,
     merge_overlap: f64,
     on_both_hulls: bool,
     threads: Option<usize>,
 ) -> PyResult<(Bound<'py, PyDict>, String)> {
-    let grains = packing(&coords, &diameter, cell)?;
+    let grains = grains.packing()?;
     let facets = if on_both_hulls { Facets::OnBothHulls } else { Facets::All };
     let (found, graph, curve, summary) = at_work(py, None, |_| {
         pool(threads)?.install(|| {

@@ -7,9 +7,11 @@
 mod arrays;
 mod grains;
 mod network;
+mod pages;
 mod problem;
 mod scenes;
 mod soil;
+mod tables;
 mod walks;
 mod work;
 
@@ -24,9 +26,11 @@ mod _voidwalk {
     #[pymodule_export]
     use crate::network::Network;
     #[pymodule_export]
+    use crate::pages::{report, run_brief, run_page, walk_brief, walk_page};
+    #[pymodule_export]
     use crate::problem::VoidwalkError;
     #[pymodule_export]
-    use crate::scenes::{campaign, init_text, report, resume, run, scene_text};
+    use crate::scenes::{Scene, campaign, init_text, resume, run, run_in_memory};
     #[pymodule_export]
     use crate::soil::{Curve, Gradation};
     #[pymodule_export]

@@ -14,7 +14,7 @@ use voidwalk::network::{
 use voidwalk::run::RunError;
 use voidwalk::run::machine::threads as pool;
 
-use crate::arrays::{column, of_rows, packing, rows, voids};
+use crate::arrays::{Grains, column, of_rows, rows, voids};
 use crate::problem::{failed, of_constrictions, of_network, refused};
 use crate::soil::Curve;
 use crate::work::at_work;
@@ -147,20 +147,17 @@ impl Network {
     }
 
     #[staticmethod]
-    #[pyo3(signature = (coords, diameter, cell, merge_overlap, copies, exit, rho, unit_mm))]
-    #[allow(clippy::too_many_arguments)]
+    #[pyo3(signature = (grains, merge_overlap, copies, exit, rho, unit_mm))]
     fn of_packing(
         py: Python<'_>,
-        coords: PyReadonlyArray2<'_, f64>,
-        diameter: PyReadonlyArray1<'_, f64>,
-        cell: Option<[f64; 3]>,
+        grains: Grains<'_>,
         merge_overlap: f64,
         copies: u32,
         exit: &str,
         rho: f64,
         unit_mm: Option<f64>,
     ) -> PyResult<Self> {
-        let (grains, rule) = (packing(&coords, &diameter, cell)?, rule(exit)?);
+        let (grains, rule) = (grains.packing()?, rule(exit)?);
         if rule == ExitRule::Area {
             let problem =
                 "the voids of a packing have no direction of their own, so that area alone leads nowhere";

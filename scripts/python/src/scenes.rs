@@ -1,22 +1,49 @@
 //! Scenes and campaigns: what the command line does, by the same calls.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+use std::time::SystemTime;
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use voidwalk::Outcome;
 use voidwalk::campaign::{self as campaigns, CampaignOptions, CampaignPlan, CasePart};
-use voidwalk::run::folder::claim;
+use voidwalk::case::{Case, RECORD};
 use voidwalk::run::machine::threads as pool;
-use voidwalk::run::{self as runs, CheckpointInterval, FolderKind, PrepareOptions, RunError, RunOptions};
+use voidwalk::run::{self as runs, CheckpointInterval, PrepareOptions, RunOptions, results};
 use voidwalk::schema::SceneError;
-use voidwalk::{Outcome, Scene};
 
-use crate::arrays::tables;
 use crate::problem::{failed, of_run, refused};
-use crate::work::{at_work, page};
+use crate::tables::of_recorded;
+use crate::work::at_work;
 
 /// What errors call settings that come from a dict.
 const DICT: &str = "scene";
+
+/// How a long call is done, which changes no result: memory (bytes), threads, how often progress is saved, and
+/// what the manifest says that it was started with.
+#[derive(FromPyObject)]
+pub struct Manner(Option<u64>, Option<usize>, Option<String>, String);
+
+impl Manner {
+    fn interval(&self) -> PyResult<Option<CheckpointInterval>> {
+        let parse = |text: &String| text.parse().map_err(|e| refused(format!("checkpoint_every: {e}")));
+        self.2.as_ref().map(parse).transpose()
+    }
+
+    fn prepare(&self, packings: PathBuf) -> PrepareOptions {
+        PrepareOptions { packings, memory: self.0, threads: self.1 }
+    }
+
+    fn run(&self, out: Option<PathBuf>, overwrite: bool, packings: PathBuf) -> PyResult<RunOptions> {
+        Ok(RunOptions {
+            out,
+            overwrite,
+            prepare: self.prepare(packings),
+            checkpoint_interval: self.interval()?,
+            command: self.3.clone(),
+        })
+    }
+}
 
 /// The TOML of settings that come as JSON.
 fn toml_of(name: &str, json: &str) -> PyResult<String> {
@@ -24,111 +51,141 @@ fn toml_of(name: &str, json: &str) -> PyResult<String> {
     toml::to_string(&value).map_err(|error| refused(format!("{name}: {error}")))
 }
 
-fn scene(path: Option<PathBuf>, json: Option<String>, settings: &[String]) -> PyResult<Scene> {
-    let read = match (path, json) {
-        (Some(path), _) => Scene::read(&path, settings),
-        (None, Some(json)) => Scene::parse(toml_of(DICT, &json)?.as_bytes(), DICT, settings),
-        (None, None) => Scene::built_in(settings),
-    };
-    read.map_err(|error: SceneError| of_run(&error.into()))
-}
-
-fn interval(text: Option<&str>) -> PyResult<Option<CheckpointInterval>> {
-    let parse = |text: &str| text.parse().map_err(|error| refused(format!("checkpoint_every: {error}")));
-    text.map(parse).transpose()
-}
-
 fn json(outcome: &Outcome) -> PyResult<String> {
     serde_json::to_string(outcome).map_err(failed)
+}
+
+/// A scene of the library.
+#[pyclass(frozen, module = "voidwalk._voidwalk", skip_from_py_object)]
+pub struct Scene {
+    inner: voidwalk::Scene,
+}
+
+impl Scene {
+    fn of(read: Result<voidwalk::Scene, SceneError>) -> PyResult<Self> {
+        Ok(Self { inner: read.map_err(|error| of_run(&error.into()))? })
+    }
+}
+
+#[pymethods]
+impl Scene {
+    /// The built-in scene.
+    #[staticmethod]
+    fn built_in(settings: Vec<String>) -> PyResult<Self> {
+        Self::of(voidwalk::Scene::built_in(&settings))
+    }
+
+    #[staticmethod]
+    fn from_file(path: PathBuf, settings: Vec<String>) -> PyResult<Self> {
+        Self::of(voidwalk::Scene::read(&path, &settings))
+    }
+
+    #[staticmethod]
+    fn from_json(text: &str, settings: Vec<String>) -> PyResult<Self> {
+        Self::of(voidwalk::Scene::parse(toml_of(DICT, text)?.as_bytes(), DICT, &settings))
+    }
+
+    #[staticmethod]
+    fn from_toml(text: &str, name: &str, settings: Vec<String>) -> PyResult<Self> {
+        Self::of(voidwalk::Scene::parse(text.as_bytes(), name, &settings))
+    }
+
+    /// What errors call it.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.inner.name
+    }
+
+    fn to_toml(&self) -> String {
+        self.inner.to_toml()
+    }
+
+    fn to_json(&self) -> PyResult<String> {
+        serde_json::to_string(&self.inner).map_err(failed)
+    }
 }
 
 /// The built-in scene as commented TOML, with every setting there is.
 #[pyfunction]
 pub fn init_text() -> String {
-    Scene::init_text()
+    voidwalk::Scene::init_text()
 }
 
-/// A scene with every setting that it has, as TOML.
+/// Walks a scene into a folder: the folder.
 #[pyfunction]
-#[pyo3(signature = (path, json, settings))]
-pub fn scene_text(path: Option<PathBuf>, json: Option<String>, settings: Vec<String>) -> PyResult<String> {
-    Ok(scene(path, json, &settings)?.to_toml())
-}
-
-/// Walks a scene, into a folder or in memory: the folder, the outcome as JSON, and in memory the tables.
-#[pyfunction]
-#[pyo3(signature = (
-    path, json, settings, out, overwrite, packings, memory, threads, checkpoint_every, command, progress
-))]
-#[allow(clippy::too_many_arguments, clippy::type_complexity)]
-pub fn run<'py>(
-    py: Python<'py>,
-    path: Option<PathBuf>,
-    json: Option<String>,
-    settings: Vec<String>,
-    out: Option<PathBuf>,
+#[pyo3(signature = (scene, out, overwrite, packings, manner, progress))]
+pub fn run(
+    py: Python<'_>,
+    scene: &Scene,
+    out: PathBuf,
     overwrite: bool,
     packings: PathBuf,
-    memory: Option<u64>,
-    threads: Option<usize>,
-    checkpoint_every: Option<&str>,
-    command: String,
-    progress: Option<&Bound<'py, PyAny>>,
-) -> PyResult<(Option<PathBuf>, String, Option<Bound<'py, PyDict>>)> {
-    let scene = scene(path, json, &settings)?;
-    let prepare = PrepareOptions { packings, memory, threads };
-    let Some(out) = out else {
-        let (outcome, recorded) = at_work(py, progress, |callbacks| {
-            let case = runs::prepare(scene, &prepare, &callbacks.run)?;
-            case.warnings().iter().for_each(|warning| (callbacks.run.warn)(warning));
-            pool(threads)?.install(|| runs::walk_case_recorded(&case, &callbacks.run))
-        })?;
-        return Ok((None, self::json(&outcome)?, Some(tables(py, &recorded)?)));
-    };
-    let options = RunOptions {
-        out: Some(out),
-        overwrite,
-        prepare,
-        checkpoint_interval: interval(checkpoint_every)?,
-        command,
-    };
+    manner: Manner,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<PathBuf> {
+    let (scene, options) = (scene.inner.clone(), manner.run(Some(out), overwrite, packings)?);
     let done = at_work(py, progress, |callbacks| runs::walk_scene(scene, &options, &callbacks.run))?;
-    Ok((Some(done.folder), self::json(&done.outcome)?, None))
+    Ok(done.folder)
+}
+
+/// What a page shows of a run besides outcome and tables: manifest, scene, the record of the packing.
+type Texts = (String, String, Option<String>);
+
+/// Walks a scene in memory: the outcome as JSON, the tables, and what its page shows besides.
+#[pyfunction]
+#[pyo3(signature = (scene, packings, manner, progress))]
+pub fn run_in_memory<'py>(
+    py: Python<'py>,
+    scene: &Scene,
+    packings: PathBuf,
+    manner: Manner,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<(String, Bound<'py, PyDict>, Texts)> {
+    let (scene, options) = (scene.inner.clone(), manner.run(None, false, packings)?);
+    let started = SystemTime::now();
+    let (outcome, recorded, texts) = at_work(py, progress, |callbacks| {
+        let case = runs::prepare(scene, &options.prepare, &callbacks.run)?;
+        case.warnings().iter().for_each(|warning| (callbacks.run.warn)(warning));
+        let pool = pool(options.prepare.threads)?;
+        let (outcome, recorded) = pool.install(|| runs::walk_case_recorded(&case, &callbacks.run))?;
+        let threads = pool.current_num_threads() as u64;
+        let manifest = results::manifest(&case, threads, started, options.command.clone());
+        let texts = (serde_json::to_string(&manifest)?, case.resolved().to_toml(), packing_record(&case));
+        Ok((outcome, recorded, texts))
+    })?;
+    Ok((json(&outcome)?, of_recorded(py, &recorded)?, texts))
+}
+
+/// The record of the filter's packing, where it was packed.
+fn packing_record(case: &Case) -> Option<String> {
+    let kept = case.inputs.iter().find(|input| input.kept_as.ends_with(RECORD))?;
+    String::from_utf8(kept.bytes.clone()).ok()
 }
 
 /// Continues a run that was stopped.
 #[pyfunction]
-#[pyo3(signature = (folder, memory, threads, checkpoint_every, command, progress))]
+#[pyo3(signature = (folder, manner, progress))]
 pub fn resume(
     py: Python<'_>,
     folder: PathBuf,
-    memory: Option<u64>,
-    threads: Option<usize>,
-    checkpoint_every: Option<&str>,
-    command: String,
+    manner: Manner,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<()> {
-    let prepare = PrepareOptions { packings: folder.join("packings"), memory, threads };
-    let checkpoint_interval = interval(checkpoint_every)?;
-    let options = RunOptions { prepare, checkpoint_interval, command, ..RunOptions::default() };
+    let options = manner.run(None, false, folder.join("packings"))?;
     at_work(py, progress, |callbacks| runs::resume(&folder, &options, &callbacks.run))?;
     Ok(())
 }
 
 /// Walks the cases of a plan and collects them into a folder.
 #[pyfunction]
-#[pyo3(signature = (path, json, out, packings, memory, threads, checkpoint_every, command, progress))]
-#[allow(clippy::too_many_arguments)]
+#[pyo3(signature = (path, json, out, packings, manner, progress))]
 pub fn campaign(
     py: Python<'_>,
     path: PathBuf,
     json: Option<String>,
     out: PathBuf,
     packings: Option<PathBuf>,
-    memory: Option<u64>,
-    threads: Option<usize>,
-    checkpoint_every: Option<&str>,
-    command: String,
+    manner: Manner,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<()> {
     let plan = match json {
@@ -136,25 +193,12 @@ pub fn campaign(
         Some(json) => CampaignPlan::parse(toml_of("plan", &json)?.as_bytes(), &path),
     };
     let plan = plan.map_err(|error| of_run(&error.into()))?;
-    let checkpoint_interval = interval(checkpoint_every)?.unwrap_or_default();
+    let checkpoint_interval = manner.interval()?.unwrap_or_default();
+    let Manner(memory, threads, _, command) = manner;
     let part = CasePart::default();
     let options = CampaignOptions { out, part, packings, memory, threads, checkpoint_interval, command };
     at_work(py, progress, |callbacks| {
         let finished = campaigns::run(&plan, &options, callbacks)?;
         finished.problem().map_or(Ok(()), Err)
     })
-}
-
-/// Writes the page of a finished folder again.
-#[pyfunction]
-pub fn report(py: Python<'_>, folder: PathBuf) -> PyResult<PathBuf> {
-    let write = |folder: &Path| {
-        let Some(kind) = FolderKind::of(folder).filter(|kind| kind.has_page()) else {
-            let problem = "holds no finished run, packing, campaign or study";
-            return Err(RunError::Refused(format!("{}: {problem}", folder.display())));
-        };
-        let claimed = claim(folder, kind, true)?;
-        page(kind, claimed.path()).map_err(RunError::Failed)
-    };
-    py.detach(|| write(&folder)).map_err(|error| of_run(&error))
 }

@@ -11,10 +11,10 @@ use voidwalk::run::machine::threads as pool;
 use voidwalk::run::{NetworkWalk, walk_networks};
 use voidwalk::walk::{Engine, Sampling};
 
-use crate::arrays::tables;
 use crate::network::Network;
-use crate::problem::{failed, refused};
+use crate::problem::refused;
 use crate::soil::Gradation;
+use crate::tables::of_recorded;
 use crate::work::at_work;
 
 /// The seed of a replicate, counted from 1.
@@ -23,7 +23,7 @@ pub fn replicate_seed(seed: u64, replicate: u64) -> u64 {
     case::replicate_seed(seed, replicate)
 }
 
-/// Walks networks; what came of it as JSON, the tables of a run, and which throats were blocked by replicate and run.
+/// Walks networks; their record as JSON, the tables of a run, and which throats were blocked by replicate and run.
 #[pyfunction]
 #[pyo3(signature = (
     networks, base, n_base, increments, engine, sampling, seed, runs, replicates, series_every, size_curves,
@@ -70,8 +70,12 @@ pub fn walk<'py>(
         return Err(refused("the networks of the replicates differ in their number of throats"));
     }
     let given: Vec<Arc<voidwalk::Network>> = networks.iter().map(|network| network.inner.clone()).collect();
-    let outcome = at_work(py, progress, |callbacks| {
-        pool(threads)?.install(|| walk_networks(&given, &plan, &callbacks.run))
+    let (outcome, record) = at_work(py, progress, |callbacks| {
+        pool(threads)?.install(|| {
+            let outcome = walk_networks(&given, &plan, &callbacks.run)?;
+            let record = given.first().map(|network| outcome.record(&plan, network, given.len()));
+            Ok((outcome, serde_json::to_string(&record)?))
+        })
     })?;
     let mut blocked = Vec::with_capacity(replicates as usize * runs as usize * throats);
     for (i, walked) in outcome.replicates.iter().enumerate() {
@@ -80,17 +84,7 @@ pub fn walk<'py>(
     }
     let blocked =
         blocked.into_pyarray(py).call_method1("reshape", ((replicates as usize, runs as usize, throats),))?;
-    let first = outcome.replicates.first().map(|walked| &walked.result);
-    let said = serde_json::json!({
-        "verdict": outcome.verdict,
-        "seed": seed,
-        "n_base": n_base,
-        "engine": first.map(|first| first.engine),
-        "left_out": first.map(|first| &first.left_out),
-        "replicates": outcome.replicates.iter().map(|walked| &walked.result.replicate).collect::<Vec<_>>(),
-        "summary": outcome.summary,
-    });
     let mut recorded = Recorded::default();
     outcome.replicates.into_iter().for_each(|walked| recorded.append(walked.result.recorded));
-    Ok((serde_json::to_string(&said).map_err(failed)?, tables(py, &recorded)?, blocked))
+    Ok((record, of_recorded(py, &recorded)?, blocked))
 }

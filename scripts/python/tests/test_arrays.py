@@ -103,6 +103,20 @@ def test_what_is_no_network_is_refused(changes: Dict[str, Any], words: str) -> N
         network(**changes)
 
 
+@pytest.mark.parametrize("as_given", [np.asfortranarray, strided, read_only, lambda a: a.astype(">f8"), np.ndarray.tolist])
+def test_grains_and_soils_take_arrays_as_they_come(
+    as_given: Callable[[Any], Any], grid: "tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]"
+) -> None:
+    coords, diameter = grid
+    plain, given = vw.Packing(coords, diameter, 4.0), vw.Packing(as_given(coords), as_given(diameter), 4.0)
+    assert given.coords.tolist() == plain.coords.tolist() and given.diameter.tolist() == plain.diameter.tolist()
+    assert vw.constrictions(given)["throat.diameter"].tolist() == vw.constrictions(plain)["throat.diameter"].tolist()
+    sizes, percents = np.array([0.5, 1.0, 2.0]), np.array([0.0, 40.0, 100.0])
+    assert vw.Gradation(as_given(sizes), as_given(percents)).d(15) == vw.Gradation(sizes, percents).d(15)
+    narrow, wide = np.array([0.0, 50.0, 100.0]), np.array([0.1, 0.2, 0.3])
+    assert vw.Curve(as_given(narrow), as_given(wide)).dc(35) == vw.Curve(narrow, wide).dc(35)
+
+
 @pytest.mark.parametrize(
     "make, words",
     [

@@ -166,17 +166,13 @@ def test_settings_change_a_scene_as_set_does(small: Dict[str, Any]) -> None:
     assert vw.init_text().startswith("#")
 
 
-def test_results_are_read_pickled_and_shown(small: Dict[str, Any], tmp_path: Path) -> None:
+def test_results_are_read_pickled_and_tabulated(small: Dict[str, Any], tmp_path: Path) -> None:
     made = vw.run(small, out=tmp_path / "run")
     read = vw.read(tmp_path / "run")
     assert isinstance(read, vw.Result)
     for result in (read, pickle.loads(pickle.dumps(made))):
         assert result.outcome == made.outcome and np.array_equal(result.series["eroded"], made.series["eroded"])
-    assert f"<b>{made.verdict}</b>" in made._repr_html_() and made.verdict in repr(made)
-    page = made.report(tmp_path / "page.html")
-    assert page.read_text() == (tmp_path / "run" / "report.html").read_text()
-    with pytest.raises(ValueError, match="no folder"):
-        vw.run(small).report()
+    assert made.verdict in repr(made)
     pandas = pytest.importorskip("pandas")
     frame = made.to_pandas()
     assert isinstance(frame, pandas.DataFrame) and len(frame) == len(made.series["eroded"])

@@ -14,9 +14,10 @@ Examples
 from ._grains import Constrictions, Packing, constrictions, pack
 from ._network import Network
 from ._result import CampaignResult, Result
+from ._scene import Scene, init_text, scene_text
 from ._soil import Curve, Gradation
 from ._voidwalk import Progress, VoidwalkError, __version__
-from ._walk import campaign, init_text, read, replicate_seed, resume, run, scene_text, walk
+from ._walk import campaign, read, replicate_seed, resume, run, walk
 
 __all__ = [
     "CampaignResult",
@@ -27,6 +28,7 @@ __all__ = [
     "Packing",
     "Progress",
     "Result",
+    "Scene",
     "VoidwalkError",
     "__version__",
     "campaign",

@@ -65,6 +65,11 @@ class Packing:
         self.cell = cell_lengths(cell)
         self.reached = {}
 
+    @property
+    def _columns(self) -> Tuple[Floats, Floats, Optional[Tuple[float, float, float]]]:
+        """The grains as the library takes them."""
+        return self.coords, self.diameter, self.cell
+
     @classmethod
     def from_arrays(cls, coords: Any, diameter: Any, cell: Any = None) -> Packing:
         """The class itself, by another name."""
@@ -283,11 +288,6 @@ def constrictions(
     if facets not in ("all", "on_both_hulls"):
         raise ValueError(f"facets = {facets} is not allowed; one of all, on_both_hulls")
     arrays, summary = _voidwalk.measure(
-        packing.coords,
-        packing.diameter,
-        packing.cell,
-        merge_overlap,
-        facets == "on_both_hulls",
-        threads_or_none(threads),
+        packing._columns, merge_overlap, facets == "on_both_hulls", threads_or_none(threads)
     )
     return Constrictions(arrays, json.loads(summary), packing, merge_overlap)

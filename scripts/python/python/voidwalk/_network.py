@@ -242,9 +242,7 @@ class Network:
         number = whole("copies", copies, 1)
         if number >= 2**32:
             raise ValueError(f"copies = {number} is not allowed; a whole number below {2**32}")
-        native = _voidwalk.Network.of_packing(
-            packing.coords, packing.diameter, packing.cell, merge_overlap, number, exit, rho, None
-        )
+        native = _voidwalk.Network.of_packing(packing._columns, merge_overlap, number, exit, rho, None)
         made = dict(packing=packing, copies=number, exit=exit, rho=rho, merge_overlap=merge_overlap)
         return cls._of(native, "from_packing", made, None, rho)
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import csv
-import html
 import json
 import os
 import shutil
 from importlib import import_module
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Optional, Union
+from typing import Any, Dict, List, Optional, Tuple, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,8 +32,8 @@ class Result:
     Attributes
     ----------
     outcome : dict
-        Everything that ``outcome.json`` says of a scene; of a network the verdict, the summary and every
-        replicate.
+        Everything that ``outcome.json`` says of a scene; of a network the verdict, the summary, every
+        replicate, and what was walked with what.
     series : dict of ndarray
         Counts of particles after each recorded increment, by replicate and run: inserted, moving, eroded,
         retained_in_constrictions, retained_in_voids, trapped, blocked (constrictions), eroded_mass_fraction.
@@ -66,8 +65,9 @@ class Result:
         tables: Dict[str, Table],
         blocked: Optional[NDArray[np.bool_]] = None,
         folder: Optional[Path] = None,
+        texts: Optional[Tuple[str, str, Optional[str]]] = None,
     ) -> None:
-        self.outcome, self.blocked, self.folder = outcome, blocked, folder
+        self.outcome, self.blocked, self.folder, self._texts = outcome, blocked, folder, texts
         self.series, self.layers = tables["series"], tables["layers"]
         self.retained, self.eroded = tables["retained"], tables["eroded"]
         self.flow = tables.get("flow", {})
@@ -109,12 +109,13 @@ class Result:
         return self.to_pandas(table).set_index(over).to_xarray()
 
     def report(self, path: Union[None, str, os.PathLike[str]] = None) -> Path:
-        """Writes the page of a run again from its folder's files.
+        """Writes the page of the walk: verdict, figures, tables, what the model leaves out.
 
         Parameters
         ----------
         path : path-like, optional
-            Where to; ``report.html`` in the folder without it.
+            Where to. Without it the ``report.html`` in the folder of the run, written again from the files
+            there.
 
         Returns
         -------
@@ -124,35 +125,44 @@ class Result:
         Raises
         ------
         ValueError
-            A result without a folder: a page shows files, which ``run(scene, out="folder")`` writes.
-        """
-        if self.folder is None:
-            raise ValueError('this result has no folder to make a page of: run(scene, out="folder") writes one')
-        page = Path(_voidwalk.report(os.fspath(self.folder)))
-        if path is None:
-            return page
-        return Path(shutil.copyfile(page, path))
+            No `path`, of a result without a folder; or a result whose outcome or tables were changed until
+            they do not fit together.
 
-    def _rows(self) -> Iterator[List[str]]:
-        for run in self.summary:
-            eroded, blocked = run["eroded_mass_fraction"], run["blocked_fraction"]
-            interval = ""
-            if eroded.get("low") is not None and eroded.get("high") is not None:
-                interval = f"{100 * eroded['low']:.2f} to {100 * eroded['high']:.2f} %"
-            yield [str(run["run"]), f"{100 * eroded['mean']:.2f} %", interval, f"{100 * blocked['mean']:.2f} %"]
+        Examples
+        --------
+        >>> import tempfile, voidwalk as vw
+        >>> result = vw.walk(vw.Network.cubic([6, 6, 9]), 0.2, n_base=1000, replicates=2)
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     page = result.report(f"{folder}/page.html").read_text(encoding="utf-8")
+        >>> "What the model leaves out" in page
+        True
+        """
+        if self.folder is not None:
+            page = Path(_voidwalk.report(os.fspath(self.folder)))
+            return page if path is None else Path(shutil.copyfile(page, path))
+        if path is None:
+            raise ValueError('path is missing: this result has no folder; report("page.html") writes the page there')
+        place = Path(path)
+        place.write_text(self._page(), encoding="utf-8")
+        return place
+
+    def _page(self) -> str:
+        """The page of a walk in memory."""
+        tables = {name: getattr(self, name) for name in _TABLES if getattr(self, name)}
+        said = json.dumps(self.outcome)
+        if self._texts is None:
+            return _voidwalk.walk_page(said, tables)
+        return _voidwalk.run_page(said, self._texts, tables)
 
     def __repr__(self) -> str:
-        rows = "; ".join(f"run {run}: {mean} of the mass eroded" for run, mean, _, _ in self._rows())
+        means = ((run["run"], 100 * run["eroded_mass_fraction"]["mean"]) for run in self.summary)
+        rows = "; ".join(f"run {run}: {mean:.2f} % of the mass eroded" for run, mean in means)
         count = len(self.replicates)
         return f"Result({self.verdict}: {rows}; {count} {'replicate' if count == 1 else 'replicates'})"
 
     def _repr_html_(self) -> str:
-        heads = ["run", "mass eroded", "95 % interval", "constrictions blocked"]
-        head = "".join(f"<th>{name}</th>" for name in heads)
-        cells = ("".join(f"<td>{html.escape(cell)}</td>" for cell in row) for row in self._rows())
-        body = "".join(f"<tr>{row}</tr>" for row in cells)
-        said = html.escape(self.verdict)
-        return f"<p><b>{said}</b></p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+        brief = _voidwalk.run_brief if self.blocked is None else _voidwalk.walk_brief
+        return brief(json.dumps(self.outcome))
 
 
 class CampaignResult:

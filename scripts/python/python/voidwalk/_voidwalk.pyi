@@ -12,6 +12,10 @@ _Path = Union[str, os.PathLike[str]]
 _Cell = Optional[Tuple[float, float, float]]
 _Grains = Tuple[_Floats, _Floats, _Cell]
 _Tables = Dict[str, Dict[str, NDArray[Any]]]
+#: Memory (bytes), threads, how often progress is saved, and what the manifest says.
+_Manner = Tuple[Optional[int], Optional[int], Optional[str], str]
+#: Manifest, scene, and the record of a packing.
+_Texts = Tuple[str, str, Optional[str]]
 _Callback = Optional[Callable[[Progress], object]]
 
 __all__ = [
@@ -19,13 +23,18 @@ __all__ = [
     "pack",
     "read_packing",
     "Network",
+    "report",
+    "run_brief",
+    "run_page",
+    "walk_brief",
+    "walk_page",
     "VoidwalkError",
+    "Scene",
     "campaign",
     "init_text",
-    "report",
     "resume",
     "run",
-    "scene_text",
+    "run_in_memory",
     "Curve",
     "Gradation",
     "replicate_seed",
@@ -117,9 +126,7 @@ class Network:
     ) -> Network: ...
     @staticmethod
     def of_packing(
-        coords: _Floats,
-        diameter: _Floats,
-        cell: _Cell,
+        grains: _Grains,
         merge_overlap: float,
         copies: int,
         exit: str,
@@ -159,12 +166,7 @@ def pack(
 ) -> Tuple[_Grains, Dict[str, float]]: ...
 def read_packing(path: _Path) -> Tuple[_Grains, List[str]]: ...
 def measure(
-    coords: _Floats,
-    diameter: _Floats,
-    cell: _Cell,
-    merge_overlap: float,
-    on_both_hulls: bool,
-    threads: Optional[int],
+    grains: _Grains, merge_overlap: float, on_both_hulls: bool, threads: Optional[int]
 ) -> Tuple[Dict[str, NDArray[Any]], str]: ...
 def replicate_seed(seed: int, replicate: int) -> int: ...
 def walk(
@@ -185,37 +187,38 @@ def walk(
     progress: _Callback,
 ) -> Tuple[str, _Tables, NDArray[np.bool_]]: ...
 def init_text() -> str: ...
-def scene_text(path: Optional[_Path], json: Optional[str], settings: List[str]) -> str: ...
+@final
+class Scene:
+    @staticmethod
+    def built_in(settings: List[str]) -> Scene: ...
+    @staticmethod
+    def from_file(path: _Path, settings: List[str]) -> Scene: ...
+    @staticmethod
+    def from_json(text: str, settings: List[str]) -> Scene: ...
+    @staticmethod
+    def from_toml(text: str, name: str, settings: List[str]) -> Scene: ...
+    @property
+    def name(self) -> str: ...
+    def to_toml(self) -> str: ...
+    def to_json(self) -> str: ...
+
 def run(
-    path: Optional[_Path],
-    json: Optional[str],
-    settings: List[str],
-    out: Optional[_Path],
-    overwrite: bool,
-    packings: _Path,
-    memory: Optional[int],
-    threads: Optional[int],
-    checkpoint_every: Optional[str],
-    command: str,
-    progress: _Callback,
-) -> Tuple[Optional[os.PathLike[str]], str, Optional[_Tables]]: ...
-def resume(
-    folder: _Path,
-    memory: Optional[int],
-    threads: Optional[int],
-    checkpoint_every: Optional[str],
-    command: str,
-    progress: _Callback,
-) -> None: ...
+    scene: Scene, out: _Path, overwrite: bool, packings: _Path, manner: _Manner, progress: _Callback
+) -> os.PathLike[str]: ...
+def run_in_memory(
+    scene: Scene, packings: _Path, manner: _Manner, progress: _Callback
+) -> Tuple[str, _Tables, _Texts]: ...
+def resume(folder: _Path, manner: _Manner, progress: _Callback) -> None: ...
 def campaign(
     path: _Path,
     json: Optional[str],
     out: _Path,
     packings: Optional[_Path],
-    memory: Optional[int],
-    threads: Optional[int],
-    checkpoint_every: Optional[str],
-    command: str,
+    manner: _Manner,
     progress: _Callback,
 ) -> None: ...
 def report(folder: _Path) -> os.PathLike[str]: ...
+def run_page(outcome: str, texts: _Texts, tables: _Tables) -> str: ...
+def run_brief(outcome: str) -> str: ...
+def walk_page(record: str, tables: _Tables) -> str: ...
+def walk_brief(record: str) -> str: ...

@@ -8,20 +8,16 @@ import sys
 from pathlib import Path
 from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
-import numpy as np
-
 from . import _voidwalk
 from ._arrays import threads_or_none, whole
 from ._grains import Packing
 from ._network import Network
 from ._progress import Follower, Following
 from ._result import CampaignResult, Result, read_run
+from ._scene import Scene, Stated, as_json, native_scene
 from ._soil import Gradation
 
-__all__ = ["campaign", "init_text", "read", "replicate_seed", "resume", "run", "scene_text", "walk"]
-
-#: A file, or what it would say.
-Scene = Union[None, str, "os.PathLike[str]", Mapping[str, Any]]
+__all__ = ["campaign", "read", "replicate_seed", "resume", "run", "walk"]
 
 #: Base particles of a walk that is not told how many.
 USUAL_PARTICLES = 100_000
@@ -162,62 +158,20 @@ def walk(
     return Result(json.loads(said), tables, blocked=blocked)
 
 
-def _plain(value: Any) -> Any:
-    """Values of arrays and paths as JSON knows them."""
-    if isinstance(value, np.generic):
-        return value.item()
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    if isinstance(value, os.PathLike):
-        return os.fspath(value)
-    raise ValueError(f"{value!r} is not allowed in a scene; numbers, words, lists and tables are")
-
-
-def _stated(value: Any) -> Any:
-    """A dict without the settings that are ``None``: those are not given."""
-    if isinstance(value, Mapping):
-        return {str(key): _stated(of) for key, of in value.items() if of is not None}
-    return value
-
-
-def _given(scene: Scene, settings: Optional[Mapping[str, Any]]) -> Tuple[Optional[str], Optional[str], List[str]]:
-    """A scene as a path or as JSON, and the settings that change it as ``key=value``."""
-    values = [] if settings is None else list(_stated(settings).items())
-    changes = [f"{key}={json.dumps(value, default=_plain, allow_nan=False)}" for key, value in values]
-    if scene is None:
-        return None, None, changes
-    if isinstance(scene, Mapping):
-        try:
-            return None, json.dumps(_stated(scene), default=_plain, allow_nan=False), changes
-        except TypeError as error:
-            raise ValueError(f"scene: {error}") from None
-    return os.fspath(scene), None, changes
-
-
-def _command(call: str) -> str:
-    """What the manifest says that the work was started with."""
-    return f"voidwalk.{call} of Python {sys.version_info.major}.{sys.version_info.minor}"
-
-
-def scene_text(scene: Scene = None, settings: Optional[Mapping[str, Any]] = None) -> str:
-    """A scene with every setting that it has, as TOML; the built-in scene without one.
-
-    Examples
-    --------
-    >>> import voidwalk as vw
-    >>> "cu = 3" in vw.scene_text(settings={"base.cu": 3})
-    True
-    """
-    return _voidwalk.scene_text(*_given(scene, settings))
-
-
-def init_text() -> str:
-    """The built-in scene as TOML, with every setting there is and what it means, as ``voidwalk init`` writes it."""
-    return _voidwalk.init_text()
+def _manner(
+    call: str, memory: Optional[int], threads: Optional[int], checkpoint_every: Optional[str]
+) -> Tuple[Optional[int], Optional[int], Optional[str], str]:
+    """How a long call is done, checked; the manifest says that the work was started with this one."""
+    return (
+        None if memory is None else whole("memory", memory, 1),
+        threads_or_none(threads),
+        checkpoint_every,
+        f"voidwalk.{call} of Python {sys.version_info.major}.{sys.version_info.minor}",
+    )
 
 
 def run(
-    scene: Scene = None,
+    scene: Union[Scene, Stated] = None,
     out: Union[None, str, os.PathLike[str]] = None,
     threads: Optional[int] = None,
     *,
@@ -232,9 +186,9 @@ def run(
 
     Parameters
     ----------
-    scene : path-like, mapping or None
-        A scene's file, or a dict with what it would say; the built-in scene without one. Paths in a dict are
-        taken from the working directory.
+    scene : Scene, path-like, mapping or None
+        As for :class:`Scene`: a scene, its file, or a dict with what that would say; the built-in scene without
+        one.
     out : path-like, optional
         Folder for the results: all files that ``voidwalk run`` writes, the page too. A run that was stopped
         there goes on. Without it everything stays in memory.
@@ -276,25 +230,14 @@ def run(
     >>> vw.run({**small, "filter": filter, "base": base}).verdict
     'continuing erosion'
     """
-    path, text, changes = _given(scene, settings)
+    native = native_scene(scene, settings)
+    manner = _manner("run", memory, threads, checkpoint_every)
     with Following(progress) as callback:
-        folder, said, tables = _voidwalk.run(
-            path,
-            text,
-            changes,
-            None if out is None else os.fspath(out),
-            bool(overwrite),
-            os.fspath(packings),
-            None if memory is None else whole("memory", memory, 1),
-            threads_or_none(threads),
-            checkpoint_every,
-            _command("run"),
-            callback,
-        )
-    if tables is None:
-        assert folder is not None
-        return read_run(Path(folder))
-    return Result(json.loads(said), tables)
+        if out is None:
+            said, tables, texts = _voidwalk.run_in_memory(native, os.fspath(packings), manner, callback)
+            return Result(json.loads(said), tables, texts=texts)
+        folder = _voidwalk.run(native, os.fspath(out), bool(overwrite), os.fspath(packings), manner, callback)
+    return read_run(Path(folder))
 
 
 def resume(
@@ -318,11 +261,9 @@ def resume(
     -------
     Result
     """
-    bytes_ = None if memory is None else whole("memory", memory, 1)
+    manner = _manner("resume", memory, threads, checkpoint_every)
     with Following(progress) as callback:
-        _voidwalk.resume(
-            os.fspath(folder), bytes_, threads_or_none(threads), checkpoint_every, _command("resume"), callback
-        )
+        _voidwalk.resume(os.fspath(folder), manner, callback)
     return read_run(Path(folder))
 
 
@@ -360,20 +301,11 @@ def campaign(
     VoidwalkError
         Cases that could not be walked; the others are done.
     """
-    is_dict = isinstance(plan, Mapping)
-    path, text, _ = _given(plan, None)
+    path, text = ("plan.toml", as_json(plan)) if isinstance(plan, Mapping) else (os.fspath(plan), None)
+    manner = _manner("campaign", memory, threads, checkpoint_every)
+    kept = None if packings is None else os.fspath(packings)
     with Following(progress) as callback:
-        _voidwalk.campaign(
-            "plan.toml" if is_dict or path is None else path,
-            text,
-            os.fspath(out),
-            None if packings is None else os.fspath(packings),
-            None if memory is None else whole("memory", memory, 1),
-            threads_or_none(threads),
-            checkpoint_every,
-            _command("campaign"),
-            callback,
-        )
+        _voidwalk.campaign(path, text, os.fspath(out), kept, manner, callback)
     return CampaignResult(Path(out))
 
 

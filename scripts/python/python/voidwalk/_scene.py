@@ -1,0 +1,152 @@
+"""Scenes: one base-filter combination and how it is to be walked."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
+
+import numpy as np
+
+from . import _voidwalk
+
+__all__ = ["Scene", "init_text", "scene_text"]
+
+#: A scene's file, what it would say, or nothing for the built-in scene.
+Stated = Union[None, str, "os.PathLike[str]", Mapping[str, Any]]
+
+
+class Scene:
+    """A base-filter combination and how it is to be walked: every setting checked, given or by default.
+
+    Parameters
+    ----------
+    scene : Scene, path-like, mapping or None
+        A scene's file, or a dict with what it would say; the built-in scene without one. Paths in a file are
+        taken from its folder, those in a dict from the working directory. The files that they name are read
+        when the scene is walked.
+    settings : mapping, optional
+        Settings that change it, as ``{"base.cu": 3}``.
+
+    Raises
+    ------
+    ValueError
+        What is refused, in the words of the command line.
+
+    Notes
+    -----
+    A scene never changes, compares by its settings, and is pickled by them.
+
+    Examples
+    --------
+    >>> import voidwalk as vw
+    >>> scene = vw.Scene(settings={"base.cu": 3, "replicates": 2})
+    >>> scene.settings["base"]["cu"], scene.settings["replicates"]
+    (3.0, 2)
+    >>> vw.Scene(scene, {"replicates": 4}).settings["replicates"]
+    4
+    """
+
+    __slots__ = ("_native",)
+    _native: _voidwalk.Scene
+
+    def __init__(
+        self, scene: Union[Scene, Stated] = None, settings: Optional[Mapping[str, Any]] = None
+    ) -> None:
+        self._native = native_scene(scene, settings)
+
+    @classmethod
+    def from_toml(cls, text: str, name: str = "scene") -> Scene:
+        """A scene from the text of its file; `name` stands for the file in errors."""
+        return cls._of(_voidwalk.Scene.from_toml(text, name, []))
+
+    @classmethod
+    def _of(cls, native: _voidwalk.Scene) -> Scene:
+        new = cls.__new__(cls)
+        new._native = native
+        return new
+
+    @property
+    def settings(self) -> Dict[str, Any]:
+        """Every setting that the scene has: a dict that changes nothing when it is changed."""
+        settings: Dict[str, Any] = json.loads(self._native.to_json())
+        return settings
+
+    def to_toml(self) -> str:
+        """The scene as the text of its file: read again, it is the same scene."""
+        return self._native.to_toml()
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Scene) and self.to_toml() == other.to_toml()
+
+    def __hash__(self) -> int:
+        return hash(self.to_toml())
+
+    def __reduce__(self) -> Tuple[Any, ...]:
+        return type(self).from_toml, (self.to_toml(), self._native.name)
+
+    def __repr__(self) -> str:
+        said = self.settings
+        parts = [f"{key} {said[key]}" for key in ("seed", "replicates") if key in said]
+        return f"Scene({self._native.name}: {', '.join(parts)})"
+
+
+def native_scene(
+    scene: Union[Scene, Stated], settings: Optional[Mapping[str, Any]] = None
+) -> _voidwalk.Scene:
+    """The library's scene of what a user states, with the settings that change it."""
+    changes: List[str] = []
+    if settings is not None:
+        stated = _stated(settings)
+        changes = [f"{key}={json.dumps(of, default=_plain, allow_nan=False)}" for key, of in stated.items()]
+    if scene is None:
+        return _voidwalk.Scene.built_in(changes)
+    if isinstance(scene, Scene):
+        native = scene._native
+        return _voidwalk.Scene.from_toml(native.to_toml(), native.name, changes) if changes else native
+    if isinstance(scene, Mapping):
+        return _voidwalk.Scene.from_json(as_json(scene), changes)
+    return _voidwalk.Scene.from_file(os.fspath(scene), changes)
+
+
+def as_json(table: Mapping[str, Any]) -> str:
+    """What a scene's or plan's dict says, for the library."""
+    try:
+        return json.dumps(_stated(table), default=_plain, allow_nan=False)
+    except TypeError as error:
+        raise ValueError(f"scene: {error}") from None
+
+
+def _plain(value: Any) -> Any:
+    """Values of arrays and paths as JSON knows them."""
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    raise ValueError(f"{value!r} is not allowed in a scene; numbers, words, lists and tables are")
+
+
+def _stated(value: Any) -> Any:
+    """A dict without the settings that are ``None``: those are not given."""
+    if isinstance(value, Mapping):
+        return {str(key): _stated(of) for key, of in value.items() if of is not None}
+    return value
+
+
+def scene_text(scene: Union[Scene, Stated] = None, settings: Optional[Mapping[str, Any]] = None) -> str:
+    """A scene with every setting that it has, as TOML; the built-in scene without one.
+
+    Examples
+    --------
+    >>> import voidwalk as vw
+    >>> "cu = 3" in vw.scene_text(settings={"base.cu": 3})
+    True
+    """
+    return native_scene(scene, settings).to_toml()
+
+
+def init_text() -> str:
+    """The built-in scene as TOML, with every setting there is and what it means, as ``voidwalk init`` writes it."""
+    return _voidwalk.init_text()

@@ -1,0 +1,66 @@
+//! Pages and verdicts of what was walked, by the library's reports.
+
+use std::path::{Path, PathBuf};
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use voidwalk::report::{self as reports, ReportError, RunTexts};
+use voidwalk::run::folder::claim;
+use voidwalk::run::{FolderKind, RunError};
+
+use crate::problem::{of_run, refused};
+use crate::tables::to_recorded;
+use crate::work::page;
+
+/// Writes the page of a finished folder again.
+#[pyfunction]
+pub fn report(py: Python<'_>, folder: PathBuf) -> PyResult<PathBuf> {
+    let write = |folder: &Path| {
+        let Some(kind) = FolderKind::of(folder).filter(|kind| kind.has_page()) else {
+            let problem = "holds no finished run, packing, campaign or study";
+            return Err(RunError::Refused(format!("{}: {problem}", folder.display())));
+        };
+        let claimed = claim(folder, kind, true)?;
+        page(kind, claimed.path()).map_err(RunError::Failed)
+    };
+    py.detach(|| write(&folder)).map_err(|error| of_run(&error))
+}
+
+/// A page as text; what a user has changed in a result is refused where it does not fit together.
+fn text(py: Python<'_>, page: impl FnOnce() -> Result<String, ReportError> + Send) -> PyResult<String> {
+    py.detach(page).map_err(refused)
+}
+
+/// The page of a run in memory, from what its files would say.
+#[pyfunction]
+pub fn run_page(
+    py: Python<'_>,
+    outcome: &str,
+    texts: (String, String, Option<String>),
+    tables: &Bound<'_, PyDict>,
+) -> PyResult<String> {
+    let (recorded, (manifest, scene, packing)) = (to_recorded(tables)?, texts);
+    text(py, || {
+        let (manifest, scene, packing) = (manifest.as_str(), scene.as_str(), packing.as_deref());
+        reports::run_page(RunTexts { outcome, manifest, scene, packing, recorded })
+    })
+}
+
+/// The verdict of a run as a piece of a page.
+#[pyfunction]
+pub fn run_brief(py: Python<'_>, outcome: &str) -> PyResult<String> {
+    text(py, || reports::run_brief(outcome))
+}
+
+/// The page of walks on networks.
+#[pyfunction]
+pub fn walk_page(py: Python<'_>, record: &str, tables: &Bound<'_, PyDict>) -> PyResult<String> {
+    let recorded = to_recorded(tables)?;
+    text(py, || reports::network_walk_page(record, recorded))
+}
+
+/// The verdict of walks on networks as a piece of a page.
+#[pyfunction]
+pub fn walk_brief(py: Python<'_>, record: &str) -> PyResult<String> {
+    text(py, || reports::network_walk_brief(record))
+}

@@ -1,0 +1,107 @@
+//! What the box with the verdict says of walks, on a page and in brief.
+
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+use maud::{Markup, html};
+
+use super::numbers::{capital, interval, percent, percent_interval, threshold};
+use super::results::{fraction, run_heading};
+use super::run_figures::{self, run_name};
+use super::shell::clean;
+use super::table::Table;
+use super::walks::Walks;
+use crate::outcome::record::{RunSummary, Verdict};
+
+/// Eroded mass by run, with its interval.
+pub(super) fn eroded_table<'a>(walks: &Walks<'a>) -> Table<'a, RunSummary> {
+    Table::of(walks.summary)
+        .name("Base eroded, by mass", |run| run_heading(run.run))
+        .number("mean", |run| percent(run.eroded_mass_fraction.mean))
+        .number("95 % interval", |run| {
+            percent_interval(&run.eroded_mass_fraction).unwrap_or_else(|| "none".to_owned())
+        })
+}
+
+/// What the class means, in a sentence.
+pub(super) fn in_words(walks: &Walks) -> String {
+    let limit = threshold(walks.threshold);
+    match walks.verdict {
+        Verdict::None => format!(
+            "In the model the filter holds this base: less than {limit} of its mass passes in the first run."
+        ),
+        Verdict::Some => format!(
+            "In the model the filter seals after some erosion: {limit} or more of the base passes in the \
+             first run, less in the second, on the constrictions that the first left blocked."
+        ),
+        Verdict::Continuing => format!(
+            "In the model the filter does not hold this base: {limit} or more of its mass passes in the \
+             first run and again in the second."
+        ),
+        Verdict::Undecided => undecided(walks, &limit),
+    }
+}
+
+fn undecided(walks: &Walks, limit: &str) -> String {
+    let straddles = |run: &&RunSummary| {
+        interval(&run.eroded_mass_fraction)
+            .is_some_and(|(low, high)| low < walks.threshold && walks.threshold <= high)
+    };
+    let runs: Vec<&str> = walks.summary.iter().filter(straddles).map(|run| run_name(run.run)).collect();
+    if !runs.is_empty() {
+        let plural = if runs.len() > 1 { "intervals of the " } else { "interval of the " };
+        format!("Inconclusive: the {plural}{} includes {limit}.", runs.join(" and the "))
+    } else if walks.summary.len() == 1 {
+        "Inconclusive: some and continuing erosion differ by the second run, and only a first was asked for."
+            .to_owned()
+    } else {
+        "Inconclusive: these replicates do not separate the classes.".to_owned()
+    }
+}
+
+/// The classes of the replicates, counted; what one replicate is, and what each of several is.
+pub(super) fn tally(walks: &Walks, [one, each]: [&str; 2]) -> String {
+    let count = walks.replicates.len();
+    if count == 1 {
+        return format!("1 replicate ({one}).");
+    }
+    let classes = Verdict::ALL.into_iter().filter_map(|class| {
+        let found = walks.replicates.iter().filter(|replicate| replicate.verdict == class).count();
+        let of = if found == count { "all".to_owned() } else { found.to_string() };
+        (found > 0).then(|| format!("{} in {of}", class.words()))
+    });
+    let classes = classes.collect::<Vec<_>>().join(", ");
+    format!("{count} replicates, each {each}: {classes}.")
+}
+
+/// What is said of replicates below the table: how many, by which threshold, and a word where there is one.
+pub(super) fn replicates_in_words(walks: &Walks, what: [&str; 2]) -> Markup {
+    html! {
+        p { (tally(walks, what)) " Threshold between the classes: " (threshold(walks.threshold)) "." }
+        @if walks.replicates.len() == 1 {
+            p {
+                b { "One replicate: the scatter is unknown." }
+                " Walk more replicates before relying on this."
+            }
+        }
+    }
+}
+
+/// The verdict in brief, for a page of another program, as a notebook: no style is needed, and the figure is
+/// a picture, so that several stand on one page.
+pub(super) fn brief(walks: &Walks, headline: &str, what: [&str; 2], leaves_out: &[String]) -> String {
+    let drawn = run_figures::verdict(walks);
+    let picture = BASE64_STANDARD.encode(drawn.figure.file());
+    let table = eroded_table(walks).number("constrictions blocked", |run| fraction(&run.blocked_fraction));
+    let left_out: Vec<&str> = leaves_out.iter().filter_map(|item| item.split(':').next()).collect();
+    html! {
+        div {
+            p { b { (clean(&capital(headline))) "." } " " (in_words(walks)) }
+            img src={ "data:image/svg+xml;base64," (picture) }
+                alt="Mean and 95 % interval of the eroded mass in each run, against the threshold";
+            (table)
+            (replicates_in_words(walks, what))
+            p { "The model leaves out: " (clean(&left_out.join("; "))) "." }
+        }
+    }
+    .into_string()
+}

@@ -1,0 +1,246 @@
+//! What the figures and tables of walks show, whether a scene or given networks were walked.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::error::ReportError;
+use super::files::rows;
+use crate::outcome::Recorded;
+use crate::outcome::record::{LayerRow, Replicate, RunSummary, SeriesRow, SizeRow, Verdict};
+
+/// The results of walks and their rows.
+#[derive(Clone, Copy)]
+pub(super) struct Walks<'a> {
+    pub verdict: Verdict,
+    pub summary: &'a [RunSummary],
+    pub replicates: &'a [Replicate],
+    /// Eroded mass fraction that divides the classes.
+    pub threshold: f64,
+    /// Share of the base inserted in each increment.
+    pub inject_share: f64,
+    /// Rows of (size, percent finer by mass) of the base.
+    pub base: &'a [[f64; 2]],
+    /// Whether sizes are multiples of D0F instead of mm.
+    pub scale_free: bool,
+    /// D15F (mm), where the filter is known.
+    pub d15f_mm: Option<f64>,
+    /// Modelled thickness of the filter, where it has one.
+    pub thickness_mm: Option<f64>,
+    pub rows: &'a RunRows,
+}
+
+impl Walks<'_> {
+    /// Run numbers, ascending.
+    pub(super) fn runs(&self) -> impl Iterator<Item = u64> + use<> {
+        1..=self.summary.len() as u64
+    }
+}
+
+/// The rows of the CSV files of walks, by run first; within a key in the order of the file.
+#[derive(Default)]
+pub(super) struct RunRows {
+    /// By (run, replicate).
+    pub series: BTreeMap<(u64, u64), Vec<SeriesRow>>,
+    /// By (run, replicate).
+    pub layers: BTreeMap<(u64, u64), Vec<LayerRow>>,
+    /// By (run, replicate, increment).
+    pub retained: BTreeMap<(u64, u64, u64), Vec<SizeRow>>,
+    /// By (run, replicate, increment).
+    pub eroded: BTreeMap<(u64, u64, u64), Vec<SizeRow>>,
+}
+
+/// Rows with the lines that they stand on.
+type Numbered<T> = Vec<(u64, T)>;
+
+/// Where the rows of a run come from: its files, or what would be in them.
+pub(super) enum RowSource<'a> {
+    Folder(&'a Path),
+    Memory(Recorded),
+}
+
+/// The rows of each table, unsorted.
+struct Unsorted {
+    series: Numbered<SeriesRow>,
+    layers: Numbered<LayerRow>,
+    retained: Numbered<SizeRow>,
+    eroded: Numbered<SizeRow>,
+}
+
+impl RowSource<'_> {
+    fn read(self) -> Result<Unsorted, ReportError> {
+        // The first line of a file is its header.
+        fn numbered<T>(rows: Vec<T>) -> Numbered<T> {
+            (2..).zip(rows).collect()
+        }
+        Ok(match self {
+            RowSource::Folder(folder) => Unsorted {
+                series: rows(&folder.join(SERIES))?,
+                layers: rows(&folder.join(LAYERS))?,
+                retained: rows(&folder.join(RETAINED))?,
+                eroded: rows(&folder.join(ERODED))?,
+            },
+            RowSource::Memory(recorded) => Unsorted {
+                series: numbered(recorded.series),
+                layers: numbered(recorded.layers),
+                retained: numbered(recorded.retained),
+                eroded: numbered(recorded.eroded),
+            },
+        })
+    }
+}
+
+const SERIES: &str = "series.csv";
+const LAYERS: &str = "layers.csv";
+const RETAINED: &str = "retained.csv";
+const ERODED: &str = "eroded.csv";
+
+impl RunRows {
+    /// Sorts the rows of so many replicates and runs; errors name a file of `folder`.
+    ///
+    /// # Errors
+    /// A file that cannot be read, and rows that do not fit together.
+    pub(super) fn read(
+        folder: &Path,
+        source: RowSource,
+        replicates: usize,
+        runs: usize,
+    ) -> Result<Self, ReportError> {
+        let Unsorted { series, layers, retained, eroded } = source.read()?;
+        let known = |path: &Path, line: u64, replicate: u64, run: u64| {
+            let (replicates, runs) = (replicates as u64, runs as u64);
+            if (1..=replicates).contains(&replicate) && (1..=runs).contains(&run) {
+                return Ok(());
+            }
+            let message = format!(
+                "replicate {replicate}, run {run}: outcome.json holds replicates 1 to {replicates} and runs \
+                 1 to {runs}"
+            );
+            Err(ReportError::Form { path: path.to_owned(), line, message })
+        };
+        let curves = |name: &str, rows: Numbered<SizeRow>| {
+            let path = folder.join(name);
+            let mut curves: BTreeMap<_, Vec<SizeRow>> = BTreeMap::new();
+            for (line, row) in rows {
+                known(&path, line, row.replicate, row.run)?;
+                in_range(&path, line, "diameter_mm", row.diameter_mm, f64::MAX)?;
+                in_range(&path, line, "percent_finer_by_mass", row.percent_finer_by_mass, 100.0)?;
+                in_range(&path, line, "percent_finer_by_number", row.percent_finer_by_number, 100.0)?;
+                curves.entry((row.run, row.replicate, row.increment)).or_default().push(row);
+            }
+            Ok::<_, ReportError>(curves)
+        };
+        Ok(Self {
+            series: sorted_series(&folder.join(SERIES), series, known)?,
+            layers: sorted_layers(&folder.join(LAYERS), layers, known)?,
+            retained: curves(RETAINED, retained)?,
+            eroded: curves(ERODED, eroded)?,
+        })
+    }
+}
+
+fn sorted_series(
+    path: &Path,
+    rows: Numbered<SeriesRow>,
+    known: impl Fn(&Path, u64, u64, u64) -> Result<(), ReportError>,
+) -> Result<BTreeMap<(u64, u64), Vec<SeriesRow>>, ReportError> {
+    let mut series: BTreeMap<_, Vec<SeriesRow>> = BTreeMap::new();
+    for (line, row) in rows {
+        known(path, line, row.replicate, row.run)?;
+        in_range(path, line, "eroded_mass_fraction", row.eroded_mass_fraction, 1.0)?;
+        let rows = series.entry((row.run, row.replicate)).or_default();
+        if let Some(last) = rows.last().map(|last| last.increment)
+            && row.increment <= last
+        {
+            let message =
+                format!("increment is {}, allowed: more than {last}, the one before", row.increment);
+            return Err(ReportError::Form { path: path.to_owned(), line, message });
+        }
+        rows.push(row);
+    }
+    Ok(series)
+}
+
+fn sorted_layers(
+    path: &Path,
+    rows: Numbered<LayerRow>,
+    known: impl Fn(&Path, u64, u64, u64) -> Result<(), ReportError>,
+) -> Result<BTreeMap<(u64, u64), Vec<LayerRow>>, ReportError> {
+    let mut layers: BTreeMap<_, Vec<LayerRow>> = BTreeMap::new();
+    for (line, row) in rows {
+        known(path, line, row.replicate, row.run)?;
+        if row.blocked > row.constrictions {
+            let message =
+                format!("blocked is {}, allowed: at most constrictions, {}", row.blocked, row.constrictions);
+            return Err(ReportError::Form { path: path.to_owned(), line, message });
+        }
+        layers.entry((row.run, row.replicate)).or_default().push(row);
+    }
+    Ok(layers)
+}
+
+/// Refuses what is not between 0 and `most` (Rust reads "nan" and "inf" as numbers).
+fn in_range(path: &Path, line: u64, field: &str, value: f64, most: f64) -> Result<(), ReportError> {
+    if value >= 0.0 && value <= most * (1.0 + 1e-9) {
+        return Ok(());
+    }
+    let allowed =
+        if most == f64::MAX { "a finite number, not negative".to_owned() } else { format!("0 to {most}") };
+    let message = format!("{field} is {value}, allowed: {allowed}");
+    Err(ReportError::Form { path: path.to_owned(), line, message })
+}
+
+/// Refuses results that no walks have.
+pub(super) fn check_results(
+    path: &Path,
+    replicates: &[Replicate],
+    summary: &[RunSummary],
+    threshold: f64,
+) -> Result<(), ReportError> {
+    let refuse = |field: &str, value: String, allowed: &str| Err(refused(path, field, value, allowed));
+    if replicates.is_empty() {
+        return refuse("replicates", "empty".to_owned(), "one or more");
+    }
+    let runs = summary.len();
+    if !(1..=2).contains(&runs) {
+        return refuse("summary", format!("{runs} runs"), "one or two runs");
+    }
+    for (index, summary) in summary.iter().enumerate() {
+        if summary.run != index as u64 + 1 {
+            return refuse("summary[].run", summary.run.to_string(), "1, then 2");
+        }
+        let mean = summary.eroded_mass_fraction.mean;
+        if !(0.0..=1.0 + 1e-9).contains(&mean) {
+            return refuse("summary[].eroded_mass_fraction.mean", mean.to_string(), "0 to 1");
+        }
+    }
+    for (index, replicate) in replicates.iter().enumerate() {
+        let field = format!("replicates[{index}].runs");
+        if replicate.runs.len() != runs {
+            return refuse(&field, format!("{} runs", replicate.runs.len()), "as many as summary has");
+        }
+    }
+    if !(threshold > 0.0 && threshold < 1.0) {
+        return refuse("threshold", threshold.to_string(), "between 0 and 1");
+    }
+    Ok(())
+}
+
+/// Refuses a curve of (size, percent) that cannot be drawn.
+pub(super) fn check_curve(path: &Path, field: &str, curve: &[[f64; 2]]) -> Result<(), ReportError> {
+    if curve.is_empty() {
+        return Err(refused(path, field, "empty".to_owned(), "one row or more"));
+    }
+    for [size, percent] in curve {
+        if !(*size >= 0.0 && size.is_finite() && (0.0..=100.0 + 1e-9).contains(percent)) {
+            let (value, allowed) =
+                (format!("[{size}, {percent}]"), "a size not negative, a percentage of 0 to 100");
+            return Err(refused(path, field, value, allowed));
+        }
+    }
+    Ok(())
+}
+
+fn refused(path: &Path, field: &str, value: String, allowed: &str) -> ReportError {
+    let (field, allowed) = (field.to_owned(), allowed.to_owned());
+    ReportError::Value { path: path.to_owned(), field, value, allowed }
+}
