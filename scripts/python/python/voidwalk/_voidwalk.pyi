@@ -157,7 +157,9 @@ def pack(
     threads: Optional[int],
     progress: _Callback,
 ) -> Tuple[_Grains, Dict[str, float]]: ...
-def read_packing(path: _Path) -> Tuple[_Grains, List[str]]: ...
+def read_packing(
+    path: _Path, unit: Optional[str], cell: Optional[str]
+) -> Tuple[_Grains, List[str]]: ...
 def measure(
     coords: _Floats,
     diameter: _Floats,
