@@ -135,7 +135,8 @@ fn unquoted(words: &[String]) -> Option<String> {
         let mut name = begin.to_owned();
         for next in words.iter().skip(at + 1).take(4) {
             name = format!("{name} {next}");
-            if named(&name).is_file() && !Path::new(begin).exists() {
+            let file = name.split('#').next().unwrap_or_default();
+            if Path::new(file).is_file() && !Path::new(begin).exists() {
                 let word = key.map_or(name.clone(), |key| format!("{key}={name}"));
                 return Some(format!("a name with a space is one word in quotes: \"{word}\""));
             }

@@ -293,3 +293,34 @@ fn limits_of_the_system_end_a_run_with_a_word_or_a_checkpoint() {
         assert!(fs::read_dir(root.path().join(signal).join("checkpoint")).unwrap().count() > 0);
     }
 }
+
+/// What a shell and `man` are given, and what the program says of itself.
+#[test]
+fn shells_and_man_know_every_command() {
+    let root = tempfile::tempdir().unwrap();
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        let script = String::from_utf8(voidwalk(root.path(), &["completions", shell]).stdout).unwrap();
+        assert!(script.contains("voidwalk") && script.contains("merge-overlap"), "{shell}");
+    }
+    // As bash does it, where there is one.
+    let asked = "source <(\"$1\" completions bash); COMP_WORDS=(voidwalk constr); COMP_CWORD=1; _voidwalk voidwalk \
+                 constr voidwalk; echo \"${COMPREPLY[@]}\"";
+    let bash =
+        Command::new("bash").args(["-c", asked, "bash", env!("CARGO_BIN_EXE_voidwalk")]).output().unwrap();
+    assert_eq!(String::from_utf8(bash.stdout).unwrap().trim(), "constrictions");
+    let pages = voidwalk(root.path(), &["man", "pages"]);
+    assert!(pages.status.success(), "{}", String::from_utf8_lossy(&pages.stderr));
+    for command in ["voidwalk", "voidwalk-run", "voidwalk-export", "voidwalk-man"] {
+        let page = fs::read_to_string(root.path().join(format!("pages/{command}.1"))).unwrap();
+        assert!(page.contains(&format!(".TH {command} 1")), "{page}");
+        assert_eq!(page.contains("Examples:"), command != "voidwalk", "{page}");
+    }
+    let version = String::from_utf8(voidwalk(root.path(), &["--version"]).stdout).unwrap();
+    let (number, commit) = version.trim().split_once(" (").unwrap_or((version.trim(), ")"));
+    assert_eq!(number, format!("voidwalk {}", env!("CARGO_PKG_VERSION")));
+    let digits = commit.trim_end_matches(')');
+    assert!(
+        digits.is_empty() || (digits.len() == 12 && digits.chars().all(|c| c.is_ascii_hexdigit())),
+        "{version}"
+    );
+}

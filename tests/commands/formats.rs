@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
-use voidwalk::store::{Array, Numbers, npz};
+use voidwalk::store::{Array, Npz, Numbers, npz};
 
 use crate::program::{call, done, refused};
 
@@ -230,4 +230,38 @@ fn a_network_of_arrays_is_walked_both_ways() {
     refused(&call(root.path(), &["check", "ring.toml", "--set", "walk.exit=height"]), "walk.exit: `height`");
     ring(root.path(), Array::of_whole(vec![7]));
     refused(&call(root.path(), &["check", "ring.toml"]), "ring.npz: pore.outlets: 7 is no void; there are 4");
+}
+
+/// Tables leave a folder as arrays and blocks, and go when the run is replaced.
+#[test]
+fn tables_leave_as_arrays_and_grids() {
+    let root = tempfile::tempdir().unwrap();
+    let scene = "replicates = 2\nruns = 1\n[filter]\ncurve = \"cu3-loose\"\n[base]\ncu = 1.5\nd85_at_dc = 5\n\
+        n_base = 300\n[network]\nnx = 4\nny = 4\nnz = 6\n[record]\nsensitivity = []\n";
+    fs::write(root.path().join("s.toml"), scene).unwrap();
+    refused(&call(root.path(), &["export", "."]), ".: holds no finished work");
+    done(&call(root.path(), &["run", "s.toml", "--out", "run", "-q"]));
+    let export = call(root.path(), &["export", "run"]);
+    done(&export);
+    assert_eq!(String::from_utf8(export.stdout).unwrap(), "run/export/arrays.npz\nrun/export/layers.vtu\n");
+    let bytes = fs::read(root.path().join("run/export/arrays.npz")).unwrap();
+    let mut arrays = Npz::open(&bytes).unwrap();
+    let mut array = |name: &str| arrays.first(&[name]).unwrap().expect(name).1;
+    let (layers, blocked) = (array("layers.layer"), array("layers.blocked"));
+    assert_eq!(layers.numbers, Numbers::Whole((0..6).chain(0..6).collect()));
+    let Numbers::Whole(blocked) = blocked.numbers else { panic!("whole numbers") };
+    let of_run: Value = replicates(&root.path().join("run"))[0]["runs"][0]["blocked"].clone();
+    assert_eq!(blocked[..6].iter().sum::<i64>(), of_run.as_i64().unwrap());
+    let text =
+        String::from_utf8_lossy(&fs::read(root.path().join("run/export/layers.vtu")).unwrap()).into_owned();
+    assert!(text.contains("NumberOfCells=\"6\"") && text.contains("Name=\"blocked_run_1\""), "{text}");
+    done(&call(root.path(), &["run", "s.toml", "--out", "run", "--overwrite", "-q"]));
+    assert!(!root.path().join("run/export").exists());
+    // Of a packing from elsewhere: its curve and its graph.
+    write(root.path());
+    done(&call(root.path(), &["constrictions", "own.csv", "--out", "c"]));
+    done(&call(root.path(), &["export", "c"]));
+    let bytes = fs::read(root.path().join("c/export/arrays.npz")).unwrap();
+    let names = Npz::open(&bytes).unwrap().names().to_vec();
+    assert!(names.iter().any(|name| name == "graph.diameter_mm"), "{names:?}");
 }
