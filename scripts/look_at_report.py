@@ -85,11 +85,21 @@ def colours(png):
     return len(seen)
 
 
-def look(page, picture, width):
+# What a page takes from a screen that is set to dark.
+IS_DARK = "getComputedStyle(document.body).backgroundColor.match(/[0-9]+/g).every(part => Number(part) < 60)"
+
+
+def look(page, picture, width, dark):
     wanted = pathlib.Path(page).resolve().as_uri()
     faults = []
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile, Browser(profile) as browser:
         tab = browser.open(wanted, width, 900)
+        if dark:
+            scheme = [{"name": "prefers-color-scheme", "value": "dark"}]
+            browser.ask("Emulation.setEmulatedMedia", tab, features=scheme)
+        is_dark = browser.ask("Runtime.evaluate", tab, expression=IS_DARK, returnByValue=True)["result"].get("value")
+        if is_dark != dark:
+            faults.append("is light on a dark screen" if dark else "is dark on a light screen")
         inspected = browser.ask("Runtime.evaluate", tab, expression=INSPECT, returnByValue=True)
         faults += inspected["result"].get("value", ["the page could not be inspected"])
         size = browser.ask("Page.getLayoutMetrics", tab)["cssContentSize"]
@@ -173,13 +183,14 @@ def complaints(event, wanted):
 
 def main():
     page, out, how = sys.argv[1], sys.argv[2], sys.argv[3]
+    dark = sys.argv[4:] == ["dark"]
     is_print = out.endswith(".pdf")
-    faults = print_out(page, out, how) if is_print else look(page, out, int(how))
+    faults = print_out(page, out, how) if is_print else look(page, out, int(how), dark)
     for fault in faults:
         print(f"{page}: {fault}", file=sys.stderr)
     if faults:
         raise SystemExit(1)
-    print(f"{out}: {how if is_print else how + ' px wide'}, no complaint")
+    print(f"{out}: {how if is_print else how + ' px wide' + (', dark' if dark else '')}, no complaint")
 
 
 main()

@@ -293,7 +293,9 @@ class Program:
         return results(folder / "out", "grains.csv", "constrictions.csv", "constrictions.json", "packing.json")
 
     def constrictions(self, folder, grains, overlap):
-        self.call(folder, "constrictions", grains, "--merge-overlap", overlap, "--out", "out")
+        # A dump does not say that it is in mm.
+        unit = ["--unit", "mm"] if grains.endswith(".dump") else []
+        self.call(folder, "constrictions", grains, *unit, "--merge-overlap", overlap, "--out", "out")
         return results(folder / "out", "constrictions.csv", "constrictions.json")
 
     def campaign(self, folder, threads=None):

@@ -48,7 +48,8 @@ const OF_A_SCENE: [&str; 10] =
 const SCENE: &str = "is a scene, not the plan of a campaign; walk it by `voidwalk run`, or name it in a \
  plan by scene = \"FILE\" above its [[factor]] and [[case]]; settings of all cases go under [set]";
 
-const NO_PLAN: &str = "is a table of numbers, not the plan of a campaign";
+const NO_PLAN: &str = "is a table of numbers, not the plan of a campaign; two sieve tables are \
+                      judged by `voidwalk judge BASE FILTER`";
 
 /// A plan as it is written.
 #[derive(Debug, Deserialize)]

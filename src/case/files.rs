@@ -8,10 +8,9 @@ use super::packed_filter::PackedError;
 use super::packed_filter::{GRAINS, PackedFilter, RECORD};
 use crate::constrictions::{Curve, ShippedFilter, find};
 use crate::gradation::{Gradation, Soil, file_and_soil};
-use crate::network::Network;
+use crate::network::{ArrayOptions, Network};
 use crate::packing::{PACKING_FILE_LIMIT_BYTES, Packing};
-use crate::scene::CurveSource;
-use crate::scene::SceneError;
+use crate::scene::{CurveSource, Scene, SceneError};
 use crate::store::read_regular;
 
 /// A file that was read, and the name under which a run folder keeps it.
@@ -46,8 +45,11 @@ pub const INPUT_NAMES: &str = "inputs/names.json";
 /// Name under which a run keeps the grains whose voids it walks.
 pub(super) const KEPT_GRAINS: &str = "network-packing.csv";
 
+/// Likewise a network of arrays.
+const ARRAYS: &str = "network.npz";
+
 /// Every file that may be kept there.
-pub const INPUT_FILES: [&str; 14] = [
+pub const INPUT_FILES: [&str; 15] = [
     RECORD,
     "filter-curve.csv",
     "filter-sieve.csv",
@@ -60,6 +62,7 @@ pub const INPUT_FILES: [&str; 14] = [
     "base-sieve.ags",
     "base-dc-curve.csv",
     "network.csv",
+    ARRAYS,
     KEPT_GRAINS,
     "names.json",
 ];
@@ -147,10 +150,14 @@ impl Files {
         source: &CurveSource,
         setting: &'static str,
         kept_as: &str,
+        scene: &str,
     ) -> Result<(Curve, Option<&'static ShippedFilter>), CaseError> {
         match source {
             CurveSource::Shipped(name) => {
-                let shipped = find(name)?;
+                let shipped = find(name).map_err(|error| SceneError::Clash {
+                    file: format!("{scene}, {setting}"),
+                    problem: error.to_string(),
+                })?;
                 Ok((shipped.curve()?, Some(shipped)))
             }
             CurveSource::File(path) => {
@@ -196,9 +203,18 @@ impl Files {
     }
 
     /// The grains of a file, and what to call it.
-    pub fn packing(&mut self, path: &Path, kept_as: &str) -> Result<(String, Packing), CaseError> {
+    pub fn packing(
+        &mut self,
+        path: &Path,
+        kept_as: &str,
+        scene: &Scene,
+    ) -> Result<(String, Packing), CaseError> {
         let (name, bytes) = self.read("network.packing", path, kept_as, PACKING_FILE_LIMIT_BYTES)?;
-        let packing = Packing::parse(&name, bytes).map_err(PackedError::from)?;
+        let read = Packing::parse_as(&name, bytes, &scene.network.read_options());
+        let (packing, notes) = read.map_err(PackedError::from)?;
+        if let Some(input) = self.0.last_mut() {
+            input.notes = notes;
+        }
         Ok((name, packing))
     }
 
@@ -208,8 +224,21 @@ impl Files {
         Ok((GRAINS.into(), Packing::parse(GRAINS, grains).map_err(PackedError::from)?))
     }
 
-    pub fn network(&mut self, path: &Path, unit_mm: f64) -> Result<Network, CaseError> {
-        let (name, bytes) = self.read("network.file", path, "network.csv", LARGEST_NETWORK)?;
-        Ok(Network::from_csv(bytes, &name, unit_mm)?)
+    pub fn network(&mut self, path: &Path, scene: &Scene, unit_mm: f64) -> Result<Network, CaseError> {
+        let of_arrays = scene.network.is_of_arrays();
+        let kept_as = if of_arrays { ARRAYS } else { "network.csv" };
+        let (name, bytes) = self.read("network.file", path, kept_as, LARGEST_NETWORK)?;
+        if !of_arrays {
+            return Ok(Network::from_csv(bytes, &name, unit_mm)?);
+        }
+        let unit = scene.network.unit.ok_or_else(|| {
+            scene.clash(format!(
+                "{name} does not say the unit of its diameters, and a guess may be wrong by a factor \
+                 of 1000; say it: network.unit = \"m\" (or \"cm\", \"mm\", \"um\", \
+                 \"nm\"; OpenPNM has metres)"
+            ))
+        })?;
+        let (rule, rho) = (scene.exit_rule(), scene.exits.rho.unwrap_or(0.0));
+        Ok(Network::from_npz(bytes, &name, &ArrayOptions { unit, rule, rho, unit_mm })?)
     }
 }

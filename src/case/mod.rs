@@ -31,7 +31,7 @@ use void_graph::GraphPacking;
 
 use crate::constrictions::{Curve, CurveError, CurveUnit, ShippedFilter, inscribed};
 use crate::gradation::{Gradation, GradationError, NumberError, SizeSampler};
-use crate::network::{CONDUCTANCE_EXPONENT, ExitRule, Network, NetworkError};
+use crate::network::{CONDUCTANCE_EXPONENT, ExitRule, Network, NetworkError, WIDE};
 use crate::outcome::Mistake;
 use crate::outcome::record::{PanSize, Ratios};
 use crate::scene::{
@@ -182,7 +182,9 @@ impl Case {
         };
         let curve = match (&scene.filter.curve, &packed) {
             (_, Some(packed)) => Some((files.packed(packed)?, None)),
-            (Some(source), None) => Some(files.curve(source, "filter.curve", "filter-curve.csv")?),
+            (Some(source), None) => {
+                Some(files.curve(source, "filter.curve", "filter-curve.csv", &scene.name)?)
+            }
             (None, None) if scene.packing.is_some() => {
                 return Err(CaseError::NotPacked { file: scene.name.clone() });
             }
@@ -214,7 +216,7 @@ impl Case {
         let d50f_mm = filter.d(50.0).unwrap_or(unit_mm);
         let (mut fixed_network, mut copies) = (None, None);
         match (&scene.network.source(), &graph) {
-            (NetworkSource::File(path), _) => fixed_network = Some(files.network(path, unit_mm)?),
+            (NetworkSource::File(path), _) => fixed_network = Some(files.network(path, &scene, unit_mm)?),
             (NetworkSource::Graph(_, extent), Some(graph)) => {
                 let count = graph.copies(*extent, d50f_mm);
                 copies = Some((count, f64::from(count) * graph.graph.cell_mm[2]));
@@ -444,8 +446,12 @@ fn placeholder_shape(scene: &Scene, filter: &Gradation) -> [u32; 3] {
 
 /// The constriction curve of a given network (mm): its open diameters by number, at most a thousand points.
 fn curve_of(network: &Network) -> Result<Curve, CaseError> {
-    let mut sizes: Vec<f64> =
-        network.diameters().iter().filter(|&&d| d > 0.0).map(|&d| f64::from(d) * network.unit_mm()).collect();
+    let mut sizes: Vec<f64> = network
+        .diameters()
+        .iter()
+        .filter(|&&d| d > 0.0 && d != WIDE)
+        .map(|&d| f64::from(d) * network.unit_mm())
+        .collect();
     sizes.sort_by(f64::total_cmp);
     let Some(last) = sizes.len().checked_sub(1) else {
         return Ok(Curve::from_points(&[(100.0, network.unit_mm())], CurveUnit::Mm)?);
@@ -474,9 +480,12 @@ fn base_gradation(
         }
         BaseGradation::Linear { cu, d85: D85::AtDc(percent, other) } => {
             let other = match other {
-                Some(source) => {
-                    Some(files.curve(source, "base.dc_curve", "base-dc-curve.csv")?.0.in_mm(unit_mm)?)
-                }
+                Some(source) => Some(
+                    files
+                        .curve(source, "base.dc_curve", "base-dc-curve.csv", &scene.name)?
+                        .0
+                        .in_mm(unit_mm)?,
+                ),
                 None => None,
             };
             let curve = other.as_ref().unwrap_or(curve);

@@ -36,7 +36,7 @@ impl GraphPacking {
         let merge_overlap = scene.packing.as_ref().map(|packing| packing.filter.merge_overlap);
         let merge_overlap = merge_overlap.unwrap_or(crate::constrictions::DEFAULT_MERGE_OVERLAP);
         let (name, packing) = match (file, packed) {
-            (Some(path), _) => files.packing(path, KEPT_GRAINS)?,
+            (Some(path), _) => files.packing(path, KEPT_GRAINS, scene)?,
             (None, Some(PackedFilter { grains: Some(grains), .. })) => {
                 files.packed_grains(grains, KEPT_GRAINS)?
             }

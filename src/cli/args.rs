@@ -8,6 +8,7 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::campaign::CasePart;
 use crate::constrictions::{DEFAULT_MERGE_OVERLAP, Facets};
+use crate::packing::{CellOption, LengthUnit};
 use crate::run::CheckpointInterval;
 use crate::run::machine::bytes_from_words;
 use crate::scene::Density;
@@ -67,6 +68,21 @@ pub enum Command {
     /// Write report.html and the figures of a finished run folder again
     Report {
         /// The folder
+        folder: PathBuf,
+    },
+    /// Write the tables of a finished folder as arrays for NumPy (.npz) and grids for ParaView (.vtu)
+    Export {
+        /// The folder
+        folder: PathBuf,
+    },
+    /// Print a script by which a shell completes commands and options
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Write a manual page of every command
+    Man {
+        /// Folder for the pages
         folder: PathBuf,
     },
 }
@@ -155,6 +171,9 @@ pub struct SoilArgs {
     /// Draw their curves into this file, which is not there yet
     #[arg(long, value_name = "FILE.svg")]
     pub figure: Option<PathBuf>,
+    /// Coarse sizes on the left of the figure, as in the United States
+    #[arg(long, requires = "figure")]
+    pub coarse_left: bool,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
@@ -425,9 +444,17 @@ pub struct PackArgs {
 /// Which packing, and how its voids are told apart.
 #[derive(Debug, Args)]
 pub struct ConstrictionsArgs {
-    /// Grains: CSV (x_mm,y_mm,z_mm,diameter_mm after `# cell_mm = Lx, Ly, Lz` or `# cell = none`), or a
-    /// LAMMPS text dump
+    /// Grains: CSV (x_mm,y_mm,z_mm,diameter_mm after `# cell_mm = Lx, Ly, Lz` or `# cell = none`; or points
+    /// of ParaView and MFIX by their names), a text dump of LAMMPS or LIGGGHTS, Yade's export.text,
+    /// MercuryDPM's .data
     pub packing: PathBuf,
+    /// Unit of the file's lengths, where it does not say it: m, cm, mm, um or nm
+    #[arg(long, value_name = "UNIT")]
+    pub unit: Option<LengthUnit>,
+    /// Boundaries, where the file does not say them: none for free ones; Lx,Ly,Lz for a periodic cell with a
+    /// corner at the origin, in the file's unit; bounds for one between the bounds in the file
+    #[arg(long, value_name = "CELL")]
+    pub cell: Option<CellOption>,
     /// Overlap of two inscribed spheres from which their tetrahedra are one void
     #[arg(long, value_name = "F", default_value_t = DEFAULT_MERGE_OVERLAP)]
     pub merge_overlap: f64,

@@ -3,6 +3,7 @@
 use super::args::ConstrictionsArgs;
 use super::print::{count, json, plain, to_stdout};
 use super::progress::unfollowed;
+use crate::packing::ReadOptions;
 use crate::run::{ConstrictionsOptions, RunError, measure_constrictions};
 
 /// Measures a packing's constrictions and writes them into a folder.
@@ -10,6 +11,7 @@ pub fn constrictions(args: &ConstrictionsArgs) -> Result<(), RunError> {
     let options = ConstrictionsOptions {
         merge_overlap: args.merge_overlap,
         facets: args.facets,
+        read: ReadOptions { unit: args.unit, cell: args.cell },
         out: args.out.clone(),
         overwrite: args.overwrite,
     };

@@ -9,8 +9,11 @@ mod check;
 mod compare;
 mod constrictions;
 mod design;
+mod examples;
+mod export;
 mod init;
 mod judge;
+mod mistakes;
 mod pack;
 mod percolation;
 mod precision;
@@ -21,19 +24,44 @@ mod rules;
 mod run;
 #[cfg(feature = "serve")]
 mod serve;
+mod shell;
 mod soil;
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::FromArgMatches;
 
 use crate::run::Exit;
 use args::{Arguments, Command};
 
+/// What the system says of a file that is not there.
+const NO_FILE: &str = "No such file or directory";
+
+/// Reads the arguments; else says what is wrong and what to type instead, or what was asked for by `--help`.
+fn arguments(words: &[OsString]) -> Result<Arguments, ExitCode> {
+    if words.len() < 2 {
+        print::to_stderr(examples::FIRST_WORDS);
+        return Err(ExitCode::from(Exit::Refused.code()));
+    }
+    let command = examples::command();
+    let read = command.clone().try_get_matches_from(words);
+    read.and_then(|matches| Arguments::from_arg_matches(&matches)).map_err(|error| {
+        let error = mistakes::explained(error, &command, words);
+        let _ = error.print();
+        ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(Exit::Refused.code()))
+    })
+}
+
 /// Runs the program with the arguments of this process.
 pub fn main() -> ExitCode {
     progress::outlive_large_files();
-    let done = match Arguments::parse().command {
+    let words: Vec<OsString> = std::env::args_os().collect();
+    let arguments = match arguments(&words) {
+        Ok(arguments) => arguments,
+        Err(code) => return code,
+    };
+    let done = match arguments.command {
         Command::Run(args) => run::run(&args),
         Command::Judge(args) => judge::judge(&args),
         Command::Compare(args) => compare::compare(&args),
@@ -51,6 +79,12 @@ pub fn main() -> ExitCode {
         Command::Percolation(args) => percolation::percolation(&args),
         Command::Precision(args) => precision::precision(&args),
         Command::Report { folder } => report::report(&folder),
+        Command::Export { folder } => export::export(&folder),
+        Command::Completions { shell } => {
+            shell::completions(shell);
+            Ok(())
+        }
+        Command::Man { folder } => shell::man(&folder),
     };
     let Err(error) = done else { return ExitCode::SUCCESS };
     let exit = error.exit();
@@ -60,7 +94,14 @@ pub fn main() -> ExitCode {
         Exit::Failed => "error",
     };
     // Messages name files and values that may hold anything.
-    let text = error.advice().map_or_else(|| error.to_string(), |advice| format!("{error}\n{advice}"));
+    let mut text = error.to_string();
+    let meant = match exit {
+        Exit::Refused => mistakes::instead_of_files(&words, text.contains(NO_FILE)),
+        _ => None,
+    };
+    for more in error.advice().map(String::from).into_iter().chain(meant) {
+        text = format!("{text}\n{more}");
+    }
     let lines: Vec<String> = text.lines().map(print::plain).collect();
     print::to_stderr(&format!("{kind}: {}\n", lines.join("\n")));
     ExitCode::from(exit.code())

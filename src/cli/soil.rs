@@ -22,7 +22,7 @@ pub fn soil(args: &SoilArgs) -> Result<(), RunError> {
     let soils = soils_in_file(&args.file, args.d0_mm).map_err(CaseError::from)?;
     if let Some(path) = &args.figure {
         let curves = soils.iter().map(|soil| (soil.name.as_str(), soil.points.as_slice()));
-        write_new(path, soils_figure(curves).as_bytes())?;
+        write_new(path, soils_figure(curves, args.coarse_left).as_bytes())?;
     }
     let soils = Soils { soils };
     let drawn = args.figure.as_deref().map_or(String::new(), |path| format!("\n{}\n", shown(path)));

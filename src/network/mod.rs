@@ -11,6 +11,7 @@
 //! Diameters are held in units of a reference length ([`Network::unit_mm`]), so that a change of
 //! units by a power of two changes no bit of a walk.
 
+mod arrays;
 mod coarse;
 mod columns;
 mod connectivity;
@@ -28,6 +29,7 @@ mod stratified;
 mod twins;
 mod undirected;
 
+pub use arrays::ArrayOptions;
 pub use columns::{CONDUCTANCE_EXPONENT, NO_EXIT, NetworkColumns};
 pub use connectivity::{Connectivity, TABLE_3, TOLERANCE_PERCENT};
 pub use exit_rule::ExitRule;

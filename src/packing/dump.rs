@@ -1,12 +1,15 @@
-//! Text dumps of LAMMPS.
+//! Text dumps of LAMMPS and LIGGGHTS.
 //!
 //! The last frame of a dump with the columns `x y z` (or `xu`, `xs`, `xsu` and so on), `radius` or
 //! `diameter`, and `id` where there is one, which then decides the order. Boundaries `pp pp pp` are a
-//! periodic cell, moved to the origin; boundaries without any `p` are free. Lengths are turned into mm from
-//! what `ITEM: UNITS` says they are (`si`, `cgs`, `micro`, `nano`), and are mm where a dump does not say.
+//! periodic cell, moved to the origin; boundaries without any `p` are free. `ITEM: UNITS` (LAMMPS writes it
+//! after `dump_modify ID units yes`, LIGGGHTS does not) says what lengths are: `si`, `cgs`, `micro` and
+//! `nano` have a length of their own, `lj` has none, and the others are of atoms.
 
 use super::fields::{ImportError, Kind, Line, number, refused};
-use super::grains::{Cell, Packing};
+use super::found::{FileCell, FileGrains};
+use super::grains::Cell;
+use super::unit::LengthUnit;
 use crate::gradation::shortened;
 
 /// How a dump gives a coordinate.
@@ -17,54 +20,34 @@ struct Coordinate {
     scaled: bool,
 }
 
-/// A system of units of LAMMPS that says what a length is.
-#[derive(Clone, Copy)]
-struct Unit {
-    name: &'static str,
-    length: &'static str,
-    /// A length (mm).
-    mm: f64,
-}
+/// Systems of units of LAMMPS that say what a length is.
+const UNITS: [(&str, LengthUnit); 4] =
+    [("si", LengthUnit::M), ("cgs", LengthUnit::Cm), ("micro", LengthUnit::Um), ("nano", LengthUnit::Nm)];
 
-/// The others are of atoms, or have no lengths of their own.
-const UNITS: [Unit; 4] = [
-    Unit { name: "si", length: "metres", mm: 1e3 },
-    Unit { name: "cgs", length: "centimetres", mm: 10.0 },
-    Unit { name: "micro", length: "micrometres", mm: 1e-3 },
-    Unit { name: "nano", length: "nanometres", mm: 1e-6 },
-];
+/// The one in which a length has no unit.
+const REDUCED: &str = "lj";
 
-impl Unit {
-    fn turn_into_mm(self, packing: &mut Packing, (file, line): (&str, usize)) -> Result<(), ImportError> {
-        let Packing { cell, x, y, z, diameter } = packing;
-        let lengths = match cell {
-            Cell::Periodic(lengths) => lengths.as_mut_slice(),
-            Cell::Free => &mut [],
-        };
-        let all = [x, y, z, diameter].into_iter().flatten().chain(lengths);
-        for length in all {
-            let given = *length;
-            *length *= self.mm;
-            if !length.is_finite() || (*length == 0.0) != (given == 0.0) {
-                let allowed = format!("lengths in {} that are numbers in mm", self.length);
-                return Err(refused(file, line, "units", &given.to_string(), allowed));
-            }
-        }
-        Ok(())
-    }
-}
-
-/// What a dump says of its units, of which it says something once or before every frame.
-fn unit(file: &str, text: &str) -> Result<Option<Unit>, ImportError> {
-    let mut found: Option<Unit> = None;
+/// What a dump says of its units, of which it says something once or before every frame: the name, and the
+/// unit of length that it stands for.
+fn unit(
+    file: &str,
+    text: &str,
+    given: Option<LengthUnit>,
+) -> Result<Option<(&'static str, LengthUnit)>, ImportError> {
+    let mut found: Option<(&str, LengthUnit)> = None;
     for (at, item) in text.match_indices("ITEM: UNITS") {
         let line = 2 + text[..at].matches('\n').count();
         let name = text[at + item.len()..].lines().nth(1).map_or("", str::trim);
-        let allowed = "si, cgs, micro or nano; where the lengths are in mm, remove the line ITEM: UNITS and \
-                       the one after it";
-        let unit = UNITS.into_iter().find(|unit| unit.name == name);
-        let unit = unit.ok_or_else(|| refused(file, line, "units", name, allowed))?;
-        if found.is_some_and(|before| before.name != unit.name) {
+        let unit = match (UNITS.into_iter().find(|unit| unit.0 == name), given) {
+            (Some(unit), _) => unit,
+            (None, Some(given)) if name == REDUCED => (REDUCED, given),
+            (None, _) => {
+                let allowed = "si, cgs, micro or nano; with lj, --unit (network.unit in a scene) says what a \
+                               length of 1 is; the others are of atoms";
+                return Err(refused(file, line, "units", name, allowed));
+            }
+        };
+        if found.is_some_and(|before| before.0 != unit.0) {
             return Err(refused(file, line, "units", name, "the same units in every frame"));
         }
         found = Some(unit);
@@ -72,9 +55,9 @@ fn unit(file: &str, text: &str) -> Result<Option<Unit>, ImportError> {
     Ok(found)
 }
 
-/// The last frame, and what a user must know of it.
-pub(super) fn dump(file: &str, text: &str) -> Result<(Packing, Vec<String>), ImportError> {
-    let unit = unit(file, text)?;
+/// The last frame; `given` is the unit that a user says.
+pub(super) fn dump(file: &str, text: &str, given: Option<LengthUnit>) -> Result<FileGrains, ImportError> {
+    let unit = unit(file, text, given)?;
     // Only the last frame is parsed, so that a long run costs no more than its end.
     let start = text.rfind("ITEM: TIMESTEP").unwrap_or(0);
     let frames = text.matches("ITEM: TIMESTEP").count();
@@ -83,9 +66,6 @@ pub(super) fn dump(file: &str, text: &str) -> Result<(Packing, Vec<String>), Imp
         let step = text[start..].lines().nth(1).map_or("", str::trim);
         let step = shortened(step);
         notes.push(format!("{file} holds {frames} frames: the last one, timestep {step}, is taken"));
-    }
-    if let Some(Unit { name, length, .. }) = unit.filter(|unit| unit.mm != 1.0) {
-        notes.push(format!("{file}: ITEM: UNITS {name}: lengths are in {length}, and are turned into mm"));
     }
     let before = text[..start].matches('\n').count();
     let mut lines = text[start..].lines().enumerate().map(|(i, line)| (before + i + 1, line));
@@ -122,11 +102,9 @@ pub(super) fn dump(file: &str, text: &str) -> Result<(Packing, Vec<String>), Imp
                 atoms.ok_or_else(|| refused(file, line, "section", item, "ITEM: NUMBER OF ATOMS first"))?;
             let bounds =
                 bounds.ok_or_else(|| refused(file, line, "section", item, "ITEM: BOX BOUNDS first"))?;
-            let mut packing = rows(file, (line, columns), atoms, bounds, lines)?;
-            if let Some(unit) = unit {
-                unit.turn_into_mm(&mut packing, (file, line))?;
-            }
-            return Ok((packing, notes));
+            let (cell, columns) = rows(file, (line, columns), atoms, bounds, lines)?;
+            let unit = unit.map(|(_, unit)| unit);
+            return Ok(FileGrains { columns, unit, cell: FileCell::Known(cell), line, notes });
         } else {
             // TIMESTEP, TIME, UNITS: one line, known by now or not needed.
             lines.next();
@@ -169,7 +147,7 @@ fn rows<'a>(
     atoms: u64,
     (periodic, bounds): Bounds,
     lines: impl Iterator<Item = Line<'a>>,
-) -> Result<Packing, ImportError> {
+) -> Result<(Cell, [Vec<f64>; 4]), ImportError> {
     let names: Vec<&str> = header.split_whitespace().collect();
     let place = |name: &str| names.iter().position(|&n| n == name);
     let missing = |what: &str| refused(file, header_line, "columns", header.trim(), what);
@@ -232,5 +210,5 @@ fn rows<'a>(
         true => Cell::Periodic(bounds.map(|[low, high]| high - low)),
         false => Cell::Free,
     };
-    Ok(Packing { cell, x: column(0), y: column(1), z: column(2), diameter: column(3) })
+    Ok((cell, [0, 1, 2, 3].map(column)))
 }

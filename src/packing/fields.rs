@@ -2,6 +2,15 @@
 
 use crate::gradation::{Position, shortened};
 
+/// The formats that are read, in words.
+const KNOWN: &str = "CSV with columns as x_mm, y_mm, z_mm and diameter_mm (or Points:0, Points:1, Points:2 \
+                     and Diameter of ParaView and MFIX; radius will do), text dumps of LAMMPS and LIGGGHTS, \
+                     Yade's export.text, and MercuryDPM's .data";
+
+/// What other programs usually have.
+const UNITS_OF_PROGRAMS: &str = " (LIGGGHTS, Yade, MercuryDPM and MFIX mostly have metres; LAMMPS says it \
+                                 after `dump_modify ID units yes`)";
+
 /// A packing file that cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum ImportError {
@@ -14,10 +23,40 @@ pub enum ImportError {
         source: std::io::Error,
     },
     /// A folder where a file is wanted.
-    #[error("{file} is a folder; allowed: a packing as CSV or as a LAMMPS text dump")]
+    #[error("{file} is a folder; name a file of grains: {known}", known = KNOWN)]
     Folder {
         /// Folder as the user named it.
         file: String,
+    },
+    /// A file of no known format.
+    #[error("{file} is no packing that is known: {looks_like}. Known are: {known}", known = KNOWN)]
+    Unknown {
+        /// File as the user named it.
+        file: String,
+        /// What it looks like instead.
+        looks_like: String,
+    },
+    /// Nobody says what its lengths are.
+    #[error(
+        "{file} does not say the unit of its lengths, and a guess may be wrong by a factor of 1000; say it: \
+         --unit m (or cm, mm, um, nm), in a scene network.unit = \"m\"{programs}",
+        programs = UNITS_OF_PROGRAMS
+    )]
+    NoUnit {
+        /// File as the user named it.
+        file: String,
+    },
+    /// Nobody says whether its boundaries are periodic.
+    #[error(
+        "{file} does not say whether its boundaries are periodic; say it: --cell none for free ones, --cell \
+         Lx,Ly,Lz for a periodic cell with a corner at the origin (in the file's unit){bounds}; in a scene \
+         network.cell"
+    )]
+    NoCell {
+        /// File as the user named it.
+        file: String,
+        /// What else may be said, where the file gives bounds.
+        bounds: &'static str,
     },
     /// More bytes than any packing has.
     #[error("{file} is larger than {limit} bytes; allowed: a packing file up to that size")]

@@ -1,36 +1,111 @@
-//! Packings from files: CSV, and text dumps of LAMMPS (`dump.rs`).
+//! Packings from files, of this program and of others.
 //!
-//! # CSV
-//! The first line is `# cell_mm = Lx, Ly, Lz` for a periodic cell with its corner at the origin, or
-//! `# cell = none` for free boundaries. Then a header that names `x_mm`, `y_mm`, `z_mm` and
-//! `diameter_mm` in any order (further columns are passed over), then a row a grain. Comma, semicolon
-//! or tab between columns; a byte order mark, CRLF, blank lines and further `#` comments are fine.
+//! # Formats
+//! - CSV with a column each for the coordinates of the centres and the diameter or radius, by their names
+//!   ([`csv`](super::csv)): this program's own, spreadsheets, and what ParaView saves of points (MFIX and
+//!   other programs write points for it);
+//! - text dumps of LAMMPS and LIGGGHTS ([`dump`](super::dump));
+//! - what Yade's `export.text` writes, and MercuryDPM's `.data` ([`rows`](super::rows)).
+//!
+//! What a file is, is seen by its first line, not by its name. What a file does not say, its unit of length
+//! or whether its boundaries are periodic, is never guessed: [`ReadOptions`] says it, or the file is refused.
 
 use std::path::Path;
+use std::str::FromStr;
 
+use serde::{Deserialize, Serialize};
+
+use super::csv::csv;
 use super::dump::dump;
-use super::fields::{ImportError, Kind, Line, number, refused};
+use super::fields::{ImportError, refused};
+use super::found::{FileCell, FileGrains};
 use super::grains::{Cell, Packing};
+use super::rows::{is_mercury, mercury, yade};
+use super::unit::LengthUnit;
 use crate::store::read_regular;
 
 /// Largest packing file that is read, in bytes.
 pub const PACKING_FILE_LIMIT_BYTES: u64 = 4 << 30;
 
+/// What is known of a packing file that the file does not say itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ReadOptions {
+    /// The unit of its lengths.
+    pub unit: Option<LengthUnit>,
+    /// Its cell.
+    pub cell: Option<CellOption>,
+}
+
+/// The cell of a packing whose file does not say it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum CellOption {
+    /// Free boundaries.
+    None,
+    /// Periodic between the bounds that the file gives.
+    Bounds,
+    /// Periodic from the origin to these lengths along x, y, z, in the file's unit.
+    Lengths([f64; 3]),
+}
+
+impl FromStr for CellOption {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.trim() {
+            "none" => return Ok(Self::None),
+            "bounds" => return Ok(Self::Bounds),
+            _ => {}
+        }
+        let lengths: Option<Vec<f64>> = text.split(',').map(|length| length.trim().parse().ok()).collect();
+        match lengths.as_deref() {
+            Some(&[x, y, z]) if [x, y, z].iter().all(|l| l.is_finite() && *l > 0.0) => {
+                Ok(Self::Lengths([x, y, z]))
+            }
+            _ => Err("write none for free boundaries, Lx,Ly,Lz for a periodic cell with a corner at the \
+                      origin (in the file's unit), or bounds for one between the bounds in the file"
+                .into()),
+        }
+    }
+}
+
+impl TryFrom<String> for CellOption {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+impl From<CellOption> for String {
+    fn from(cell: CellOption) -> Self {
+        match cell {
+            CellOption::None => "none".into(),
+            CellOption::Bounds => "bounds".into(),
+            CellOption::Lengths([x, y, z]) => format!("{x}, {y}, {z}"),
+        }
+    }
+}
+
 impl Packing {
-    /// Reads a packing from a CSV file or a LAMMPS text dump, whichever it is.
+    /// Reads a packing from a file that says its unit and its cell.
     ///
     /// # Errors
-    /// A file that cannot be read, is a folder, too large or no text; anything that is not as the
-    /// module says, with the line, the field, the value and what is allowed there.
+    /// As [`Packing::read_as`].
     pub fn read(path: impl AsRef<Path>) -> Result<Packing, ImportError> {
-        Ok(Self::read_with_notes(path)?.0)
+        Ok(Self::read_as(path, &ReadOptions::default())?.0)
     }
 
-    /// [`Packing::read`], with what a user must know of how it was understood: which frame, which unit.
+    /// Reads a packing, with what a user must know of how it was understood: which frame, which unit.
     ///
     /// # Errors
-    /// As [`Packing::read`].
-    pub fn read_with_notes(path: impl AsRef<Path>) -> Result<(Packing, Vec<String>), ImportError> {
+    /// A file that cannot be read, is a folder, too large or no text; one of no known format, or that leaves
+    /// its unit or cell open where `options` do too; anything that is not as its format says, with the line,
+    /// the field, the value and what is allowed there.
+    pub fn read_as(
+        path: impl AsRef<Path>,
+        options: &ReadOptions,
+    ) -> Result<(Packing, Vec<String>), ImportError> {
         let path = path.as_ref();
         let file = path.display().to_string();
         let failed = |source| ImportError::Read { file: file.clone(), source };
@@ -38,7 +113,7 @@ impl Packing {
             return Err(ImportError::Folder { file });
         }
         match read_regular(path, PACKING_FILE_LIMIT_BYTES).map_err(failed)? {
-            Some(bytes) => parse(&file, &bytes),
+            Some(bytes) => Self::parse_as(&file, &bytes, options),
             None if std::fs::metadata(path).is_ok_and(|meta| !meta.is_file()) => {
                 Err(failed(std::io::Error::other("is no regular file")))
             }
@@ -57,96 +132,128 @@ impl Packing {
     /// ```
     ///
     /// # Errors
-    /// As [`Packing::read`].
+    /// As [`Packing::read_as`].
     pub fn parse(name: &str, content: &[u8]) -> Result<Packing, ImportError> {
-        Ok(parse(name, content)?.0)
+        Ok(Self::parse_as(name, content, &ReadOptions::default())?.0)
     }
-}
 
-/// A packing, and what a user must know of how it was understood.
-fn parse(name: &str, content: &[u8]) -> Result<(Packing, Vec<String>), ImportError> {
-    let text = std::str::from_utf8(content).map_err(|error| {
-        let good = error.valid_up_to();
-        let line = 1 + content[..good].iter().filter(|&&b| b == b'\n').count();
-        ImportError::Encoding { file: name.into(), line, byte: content[good] }
-    })?;
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    match text.trim_start().starts_with("ITEM:") {
-        true => dump(name, text),
-        false => Ok((csv(name, text)?, Vec::new())),
-    }
-}
-
-const COLUMNS: [&str; 4] = ["x_mm", "y_mm", "z_mm", "diameter_mm"];
-
-fn csv(file: &str, text: &str) -> Result<Packing, ImportError> {
-    let ended = |line: usize, expected: &str| ImportError::Truncated {
-        file: file.into(),
-        line,
-        expected: expected.into(),
-    };
-    let mut lines =
-        text.lines().enumerate().map(|(i, line)| (i + 1, line)).filter(|(_, l)| !l.trim().is_empty());
-    let cell = match lines.next() {
-        Some(first) => cell(file, first)?,
-        None => return Err(ended(0, CELL_LINES)),
-    };
-    let mut last = 1;
-    let mut rows = lines.filter(|(_, line)| !line.trim_start().starts_with('#'));
-    let Some((header_line, header)) = rows.next() else {
-        return Err(ended(last, "the header x_mm,y_mm,z_mm,diameter_mm"));
-    };
-    let delimiter = [',', ';', '\t'].into_iter().max_by_key(|&d| header.matches(d).count()).unwrap_or(',');
-    let names: Vec<String> =
-        header.split(delimiter).map(|name| name.trim().trim_matches('"').to_lowercase()).collect();
-    let mut places = [0; 4];
-    for (place, wanted) in places.iter_mut().zip(COLUMNS) {
-        *place = match names.iter().filter(|name| *name == wanted).count() {
-            1 => names.iter().position(|name| name == wanted).unwrap_or(0),
-            found => {
-                let allowed = format!(
-                    "one column each called x_mm, y_mm, z_mm and diameter_mm ({found} called {wanted} found)"
-                );
-                return Err(refused(file, header_line, "header", header, allowed));
-            }
+    /// [`Packing::read_as`] on the content of a file, called `name` in messages.
+    ///
+    /// ```
+    /// use voidwalk::packing::{CellOption, LengthUnit, Packing, ReadOptions};
+    /// let yade = "#format x_y_z_r\n0.002\t0.001\t0\t0.0005\n";
+    /// let options = ReadOptions { unit: Some(LengthUnit::M), cell: Some(CellOption::None) };
+    /// let (packing, _) = Packing::parse_as("spheres.txt", yade.as_bytes(), &options)?;
+    /// assert_eq!((packing.x, packing.diameter), (vec![2.0], vec![1.0]));
+    /// assert!(Packing::parse("spheres.txt", yade.as_bytes()).is_err());
+    /// # Ok::<(), voidwalk::packing::ImportError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Packing::read_as`].
+    pub fn parse_as(
+        name: &str,
+        content: &[u8],
+        options: &ReadOptions,
+    ) -> Result<(Packing, Vec<String>), ImportError> {
+        let unknown =
+            |looks_like: &str| ImportError::Unknown { file: name.into(), looks_like: looks_like.into() };
+        if let Some((_, what)) = NOT_TEXT.iter().find(|(begin, _)| content.starts_with(begin)) {
+            return Err(unknown(what));
+        }
+        let text = std::str::from_utf8(content).map_err(|error| {
+            let good = error.valid_up_to();
+            let line = 1 + content[..good].iter().filter(|&&b| b == b'\n').count();
+            ImportError::Encoding { file: name.into(), line, byte: content[good] }
+        })?;
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let start = text.trim_start();
+        let found = if start.starts_with("ITEM:") {
+            dump(name, text, options.unit)?
+        } else if start.starts_with("#format") {
+            yade(name, text)?
+        } else if start.starts_with("<?xml") || start.starts_with("<VTKFile") || start.starts_with("# vtk") {
+            return Err(unknown("a file of VTK (in ParaView: File, Save Data, as CSV)"));
+        } else if is_mercury(text) {
+            mercury(name, text)?
+        } else {
+            csv(name, text)?
         };
+        complete(name, found, options)
     }
-    let mut columns = [Vec::new(), Vec::new(), Vec::new(), Vec::new()];
-    for (line, row) in rows {
-        last = line;
-        let fields: Vec<&str> = row.split(delimiter).collect();
-        for ((column, &place), name) in columns.iter_mut().zip(&places).zip(COLUMNS) {
-            let Some(field) = fields.get(place) else {
-                let allowed = format!("{} fields, as in the header", names.len());
-                return Err(refused(file, line, name, row, allowed));
-            };
-            let kind = if name == "diameter_mm" { Kind::Positive } else { Kind::Finite };
-            column.push(number(file, line, name, field, kind)?);
-        }
-    }
-    if columns[0].is_empty() {
-        return Err(ended(last.max(header_line), "at least one grain"));
-    }
-    let [x, y, z, diameter] = columns;
-    Ok(Packing { cell, x, y, z, diameter })
 }
 
-const CELL_LINES: &str = "a first line \"# cell_mm = Lx, Ly, Lz\" or \"# cell = none\"";
+/// How files that are no text begin, and what they are.
+const NOT_TEXT: [(&[u8], &str); 3] = [
+    (b"\x1f\x8b", "a compressed file (gzip): unpack it first"),
+    (b"PK\x03\x04", "a zip or a workbook (save a workbook's sheet as CSV)"),
+    (b"\x28\xb5\x2f\xfd", "a compressed file (zstd): unpack it first"),
+];
 
-fn cell(file: &str, (line, text): Line<'_>) -> Result<Cell, ImportError> {
-    let wrong = || refused(file, line, "cell", text, CELL_LINES);
-    let (key, value) =
-        text.trim().strip_prefix('#').and_then(|rest| rest.split_once('=')).ok_or_else(wrong)?;
-    // A spreadsheet fills the line up with delimiters.
-    let value = value.trim().trim_end_matches([',', ';', '\t', ' ']);
-    match (key.trim().to_lowercase().as_str(), value) {
-        ("cell" | "cell_mm", none) if none.eq_ignore_ascii_case("none") => Ok(Cell::Free),
-        ("cell_mm", lengths) => {
-            let lengths: Vec<&str> = lengths.split([',', ';', '\t']).collect();
-            let [x, y, z] = lengths[..] else { return Err(wrong()) };
-            let length = |text| number(file, line, "cell_mm", text, Kind::Positive);
-            Ok(Cell::Periodic([length(x)?, length(y)?, length(z)?]))
+/// The packing (mm), with what the file says and what `options` add; where both speak, the file does.
+fn complete(
+    file: &str,
+    found: FileGrains,
+    options: &ReadOptions,
+) -> Result<(Packing, Vec<String>), ImportError> {
+    let FileGrains { columns: [mut x, mut y, mut z, diameter], unit, cell, line, mut notes } = found;
+    let unit = match (unit, options.unit) {
+        (Some(said), Some(given)) if said != given => {
+            let allowed = format!("{}: the file says the unit of its lengths itself", said.name());
+            return Err(refused(file, line, "unit", given.name(), allowed));
         }
-        _ => Err(wrong()),
+        (Some(said), _) => said,
+        (None, Some(given)) => given,
+        (None, None) => return Err(ImportError::NoUnit { file: file.into() }),
+    };
+    let cell = match (cell, options.cell) {
+        (FileCell::Known(cell), None) => cell,
+        (FileCell::Known(_), Some(_)) => {
+            let allowed = "nothing: the file says its boundaries itself";
+            return Err(refused(file, line, "cell", "as it was given", allowed));
+        }
+        (_, Some(CellOption::None)) => Cell::Free,
+        (_, Some(CellOption::Lengths(lengths))) => Cell::Periodic(lengths),
+        (FileCell::Bounds(bounds), Some(CellOption::Bounds)) => {
+            for (column, [low, _]) in [&mut x, &mut y, &mut z].into_iter().zip(bounds) {
+                column.iter_mut().for_each(|at| *at -= low);
+            }
+            Cell::Periodic(bounds.map(|[low, high]| high - low))
+        }
+        (FileCell::Unsaid, Some(CellOption::Bounds)) => {
+            let allowed = "none, or Lx,Ly,Lz: the file gives no bounds";
+            return Err(refused(file, line, "cell", "bounds", allowed));
+        }
+        (FileCell::Bounds(_), None) => {
+            return Err(ImportError::NoCell {
+                file: file.into(),
+                bounds: ", or bounds for one between those in the file",
+            });
+        }
+        (FileCell::Unsaid, None) => return Err(ImportError::NoCell { file: file.into(), bounds: "" }),
+    };
+    let mut packing = Packing { cell, x, y, z, diameter };
+    if unit != LengthUnit::Mm {
+        into_mm(&mut packing, unit, (file, line))?;
+        notes.push(format!("{file}: lengths are in {}, and are turned into mm", unit.words()));
     }
+    Ok((packing, notes))
+}
+
+fn into_mm(packing: &mut Packing, unit: LengthUnit, (file, line): (&str, usize)) -> Result<(), ImportError> {
+    let Packing { cell, x, y, z, diameter } = packing;
+    let lengths = match cell {
+        Cell::Periodic(lengths) => lengths.as_mut_slice(),
+        Cell::Free => &mut [],
+    };
+    let all = [x, y, z, diameter].into_iter().flatten().chain(lengths);
+    for length in all {
+        let given = *length;
+        *length *= unit.mm();
+        if !length.is_finite() || (*length == 0.0) != (given == 0.0) {
+            let allowed = format!("lengths in {} that are numbers in mm", unit.words());
+            return Err(refused(file, line, "units", &given.to_string(), allowed));
+        }
+    }
+    Ok(())
 }

@@ -1,14 +1,21 @@
 //! Packing files: every dress, every refusal with its words, and no panic.
 
-use super::{Cell, Packing};
+use super::{Cell, CellOption, LengthUnit, Packing, ReadOptions};
 use proptest::prelude::*;
 
 const CSV: &str = "# cell_mm = 2, 3, 4\nx_mm,y_mm,z_mm,diameter_mm\n0.5,1,2,1\n1.5,2.5,3.25,0.75\n";
 const DUMP: &str = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n-1 1\n0 3\n1 5\n\
                     ITEM: ATOMS id type x y z radius\n2 1 0.5 2.5 4.25 0.375\n1 1 -0.5 1 3 0.5\n";
 
+/// A file that says its unit and its cell; a dump without units is in mm here.
 fn parsed(text: &str) -> Result<Packing, String> {
-    Packing::parse("f", text.as_bytes()).map_err(|error| error.to_string())
+    let unit = (text.contains("ITEM:") && !text.contains("ITEM: UNITS")).then_some(LengthUnit::Mm);
+    parsed_as(text, &ReadOptions { unit, cell: None })
+}
+
+fn parsed_as(text: &str, options: &ReadOptions) -> Result<Packing, String> {
+    let read = Packing::parse_as("f", text.as_bytes(), options);
+    read.map(|(packing, _)| packing).map_err(|error| error.to_string())
 }
 
 fn expected() -> Packing {
@@ -52,13 +59,13 @@ fn a_dump_says_which_frame_and_which_units_were_taken() {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("dump");
         std::fs::write(&path, text).unwrap();
-        Packing::read_with_notes(&path)
+        Packing::read_as(&path, &ReadOptions::default())
     };
     for (name, scale, words) in [
         ("si", 1e3, "metres"),
         ("cgs", 10.0, "centimetres"),
-        ("micro", 1e-3, "micro"),
-        ("nano", 1e-6, "nano"),
+        ("micro", 1e-3, "micrometres"),
+        ("nano", 1e-6, "nanometres"),
     ] {
         let first = DUMP.replace("0.375", "9").replace("TIMESTEP\n0", "TIMESTEP\n-1");
         for text in
@@ -69,10 +76,28 @@ fn a_dump_says_which_frame_and_which_units_were_taken() {
             assert_eq!(packing.x, [0.5 * scale, 1.5 * scale]);
             assert_eq!(packing.cell, Cell::Periodic([2.0 * scale, 3.0 * scale, 4.0 * scale]));
             assert!(notes[0].ends_with("holds 2 frames: the last one, timestep 0, is taken"), "{notes:?}");
-            assert!(notes[1].contains(&format!("ITEM: UNITS {name}: lengths are in {words}")), "{notes:?}");
+            assert!(
+                notes[1].contains(&format!("lengths are in {words}, and are turned into mm")),
+                "{notes:?}"
+            );
         }
     }
-    assert_eq!(read(DUMP).unwrap(), (expected(), Vec::new()));
+    // LIGGGHTS, and LAMMPS unless it is told to, do not say.
+    let silent = read(DUMP).unwrap_err().to_string();
+    assert!(
+        silent.contains("does not say the unit of its lengths") && silent.contains("--unit m"),
+        "{silent}"
+    );
+    let given = |unit| ReadOptions { unit: Some(unit), cell: None };
+    assert_eq!(parsed_as(DUMP, &given(LengthUnit::Mm)), Ok(expected()));
+    assert_eq!(parsed_as(DUMP, &given(LengthUnit::M)).unwrap().diameter, [1e3, 750.0]);
+    // Reduced units have no length of their own, and two that differ are no answer.
+    let reduced = format!("{}{DUMP}", units("lj"));
+    assert_eq!(parsed_as(&reduced, &given(LengthUnit::Mm)), Ok(expected()));
+    let both = parsed_as(&format!("{}{DUMP}", units("si")), &given(LengthUnit::Mm)).unwrap_err();
+    assert!(both.contains("unit: \"mm\" is not allowed; allowed: m: the file says the unit"), "{both}");
+    let cell = parsed_as(DUMP, &ReadOptions { unit: Some(LengthUnit::Mm), cell: Some(CellOption::None) });
+    assert!(cell.unwrap_err().contains("the file says its boundaries itself"));
     for name in ["lj", "real", "metal", "electron", "SI", ""] {
         let refused = parsed(&format!("{}{DUMP}", units(name))).unwrap_err();
         let message = format!("f, line 2, units: \"{name}\" is not allowed; allowed: si, cgs, micro or nano");
@@ -101,7 +126,16 @@ fn bad_files_are_refused_with_their_place() {
     let dump = |from: &str, to: &str| DUMP.replacen(from, to, 1);
     for (text, message) in [
         (String::new(), "f ends after line 0; expected a first line \"# cell_mm"),
-        (csv("# cell_mm = 2, 3, 4\n", ""), "f, line 1, cell: \"x_mm,y_mm,z_mm,diameter_mm\" is not allowed"),
+        (
+            csv("# cell_mm = 2, 3, 4\n", ""),
+            "f does not say whether its boundaries are periodic; say it: --cell none",
+        ),
+        (csv("# cell_mm = 2, 3, 4\nx_mm", "name"), "one column each for x, y, z"),
+        (
+            "name,colour\n1,2\n".into(),
+            "f is no packing that is known: line 1 is \"name,colour\". Known are: CSV",
+        ),
+        ("<?xml version=\"1.0\"?><VTKFile>".into(), "a file of VTK (in ParaView: File, Save Data, as CSV)"),
         (csv("2, 3, 4", "2, 3"), "f, line 1, cell"),
         (
             csv("2, 3, 4", "2, nan, 4"),
@@ -109,19 +143,13 @@ fn bad_files_are_refused_with_their_place() {
         ),
         (csv("2, 3, 4", "2, 0, 4"), "f, line 1, cell_mm: \"0\""),
         (csv("diameter_mm", "diameter"), "f, line 2, header: \"x_mm,y_mm,z_mm,diameter\""),
-        (csv("x_mm,y_mm", "x_mm,x_mm"), "(2 called x_mm found)"),
-        (
-            csv("0.5,1,2,1", "0.5,inf,2,1"),
-            "f, line 3, y_mm: \"inf\" is not allowed; allowed: a finite number",
-        ),
-        (csv("0.5,1,2,1", "0.5,1e400,2,1"), "f, line 3, y_mm: \"1e400\""),
-        (
-            csv("0.5,1,2,1", "0.5,1,2"),
-            "f, line 3, diameter_mm: \"0.5,1,2\" is not allowed; allowed: 4 fields",
-        ),
+        (csv("x_mm,y_mm", "x_mm,x_mm"), "(2 for x found)"),
+        (csv("0.5,1,2,1", "0.5,inf,2,1"), "f, line 3, y: \"inf\" is not allowed; allowed: a finite number"),
+        (csv("0.5,1,2,1", "0.5,1e400,2,1"), "f, line 3, y: \"1e400\""),
+        (csv("0.5,1,2,1", "0.5,1,2"), "f, line 3, diameter: \"0.5,1,2\" is not allowed; allowed: 4 fields"),
         (
             csv("0.5,1,2,1", "0.5,1,2,-1"),
-            "f, line 3, diameter_mm: \"-1\" is not allowed; allowed: a finite number above 0",
+            "f, line 3, diameter: \"-1\" is not allowed; allowed: a finite number above 0",
         ),
         (csv("0.5,1,2,1\n1.5,2.5,3.25,0.75\n", ""), "f ends after line 2; expected at least one grain"),
         (dump("pp pp pp", "pp ff pp"), "f, line 5, box bounds: \"pp ff pp\""),
@@ -167,4 +195,105 @@ proptest! {
             prop_assert_eq!(packing.x.len(), packing.diameter.len());
         }
     }
+}
+
+/// Centres and radii in metres, as other programs write them.
+const METRES: [[&str; 4]; 2] =
+    [["-0.0005", "0.001", "0.003", "0.0005"], ["0.0005", "0.0025", "0.00425", "0.000375"]];
+
+fn rows(of: impl Fn([&str; 4]) -> String) -> String {
+    METRES.map(of).concat()
+}
+
+/// What Yade, MercuryDPM and ParaView write of the two grains.
+#[test]
+fn files_of_other_programs_are_read_when_unit_and_cell_are_said() {
+    let yade = format!(
+        "#format x_y_z_r_matId\n# packed\n{}",
+        rows(|[x, y, z, r]| format!("{x}\t{y}\t{z}\t{r}\t0\n"))
+    );
+    let bounds = "-0.001 0 0.001 0.001 0.003 0.005";
+    let frame = |time: &str, radius: &str| {
+        let body = rows(|[x, y, z, r]| format!("{x} {y} {z} 0 0 0 {r} 0 0 0 0 0 0 7\n"));
+        format!("2 {time} {bounds}\n{}", body.replace("0.000375", radius))
+    };
+    let mercury = format!("{}{}", frame("0", "0.0009"), frame("1.5", "0.000375"));
+    let points = rows(|[x, y, z, r]| format!("{},7,{x},{y},{z}\n", 2.0 * r.parse::<f64>().unwrap()));
+    let paraview = format!("\"Diameter\",\"ID\",\"Points:0\",\"Points:1\",\"Points:2\"\n{points}");
+    let close = |packing: &Packing, shift: [f64; 3], text: &str| {
+        for ((found, wanted), shift) in
+            [(&packing.x, [-0.5, 0.5]), (&packing.y, [1.0, 2.5]), (&packing.z, [3.0, 4.25])]
+                .into_iter()
+                .zip(shift)
+        {
+            assert!(
+                found.iter().zip(wanted).all(|(a, b)| (a - b - shift).abs() < 1e-12),
+                "{text}: {found:?}"
+            );
+        }
+        assert!((packing.diameter[0] - 1.0).abs() + (packing.diameter[1] - 0.75).abs() < 1e-12, "{text}");
+    };
+    let options = |cell: &str| ReadOptions { unit: Some(LengthUnit::M), cell: Some(cell.parse().unwrap()) };
+    for text in [&yade, &mercury, &paraview, &paraview.replace("Points:", "coordinates_")] {
+        let free = parsed_as(text, &options("none")).unwrap();
+        assert_eq!(free.cell, Cell::Free);
+        close(&free, [0.0; 3], text);
+        let periodic = parsed_as(text, &options("0.002, 0.003,0.004")).unwrap();
+        assert_eq!(periodic.cell, Cell::Periodic([2.0, 3.0, 4.0]));
+        let said = |options: ReadOptions| parsed_as(text, &options).unwrap_err();
+        assert!(
+            said(ReadOptions { unit: None, ..options("none") }).contains("does not say the unit"),
+            "{text}"
+        );
+        let bounds = said(ReadOptions { unit: Some(LengthUnit::M), cell: None });
+        assert!(bounds.contains("does not say whether its boundaries are periodic"), "{bounds}");
+        assert_eq!(bounds.contains("or bounds for one"), text.as_str() == mercury, "{bounds}");
+    }
+    let moved = parsed_as(&mercury, &options("bounds")).unwrap();
+    let Cell::Periodic(lengths) = moved.cell else { panic!("{:?}", moved.cell) };
+    assert!(lengths.iter().zip([2.0, 3.0, 4.0]).all(|(a, b)| (a - b).abs() < 1e-12));
+    close(&moved, [1.0, 0.0, -1.0], "bounds");
+    let (_, notes) = Packing::parse_as("f", mercury.as_bytes(), &options("none")).unwrap();
+    assert!(notes[0].contains("holds 2 frames: the last one, time 1.5, is taken"), "{notes:?}");
+    // A unit in the names is as good as one that is said.
+    let named = paraview.replace("Points:0", "x (m)").replace("Points:1", "y (m)").replace("Points:2", "z_m");
+    let named =
+        parsed_as(&named.replace("Diameter", "Diameter [m]"), &ReadOptions { unit: None, ..options("none") });
+    close(&named.unwrap(), [0.0; 3], "named");
+}
+
+#[test]
+fn files_of_other_programs_that_are_broken_are_refused_with_their_place() {
+    let options = ReadOptions { unit: Some(LengthUnit::M), cell: Some(CellOption::None) };
+    for (text, message) in [
+        (
+            "#format x_y_r\n1 2 3\n",
+            "f, line 1, format: \"#format x_y_r\" is not allowed; allowed: x, y, z and r",
+        ),
+        ("#format x_y_z_r\n1 2 3\n", "f, line 2, row: \"1 2 3\" is not allowed; allowed: 4 fields"),
+        ("#format x_y_z_r\n1 2 3 0\n", "f, line 2, diameter: \"0\""),
+        ("#format x_y_z_r\n", "f ends after line 1; expected at least one sphere"),
+        (
+            "1 0 0 0 1 1\n0 0 0 0 1 0 0 0\n",
+            "f, line 1, frame: \"1 0 0 0 1 1\" is not allowed; allowed: three dimensions",
+        ),
+        ("1 0 0 0 0 1 1 1\n1 2 3\n", "f, line 2, particle: \"1 2 3\" is not allowed; allowed: at least 14"),
+        ("2 0 0 0 0 1 1 1\n1 2 3\n", "f ends after line 2; expected 2 rows of particles, 1 found"),
+        ("0 0 0 0 0 1 1 1\n", "N from 1"),
+        ("1 0 0 0 2 1 1 1\n", "a low bound below the high one"),
+        (
+            "x_mm,y_m,z_mm,radius_mm\n",
+            "f, line 1, header: \"x_mm,y_m,z_mm,radius_mm\" is not allowed; allowed: the same unit",
+        ),
+        ("# cell_mm = 1,1,1\nx_m,y_m,z_m,r_m\n0,0,0,1\n", "columns in mm, as the cell above them"),
+    ] {
+        let found = parsed_as(text, &options).unwrap_err();
+        assert!(found.contains(message), "{found}\n{text}");
+    }
+    let zipped = Packing::parse("f", b"\x1f\x8b\x08").unwrap_err().to_string();
+    assert!(zipped.contains("a compressed file (gzip): unpack it first. Known are: CSV"), "{zipped}");
+    for bad in ["", "1,2", "1,2,0", "1,2,nan", "box"] {
+        assert!(bad.parse::<CellOption>().unwrap_err().starts_with("write none for free"), "{bad}");
+    }
+    assert!("µm".parse() == Ok(LengthUnit::Um) && "inch".parse::<LengthUnit>().is_err());
 }

@@ -28,10 +28,12 @@
 mod checks;
 mod compression;
 mod contact;
+mod csv;
 mod draw;
 mod dump;
 mod export;
 mod fields;
+mod found;
 mod grains;
 mod import;
 #[cfg(test)]
@@ -44,16 +46,19 @@ mod observed;
 mod place;
 mod protocol;
 mod renewal;
+mod rows;
 mod settings;
 mod state;
+mod unit;
 
 pub use compression::{Compression, Stage};
 pub use draw::{draw, random_start};
 pub use export::vtp_points;
 pub use fields::ImportError;
 pub use grains::{Cell, Packing};
-pub use import::PACKING_FILE_LIMIT_BYTES;
+pub use import::{CellOption, PACKING_FILE_LIMIT_BYTES, ReadOptions};
 pub use neighbours::Reach;
 pub use observed::Measure;
 pub use protocol::{CompressionProgress, PackReport, compress};
 pub use settings::{Contact, PackingError, Settings};
+pub use unit::LengthUnit;

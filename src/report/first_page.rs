@@ -29,6 +29,12 @@ struct About {
     project: Option<String>,
     client: Option<String>,
     author: Option<String>,
+    coarse_left: bool,
+}
+
+/// Whether gradations are drawn with coarse sizes on the left.
+pub(super) fn coarse_left(folder: &RunFolder) -> bool {
+    toml::from_str::<Said>(&folder.scene).unwrap_or_default().about.coarse_left
 }
 
 /// The two soils, and what belongs to a sheet that is handed in.

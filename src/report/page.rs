@@ -108,6 +108,7 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
                 (in_short(outcome))
             }
         }
+        (shell::contents())
         h2 { "Figures" }
         @for (number, drawn) in (2..).zip(figures) { (shell::figure(number, drawn)) }
         (missing(folder, figures))

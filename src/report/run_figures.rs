@@ -7,6 +7,7 @@ use super::figures::{
     Across, Area, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Point, Rule,
     Shape, VERMILLION, positive_range, ramp, shorten,
 };
+use super::first_page::coarse_left;
 use super::folder::RunFolder;
 use super::names::soil_name;
 use super::numbers::{capital, interval, interval_in_percent, percent, significant, size, threshold, whole};
@@ -92,6 +93,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     let rows = filter.gradation.iter().chain(&filter.constrictions).chain(&base.gradation);
     let x =
         size_axis(inputs.scale_free, rows.map(|row| row[0]).chain(limits.iter().map(|(_, limit)| *limit)));
+    let x = if coarse_left(folder) { x.downward() } else { x };
     let y = Axis::percent("Percent finer (%)");
     let what = format!(
         "Percent finer against size for the filter (by mass), its constrictions (by number) and the base (by \
@@ -101,6 +103,9 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     );
     let mut figure = Figure::new("Gradations and constriction curve", &what, "", x, y)
         .sizes((720.0, 460.0), (358.0, 400.0));
+    if !inputs.scale_free {
+        figure = figure.sieves();
+    }
     let name = |kind: &str, name: &str| {
         if name.is_empty() { kind.to_owned() } else { format!("{kind}:\n{}", shorten(soil_name(name), 24)) }
     };

@@ -58,6 +58,7 @@ pub fn content_policy() -> String {
 /// A page as text: `title` for the browser, and what stands in each part of its body.
 pub fn whole_page(title: &str, header: &Markup, main: &Markup, footer: &Markup) -> String {
     let policy = content_policy();
+    let main = with_contents(&main.0);
     html! {
         (DOCTYPE)
         html lang="en" {
@@ -71,12 +72,42 @@ pub fn whole_page(title: &str, header: &Markup, main: &Markup, footer: &Markup) 
             }
             body {
                 header { (header) }
-                main { (main) }
+                main { (PreEscaped(main)) }
                 footer { (footer) }
             }
         }
     }
     .into_string()
+}
+
+/// Where the headings below it are to be listed.
+const CONTENTS: &str = "<nav class=\"contents\"></nav>";
+
+/// Lists the headings that follow on the page.
+pub(super) fn contents() -> Markup {
+    html! { (PreEscaped(CONTENTS)) }
+}
+
+/// A page with the list of its headings, where one is wanted, each of which gets a name to be found by.
+fn with_contents(main: &str) -> String {
+    let Some((before, after)) = main.split_once(CONTENTS) else { return main.to_owned() };
+    let mut parts = after.split("<h2>");
+    let mut marked = parts.next().unwrap_or_default().to_owned();
+    let mut headings: Vec<&str> = Vec::new();
+    for part in parts {
+        headings.push(part.split("</h2>").next().unwrap_or_default());
+        marked.push_str(&format!("<h2 id=\"part-{}\">{part}", headings.len()));
+    }
+    let list = html! {
+        nav.contents aria-label="Contents" {
+            @for (index, heading) in headings.iter().enumerate() {
+                @if !heading.contains('<') {
+                    a href=(format!("#part-{}", index + 1)) { (PreEscaped(heading)) } " "
+                }
+            }
+        }
+    };
+    [before, &list.0, &marked].concat()
 }
 
 /// A text from outside without characters that are no text; maud escapes the markup in it.
@@ -132,4 +163,20 @@ pub(super) fn citation() -> Markup {
 /// A row of a table of facts: what it is, and its value.
 pub(super) fn fact(name: &str, value: impl AsRef<str>) -> Markup {
     html! { tr { th { (name) } td { (clean(value.as_ref())) } } }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn headings_are_listed_where_that_is_wanted() {
+        let (part, mark) = ("<h2>Part &amp; 1</h2><p>1</p><h2>Of <b>2</b></h2>", CONTENTS);
+        let page = with_contents(&format!("<h2>Before</h2>{mark}{part}"));
+        let list =
+            "<nav class=\"contents\" aria-label=\"Contents\"><a href=\"#part-1\">Part &amp; 1</a> </nav>";
+        let marked = "<h2 id=\"part-1\">Part &amp; 1</h2><p>1</p><h2 id=\"part-2\">Of <b>2</b></h2>";
+        assert_eq!(page, format!("<h2>Before</h2>{list}{marked}"));
+        assert_eq!(with_contents(part), part);
+    }
 }

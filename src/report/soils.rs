@@ -4,8 +4,11 @@ use super::figures::{Axis, BLACK, BLUE, Dash, Figure, GREEN, GREY, Line, ORANGE,
 use super::figures::{positive_range, shorten};
 
 /// Percent finer by mass against size (mm) for each soil: its name and its points (size, percent), as an SVG
-/// file.
-pub fn soils_figure<'a>(soils: impl IntoIterator<Item = (&'a str, &'a [[f64; 2]])>) -> String {
+/// file; with coarse sizes on the left where that is asked for, as in the United States.
+pub fn soils_figure<'a>(
+    soils: impl IntoIterator<Item = (&'a str, &'a [[f64; 2]])>,
+    coarse_left: bool,
+) -> String {
     let soils: Vec<(&str, &[[f64; 2]])> = soils.into_iter().collect();
     let (low, high) = positive_range(soils.iter().flat_map(|(_, points)| points.iter().map(|row| row[0])));
     // One size alone has a range all the same.
@@ -13,7 +16,8 @@ pub fn soils_figure<'a>(soils: impl IntoIterator<Item = (&'a str, &'a [[f64; 2]]
     let names: Vec<String> = soils.iter().map(|(name, _)| shorten(name, 40)).collect();
     let what = format!("Percent finer by mass against size for {}", names.join(", "));
     let (x, y) = (Axis::log("Size (mm)", low, high), Axis::percent("Percent finer by mass (%)"));
-    let mut figure = Figure::new("Sieve curves", &what, "", x, y);
+    let x = if coarse_left { x.downward() } else { x };
+    let mut figure = Figure::new("Sieve curves", &what, "", x, y).sieves();
     let colours = [BLACK, VERMILLION, BLUE, GREEN, PURPLE, ORANGE, GREY];
     let dashes = [Dash::Solid, Dash::Dashed];
     for (index, ((_, points), name)) in soils.iter().zip(&names).enumerate() {
@@ -32,10 +36,10 @@ mod tests {
     #[test]
     fn every_soil_has_its_curve_and_its_name() {
         let [fine, coarse] = [[[0.1, 0.0], [1.0, 100.0]], [[1.0, 10.0], [20.0, 100.0]]];
-        let text = soils_figure([("fine <side>", &fine[..]), ("coarse", &coarse[..])]);
+        let text = soils_figure([("fine <side>", &fine[..]), ("coarse", &coarse[..])], false);
         assert!(text.starts_with("<?xml") || text.starts_with("<svg"), "{}", &text[..40]);
         assert!(text.contains(">fine &lt;side&gt;<") && text.contains(">coarse<"));
         // One size.
-        assert!(soils_figure([("one", &[[2.0, 100.0]][..])]).contains("</svg>"));
+        assert!(soils_figure([("one", &[[2.0, 100.0]][..])], false).contains("</svg>"));
     }
 }

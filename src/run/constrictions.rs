@@ -8,7 +8,7 @@ use super::folder::{FolderKind, claim, clear, shown};
 use super::unfinished::{self, Unfinished};
 use crate::constrictions::{Constrictions, DEFAULT_MERGE_OVERLAP, Facets, Summary, Triangulation, VoidGraph};
 use crate::network::permeability_mm2;
-use crate::packing::Packing;
+use crate::packing::{Packing, ReadOptions};
 
 /// How constrictions are measured.
 #[derive(Clone, Debug)]
@@ -17,6 +17,8 @@ pub struct ConstrictionsOptions {
     pub merge_overlap: f64,
     /// Which facets between voids are constrictions of the curve.
     pub facets: Facets,
+    /// What the file of grains does not say.
+    pub read: ReadOptions,
     /// Folder for the results.
     pub out: PathBuf,
     /// Whether earlier results there are replaced.
@@ -28,6 +30,7 @@ impl Default for ConstrictionsOptions {
         Self {
             merge_overlap: DEFAULT_MERGE_OVERLAP,
             facets: Facets::All,
+            read: ReadOptions::default(),
             out: "voidwalk-constrictions".into(),
             overwrite: false,
         }
@@ -46,7 +49,7 @@ pub fn measure_constrictions(
     callbacks: &Callbacks,
 ) -> Result<Summary, RunError> {
     let file = shown(packing);
-    let (packing, notes) = Packing::read_with_notes(packing)?;
+    let (packing, notes) = Packing::read_as(packing, &options.read)?;
     let refused = |error: String| RunError::Refused(format!("{file}: {error}"));
     let t = Triangulation::new(&packing).map_err(|error| refused(error.to_string()))?;
     let found = Constrictions::from_triangulation(&t, options.merge_overlap, options.facets)

@@ -126,7 +126,8 @@ impl RunError {
     /// What is kept of the work, and what to do next, where the disk is what is wrong.
     pub fn advice(&self) -> Option<&'static str> {
         use std::io::ErrorKind::{
-            FileTooLarge, InvalidFilename, PermissionDenied, QuotaExceeded, ReadOnlyFilesystem, StorageFull,
+            FileTooLarge, InvalidFilename, NotADirectory, PermissionDenied, QuotaExceeded,
+            ReadOnlyFilesystem, StorageFull,
         };
         let mut error: &(dyn std::error::Error + 'static) = match self {
             Self::Claim(error) | Self::Save(error) | Self::Store(error) => error,
@@ -158,6 +159,7 @@ impl RunError {
                  you leave"
             }
             InvalidFilename => "name a folder with a shorter name by --out",
+            NotADirectory => "a part of that path is a file; name another folder by --out",
             _ => return None,
         })
     }

@@ -18,6 +18,9 @@ pub(crate) const STUDY: [&str; 2] = ["study.0", "study.1"];
 /// The files of the checkpoint of a design that is not finished.
 pub(crate) const DESIGN: [&str; 2] = ["networks.0", "networks.1"];
 
+/// What `voidwalk export` writes into a folder of that name.
+const EXPORTED: [&str; 3] = ["arrays.npz", "layers.vtu", "grains.vtu"];
+
 /// What a folder holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FolderKind {
@@ -269,6 +272,7 @@ pub fn clear(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
     let both = |name: &&str| ["svg", "png"].map(|ending| format!("{name}.{ending}"));
     let figures: Vec<String> = kind.figures().iter().flat_map(both).collect();
     folder.remove_all_in("figures", &figures)?;
+    folder.remove_all_in("export", &EXPORTED)?;
     if kind == FolderKind::Run {
         folder.remove_all_in("inputs", &INPUT_FILES)?;
     }

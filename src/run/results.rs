@@ -178,7 +178,11 @@ fn rule_inputs<'a>(case: &'a Case, walked: &[ReplicateResult]) -> RuleInputs<'a>
 
 /// What the scene did not need, and what the first replicate's first run did not.
 fn left_out(case: &Case, walked: &[ReplicateResult]) -> Vec<String> {
-    let of_run = walked.first().map(|w| w.left_out.clone()).unwrap_or_default();
+    let mut of_run = walked.first().map(|w| w.left_out.clone()).unwrap_or_default();
+    if case.is_scale_free() {
+        // The smallest grain stands for 1 mm while it is walked.
+        of_run.iter_mut().for_each(|sentence| *sentence = sentence.replace(" mm)", " D0F)"));
+    }
     [case.left_out(), of_run].concat()
 }
 

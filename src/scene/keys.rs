@@ -7,6 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::constrictions::DEFAULT_MERGE_OVERLAP;
 use crate::network::{Connectivity, ExitRule};
+use crate::packing::{CellOption, LengthUnit};
 use crate::schema::{Allowed, Leaf, above_zero, any, only, section, whole, within, words};
 use crate::text::is_hidden;
 use crate::walk::{Engine, Sampling};
@@ -143,7 +144,7 @@ section! {
         /// How a particle chooses among the open exits of its void: in proportion to "area" on a network
         /// whose constrictions have a direction (the paper's); to the "flux" of water; to "area-along-flow",
         /// among the exits that water leaves by; or by "height", to area among those that lead further along
-        /// the axis. Without it "area" on a lattice, "flux" on a graph.
+        /// the axis. Without it "area" on a lattice, "flux" on a graph and on an .npz of arrays.
         pub exit: Option<ExitRule> = None, off "\"flux\"", words(&ExitRule::ALL.map(ExitRule::name));
         /// Part of its conductance that a blocked constriction keeps, where water flows.
         pub rho: Option<f64> = None, off "0.0", within(0.0..=1.0, "a part from 0 to 1");
@@ -160,9 +161,17 @@ section! {
         /// "lattice", or "graph": the voids of the filter's own packing and the constrictions between them.
         pub kind: Option<NetworkMadeOf> = None, off "\"graph\"",
             words(&NetworkMadeOf::ALL.map(NetworkMadeOf::name));
-        /// The packing whose voids are walked, where it is not made here: grains in a periodic cell (CSV,
-        /// LAMMPS dump).
+        /// The packing whose voids are walked, where it is not made here: grains in a periodic cell (CSV, and
+        /// files of LAMMPS, LIGGGHTS, Yade, MercuryDPM).
         pub packing: Option<PathBuf> = None, off "\"grains.csv\"", any("a file name in quotes");
+        /// The unit of lengths in network.packing, or of diameters in an .npz of network.file: files that do
+        /// not say theirs are refused without it.
+        pub unit: Option<LengthUnit> = None, off "\"m\"", words(&LengthUnit::ALL.map(LengthUnit::name));
+        /// The periodic cell of network.packing, where the file does not say it: "Lx, Ly, Lz" in its unit,
+        /// with a corner at the origin, or "bounds" for one between the bounds that the file gives
+        /// (MercuryDPM).
+        pub cell: Option<CellOption> = None, off "\"bounds\"",
+            any("\"bounds\", or \"Lx, Ly, Lz\" in the unit of the file");
         /// Equal copies of that packing one behind the other along the flow; as many as 60 layers of voids
         /// need unless they or the thickness are given.
         pub copies: Option<u64> = None, off "3", whole(1..=1_000_000);
@@ -185,7 +194,8 @@ section! {
              from 2 to 12, as { 4 = 10, 5 = 20, 6 = 40, 7 = 20, 8 = 10 }",
         );
         /// Instead of a lattice, any directed network: CSV with from,to,diameter_mm, rows `start,ID,`, and
-        /// `to` = end.
+        /// `to` = end. Or an .npz of arrays as OpenPNM and PoreSpy name them, whose constrictions can be
+        /// passed both ways: throat.conns, throat.diameter, pore.inlets, pore.outlets.
         pub file: Option<PathBuf> = None, off "\"network.csv\"", any("a file name in quotes");
     }
 }
@@ -221,6 +231,8 @@ section! {
         pub client: Option<String> = None, off "\"Water Board\"", line();
         /// By whom.
         pub author: Option<String> = None, off "\"N. N.\"", line();
+        /// Whether the figure of the gradations has its coarse sizes on the left, as in the United States.
+        pub coarse_left: Option<bool> = None, off "true", any("true or false");
     }
 }
 
@@ -342,6 +354,8 @@ impl NetworkMadeOf {
     }
 }
 
+impl Leaf for CellOption {}
+impl Leaf for LengthUnit {}
 impl Leaf for NetworkMadeOf {}
 impl Leaf for ExitRule {}
 /// Whether a base is walked regraded.

@@ -7,7 +7,7 @@ use super::keys::{Base, CurveSource, Filter, NetworkKeys, NetworkMadeOf, Record}
 use super::{PackingKeys, SceneError};
 use crate::network::Connectivity;
 use crate::outcome::Wanted;
-use crate::packing;
+use crate::packing::{self, ReadOptions};
 
 /// The filter's gradation by mass.
 #[derive(Clone, Debug, PartialEq)]
@@ -159,6 +159,17 @@ impl Base {
 }
 
 impl NetworkKeys {
+    /// Whether it is a file of arrays, whose constrictions can be passed both ways.
+    pub fn is_of_arrays(&self) -> bool {
+        let ending = |path: &PathBuf| path.extension().map(|ending| ending.to_ascii_lowercase());
+        self.file.as_ref().and_then(ending).is_some_and(|ending| ending == "npz")
+    }
+
+    /// What the scene says of its packing that the packing's file does not.
+    pub fn read_options(&self) -> ReadOptions {
+        ReadOptions { unit: self.unit, cell: self.cell }
+    }
+
     pub(super) fn fill_in(&mut self) {
         if self.file.is_some() || self.kind == Some(NetworkMadeOf::Graph) {
             return;

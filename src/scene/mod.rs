@@ -222,8 +222,9 @@ impl Scene {
             && self.network.packing.is_none()
         {
             return Err(s.clash(
-                "filter.curve is missing: a shipped name, or a CSV file with percent_smaller,diameter_mm; \
-                 or filter.density, for a filter to be packed",
+                "the filter's constrictions are missing: filter.density = \"loose\" (or \"intermediate\", \
+                 \"dense\") packs its grains; filter.estimate = 0.5 guesses from its gradation; filter.curve \
+                 names a shipped curve, or a CSV file with percent_smaller,diameter_mm",
             ));
         }
         if filter.measured.is_some() && (self.packing.is_none() || filter.grains_per_void.is_none()) {
@@ -279,11 +280,25 @@ impl Scene {
         } else {
             wrong(&["network.packing", "network.copies"], "goes with network.kind = \"graph\"")?;
         }
+        let of_arrays = self.network.is_of_arrays();
+        if self.network.packing.is_none() {
+            wrong(&["network.cell"], "goes with network.packing")?;
+            if !of_arrays {
+                wrong(&["network.unit"], "goes with network.packing, or with an .npz as network.file")?;
+            }
+        }
+        if of_arrays {
+            wrong(
+                &["walk.conductance_exponent"],
+                "is for a lattice: arrays say what conducts, or the fourth power does",
+            )?;
+        }
         if self.network.file.is_some() || self.network.connectivity.is_some() {
             wrong(&["network.thickness_mm", "network.thickness_d50f"], "is for a lattice or a graph")?;
         }
         let rule = self.exit_rule();
         let allowed: &[ExitRule] = match (graph, &self.network.file, &self.network.connectivity) {
+            (false, Some(_), _) if of_arrays => &[ExitRule::Flux, ExitRule::AreaAlongFlow, ExitRule::Area],
             (true, ..) => &[ExitRule::Flux, ExitRule::AreaAlongFlow, ExitRule::Height],
             (false, None, None) => &[ExitRule::Area, ExitRule::Flux, ExitRule::AreaAlongFlow],
             _ => &[ExitRule::Area],
@@ -317,6 +332,7 @@ impl Scene {
     pub fn exit_rule(&self) -> ExitRule {
         self.exits.exit.unwrap_or(match self.network.kind {
             Some(NetworkMadeOf::Graph) => ExitRule::Flux,
+            _ if self.network.is_of_arrays() => ExitRule::Flux,
             _ => ExitRule::Area,
         })
     }
@@ -512,7 +528,7 @@ mod tests {
             assert!(error.contains(message), "{set}: {error}");
         }
         for (text, message) in [
-            ("[base]\ncu = 2", "filter.curve is missing"),
+            ("[base]\ncu = 2", "constrictions are missing: filter.density = \"loose\""),
             ("[filter]\ncurve = \"a.csv\"", "the base is missing"),
             ("[filter]\ncurve = \"a.csv\"\n[base]\ncu = 2", "needs one of base.d85_mm"),
             ("[filter]\ncurve = \"a.csv\"\n[base]\ncu = 2\nsingle_mm = 1", "keep one"),

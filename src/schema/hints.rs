@@ -2,6 +2,9 @@
 
 use toml::de::DeTable;
 
+/// How workbooks begin: .xlsx and .ods are zips, .xls is older.
+const WORKBOOKS: [&[u8]; 2] = [b"PK\x03\x04", b"\xd0\xcf\x11\xe0"];
+
 /// Sections and keys that only a plan of a campaign has.
 const OF_A_PLAN: [&str; 6] = ["factor", "case", "leave_out", "seeds", "title", "set"];
 
@@ -10,6 +13,11 @@ const OF_A_PLAN: [&str; 6] = ["factor", "case", "leave_out", "seeds", "title", "
 /// # Errors
 /// What the bytes look like instead.
 pub fn as_text(bytes: &[u8]) -> Result<&str, String> {
+    if WORKBOOKS.iter().any(|begin| bytes.starts_with(begin)) {
+        return Err("is a workbook, not TOML text; two of its soils are judged by `voidwalk judge \
+                    \"FILE#BASE\" \"FILE#FILTER\"`, and `voidwalk soil FILE` shows them"
+            .into());
+    }
     let utf_16 = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]);
     let zeros = bytes.iter().take(64).filter(|byte| **byte == 0).count();
     if utf_16 || (zeros > 0 && 3 * zeros >= bytes.len().min(64)) {
@@ -26,10 +34,9 @@ pub fn as_text(bytes: &[u8]) -> Result<&str, String> {
 pub fn of_line(text: &str, line: usize) -> Option<String> {
     let (key, value) = text.lines().nth(line.checked_sub(1)?)?.split_once('=')?;
     let (key, value) = (key.trim(), value.split('#').next().unwrap_or_default().trim());
-    let is_number = |part: &str| !part.is_empty() && part.chars().all(|c| c.is_ascii_digit());
     if let Some((whole, part)) = value.split_once(',')
-        && is_number(whole.trim_start_matches(['+', '-']))
-        && is_number(part)
+        && is_digits(whole.trim_start_matches(['+', '-']))
+        && is_digits(part)
     {
         return Some(format!("`{value}` has a decimal comma; write {key} = {whole}.{part}"));
     }
@@ -40,7 +47,35 @@ pub fn of_line(text: &str, line: usize) -> Option<String> {
              between single quotes"
         ));
     }
-    None
+    if let Some(hint) = of_value(value) {
+        return Some(format!("`{value}`: {hint}"));
+    }
+    let is_bare = value.starts_with(|c: char| c.is_alphabetic() || "./~".contains(c))
+        && !value.contains(['"', '\'', ',', '=', '[', '{'])
+        && !["true", "false"].contains(&value);
+    is_bare.then(|| {
+        format!("`{value}` is no number: a name or a word stands in quotes; write {key} = \"{value}\"")
+    })
+}
+
+/// What is wrong with a value that is meant to be a number, where it is one of the usual mistakes.
+pub fn of_value(value: &str) -> Option<String> {
+    let number = value.trim();
+    if let Some((whole, part)) = number.split_once(',')
+        && is_digits(whole.trim_start_matches(['+', '-']))
+        && is_digits(part)
+    {
+        return Some(format!("a decimal point, not a comma: {whole}.{part}"));
+    }
+    let end = number.find(|c: char| !c.is_ascii_digit() && !".+-".contains(c))?;
+    let (digits, unit) = (number[..end].trim(), number[end..].trim());
+    let is_unit = ["mm", "cm", "m", "um", "µm", "μm", "nm", "%", "layers", "kPa", "GPa"].contains(&unit);
+    let is_number = digits.parse::<f64>().is_ok();
+    (is_unit && is_number).then(|| format!("the number alone, without its unit: {digits}"))
+}
+
+fn is_digits(text: &str) -> bool {
+    !text.is_empty() && text.chars().all(|c| c.is_ascii_digit())
 }
 
 /// Whether a text that is no TOML is a table of numbers.
@@ -68,14 +103,28 @@ mod tests {
         for line in ["sieve = \"csv\\sand.csv\"", "sieve = csv\\sand.csv"] {
             assert!(hint(line).unwrap().contains("write sieve = \"csv/sand.csv\""), "{line}");
         }
-        for line in ["cu = ", "cu = 1,5,6", "cu = a,b", "[filter", "cu"] {
+        assert_eq!(
+            hint("sieve = sand.csv").unwrap(),
+            "`sand.csv` is no number: a name or a word stands in quotes; write sieve = \"sand.csv\""
+        );
+        assert!(hint("d0_mm = 0.5 mm").unwrap().contains("without its unit: 0.5"));
+        for line in ["cu = ", "cu = 1,5,6", "cu = a,b", "[filter", "cu", "cu = \"a", "cu = 1e"] {
             assert_eq!(hint(line), None, "{line}");
         }
         assert_eq!(of_line("", 0), None);
     }
 
     #[test]
+    fn numbers_with_a_comma_or_a_unit_are_known() {
+        let texts = ["3,5", "500mm", "0.5 mm", "50%", "1e3", "abc", "7", "12 weeks", ""].map(of_value);
+        let said: Vec<Option<&str>> = texts.iter().map(|text| text.as_deref().map(|t| &t[..18])).collect();
+        let [comma, unit] = [Some("a decimal point, n"), Some("the number alone, ")];
+        assert_eq!(said, [comma, unit, unit, unit, None, None, None, None, None]);
+    }
+
+    #[test]
     fn texts_are_told_apart() {
+        assert!(as_text(b"PK\x03\x04 and more").unwrap_err().starts_with("is a workbook"));
         let utf_16: Vec<u8> = "seed = 1\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
         assert!(as_text(&utf_16).unwrap_err().contains("UTF-16"));
         assert!(as_text(&[&[0xff, 0xfe], &utf_16[..]].concat()).unwrap_err().contains("UTF-16"));

@@ -145,8 +145,9 @@ pub struct GivenSettings {
 /// A larger settings file is refused (bytes).
 const LARGEST_FILE: u64 = 1 << 20;
 
-const NO_SCENE: &str = "is a table of numbers, not a scene; a scene names it, as in base.sieve \
- = \"sand.csv\" (`voidwalk init` writes one to start from)";
+const NO_SCENE: &str = "is a table of numbers, not a scene; two sieve tables are judged by `voidwalk judge \
+ BASE FILTER`; a scene names one, as in base.sieve = \"sand.csv\" (`voidwalk init` writes a scene \
+ to start from)";
 
 const PLAN: &str = "is the plan of a campaign, not a scene; walk it by `voidwalk campaign`";
 
@@ -278,7 +279,11 @@ impl GivenSettings {
             .get(name)
             .cloned()
             .unwrap_or_else(|| (Value::Other("nothing".into()), Origin::Line(self.file.clone(), 1)));
-        SceneError::Value { origin, name: name.into(), value: value.to_string(), allowed: allowed.into() }
+        let (value, mut allowed) = (value.to_string(), allowed.into());
+        if let Some(hint) = hints::of_value(&value) {
+            allowed = format!("{allowed} ({hint})");
+        }
+        SceneError::Value { origin, name: name.into(), value, allowed }
     }
 
     /// The error for settings that clash.

@@ -284,7 +284,8 @@ impl Routes {
                 }
             }
         }
-        let drawn = report::soils_figure(soils.iter().map(|(name, points)| (name.as_str(), &points[..])));
+        let drawn =
+            report::soils_figure(soils.iter().map(|(name, points)| (name.as_str(), &points[..])), false);
         let answer = Answer::new(200, "image/svg+xml", drawn);
         Ok(Answer { policy: Some(POLICY_OF_DRAWING.into()), ..answer })
     }

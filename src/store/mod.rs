@@ -4,9 +4,11 @@ pub mod checkpoint;
 mod column;
 pub mod disk;
 mod folder;
+mod npz;
 
 pub use column::{Column, Placement};
 pub use disk::read_regular;
 pub use folder::{
     Folder, LOCK_FILE, StoreError, files_in, make_folder, read_whole, remove_folder, write_whole,
 };
+pub use npz::{Array, Npz, Numbers, npz};

@@ -142,6 +142,61 @@ fn one_replicate_is_said_to_have_no_scatter() {
     assert!(!text.contains("scatter is unknown") && text.contains(" 2 replicates of 500"), "{text}");
 }
 
+/// The words of a page before its scene, without the rules of practice, whose sources speak of mm.
+fn words_of_page(folder: &Path) -> String {
+    let page = fs::read_to_string(folder.join("report.html")).unwrap();
+    let body = page.split("</style>").nth(1).unwrap();
+    let body = body.split("<pre>").next().unwrap();
+    let (before, rules) = body.split_once(">Filter rules beside the verdict</h2>").unwrap();
+    format!("{before} {}", rules.split_once("<h2").unwrap().1)
+}
+
+/// Nothing has a scale in the built-in scene: sizes are multiples of D0F.
+#[test]
+fn a_scene_without_a_scale_says_nothing_in_mm() {
+    let root = tempfile::tempdir().unwrap();
+    files(root.path());
+    let set = ["--set", "replicates=2", "--set", "engine=counts"];
+    let run = voidwalk(root.path(), &[&["run", "small.toml", "--out", "free"], &set[..]].concat());
+    let words = [String::from_utf8(run.stdout).unwrap(), words_of_page(&root.path().join("free"))];
+    for text in &words {
+        for unit in [" mm", "\u{202f}mm", "(mm)"] {
+            let at = text.find(unit);
+            assert!(
+                at.is_none(),
+                "{}",
+                at.map_or("", |at| text.get(at.saturating_sub(80)..at + 20).unwrap_or_default())
+            );
+        }
+    }
+    assert!(words[1].contains(" D0F)") && words[1].contains("Size / D0F"));
+}
+
+/// Digits as people write them: `19.65 %`, `1 core`, `1 replicate`.
+#[test]
+fn percentages_and_counts_read_as_people_write_them() {
+    let root = tempfile::tempdir().unwrap();
+    files(root.path());
+    for (name, n_base) in [("few", 300), ("many", 200_000)] {
+        let n_base = format!("base.n_base={n_base}");
+        let run =
+            voidwalk(root.path(), &["run", "small.toml", "--set", &n_base, "--threads", "1", "--out", name]);
+        let text = String::from_utf8(run.stdout).unwrap() + &words_of_page(&root.path().join(name));
+        let words: Vec<&str> = text.split(|c: char| c.is_whitespace() || "<>()".contains(c)).collect();
+        for pair in words.windows(2) {
+            let is_power = |word: &str| word.contains("e-") || word.contains("e0") || word.contains("e1");
+            let is_number =
+                pair[0].starts_with(|c: char| c.is_ascii_digit()) && pair[0].parse::<f64>().is_ok();
+            assert!(!(is_number && is_power(pair[0]) && pair[1].starts_with('%')), "{pair:?}");
+            let plural = ["replicates", "cores", "constrictions", "runs", "grains", "voids", "warnings"];
+            assert!(
+                !(pair[0] == "1" && plural.contains(&pair[1].trim_end_matches([',', '.', ';', ':']))),
+                "{pair:?}"
+            );
+        }
+    }
+}
+
 #[test]
 fn what_a_changed_plan_does_to_finished_cases_is_said() {
     let root = tempfile::tempdir().unwrap();
@@ -237,4 +292,35 @@ fn limits_of_the_system_end_a_run_with_a_word_or_a_checkpoint() {
         assert!(stderr.contains("progress saved; continue with `voidwalk resume"), "{signal}: {stderr}");
         assert!(fs::read_dir(root.path().join(signal).join("checkpoint")).unwrap().count() > 0);
     }
+}
+
+/// What a shell and `man` are given, and what the program says of itself.
+#[test]
+fn shells_and_man_know_every_command() {
+    let root = tempfile::tempdir().unwrap();
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        let script = String::from_utf8(voidwalk(root.path(), &["completions", shell]).stdout).unwrap();
+        assert!(script.contains("voidwalk") && script.contains("merge-overlap"), "{shell}");
+    }
+    // As bash does it, where there is one.
+    let asked = "source <(\"$1\" completions bash); COMP_WORDS=(voidwalk constr); COMP_CWORD=1; _voidwalk voidwalk \
+                 constr voidwalk; echo \"${COMPREPLY[@]}\"";
+    let bash =
+        Command::new("bash").args(["-c", asked, "bash", env!("CARGO_BIN_EXE_voidwalk")]).output().unwrap();
+    assert_eq!(String::from_utf8(bash.stdout).unwrap().trim(), "constrictions");
+    let pages = voidwalk(root.path(), &["man", "pages"]);
+    assert!(pages.status.success(), "{}", String::from_utf8_lossy(&pages.stderr));
+    for command in ["voidwalk", "voidwalk-run", "voidwalk-export", "voidwalk-man"] {
+        let page = fs::read_to_string(root.path().join(format!("pages/{command}.1"))).unwrap();
+        assert!(page.contains(&format!(".TH {command} 1")), "{page}");
+        assert_eq!(page.contains("Examples:"), command != "voidwalk", "{page}");
+    }
+    let version = String::from_utf8(voidwalk(root.path(), &["--version"]).stdout).unwrap();
+    let (number, commit) = version.trim().split_once(" (").unwrap_or((version.trim(), ")"));
+    assert_eq!(number, format!("voidwalk {}", env!("CARGO_PKG_VERSION")));
+    let digits = commit.trim_end_matches(')');
+    assert!(
+        digits.is_empty() || (digits.len() == 12 && digits.chars().all(|c| c.is_ascii_hexdigit())),
+        "{version}"
+    );
 }

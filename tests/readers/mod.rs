@@ -20,7 +20,7 @@ use voidwalk::case::Case;
 use voidwalk::constrictions::{Curve, DEFAULT_MERGE_OVERLAP, VoidGraph};
 use voidwalk::gradation::{Gradation, SizeSampler, Soil, SoilSummary};
 use voidwalk::network::{END, ExitRule, Flow, GraphShape, Network, NetworkColumns};
-use voidwalk::packing::Packing;
+use voidwalk::packing::{CellOption, LengthUnit, Packing, ReadOptions};
 use voidwalk::run::PrepareOptions;
 use voidwalk::scene::{CurveSource, Scene};
 use voidwalk::serve::{ServeOptions, Server};
@@ -139,8 +139,11 @@ pub fn network(bytes: &[u8]) {
     assert_eq!(Network::from_csv(&text, "again.csv", 2.0).unwrap(), network);
 }
 
-/// A packing, as CSV or as a dump of LAMMPS: comes back from its own CSV bit for bit.
+/// A packing, of this program or of another: comes back from its own CSV bit for bit.
 pub fn packing(bytes: &[u8]) {
+    // What a file leaves open is said, so that files of every format are read.
+    let options = ReadOptions { unit: Some(LengthUnit::Um), cell: Some(CellOption::None) };
+    shown(Packing::parse_as("packing", bytes, &options));
     let Some(packing) = shown(Packing::parse("packing", bytes)) else { return };
     let again = Packing::parse("again", packing.to_csv().as_bytes()).unwrap();
     let bits = |p: &Packing| {

@@ -24,8 +24,11 @@ fn made(plan: &Plan) -> (String, Vec<(String, String)>, TempDir) {
     (fs::read_to_string(written.page).unwrap(), figures, folder)
 }
 
-/// Text of a page without its markup.
+/// Text of a page without its markup and its list of headings.
 fn words(page: &str) -> String {
+    let list =
+        page.split_once("<nav").and_then(|(before, rest)| Some((before, rest.split_once("</nav>")?.1)));
+    let page = &list.map_or_else(|| page.to_owned(), |(before, after)| before.to_owned() + after);
     let mut inside = false;
     let text: String = page
         .chars()
@@ -124,8 +127,17 @@ fn nothing_may_run_or_be_fetched() {
     let head = page.split("</head>").next().unwrap();
     let policy = head.find("Content-Security-Policy").expect("a policy");
     assert!(policy < head.find("<style").unwrap(), "the policy must stand before what it governs");
+    // Light paper and dark screens.
+    assert!(
+        head.contains("@media screen and (prefers-color-scheme:dark)") && head.contains("color-scheme:light")
+    );
+    assert!(
+        page.contains("<a href=\"#part-1\">Figures</a>") && page.contains("<h2 id=\"part-1\">Figures</h2>")
+    );
     assert!(head.contains("default-src 'none'; style-src 'sha256-"));
     assert!(!page.contains("unsafe-inline"));
+    // Links lead to headings of the page itself.
+    let page = page.replace("<a href=\"#part-", "<a ");
     for forbidden in ["<script", "style=\"", "src=", "href=", "@import", "url(http", "http://", "https://"] {
         assert!(!page.contains(forbidden), "{forbidden}");
     }

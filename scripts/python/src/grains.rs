@@ -6,7 +6,7 @@ use pyo3::types::PyDict;
 use voidwalk::campaign::CampaignCallbacks;
 use voidwalk::case::PackingPlan;
 use voidwalk::constrictions::{Constrictions, ConstrictionsError, Facets, Triangulation, VoidGraph};
-use voidwalk::packing::{Compression, Packing, PackingError, Settings, draw, random_start};
+use voidwalk::packing::{Compression, Packing, PackingError, ReadOptions, Settings, draw, random_start};
 use voidwalk::run::machine::threads as pool;
 use voidwalk::run::{Event, RunError};
 use voidwalk::scene::Density;
@@ -77,10 +77,20 @@ pub fn pack<'py>(
     Ok((of_packing(py, found)?, reached))
 }
 
-/// Grains from a CSV file or a LAMMPS text dump, and how the file was understood.
+/// Grains from a file of any format that is read, and how the file was understood.
 #[pyfunction]
-pub fn read_packing(py: Python<'_>, path: std::path::PathBuf) -> PyResult<(Arrays<'_>, Vec<String>)> {
-    let (found, notes) = py.detach(|| Packing::read_with_notes(path)).map_err(refused)?;
+#[pyo3(signature = (path, unit, cell))]
+pub fn read_packing<'py>(
+    py: Python<'py>,
+    path: std::path::PathBuf,
+    unit: Option<&str>,
+    cell: Option<&str>,
+) -> PyResult<(Arrays<'py>, Vec<String>)> {
+    let options = ReadOptions {
+        unit: unit.map(str::parse).transpose().map_err(|e: String| refused(format!("unit: {e}")))?,
+        cell: cell.map(str::parse).transpose().map_err(|e: String| refused(format!("cell: {e}")))?,
+    };
+    let (found, notes) = py.detach(|| Packing::read_as(path, &options)).map_err(refused)?;
     Ok((of_packing(py, found)?, notes))
 }
 

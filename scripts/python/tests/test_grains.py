@@ -74,7 +74,9 @@ def test_a_dump_of_lammps_is_read(tmp_path: Path, grid: Any) -> None:
     box = "".join(f"0 {length}\n" for length in (4.0, 4.0, 4.0))
     text = f"ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n64\nITEM: BOX BOUNDS pp pp pp\n{box}"
     (tmp_path / "dump.txt").write_text(text + "ITEM: ATOMS id x y z radius\n" + rows)
-    packing = vw.Packing.from_lammps(tmp_path / "dump.txt")
+    with pytest.raises(ValueError, match="does not say the unit of its lengths"):
+        vw.Packing.from_lammps(tmp_path / "dump.txt")
+    packing = vw.Packing.from_lammps(tmp_path / "dump.txt", unit="mm")
     assert packing.cell == (4.0, 4.0, 4.0) and len(packing) == 64
     assert vw.constrictions(packing)["throat.diameter"] == pytest.approx(np.sqrt(2) - 1)
 

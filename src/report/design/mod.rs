@@ -49,6 +49,7 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
             (said("Why this is in doubt", &design.reasons, design.confidence))
             (said("Before you rely on this", &design.warnings, Confidence::Outside))
         }
+        (shell::contents())
         @for (number, drawn) in (1..).zip(&drawn) { (shell::figure(number, drawn)) }
         (boundaries(&design))
         (bands(&design))

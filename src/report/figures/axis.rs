@@ -40,7 +40,7 @@ pub struct Axis {
     pub high: f64,
     /// Grid lines, minor ones included.
     pub ticks: Vec<Tick>,
-    /// Whether values grow downward (depth).
+    /// Whether values grow downward (depth); of an axis below the frame, to the left (coarse sizes first).
     pub downward: bool,
 }
 
@@ -112,7 +112,7 @@ impl Axis {
         self
     }
 
-    /// With values that grow downward.
+    /// With values that grow downward, or to the left.
     pub fn downward(mut self) -> Axis {
         self.downward = true;
         self

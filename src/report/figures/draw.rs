@@ -3,9 +3,11 @@
 use super::axis::{Axis, Tick};
 use super::colour::Colour;
 use super::figure::{Figure, Naming, Size};
+use super::hover;
 use super::marks::{Across, Dash, Line, Mark, Point, Shape};
 use super::path::{along, simplify};
 use super::place::{Canvas, GAP, Rect};
+use super::sieves;
 use super::svg::{Anchor, FONT, Svg, escape, short, width_of, wrap};
 
 const TICK_TEXT: f64 = 13.0;
@@ -125,9 +127,15 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
         top += 6.0;
     }
     top = key(&mut svg, figure, above, width, top);
+    if figure.sieves {
+        top += sieves::HEIGHT;
+    }
     let (frame, height) = roomy(figure, width, height, top);
     grid(&mut svg, &frame);
     axis_labels(&mut svg, &frame, height);
+    if figure.sieves {
+        sieves::draw(&mut svg, &frame.area, |size| frame.x_at(size));
+    }
 
     let clip = format!("{}-clip", escape(id));
     let Rect { left, top, right, bottom } = frame.area;
@@ -142,10 +150,18 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
     let paint = r##"fill="none" stroke="#1a1a1a" stroke-width="1.2""##;
     svg.rect(left, top, right - left, bottom - top, paint);
 
+    // Narrow figures are for screens without a pointer.
+    let is_pointed_at = width == figure.wide.0;
+    if is_pointed_at {
+        hover::draw(&mut svg, figure, &frame.area, |point| frame.at(point));
+    }
     let mut symbols = Vec::new();
     for (index, mark) in figure.marks.iter().enumerate() {
         if let Mark::Point(point) = mark {
+            let title = is_pointed_at.then(|| hover::title(figure, point.label.as_deref(), point.at));
+            title.iter().for_each(|title| svg.raw(&format!("<g>{title}\n")));
             symbols.extend(draw_point(&mut svg, &mut canvas, &frame, point, index));
+            title.iter().for_each(|_| svg.raw("</g>\n"));
         }
     }
     canvas.taken.extend(symbols);

@@ -32,6 +32,7 @@ pub struct Figure {
     pub(super) marks: Vec<Mark>,
     pub(super) naming: Naming,
     pub(super) square: bool,
+    pub(super) sieves: bool,
     pub(super) wide: (f64, f64),
     pub(super) narrow: (f64, f64),
 }
@@ -49,6 +50,7 @@ impl Figure {
             marks: Vec::new(),
             naming: Naming::Direct,
             square: false,
+            sieves: false,
             wide: (720.0, 440.0),
             narrow: (358.0, 380.0),
         }
@@ -63,6 +65,12 @@ impl Figure {
     /// A square frame, as large as there is room for: equal axes then have equal scales.
     pub fn square(mut self) -> Figure {
         self.square = true;
+        self
+    }
+
+    /// With US sieve numbers and the limits of fines, sand and gravel above the frame: x is a size in mm.
+    pub fn sieves(mut self) -> Figure {
+        self.sieves = true;
         self
     }
 

@@ -20,9 +20,11 @@ mod axis;
 mod colour;
 mod draw;
 mod figure;
+mod hover;
 mod marks;
 mod path;
 mod place;
+mod sieves;
 mod svg;
 
 pub use axis::{Axis, Scale, Tick, positive_range};

@@ -11,7 +11,7 @@ use maud::{Markup, html};
 use super::error::ReportError;
 use super::files::json;
 use super::numbers::{duration, whole};
-use super::shell::{Drawn, clean, fact, figure, whole_page};
+use super::shell::{self, Drawn, clean, fact, figure, whole_page};
 use super::written::{Written, write_page_as};
 use crate::outcome::precision::Precision;
 
@@ -51,6 +51,7 @@ pub fn write_precision(folder: &Path) -> Result<Written, ReportError> {
             "the same accuracy in less time."
         }
         (tables::merits(&study))
+        (shell::contents())
         @for section in &sections {
             h2 { (section.heading) }
             p { (clean(&section.question)) }

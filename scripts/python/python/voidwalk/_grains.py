@@ -76,16 +76,30 @@ class Packing:
         return cls(coords, diameter, cell)
 
     @classmethod
-    def from_file(cls, path: Union[str, os.PathLike[str]]) -> Packing:
+    def from_file(
+        cls, path: Union[str, os.PathLike[str]], unit: Optional[str] = None, cell: Optional[str] = None
+    ) -> Packing:
         """Grains from a CSV file with the columns x_mm, y_mm, z_mm and diameter_mm below a first line ``# cell_mm =
-        Lx, Ly, Lz`` or ``# cell = none``, or from a text dump of LAMMPS or LIGGGHTS: the last frame, `radius` or
-        `diameter`.
+        Lx, Ly, Lz`` or ``# cell = none`` (or the columns of ParaView and MFIX), from a text dump of LAMMPS or
+        LIGGGHTS (the last frame, `radius` or `diameter`), from Yade's ``export.text`` or a ``.data`` of
+        MercuryDPM.
+
+        Parameters
+        ----------
+        path : str or path
+            The file.
+        unit : {"m", "cm", "mm", "um", "nm"}, optional
+            Unit of its lengths. A file that does not say its unit is refused without it.
+        cell : str, optional
+            ``"none"`` for free boundaries, ``"Lx, Ly, Lz"`` for a periodic cell in the unit of the file,
+            ``"bounds"`` for one between the bounds that the file gives. A file that does not say its boundaries is
+            refused without it.
 
         What a user must know of how the file was understood is warned of.
         """
         import warnings
 
-        (coords, diameter, cell), notes = _voidwalk.read_packing(os.fspath(path))
+        (coords, diameter, cell), notes = _voidwalk.read_packing(os.fspath(path), unit, cell)
         for note in notes:
             warnings.warn(note, stacklevel=2)
         return cls(coords, diameter, cell)

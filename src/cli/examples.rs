@@ -1,0 +1,252 @@
+//! What to type: two examples in the help of every command, a short `-h` beside the whole `--help`, and the
+//! first words for who types `voidwalk` alone.
+
+use std::sync::LazyLock;
+
+use clap::{Arg, Command, CommandFactory};
+
+use super::args::Arguments;
+
+/// A command line, and what it does.
+type Example = [&'static str; 2];
+
+/// Every command and its examples.
+const EXAMPLES: [(&str, [Example; 2]); 19] = [
+    (
+        "run",
+        [
+            ["voidwalk run", "the built-in scene"],
+            [
+                "voidwalk run dam.toml --set replicates=30 --out dam",
+                "a scene of your own, in one point changed",
+            ],
+        ],
+    ),
+    (
+        "judge",
+        [
+            ["voidwalk judge base.csv filter.csv --quick", "a first look: four replicates, a guessed filter"],
+            ["voidwalk judge \"site.xlsx#Core\" \"site.xlsx#Filter A\" --density loose", "the filter packed"],
+        ],
+    ),
+    (
+        "compare",
+        [
+            ["voidwalk compare --base base.csv fine.csv coarse.csv", "two filters on one base"],
+            ["voidwalk compare --filter filter.csv core.csv shell.csv --quick", "two bases on one filter"],
+        ],
+    ),
+    (
+        "serve",
+        [
+            ["voidwalk serve", "prints the address to open in the browser"],
+            ["voidwalk serve --port 8080 --out site", "on a port and in a folder of your choice"],
+        ],
+    ),
+    (
+        "resume",
+        [
+            ["voidwalk resume voidwalk-run", "goes on where the run was stopped"],
+            ["voidwalk resume dam --threads 2", "on two cores, with the same bits"],
+        ],
+    ),
+    (
+        "check",
+        [
+            ["voidwalk check", "what the built-in scene comes to"],
+            ["voidwalk check dam.toml --set filter.density=loose", "memory and time before a run"],
+        ],
+    ),
+    (
+        "rules",
+        [
+            ["voidwalk rules filter.csv base.csv", "every rule of filter practice, the filter first"],
+            ["voidwalk rules filter.csv base.csv --dispersive --joint-mm 2", "beside an open joint of 2 mm"],
+        ],
+    ),
+    (
+        "soil",
+        [
+            ["voidwalk soil site.xlsx", "every soil of a workbook, with its sizes and class"],
+            ["voidwalk soil \"site.xlsx#Core\" --figure core.svg", "one of them, and its curve"],
+        ],
+    ),
+    (
+        "init",
+        [
+            ["voidwalk init", "shows every setting with its meaning"],
+            ["voidwalk init dam.toml", "writes them into a file to start from"],
+        ],
+    ),
+    (
+        "design",
+        [
+            ["voidwalk design base.csv --filter 1.5", "how coarse a loose filter with Cu 1.5 may be"],
+            ["voidwalk design --inverse base.csv --filter filter.csv", "the finest base that a filter holds"],
+        ],
+    ),
+    (
+        "campaign",
+        [
+            ["voidwalk campaign plan.toml --out study", "walks every case that is not done"],
+            ["voidwalk campaign plan.toml --list", "names the cases and does nothing"],
+        ],
+    ),
+    (
+        "pack",
+        [
+            ["voidwalk pack filter.toml", "packs the filter of a scene"],
+            ["voidwalk pack filter.toml --set packing.grains=20000 --out dense", "with so many grains"],
+        ],
+    ),
+    (
+        "constrictions",
+        [
+            ["voidwalk constrictions grains.csv", "grains with columns x_mm, y_mm, z_mm, diameter_mm"],
+            ["voidwalk constrictions grains.txt --unit m --cell none", "of Yade: metres, no periodic cell"],
+        ],
+    ),
+    (
+        "percolation",
+        [
+            ["voidwalk percolation", "lattices of 10 to 160 voids along a side"],
+            ["voidwalk percolation --sizes 10,20 --realisations 50", "two small ones"],
+        ],
+    ),
+    (
+        "precision",
+        [
+            ["voidwalk precision --budget 1min", "the built-in scene, for a minute of processor time"],
+            ["voidwalk precision dam.toml --tier exact sampling", "two of the tiers"],
+        ],
+    ),
+    (
+        "report",
+        [
+            ["voidwalk report voidwalk-run", "writes the page again"],
+            ["voidwalk report voidwalk-campaign", "of a campaign, too"],
+        ],
+    ),
+    (
+        "export",
+        [
+            [
+                "voidwalk export voidwalk-run",
+                "numpy.load(\"voidwalk-run/export/arrays.npz\") reads its tables",
+            ],
+            ["voidwalk export voidwalk-constrictions", "of constrictions, a packing or a campaign, too"],
+        ],
+    ),
+    (
+        "completions",
+        [
+            ["voidwalk completions bash > voidwalk.bash", "then: source voidwalk.bash"],
+            ["voidwalk completions powershell", "for bash, elvish, fish, powershell or zsh"],
+        ],
+    ),
+    (
+        "man",
+        [
+            ["voidwalk man pages", "a page of every command, in the folder pages"],
+            ["voidwalk man ~/.local/share/man/man1", "where `man voidwalk-run` finds them"],
+        ],
+    ),
+];
+
+/// What who types `voidwalk` alone is told.
+pub const FIRST_WORDS: &str = "\
+Will this filter hold this soil? Type first, with two sieve tables (CSV, .xlsx, .ods, AGS4), the base before
+the filter:
+
+  voidwalk judge base.csv filter.csv --quick            a first look, in seconds to minutes
+  voidwalk judge base.csv filter.csv --density loose    the filter's grains packed: minutes
+
+Without tables at hand:
+
+  voidwalk run      the built-in example; its page is voidwalk-run/report.html
+  voidwalk serve    a page in the browser of this machine: drop two sheets there
+
+All commands: voidwalk help. One of them, with examples: voidwalk judge --help
+";
+
+/// The version, with the commit that the program was built from.
+static VERSION: LazyLock<String> = LazyLock::new(|| {
+    let number = env!("CARGO_PKG_VERSION");
+    option_env!("VOIDWALK_COMMIT").map_or_else(|| number.into(), |commit| format!("{number} ({commit})"))
+});
+
+/// The program's arguments as they are read, with examples and the version.
+pub fn command() -> Command {
+    let mut command = Arguments::command().version(VERSION.as_str());
+    for (name, examples) in EXAMPLES {
+        if command.find_subcommand(name).is_some() {
+            let text = in_words(&examples);
+            command = command.mut_subcommand(name, |sub| sub.after_help(text).mut_args(short_and_long));
+        }
+    }
+    command
+}
+
+fn in_words(examples: &[Example; 2]) -> String {
+    let lines = examples.map(|[line, what]| format!("  {line}\n      {what}"));
+    format!("Examples:\n{}", lines.join("\n"))
+}
+
+/// Longest line of `-h` on an argument (characters), unless its first clause is longer.
+const SHORT: usize = 60;
+
+/// The first clause of what is said of an argument for `-h`, all of it for `--help`.
+fn short_and_long(arg: Arg) -> Arg {
+    let Some(whole) = arg.get_help().map(ToString::to_string) else { return arg };
+    let first =
+        [": ", "; ", ". ", " [", ", so that", ", by which"].iter().filter_map(|end| whole.find(end)).min();
+    match first {
+        Some(end) if whole.chars().count() > SHORT => {
+            let short = whole[..end].to_owned();
+            arg.help(short).long_help(whole)
+        }
+        _ => arg,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_command_has_two_examples_that_are_understood() {
+        let commands = command();
+        let shown: Vec<&str> = commands.get_subcommands().map(Command::get_name).collect();
+        for name in &shown {
+            let (_, examples) = EXAMPLES.iter().find(|(of, _)| of == name).expect(name);
+            for [line, _] in examples {
+                // As a shell splits it.
+                let line = line.split(" > ").next().unwrap_or_default();
+                let words = line.split('"').enumerate().flat_map(|(at, part)| match at % 2 {
+                    0 => part.split_whitespace().collect::<Vec<_>>(),
+                    _ => vec![part],
+                });
+                let words: Vec<&str> = words.collect();
+                assert_eq!(words[1], *name, "{line}");
+                let read = command().try_get_matches_from(&words);
+                assert!(read.is_ok(), "{line}: {}", read.unwrap_err());
+            }
+        }
+        let unknown = EXAMPLES.iter().filter(|(name, _)| !shown.contains(name) && *name != "serve").count();
+        assert_eq!(unknown, 0);
+        command().debug_assert();
+    }
+
+    #[test]
+    fn short_help_is_shorter_and_long_help_says_all() {
+        let help = |long: bool| {
+            let mut command = command();
+            let run = command.find_subcommand_mut("run").unwrap();
+            if long { run.render_long_help().to_string() } else { run.render_help().to_string() }
+        };
+        let (short, long) = (help(false), help(true));
+        assert!(short.lines().count() * 3 < long.lines().count() * 2, "{short}\n{long}");
+        assert!(!short.contains("mapped") && long.contains("mapped"), "{short}");
+        assert!([&short, &long].iter().all(|text| text.contains("Examples:\n  voidwalk run\n")));
+    }
+}

@@ -1,0 +1,25 @@
+//! `voidwalk export`: the tables of a folder for other programs.
+
+use std::path::Path;
+
+use super::print::{plain, shown, to_stdout};
+use crate::report::export as write;
+use crate::run::folder::claim;
+use crate::run::{FolderKind, RunError};
+
+/// Writes a finished folder's tables as arrays and grids.
+pub fn export(folder: &Path) -> Result<(), RunError> {
+    let Some(kind) = FolderKind::of(folder).filter(|kind| *kind != FolderKind::Serve) else {
+        let problem = "holds no finished work; name the folder of a run, a packing, constrictions, a \
+                       campaign, a comparison, a study or a design";
+        return Err(RunError::Refused(format!("{}: {problem}", shown(folder))));
+    };
+    let claimed = claim(folder, kind, true)?;
+    let found = write(claimed.path()).map_err(RunError::failed)?;
+    let mut text: String = found.files.iter().map(|path| shown(path) + "\n").collect();
+    if !found.words.is_empty() {
+        text += &format!("columns of words are left out: {}\n", plain(&found.words.join(", ")));
+    }
+    to_stdout(&text);
+    Ok(())
+}

@@ -1,0 +1,207 @@
+//! Networks in `.npz` files, as OpenPNM and PoreSpy name their arrays.
+//!
+//! | array | what |
+//! |---|---|
+//! | `throat.conns` (`conns`) | the two voids of each constriction, n x 2 whole numbers |
+//! | `throat.diameter` (`throat.inscribed_diameter`, `diameter`) | its diameter |
+//! | `throat.hydraulic_conductance` (`throat.conductance`, `conductance`) | may be missing |
+//! | `pore.inlets` (`inlets`, `pore.left`, `pore.xmin`) | voids that base particles come into |
+//! | `pore.outlets` (`outlets`, `pore.right`, `pore.xmax`) | voids that they leave the filter from |
+//! | `pore.coords` | looked at for the number of voids only |
+//!
+//! Inlets and outlets are numbers of voids, or a truth value for each. Conductances that are missing are the
+//! fourth powers of the diameters.
+
+use super::{ExitRule, Network, NetworkColumns, NetworkError};
+use crate::packing::LengthUnit;
+use crate::store::{Array, Npz, Numbers};
+
+const CONNS: &[&str] = &["throat.conns", "conns"];
+const DIAMETER: &[&str] = &["throat.diameter", "throat.inscribed_diameter", "diameter"];
+const CONDUCTANCE: &[&str] = &["throat.hydraulic_conductance", "throat.conductance", "conductance"];
+const INLETS: &[&str] = &["pore.inlets", "inlets", "pore.left", "pore.xmin"];
+const OUTLETS: &[&str] = &["pore.outlets", "outlets", "pore.right", "pore.xmax"];
+const COORDS: &[&str] = &["pore.coords", "coords"];
+
+/// How the arrays of a file are to be taken.
+#[derive(Clone, Copy, Debug)]
+pub struct ArrayOptions {
+    /// The unit of the diameters; a file does not say it.
+    pub unit: LengthUnit,
+    /// How particles choose.
+    pub rule: ExitRule,
+    /// Part of its conductance that a blocked constriction keeps.
+    pub rho: f64,
+    /// Length of one unit of diameter in the network (mm).
+    pub unit_mm: f64,
+}
+
+impl Network {
+    /// Reads a network from an `.npz`; `file` names it in errors.
+    ///
+    /// # Errors
+    /// Names the file and the array, and what is allowed.
+    pub fn from_npz(bytes: &[u8], file: &str, options: &ArrayOptions) -> Result<Self, NetworkError> {
+        let whole = |problem: String| NetworkError::Whole { file: file.into(), problem };
+        let mut npz = Npz::open(bytes).map_err(whole)?;
+        let known = npz.names().join(", ");
+        let mut needed = |names: &[&'static str]| {
+            let found = npz.first(names).map_err(whole)?;
+            found.ok_or_else(|| whole(format!("has no array {}; it has {known}", names.join(" or "))))
+        };
+        let conns = pairs(needed(CONNS)?).map_err(whole)?;
+        let diameter = floats(needed(DIAMETER)?).map_err(whole)?;
+        let [inlets, outlets] = [needed(INLETS)?, needed(OUTLETS)?];
+        let mut others = |names| npz.first(names).map_err(whole);
+        let conductance = match options.rule.needs_flow() {
+            true => others(CONDUCTANCE)?.map(floats).transpose().map_err(whole)?,
+            false => None,
+        };
+        let mut voids = conns.iter().flatten().max().map_or(0, |&last| last.max(-1) as usize + 1);
+        for array in [Some(&inlets), Some(&outlets), others(COORDS)?.as_ref()].into_iter().flatten() {
+            if !matches!(array.1.numbers, Numbers::Whole(_)) {
+                voids = voids.max(array.1.rows);
+            }
+        }
+        let [inlets, outlets] = [inlets, outlets].map(|array| numbered(array, voids));
+        let diameter_mm: Vec<f64> = diameter.iter().map(|d| d * options.unit.mm()).collect();
+        let columns = NetworkColumns {
+            voids,
+            conns: &conns,
+            diameter_mm: &diameter_mm,
+            conductance: conductance.as_deref(),
+            inlets: &inlets.map_err(whole)?,
+            outlets: &outlets.map_err(whole)?,
+            rule: options.rule,
+            rho: options.rho,
+            unit_mm: options.unit_mm,
+        };
+        let (network, _) = Network::from_columns(&columns).map_err(|error| whole(error.to_string()))?;
+        Ok(network)
+    }
+}
+
+/// An array and its name.
+type Named = (&'static str, Array);
+
+fn pairs((name, array): Named) -> Result<Vec<[i64; 2]>, String> {
+    match (array.columns, array.numbers) {
+        (Some(2), Numbers::Whole(all)) => Ok(all.as_chunks::<2>().0.to_vec()),
+        _ => Err(format!("{name}: n x 2 whole numbers are needed, the two voids of each constriction")),
+    }
+}
+
+fn floats((name, array): Named) -> Result<Vec<f64>, String> {
+    match (array.columns, array.numbers) {
+        (None | Some(1), Numbers::Float(all)) => Ok(all),
+        (None | Some(1), Numbers::Whole(all)) => Ok(all.into_iter().map(|n| n as f64).collect()),
+        _ => Err(format!("{name}: one number for each constriction is needed")),
+    }
+}
+
+/// Voids by their numbers, or by a truth value for each of them.
+fn numbered((name, array): Named, voids: usize) -> Result<Vec<u32>, String> {
+    let is_void = |&void: &i64| u32::try_from(void).ok().filter(|&void| (void as usize) < voids);
+    match (array.columns, array.numbers) {
+        (None | Some(1), Numbers::Truth(all)) if all.len() == voids => {
+            Ok((0..).zip(all).filter_map(|(void, is)| is.then_some(void)).collect())
+        }
+        (None | Some(1), Numbers::Truth(all)) => {
+            Err(format!("{name}: has {} truth values, but there are {voids} voids", all.len()))
+        }
+        (None | Some(1), Numbers::Whole(all)) => {
+            let numbers: Option<Vec<u32>> = all.iter().map(is_void).collect();
+            numbers.ok_or_else(|| {
+                let wrong = all.iter().find(|void| is_void(void).is_none()).copied().unwrap_or_default();
+                format!("{name}: {wrong} is no void; there are {voids}, numbered from 0")
+            })
+        }
+        _ => Err(format!("{name}: numbers of voids are needed, or a truth value for each void")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::npz;
+
+    fn whole(rows: usize, columns: Option<usize>, all: &[i64]) -> Array {
+        Array { rows, columns, numbers: Numbers::Whole(all.to_vec()) }
+    }
+
+    fn truth(all: &[bool]) -> Array {
+        Array { rows: all.len(), columns: None, numbers: Numbers::Truth(all.to_vec()) }
+    }
+
+    fn arrays() -> Vec<(&'static str, Array)> {
+        vec![
+            ("throat.conns", whole(4, Some(2), &[0, 1, 1, 2, 0, 3, 3, 2])),
+            ("throat.diameter", Array::of_floats(vec![1e-3, 1e-3, 0.4e-3, 0.4e-3])),
+            ("pore.inlets", truth(&[true, false, false, false])),
+            ("pore.outlets", whole(1, None, &[2])),
+        ]
+    }
+
+    fn read(arrays: &[(&str, Array)], rule: ExitRule) -> Result<Network, NetworkError> {
+        let named: Vec<(String, Array)> = arrays.iter().map(|(n, a)| (n.to_string(), a.clone())).collect();
+        let options = ArrayOptions { unit: LengthUnit::M, rule, rho: 0.0, unit_mm: 0.5 };
+        Network::from_npz(&npz(&named).unwrap(), "net.npz", &options)
+    }
+
+    #[test]
+    fn arrays_are_the_network_of_their_columns() {
+        let columns = NetworkColumns {
+            voids: 4,
+            conns: &[[0, 1], [1, 2], [0, 3], [3, 2]],
+            diameter_mm: &[1.0, 1.0, 0.4, 0.4],
+            conductance: None,
+            inlets: &[0],
+            outlets: &[2],
+            rule: ExitRule::Flux,
+            rho: 0.0,
+            unit_mm: 0.5,
+        };
+        for rule in [ExitRule::Flux, ExitRule::Area] {
+            let expected = Network::from_columns(&NetworkColumns { rule, ..columns }).unwrap().0;
+            assert_eq!(read(&arrays(), rule).unwrap(), expected);
+        }
+        // Other names, and conductances, which a network without water has no use for.
+        let mut other = arrays();
+        other[0].0 = "conns";
+        other[1].0 = "throat.inscribed_diameter";
+        other.push(("conductance", Array::of_floats(vec![1.0, 1.0, 2.0, 2.0])));
+        let conductance = Some(&[1.0, 1.0, 2.0, 2.0][..]);
+        let expected = Network::from_columns(&NetworkColumns { conductance, ..columns }).unwrap().0;
+        assert_eq!(read(&other, ExitRule::Flux).unwrap(), expected);
+        assert!(read(&other, ExitRule::Area).is_ok());
+    }
+
+    #[test]
+    fn what_is_no_network_is_named_with_its_array() {
+        let with = |at: usize, array: Array| {
+            let mut all = arrays();
+            all[at].1 = array;
+            read(&all, ExitRule::Flux).unwrap_err().to_string()
+        };
+        let without = |at: usize| {
+            let mut all = arrays();
+            all.remove(at);
+            read(&all, ExitRule::Flux).unwrap_err().to_string()
+        };
+        for (error, message) in [
+            (without(0), "has no array throat.conns or conns; it has throat.diameter, pore.inlets"),
+            (without(1), "has no array throat.diameter or throat.inscribed_diameter or diameter"),
+            (without(2), "has no array pore.inlets"),
+            (with(0, whole(2, None, &[0, 1])), "throat.conns: n x 2 whole numbers"),
+            (with(1, truth(&[true])), "throat.diameter: one number for each"),
+            (with(1, Array::of_floats(vec![1e-3])), "conns has 4 rows, but diameter has 1"),
+            (with(1, Array::of_floats(vec![1e-3, f64::NAN, 1e-3, 1e-3])), "diameter"),
+            (with(2, truth(&[true, false])), "pore.inlets: has 2 truth values, but there are 4 voids"),
+            (with(2, Array::of_floats(vec![0.0])), "pore.inlets: numbers of voids are needed"),
+            (with(3, whole(1, None, &[9])), "pore.outlets: 9 is no void; there are 4, numbered from 0"),
+            (with(3, whole(1, None, &[-1])), "pore.outlets: -1 is no void"),
+        ] {
+            assert!(error.starts_with("net.npz: ") && error.contains(message), "{message}: {error}");
+        }
+    }
+}

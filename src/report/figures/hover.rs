@@ -1,0 +1,58 @@
+//! Values that a pointer shows: an unseen spot with a title on points of each named line.
+
+use super::figure::Figure;
+use super::marks::Mark;
+use super::path::simplify;
+use super::place::Rect;
+use super::svg::{Svg, escape, short};
+use crate::report::numbers::significant;
+
+/// Spots on a line, at most, and the space between two (pixels).
+const SPOTS: usize = 24;
+const APART: f64 = 14.0;
+
+/// What is said of a point.
+pub(super) fn title(figure: &Figure, label: Option<&str>, (x, y): (f64, f64)) -> String {
+    let name = label.map_or(String::new(), |label| format!("{}: ", label.replace('\n', " ")));
+    // An axis of rows has no label: its value is a place.
+    let value = |label: &str, value: f64| match label {
+        "" => String::new(),
+        label => format!("{label} {}", significant(value)),
+    };
+    let values = [value(&figure.x.label, x), value(&figure.y.label, y)];
+    let values: Vec<&str> = values.iter().map(String::as_str).filter(|text| !text.is_empty()).collect();
+    format!("<title>{}</title>", escape(&format!("{name}{}", values.join("; "))))
+}
+
+/// Draws the spots; `at` gives the pixel of a point.
+pub(super) fn draw(
+    svg: &mut Svg,
+    figure: &Figure,
+    area: &Rect,
+    at: impl Fn((f64, f64)) -> Option<(f64, f64)>,
+) {
+    for mark in &figure.marks {
+        let Mark::Line(line) = mark else { continue };
+        let Some(label) = line.label.as_deref() else { continue };
+        let inside = |(x, y): &(f64, f64)| {
+            (area.left..=area.right).contains(x) && (area.top..=area.bottom).contains(y)
+        };
+        let seen: Vec<((f64, f64), (f64, f64))> =
+            line.points.iter().filter_map(|&point| Some((point, at(point).filter(inside)?))).collect();
+        let few = simplify(seen.iter().map(|(_, pixel)| *pixel)).len().clamp(2, SPOTS);
+        let stride = seen.len().div_ceil(few).max(1);
+        let mut last: Option<(f64, f64)> = None;
+        for (point, (x, y)) in seen.into_iter().step_by(stride) {
+            if last.is_some_and(|(a, b)| libm::hypot(x - a, y - b) < APART) {
+                continue;
+            }
+            last = Some((x, y));
+            svg.raw(&format!(
+                "<circle cx=\"{}\" cy=\"{}\" r=\"7\" fill=\"none\" pointer-events=\"all\">{}</circle>\n",
+                short(x),
+                short(y),
+                title(figure, Some(label), point)
+            ));
+        }
+    }
+}
