@@ -228,7 +228,7 @@ fn a_network_of_arrays_is_walked_both_ways() {
     let outcome = fs::read_to_string(root.path().join("ring/outcome.json")).unwrap();
     let outcome: Value = serde_json::from_str(&outcome).unwrap();
     assert_eq!((&outcome["network"]["kind"], &outcome["network"]["inlets"]), (&"file".into(), &1.into()));
-    assert_eq!(outcome["inputs"]["network"]["connectivity"], Value::Array(Vec::new()));
+    assert!(outcome["inputs"]["network"]["connectivity"].as_array().is_none_or(Vec::is_empty), "{outcome}");
     // By area each constriction leads one way.
     done(&call(root.path(), &["run", "ring.toml", "--set", "walk.exit=area", "--out", "area", "-q"]));
     refused(&call(root.path(), &["check", "ring.toml", "--set", "walk.exit=height"]), "walk.exit: `height`");
