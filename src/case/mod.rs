@@ -253,7 +253,8 @@ impl Case {
             return Err(scene.clash(&mistake.sentence).into());
         }
         let (counts, connectivity) = match (&fixed_network, &scene.network.source()) {
-            (Some(n), _) if graph.is_some() => (sizes::of_network(n), Vec::new()),
+            // Exits that are passed both ways are no connectivity of the paper's kind.
+            (Some(n), _) if graph.is_some() || n.reservoir().is_some() => (sizes::of_network(n), Vec::new()),
             (Some(n), _) => (sizes::of_network(n), sizes::connectivity_of(n)),
             (None, NetworkSource::Connected(shape, wanted)) => {
                 sizes::of_connected(*shape, wanted, &curve, unit_mm, replicate_seed(scene.walk.seed, 1))?

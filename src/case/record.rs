@@ -141,7 +141,12 @@ impl Case {
         let [voids, constrictions, inlets, layers] = self.counts;
         let k0_m2 = k0_mm2.filter(|_| !self.is_scale_free()).map(|k| k * 1e-6);
         Some(record::NetworkSummary {
-            kind: if self.copies.is_some() { "graph" } else { "lattice" }.into(),
+            kind: match (self.copies, &self.fixed_network) {
+                (Some(_), _) => "graph",
+                (None, Some(_)) => "file",
+                (None, None) => "lattice",
+            }
+            .into(),
             exit: rule.name().into(),
             voids,
             constrictions,

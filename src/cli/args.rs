@@ -200,7 +200,7 @@ pub struct RunArgs {
 /// How two sieve tables become a scene.
 #[derive(Debug, Args)]
 pub struct TableArgs {
-    /// How densely the filter lies, by which its grains are packed: loose, medium or dense. Without it the
+    /// How densely the filter lies, loose, medium or dense: its grains are packed so. Without it the
     /// constrictions are guessed from the gradation, and the verdict is that of the whole range of the guess
     #[arg(long, value_name = "WORD", value_parser = density)]
     pub density: Option<Density>,
@@ -451,15 +451,16 @@ pub struct ConstrictionsArgs {
     /// Unit of the file's lengths, where it does not say it: m, cm, mm, um or nm
     #[arg(long, value_name = "UNIT")]
     pub unit: Option<LengthUnit>,
-    /// Boundaries, where the file does not say them: none for free ones; Lx,Ly,Lz for a periodic cell with a
-    /// corner at the origin, in the file's unit; bounds for one between the bounds in the file
+    /// Boundaries, where the file does not say them, none, bounds or Lx,Ly,Lz: none for free ones; Lx,Ly,Lz
+    /// for a periodic cell with a corner at the origin, in the file's unit; bounds for one between the bounds
+    /// in the file
     #[arg(long, value_name = "CELL")]
     pub cell: Option<CellOption>,
     /// Overlap of two inscribed spheres from which their tetrahedra are one void
     #[arg(long, value_name = "F", default_value_t = DEFAULT_MERGE_OVERLAP)]
     pub merge_overlap: f64,
-    /// Which facets between voids the curve counts: all, or on-both-hulls, those on the convex hulls of the
-    /// grains of both voids
+    /// Which facets between voids the curve counts, all or on-both-hulls: the latter are those on the convex
+    /// hulls of the grains of both voids
     #[arg(long, value_name = "WHICH", default_value = "all", value_parser = facets)]
     pub facets: Facets,
     /// Folder for the results

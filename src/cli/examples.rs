@@ -193,13 +193,12 @@ fn in_words(examples: &[Example; 2]) -> String {
 }
 
 /// Longest line of `-h` on an argument (characters), unless its first clause is longer.
-const SHORT: usize = 60;
+const SHORT: usize = 90;
 
 /// The first clause of what is said of an argument for `-h`, all of it for `--help`.
 fn short_and_long(arg: Arg) -> Arg {
     let Some(whole) = arg.get_help().map(ToString::to_string) else { return arg };
-    let first =
-        [": ", "; ", ". ", " [", ", so that", ", by which"].iter().filter_map(|end| whole.find(end)).min();
+    let first = [": ", "; ", ". ", " [", ", so that"].iter().filter_map(|end| whole.find(end)).min();
     match first {
         Some(end) if whole.chars().count() > SHORT => {
             let short = whole[..end].to_owned();

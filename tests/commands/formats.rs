@@ -225,6 +225,10 @@ fn a_network_of_arrays_is_walked_both_ways() {
     }
     done(&call(root.path(), &["run", "ring/scene.toml", "--out", "again", "-q"]));
     assert_eq!(replicates(&root.path().join("again")), found);
+    let outcome = fs::read_to_string(root.path().join("ring/outcome.json")).unwrap();
+    let outcome: Value = serde_json::from_str(&outcome).unwrap();
+    assert_eq!((&outcome["network"]["kind"], &outcome["network"]["inlets"]), (&"file".into(), &1.into()));
+    assert!(outcome["inputs"]["network"]["connectivity"].as_array().is_none_or(Vec::is_empty), "{outcome}");
     // By area each constriction leads one way.
     done(&call(root.path(), &["run", "ring.toml", "--set", "walk.exit=area", "--out", "area", "-q"]));
     refused(&call(root.path(), &["check", "ring.toml", "--set", "walk.exit=height"]), "walk.exit: `height`");

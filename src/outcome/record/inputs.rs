@@ -113,7 +113,7 @@ pub struct NetworkRecord {
 /// The network that was walked, where its constrictions have no direction of their own.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NetworkSummary {
-    /// `lattice` or `graph`.
+    /// `lattice`, `graph` or `file`.
     pub kind: String,
     /// How particles chose among the exits of a void: `flux`, `area-along-flow` or `height`.
     pub exit: String,
