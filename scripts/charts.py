@@ -191,8 +191,8 @@ def apart(places, least):
 
 def chart(rows, title, below):
     """Two panels, one a boundary, as SVG."""
-    width, height, left, top, panel, between = 900, 470, 50, 66, 330, 90
-    bottom = height - 76
+    width, height, left, top, panel, between = 900, 486, 50, 66, 330, 90
+    bottom = height - 92
     values = [row[of] for row in rows for of in ("median", "low", "high") if row[of] is not None]
     if not values:
         return None
@@ -254,6 +254,10 @@ def chart(rows, title, below):
                         f'stroke="{colour}"/>'
                     )
                 parts.append(f'<circle cx="{at:.1f}" cy="{y(row["median"]):.1f}" r="3" fill="{colour}"/>')
+            if of[-1]["cu_b"] < cu_b[-1]:
+                # The line ends within the panel.
+                parts.append(f'<text x="{x(of[-1]["cu_b"]) + 8:.1f}" y="{y(of[-1]["median"]) + 4:.1f}" fill="{colour}">Cu {cu_f:g}</text>')
+                continue
             ends.append((y(of[-1]["median"]), cu_f, colour))
         ends.sort()
         for (_, cu_f, colour), place in zip(ends, apart([end[0] for end in ends], 14)):
@@ -268,9 +272,9 @@ def told(rows):
     layers = f"{layers[0]} layers of voids" if len(layers) == 1 else f"{layers[0]} to {layers[-1]} layers of voids at the boundary"
     first = dict(setting.split("=") for setting in rows[0]["settings"].split())
     lines = [f"Median of {rows[0]['networks']} networks of {first['network.nx']} x {first['network.ny']} voids across, {layers}; bars: 5 to 95 % of "
-             "networks. By the model alone: no flow, no cohesion."]
-    if rows[0]["thickness"].endswith("mm"):
-        lines[0] = lines[0].replace("By the model", f"D85B is {float(first['base.d85_mm']):g} mm. By the model")
+             "networks."]
+    of_base = f"D85 of the base is {float(first['base.d85_mm']):g} mm. " if rows[0]["thickness"].endswith("mm") else ""
+    lines.append(f"{of_base}By the model alone: no flow, no cohesion.")
     if any(SHIPPED.get((row["cu_f"], row["density"]), "").startswith("cu6-friction") for row in rows):
         lines.append("The Cu 6 filter is the loosest that was packed: friction 0.7 between its grains.")
     return lines
