@@ -26,6 +26,7 @@ import itertools
 import json
 import math
 import pathlib
+import re
 import resource
 import subprocess
 import sys
@@ -148,14 +149,19 @@ def processor_seconds(args):
     return seconds
 
 
+def number(text):
+    return float(text) if "." in text else int(text)
+
+
 def collect(args):
-    """Lines of the table, of every row that is done."""
-    lines, seconds = [], processor_seconds(args)
-    for row in sorted(rows_of(args), key=lambda row: (args.thicknesses.index(row[0]), args.densities.index(row[3]), row[1], row[2])):
-        folder = folder_of(args, *row)
-        if not is_done(folder):
-            continue
-        thickness, cu_f, cu_b, density = row
+    """Lines of the table, of every row of the folder that is done, asked for or not."""
+    lines, seconds, found = [], processor_seconds(args), []
+    for folder in (args.out / "cases").glob("cu*"):
+        name = re.fullmatch(r"cu([0-9.]+)-cu([0-9.]+)-([a-z]+)-(.+)", folder.name)
+        if name and is_done(folder):
+            cu_f, cu_b, density, thickness = name.groups()
+            found.append((thickness.endswith("mm"), thickness, density != "loose", density, number(cu_f), number(cu_b), folder))
+    for _, thickness, _, density, cu_f, cu_b, folder in sorted(found):
         design = json.loads((folder / "design.json").read_text())
         found = design["boundaries"][0]
         for name in BOUNDARIES:
