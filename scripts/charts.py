@@ -26,6 +26,7 @@ import itertools
 import json
 import math
 import pathlib
+import re
 import resource
 import subprocess
 import sys
@@ -148,14 +149,19 @@ def processor_seconds(args):
     return seconds
 
 
+def number(text):
+    return float(text) if "." in text else int(text)
+
+
 def collect(args):
-    """Lines of the table, of every row that is done."""
-    lines, seconds = [], processor_seconds(args)
-    for row in sorted(rows_of(args), key=lambda row: (args.thicknesses.index(row[0]), args.densities.index(row[3]), row[1], row[2])):
-        folder = folder_of(args, *row)
-        if not is_done(folder):
-            continue
-        thickness, cu_f, cu_b, density = row
+    """Lines of the table, of every row of the folder that is done, asked for or not."""
+    lines, seconds, found = [], processor_seconds(args), []
+    for folder in (args.out / "cases").glob("cu*"):
+        name = re.fullmatch(r"cu([0-9.]+)-cu([0-9.]+)-([a-z]+)-(.+)", folder.name)
+        if name and is_done(folder):
+            cu_f, cu_b, density, thickness = name.groups()
+            found.append((thickness.endswith("mm"), thickness, density != "loose", density, number(cu_f), number(cu_b), folder))
+    for _, thickness, _, density, cu_f, cu_b, folder in sorted(found):
         design = json.loads((folder / "design.json").read_text())
         found = design["boundaries"][0]
         for name in BOUNDARIES:
@@ -191,8 +197,8 @@ def apart(places, least):
 
 def chart(rows, title, below):
     """Two panels, one a boundary, as SVG."""
-    width, height, left, top, panel, between = 900, 470, 50, 66, 330, 90
-    bottom = height - 76
+    width, height, left, top, panel, between = 900, 486, 50, 66, 330, 90
+    bottom = height - 92
     values = [row[of] for row in rows for of in ("median", "low", "high") if row[of] is not None]
     if not values:
         return None
@@ -254,6 +260,10 @@ def chart(rows, title, below):
                         f'stroke="{colour}"/>'
                     )
                 parts.append(f'<circle cx="{at:.1f}" cy="{y(row["median"]):.1f}" r="3" fill="{colour}"/>')
+            if of[-1]["cu_b"] < cu_b[-1]:
+                # The line ends within the panel.
+                parts.append(f'<text x="{x(of[-1]["cu_b"]) + 8:.1f}" y="{y(of[-1]["median"]) + 4:.1f}" fill="{colour}">Cu {cu_f:g}</text>')
+                continue
             ends.append((y(of[-1]["median"]), cu_f, colour))
         ends.sort()
         for (_, cu_f, colour), place in zip(ends, apart([end[0] for end in ends], 14)):
@@ -268,9 +278,9 @@ def told(rows):
     layers = f"{layers[0]} layers of voids" if len(layers) == 1 else f"{layers[0]} to {layers[-1]} layers of voids at the boundary"
     first = dict(setting.split("=") for setting in rows[0]["settings"].split())
     lines = [f"Median of {rows[0]['networks']} networks of {first['network.nx']} x {first['network.ny']} voids across, {layers}; bars: 5 to 95 % of "
-             "networks. By the model alone: no flow, no cohesion."]
-    if rows[0]["thickness"].endswith("mm"):
-        lines[0] = lines[0].replace("By the model", f"D85B is {float(first['base.d85_mm']):g} mm. By the model")
+             "networks."]
+    of_base = f"D85 of the base is {float(first['base.d85_mm']):g} mm. " if rows[0]["thickness"].endswith("mm") else ""
+    lines.append(f"{of_base}By the model alone: no flow, no cohesion.")
     if any(SHIPPED.get((row["cu_f"], row["density"]), "").startswith("cu6-friction") for row in rows):
         lines.append("The Cu 6 filter is the loosest that was packed: friction 0.7 between its grains.")
     return lines

@@ -114,7 +114,7 @@ def is_between(scanned, network, name):
 def table(done):
     print("| case | curve | Cu_B | voids | boundary | design: median (5 to 95 %) | scan: median | within the band | networks apart by (%) | within the scan's scatter |")
     print("|---|---|---|---|---|---|---|---|---|---|")
-    inside = {name: 0 for name in BOUNDARIES}
+    inside, about = {name: 0 for name in BOUNDARIES}, {name: 0 for name in BOUNDARIES}
     agree, all_off, of_networks, brackets = {name: 0 for name in BOUNDARIES}, [], [], 0
     for case in done:
         settings, plain = case["settings"], case["design"]
@@ -125,6 +125,8 @@ def table(done):
             middle, found = median(of_scan), plain[name]
             within = None not in (middle, found) and None not in (found["low"], found["high"]) and found["low"] <= middle <= found["high"]
             agree[name] += bool(within)
+            half = math.exp(STEP / 2)
+            about[name] += bool(middle and found and found["low"] and found["low"] / half <= middle <= found["high"] * half)
             off = [100 * (scanned / network[name] - 1) for scanned, network in zip(of_scan, plain["networks"]) if scanned and network[name]]
             of_networks += [(name, value) for value in off]
             if middle and found:
@@ -140,7 +142,8 @@ def table(done):
     for name in BOUNDARIES:
         medians = [abs(value) for of, value in all_off if of == name]
         networks = [value for of, value in of_networks if of == name]
-        print(f"- {name.replace('_', ' ')}: the scan's median within the band in {agree[name]} of {len(done)} cases; medians apart by "
+        print(f"- {name.replace('_', ' ')}: the scan's median within the band in {agree[name]} of {len(done)} cases, within half a "
+              f"step of the scan in {about[name]}; medians apart by "
               f"{statistics.median(medians):.2f} % in the middle case, {max(medians):.2f} % at most; networks by "
               f"{statistics.median([abs(value) for value in networks]):.2f} % in the middle, from {min(networks):+.1f} to {max(networks):+.1f} %; {inside[name]} of "
               f"{NETWORKS * len(done)} networks within the scan's scatter.")
