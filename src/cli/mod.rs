@@ -32,7 +32,7 @@ use args::{Arguments, Command};
 
 /// Runs the program with the arguments of this process.
 pub fn main() -> ExitCode {
-    progress::outlive_large_files();
+    crate::store::platform::signals::outlive_large_files();
     let done = match Arguments::parse().command {
         Command::Run(args) => run::run(&args),
         Command::Judge(args) => judge::judge(&args),

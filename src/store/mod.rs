@@ -4,6 +4,7 @@ pub mod checkpoint;
 mod column;
 pub mod disk;
 mod folder;
+pub mod platform;
 
 pub use column::{Column, Placement};
 pub use disk::read_regular;
