@@ -6,8 +6,8 @@ use proptest::prelude::*;
 use super::*;
 use crate::gradation::{Gradation, SizeSampler};
 use crate::stream::{DRAWS_PER_BLOCK, draw16};
-use crate::walk::SizeClasses;
 use crate::walk::fill::fill_diameters;
+use crate::walk::{Isa, SizeClasses};
 
 /// A lattice, and what is blocked in it.
 #[derive(Clone, Debug)]
