@@ -35,7 +35,6 @@ import os
 import pathlib
 import random
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
@@ -156,6 +155,7 @@ LIKE = {
 }
 # Checkpoints after which a run or packing is killed, the later ones if it ended before. A fast disk hides many from a watcher.
 KILL_RUN, KILL_PACKING = (250, 60, 10), (4, 1)  # 250: in the second run of the first replicate
+KILLED = 1 if os.name == "nt" else -9  # what a killed program leaves as its exit code
 
 PLAN = """title = "two by two, and a packed filter"
 seed = 5
@@ -267,9 +267,9 @@ class Program:
                         seen.add((path.name, path.stat().st_mtime_ns))
                     except FileNotFoundError:
                         pass
-            child.send_signal(signal.SIGKILL)
+            child.kill()
             child.communicate()
-            if child.returncode == -signal.SIGKILL:
+            if child.returncode == KILLED:
                 return
             shutil.rmtree(folder / "out")
         raise Failed(f"{' '.join(words)}: ended before it could be killed")
@@ -300,7 +300,7 @@ class Program:
 
     def campaign(self, folder, threads=None):
         self.call(folder, "campaign", "plan.toml", "--out", "out", "-q", threads=threads)
-        outcomes = sorted(path.relative_to(folder / "out") for path in folder.glob("out/cases/*/outcome.json"))
+        outcomes = sorted(path.relative_to(folder / "out").as_posix() for path in folder.glob("out/cases/*/outcome.json"))
         return results(folder / "out", "cases.csv", *outcomes)
 
     def percolation(self, folder, threads=None):

@@ -165,6 +165,39 @@ fn walk_and_report_know_what_they_may() {
     }
 }
 
+/// What one system alone has stands in `src/store/platform`, each system's in its own files; so a file that
+/// is written today compiles on the systems that nobody tries it on.
+#[test]
+fn only_the_platform_names_a_system() {
+    let places: [(&str, &[&str]); 9] = [
+        ("std::os::unix", &["unix"]),
+        ("std::os::linux", &[]),
+        ("std::os::windows", &["windows"]),
+        ("rustix", &["unix", "linux", "macos"]),
+        ("libc::", &[]),
+        ("windows_sys", &["windows"]),
+        ("signal_hook", &["signals"]),
+        ("\"/proc", &["linux", "cgroup", "signals"]),
+        ("\"/dev/", &[]),
+    ];
+    let mut seen = 0;
+    for source in sources() {
+        let file = source.module.strip_prefix("store::platform::");
+        for (name, files) in places {
+            let is_used = source.code.contains(name);
+            seen += usize::from(is_used);
+            let may = file.is_some_and(|file| files.contains(&file));
+            assert!(!is_used || may, "{} uses {name}", source.path.display());
+        }
+        let asks = ["target_os", "cfg(unix", "cfg(windows", "cfg(not(unix", "cfg(not(windows"];
+        let is_platform = source.module.starts_with("store::platform");
+        for cfg in asks.into_iter().filter(|_| !is_platform) {
+            assert!(!source.code.contains(cfg), "{} asks for the system", source.path.display());
+        }
+    }
+    assert!(seen >= 8, "{seen} files name a system");
+}
+
 #[test]
 fn only_the_command_line_prints() {
     for source in sources().iter().filter(|source| room(&source.module) != "cli") {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{Case, CaseError};
 use crate::network::ExitRule;
-use crate::store::Placement;
+use crate::store::{Placement, platform};
 use crate::walk::{CHUNK, Engine};
 
 /// Replicates walk side by side only while all of them together stay below this, so that memory does not grow
@@ -36,10 +36,9 @@ impl ResourceLimits {
     pub fn new(asked: Option<u64>, available: u64, folder: &Path) -> Self {
         let share = available / 5 * 4;
         let there = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
-        let disk = there.ancestors().find_map(|folder| rustix::fs::statvfs(folder).ok());
         Self {
             memory: asked.map_or(share, |asked| asked.min(available)),
-            disk: disk.map_or(0, |disk| disk.f_bavail.saturating_mul(disk.f_frsize)),
+            disk: there.ancestors().find_map(platform::free_bytes).unwrap_or(0),
         }
     }
 }

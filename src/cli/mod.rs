@@ -55,7 +55,7 @@ fn arguments(words: &[OsString]) -> Result<Arguments, ExitCode> {
 
 /// Runs the program with the arguments of this process.
 pub fn main() -> ExitCode {
-    progress::outlive_large_files();
+    crate::store::platform::signals::outlive_large_files();
     let words: Vec<OsString> = std::env::args_os().collect();
     let arguments = match arguments(&words) {
         Ok(arguments) => arguments,

@@ -13,6 +13,7 @@ use super::report::page;
 use crate::case::PackingPlan;
 use crate::packing::{CompressionProgress, Stage};
 use crate::run::{Callbacks, Event, RunError};
+use crate::store::platform::signals::stop_on_request;
 
 /// Plain lines come at most this often.
 const BETWEEN_LINES: Duration = Duration::from_secs(5);
@@ -40,37 +41,12 @@ pub fn unfollowed() -> Callbacks<'static> {
     }
 }
 
-/// A flag that the first signal to end sets: SIGINT, SIGTERM, SIGHUP where the terminal is closed (but not
-/// under `nohup`), or SIGXCPU where the processor time is used up. A SIGINT after that ends the program at
-/// once.
+/// A flag that the first request to end sets.
 ///
-/// SIGTERM may come several times: a cluster's scheduler sends it to a job's script, which hands it on, and
-/// to all of the job's processes.
+/// # Errors
+/// What the system says.
 pub fn stop_on_signals() -> Result<Arc<AtomicBool>, RunError> {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXCPU};
-    let stop = Arc::new(AtomicBool::new(false));
-    signal_hook::flag::register_conditional_shutdown(SIGINT, 1, Arc::clone(&stop))
-        .map_err(RunError::failed)?;
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let ignored = |signal| signal == SIGHUP && is_ignored(&status, signal);
-    for signal in [SIGINT, SIGTERM, SIGHUP, SIGXCPU].into_iter().filter(|signal| !ignored(*signal)) {
-        signal_hook::flag::register(signal, Arc::clone(&stop)).map_err(RunError::failed)?;
-    }
-    Ok(stop)
-}
-
-/// Whether whoever started the process had it ignore a signal, by `/proc/self/status`.
-fn is_ignored(status: &str, signal: i32) -> bool {
-    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
-    mask.is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
-}
-
-/// A write beyond the largest file that is allowed fails then with an error, and does not end the program.
-pub fn outlive_large_files() {
-    let noticed = Arc::new(AtomicBool::new(false));
-    // Without it, the program ends as before.
-    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, noticed);
+    stop_on_request().map_err(RunError::failed)
 }
 
 /// A bar of this length on a terminal; none elsewhere.
@@ -249,18 +225,4 @@ fn packing_line(progress: &CompressionProgress, usual: u64, here: u64, seconds: 
         progress.coordination,
         progress.unbalanced,
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::is_ignored;
-
-    #[test]
-    fn what_the_parent_ignores_is_known() {
-        let nohup = "Name:\tvoidwalk\nSigBlk:\t0000000000000000\nSigIgn:\t0000000000001001\n";
-        assert!(is_ignored(nohup, 1) && is_ignored(nohup, 13) && !is_ignored(nohup, 15));
-        for other in ["", "SigIgn:\tx\n", "SigIgn:\t0000000000000000\n"] {
-            assert!(!is_ignored(other, 1), "{other}");
-        }
-    }
 }

@@ -264,7 +264,7 @@ mod tests {
         let (network, exit) = Network::from_columns(&CHAIN).unwrap();
         assert_eq!(network.layer_of()[..4], [0, 1, 2, 3]);
         assert_eq!((network.passages(), network.entries(), network.filter_voids()), (3, 1, 4));
-        let mut blocked: BitVec<u64> = BitVec::repeat(false, network.constrictions());
+        let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
         for (c, &exit) in exit.iter().enumerate() {
             let (from, to) = (network.upstream()[exit as usize], network.targets()[exit as usize]);
             assert_eq!([i64::from(from), i64::from(to)], CHAIN.conns[c]);

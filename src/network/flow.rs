@@ -96,7 +96,7 @@ impl Flow {
     ///
     /// # Errors
     /// Conductances too far apart.
-    pub fn solve(&mut self, network: &Network, blocked: &BitSlice<u64>) -> Result<Permeability, FlowError> {
+    pub fn solve(&mut self, network: &Network, blocked: &BitSlice) -> Result<Permeability, FlowError> {
         let undirected = network.undirected.as_ref();
         let rho = undirected.map_or(0.0, |u| u.rho);
         for (c, open) in self.open.iter_mut().enumerate() {
@@ -129,7 +129,7 @@ impl Flow {
     }
 
     /// Gives each exit of the network its weight by the flow that was solved last.
-    pub fn direct(&self, network: &mut Network, blocked: &BitSlice<u64>) {
+    pub fn direct(&self, network: &mut Network, blocked: &BitSlice) {
         let Some(reservoir) = network.reservoir() else { return };
         let rule = network.exit_rule();
         let inlets = network.exits(reservoir);

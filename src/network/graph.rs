@@ -134,7 +134,7 @@ mod tests {
         let mut network = Network::of_graph(&graph, shape).unwrap();
         assert_eq!((network.filter_voids(), network.entries(), network.layers()), (120, 12, 10));
         assert_eq!(network.passages(), 3 * 120 + 12);
-        let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
+        let open: BitVec = BitVec::repeat(false, network.constrictions());
         let mut flow = Flow::new(&network);
         let found = flow.solve(&network, &open).unwrap();
         let k = permeability_mm2(&graph, 2).unwrap();

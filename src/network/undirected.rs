@@ -204,7 +204,7 @@ impl Network {
     }
 
     /// Marks a constriction as blocked, or as open again, both ways.
-    pub fn set_blocked(&self, blocked: &mut bitvec::slice::BitSlice<u64>, exit: usize, is: bool) {
+    pub fn set_blocked(&self, blocked: &mut bitvec::slice::BitSlice, exit: usize, is: bool) {
         blocked.set(exit, is);
         if let Some(twin) = self.twin(exit) {
             blocked.set(twin, is);
@@ -247,7 +247,7 @@ impl Network {
     }
 
     /// Blocked constrictions, each counted once.
-    pub fn blocked_count(&self, blocked: &bitvec::slice::BitSlice<u64>) -> u64 {
+    pub fn blocked_count(&self, blocked: &bitvec::slice::BitSlice) -> u64 {
         match &self.undirected {
             None => blocked.count_ones() as u64,
             Some(_) => blocked.iter_ones().filter(|&c| self.counts(c)).count() as u64,

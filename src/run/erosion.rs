@@ -23,9 +23,9 @@ pub fn eroded(
     case: &Case,
     network: &Network,
     (seed, run): (u64, u64),
-    blocked: BitVec<u64>,
+    blocked: BitVec,
     callbacks: &Callbacks,
-) -> Result<(Eroded, BitVec<u64>), RunError> {
+) -> Result<(Eroded, BitVec), RunError> {
     let plan = plan(case, network, &blocked, case.n_base);
     let supply = plan.supply(case.sampler.clone(), case.n_base, case.increments(), seed, run);
     let (smallest, largest) = (case.sampler.smallest(), case.sampler.largest());

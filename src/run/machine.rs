@@ -1,8 +1,8 @@
 //! What machine a case runs on, on how many threads, and how much memory it may use.
 
 use super::allocation::Allocation;
-use super::cgroup;
 use super::error::RunError;
+use crate::store::platform;
 
 /// The machine, in words.
 pub struct Machine {
@@ -17,32 +17,23 @@ pub struct Machine {
 impl Machine {
     /// Asks the system.
     pub fn here() -> Self {
-        let name = rustix::system::uname();
-        let read = |file: &str| std::fs::read_to_string(file).unwrap_or_default();
-        let meminfo = read("/proc/meminfo");
-        let kib = |key: &str| -> Option<u64> {
-            let line = meminfo.lines().find(|line| line.starts_with(key))?;
-            line.split_whitespace().nth(1)?.parse().ok()
-        };
-        let cpuinfo = read("/proc/cpuinfo");
-        let model = cpuinfo.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
-        let model = model.map_or("unknown processor", |(_, model)| model);
+        let memory = platform::memory();
+        let model = platform::processor().unwrap_or_else(|| "unknown processor".into());
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
-        let total = kib("MemTotal:").map_or("unknown".into(), |k| crate::case::in_words(k * 1024));
+        let total = memory.total.map_or("unknown".into(), crate::case::in_words);
         Self {
-            host: name.nodename().to_string_lossy().into_owned(),
+            host: platform::host_name(),
             description: format!(
-                "{} {}, {model}, {cores} {}, {total} of memory",
-                name.sysname().to_string_lossy(),
-                name.machine().to_string_lossy(),
+                "{}, {model}, {cores} {}, {total} of memory",
+                platform::system(),
                 if cores == 1 { "core" } else { "cores" }
             ),
             // Without word from the system, nothing is refused. A cluster's job has its share of the
-            // machine, and so has a container.
-            available: kib("MemAvailable:")
-                .map_or(u64::MAX, |k| k * 1024)
-                .min(Allocation::here().and_then(|job| job.memory).unwrap_or(u64::MAX))
-                .min(cgroup::memory_left().unwrap_or(u64::MAX)),
+            // machine.
+            available: memory
+                .available
+                .unwrap_or(u64::MAX)
+                .min(Allocation::here().and_then(|job| job.memory).unwrap_or(u64::MAX)),
         }
     }
 }

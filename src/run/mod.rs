@@ -12,7 +12,6 @@
 
 pub mod allocation;
 pub mod callbacks;
-pub mod cgroup;
 mod check;
 pub mod checkpoints;
 pub mod constrictions;

@@ -63,7 +63,7 @@ pub struct WalkedNetwork {
     /// Its figures and rows.
     pub result: ReplicateResult,
     /// Blocked exits at the end of each run.
-    pub blocked: Vec<BitVec<u64>>,
+    pub blocked: Vec<BitVec>,
 }
 
 /// Walks given networks in memory, replicate `r` on entry `(r - 1) mod n` of the `n` networks, on the threads
@@ -117,7 +117,7 @@ pub fn walk_networks(
 }
 
 /// A replicate, and its blocked exits at the end of each run.
-type Walked = (ReplicateResult, Vec<BitVec<u64>>);
+type Walked = (ReplicateResult, Vec<BitVec>);
 
 /// Replicates that take no more together are walked side by side.
 const SIDE_BY_SIDE_BYTES: u64 = 1 << 30;
@@ -213,7 +213,7 @@ impl NetworkWalk {
     ) -> Result<Walked, RunError> {
         let seed = replicate_seed(self.seed, replicate);
         let mut blocked = BitVec::repeat(false, network.constrictions());
-        let plan = |blocked: &BitVec<u64>| {
+        let plan = |blocked: &BitVec| {
             RunPlan::new(self.engine, network, sampler, blocked, self.n_base / self.increments)
                 .sampled(self.sampling)
         };

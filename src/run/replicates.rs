@@ -19,7 +19,7 @@ use crate::outcome::verdict::{below_by_interval, classify};
 use crate::outcome::{Recorded, RunId, RunMetrics};
 use crate::scene::NetworkSource;
 use crate::store::checkpoint::{Checkpoint, CheckpointError};
-use crate::walk::{Engine, FlowRecord, RunPlan, SizeClasses, State, Walk, WalkControl};
+use crate::walk::{Engine, FlowRecord, RunPlan, SizeClasses, State, Walk, WalkControl, from_words};
 
 /// How replicates are walked: who follows them, and what saves them.
 #[derive(Clone, Copy)]
@@ -214,7 +214,7 @@ fn tell_walked(id: WalkId, run: &Run, below_threshold: bool, context: &Replicate
 }
 
 /// How a run with these constrictions blocked is walked.
-pub(super) fn plan(case: &Case, network: &Network, blocked: &BitSlice<u64>, n_base: u64) -> RunPlan {
+pub(super) fn plan(case: &Case, network: &Network, blocked: &BitSlice, n_base: u64) -> RunPlan {
     RunPlan::new(case.scene.walk.engine, network, &case.sampler, blocked, n_base / case.increments())
         .sampled(case.scene.walk.sampling)
 }
@@ -225,7 +225,7 @@ pub(super) fn plan(case: &Case, network: &Network, blocked: &BitSlice<u64>, n_ba
 /// As [`Case::network`].
 pub fn left_out_of_first_run(case: &Case) -> Result<Vec<String>, RunError> {
     let network = case.network(replicate_seed(case.scene.walk.seed, 1))?;
-    let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
+    let open: BitVec = BitVec::repeat(false, network.constrictions());
     Ok(plan(case, &network, &open, case.n_base).left_out().to_vec())
 }
 
@@ -262,7 +262,7 @@ impl RunContext<'_> {
     /// Walks from the start, or from where it was saved; the state, the network and the flow at the end.
     fn run(
         &self,
-        blocked: BitVec<u64>,
+        blocked: BitVec,
         done: &mut Done,
         saved: Option<Checkpoint>,
         context: &ReplicateContext,
@@ -325,9 +325,8 @@ impl RunContext<'_> {
 
 /// Constrictions that were blocked when the saved run began: those blocked now, less those that it blocked
 /// itself.
-fn blocked_at_start(network: &Network, saved: &Checkpoint) -> Result<BitVec<u64>, RunError> {
-    let mut blocked = BitVec::from_vec(saved.read::<u64>("blocked")?);
-    blocked.resize(network.constrictions(), false);
+fn blocked_at_start(network: &Network, saved: &Checkpoint) -> Result<BitVec, RunError> {
+    let mut blocked = from_words(&saved.read("blocked")?, network.constrictions());
     for constriction in saved.read::<u32>("history_constriction")? {
         if (constriction as usize) < blocked.len() {
             network.set_blocked(&mut blocked, constriction as usize, false);

@@ -5,8 +5,7 @@
 //!   (DNS rebinding) is answered.
 //! - A request that a page of another origin has made is refused, whatever it knows.
 
-use std::fs::File;
-use std::io::{self, Read};
+use std::io;
 
 use super::http::Request;
 
@@ -25,7 +24,7 @@ impl Guard {
     pub fn new(port: u16) -> io::Result<Self> {
         // A secret must not follow from any seed, so it is no number of `crate::stream`.
         let mut bytes = [0u8; 16];
-        File::open("/dev/urandom")?.read_exact(&mut bytes)?;
+        getrandom::fill(&mut bytes)?;
         Ok(Self { token: bytes.iter().map(|byte| format!("{byte:02x}")).collect(), port })
     }
 

@@ -258,6 +258,7 @@ mod tests {
         let folder = root.path().join(FOLDER);
         let outside = root.path().join("outside.csv");
         std::fs::rename(folder.join("1/a.csv"), &outside).unwrap();
+        #[cfg(unix)]
         std::os::unix::fs::symlink(&outside, folder.join("1/a.csv")).unwrap();
         std::fs::write(folder.join("2/b.csv"), "no soil").unwrap();
         std::fs::create_dir(folder.join("18446744073709551615")).unwrap();

@@ -1,7 +1,7 @@
 //! One column of a simulation, wherever its memory comes from.
 
 use std::fs::File;
-use std::io::{self, Write};
+use std::io;
 use std::ops::{Deref, DerefMut};
 use std::path::{Path, PathBuf};
 
@@ -9,6 +9,7 @@ use bytemuck::Pod;
 use memmap2::{MmapMut, MmapOptions};
 
 use super::disk::{Call, ask};
+use super::platform::allocate;
 
 /// Where the values of columns live.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -34,13 +35,15 @@ pub struct Column<T: Pod> {
 #[derive(Debug)]
 enum Values<T: Pod> {
     Owned(Vec<T>),
-    Mapped(MmapMut),
+    /// The mapping, and its file: where a file goes with its last handle (Windows), the mapping must go
+    /// first.
+    Mapped(MmapMut, #[allow(dead_code, reason = "is kept open")] File),
 }
 
 impl<T: Pod> Column<T> {
     /// `len` zeros. Pages of memory are touched when they are first written; blocks of a file are
-    /// allocated here, so that a full disk is an error now and not a crash later (but see `allocate` for file
-    /// systems that copy on write).
+    /// allocated here, so that a full disk is an error now and not a crash later (but see `map_zeros` for
+    /// file systems that copy on write).
     ///
     /// # Errors
     /// The file cannot be made, allocated or mapped.
@@ -48,7 +51,8 @@ impl<T: Pod> Column<T> {
         let values = match placement {
             Placement::Mapped(folder) if len > 0 => {
                 let bytes = len.checked_mul(size_of::<T>()).ok_or(io::ErrorKind::FileTooLarge)?;
-                Values::Mapped(map_zeros(folder, bytes)?)
+                let (map, file) = map_zeros(folder, bytes)?;
+                Values::Mapped(map, file)
             }
             _ => Values::Owned(bytemuck::zeroed_vec(len)),
         };
@@ -57,42 +61,27 @@ impl<T: Pod> Column<T> {
 }
 
 /// A mapped file without a name that holds `bytes` zeros, all of its blocks allocated.
-fn map_zeros(folder: &Path, bytes: usize) -> io::Result<MmapMut> {
+///
+/// So a full disk is an error here, and no signal (SIGBUS) when a page of the mapping goes to the disk; as
+/// far as the file system writes in place, as ext4, XFS, NTFS and tmpfs do. One that copies on write (btrfs,
+/// ZFS, bcachefs) may take new blocks for a page that is written again, and one that compresses may have
+/// allocated nothing for zeros: where others fill such a disk up while the program runs, the signal can end
+/// it, and it continues from its last checkpoint, as after a kill.
+fn map_zeros(folder: &Path, bytes: usize) -> io::Result<(MmapMut, File)> {
     ask(Call::Map(folder, bytes as u64), || {
         let file: File = tempfile::tempfile_in(folder)?;
         allocate(&file, bytes as u64)?;
         // SAFETY: what is mapped must not change or be cut by others while it is used as a slice. This
-        // process keeps no other handle to the file: it is closed here, and only the mapping keeps it. Others
-        // have no name by which to open it. Two ways are left, of this user's own processes (and root's)
-        // alone, and as deliberate as writing into this process by /proc/PID/mem, which no program can rule
-        // out: the mapping under /proc/PID/map_files; and, where the file system has no O_TMPFILE, the moment
-        // between the making of the file, by a random name and with mode 0600, and the removal of that name.
+        // process has one handle to the file, which stands beside the mapping and is used for nothing. Others
+        // have no name by which to open it, or may not (Windows). Two ways are left, of this user's own
+        // processes (and root's) alone, and as deliberate as writing into this process by /proc/PID/mem,
+        // which no program can rule out: the mapping under /proc/PID/map_files; and, where the file system
+        // has no O_TMPFILE, the moment between the making of the file, by a random name and with mode 0600,
+        // and the removal of that name.
         // Beyond its end nothing is mapped: `allocate` has made it `bytes` long.
-        unsafe { MmapOptions::new().len(bytes).map_mut(&file) }
+        let map = unsafe { MmapOptions::new().len(bytes).map_mut(&file) }?;
+        Ok((map, file))
     })
-}
-
-/// Makes the file `bytes` long with every block allocated: by the file system, or else by writing.
-///
-/// So a full disk is an error here, and no signal (SIGBUS) when a page of the mapping goes to the disk; as
-/// far as the file system writes in place, as ext4, XFS and tmpfs do. One that copies on write (btrfs, ZFS,
-/// bcachefs) may take new blocks for a page that is written again, and one that compresses may have allocated
-/// nothing for zeros: where others fill such a disk up while the program runs, the signal can end it, and it
-/// continues from its last checkpoint, as after a kill.
-fn allocate(mut file: &File, bytes: u64) -> io::Result<()> {
-    match rustix::fs::fallocate(file, rustix::fs::FallocateFlags::empty(), 0, bytes) {
-        Err(rustix::io::Errno::OPNOTSUPP) => {
-            let zeros = vec![0; 1 << 20];
-            let mut left = bytes;
-            while left > 0 {
-                let part = left.min(zeros.len() as u64);
-                file.write_all(&zeros[..part as usize])?;
-                left -= part;
-            }
-            file.sync_all()
-        }
-        other => Ok(other?),
-    }
 }
 
 impl<T: Pod> Deref for Column<T> {
@@ -102,7 +91,7 @@ impl<T: Pod> Deref for Column<T> {
         match &self.values {
             Values::Owned(values) => values,
             // A mapping begins on a page, so it is aligned, and its length is a whole number of values.
-            Values::Mapped(map) => bytemuck::cast_slice(map),
+            Values::Mapped(map, _) => bytemuck::cast_slice(map),
         }
     }
 }
@@ -111,7 +100,7 @@ impl<T: Pod> DerefMut for Column<T> {
     fn deref_mut(&mut self) -> &mut [T] {
         match &mut self.values {
             Values::Owned(values) => values,
-            Values::Mapped(map) => bytemuck::cast_slice_mut(map),
+            Values::Mapped(map, _) => bytemuck::cast_slice_mut(map),
         }
     }
 }

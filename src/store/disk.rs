@@ -8,11 +8,12 @@
 use std::fmt;
 use std::fs::File;
 use std::io::{self, Read, Write};
-use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
+
+use super::platform;
 
 /// One call.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -102,12 +103,6 @@ pub(super) fn ask<T>(call: Call<'_>, mut act: impl FnMut() -> io::Result<T>) -> 
         }
     }
 }
-
-/// Opening what is a link fails.
-pub(super) const NO_LINK: i32 = rustix::fs::OFlags::NOFOLLOW.bits() as i32;
-
-/// Opening what is no file of its own, as a pipe, does not wait for somebody at its other end.
-const NO_WAIT: i32 = rustix::fs::OFlags::NONBLOCK.bits() as i32;
 
 /// What the names of files begin with that are not whole yet; one that a killed process left is removed when
 /// its folder is next taken.
@@ -209,7 +204,7 @@ impl Drop for PartFile {
 /// Sends the names in a folder to the disk.
 pub(super) fn sync_folder(folder: &Path) -> io::Result<()> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    ask(Call::SyncFolder(folder), || File::open(folder)?.sync_all())
+    ask(Call::SyncFolder(folder), || platform::sync_folder(folder))
 }
 
 /// A whole file, which is no link to one elsewhere.
@@ -223,15 +218,12 @@ pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
 
 /// Opens a file of the program's own for reading: a regular one, and no link to one elsewhere.
 pub(super) fn open_own(path: &Path) -> io::Result<File> {
-    open(path, NO_LINK | NO_WAIT)?
+    regular(platform::open_own(File::options().read(true), path)?)?
         .ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "is no regular file"))
 }
 
-/// Opens a file for reading; `None` where it is a folder, a pipe, a socket or a device.
-fn open(path: &Path, flags: i32) -> io::Result<Option<File>> {
-    let mut options = File::options();
-    OpenOptionsExt::custom_flags(options.read(true), flags);
-    let file = options.open(path)?;
+/// The file; `None` where it is a folder, a pipe, a socket or a device.
+fn regular(file: File) -> io::Result<Option<File>> {
     Ok(file.metadata()?.is_file().then_some(file))
 }
 
@@ -241,7 +233,7 @@ fn open(path: &Path, flags: i32) -> io::Result<Option<File>> {
 /// # Errors
 /// What the system says.
 pub fn read_regular(path: &Path, largest: u64) -> io::Result<Option<Vec<u8>>> {
-    let Some(file) = open(path, NO_WAIT)? else { return Ok(None) };
+    let Some(file) = regular(platform::open_any(File::options().read(true), path)?)? else { return Ok(None) };
     let mut bytes = Vec::new();
     file.take(largest.saturating_add(1)).read_to_end(&mut bytes)?;
     Ok((bytes.len() as u64 <= largest).then_some(bytes))
@@ -253,6 +245,7 @@ mod tests {
 
     /// Whoever reads a pipe with nobody at its other end waits for ever.
     #[test]
+    #[cfg(unix)]
     fn what_is_no_regular_file_is_not_read_and_not_waited_for() {
         let root = tempfile::tempdir().unwrap();
         let (pipe, text) = (root.path().join("pipe"), root.path().join("text"));

@@ -10,12 +10,12 @@
 //!   process alone.
 
 use std::fs::{self, File, TryLockError};
-use std::io::{self, Write};
-use std::os::unix::fs::MetadataExt;
+use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::disk::{self, Call, PART, PartFile, ask};
+use super::platform;
 
 /// Name of the lock file, which marks a folder as ours.
 pub const LOCK_FILE: &str = ".voidwalk.lock";
@@ -134,7 +134,7 @@ impl Folder {
         }
         let lock_path = path.join(LOCK_FILE);
         let lock = match shared {
-            false => lock(&lock_path, File::try_lock)?,
+            false => lock(&lock_path, false)?,
             true => share(&lock_path)?,
         };
         if !marked {
@@ -142,11 +142,11 @@ impl Folder {
             disk::sync_folder(path).map_err(io("sync the folder"))?;
         }
         if !shared {
-            let host = rustix::system::uname().nodename().to_string_lossy().into_owned();
-            let holder = format!("process {} on {host}\n", std::process::id());
+            let holder = format!("process {} on {}\n", std::process::id(), platform::host_name());
             ask(Call::Sign(&lock_path, holder.as_bytes()), || {
                 lock.set_len(0)?;
-                std::os::unix::fs::FileExt::write_all_at(&lock, holder.as_bytes(), 0)
+                (&lock).rewind()?;
+                (&lock).write_all(holder.as_bytes())
             })
             .map_err(io("write to the folder"))?;
             clear_parts(path).map_err(io("clear up the folder"))?;
@@ -241,21 +241,20 @@ impl Folder {
     }
 }
 
-/// Opens a lock file and locks it this way.
-fn lock(path: &Path, way: impl Fn(&File) -> Result<(), TryLockError>) -> Result<File, StoreError> {
+/// Opens a lock file and locks it, for this process alone or `shared`.
+fn lock(path: &Path, shared: bool) -> Result<File, StoreError> {
     let folder = path.parent().unwrap_or(path);
     let failed = |source| StoreError::Io { path: folder.to_owned(), action: "write to the folder", source };
     let mut options = File::options();
     options.read(true).write(true).create(true).truncate(false);
     // A lock file that is a link would have the file it leads to emptied.
-    std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, disk::NO_LINK);
-    let file = ask(Call::Lock(path), || options.open(path)).map_err(failed)?;
+    let file = ask(Call::Lock(path), || platform::open_own(&mut options, path)).map_err(failed)?;
     let meta = file.metadata().map_err(failed)?;
     // So would another name of a file that somebody else needs.
-    if !meta.is_file() || meta.nlink() > 1 {
+    if !meta.is_file() || platform::has_other_names(&file).map_err(failed)? {
         return Err(StoreError::NotALock { path: path.to_owned() });
     }
-    match way(&file) {
+    match platform::try_lock(&file, shared) {
         Ok(()) => Ok(file),
         Err(TryLockError::WouldBlock) => {
             Err(StoreError::Held { path: folder.to_owned(), holder: holder(path) })
@@ -282,7 +281,7 @@ fn holder(path: &Path) -> String {
 
 /// Opens a lock file and shares it; whoever happens to be alone with it first clears up.
 fn share(path: &Path) -> Result<File, StoreError> {
-    if let Ok(alone) = lock(path, File::try_lock) {
+    if let Ok(alone) = lock(path, false) {
         let folder = path.parent().unwrap_or(path);
         let failed =
             |source| StoreError::Io { path: folder.to_owned(), action: "clear up the folder", source };
@@ -291,7 +290,7 @@ fn share(path: &Path) -> Result<File, StoreError> {
     }
     let begun = Instant::now();
     loop {
-        match lock(path, File::try_lock_shared) {
+        match lock(path, true) {
             Err(StoreError::Held { .. }) if begun.elapsed() < ASK_FOR => {
                 std::thread::sleep(Duration::from_millis(5));
             }
@@ -335,7 +334,7 @@ fn clear_parts(folder: &Path) -> io::Result<()> {
 /// be at it.
 fn is_left(name: &str) -> bool {
     let Some(process) = name.strip_prefix(PART).and_then(|rest| rest.split('-').next()) else { return false };
-    process == std::process::id().to_string() || !Path::new("/proc").join(process).exists()
+    process == std::process::id().to_string() || !platform::is_running(process)
 }
 
 /// Makes a folder and those above it that are missing, each synced into the one that it is in.
@@ -497,9 +496,6 @@ mod tests {
             Folder::open(&root.path().join("thesis.txt")),
             Err(StoreError::NotAFolder { what: "a file", .. })
         ));
-        let link = root.path().join("link");
-        std::os::unix::fs::symlink("/tmp", &link).unwrap();
-        assert!(matches!(Folder::open(&link), Err(StoreError::NotAFolder { what: "a symbolic link", .. })));
         let linked = root.path().join("linked");
         fs::create_dir(&linked).unwrap();
         fs::hard_link(root.path().join("thesis.txt"), linked.join(LOCK_FILE)).unwrap();
@@ -508,8 +504,19 @@ mod tests {
         }
         fs::remove_dir_all(&linked).unwrap();
         assert_eq!(fs::read_to_string(root.path().join("thesis.txt")).unwrap(), "years of work");
+        assert_eq!(fs::read_dir(root.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_link_is_not_followed() {
+        let root = tempfile::tempdir().unwrap();
+        let (link, elsewhere) = (root.path().join("link"), root.path().join("elsewhere"));
+        fs::create_dir(&elsewhere).unwrap();
+        std::os::unix::fs::symlink(&elsewhere, &link).unwrap();
+        assert!(matches!(Folder::open(&link), Err(StoreError::NotAFolder { what: "a symbolic link", .. })));
         let with_slash = root.path().join("link/");
         assert!(matches!(Folder::open(&with_slash), Err(StoreError::NotAFolder { .. })));
-        assert_eq!(fs::read_dir(root.path()).unwrap().count(), 2);
+        assert_eq!(fs::read_dir(&elsewhere).unwrap().count(), 0);
     }
 }

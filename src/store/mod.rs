@@ -5,6 +5,7 @@ mod column;
 pub mod disk;
 mod folder;
 mod npz;
+pub mod platform;
 
 pub use column::{Column, Placement};
 pub use disk::read_regular;

@@ -43,14 +43,14 @@ pub(super) struct Directions {
 impl Directions {
     /// Those that `state` has come to, by all that has been blocked until now; the network is given them.
     pub fn new(network: &mut Network, state: &State) -> Result<Self, FlowError> {
-        let mut blocked: BitVec<u64> = BitVec::repeat(false, network.constrictions());
+        let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
         let mut flow = Flow::new(network);
         let clean = flow.solve(network, &blocked)?;
         let record = FlowRecord { k0_mm2: clean.k_mm2, k_over_k0: vec![] };
         let clean = clean.conductance;
         let mut directions = Self { flow, record, clean, solved_at: 0, blocked_then: 0 };
         blocked.copy_from_bitslice(&state.blocked);
-        let set = |blocked: &mut BitVec<u64>, blocking: &Blocking, is| {
+        let set = |blocked: &mut BitVec, blocking: &Blocking, is| {
             network.set_blocked(blocked, blocking.constriction as usize, is);
         };
         state.history.iter().for_each(|blocking| set(&mut blocked, blocking, false));
@@ -106,7 +106,7 @@ impl Directions {
     fn solve(
         &mut self,
         network: &Network,
-        blocked: &BitSlice<u64>,
+        blocked: &BitSlice,
         increment: u64,
         in_run: u64,
     ) -> Result<(), FlowError> {

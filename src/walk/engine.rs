@@ -61,7 +61,7 @@ const WORTH_COUNTS: u64 = 8;
 ///
 /// let network = Network::cubic_from_diameters([4, 4, 6], vec![1.0; 288], 1.0)?;
 /// let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.2, 1.5)?, 1.0)?;
-/// let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
+/// let open: BitVec = BitVec::repeat(false, network.constrictions());
 /// let plan = RunPlan::new(Engine::Auto, &network, &sampler, &open, 10_000_000_000);
 /// assert_eq!(plan.engine(), Engine::Counts);
 /// let supply = plan.supply(sampler, 1_000_000_000_000, 100, 7, 1);
@@ -86,7 +86,7 @@ impl RunPlan {
         wanted: Engine,
         network: &Network,
         sampler: &SizeSampler,
-        blocked: &BitSlice<u64>,
+        blocked: &BitSlice,
         share: u64,
     ) -> Self {
         let limit = network.finest_open(|c| blocked[c]);

@@ -9,7 +9,7 @@ use crate::network::Network;
 /// of the last open exit, or `None` where every exit is closed.
 pub(super) fn thresholds(
     network: &Network,
-    blocked: &BitSlice<u64>,
+    blocked: &BitSlice,
     void: u32,
     thresholds: &mut Vec<u64>,
 ) -> Option<usize> {
@@ -80,13 +80,13 @@ pub(super) fn waits(network: &Network, void: u32) -> bool {
 pub(super) struct OpenExits<'a> {
     pub network: &'a Network,
     pub table: &'a ExitTable,
-    pub blocked: &'a BitSlice<u64>,
+    pub blocked: &'a BitSlice,
     pub passive_limit: f32,
 }
 
 impl ExitTable {
     /// The table for the constrictions that `blocked` leaves open.
-    pub fn new(network: &Network, blocked: &BitSlice<u64>) -> Self {
+    pub fn new(network: &Network, blocked: &BitSlice) -> Self {
         let form = match network.shape() {
             Some([nx, ny, _]) => Form::Lattice(Lattice::new(network.voids(), nx, nx * ny)),
             None => Form::General(General {
@@ -106,7 +106,7 @@ impl ExitTable {
     pub(super) fn refresh(
         &mut self,
         network: &Network,
-        blocked: &BitSlice<u64>,
+        blocked: &BitSlice,
         voids: impl Iterator<Item = u32>,
     ) {
         let mut scratch = Vec::new();
@@ -115,7 +115,7 @@ impl ExitTable {
         }
     }
 
-    fn set(&mut self, network: &Network, blocked: &BitSlice<u64>, void: u32, scratch: &mut Vec<u64>) {
+    fn set(&mut self, network: &Network, blocked: &BitSlice, void: u32, scratch: &mut Vec<u64>) {
         let last_open = thresholds(network, blocked, void, scratch);
         match &mut self.form {
             Form::Lattice(lattice) => lattice.set(void, scratch, last_open),
@@ -179,7 +179,7 @@ mod tests {
 
     fn of(diameters: [f32; 3], blocked: [bool; 3]) -> (Vec<u64>, Option<usize>) {
         let network = Network::cubic_from_diameters([1, 1, 1], diameters.to_vec(), 1.0).unwrap();
-        let blocked: BitVec<u64> = blocked.into_iter().collect();
+        let blocked: BitVec = blocked.into_iter().collect();
         let mut out = Vec::new();
         let last = thresholds(&network, &blocked, 0, &mut out);
         (out, last)

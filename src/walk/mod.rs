@@ -45,6 +45,7 @@
 //! The columns of the particles take 8 bytes each. [`State::placed`] puts them into mapped files where they
 //! would not fit; the kernels see slices either way, and the bits are the same.
 
+mod bits;
 mod chunks;
 mod counts;
 mod directions;
@@ -67,6 +68,7 @@ mod tally;
 mod threads;
 mod trapped;
 
+pub use bits::{from_words, to_words};
 pub use counts::{Counted, Expected, ExpectedSums, Passive};
 pub use directions::FlowRecord;
 pub use engine::{Engine, RunPlan};
@@ -112,7 +114,7 @@ pub type Observer<'a> = dyn FnMut(&State) -> WalkControl + Send + 'a;
 /// let network = Network::cubic([8, 8, 12], &curve, 1.0, 7)?;
 /// let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.08, 1.5)?, 1.0)?;
 /// let supply = Supply::new(sampler, 20_000, 100);
-/// let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
+/// let open: BitVec = BitVec::repeat(false, network.constrictions());
 /// let classes = SizeClasses::logarithmic(0.08, 0.18, 16);
 /// let mut state = State::new(&network, &supply, classes, open, 7, 1);
 /// Walk::new(&network, &supply, &state).run(&mut state, &mut |_| WalkControl::Continue)?;

@@ -127,7 +127,7 @@ impl<'a> Reference<'a> {
         let Some((mut flow, solved_at, blocked_then)) = self.flow.take() else { return };
         let since = self.history.len() - blocked_then;
         let due = 100 * since >= self.network.passages() || self.increment > solved_at + 10;
-        let blocked: BitVec<u64> = self.blocked.iter().copied().collect();
+        let blocked: BitVec = self.blocked.iter().copied().collect();
         let network = self.network.to_mut();
         if self.increment == 1 {
             // The clean filter comes first: its pressures are where the next solution begins.

@@ -2,10 +2,10 @@
 //!
 //! Nothing that can be rebuilt is saved: no generator, no thresholds, no network.
 
-use bitvec::vec::BitVec;
 use bytemuck::Pod;
 use serde::{Deserialize, Serialize};
 
+use super::bits::{from_words, to_words, words_for};
 use super::saved_checks::Forgery;
 use super::{Blocking, CHUNK, Expected, ExpectedSums, Passive, SizeCounts, State, Supply, Tally};
 use crate::network::Network;
@@ -41,6 +41,7 @@ use crate::store::checkpoint::{Checkpoint, CheckpointError, Section};
 pub struct SavedState<'a> {
     state: &'a State,
     record: Vec<u8>,
+    blocked: Vec<u64>,
     history_increment: Vec<u64>,
     history_constriction: Vec<u32>,
 }
@@ -101,6 +102,7 @@ impl<'a> SavedState<'a> {
         Self {
             state,
             record: serde_json::to_vec(&record).expect("numbers and words"),
+            blocked: to_words(&state.blocked),
             history_increment: state.history.iter().map(|b| b.increment).collect(),
             history_constriction: state.history.iter().map(|b| b.constriction).collect(),
         }
@@ -121,7 +123,7 @@ impl<'a> SavedState<'a> {
             Section::new("expected_moving", expected.map_or(&[], |e| &e.moving)),
             Section::new("expected_retained", expected.map_or(&[], |e| &e.retained)),
             Section::new("counted_retained", expected.map_or(&[], |e| &e.counted_retained)),
-            Section::new("blocked", state.blocked.as_raw_slice()),
+            Section::new("blocked", &self.blocked),
             Section::new("history_increment", &self.history_increment),
             Section::new("history_constriction", &self.history_constriction),
             Section::new("retained_in_constrictions", &state.retained_in_constrictions),
@@ -209,10 +211,8 @@ impl State {
                 sums: record.expected.ok_or_else(|| wrong("expectation"))?,
             })),
         };
-        let blocked: Vec<u64> = saved.read_exact("blocked", self.blocked.as_raw_slice().len())?;
-        let mut bits = BitVec::from_vec(blocked);
-        bits.truncate(self.blocked.len());
-        self.blocked = bits;
+        let constrictions = self.blocked.len();
+        self.blocked = from_words(&saved.read_exact("blocked", words_for(constrictions))?, constrictions);
         let increments: Vec<u64> = saved.read("history_increment")?;
         let constrictions: Vec<u32> = saved.read_exact("history_constriction", increments.len())?;
         if constrictions.iter().any(|&c| c as usize >= self.blocked.len() || !self.blocked[c as usize]) {

@@ -66,7 +66,7 @@ pub struct State {
     /// The moving base particles that are not.
     pub passive: Passive,
     /// Bit `c`: a base particle has blocked constriction `c` (in this run or an earlier one).
-    pub blocked: BitVec<u64>,
+    pub blocked: BitVec,
     /// Constrictions blocked in this run, by increment, then by constriction.
     pub history: Vec<Blocking>,
     /// Base particles retained in the exits of each void.
@@ -92,7 +92,7 @@ impl State {
         network: &Network,
         supply: &Supply,
         classes: SizeClasses,
-        blocked: BitVec<u64>,
+        blocked: BitVec,
         seed: u64,
         run: u64,
     ) -> Self {
@@ -109,7 +109,7 @@ impl State {
         network: &Network,
         supply: &Supply,
         classes: SizeClasses,
-        blocked: BitVec<u64>,
+        blocked: BitVec,
         seed: u64,
         run: u64,
     ) -> io::Result<Self> {

@@ -20,7 +20,7 @@ fn network(seed: u64) -> Network {
     Network::cubic([6, 5, 7], &curve.in_mm(1.0).unwrap(), 1.0, seed).unwrap()
 }
 
-fn fresh(network: &Network, supply: &Supply, blocked: &BitVec<u64>, seed: u64, run: u64) -> State {
+fn fresh(network: &Network, supply: &Supply, blocked: &BitVec, seed: u64, run: u64) -> State {
     let classes = SizeClasses::logarithmic(0.1, 0.3, 16);
     State::new(network, supply, classes, blocked.clone(), seed, run)
 }
@@ -46,7 +46,7 @@ fn shown(state: &State) -> String {
 fn a_walk_with_flow_goes_on_while_particles_wait() {
     let root = tempfile::tempdir().unwrap();
     let network = network(4).undirected_lattice(ExitRule::Flux, 0.0, 4.0).unwrap();
-    let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
+    let open: BitVec = BitVec::repeat(false, network.constrictions());
     for (engine, cu, n) in [(Engine::Particles, 1.2, 3_000), (Engine::Counts, 2.0, 150_000)] {
         let gradation = Gradation::linear_from_dx(85.0, 0.33, cu).unwrap();
         let sampler = SizeSampler::new(&gradation, 1.0).unwrap();
@@ -87,8 +87,8 @@ fn a_walk_goes_on_from_every_increment_with_every_engine_on_any_threads() {
         (Engine::Counts, flowing),
     ] {
         let seed = 11;
-        let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
-        let supply_of = |blocked: &BitVec<u64>, run| {
+        let open: BitVec = BitVec::repeat(false, network.constrictions());
+        let supply_of = |blocked: &BitVec, run| {
             let sampler = SizeSampler::new(&gradation, 1.0).unwrap();
             RunPlan::new(engine, &network, &sampler, blocked, 700).supply(sampler, 70_000, 100, seed, run)
         };
@@ -139,7 +139,7 @@ fn a_walk_goes_on_from_every_increment_with_every_engine_on_any_threads() {
 fn a_state_of_another_run_is_refused() {
     let root = tempfile::tempdir().unwrap();
     let (network, gradation) = (network(4), Gradation::linear_from_dx(85.0, 0.2, 3.0).unwrap());
-    let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
+    let open: BitVec = BitVec::repeat(false, network.constrictions());
     let supply = |engine, n| {
         let sampler = SizeSampler::new(&gradation, 1.0).unwrap();
         RunPlan::new(engine, &network, &sampler, &open, n / 100).supply(sampler, n, 100, 1, 1)

@@ -10,7 +10,7 @@ fn sampler(d0: f64, cu: f64) -> SizeSampler {
     SizeSampler::new(&base.unwrap(), 1.0).unwrap()
 }
 
-fn open(network: &Network) -> BitVec<u64> {
+fn open(network: &Network) -> BitVec {
     BitVec::repeat(false, network.constrictions())
 }
 
@@ -29,13 +29,7 @@ fn graph(rows: &str) -> Network {
 }
 
 /// Walks to the end, and checks after every increment what must add up.
-fn walk(
-    network: &Network,
-    supply: &Supply,
-    blocked: BitVec<u64>,
-    seed: u64,
-    run: u64,
-) -> (State, Vec<Tally>) {
+fn walk(network: &Network, supply: &Supply, blocked: BitVec, seed: u64, run: u64) -> (State, Vec<Tally>) {
     let classes = SizeClasses::logarithmic(supply.sampler().smallest(), supply.sampler().largest(), 20);
     let mut state = State::new(network, supply, classes, blocked, seed, run);
     let mut series = Vec::new();
@@ -180,7 +174,7 @@ fn threads_change_no_bit() {
         let on = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
-                let supply = |run, blocked: &BitVec<u64>| {
+                let supply = |run, blocked: &BitVec| {
                     RunPlan::new(engine, &network, &base, blocked, 60_000).supply(
                         base.clone(),
                         3_000_000,

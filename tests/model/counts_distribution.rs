@@ -57,7 +57,7 @@ fn replicates_of_both_engines_have_the_same_means() {
     for replicate in 0..REPLICATES {
         let network = Network::cubic([12, 12, 20], &curve, 1.0, replicate).unwrap();
         for (engine, sign) in [(Engine::Counts, 1.0), (Engine::Particles, -1.0)] {
-            let mut blocked: BitVec<u64> = BitVec::repeat(false, network.constrictions());
+            let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
             for run in 1..=2 {
                 let seed = 1000 + replicate;
                 let plan = RunPlan::new(engine, &network, &sampler, &blocked, N_BASE / 100);

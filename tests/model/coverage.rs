@@ -25,7 +25,7 @@ fn eroded(
     engine: Engine,
     seed: u64,
 ) -> f64 {
-    let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
+    let open: BitVec = BitVec::repeat(false, network.constrictions());
     let plan = RunPlan::new(engine, network, sampler, &open, n / increments);
     let supply = plan.supply(sampler.clone(), n, increments, seed, 1);
     let classes = SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), 4);

@@ -20,7 +20,7 @@ fn linked(voids: u32, links: &[Link]) -> Network {
     Network::linked(voids, links).unwrap()
 }
 
-fn open(network: &Network) -> BitVec<u64> {
+fn open(network: &Network) -> BitVec {
     BitVec::repeat(false, network.constrictions())
 }
 

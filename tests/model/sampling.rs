@@ -17,7 +17,7 @@ fn figures(
     sampling: Sampling,
     seed: u64,
 ) -> [f64; 6] {
-    let mut blocked: BitVec<u64> = BitVec::repeat(false, network.constrictions());
+    let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
     let mut found = [0.0; 6];
     for run in 1..=2u64 {
         let plan = RunPlan::new(engine, network, sampler, &blocked, N_BASE / 100).sampled(sampling);

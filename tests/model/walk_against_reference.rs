@@ -30,7 +30,7 @@ const LONG_ENOUGH: u64 = 300;
 
 /// Walks both and compares everything after every increment; returns the blocked set.
 fn compare(network: &Network, supply: &Supply, blocked: &[bool], seed: u64, run: u64) -> Vec<bool> {
-    let bits: BitVec<u64> = blocked.iter().copied().collect();
+    let bits: BitVec = blocked.iter().copied().collect();
     let classes = SizeClasses::logarithmic(0.5, 4.0, 8);
     let mut state = State::new(network, supply, classes, bits, seed, run);
     let mut walk = Walk::new(network, supply, &state);

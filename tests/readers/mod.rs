@@ -224,7 +224,7 @@ pub fn columns(bytes: &[u8]) {
 /// that a solution may leave.
 fn flow(network: Network, conductances: f64) {
     let mut flow = Flow::new(&network);
-    let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
+    let open: BitVec = BitVec::repeat(false, network.constrictions());
     let Some(all) = shown(flow.solve(&network, &open)) else { return };
     assert!(all.conductance.is_finite() && all.conductance >= 0.0, "{all:?}");
     assert!(flow.pressure().iter().all(|p| p.is_finite()), "{:?}", flow.pressure());
@@ -337,7 +337,7 @@ pub struct SmallRun {
     pub network: Network,
     /// What it inserts.
     pub supply: Supply,
-    open: BitVec<u64>,
+    open: BitVec,
 }
 
 thread_local! {
@@ -351,7 +351,7 @@ impl SmallRun {
         let curve = voidwalk::constrictions::find("shire2016-cu1.5-loose").unwrap().curve().unwrap();
         let network = Network::cubic([2, 2, 3], &curve.in_mm(1.0).unwrap(), 1.0, 4).unwrap();
         let gradation = Gradation::linear_from_dx(85.0, 0.45, 3.0).unwrap();
-        let open: BitVec<u64> = BitVec::repeat(false, network.constrictions());
+        let open: BitVec = BitVec::repeat(false, network.constrictions());
         let sampler = SizeSampler::new(&gradation, 1.0).unwrap();
         let plan = RunPlan::new(engine, &network, &sampler, &open, 20);
         let supply = plan.supply(sampler, 2000, 100, 11, 1);

@@ -43,7 +43,7 @@ impl From<network::Network> for Network {
 
 impl Network {
     /// Blocked throats.
-    pub fn blocked(&self, exits: &BitSlice<u64>) -> impl Iterator<Item = bool> {
+    pub fn blocked(&self, exits: &BitSlice) -> impl Iterator<Item = bool> {
         self.exit.iter().map(|&exit| exit != NO_EXIT && exits[exit as usize])
     }
 
@@ -51,7 +51,7 @@ impl Network {
         self.exit.len()
     }
 
-    fn nothing_blocked(&self) -> BitVec<u64> {
+    fn nothing_blocked(&self) -> BitVec {
         BitVec::repeat(false, self.inner.constrictions())
     }
 

@@ -7,6 +7,8 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::store::platform;
+
 /// How a folder is mounted.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Mount {
@@ -18,8 +20,7 @@ struct Mount {
 /// What a user should know of the locks in this folder; `None` where they hold on every node.
 pub fn warning(folder: &Path) -> Option<String> {
     let folder = folder.canonicalize().ok()?;
-    let mounts = std::fs::read_to_string("/proc/self/mountinfo").ok()?;
-    mount_of(&folder, &mounts)?.doubt()
+    mount_of(&folder, &platform::mounts()?)?.doubt()
 }
 
 /// The mount that holds a path: the longest mount point above it, the last of equal ones.
@@ -119,8 +120,9 @@ mod tests {
     }
 
     #[test]
+    #[cfg(target_os = "linux")]
     fn this_machine_says_how_its_folders_are_mounted() {
-        let mounts = std::fs::read_to_string("/proc/self/mountinfo").unwrap();
+        let mounts = platform::mounts().unwrap();
         assert!(mount_of(Path::new("/proc/self"), &mounts).is_some());
     }
 }

@@ -3,7 +3,6 @@
 use std::cmp::Reverse;
 use std::fs::File;
 use std::io;
-use std::os::unix::fs::FileExt;
 use std::path::{Path, PathBuf};
 
 use bytemuck::Pod;
@@ -16,6 +15,7 @@ use super::label::{Identity, Label};
 use super::section::PIECE;
 use super::write::slot;
 use crate::store::disk::{Call, ask, open_own};
+use crate::store::platform;
 
 /// A checkpoint whose header has been checked; its sections are as they are read.
 #[derive(Debug)]
@@ -39,7 +39,7 @@ enum Source {
 impl Source {
     fn read_at(&self, offset: u64, bytes: &mut [u8]) -> io::Result<()> {
         match self {
-            Self::File(file) => file.read_exact_at(bytes, offset),
+            Self::File(file) => platform::read_exact_at(file, bytes, offset),
             Self::Memory(content) => {
                 let begin = usize::try_from(offset).ok();
                 let part = begin.and_then(|begin| content.get(begin..begin.checked_add(bytes.len())?));

@@ -155,7 +155,7 @@ struct OneNetwork<'a> {
     /// The network that was walked last.
     network: Option<Network>,
     /// What the first run left blocked, by step, of each reading of the base.
-    blocked: BTreeMap<i64, Vec<BitVec<u64>>>,
+    blocked: BTreeMap<i64, Vec<BitVec>>,
     callbacks: &'a Callbacks<'a>,
 }
 
@@ -178,7 +178,7 @@ impl OneNetwork<'_> {
         };
         let network = case.network_unless(self.network.take(), self.seed)?;
         let before = self.blocked.remove(&step);
-        let (mut all, mut left): (Option<Eroded>, Vec<BitVec<u64>>) = (None, Vec::new());
+        let (mut all, mut left): (Option<Eroded>, Vec<BitVec>) = (None, Vec::new());
         for (reading, case) in case.readings().enumerate() {
             let open = || BitVec::repeat(false, network.constrictions());
             let blocked = match run {

@@ -57,7 +57,7 @@ const SINGLE_S: f64 = 2.0e-5;
 /// A random network with its exact answer.
 struct Known {
     network: Network,
-    blocked: BitVec<u64>,
+    blocked: BitVec,
     diameter: f64,
     leaves: f64,
 }
@@ -150,8 +150,7 @@ fn quantity(name: &str, words: &str, known: &[Known]) -> Quantity {
 /// A lattice of which some constrictions are blocked; the particle is finer than every constriction.
 fn clogged(network: Network, seed: u64) -> Result<Known, NetworkError> {
     let mut draws = Key { seed, purpose: Purpose::Percolation, run: 0, increment: 0, chunk: 0 }.generator();
-    let blocked: BitVec<u64> =
-        (0..network.constrictions()).map(|_| unit(draws.next_u64()) < CLOGGED).collect();
+    let blocked: BitVec = (0..network.constrictions()).map(|_| unit(draws.next_u64()) < CLOGGED).collect();
     let diameter = f64::from(network.finest_open(|_| false)) / 2.0;
     let (leaves, _) = network.first_passage(diameter as f32, |c| blocked[c])?.from_start(&network);
     Ok(Known { network, blocked, diameter, leaves })

@@ -35,7 +35,7 @@ pub(super) struct Ended {
     pub one_by_one: u64,
     /// Whether that is all of them.
     pub all_one_by_one: bool,
-    pub blocked: BitVec<u64>,
+    pub blocked: BitVec,
     /// Processor time, without that of the network (s).
     pub core_seconds: f64,
 }
@@ -84,7 +84,7 @@ impl FirstRun {
     pub fn walk_from(
         &self,
         network: &Network,
-        blocked: BitVec<u64>,
+        blocked: BitVec,
         seed: u64,
         run: u64,
     ) -> Result<Ended, RunError> {
@@ -94,7 +94,7 @@ impl FirstRun {
     fn walk_timed(
         &self,
         network: &Network,
-        blocked: BitVec<u64>,
+        blocked: BitVec,
         seed: u64,
         run: u64,
         observe: &mut (dyn FnMut(&State) + Send),
@@ -129,7 +129,7 @@ impl FirstRun {
 }
 
 /// No constriction blocked.
-pub(super) fn clean(network: &Network) -> BitVec<u64> {
+pub(super) fn clean(network: &Network) -> BitVec {
     BitVec::repeat(false, network.constrictions())
 }
 

@@ -2,25 +2,9 @@
 
 use super::study::{PrecisionStudy, stopped};
 use crate::run::error::RunError;
+pub(super) use crate::store::platform::{process_seconds as all_threads, thread_seconds as this_thread};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-use rustix::time::{ClockId, clock_gettime};
-
-/// Processor time of this thread (s).
-pub(super) fn this_thread() -> f64 {
-    seconds(ClockId::ThreadCPUTime)
-}
-
-/// Processor time of all threads of the program (s).
-pub(super) fn all_threads() -> f64 {
-    seconds(ClockId::ProcessCPUTime)
-}
-
-fn seconds(clock: ClockId) -> f64 {
-    let time = clock_gettime(clock);
-    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
-}
 
 /// What some work gives, and the processor time of this thread that it takes (s).
 pub(super) fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {

@@ -18,7 +18,7 @@ pub(super) struct Shares {
 
 impl Shares {
     /// The shares of the constrictions that `blocked` leaves open.
-    pub fn new(network: &Network, blocked: &BitSlice<u64>) -> Self {
+    pub fn new(network: &Network, blocked: &BitSlice) -> Self {
         let mut shares = Self {
             probability: vec![0; network.constrictions()],
             leads_on: vec![false; network.voids()],
@@ -35,7 +35,7 @@ impl Shares {
     ///
     /// They follow from the thresholds of the walk one by one, so that both engines give an exit the same
     /// probability to 2^-64.
-    pub fn set(&mut self, network: &Network, blocked: &BitSlice<u64>, void: u32, thresholds: &mut Vec<u64>) {
+    pub fn set(&mut self, network: &Network, blocked: &BitSlice, void: u32, thresholds: &mut Vec<u64>) {
         let exits = network.exits(void);
         let last = exits::thresholds(network, blocked, void, thresholds);
         self.leads_on[void as usize] = last.is_some();
@@ -90,7 +90,7 @@ mod tests {
 
     fn of(diameters: [f32; 3], closed: [bool; 3]) -> (Vec<u64>, bool) {
         let network = Network::cubic_from_diameters([1, 1, 1], diameters.to_vec(), 1.0).unwrap();
-        let blocked: BitVec<u64> = closed.into_iter().collect();
+        let blocked: BitVec = closed.into_iter().collect();
         let shares = Shares::new(&network, &blocked);
         (shares.probability.clone(), shares.leads_on(0))
     }
@@ -116,7 +116,7 @@ mod tests {
         let all = || sizes.into_iter();
         for d in all().flat_map(|x| all().flat_map(move |y| all().map(move |z| [x, y, z]))) {
             let network = Network::cubic_from_diameters([1, 1, 1], d.to_vec(), 1.0).unwrap();
-            let blocked: BitVec<u64> = BitVec::repeat(false, 3);
+            let blocked: BitVec = BitVec::repeat(false, 3);
             let (first, second, [to_first, to_second]) = Shares::new(&network, &blocked).of_three(0);
             assert_eq!(to_first, first);
             if first != CERTAIN && second != CERTAIN {

@@ -156,8 +156,8 @@ fn both_engines_follow_one_history() {
 
     // The expectation of the engine itself is the slow one, to rounding.
     let mut expected = Expected::new(network.voids());
-    let mut shares = Shares::new(&network, &BitVec::<u64>::repeat(false, network.constrictions()));
-    let mut blocked: BitVec<u64> = BitVec::repeat(false, network.constrictions());
+    let mut shares = Shares::new(&network, &BitVec::<usize>::repeat(false, network.constrictions()));
+    let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
     let mut next = vec![0.0; network.voids()];
     for (t, n) in differences(&inserted).into_iter().enumerate() {
         expected.insert(&network, n);

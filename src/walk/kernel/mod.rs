@@ -12,10 +12,12 @@ mod lattice;
 #[cfg(test)]
 mod tests;
 
+#[cfg(target_arch = "x86_64")]
+use super::Isa;
 use super::chunks::{self, ChunkColumns};
 use super::exits::{Form, OpenExits};
 use super::merge::Events;
-use super::{ExitTable, Isa, State, Supply};
+use super::{ExitTable, State, Supply};
 use crate::network::Network;
 use crate::stream::{Key, Purpose};
 

@@ -6,8 +6,8 @@ use proptest::prelude::*;
 use super::*;
 use crate::gradation::{Gradation, SizeSampler};
 use crate::stream::{DRAWS_PER_BLOCK, draw16};
-use crate::walk::SizeClasses;
 use crate::walk::fill::fill_diameters;
+use crate::walk::{Isa, SizeClasses};
 
 /// A lattice, and what is blocked in it.
 #[derive(Clone, Debug)]
@@ -30,7 +30,7 @@ struct After {
 /// One step of the particles in `void` and `diameter` by `isa`.
 fn after(scene: &Scene, key: Key, isa: Isa, void: &[u32], diameter: &[f32]) -> After {
     let network = Network::cubic_from_diameters(scene.shape, scene.diameters.clone(), 1.0).unwrap();
-    let blocked: BitVec<u64> = scene.blocked.iter().copied().collect();
+    let blocked: BitVec = scene.blocked.iter().copied().collect();
     let supply = Supply::new(SizeSampler::new(&Gradation::single(1.0).unwrap(), 1.0).unwrap(), 1, 1);
     let classes = SizeClasses::logarithmic(1.0, 1.0, 1);
     let state = State::new(&network, &supply, classes, blocked, 1, 1);

@@ -1,0 +1,67 @@
+//! Processors, memory and blocks of files on macOS.
+//!
+//! What is known of the machine is what its own commands print, which needs no call of the system that only
+//! a Mac could try; their text is read in tests on every system.
+
+#[cfg(target_os = "macos")]
+use super::{Memory, write_zeros};
+
+/// Makes a file `bytes` long with every block allocated: by the file system, or else by writing.
+#[cfg(target_os = "macos")]
+pub fn allocate(file: &std::fs::File, bytes: u64) -> std::io::Result<()> {
+    match rustix::fs::fallocate(file, rustix::fs::FallocateFlags::empty(), 0, bytes) {
+        Err(rustix::io::Errno::OPNOTSUPP) => write_zeros(file, bytes),
+        other => Ok(other?),
+    }
+}
+
+/// None: the system keeps no thread on one processor.
+#[cfg(target_os = "macos")]
+pub fn processors() -> Vec<usize> {
+    Vec::new()
+}
+
+/// Does nothing: the system keeps no thread on one processor.
+#[cfg(target_os = "macos")]
+pub fn stay_on(_processor: usize) {}
+
+/// Memory of the machine, by `sysctl` and `vm_stat`.
+#[cfg(target_os = "macos")]
+pub fn memory() -> Memory {
+    Memory {
+        total: said("/usr/sbin/sysctl", &["-n", "hw.memsize"]).and_then(|text| text.trim().parse().ok()),
+        available: said("/usr/bin/vm_stat", &[]).and_then(|text| not_in_use(&text)),
+    }
+}
+
+/// The processor's own name, by `sysctl`.
+#[cfg(target_os = "macos")]
+pub fn processor() -> Option<String> {
+    let name = said("/usr/sbin/sysctl", &["-n", "machdep.cpu.brand_string"])?;
+    Some(name.trim().to_owned()).filter(|name| !name.is_empty())
+}
+
+/// Nothing: the table of mounts has another form here.
+#[cfg(target_os = "macos")]
+pub fn mounts() -> Option<String> {
+    None
+}
+
+/// What a command prints.
+#[cfg(target_os = "macos")]
+fn said(command: &str, words: &[&str]) -> Option<String> {
+    let output = std::process::Command::new(command).args(words).output().ok()?;
+    output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+/// Bytes of the pages that `vm_stat` says are free or can be given back at once.
+pub(super) fn not_in_use(vm_stat: &str) -> Option<u64> {
+    let mut lines = vm_stat.lines();
+    let page = lines.next()?.split_once("page size of ")?.1.split(' ').next()?.parse::<u64>().ok()?;
+    let pages = lines.filter_map(|line| {
+        let (name, count) = line.split_once(':')?;
+        let counts = ["Pages free", "Pages inactive", "Pages speculative", "Pages purgeable"].contains(&name);
+        counts.then(|| count.trim().trim_end_matches('.').parse::<u64>().ok())?
+    });
+    pages.sum::<u64>().checked_mul(page).filter(|bytes| *bytes > 0)
+}

@@ -1,0 +1,92 @@
+//! A system of which nothing is known but what the standard library offers, as a page in a browser. Calls
+//! that it does not have are errors, so that nothing is written without a lock.
+
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{self, Read, Seek, SeekFrom};
+use std::path::Path;
+
+use super::Memory;
+
+/// Opens a file of the program's own.
+pub fn open_own(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
+    options.open(path)
+}
+
+/// Opens a file of a user.
+pub fn open_any(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
+    options.open(path)
+}
+
+/// Not known, so that no file is taken for one that has no other name.
+pub fn has_other_names(_file: &File) -> io::Result<bool> {
+    Err(io::ErrorKind::Unsupported.into())
+}
+
+/// Fills `bytes` from this place of a file on.
+pub fn read_exact_at(mut file: &File, bytes: &mut [u8], offset: u64) -> io::Result<()> {
+    file.seek(SeekFrom::Start(offset))?;
+    file.read_exact(bytes)
+}
+
+/// Locks a file, where the standard library can.
+pub fn try_lock(file: &File, shared: bool) -> Result<(), TryLockError> {
+    if shared { file.try_lock_shared() } else { file.try_lock() }
+}
+
+/// Sends the names in a folder to the disk, where a folder can be opened.
+pub fn sync_folder(folder: &Path) -> io::Result<()> {
+    File::open(folder)?.sync_all()
+}
+
+/// Makes a file `bytes` long; which blocks of it are there is not known.
+pub fn allocate(file: &File, bytes: u64) -> io::Result<()> {
+    file.set_len(bytes)
+}
+
+/// Not known.
+pub fn free_bytes(_folder: &Path) -> Option<u64> {
+    None
+}
+
+/// Not known, so that nobody's files are removed.
+pub fn is_running(_process: &str) -> bool {
+    true
+}
+
+/// Not known.
+pub fn host_name() -> String {
+    "unknown".to_owned()
+}
+
+/// Not known: no time passes.
+pub fn thread_seconds() -> f64 {
+    0.0
+}
+
+/// Not known: no time passes.
+pub fn process_seconds() -> f64 {
+    0.0
+}
+
+/// Not known.
+pub fn processors() -> Vec<usize> {
+    Vec::new()
+}
+
+/// Does nothing.
+pub fn stay_on(_processor: usize) {}
+
+/// Not known.
+pub fn memory() -> Memory {
+    Memory::default()
+}
+
+/// Not known.
+pub fn processor() -> Option<String> {
+    None
+}
+
+/// Not known.
+pub fn mounts() -> Option<String> {
+    None
+}

@@ -1,0 +1,74 @@
+//! How the user, or the system, asks the program to end.
+
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use signal_hook::consts::SIGINT;
+use signal_hook::flag::{register, register_conditional_shutdown};
+
+/// A flag that the first request to end sets; an interrupt (Ctrl-C) after that ends the program at once.
+///
+/// On Linux and macOS the requests are SIGINT, SIGTERM, SIGHUP where the terminal is closed (but on Linux not
+/// under `nohup`), and SIGXCPU where the processor time is used up. SIGTERM may come several times: a
+/// cluster's scheduler sends it to a job's script, which hands it on, and to all of the job's processes.
+/// Elsewhere it is the interrupt alone: a window that is closed ends the program, which continues from its
+/// last checkpoint.
+///
+/// # Errors
+/// What the system says when it takes no handler.
+pub fn stop_on_request() -> io::Result<Arc<AtomicBool>> {
+    let stop = Arc::new(AtomicBool::new(false));
+    register_conditional_shutdown(SIGINT, 1, Arc::clone(&stop))?;
+    for signal in requests() {
+        register(signal, Arc::clone(&stop))?;
+    }
+    Ok(stop)
+}
+
+#[cfg(unix)]
+fn requests() -> impl Iterator<Item = i32> {
+    use signal_hook::consts::{SIGHUP, SIGTERM, SIGXCPU};
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = move |signal| signal == SIGHUP && is_ignored(&status, signal);
+    [SIGINT, SIGTERM, SIGHUP, SIGXCPU].into_iter().filter(move |signal| !ignored(*signal))
+}
+
+#[cfg(not(unix))]
+fn requests() -> impl Iterator<Item = i32> {
+    [SIGINT].into_iter()
+}
+
+/// Whether whoever started the process had it ignore a signal, by `/proc/self/status`.
+#[cfg(unix)]
+fn is_ignored(status: &str, signal: i32) -> bool {
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    mask.is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
+}
+
+/// A write beyond the largest file that is allowed fails then with an error, and does not end the program.
+/// Without it, the program ends as before.
+#[cfg(unix)]
+pub fn outlive_large_files() {
+    let noticed = Arc::new(AtomicBool::new(false));
+    let _ = register(signal_hook::consts::SIGXFSZ, noticed);
+}
+
+/// Does nothing: only on unix does the system end a program for that.
+#[cfg(not(unix))]
+pub fn outlive_large_files() {}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::is_ignored;
+
+    #[test]
+    fn what_the_parent_ignores_is_known() {
+        let nohup = "Name:\tvoidwalk\nSigBlk:\t0000000000000000\nSigIgn:\t0000000000001001\n";
+        assert!(is_ignored(nohup, 1) && is_ignored(nohup, 13) && !is_ignored(nohup, 15));
+        for other in ["", "SigIgn:\tx\n", "SigIgn:\t0000000000000000\n"] {
+            assert!(!is_ignored(other, 1), "{other}");
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Files and clocks of Linux and macOS.
+
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io;
+use std::os::unix::fs::{FileExt, MetadataExt, OpenOptionsExt};
+use std::path::Path;
+
+use rustix::fs::OFlags;
+use rustix::time::{ClockId, clock_gettime};
+
+/// Opens a file of the program's own: what is a link fails, and what is no file, as a pipe, is not waited
+/// for.
+pub fn open_own(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
+    options.custom_flags((OFlags::NOFOLLOW | OFlags::NONBLOCK).bits() as i32).open(path)
+}
+
+/// Opens a file of a user: a link is followed, and what is no file is not waited for.
+pub fn open_any(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
+    options.custom_flags(OFlags::NONBLOCK.bits() as i32).open(path)
+}
+
+/// Whether a file has more than one name.
+pub fn has_other_names(file: &File) -> io::Result<bool> {
+    Ok(file.metadata()?.nlink() > 1)
+}
+
+/// Fills `bytes` from this place of a file on.
+pub fn read_exact_at(file: &File, bytes: &mut [u8], offset: u64) -> io::Result<()> {
+    file.read_exact_at(bytes, offset)
+}
+
+/// Locks a file for this process alone or, `shared`, for all that share it. Others can read it all the same.
+pub fn try_lock(file: &File, shared: bool) -> Result<(), TryLockError> {
+    if shared { file.try_lock_shared() } else { file.try_lock() }
+}
+
+/// Sends the names in a folder to the disk.
+pub fn sync_folder(folder: &Path) -> io::Result<()> {
+    File::open(folder)?.sync_all()
+}
+
+/// Bytes that this user may still write on the disk of a folder; `None` where it cannot be told.
+pub fn free_bytes(folder: &Path) -> Option<u64> {
+    let disk = rustix::fs::statvfs(folder).ok()?;
+    Some(disk.f_bavail.saturating_mul(disk.f_frsize))
+}
+
+/// Whether a process of this number runs.
+pub fn is_running(process: &str) -> bool {
+    let number = process.parse::<u32>().ok().and_then(|number| i32::try_from(number).ok());
+    let number = number.and_then(rustix::process::Pid::from_raw);
+    // A process of another user may not be asked, but is there.
+    number.is_some_and(|number| {
+        !matches!(rustix::process::test_kill_process(number), Err(rustix::io::Errno::SRCH))
+    })
+}
+
+/// The name of this machine.
+pub fn host_name() -> String {
+    rustix::system::uname().nodename().to_string_lossy().into_owned()
+}
+
+/// Processor time of this thread (s).
+pub fn thread_seconds() -> f64 {
+    seconds(ClockId::ThreadCPUTime)
+}
+
+/// Processor time of all threads of the program (s).
+pub fn process_seconds() -> f64 {
+    seconds(ClockId::ProcessCPUTime)
+}
+
+fn seconds(clock: ClockId) -> f64 {
+    let time = clock_gettime(clock);
+    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+}
