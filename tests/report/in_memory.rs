@@ -47,14 +47,13 @@ fn a_run_in_memory_has_the_page_of_its_folder() {
     let mut wrong = recorded(folder.path());
     wrong.series[1].replicate = 77;
     let error = run_page(texts(wrong)).unwrap_err().to_string();
-    assert!(
-        error.contains("series.csv") && error.contains("line 3") && error.contains("replicate 77"),
-        "{error}"
-    );
+    assert!(error.contains("series.csv:3") && error.contains("replicate 77"), "{error}");
 
     let brief = run_brief(&outcome).unwrap();
-    assert!(words(&page).contains(&words(&brief)[..40]), "{brief}");
-    assert!(brief.contains("<img") && words(&brief).contains("The model leaves out"));
+    for part in ["95 % interval", "constrictions blocked", "10 replicates", "The model leaves out"] {
+        assert!(words(&brief).contains(part), "{part}: {brief}");
+    }
+    assert!(brief.contains("<img") && words(&page).contains("10 replicates"));
     assert!(run_brief("{}").unwrap_err().to_string().contains("outcome.json"));
 }
 
@@ -80,7 +79,7 @@ fn walks_on_a_given_network_have_a_page() {
         "Progress of erosion",
         "Largest particle eroded in any replicate",
         "Each replicate (3)",
-        "768, 2 304, 12",
+        "768, 2304, 12",
     ] {
         assert!(said.to_lowercase().contains(&part.to_lowercase()), "{part}: {said}");
     }
