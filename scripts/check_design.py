@@ -2,6 +2,7 @@
 """Boundaries of `voidwalk design` beside fine scans: 40 seeded cases on small lattices, each scanned by a plain loop of `voidwalk run`.
 
     scripts/check_design.py [--out target/check-design] [--binary target/release/voidwalk] [--cases 40] [--first 1] [--threads N]
+    scripts/check_design.py --again    # with the scans that are kept: only the searches, by another search of the same walks
 
 A case is a shipped constriction curve, a Cu of the base, a lattice of 8 to 11 voids across and 8 to 16 layers, and a seed, all drawn by
 Python's random.Random(CASE). It is searched twice: with the bracket that design has by default, and with one that is drawn. Then every
@@ -158,6 +159,7 @@ def main():
     parser.add_argument("--cases", type=int, default=40, help="number of the last case")
     parser.add_argument("--first", type=int, default=1, help="number of the first case")
     parser.add_argument("--threads", type=int)
+    parser.add_argument("--again", action="store_true", help="search again beside the scans that are kept")
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
     args.scene = args.out / "scene.toml"
@@ -165,6 +167,11 @@ def main():
     subprocess.run([args.binary, "init", args.scene], check=True, stdout=subprocess.DEVNULL)
     kept = args.out / "cases.jsonl"
     done = {case["case"]: case for case in map(json.loads, kept.read_text().splitlines())} if kept.exists() else {}
+    if args.again:
+        for case in done.values():
+            case["design"] = design(args, case["settings"], None)
+            case["in_bracket"] = design(args, case["settings"], case["bracket"])
+        kept.write_text("".join(json.dumps(case) + "\n" for case in done.values()))
     for number in range(args.first, args.cases + 1):
         if number not in done:
             done[number] = one(args, number)

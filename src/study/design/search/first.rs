@@ -4,9 +4,6 @@ use super::trials::{Pair, STOP, Search, Trial, ratio_at};
 use crate::outcome::design::Beyond;
 use crate::run::error::RunError;
 
-/// Steps below the smallest ratio that erodes, at which the first run is tried besides: to 10 % below.
-const BELOW: [i64; 8] = [2, 3, 4, 6, 8, 11, 15, 20];
-
 impl Search<'_> {
     /// The boundary of the first run near a hint, below which two stops hold as well; `None` where that is
     /// not so.
@@ -54,27 +51,6 @@ impl Search<'_> {
             return Ok(Err((Beyond::Below, why)));
         }
         self.halved((least - STOP, least), Self::try_first).map(Ok)
-    }
-
-    /// The smallest ratio that is seen to erode in the first run, after single ratios below have been tried.
-    pub(super) fn smallest_that_erodes(&mut self, boundary: i64) -> Result<i64, RunError> {
-        let (mut least, lowest) = (boundary, self.stops[0]);
-        'again: loop {
-            for step in BELOW.map(|below| least - below).into_iter().filter(|step| *step >= lowest) {
-                match self.try_first(step)? {
-                    Trial::Eroded(eroded) if !eroded.below_threshold => {
-                        least = step;
-                        continue 'again;
-                    }
-                    Trial::Eroded(_) => {}
-                    Trial::CannotBe(..) => break,
-                }
-            }
-            break;
-        }
-        let erodes = |trial: &Trial| matches!(trial, Trial::Eroded(of) if !of.below_threshold);
-        let seen = self.first.iter().find(|(_, trial)| erodes(trial));
-        Ok(seen.map_or(least, |(step, _)| *step))
     }
 
     /// The first stop from `start` on upwards that erodes; where the base is too fine for any of them, the

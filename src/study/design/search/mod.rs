@@ -10,15 +10,15 @@
 //! is said.
 //!
 //! A walk scatters: on small networks of broad bases single ratios up to 8.7 % below this boundary were found
-//! to erode. So single steps down to 10 % below are tried besides, closer ones more often, and again below
-//! each that erodes.
+//! to erode. So single steps down to 10 % below are tried besides, in either run, closer ones more often, and
+//! again below each that erodes.
 //!
 //! Networks of one filter and base lie close together: with the boundaries of the first of them as a hint,
 //! the search of another steps away from there, 2 % and then ever more, until it has one that holds and one
 //! that erodes; two stops below are tried all the same. Where that finds nothing, it goes by stops.
 //!
 //! The second run is walked only at ratios whose first run erodes, and only near where it begins to erode
-//! itself.
+//! itself: what holds in the first holds in the second.
 
 mod first;
 mod second;
@@ -36,7 +36,7 @@ use trials::{STOP, Search, between, ratio_at};
 pub(super) use trials::{Trial, Walker};
 
 /// Names this search: networks that another has found are not continued with.
-pub(super) const METHOD: &str = "design search 2";
+pub(super) const METHOD: &str = "design search 3";
 
 /// What a bracket may be.
 pub(super) const BRACKETS: [f64; 2] = [0.1, 1000.0];
@@ -94,7 +94,8 @@ pub(super) fn search(walker: &mut dyn Walker, bracket: [f64; 2], start: Start) -
     };
     match first {
         Ok(pair) => {
-            let least = search.smallest_that_erodes(pair.1)?;
+            let least = search.smallest_that_erodes(pair.1, Search::try_first)?;
+            let least = Search::smallest_seen(&search.first).unwrap_or(least);
             if least > stops[0] {
                 found.no_erosion = Some(between((least - 1, least), |step| search.eroded(1, step)));
             } else {
@@ -109,7 +110,9 @@ pub(super) fn search(walker: &mut dyn Walker, bracket: [f64; 2], start: Start) -
             match second {
                 // What does not erode in the first run does not continue.
                 Ok(pair) => {
-                    let second = between(pair, |step| search.eroded(2, step));
+                    let least = search.smallest_that_erodes(pair.1, Search::try_second)?;
+                    let least = Search::smallest_seen(&search.second).unwrap_or(least);
+                    let second = between((least - 1, least), |step| search.eroded(2, step));
                     found.continuing = Some(found.no_erosion.map_or(second, |first| second.max(first)));
                 }
                 Err(beyond) => found.continuing_beyond = Some(beyond),

@@ -133,30 +133,37 @@ fn of_several_crossings_the_smallest_counts_and_that_is_said() {
     assert!((found.no_erosion.unwrap() / 3.0 - 1.0).abs() < 0.005, "{found:?}");
 }
 
-/// Single ratios below the boundary erode that lie between the stops: walks scatter.
+/// Single ratios below the boundary of either run erode that lie between the stops: walks scatter.
 #[test]
 fn a_single_ratio_that_erodes_below_the_boundary_counts() {
     let at = 4.4;
-    let line = |spike: f64| {
+    let boundary = |run: usize, spike: f64| {
         let spike = ratio_at((libm::log(at * (1.0 - spike)) / BETWEEN_STEPS).round() as i64);
-        formula(
-            move |s: f64| if (s / spike - 1.0).abs() < 1e-3 { 0.09 } else { 0.075 + 0.05 * (s - at) },
-            |_| 1.0,
-        )
+        let spiky = move |s: f64| if (s / spike - 1.0).abs() < 1e-3 { 0.09 } else { 0.075 + 0.05 * (s - at) };
+        let early = |s: f64| 0.075 + 0.05 * (s - 2.0);
+        let found = match run {
+            1 => search(&mut formula(spiky, |_| 1.0), [0.5, 100.0], from(5.0)),
+            _ => search(&mut formula(early, spiky), [0.5, 100.0], from(5.0)),
+        };
+        let found = found.unwrap();
+        let ratio = if run == 1 { found.no_erosion } else { found.continuing };
+        (ratio.unwrap(), found.is_not_monotone)
     };
-    let plain = search(&mut line(0.5), [0.5, 100.0], from(5.0)).unwrap();
-    assert!(!plain.is_not_monotone && (plain.no_erosion.unwrap() / at - 1.0).abs() < 1e-3);
-    let mut seen = 0;
-    for percent in 1..=9 {
-        let part = f64::from(percent) / 100.0;
-        let found = search(&mut line(part), [0.5, 100.0], from(5.0)).unwrap();
-        let is_seen = found.no_erosion.unwrap() < (1.0 - 0.9 * part) * at;
-        // Where halving itself hits upon it, nothing above it is walked.
-        assert!(is_seen || !found.is_not_monotone, "{percent} {found:?}");
-        seen += u32::from(is_seen);
+    for run in [1, 2] {
+        let (plain, is_not_monotone) = boundary(run, 0.5);
+        assert!(!is_not_monotone && (plain / at - 1.0).abs() < 1e-3, "{run} {plain}");
+        let mut seen = 0;
+        for percent in 1..=9 {
+            let part = f64::from(percent) / 100.0;
+            let (ratio, is_not_monotone) = boundary(run, part);
+            let is_seen = ratio < (1.0 - 0.9 * part) * at;
+            // Where halving itself hits upon it, nothing above it is walked.
+            assert!(is_seen || !is_not_monotone, "run {run}, {percent} % below: {ratio}");
+            seen += u32::from(is_seen);
+        }
+        // Eight single steps of twenty are tried.
+        assert!(seen >= 3, "run {run}: {seen}");
     }
-    // Eight single steps of twenty are tried.
-    assert!(seen >= 3, "{seen}");
 }
 
 #[test]

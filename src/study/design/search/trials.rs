@@ -13,6 +13,9 @@ pub(super) const STOP: i64 = 16;
 /// First step away from a hint.
 const NEAR: i64 = 4;
 
+/// Steps below the smallest ratio that erodes, at which a run is tried besides: to 10 % below.
+const BELOW: [i64; 8] = [2, 3, 4, 6, 8, 11, 15, 20];
+
 /// What a trial of one ratio comes to.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Trial {
@@ -121,6 +124,35 @@ impl Search<'_> {
             }
         }
         Ok((low, high))
+    }
+
+    /// The smallest step that is seen to erode, from one that does on, after single steps below it have been
+    /// tried.
+    pub(super) fn smallest_that_erodes(
+        &mut self,
+        boundary: i64,
+        trial: fn(&mut Self, i64) -> Result<Trial, RunError>,
+    ) -> Result<i64, RunError> {
+        let (mut least, lowest) = (boundary, self.stops[0]);
+        'again: loop {
+            for step in BELOW.map(|below| least - below).into_iter().filter(|step| *step >= lowest) {
+                match trial(self, step)? {
+                    Trial::Eroded(eroded) if !eroded.below_threshold => {
+                        least = step;
+                        continue 'again;
+                    }
+                    Trial::Eroded(_) => {}
+                    Trial::CannotBe(..) => break,
+                }
+            }
+            return Ok(least);
+        }
+    }
+
+    /// The smallest of these steps that erodes.
+    pub(super) fn smallest_seen(trials: &BTreeMap<i64, Trial>) -> Option<i64> {
+        let erodes = |trial: &Trial| matches!(trial, Trial::Eroded(of) if !of.below_threshold);
+        trials.iter().find(|(_, trial)| erodes(trial)).map(|(step, _)| *step)
     }
 
     /// Whether a ratio holds above one that erodes, in either run.
