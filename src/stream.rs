@@ -204,6 +204,7 @@ impl Lanes {
     }
 
     /// State word by lane, for a kernel that keeps it in vector registers.
+    #[cfg(target_arch = "x86_64")]
     pub(crate) fn state(&self) -> &[[u64; LANES]; 4] {
         &self.state
     }

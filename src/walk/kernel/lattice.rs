@@ -23,6 +23,7 @@ pub(super) const PAST_FIRST: u32 = 4;
 pub(super) const PAST_SECOND: u32 = 8;
 
 /// Whether every constriction has a number that a gather can use as an offset.
+#[cfg(target_arch = "x86_64")]
 pub(super) fn fits_gathers(table: &Lattice) -> bool {
     3 * table.entry.len() <= i32::MAX as usize
 }
