@@ -80,7 +80,7 @@ fn of_row(row: &DesignRow, design: &Design) -> Vec<String> {
         true => ["no erosion down to", "continuing erosion below"],
     };
     let boundaries = [(&row.no_erosion, &row.no_erosion_note), (&row.continuing, &row.continuing_note)];
-    let mut lines = vec![format!("{}, {}:", row.density, row.thickness)];
+    let mut lines = vec![format!("{}, {}:", row.name(), row.thickness)];
     for (what, (boundary, note)) in what.into_iter().zip(boundaries) {
         let said = boundary.as_ref().map(|boundary| ratio(boundary, design));
         lines.push(match (said, note) {
@@ -92,8 +92,10 @@ fn of_row(row: &DesignRow, design: &Design) -> Vec<String> {
         });
     }
     if let Some(band) = &row.band {
+        let over_range = design.boundaries.iter().any(|end| end.end_of.as_ref() == Some(&row.density));
+        let what = if over_range { "band over the whole range of this curve" } else { "band" };
         let practice = band.practice.map(|limit| format!("; practice allows up to {limit:.3} {}", band.unit));
-        lines.push(format!("  band: {}{}", band.said, practice.unwrap_or_default()));
+        lines.push(format!("  {what}: {}{}", band.said, practice.unwrap_or_default()));
     }
     if let Some(note) = &row.band_note {
         lines.push(format!("  no band: {note}"));

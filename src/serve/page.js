@@ -439,7 +439,7 @@ function boundary(of, note) {
 
 function boundariesOf(done) {
   const head = done.inverse ? ["No erosion down to", "Continuing erosion below"] : ["No erosion up to", "Continuing erosion from"];
-  const rows = done.boundaries.map((row) => el("tr", {}, el("th", {}, row.density, el("br"), row.thickness),
+  const rows = done.boundaries.map((row) => el("tr", {}, el("th", {}, row.end_of ? `${row.density} (an end of the range of ${row.end_of})` : row.density, el("br"), row.thickness),
     el("td", {}, boundary(row.no_erosion, row.no_erosion_note)), el("td", {}, boundary(row.continuing, row.continuing_note)),
     el("td", {}, row.band ? row.band.said : row.band_note || "–", row.band && row.band.practice !== null
       ? [el("br"), el("span", { class: "small" }, `practice allows up to ${number(row.band.practice)} ${row.band.unit}`)] : null,

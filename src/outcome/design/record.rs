@@ -114,12 +114,26 @@ pub struct DesignRow {
     pub not_monotone: u64,
     /// What each network says.
     pub networks: Vec<NetworkBoundaries>,
-    /// The band of a specification; `None` for the inverse, where nothing limits it, and where no ratio is
+    /// The band of a specification, up to what holds over the whole range of its curve; `None` for the inverse, where nothing limits it, and where no ratio is
     /// known that all but 5 % of networks hold.
     pub band: Option<Band>,
     /// Why there is no band, where networks erode at every ratio that was searched.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub band_note: Option<String>,
+    /// The density of which this is an end of the range in which its constriction curve is known: its band is
+    /// that of the whole range, and this row has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub end_of: Option<String>,
+}
+
+impl DesignRow {
+    /// The density, in words, and what it is an end of.
+    pub fn name(&self) -> String {
+        match &self.end_of {
+            Some(of) => format!("{} (an end of the range of {of})", self.density),
+            None => self.density.clone(),
+        }
+    }
 }
 
 /// A boundary over networks: D15F/D85B, and the same in mm.
@@ -182,6 +196,13 @@ pub struct WalkRow {
 }
 
 impl Design {
+    /// The band of a row, or of the one that it is an end of.
+    pub fn band_of<'a>(&'a self, row: &'a DesignRow) -> Option<&'a Band> {
+        let of = row.end_of.as_ref().unwrap_or(&row.density);
+        let asked = |other: &&DesignRow| other.density == *of && other.thickness == row.thickness;
+        self.boundaries.iter().find(asked)?.band.as_ref()
+    }
+
     /// Names of the standard products that are said to fit: none where the answer is in doubt.
     pub fn products_that_fit(&self) -> Vec<&str> {
         let fit = self.products.iter().filter(|of| self.confidence == Confidence::Within && of.fits());

@@ -109,9 +109,9 @@ fn answer(design: &Design) -> Markup {
                         " in the median of " (whole(design.replicates)) " networks, "
                         (between(boundary.low, boundary.high, ratio)) " in 5 to 95 % of them: "
                     }
-                    (clean(&row.density)) ", " (clean(&row.thickness)) "."
+                    (clean(&row.name())) ", " (clean(&row.thickness)) "."
                 }
-                @if let Some(band) = &row.band {
+                @if let Some(band) = design.band_of(row) {
                     p { b { "Band: " (clean(&band.said)) } "." }
                     @if let Some(practice) = band.practice {
                         p {
@@ -207,7 +207,7 @@ fn boundaries(design: &Design) -> Markup {
             @if design.inverse { "finest D85B" } @else { "D15F" } " in mm where sizes have a unit."
         }
         (Table::of(&design.boundaries).class("study")
-            .name("Density", |row| clean(&row.density))
+            .name("Density", |row| clean(&row.name()))
             .text("Thickness, at the no-erosion boundary", |row| {
                 html! { (clean(&row.thickness)) br; span.small { (thick(row)) } }
             })
@@ -239,7 +239,7 @@ fn bands(design: &Design) -> Markup {
             p {
                 "D15F from the least that drains the base to the greatest at which all but 5 % of networks \
                  show no erosion, and what the strictest rule of retention allows. It is empty where the \
-                 least is more than either of the two."
+                 least is more than either of the two. Where the constriction curve is known within a range                  only, all of the range must hold."
             }
             (Table::of(rows.iter().copied()).class("study")
                 .name("Density, thickness", |row| clean(&format!("{}, {}", row.density, row.thickness)))
@@ -386,6 +386,7 @@ mod tests {
                 networks: Vec::new(),
                 band: None,
                 band_note: None,
+                end_of: None,
             }],
             inverse: false,
             base: BaseStated { name: "b".into(), cu: None, d15_mm: None, d85_mm: None, d95_over_d85: None },

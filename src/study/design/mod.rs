@@ -174,8 +174,13 @@ impl DraftedRow {
             filter_has_size,
             inverse: options.inverse,
             limits: limits(options),
+            end_of: None,
         };
         row.check_room(options.bracket)?;
+        // Of a filter that is still to be packed the curve itself is not known yet.
+        if row.case.scene.filter.estimate.is_some() {
+            row.at_curve_ends().iter().try_for_each(|end| end.check_room(options.bracket))?;
+        }
         Ok(Self { draft, row })
     }
 

@@ -40,6 +40,8 @@ pub(super) struct Row {
     pub inverse: bool,
     /// What the walks may take.
     pub limits: ResourceLimits,
+    /// The density of which this is an end of the range in which its constriction curve is known.
+    pub end_of: Option<String>,
 }
 
 impl Row {
@@ -52,7 +54,8 @@ impl Row {
                 false => format!("{}, {}", self.wanted.density, end.name),
             };
             let wanted = Wanted { density, ..self.wanted.clone() };
-            Self { case: self.case.with_curve(end.curve), wanted, ..self.clone() }
+            let end_of = Some(self.wanted.density.clone());
+            Self { case: self.case.with_curve(end.curve), wanted, end_of, ..self.clone() }
         };
         self.case.curve_ends().into_iter().map(of).collect()
     }

@@ -41,8 +41,17 @@ pub(super) fn design(
         let of_row: Vec<&Done> = done.iter().filter(|done| done.row == index).collect();
         boundaries.push(of(row, &of_row)?);
     }
-    let (confidence, reasons, warnings) = all_judged(rows, &boundaries)?;
-    let known = boundaries.iter().enumerate().filter_map(|(at, of)| Some((at, cautious(of)?)));
+    let held: Vec<Option<f64>> = rows.iter().map(|row| held_over_range(row, rows, &boundaries)).collect();
+    // An end of a range is no filter that anybody offers: it is judged with the row that it is an end of.
+    let asked = || (0..rows.len()).filter(|&at| rows[at].end_of.is_none());
+    for at in asked() {
+        (boundaries[at].band, boundaries[at].band_note) =
+            (band(&rows[at], held[at])?, no_band(&rows[at], rows, &boundaries));
+    }
+    let each: Vec<Asked> =
+        asked().map(|at| Asked { row: &rows[at], of: &boundaries[at], held: held[at] }).collect();
+    let (confidence, reasons, warnings) = all_judged(&each, &boundaries)?;
+    let known = asked().filter_map(|at| Some((at, held[at]?)));
     // Rules are shown of the coarsest filter that is said to hold: there they fail first.
     let (at, ratio) = known.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, USUAL_RATIO));
     let judged = Judged::new(&rows[at], ratio)?;
@@ -77,21 +86,61 @@ pub(super) fn design(
     })
 }
 
-/// The ratio of a row that nearly all networks hold.
-fn cautious(of: &DesignRow) -> Option<f64> {
-    of.no_erosion.as_ref().and_then(Boundary::cautious)
+/// A row that was asked for, and the ratio that nearly all networks hold over the range of its curve.
+struct Asked<'a> {
+    row: &'a Row,
+    of: &'a DesignRow,
+    held: Option<f64>,
+}
+
+/// The row itself, and those of the ends of its range.
+fn range<'a>(
+    row: &'a Row,
+    rows: &'a [Row],
+    boundaries: &'a [DesignRow],
+) -> impl Iterator<Item = &'a DesignRow> {
+    let ends: Vec<String> = row.at_curve_ends().into_iter().map(|end| end.wanted.density).collect();
+    let is_of_it = move |other: &Row| {
+        let density = &other.wanted.density;
+        other.wanted.thickness == row.wanted.thickness
+            && (*density == row.wanted.density || row.end_of.is_none() && ends.contains(density))
+    };
+    rows.iter().zip(boundaries).filter(move |(other, _)| is_of_it(other)).map(|(_, of)| of)
+}
+
+/// The ratio that nearly all networks hold, of every curve of the range; `None` where that of one is not known.
+fn held_over_range(row: &Row, rows: &[Row], boundaries: &[DesignRow]) -> Option<f64> {
+    let each = range(row, rows, boundaries).map(|of| of.no_erosion.as_ref().and_then(Boundary::cautious));
+    each.reduce(|a, b| Some(a?.min(b?))).flatten()
+}
+
+/// The band of a specification up to the ratio that holds.
+fn band(row: &Row, held: Option<f64>) -> Result<Option<Band>, RunError> {
+    let Some(ratio) = held.filter(|_| !row.inverse) else { return Ok(None) };
+    let judged = Judged::new(row, ratio)?;
+    let d85b = row.d85_mm.unwrap_or(1.0);
+    Ok(Band::new(&judged.rules(), d85b, ratio * d85b, judged.unit()))
+}
+
+/// Why there is no band, where networks erode at every ratio that was searched, with some curve of the range.
+fn no_band(row: &Row, rows: &[Row], boundaries: &[DesignRow]) -> Option<String> {
+    let mut range = range(row, rows, boundaries);
+    range.find_map(|of| {
+        let note = of.band_note.as_ref()?;
+        Some(if of.density == row.wanted.density { note.clone() } else { format!("{}: {note}", of.density) })
+    })
 }
 
 /// How far the answers of all rows can be relied on: as far as the worst of them. Why no further, and what
 /// else is to be said, of every row: what not all of them say with the row's name.
 fn all_judged(
-    rows: &[Row],
+    asked: &[Asked],
     boundaries: &[DesignRow],
 ) -> Result<(Confidence, Vec<String>, Vec<String>), RunError> {
     let mut each = Vec::new();
-    for (row, of) in rows.iter().zip(boundaries) {
-        let name = format!("{}, {}", of.density, of.thickness);
-        each.push((name, judged(row, of)?));
+    for asked in asked {
+        let name = format!("{}, {}", asked.of.density, asked.of.thickness);
+        each.push((name, judged(asked)?));
     }
     // The weightiest first.
     each.sort_by_key(|(_, (confidence, ..))| std::cmp::Reverse(*confidence));
@@ -123,8 +172,8 @@ fn all_judged(
 /// How far a row can be relied on, why no further, and what else is to be said.
 type Said = (Confidence, Vec<String>, Vec<String>);
 
-fn judged(row: &Row, of: &DesignRow) -> Result<Said, RunError> {
-    let Some(ratio) = cautious(of) else {
+fn judged(&Asked { row, of, held }: &Asked) -> Result<Said, RunError> {
+    let Some(ratio) = held else {
         // No filter is said to hold, and no rule speaks against one.
         let (_, reasons, warnings) = Judged::new(row, USUAL_RATIO)?.confidence(row, &[]);
         let why = [&of.band_note, &of.no_erosion_note].into_iter().flatten().cloned();
@@ -185,7 +234,7 @@ fn base(row: &Row, name: &str) -> BaseStated {
     }
 }
 
-/// One row of the record.
+/// One row of the record, but for its band.
 fn of(row: &Row, done: &[&Done]) -> Result<DesignRow, RunError> {
     let networks = |value: fn(&Done) -> Option<f64>, beyond: fn(&Done) -> Option<Beyond>| {
         let one = |done: &&Done| value(done).ok_or(beyond(done).unwrap_or(Beyond::Above));
@@ -221,14 +270,6 @@ fn of(row: &Row, done: &[&Done]) -> Result<DesignRow, RunError> {
         Some(row.case.thickness()? * row.factor(ratio)?)
     };
     let held = no_erosion.as_ref().map(Boundary::cautious);
-    let band = match held {
-        Some(Some(ratio)) if !row.inverse => {
-            let judged = Judged::new(row, ratio)?;
-            let d85b = row.d85_mm.unwrap_or(1.0);
-            Band::new(&judged.rules(), d85b, ratio * d85b, judged.unit())
-        }
-        _ => None,
-    };
     let eroding = first.iter().filter(|of| **of == Err(Beyond::Below)).count();
     let band_note = (held == Some(None)).then(|| {
         format!(
@@ -260,8 +301,9 @@ fn of(row: &Row, done: &[&Done]) -> Result<DesignRow, RunError> {
                 continuing: done.found.continuing,
             })
             .collect(),
-        band,
+        band: None,
         band_note,
+        end_of: row.end_of.clone(),
     })
 }
 

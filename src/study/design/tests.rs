@@ -411,6 +411,16 @@ fn a_guess_at_the_constrictions_is_found_at_both_ends_of_its_range() {
     assert_eq!(names, ["estimate 0.5", "estimate 1", "estimate 0"]);
     // The denser, the finer its constrictions, and the coarser it may be.
     assert!(found[1].1 > 1.2 * found[0].1 && found[0].1 > 1.2 * found[2].1, "{found:?}");
+    // The band is that of the whole range, and the ends have none of their own.
+    let end_of: Vec<Option<&str>> = guess.boundaries.iter().map(|row| row.end_of.as_deref()).collect();
+    assert_eq!(end_of, [None, Some("estimate 0.5"), Some("estimate 0.5")]);
+    let least = guess.boundaries.iter().map(|row| row.no_erosion.as_ref().unwrap().cautious().unwrap());
+    let least = least.fold(f64::INFINITY, f64::min);
+    let bands: Vec<Option<f64>> =
+        guess.boundaries.iter().map(|row| row.band.as_ref().map(|band| band.greatest)).collect();
+    assert!(bands[1..] == [None, None] && (bands[0].unwrap() / least - 1.0).abs() < 1e-9, "{bands:?} {least}");
+    assert!(guess.band_of(&guess.boundaries[2]) == guess.boundaries[0].band.as_ref());
+    assert!((guess.rules_at / least - 1.0).abs() < 1e-9, "{}", guess.rules_at);
     let said = guess.reasons.iter().find(|reason| reason.contains("is a guess from circles"));
     assert!(said.unwrap().contains("so both are walked besides"), "{said:?}");
     // An end that is asked for itself is found once, with the same bits.

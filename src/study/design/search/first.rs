@@ -1,5 +1,6 @@
 //! The boundary of the first run: the least ratio at which it erodes 7.5 %.
 
+use super::erodes_down_to;
 use super::trials::{Pair, STOP, Search, Trial, ratio_at};
 use crate::outcome::design::Beyond;
 use crate::run::error::RunError;
@@ -46,9 +47,7 @@ impl Search<'_> {
             }
         }
         if held == 0 && !self.first.contains_key(&(least - STOP)) {
-            let ratio = ratio_at(least);
-            let why = format!("7.5 % or more erodes down to D15F/D85B {ratio:.2}, where the search ends");
-            return Ok(Err((Beyond::Below, why)));
+            return Ok(Err((Beyond::Below, erodes_down_to(least))));
         }
         self.halved((least - STOP, least), Self::try_first).map(Ok)
     }

@@ -66,6 +66,12 @@ fn stop_near(ratio: f64) -> i64 {
     (libm::log(ratio) / BETWEEN_STEPS / STOP as f64).round() as i64 * STOP
 }
 
+/// That the smallest ratio of the search erodes.
+fn erodes_down_to(step: i64) -> String {
+    let ratio = ratio_at(step);
+    format!("7.5 % or more erodes down to D15F/D85B {ratio:.2}, where the search ends")
+}
+
 /// Where a search begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Start {
@@ -99,9 +105,7 @@ pub(super) fn search(walker: &mut dyn Walker, bracket: [f64; 2], start: Start) -
             if least > stops[0] {
                 found.no_erosion = Some(between((least - 1, least), |step| search.eroded(1, step)));
             } else {
-                let ratio = ratio_at(least);
-                let why = format!("7.5 % or more erodes down to D15F/D85B {ratio:.2}, where the search ends");
-                found.no_erosion_beyond = Some((Beyond::Below, why));
+                found.no_erosion_beyond = Some((Beyond::Below, erodes_down_to(least)));
             }
             let second = match search.away_from(hints[1], Search::try_second)? {
                 Some(pair) => Ok(pair),
@@ -112,8 +116,12 @@ pub(super) fn search(walker: &mut dyn Walker, bracket: [f64; 2], start: Start) -
                 Ok(pair) => {
                     let least = search.smallest_that_erodes(pair.1, Search::try_second)?;
                     let least = Search::smallest_seen(&search.second).unwrap_or(least);
-                    let second = between((least - 1, least), |step| search.eroded(2, step));
-                    found.continuing = Some(found.no_erosion.map_or(second, |first| second.max(first)));
+                    if least > stops[0] {
+                        let second = between((least - 1, least), |step| search.eroded(2, step));
+                        found.continuing = Some(found.no_erosion.map_or(second, |first| second.max(first)));
+                    } else {
+                        found.continuing_beyond = Some((Beyond::Below, erodes_down_to(least)));
+                    }
                 }
                 Err(beyond) => found.continuing_beyond = Some(beyond),
             }
