@@ -163,7 +163,9 @@ def collect(args):
             found.append((thickness.endswith("mm"), thickness, density != "loose", density, number(cu_f), number(cu_b), folder))
     for _, thickness, _, density, cu_f, cu_b, folder in sorted(found):
         design = json.loads((folder / "design.json").read_text())
-        found = design["boundaries"][0]
+        # Of a curve that is known within a range, the end that holds least.
+        known = [row for row in design["boundaries"] if row["no_erosion"] and row["no_erosion"]["low"] is not None]
+        found = min(known, key=lambda row: row["no_erosion"]["low"], default=design["boundaries"][0])
         for name in BOUNDARIES:
             boundary = found[name] or {"median": None, "low": None, "high": None}
             lines.append(
@@ -247,24 +249,24 @@ def chart(rows, title, below):
         ends = []
         for cu_f in sorted({row["cu_f"] for row in rows}):
             colour = COLOURS.get(cu_f, "#555555")
-            of = [row for row in rows if row["boundary"] == name and row["cu_f"] == cu_f and row["median"] is not None]
+            of = [row for row in rows if row["boundary"] == name and row["cu_f"] == cu_f and row["low"] is not None]
             if not of:
                 continue
-            points = " ".join(f'{x(row["cu_b"]):.1f},{y(row["median"]):.1f}' for row in of)
+            points = " ".join(f'{x(row["cu_b"]):.1f},{y(row["low"]):.1f}' for row in of)
             parts.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="2"/>')
             for row in of:
                 at = x(row["cu_b"])
-                if row["low"] is not None and row["high"] is not None:
+                if row["high"] is not None:
                     parts.append(
                         f'<line x1="{at:.1f}" x2="{at:.1f}" y1="{y(row["low"]):.1f}" y2="{y(row["high"]):.1f}" '
                         f'stroke="{colour}"/>'
                     )
-                parts.append(f'<circle cx="{at:.1f}" cy="{y(row["median"]):.1f}" r="3" fill="{colour}"/>')
+                parts.append(f'<circle cx="{at:.1f}" cy="{y(row["low"]):.1f}" r="3" fill="{colour}"/>')
             if of[-1]["cu_b"] < cu_b[-1]:
                 # The line ends within the panel.
-                parts.append(f'<text x="{x(of[-1]["cu_b"]) + 8:.1f}" y="{y(of[-1]["median"]) + 4:.1f}" fill="{colour}">Cu {cu_f:g}</text>')
+                parts.append(f'<text x="{x(of[-1]["cu_b"]) + 8:.1f}" y="{y(of[-1]["low"]) + 4:.1f}" fill="{colour}">Cu {cu_f:g}</text>')
                 continue
-            ends.append((y(of[-1]["median"]), cu_f, colour))
+            ends.append((y(of[-1]["low"]), cu_f, colour))
         ends.sort()
         for (_, cu_f, colour), place in zip(ends, apart([end[0] for end in ends], 14)):
             parts.append(f'<text x="{start + panel + 8}" y="{place + 4:.1f}" fill="{colour}">Cu {cu_f:g}</text>')
@@ -277,10 +279,14 @@ def told(rows):
     layers = sorted({row["layers"] for row in rows})
     layers = f"{layers[0]} layers of voids" if len(layers) == 1 else f"{layers[0]} to {layers[-1]} layers of voids at the boundary"
     first = dict(setting.split("=") for setting in rows[0]["settings"].split())
-    lines = [f"Median of {rows[0]['networks']} networks of {first['network.nx']} x {first['network.ny']} voids across, {layers}; bars: 5 to 95 % of "
-             "networks."]
+    lines = [f"Lines: what 95 % of {rows[0]['networks']} networks of {first['network.nx']} x {first['network.ny']} voids across hold (no erosion), or continue "
+             f"above (continuing); {layers}; bars: up to 95 %."]
     of_base = f"D85 of the base is {float(first['base.d85_mm']):g} mm. " if rows[0]["thickness"].endswith("mm") else ""
-    lines.append(f"{of_base}By the model alone: no flow, no cohesion.")
+    cases = {(row["cu_f"], row["cu_b"]): row["confidence"] for row in rows}
+    doubted = [case for case, confidence in cases.items() if confidence != "within checked range"]
+    contradicted = sum(confidence == "contradicted by practice" for confidence in cases.values())
+    lines.append(f"{of_base}By the model alone: no flow, no cohesion. Outside of what was checked: {len(doubted)} of {len(cases)} pairs; "
+                 f"contradicted by practice: {contradicted}. Practice goes first.")
     if any(SHIPPED.get((row["cu_f"], row["density"]), "").startswith("cu6-friction") for row in rows):
         lines.append("The Cu 6 filter is the loosest that was packed: friction 0.7 between its grains.")
     return lines

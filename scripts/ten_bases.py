@@ -89,9 +89,13 @@ def main():
     args.out.mkdir(parents=True, exist_ok=True)
     kept = args.out / "done.jsonl"
     done = {one["base"]: one for one in map(json.loads, kept.read_text().splitlines())} if kept.exists() else {}
+    version = subprocess.run([args.binary, "--version"], capture_output=True, text=True, check=True).stdout.strip()
+    asked = {"filter": args.filter, "set": args.set, "version": version}
     for name, told in bases(args):
+        if name in done and done[name].get("asked") != asked:
+            sys.exit(f"{kept}: {name} was found with {done[name].get('asked')}, not {asked}: give these, or another --out")
         if name not in done:
-            done[name] = walk(args, name, told)
+            done[name] = {**walk(args, name, told), "asked": asked}
             with kept.open("a") as file:
                 file.write(json.dumps(done[name]) + "\n")
             print(f"{name}: {done[name]['processor_s']:.0f} s of processor time", file=sys.stderr)
