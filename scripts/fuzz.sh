@@ -8,7 +8,7 @@ set -eu
 cd "$(dirname "$0")/../tests/fuzz"
 seconds=600
 case ${1:-} in [0-9]*) seconds=$1 && shift ;; esac
-[ $# -gt 0 ] || set -- scene sieve soil curve network columns packing graph checkpoint ledger request
+[ $# -gt 0 ] || set -- scene sieve soil curve network columns arrays packing graph checkpoint ledger request
 cargo +nightly --version >/dev/null 2>&1 && toolchain=+nightly || export RUSTC_BOOTSTRAP=1
 cargo fuzz --version >/dev/null 2>&1 || cargo install --locked cargo-fuzz
 for target in "$@"; do

@@ -23,6 +23,9 @@ const INLETS: &[&str] = &["pore.inlets", "inlets", "pore.left", "pore.xmin"];
 const OUTLETS: &[&str] = &["pore.outlets", "outlets", "pore.right", "pore.xmax"];
 const COORDS: &[&str] = &["pore.coords", "coords"];
 
+/// As many voids may be named by few constrictions.
+const MANY: usize = 1 << 16;
+
 /// How the arrays of a file are to be taken.
 #[derive(Clone, Copy, Debug)]
 pub struct ArrayOptions {
@@ -49,7 +52,8 @@ impl Network {
             let found = npz.first(names).map_err(whole)?;
             found.ok_or_else(|| whole(format!("has no array {}; it has {known}", names.join(" or "))))
         };
-        let conns = pairs(needed(CONNS)?).map_err(whole)?;
+        let conns = needed(CONNS)?;
+        let (conns_name, conns) = (conns.0, pairs(conns).map_err(whole)?);
         let diameter = floats(needed(DIAMETER)?).map_err(whole)?;
         let [inlets, outlets] = [needed(INLETS)?, needed(OUTLETS)?];
         let mut others = |names| npz.first(names).map_err(whole);
@@ -57,12 +61,11 @@ impl Network {
             true => others(CONDUCTANCE)?.map(floats).transpose().map_err(whole)?,
             false => None,
         };
-        let mut voids = conns.iter().flatten().max().map_or(0, |&last| last.max(-1) as usize + 1);
-        for array in [Some(&inlets), Some(&outlets), others(COORDS)?.as_ref()].into_iter().flatten() {
-            if !matches!(array.1.numbers, Numbers::Whole(_)) {
-                voids = voids.max(array.1.rows);
-            }
-        }
+        let coords = others(COORDS)?;
+        let by_void = [Some(&inlets), Some(&outlets), coords.as_ref()].into_iter().flatten();
+        let by_void = by_void.filter(|(_, array)| !matches!(array.numbers, Numbers::Whole(_)));
+        let most = by_void.max_by_key(|(_, array)| array.rows).map(|(name, array)| (*name, array.rows));
+        let voids = number_of_voids(conns_name, &conns, most).map_err(whole)?;
         let [inlets, outlets] = [inlets, outlets].map(|array| numbered(array, voids));
         let diameter_mm: Vec<f64> = diameter.iter().map(|d| d * options.unit.mm()).collect();
         let columns = NetworkColumns {
@@ -83,6 +86,29 @@ impl Network {
 
 /// An array and its name.
 type Named = (&'static str, Array);
+
+/// How many voids there are: as many as the longest array with an entry a void has entries, or as the
+/// constrictions name. A number far beyond both is refused, as every void takes memory.
+fn number_of_voids(name: &str, conns: &[[i64; 2]], longest: Option<(&str, usize)>) -> Result<usize, String> {
+    let entries = longest.map_or(0, |(_, entries)| entries);
+    let allowed = MANY.max(2 * conns.len()).max(entries);
+    let beyond = |&void: &i64| void >= allowed as i64;
+    if let Some((row, void)) =
+        conns.iter().enumerate().find_map(|(row, ends)| Some((row, ends.iter().copied().find(beyond)?)))
+    {
+        let known = match longest {
+            Some((name, entries)) => format!("{entries} entries in {name}"),
+            None => "no array with an entry for each void, as pore.coords".to_owned(),
+        };
+        return Err(format!(
+            "{name}: row {row} (counted from 0) names void {void}; with {} constrictions and {known} {} and \
+             less are allowed",
+            conns.len(),
+            allowed - 1
+        ));
+    }
+    Ok(conns.iter().flatten().map(|&void| usize::try_from(void + 1).unwrap_or(0)).fold(entries, usize::max))
+}
 
 fn pairs((name, array): Named) -> Result<Vec<[i64; 2]>, String> {
     match (array.columns, array.numbers) {
@@ -176,6 +202,22 @@ mod tests {
         assert!(read(&other, ExitRule::Area).is_ok());
     }
 
+    /// A void without constrictions has a number where an array with an entry a void says that it is there.
+    #[test]
+    fn the_number_of_a_void_is_explained_by_the_constrictions_or_an_array_of_the_voids() {
+        let ring = |last: i64| whole(4, Some(2), &[0, 1, 1, 2, 0, last, last, 2]);
+        let mut all = arrays();
+        all[2].1 = whole(1, None, &[0]);
+        all[0].1 = ring(65_535);
+        assert_eq!(read(&all, ExitRule::Area).unwrap().voids(), 65_536);
+        all[0].1 = ring(65_536);
+        let error = read(&all, ExitRule::Area).unwrap_err().to_string();
+        assert!(error.contains("row 2 (counted from 0) names void 65536; with 4 constrictions"), "{error}");
+        let coords = Array { rows: 70_000, columns: Some(3), numbers: Numbers::Float(vec![0.0; 210_000]) };
+        all.push(("pore.coords", coords));
+        assert_eq!(read(&all, ExitRule::Area).unwrap().voids(), 70_000);
+    }
+
     #[test]
     fn what_is_no_network_is_named_with_its_array() {
         let with = |at: usize, array: Array| {
@@ -200,6 +242,13 @@ mod tests {
             (with(2, Array::of_floats(vec![0.0])), "pore.inlets: numbers of voids are needed"),
             (with(3, whole(1, None, &[9])), "pore.outlets: 9 is no void; there are 4, numbered from 0"),
             (with(3, whole(1, None, &[-1])), "pore.outlets: -1 is no void"),
+            (
+                with(0, whole(4, Some(2), &[0, 1, 1, 2, 0, 4_000_000_000, 3, 2])),
+                "throat.conns: row 2 (counted from 0) names void 4000000000; with 4 constrictions and \
+                 4 entries in pore.inlets 65535 and less are allowed",
+            ),
+            (with(0, whole(4, Some(2), &[0, 1, 1, 2, 0, 3, i64::MAX, 2])), "throat.conns: row 3"),
+            (with(3, whole(1, None, &[4_000_000_000])), "pore.outlets: 4000000000 is no void"),
         ] {
             assert!(error.starts_with("net.npz: ") && error.contains(message), "{message}: {error}");
         }

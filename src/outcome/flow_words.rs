@@ -22,16 +22,21 @@ impl Outcome {
     /// That a void holds more than it has room for; `None` where none does, or volumes are not known.
     pub fn overfull_sentence(&self) -> Option<String> {
         let runs = || self.replicates.iter().flat_map(|replicate| &replicate.runs);
-        let fullest = runs().filter_map(|run| run.fullness_max).reduce(f64::max)?;
-        let share = runs().filter_map(|run| run.overfull_fraction).reduce(f64::max)?;
-        (fullest > ROOM).then(|| {
-            format!(
+        let share = 100.0 * runs().filter_map(|run| run.overfull_fraction).reduce(f64::max)?;
+        let fullest = runs().filter_map(|run| run.fullness_max).reduce(f64::max);
+        let what = match fullest.filter(|&fullest| fullest > ROOM) {
+            Some(fullest) => format!(
                 "the fullest void holds {fullest:.1} times the volume that it has between the grains, and up \
-                 to {:.2} % of the voids more than {ROOM} times: more than there is room for, which the \
-                 model does not know",
-                100.0 * share
-            )
-        })
+                 to {share:.2} % of the voids more than {ROOM} times"
+            ),
+            None if share > 0.0 => {
+                format!(
+                    "particles rest in up to {share:.2} % of the voids that have no volume between the grains"
+                )
+            }
+            None => return None,
+        };
+        Some(what + ": more than there is room for, which the model does not know")
     }
 
     /// Mean of a figure of one run over the replicates that have it.

@@ -98,7 +98,7 @@ impl RunMetrics {
         let largest_mm = (tally.eroded > 0).then(|| f64::from(tally.largest_eroded) * network.unit_mm());
         let retained = tally.retained_in_constrictions + tally.retained_in_voids + tally.trapped;
         let [deepest, most] = retained_layers(network, state);
-        let fullness = fullness(network, state);
+        let fullness = Fullness::of(network, state);
         let run = Run {
             run: of.run,
             eroded_mass_fraction,
@@ -121,9 +121,8 @@ impl RunMetrics {
             particle_moves: tally.particle_moves - free_entries(network, state),
             k_over_k0: flow.and_then(|flow| flow.k_over_k0.last()).map(|&(_, k)| k),
             k0_mm2: flow.and_then(|flow| flow.k0_mm2),
-            fullness_max: fullness.iter().copied().reduce(f64::max),
-            overfull_fraction: (!fullness.is_empty())
-                .then(|| fullness.iter().filter(|&&f| f > OVERFULL).count() as f64 / fullness.len() as f64),
+            fullness_max: fullness.max,
+            overfull_fraction: fullness.overfull_fraction,
             by_connectivity: by_connectivity::of_run(network, state),
             seconds,
         };
@@ -186,17 +185,40 @@ impl Recorded {
 /// A void is overfull above this part of its volume: no packing of the particles in it is denser.
 const OVERFULL: f64 = 0.6;
 
-/// Retained volume over volume of each void, 0 for one that has none; nothing where volumes are not known.
-fn fullness(network: &Network, state: &State) -> Vec<f64> {
-    // Of an expectation only the number by void is known.
-    if state.passive.expected().is_some() {
-        return Vec::new();
+/// How full the voids of a network are.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Fullness {
+    /// Retained volume over volume of the fullest void that has a volume.
+    max: Option<f64>,
+    /// Share of the voids that are overfull.
+    overfull_fraction: Option<f64>,
+}
+
+impl Fullness {
+    /// Of a finished run; nothing where volumes are not known.
+    fn of(network: &Network, state: &State) -> Self {
+        match state.passive.expected() {
+            // Of an expectation only the number by void is known.
+            Some(_) => Self::default(),
+            None => Self::of_voids(network.volumes(), &state.retained_cubes),
+        }
     }
-    let full = |(&volume, &cubes): (&f64, &f64)| match volume > 0.0 {
-        true => std::f64::consts::FRAC_PI_6 * cubes / volume,
-        false => 0.0,
-    };
-    network.volumes().iter().zip(&state.retained_cubes).map(full).collect()
+
+    /// Of voids with these volumes and sums of the diameters cubed of what rests in them. A void without a
+    /// volume has room for nothing: it is overfull with anything, and by how much cannot be said.
+    fn of_voids(volumes: &[f64], cubes: &[f64]) -> Self {
+        let full = |(&volume, &cubes): (&f64, &f64)| match cubes > 0.0 {
+            true if volume > 0.0 => std::f64::consts::FRAC_PI_6 * cubes / volume,
+            true => f64::INFINITY,
+            false => 0.0,
+        };
+        let fullness: Vec<f64> = volumes.iter().zip(cubes).map(full).collect();
+        let overfull = fullness.iter().filter(|&&full| full > OVERFULL).count();
+        Self {
+            max: fullness.iter().copied().filter(|full| full.is_finite()).reduce(f64::max),
+            overfull_fraction: (!fullness.is_empty()).then(|| overfull as f64 / fullness.len() as f64),
+        }
+    }
 }
 
 /// Moves out of the reservoir through ways in that are no constrictions: coming in is no move.
@@ -287,4 +309,24 @@ fn size_curve(
         });
     }
     rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_void_without_volume_is_overfull_with_anything_and_leaves_the_fullest_finite() {
+        let of = |volumes: &[f64], cubes: &[f64]| {
+            let Fullness { max, overfull_fraction } = Fullness::of_voids(volumes, cubes);
+            (max, overfull_fraction)
+        };
+        let sphere = std::f64::consts::FRAC_PI_6;
+        assert_eq!(of(&[1.0, 0.0, 0.0, 2.0], &[0.5, 3.0, 0.0, 2.0]), (Some(sphere), Some(0.25)));
+        assert_eq!(of(&[1.0, 1.0], &[2.0, 0.0]), (Some(2.0 * sphere), Some(0.5)));
+        // What is next to none is as none.
+        assert_eq!(of(&[5e-324, 1.0], &[1e300, 0.0]), (Some(0.0), Some(0.5)));
+        assert_eq!(of(&[0.0], &[1.0]), (None, Some(1.0)));
+        assert_eq!(of(&[], &[]), (None, None));
+    }
 }

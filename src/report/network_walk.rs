@@ -12,11 +12,15 @@ use super::numbers::{capital, known, percent, significant, size, whole};
 use super::results::{replicates, results};
 use super::run_figures::{self, size_axis};
 use super::shell::{self, Drawn, citation, clean, drawing, fact, leaves_out, whole_page};
-use super::verdict_box::{brief, eroded_table, in_words, replicates_in_words};
+use super::verdict_box::{Said, brief, eroded_table, in_words, replicates_in_words};
 use super::walks::{RowSource, RunRows, Walks, check_curve, check_results};
 use crate::outcome::Recorded;
 use crate::outcome::network_walk::NetworkWalkRecord;
 use crate::outcome::record::Verdict;
+
+/// The doubt of every such verdict.
+const NO_PRACTICE: &str = "The network was given, and the gradation of the filter was not: no rule of \
+                           practice is applied, and nothing says how far the verdict can be relied on.";
 
 /// What errors call the record.
 const RECORD: &str = "outcome";
@@ -51,7 +55,16 @@ pub fn network_walk_brief(record: &str) -> Result<String, ReportError> {
     let record = checked(record)?;
     let rows = RunRows::default();
     let walks = walks(&record, &rows);
-    Ok(brief(&walks, record.verdict.words(), replicate(&record), &record.model_leaves_out))
+    Ok(brief(
+        &walks,
+        &Said {
+            headline: record.verdict.words(),
+            meaning: in_words(&walks),
+            doubt: Some(NO_PRACTICE),
+            replicate: replicate(&record),
+            leaves_out: &record.model_leaves_out,
+        },
+    ))
 }
 
 fn checked(record: &str) -> Result<NetworkWalkRecord, ReportError> {
@@ -124,10 +137,7 @@ fn page(record: &NetworkWalkRecord, walks: &Walks, figures: &[Drawn]) -> String 
             div.first {
                 (verdict_section(record, walks))
                 (leaves_out(&record.model_leaves_out, &html! {
-                    p {
-                        "The network was given, and the gradation of the filter was not: no rule of \
-                         practice is applied, and nothing says how far the verdict can be relied on."
-                    }
+                    p { (NO_PRACTICE) }
                 }))
             }
         }

@@ -19,8 +19,8 @@ use super::run_figures::{self, run_name};
 use super::shell::{self, Drawn, clean, drawing, fact, whole_page};
 use super::table::Table;
 use super::varied;
-use super::verdict_box;
-use super::walks::RunRows;
+use super::verdict_box::{self, Said};
+use super::walks::{RunRows, Walks};
 use super::written::{Written, write_page};
 use super::{appendix, packing, shell::leaves_out};
 use crate::outcome::packing::PackingRecord;
@@ -58,7 +58,16 @@ pub fn run_brief(outcome: &str) -> Result<String, ReportError> {
     let path = Path::new("outcome.json");
     let outcome = checked(path, json_of(path, outcome)?)?;
     let rows = RunRows::default();
-    Ok(verdict_box::brief(&walks(&outcome, &rows), &outcome.headline(), REPLICATE, &outcome.model_leaves_out))
+    let walks = walks(&outcome, &rows);
+    let said = Said {
+        headline: &outcome.headline(),
+        meaning: in_words(&outcome, &walks),
+        // The headline has the first reason.
+        doubt: None,
+        replicate: REPLICATE,
+        leaves_out: &outcome.model_leaves_out,
+    };
+    Ok(verdict_box::brief(&walks, &said))
 }
 
 /// What a replicate of a run is: the only one, and each of several.
@@ -141,7 +150,7 @@ fn verdict_section(folder: &RunFolder, verdict: &Drawn) -> Markup {
         section.verdict.(class) {
             p.word.long[!outcome.reasons.is_empty()] { (clean(&capital(&outcome.headline()))) "." }
             @if doubted { p { "Confidence: " b { (outcome.confidence.words()) } "." } }
-            p.lead { (in_words(folder)) }
+            p.lead { (in_words(outcome, walks)) }
             div { (drawing(verdict)) }
             (verdict_box::eroded_table(walks))
             @if let Some(bounds) = &outcome.pan_bounds { (both_readings(bounds)) }
@@ -193,14 +202,14 @@ fn stopped(stopping: &Stopping) -> String {
 }
 
 /// What the class means, in a sentence.
-fn in_words(folder: &RunFolder) -> String {
-    let differ = folder.outcome.pan_bounds.as_ref().is_some_and(PanBounds::differ);
-    if folder.outcome.verdict == Verdict::Undecided && differ {
+fn in_words(outcome: &Outcome, walks: &Walks) -> String {
+    let differ = outcome.pan_bounds.as_ref().is_some_and(PanBounds::differ);
+    if outcome.verdict == Verdict::Undecided && differ {
         return "Inconclusive: the finest part of the base, whose sizes the sieves do not tell, decides \
                 between the classes."
             .to_owned();
     }
-    verdict_box::in_words(&folder.walks())
+    verdict_box::in_words(walks)
 }
 
 /// Why the verdict cannot be relied on as it stands.

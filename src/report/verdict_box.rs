@@ -86,20 +86,38 @@ pub(super) fn replicates_in_words(walks: &Walks, what: [&str; 2]) -> Markup {
     }
 }
 
+/// What a verdict in brief says beside its numbers.
+pub(super) struct Said<'a> {
+    /// The verdict in a few words.
+    pub headline: &'a str,
+    /// What the class means, in the sentence of the page.
+    pub meaning: String,
+    /// Why nobody should rely on the verdict as it stands, where the headline does not say it.
+    pub doubt: Option<&'a str>,
+    /// What one replicate is, and what each of several is.
+    pub replicate: [&'static str; 2],
+    /// What the model leaves out.
+    pub leaves_out: &'a [String],
+}
+
+/// The amber of `page.css`, where there is no style sheet; the dark text goes with it on dark pages too.
+const AMBER: &str = "background:#fff0c2;color:#222;padding:0 .25rem;border-radius:.2rem";
+
 /// The verdict in brief, for a page of another program, as a notebook: no style is needed, and the figure is
 /// a picture, so that several stand on one page.
-pub(super) fn brief(walks: &Walks, headline: &str, what: [&str; 2], leaves_out: &[String]) -> String {
+pub(super) fn brief(walks: &Walks, said: &Said) -> String {
     let drawn = run_figures::verdict(walks);
     let picture = BASE64_STANDARD.encode(drawn.figure.file());
     let table = eroded_table(walks).number("constrictions blocked", |run| fraction(&run.blocked_fraction));
-    let left_out: Vec<&str> = leaves_out.iter().filter_map(|item| item.split(':').next()).collect();
+    let left_out: Vec<&str> = said.leaves_out.iter().filter_map(|item| item.split(':').next()).collect();
     html! {
         div {
-            p { b { (clean(&capital(headline))) "." } " " (in_words(walks)) }
+            p { b { (clean(&capital(said.headline))) "." } " " (clean(&said.meaning)) }
+            @if let Some(doubt) = said.doubt { p { span style=(AMBER) { (clean(doubt)) } } }
             img src={ "data:image/svg+xml;base64," (picture) }
                 alt="Mean and 95 % interval of the eroded mass in each run, against the threshold";
             (table)
-            (replicates_in_words(walks, what))
+            (replicates_in_words(walks, said.replicate))
             p { "The model leaves out: " (clean(&left_out.join("; "))) "." }
         }
     }

@@ -12,7 +12,7 @@ use zip::{DateTime, ZipArchive, ZipWriter};
 const MAGIC: &[u8] = b"\x93NUMPY";
 
 /// Of a file of `n` bytes no array is unpacked to more than this many bytes, and as many times `n`.
-const UNPACKED: (u64, u64) = (64 << 20, 200);
+const UNPACKED: (u64, u64) = (8 << 20, 200);
 
 /// Longest header (bytes).
 const HEADER: usize = 1 << 16;
@@ -127,6 +127,10 @@ fn parse(bytes: &[u8]) -> Result<Array, String> {
         [rows, columns] => (rows, Some(columns)),
         ref other => return Err(format!("has {} dimensions; one or two are read", other.len())),
     };
+    // No byte stands behind rows of nothing, and nobody should go through as many as a header likes.
+    if rows > 0 && columns == Some(0) {
+        return Err(format!("has the shape ({rows}, 0); rows of 1 or more numbers are allowed"));
+    }
     let count = rows.checked_mul(columns.unwrap_or(1)).ok_or_else(no_array)?;
     let numbers = numbers(kind, data, count)?;
     let numbers = match columns.filter(|_| by_column) {
@@ -284,6 +288,19 @@ mod tests {
         ] {
             let error = of(kind, "False", shape, &[0; 8]).unwrap_err();
             assert!(error.contains(message), "{kind} {shape}: {error}");
+        }
+        // Rows of nothing are backed by no byte, and there can be any number of them.
+        for order in ["False", "True"] {
+            for (kind, shape) in
+                [("<f8", "(4000000000, 0)"), ("|b1", "(3, 0)"), ("<i8", "(1152921504606846976, 0)")]
+            {
+                let error = of(kind, order, shape, &[]).unwrap_err();
+                assert!(error.contains("has the shape (") && error.contains("rows of 1 or more"), "{error}");
+            }
+            for shape in ["(0, 2)", "(0, 1152921504606846976)", "(0,)"] {
+                let empty = of("<i8", order, shape, &[]).unwrap();
+                assert_eq!((empty.rows, empty.numbers), (0, Numbers::Whole(vec![])));
+            }
         }
         for bytes in [&b""[..], b"\x93NUMPY", b"\x93NUMPY\x01\x00\xff\xff", b"\x93NUMPY\x09\x00\x01\x00{"] {
             assert!(parse(bytes).is_err());

@@ -162,6 +162,11 @@ fn networks_of_columns() {
 }
 
 #[test]
+fn networks_of_arrays() {
+    check("arrays", &[], 6000, readers::arrays);
+}
+
+#[test]
 fn requests_to_the_page() {
     check("request", &[], 300, readers::request);
 }

@@ -19,7 +19,7 @@ use voidwalk::campaign::CampaignPlan;
 use voidwalk::case::Case;
 use voidwalk::constrictions::{Curve, DEFAULT_MERGE_OVERLAP, VoidGraph};
 use voidwalk::gradation::{Gradation, SizeSampler, Soil, SoilSummary};
-use voidwalk::network::{END, ExitRule, Flow, GraphShape, Network, NetworkColumns};
+use voidwalk::network::{ArrayOptions, END, ExitRule, Flow, GraphShape, Network, NetworkColumns};
 use voidwalk::packing::{CellOption, LengthUnit, Packing, ReadOptions};
 use voidwalk::run::PrepareOptions;
 use voidwalk::scene::{CurveSource, Scene};
@@ -218,6 +218,55 @@ pub fn columns(bytes: &[u8]) {
             );
         }
     }
+}
+
+/// A network of arrays in a zip: as it is, and with the sums of its parts made right, so that what they protect is
+/// reached.
+pub fn arrays(bytes: &[u8]) {
+    for content in [bytes.to_vec(), with_right_zip_sums(bytes.to_vec())] {
+        for rule in [ExitRule::Flux, ExitRule::Area] {
+            let options = ArrayOptions { unit: LengthUnit::M, rule, rho: 0.01, unit_mm: 1.0 };
+            let Some(network) = shown(Network::from_npz(&content, "net.npz", &options)) else { continue };
+            assert!(network.voids() > 0 && network.constrictions() > 0);
+            if rule == ExitRule::Area {
+                network.write_csv(&mut Vec::new()).unwrap();
+            }
+        }
+    }
+}
+
+/// The zip with the sum of each part that is stored as it is made right, as far as its table of contents can be
+/// followed.
+fn with_right_zip_sums(mut bytes: Vec<u8>) -> Vec<u8> {
+    /// Of an entry of the table of contents, and of the header before a part.
+    const ENTRY: (&[u8], usize) = (b"PK\x01\x02", 46);
+    const PART: (&[u8], usize) = (b"PK\x03\x04", 30);
+    let entries: Vec<usize> =
+        (0..bytes.len().saturating_sub(ENTRY.1)).filter(|&at| bytes[at..].starts_with(ENTRY.0)).collect();
+    for at in entries {
+        let number = |at: usize, size: usize| -> usize {
+            let all = bytes.get(at..at + size).unwrap_or(&[]);
+            all.iter().rev().fold(0, |number, &byte| number << 8 | usize::from(byte))
+        };
+        let (method, length, part) = (number(at + 10, 2), number(at + 20, 4), number(at + 42, 4));
+        let begin = part + PART.1 + number(part + 26, 2) + number(part + 28, 2);
+        let is_part = bytes.get(part..).is_some_and(|rest| rest.starts_with(PART.0));
+        let Some(data) = bytes.get(begin..begin + length).filter(|_| is_part && method == 0) else {
+            continue;
+        };
+        let sum = crc32(data).to_le_bytes();
+        bytes[at + 16..at + 20].copy_from_slice(&sum);
+        bytes[part + 14..part + 18].copy_from_slice(&sum);
+    }
+    bytes
+}
+
+/// The sum of the parts of a zip (ISO 3309).
+fn crc32(bytes: &[u8]) -> u32 {
+    let byte = |sum: u32, &byte: &u8| {
+        (0..8).fold(sum ^ u32::from(byte), |sum, _| sum >> 1 ^ (0xedb8_8320 & (sum & 1).wrapping_neg()))
+    };
+    !bytes.iter().fold(!0, byte)
 }
 
 /// Water through an undirected network, whose conductances have this sum: what goes in comes out, but for the residual

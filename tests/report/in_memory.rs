@@ -6,12 +6,13 @@ use std::sync::Arc;
 
 use voidwalk::constrictions::find;
 use voidwalk::outcome::Recorded;
+use voidwalk::outcome::record::{PanBounds, PanReading, PanSize, Verdict};
 use voidwalk::report::files::rows;
 use voidwalk::report::{self, RunTexts, network_walk_brief, network_walk_page, run_brief, run_page};
 use voidwalk::run::{Callbacks, NetworkWalk, walk_networks};
 use voidwalk::{Gradation, Network};
 
-use crate::folder::Plan;
+use crate::folder::{Plan, outcome};
 use crate::words;
 
 fn recorded(folder: &Path) -> Recorded {
@@ -57,6 +58,41 @@ fn a_run_in_memory_has_the_page_of_its_folder() {
     assert!(run_brief("{}").unwrap_err().to_string().contains("outcome.json"));
 }
 
+/// The sentence beside the verdict is the page's in a notebook too, where the pan fraction decides.
+#[test]
+fn a_verdict_that_the_pan_fraction_decides_is_explained_alike_on_the_page_and_in_brief() {
+    let folder = tempfile::tempdir().unwrap();
+    Plan::usual().write(folder.path());
+    let mut outcome = outcome(10);
+    let reading = |taken_as, verdict| PanReading {
+        taken_as,
+        n_base: outcome.n_base,
+        replicates: 10,
+        verdict,
+        runs: outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect(),
+        stopping: None,
+    };
+    outcome.pan_bounds = Some(PanBounds {
+        mass_fraction: 0.06,
+        finest_sieve_mm: 0.2,
+        finest_constriction_mm: 0.16,
+        readings: [
+            reading(PanSize::Passive, Verdict::Some),
+            reading(PanSize::FinestSieve, Verdict::Continuing),
+        ],
+    });
+    outcome.verdict = Verdict::Undecided;
+    let text = serde_json::to_string(&outcome).unwrap();
+    fs::write(folder.path().join("outcome.json"), &text).unwrap();
+    report::write(folder.path()).unwrap();
+    let page = fs::read_to_string(folder.path().join("report.html")).unwrap();
+    let sentence = "Inconclusive: the finest part of the base, whose sizes the sieves do not tell, decides \
+                    between the classes.";
+    assert!(words(&page).contains(sentence), "{page}");
+    let brief = words(&run_brief(&text).unwrap());
+    assert!(brief.contains(sentence) && !brief.contains("these replicates"), "{brief}");
+}
+
 #[test]
 fn walks_on_a_given_network_have_a_page() {
     let curve = find("cu1.5-loose").unwrap().curve().unwrap().in_mm(1.0).unwrap();
@@ -87,6 +123,14 @@ fn walks_on_a_given_network_have_a_page() {
 
     let brief = network_walk_brief(&record).unwrap();
     assert!(!brief.contains("<script") && words(&brief).contains("95 % interval"));
+
+    // The doubt of the page stands beside the verdict in brief too, and both mean the class in the same words.
+    let (brief, at) = (words(&brief), words(&brief).find("In the model the filter ").unwrap());
+    let doubt = "no rule of practice is applied, and nothing says how far the verdict can be relied on";
+    assert!(brief.contains(doubt) && said.contains(doubt), "{brief}");
+    let meaning = brief[at..].split(": ").next().unwrap();
+    assert!(said.contains(meaning), "{meaning}: {said}");
+    assert!(network_walk_brief(&record).unwrap().contains("background:#fff0c2"));
 
     let broken = record.replacen("\"increments\":100", "\"increments\":0", 1);
     assert!(network_walk_page(&broken, all.clone()).unwrap_err().to_string().contains("increments"));

@@ -64,6 +64,25 @@ def test_a_packed_filter_is_on_the_page_of_a_run_in_memory(small: Dict[str, Any]
     assert "200 grains, friction 0" in result.report(tmp_path / "page.html").read_text(encoding="utf-8")
 
 
+def test_a_page_that_cannot_be_written_leaves_the_older_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    result = vw.walk(lattice(), 0.2, n_base=1000, replicates=2)
+    page = result.report(tmp_path / "page.html")
+    older = page.read_bytes()
+
+    def full(path: Path, content: Any, *_: Any, **__: Any) -> int:
+        with open(path, "wb") as file:
+            file.write(b"half")
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(Path, "write_bytes", full)
+        patched.setattr(Path, "write_text", full)
+        with pytest.raises(OSError, match="No space"):
+            result.report(page)
+    assert page.read_bytes() == older and list(tmp_path.iterdir()) == [page]
+    assert result.report(page).read_bytes() == older
+
+
 def test_results_show_themselves_in_a_notebook(small: Dict[str, Any]) -> None:
     for result in (vw.run(small), vw.walk(lattice(), 0.2, n_base=1000, replicates=2)):
         shown = result._repr_html_()

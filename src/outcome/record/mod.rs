@@ -210,10 +210,12 @@ pub struct Run {
     /// Permeability of the clean filter (mm2), where the network knows its lengths.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub k0_mm2: Option<f64>,
-    /// Volume that this run retained over void volume, of the fullest void; where voids have a volume.
+    /// Volume that this run retained over void volume, of the fullest void that has a volume; where volumes
+    /// are known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fullness_max: Option<f64>,
-    /// Share of the voids that are filled by more than 0.6 of their volume, likewise.
+    /// Share of the voids that are filled by more than 0.6 of their volume, likewise; a void without volume
+    /// is as soon as a particle rests in it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub overfull_fraction: Option<f64>,
     /// Retained and blocked by connectivity of the void, rising; empty where all voids have one connectivity.

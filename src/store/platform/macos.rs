@@ -54,13 +54,14 @@ fn said(command: &str, words: &[&str]) -> Option<String> {
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// Bytes of the pages that `vm_stat` says are free or can be given back at once.
+/// Bytes of the pages that `vm_stat` says are free or were only read ahead. Inactive pages are not all given
+/// back, and purgeable ones are counted among the active and inactive.
 pub(super) fn not_in_use(vm_stat: &str) -> Option<u64> {
     let mut lines = vm_stat.lines();
     let page = lines.next()?.split_once("page size of ")?.1.split(' ').next()?.parse::<u64>().ok()?;
     let pages = lines.filter_map(|line| {
         let (name, count) = line.split_once(':')?;
-        let counts = ["Pages free", "Pages inactive", "Pages speculative", "Pages purgeable"].contains(&name);
+        let counts = ["Pages free", "Pages speculative"].contains(&name);
         counts.then(|| count.trim().trim_end_matches('.').parse::<u64>().ok())?
     });
     pages.sum::<u64>().checked_mul(page).filter(|bytes| *bytes > 0)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import json
 import os
-import shutil
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Dict, List, Optional, Tuple, Union
@@ -139,12 +138,10 @@ class Result:
         """
         if self.folder is not None:
             page = Path(_voidwalk.report(os.fspath(self.folder)))
-            return page if path is None else Path(shutil.copyfile(page, path))
+            return page if path is None else _written(Path(path), page.read_bytes())
         if path is None:
             raise ValueError('path is missing: this result has no folder; report("page.html") writes the page there')
-        place = Path(path)
-        place.write_text(self._page(), encoding="utf-8")
-        return place
+        return _written(Path(path), self._page().encode("utf-8"))
 
     def _page(self) -> str:
         """The page of a walk in memory."""
@@ -163,6 +160,17 @@ class Result:
     def _repr_html_(self) -> str:
         brief = _voidwalk.run_brief if self.blocked is None else _voidwalk.walk_brief
         return brief(json.dumps(self.outcome))
+
+
+def _written(place: Path, content: bytes) -> Path:
+    """Writes a file whole or not at all: an older one stays until all of the new one is there."""
+    part = place.with_name(f"{place.name}.{os.getpid()}.part")
+    try:
+        part.write_bytes(content)
+        os.replace(part, place)
+    finally:
+        part.unlink(missing_ok=True)
+    return place
 
 
 class CampaignResult:
