@@ -101,8 +101,8 @@ fn number_of_voids(name: &str, conns: &[[i64; 2]], longest: Option<(&str, usize)
             None => "no array with an entry for each void, as pore.coords".to_owned(),
         };
         return Err(format!(
-            "{name}: row {row} (counted from 0) names void {void}; with {} constrictions and {known} {} and \
-             less are allowed",
+            "{name}: row {row} (counted from 0) names void {void}; with {} constrictions and {known}, at \
+             most {} is allowed",
             conns.len(),
             allowed - 1
         ));
@@ -245,7 +245,7 @@ mod tests {
             (
                 with(0, whole(4, Some(2), &[0, 1, 1, 2, 0, 4_000_000_000, 3, 2])),
                 "throat.conns: row 2 (counted from 0) names void 4000000000; with 4 constrictions and \
-                 4 entries in pore.inlets 65535 and less are allowed",
+                 4 entries in pore.inlets, at most 65535 is allowed",
             ),
             (with(0, whole(4, Some(2), &[0, 1, 1, 2, 0, 3, i64::MAX, 2])), "throat.conns: row 3"),
             (with(3, whole(1, None, &[4_000_000_000])), "pore.outlets: 4000000000 is no void"),
