@@ -218,6 +218,13 @@ impl Files {
         Ok((name, packing))
     }
 
+    /// Says more of the file that was read last.
+    pub fn note(&mut self, note: Option<String>) {
+        if let Some(input) = self.0.last_mut() {
+            input.notes.extend(note);
+        }
+    }
+
     /// The grains of a filter that was packed; kept as if they had been given.
     pub fn packed_grains(&mut self, grains: &[u8], kept_as: &str) -> Result<(String, Packing), CaseError> {
         self.keep("network.packing", Path::new(GRAINS), kept_as, grains.to_vec())?;

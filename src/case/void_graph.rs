@@ -45,6 +45,9 @@ impl GraphPacking {
         let refused = |problem: String| CaseError::from(scene.clash(format!("{name}: {problem}")));
         let (constrictions, graph) =
             VoidGraph::measure(&packing, merge_overlap).map_err(|e| refused(e.to_string()))?;
+        if file.is_some() {
+            files.note(constrictions.doubt());
+        }
         let gradation = of_grains(&packing)?;
         Ok(Some(Self { graph, curve: constrictions.curve()?, gradation }))
     }

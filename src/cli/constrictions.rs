@@ -20,7 +20,7 @@ pub fn constrictions(args: &ConstrictionsArgs) -> Result<(), RunError> {
         to_stdout(&json(&summary)?);
         return Ok(());
     }
-    let mut lines = [
+    let mut lines = vec![
         format!("{} grains, void ratio {:.4}", count(summary.grains as u64), summary.void_ratio),
         format!(
             "{} voids, {:.3} grains per void (Eq. 2), {:.2} constrictions a void on average",
@@ -46,6 +46,7 @@ pub fn constrictions(args: &ConstrictionsArgs) -> Result<(), RunError> {
         ),
         None => "no void graph: it needs a periodic cell through which no void runs from end to end".into(),
     };
+    lines.splice(1..1, summary.warnings.iter().map(|warning| format!("warning: {warning}")));
     to_stdout(&lines.iter().map(|line| plain(line) + "\n").collect::<String>());
     Ok(())
 }

@@ -15,6 +15,14 @@ pub fn export(folder: &Path) -> Result<(), RunError> {
         return Err(RunError::Refused(format!("{}: {problem}", shown(folder))));
     };
     let claimed = claim(folder, kind, true)?;
+    let into = claimed.path().join("export");
+    if into.symlink_metadata().is_ok_and(|found| !found.is_dir()) {
+        let what = if into.is_symlink() { "a symbolic link" } else { "a file" };
+        return Err(RunError::Refused(format!(
+            "{}: is {what}, and the tables go into a folder of that name; move it away or give it another name",
+            shown(&into)
+        )));
+    }
     let found = write(claimed.path()).map_err(RunError::failed)?;
     let mut text: String = found.files.iter().map(|path| shown(path) + "\n").collect();
     if !found.words.is_empty() {

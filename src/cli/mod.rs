@@ -35,8 +35,8 @@ use clap::FromArgMatches;
 use crate::run::Exit;
 use args::{Arguments, Command};
 
-/// What the system says of a file that is not there.
-const NO_FILE: &str = "No such file or directory";
+/// The system's number of the error that a file is not there: the same on Unix and Windows.
+const NO_FILE: i32 = 2;
 
 /// Reads the arguments; else says what is wrong and what to type instead, or what was asked for by `--help`.
 fn arguments(words: &[OsString]) -> Result<Arguments, ExitCode> {
@@ -96,7 +96,10 @@ pub fn main() -> ExitCode {
     // Messages name files and values that may hold anything.
     let mut text = error.to_string();
     let meant = match exit {
-        Exit::Refused => mistakes::instead_of_files(&words, text.contains(NO_FILE)),
+        Exit::Refused => {
+            let no_file = std::io::Error::from_raw_os_error(NO_FILE).to_string();
+            mistakes::instead_of_files(&words, text.contains(&no_file))
+        }
         _ => None,
     };
     for more in error.advice().map(String::from).into_iter().chain(meant) {

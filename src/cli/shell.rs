@@ -19,6 +19,10 @@ pub fn completions(shell: Shell) {
 
 /// Writes a manual page of the program and of each of its commands.
 pub fn man(folder: &Path) -> Result<(), RunError> {
+    if let Some(file) = folder.ancestors().find(|part| part.exists() && !part.is_dir()) {
+        let problem = "is a file; name a folder for the pages, a new one or one that is there";
+        return Err(RunError::Refused(format!("{}: {problem}", shown(file))));
+    }
     let mut whole = command();
     whole.build();
     let mut pages = vec![("voidwalk.1".to_owned(), page(whole.clone())?)];

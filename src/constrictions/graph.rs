@@ -69,8 +69,8 @@ impl VoidGraph {
     /// Triangulates a packing and measures its constrictions and its graph.
     ///
     /// # Errors
-    /// What [`Constrictions::measure`] refuses; a packing without a periodic cell; a void that meets itself
-    /// through the cell.
+    /// What [`Constrictions::measure`] refuses; a packing without a periodic cell, or whose grains
+    /// do not fit theirs; a void that meets itself through the cell.
     pub fn measure(
         packing: &Packing,
         merge_overlap: f64,
@@ -79,6 +79,8 @@ impl VoidGraph {
         let voids = merged(&t, merge_overlap)?;
         let passages = Passages::new(&t, &t.positions(), &voids, Facets::All);
         let constrictions = Constrictions::between(&t, &voids, &passages, merge_overlap, Facets::All);
+        // First, or what is wrong with the cell would be said of the graph.
+        constrictions.fit_their_cell()?;
         Ok((constrictions, Self::between(&t, &voids, &passages, merge_overlap)?))
     }
 

@@ -17,6 +17,9 @@ const SAME_DISC: f64 = 1e-4;
 /// Share of a free packing's extent, at either end of each axis, that statistics leave out.
 const OUTER_SHARE: f64 = 0.05;
 
+/// Void ratio above which grains hardly rest on each other.
+const LOOSEST: f64 = 1.5;
+
 /// Overlap from which two tetrahedra share a void, unless it is given.
 pub const DEFAULT_MERGE_OVERLAP: f64 = 0.1;
 
@@ -122,6 +125,20 @@ pub enum ConstrictionsError {
         void: u32,
         /// Overlap from which tetrahedra share a void.
         merge_overlap: f64,
+    },
+    /// Grains inside others, which a periodic cell of another size or unit makes of grains side by side.
+    #[error(
+        "the grains do not fit their cell: {hidden} of {grains} lie inside others, the first of them grain \
+         {first} (counted from 0). The cell is too small, or in another unit than the grains, or grains stand \
+         twice in the file"
+    )]
+    Hidden {
+        /// Grains inside others.
+        hidden: usize,
+        /// All grains.
+        grains: usize,
+        /// The first grain inside another.
+        first: u32,
     },
     /// A merge overlap that is none.
     #[error("merge_overlap = {value} is not allowed; allowed: a finite number from 0")]
@@ -347,6 +364,33 @@ impl Constrictions {
             region,
             grains,
         }
+    }
+
+    /// Refuses grains of a periodic cell that lie inside others: their cell is not the one given.
+    ///
+    /// # Errors
+    /// [`ConstrictionsError::Hidden`].
+    pub fn fit_their_cell(&self) -> Result<(), ConstrictionsError> {
+        match (self.region, self.hidden.first()) {
+            (Region::Everything, Some(&first)) => Err(ConstrictionsError::Hidden {
+                hidden: self.hidden.len(),
+                grains: self.grains + self.hidden.len(),
+                first,
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// What is said of grains that lie too far apart in their cell to be a packing; `None` without a cell.
+    pub fn doubt(&self) -> Option<String> {
+        let is_loose = self.region == Region::Everything && self.void_ratio > LOOSEST;
+        is_loose.then(|| {
+            format!(
+                "the void ratio is {:.4}, and grains that rest on each other hardly leave more than {LOOSEST}: the \
+                 cell may be too large, or in another unit than the grains",
+                self.void_ratio
+            )
+        })
     }
 
     /// Number of grains that statistics are taken over.

@@ -47,6 +47,9 @@ pub struct Summary {
     pub hidden_grains: Vec<u32>,
     /// Pairs of grains with the same centre.
     pub duplicate_grains: Vec<[u32; 2]>,
+    /// What a reader must know of these grains.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
     /// Permeability along z over the square of the grains' Sauter mean d32; none without a periodic cell.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub k_over_d32_squared: Option<f64>,
@@ -81,6 +84,7 @@ impl Constrictions {
             closed_facets: self.closed,
             hidden_grains: self.hidden.clone(),
             duplicate_grains: self.duplicates.clone(),
+            warnings: self.doubt().into_iter().collect(),
             k_over_d32_squared: None,
             kozeny_carman_over_d32_squared: None,
         })

@@ -57,7 +57,7 @@ impl Network {
     ///
     /// # Errors
     /// Columns of unequal length, a void that is none, a diameter or conductance that none can have; no
-    /// constriction, no inlet, no way out; a rule that goes by height, of which the columns say nothing.
+    /// constriction, no inlet, no way out, no open way between the two; a rule that goes by height, of which the columns say nothing.
     pub fn from_columns(columns: &NetworkColumns) -> Result<(Self, Vec<u32>), NetworkError> {
         let diameter = columns.checked()?;
         match columns.rule {
@@ -166,6 +166,18 @@ impl NetworkColumns<'_> {
             undirected: None,
         };
         network.layer = network.distances(|_| true);
+        let open = |c: usize| network.diameter[c] > 0.0;
+        let reached = network.distances(open);
+        let leads_out = |&void: &u32| {
+            reached[void as usize] != NO_LAYER
+                && network.exits(void).any(|c| network.target[c] == END && open(c))
+        };
+        if !(0..self.voids as u32).any(|void| leads_out(&void)) {
+            return Err(wrong(
+                "no open way leads from an inlet to an outlet. By area each constriction is passed in one \
+                 direction, from the first of its two voids to the second; by flux both ways",
+            ));
+        }
         Ok((network, slot[..self.conns.len()].to_vec()))
     }
 
@@ -259,6 +271,8 @@ mod tests {
         unit_mm: 0.1,
     };
 
+    const CHAIN_DOWN: [[i64; 2]; 3] = [[0, 1], [1, 2], [2, 3]];
+
     #[test]
     fn constrictions_keep_their_numbers() {
         let (network, exit) = Network::from_columns(&CHAIN).unwrap();
@@ -301,6 +315,12 @@ mod tests {
     }
 
     #[test]
+    fn directed_constrictions_lead_from_the_first_void_to_the_second() {
+        let down = NetworkColumns { conns: &CHAIN_DOWN, rule: ExitRule::Area, ..CHAIN };
+        assert!(Network::from_columns(&down).is_ok());
+    }
+
+    #[test]
     fn what_is_no_network_is_refused() {
         let area = NetworkColumns { rule: ExitRule::Area, ..CHAIN };
         for (columns, message) in [
@@ -326,6 +346,9 @@ mod tests {
             (NetworkColumns { unit_mm: 0.0, ..CHAIN }, "the unit of length is 0 mm"),
             (NetworkColumns { inlets: &[], ..area }, "no inlet"),
             (NetworkColumns { outlets: &[], ..area }, "no outlet"),
+            // Each leads away from the outlet; the same ones can be passed both ways where water flows.
+            (NetworkColumns { conns: &[[2, 1], [1, 0], [3, 2]], ..area }, "from the first of its two voids"),
+            (NetworkColumns { diameter_mm: &[1.0, 1.0, 0.0], conns: &CHAIN_DOWN, ..area }, "no open way"),
             (NetworkColumns { conns: &[[-1, 1], [0, 1], [2, 3]], ..area }, "leads from the outside"),
             (NetworkColumns { conductance: Some(&[1.0; 3]), ..area }, "conductance says nothing"),
         ] {

@@ -1,10 +1,10 @@
 //! Packings as CSV: a column each for x, y, z and the diameter or the radius, by their names.
 //!
-//! A first line `# cell_mm = Lx, Ly, Lz` is a periodic cell with its corner at the origin, `# cell = none`
-//! free boundaries; without it the file does not say. The header names the columns in any order, with their
-//! unit at the end (`x_mm`, `Diameter (m)`), or without one, which leaves it open; further columns are passed
-//! over. ParaView's names of coordinates (`Points:0`, `coordinates_0`) are known. Comma, semicolon or tab
-//! between columns; a byte order mark, CRLF, blank lines and further `#` comments are fine.
+//! A comment above the header, `# cell_mm = Lx, Ly, Lz`, is a periodic cell with its corner at the origin,
+//! `# cell = none` free boundaries; without one the file does not say. The header names the columns in any
+//! order, with their unit at the end (`x_mm`, `Diameter (m)`), or without one, which leaves it open; further
+//! columns are passed over. ParaView's names of coordinates (`Points:0`, `coordinates_0`) are known. Comma,
+//! semicolon or tab between columns; a byte order mark, CRLF, blank lines and further `#` comments are fine.
 
 use super::fields::{ImportError, Kind, Line, number, refused};
 use super::found::{FileCell, FileGrains, grain, in_columns};
@@ -122,16 +122,18 @@ pub(super) fn csv(file: &str, text: &str) -> Result<FileGrains, ImportError> {
         line,
         expected: expected.into(),
     };
-    let mut lines = text
-        .lines()
-        .enumerate()
-        .map(|(i, line)| (i + 1, line))
-        .filter(|(_, l)| !l.trim().is_empty())
-        .peekable();
-    let cell = match lines.peek() {
-        Some(&first) => cell(file, first)?,
-        None => return Err(ended(0, CELL_LINES)),
-    };
+    let lines = text.lines().enumerate().map(|(i, line)| (i + 1, line)).filter(|(_, l)| !l.trim().is_empty());
+    if lines.clone().next().is_none() {
+        return Err(ended(0, CELL_LINES));
+    }
+    let mut cell = FileCell::Unsaid;
+    for comment in lines.clone().take_while(|(_, line)| line.trim_start().starts_with('#')) {
+        match said_of_cell(file, comment)? {
+            FileCell::Unsaid => {}
+            said if matches!(cell, FileCell::Unsaid) => cell = said,
+            _ => return Err(refused(file, comment.0, "cell", comment.1, "one line of the cell")),
+        }
+    }
     let mut rows = lines.filter(|(_, line)| !line.trim_start().starts_with('#'));
     let Some((header_line, header)) = rows.next() else {
         return Err(ended(1, "the header x_mm,y_mm,z_mm,diameter_mm"));
@@ -166,10 +168,10 @@ pub(super) fn csv(file: &str, text: &str) -> Result<FileGrains, ImportError> {
     Ok(FileGrains { columns: in_columns(&grains), unit, cell, line: header_line, notes: Vec::new() })
 }
 
-const CELL_LINES: &str = "a first line \"# cell_mm = Lx, Ly, Lz\" or \"# cell = none\"";
+const CELL_LINES: &str = "a line \"# cell_mm = Lx, Ly, Lz\" or \"# cell = none\"";
 
-/// What a first line says of the cell; a header or another comment says nothing.
-fn cell(file: &str, (line, text): Line<'_>) -> Result<FileCell, ImportError> {
+/// What a comment says of the cell; most say nothing.
+fn said_of_cell(file: &str, (line, text): Line<'_>) -> Result<FileCell, ImportError> {
     let Some((key, value)) = text.trim().strip_prefix('#').and_then(|rest| rest.split_once('=')) else {
         return Ok(FileCell::Unsaid);
     };
@@ -184,6 +186,7 @@ fn cell(file: &str, (line, text): Line<'_>) -> Result<FileCell, ImportError> {
             let length = |text| number(file, line, "cell_mm", text, Kind::Positive);
             Ok(FileCell::Known(Cell::Periodic([length(x)?, length(y)?, length(z)?])))
         }
-        _ => Err(wrong()),
+        (key, _) if key.starts_with("cell") => Err(wrong()),
+        _ => Ok(FileCell::Unsaid),
     }
 }

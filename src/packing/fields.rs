@@ -58,6 +58,14 @@ pub enum ImportError {
         /// What else may be said, where the file gives bounds.
         bounds: &'static str,
     },
+    /// Grains that do not fit the periodic cell they are said to lie in.
+    #[error("{file}: the grains do not fit their cell: {problem}")]
+    Misfit {
+        /// File as the user named it.
+        file: String,
+        /// What shows it.
+        problem: String,
+    },
     /// More bytes than any packing has.
     #[error("{file} is larger than {limit} bytes; allowed: a packing file up to that size")]
     TooLarge {

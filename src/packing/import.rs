@@ -233,12 +233,50 @@ fn complete(
         (FileCell::Unsaid, None) => return Err(ImportError::NoCell { file: file.into(), bounds: "" }),
     };
     let mut packing = Packing { cell, x, y, z, diameter };
+    fits(file, &packing, matches!(options.cell, Some(CellOption::Lengths(_))))?;
     if unit != LengthUnit::Mm {
         into_mm(&mut packing, unit, (file, line))?;
         notes.push(format!("{file}: lengths are in {}, and are turned into mm", unit.words()));
     }
     Ok((packing, notes))
 }
+
+/// Refuses grains that do not fit their cell: a wrong one would give constrictions that are too fine, so a
+/// filter that seems to hold more. Programs may keep grains outside a cell that they wrote themselves, but of
+/// one given by hand nothing else tells whether it is the grains' own.
+fn fits(file: &str, packing: &Packing, by_hand: bool) -> Result<(), ImportError> {
+    let Cell::Periodic(lengths) = packing.cell else { return Ok(()) };
+    let misfit = |problem| Err(ImportError::Misfit { file: file.into(), problem });
+    for ((axis, column), length) in
+        ["x", "y", "z"].into_iter().zip([&packing.x, &packing.y, &packing.z]).zip(lengths)
+    {
+        let low = column.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = column.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        if by_hand && high - low > length * (1.0 + ROUNDING) {
+            return misfit(format!(
+                "the centres spread over {} along {axis}, and the cell is {length} long there. A cell is given \
+                 in the file's unit; grains that have crossed it must be brought back into it",
+                high - low
+            ));
+        }
+    }
+    let solid: f64 = packing.diameter.iter().map(|d| std::f64::consts::FRAC_PI_6 * d * d * d).sum();
+    let whole: f64 = lengths.iter().product();
+    if solid >= whole {
+        return misfit(format!(
+            "the grains have {:.3} times the volume of the cell, {} x {} x {}, and leave no voids. A cell is \
+             given in the file's unit; or are radii read as diameters?",
+            solid / whole,
+            lengths[0],
+            lengths[1],
+            lengths[2]
+        ));
+    }
+    Ok(())
+}
+
+/// Part of a cell's length that rounding in a file may take off or add.
+const ROUNDING: f64 = 1e-6;
 
 fn into_mm(packing: &mut Packing, unit: LengthUnit, (file, line): (&str, usize)) -> Result<(), ImportError> {
     let Packing { cell, x, y, z, diameter } = packing;

@@ -35,6 +35,7 @@ fn the_same_packing_in_every_dress() {
         format!("\u{feff}{}", CSV.replace('\n', "\r\n")),
         CSV.replace("x_mm,y_mm,z_mm,diameter_mm\n", "\n# note\n X_mm , Y_mm,\"z_mm\",diameter_mm,colour\n"),
         CSV.replace("\n0", "\n\n0").replace(',', ";"),
+        format!("# exported by somebody\n# step = 7\n\n{CSV}"),
         DUMP.to_string(),
         DUMP.replace("TIMESTEP\n0", "TIMESTEP\n7\nITEM: TIME\n0.5"),
         DUMP.replace("-1 1", "0 2")
@@ -125,7 +126,7 @@ fn bad_files_are_refused_with_their_place() {
     let csv = |from: &str, to: &str| CSV.replacen(from, to, 1);
     let dump = |from: &str, to: &str| DUMP.replacen(from, to, 1);
     for (text, message) in [
-        (String::new(), "f ends after line 0; expected a first line \"# cell_mm"),
+        (String::new(), "f ends after line 0; expected a line \"# cell_mm"),
         (
             csv("# cell_mm = 2, 3, 4\n", ""),
             "f does not say whether its boundaries are periodic; say it: --cell none",
@@ -141,6 +142,10 @@ fn bad_files_are_refused_with_their_place() {
             csv("2, 3, 4", "2, nan, 4"),
             "f, line 1, cell_mm: \"nan\" is not allowed; allowed: a finite number above 0",
         ),
+        (format!("# step = 7\n{}", csv("2, 3, 4", "2, 3")), "f, line 2, cell"),
+        (csv("cell_mm", "cell_m"), "f, line 1, cell"),
+        (format!("# cell = none\n{CSV}"), "f, line 2, cell: \"# cell_mm = 2, 3, 4\" is not allowed"),
+        (csv("2, 3, 4", "0.8, 0.8, 0.8"), "f: the grains do not fit their cell: the grains have 1.454 times"),
         (csv("2, 3, 4", "2, 0, 4"), "f, line 1, cell_mm: \"0\""),
         (csv("diameter_mm", "diameter"), "f, line 2, header: \"x_mm,y_mm,z_mm,diameter\""),
         (csv("x_mm,y_mm", "x_mm,x_mm"), "(2 for x found)"),
@@ -296,4 +301,22 @@ fn files_of_other_programs_that_are_broken_are_refused_with_their_place() {
         assert!(bad.parse::<CellOption>().unwrap_err().starts_with("write none for free"), "{bad}");
     }
     assert!("µm".parse() == Ok(LengthUnit::Um) && "inch".parse::<LengthUnit>().is_err());
+}
+
+/// A wrong cell gives finer constrictions: a filter that seems to hold more.
+#[test]
+fn grains_wider_than_a_cell_given_by_hand_are_refused() {
+    let text = "#format x_y_z_r\n0.1 0 0 0.05\n1.9 0.5 0.5 0.05\n";
+    let read = |x: f64| {
+        let cell = Some(CellOption::Lengths([x, 1.0, 1.0]));
+        parsed_as(text, &ReadOptions { unit: Some(LengthUnit::M), cell })
+    };
+    assert_eq!(read(1.8).map(|packing| packing.cell), Ok(Cell::Periodic([1800.0, 1000.0, 1000.0])));
+    let error = read(1.7).unwrap_err();
+    assert!(
+        error.contains("along x, and the cell is 1.7 long there") && error.contains("file's unit"),
+        "{error}"
+    );
+    // What a program wrote itself may lie outside its own cell.
+    assert!(parsed(&CSV.replace("1.5,2.5", "3.5,2.5")).is_ok());
 }

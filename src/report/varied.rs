@@ -102,12 +102,12 @@ fn varied(walks: &Walks, mut cases: Vec<Varied>, titles: [&str; 3]) -> Option<Fi
         let (colour, shape, dash) = run_look(run);
         // the runs stand a little apart, so that their bars do not overlap
         let apart = if run == 1 { 0.985 } else { 1.015 };
-        let found =
-            || cases.iter().filter_map(|case| Some((case.factor * apart, case.runs.get(run as usize - 1)?)));
-        let means = found().map(|(factor, statistic)| (factor, statistic.mean * 100.0)).collect();
-        figure.add(Line::new(means, colour).dash(dash).label(run_name(run)));
+        let found = || cases.iter().filter_map(|case| Some((case.factor, case.runs.get(run as usize - 1)?)));
+        let means = found().map(|(factor, statistic)| (factor * apart, statistic.mean * 100.0)).collect();
+        let factors = found().map(|(factor, _)| factor).collect();
+        figure.add(Line::new(means, colour).true_x(factors).dash(dash).label(run_name(run)));
         for (factor, statistic) in found() {
-            let point = Point::new(factor, statistic.mean * 100.0, colour, shape);
+            let point = Point::new(factor * apart, statistic.mean * 100.0, colour, shape).true_x(factor);
             figure.add(point.y_interval(interval_in_percent(statistic)));
         }
     }

@@ -42,7 +42,7 @@ impl Default for ConstrictionsOptions {
 /// that file says.
 ///
 /// # Errors
-/// Grains that are refused, a folder that cannot be claimed or written.
+/// Grains that are refused, or do not fit their cell; a folder that cannot be claimed or written.
 pub fn measure_constrictions(
     packing: &Path,
     options: &ConstrictionsOptions,
@@ -54,6 +54,7 @@ pub fn measure_constrictions(
     let t = Triangulation::new(&packing).map_err(|error| refused(error.to_string()))?;
     let found = Constrictions::from_triangulation(&t, options.merge_overlap, options.facets)
         .map_err(|error| refused(error.to_string()))?;
+    found.fit_their_cell().map_err(|error| refused(error.to_string()))?;
     // Grains without a cell, and voids that run through it, have no graph.
     let graph = VoidGraph::of(&t, options.merge_overlap).ok();
     // Those near the outside of grains without a cell are no part of the curve.

@@ -56,7 +56,7 @@ section! {
         /// Instead of a curve: the grains are packed this densely first and the constrictions measured
         /// (seconds to minutes, once).
         pub density: Option<Density> = None, off "\"loose\"",
-            any("\"dense\" (friction 0), \"intermediate\" (0.1) or \"loose\" (0.3)");
+            any("\"dense\" (friction 0), \"medium\" or \"intermediate\" (0.1), or \"loose\" (0.3)");
         /// Instead of a word for the density: friction between grains while they are compressed.
         pub friction: Option<f64> = None, off "0.3", within(0.0..=10.0, "a number from 0 to 10");
         /// Written by a run whose filter was packed: the constriction curve measured on that packing, so that
@@ -295,7 +295,8 @@ impl Leaf for CurveSource {
 pub enum Density {
     /// As dense as it gets: no friction.
     Dense,
-    /// Between the two: friction 0.1.
+    /// Between the two: friction 0.1. "medium" is read as this too.
+    #[serde(alias = "medium")]
     Intermediate,
     /// Loose: friction 0.3.
     Loose,

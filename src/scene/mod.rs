@@ -520,8 +520,9 @@ mod tests {
             ("about.author=\"a\\nb\"", "a text in quotes, one line"),
             ("about.project=turned \u{202e}", "characters that are seen"),
             ("bas.cu=2", "did you mean `base.cu`"),
-            ("filter.density=medium", "\"dense\" (friction 0), \"intermediate\" (0.1) or \"loose\" (0.3)"),
+            ("filter.density=tight", "\"medium\" or \"intermediate\" (0.1), or \"loose\" (0.3)"),
             ("packing.drag=1", "packing.drag goes with filter.density or filter.friction"),
+            ("filter.density=medium", "filter.cu or filter.sieve is missing"),
             ("filter.density=loose", "filter.cu or filter.sieve is missing"),
         ] {
             let error = built_in(&[set]).unwrap_err().to_string();

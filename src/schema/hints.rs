@@ -8,6 +8,36 @@ const WORKBOOKS: [&[u8]; 2] = [b"PK\x03\x04", b"\xd0\xcf\x11\xe0"];
 /// Sections and keys that only a plan of a campaign has.
 const OF_A_PLAN: [&str; 6] = ["factor", "case", "leave_out", "seeds", "title", "set"];
 
+/// Units that the name of a setting may end in, and others by how many of them they are.
+const UNITS: [(&str, &[(&str, f64)]); 4] = [
+    (
+        "mm",
+        &[
+            ("mm", 1.0),
+            ("cm", 10.0),
+            ("m", 1000.0),
+            ("um", 1e-3),
+            ("µm", 1e-3),
+            ("μm", 1e-3),
+            ("nm", 1e-6),
+            ("in", 25.4),
+            ("inch", 25.4),
+        ],
+    ),
+    ("kPa", &[("kPa", 1.0), ("Pa", 1e-3), ("MPa", 1e3), ("GPa", 1e6)]),
+    ("GPa", &[("GPa", 1.0), ("Pa", 1e-9), ("kPa", 1e-6), ("MPa", 1e-3)]),
+    ("kg/m3", &[("kg/m3", 1.0)]),
+];
+
+/// What some write behind a number of things.
+const COUNTED: [&str; 1] = ["layers"];
+
+/// Settings that are percentages.
+const PERCENTAGES: [&str; 2] = ["d85_at_dc", "coarsest"];
+
+/// Settings that are parts of 1, besides those whose names end in `_fraction`.
+const FRACTIONS: [&str; 4] = ["mass_ratio", "inject_share", "estimate", "rho"];
+
 /// Bytes as text; a byte order mark is left out.
 ///
 /// # Errors
@@ -47,7 +77,7 @@ pub fn of_line(text: &str, line: usize) -> Option<String> {
              between single quotes"
         ));
     }
-    if let Some(hint) = of_value(value) {
+    if let Some(hint) = of_value(key, value) {
         return Some(format!("`{value}`: {hint}"));
     }
     let is_bare = value.starts_with(|c: char| c.is_alphabetic() || "./~".contains(c))
@@ -58,8 +88,9 @@ pub fn of_line(text: &str, line: usize) -> Option<String> {
     })
 }
 
-/// What is wrong with a value that is meant to be a number, where it is one of the usual mistakes.
-pub fn of_value(value: &str) -> Option<String> {
+/// What is wrong with a value of the setting `name` that is meant to be a number, where it is one of the usual
+/// mistakes. A number is named only where the setting's unit is certain.
+pub fn of_value(name: &str, value: &str) -> Option<String> {
     let number = value.trim();
     if let Some((whole, part)) = number.split_once(',')
         && is_digits(whole.trim_start_matches(['+', '-']))
@@ -69,9 +100,39 @@ pub fn of_value(value: &str) -> Option<String> {
     }
     let end = number.find(|c: char| !c.is_ascii_digit() && !".+-".contains(c))?;
     let (digits, unit) = (number[..end].trim(), number[end..].trim());
-    let is_unit = ["mm", "cm", "m", "um", "µm", "μm", "nm", "%", "layers", "kPa", "GPa"].contains(&unit);
-    let is_number = digits.parse::<f64>().is_ok();
-    (is_unit && is_number).then(|| format!("the number alone, without its unit: {digits}"))
+    let given: f64 = digits.parse().ok()?;
+    // A name may be written with its section.
+    let name = name.rsplit('.').next().unwrap_or(name).trim();
+    let known = UNITS.iter().find(|(_, units)| units.iter().any(|(other, _)| *other == unit));
+    if unit != "%" && !COUNTED.contains(&unit) && known.is_none() {
+        return None;
+    }
+    let alone = || Some(format!("the number alone, without its unit: {digits}"));
+    if let Some((own, units)) = UNITS.iter().find(|(own, _)| name.to_lowercase().ends_with(&ending(own))) {
+        return match units.iter().find(|(other, _)| *other == unit) {
+            Some((other, _)) if other == own => alone(),
+            Some((_, factor)) => Some(format!("in {own}, without the unit: {}", rounded(given * factor))),
+            None => Some(format!("in {own}, and without a unit")),
+        };
+    }
+    match unit {
+        "%" if PERCENTAGES.contains(&name) => alone(),
+        "%" if FRACTIONS.contains(&name) || name.ends_with("_fraction") => {
+            Some(format!("as a part of 1, without the unit: {}", rounded(given / 100.0)))
+        }
+        "layers" if name == "nz" => alone(),
+        _ => Some("a number that has no unit".into()),
+    }
+}
+
+/// How the name of a setting in this unit ends.
+fn ending(unit: &str) -> String {
+    format!("_{}", unit.to_lowercase().replace('/', "_"))
+}
+
+/// Without the last digits, which a conversion may get wrong.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.11e}").parse().unwrap_or(value)
 }
 
 fn is_digits(text: &str) -> bool {
@@ -116,10 +177,34 @@ mod tests {
 
     #[test]
     fn numbers_with_a_comma_or_a_unit_are_known() {
-        let texts = ["3,5", "500mm", "0.5 mm", "50%", "1e3", "abc", "7", "12 weeks", ""].map(of_value);
+        let texts = ["3,5", "500mm", "0.5 mm", "500 mm", "1e3", "abc", "7", "12 weeks", ""]
+            .map(|text| of_value("network.thickness_mm", text));
         let said: Vec<Option<&str>> = texts.iter().map(|text| text.as_deref().map(|t| &t[..18])).collect();
         let [comma, unit] = [Some("a decimal point, n"), Some("the number alone, ")];
         assert_eq!(said, [comma, unit, unit, unit, None, None, None, None, None]);
+    }
+
+    #[test]
+    fn a_number_is_named_in_the_unit_of_its_setting() {
+        for (name, value, hint) in [
+            ("base.d85_mm", "75um", "in mm, without the unit: 0.075"),
+            ("base.d85_mm", "75 μm", "in mm, without the unit: 0.075"),
+            ("filter.thickness_mm", "0.3m", "in mm, without the unit: 300"),
+            ("thickness_mm", "1.1 cm", "in mm, without the unit: 11"),
+            ("thickness_mm", "3in", "in mm, without the unit: 76.2"),
+            ("thickness_mm", "5%", "in mm, and without a unit"),
+            ("base.mass_ratio", "5%", "as a part of 1, without the unit: 0.05"),
+            ("packing.start_fraction", "35%", "as a part of 1, without the unit: 0.35"),
+            ("base.d85_at_dc", "5%", "the number alone, without its unit: 5"),
+            ("base.d85_at_dc", "5mm", "a number that has no unit"),
+            ("network.nz", "60 layers", "the number alone, without its unit: 60"),
+            ("filter.cu", "3%", "a number that has no unit"),
+            ("packing.shear_modulus_gpa", "27GPa", "the number alone, without its unit: 27"),
+            ("packing.pressure_kpa", "0.1MPa", "in kPa, without the unit: 100"),
+            ("packing.density_kg_m3", "2670kg/m3", "the number alone, without its unit: 2670"),
+        ] {
+            assert_eq!(of_value(name, value).as_deref(), Some(hint), "{name} = {value}");
+        }
     }
 
     #[test]

@@ -280,7 +280,7 @@ impl GivenSettings {
             .cloned()
             .unwrap_or_else(|| (Value::Other("nothing".into()), Origin::Line(self.file.clone(), 1)));
         let (value, mut allowed) = (value.to_string(), allowed.into());
-        if let Some(hint) = hints::of_value(&value) {
+        if let Some(hint) = hints::of_value(name, &value) {
             allowed = format!("{allowed} ({hint})");
         }
         SceneError::Value { origin, name: name.into(), value, allowed }

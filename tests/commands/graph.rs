@@ -135,6 +135,50 @@ fn a_graph_and_its_exits_are_refused_by_name_where_they_do_not_go_together() {
     refused(&call(root.path(), &["check", "scene.toml", "--set", "network.packing=nan.csv"]), "NaN");
 }
 
+/// A wrong cell gives finer constrictions: a filter that seems to hold more.
+#[test]
+fn grains_that_do_not_fit_their_cell_are_refused_and_loose_ones_warned_of() {
+    let root = tempfile::tempdir().unwrap();
+    prepared(root.path());
+    let both = |name: &str, cell: Option<&str>, message: &str| {
+        let measured = ["constrictions", name, "--out", "m", "--cell", cell.unwrap_or_default()];
+        refused(&call(root.path(), &measured[..if cell.is_some() { 6 } else { 4 }]), message);
+        let packing = format!("network.packing={name}");
+        let hand = format!("network.cell=\"{}\"", cell.unwrap_or_default());
+        let scene = ["check", "scene.toml", "--set", &packing, "--set", &hand];
+        refused(&call(root.path(), &scene[..if cell.is_some() { 6 } else { 4 }]), message);
+    };
+    let write = |name: &str, text: String| fs::write(root.path().join(name), text).unwrap();
+    let own = |cell: &str| grains(4).replacen("4, 4, 4", cell, 1);
+    // The last layer of grains falls onto the first.
+    write("short.csv", own("4, 4, 3"));
+    both("short.csv", None, "lie inside others");
+    write("full.csv", own("4, 4, 1"));
+    both("full.csv", None, "times the volume of the cell");
+    let no_cell = grains(4).split_once('\n').unwrap().1.to_owned();
+    write("open.csv", no_cell);
+    both("open.csv", Some("4, 4, 2.9"), "the cell is 2.9 long there");
+    assert!(!root.path().join("m").exists());
+
+    let smaller =
+        |line: &str| match line.rsplit_once(',').and_then(|(at, d)| Some((at, d.parse::<f64>().ok()?))) {
+            Some((at, d)) if !line.starts_with('#') => format!("{at},{}\n", 0.88 * d),
+            _ => format!("{line}\n"),
+        };
+    write("loose.csv", grains(4).lines().map(smaller).collect());
+    let measured = call(root.path(), &["constrictions", "loose.csv", "--out", "m"]);
+    done(&measured);
+    let said = String::from_utf8_lossy(&measured.stdout).into_owned();
+    assert!(said.contains("warning: the void ratio is 2.2") && said.contains("another unit"), "{said}");
+    let loose = ["--set", "network.packing=loose.csv"];
+    let checked = call(root.path(), &["check", "scene.toml", loose[0], loose[1]]);
+    done(&checked);
+    let said = [checked.stdout, checked.stderr].concat();
+    assert!(String::from_utf8_lossy(&said).contains("loose.csv: the void ratio is 2.2"));
+    let usual = call(root.path(), &["check", "scene.toml"]);
+    assert!(!String::from_utf8_lossy(&[usual.stdout, usual.stderr].concat()).contains("void ratio is"));
+}
+
 /// A thickness is layers of a lattice, and copies of a packing.
 #[test]
 fn thickness_is_layers_or_copies() {

@@ -27,7 +27,8 @@ fn files(folder: &Path) {
     write("windows.toml", b"[base]\nsieve = \"csv\\sand.csv\"\n");
     write("comma.toml", b"[base]\ncu = 1,5\n");
     write("unit.toml", b"[network]\nthickness_mm = 500 mm\n");
-    write("word.toml", b"[filter]\ndensity = \"medium\"\n");
+    write("micron.toml", b"[base]\nd85_mm = 75 um\n");
+    write("word.toml", b"[filter]\ndensity = \"tight\"\n");
     write("key.toml", b"[filtre]\ncu = 3\n");
     write("far.toml", b"[walk]\nbias = 1\n");
     write("lost.toml", b"[filter]\ncurve = \"cu3-loose\"\n[base]\nsieve = \"nosuch.csv\"\n");
@@ -49,6 +50,14 @@ fn files(folder: &Path) {
         "[network]\nfile = \"arrays.npz\"\n[filter]\ncu = 1.5\n[base]\nsingle_mm = 0.1\nn_base = 5\n";
     write("arrays.toml", arrays.as_bytes());
     write("folder", b"a file");
+    // Finished, with somebody's own things where the tables go.
+    for name in ["finished", "linked"] {
+        fs::create_dir(folder.join(name)).unwrap();
+        write(&format!("{name}/constrictions.json"), b"{}");
+        write(&format!("{name}/.voidwalk.lock"), b"");
+    }
+    write("finished/export", b"a file");
+    std::os::unix::fs::symlink("..", folder.join("linked/export")).unwrap();
 }
 
 #[test]

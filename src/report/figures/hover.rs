@@ -14,8 +14,9 @@ const APART: f64 = 14.0;
 /// What is said of a point.
 pub(super) fn title(figure: &Figure, label: Option<&str>, (x, y): (f64, f64)) -> String {
     let name = label.map_or(String::new(), |label| format!("{}: ", label.replace('\n', " ")));
-    // An axis of rows has no label: its value is a place.
-    let value = |label: &str, value: f64| match label {
+    // An axis of rows has no label: its value is a place. What follows a label's first clause is said of the
+    // marks along the axis, not of a value.
+    let value = |label: &str, value: f64| match label.split([';', '\n']).next().unwrap_or_default() {
         "" => String::new(),
         label => format!("{label} {}", significant(value)),
     };
@@ -37,8 +38,11 @@ pub(super) fn draw(
         let inside = |(x, y): &(f64, f64)| {
             (area.left..=area.right).contains(x) && (area.top..=area.bottom).contains(y)
         };
-        let seen: Vec<((f64, f64), (f64, f64))> =
-            line.points.iter().filter_map(|&point| Some((point, at(point).filter(inside)?))).collect();
+        let said = |(i, &(x, y)): (usize, &(f64, f64))| {
+            let true_x = line.true_x.as_ref().and_then(|values| values.get(i).copied());
+            Some(((true_x.unwrap_or(x), y), at((x, y)).filter(inside)?))
+        };
+        let seen: Vec<((f64, f64), (f64, f64))> = line.points.iter().enumerate().filter_map(said).collect();
         let few = simplify(seen.iter().map(|(_, pixel)| *pixel)).len().clamp(2, SPOTS);
         let stride = seen.len().div_ceil(few).max(1);
         let mut last: Option<(f64, f64)> = None;
@@ -54,5 +58,27 @@ pub(super) fn draw(
                 title(figure, Some(label), point)
             ));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Axis, BLUE, Line, Point, Shape, Size};
+    use super::*;
+
+    /// Of marks that are drawn beside their place the place is said, in the words of the first line.
+    #[test]
+    fn a_pointer_shows_the_true_place() {
+        let x = Axis::log("Times the grains; below, grains per void", 0.5, 2.0).within(0.4, 2.5);
+        let mut figure = Figure::new("title", "what", "", x, Axis::linear("Eroded (%)", 0.0, 100.0));
+        let line = Line::new(vec![(0.985, 20.0), (1.97, 60.0)], BLUE).true_x(vec![1.0, 2.0]);
+        figure.add(line.label("first"));
+        figure.add(Point::new(0.985, 20.0, BLUE, Shape::Circle).true_x(1.0));
+        let drawn = figure.inline("one", Size::Wide);
+        for title in ["first: Times the grains 1; Eroded (%) 20", "first: Times the grains 2; Eroded (%) 60"]
+        {
+            assert!(drawn.contains(&format!("<title>{title}</title>")), "{title}: {drawn}");
+        }
+        assert!(drawn.contains("<title>Times the grains 1; Eroded (%) 20</title>"), "{drawn}");
     }
 }

@@ -17,6 +17,7 @@ pub enum Dash {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
     pub(super) points: Vec<(f64, f64)>,
+    pub(super) true_x: Option<Vec<f64>>,
     pub(super) colour: Colour,
     pub(super) width: f64,
     pub(super) dash: Dash,
@@ -27,7 +28,13 @@ pub struct Line {
 impl Line {
     /// A solid line, 2 pixels wide.
     pub fn new(points: Vec<(f64, f64)>, colour: Colour) -> Line {
-        Line { points, colour, width: 2.0, dash: Dash::Solid, opacity: 1.0, label: None }
+        Line { points, true_x: None, colour, width: 2.0, dash: Dash::Solid, opacity: 1.0, label: None }
+    }
+
+    /// With the values along x that a pointer shows, where the points are drawn beside them.
+    pub fn true_x(mut self, values: Vec<f64>) -> Line {
+        self.true_x = Some(values);
+        self
     }
 
     /// Another width in pixels.
@@ -94,6 +101,7 @@ pub enum Shape {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
     pub(super) at: (f64, f64),
+    pub(super) true_x: Option<f64>,
     pub(super) colour: Colour,
     pub(super) shape: Shape,
     pub(super) filled: bool,
@@ -107,7 +115,14 @@ impl Point {
     /// A filled symbol.
     pub fn new(x: f64, y: f64, colour: Colour, shape: Shape) -> Point {
         let (x_interval, y_interval) = (None, None);
-        Point { at: (x, y), colour, shape, filled: true, x_interval, y_interval, drop: false, label: None }
+        let (true_x, label) = (None, None);
+        Point { at: (x, y), true_x, colour, shape, filled: true, x_interval, y_interval, drop: false, label }
+    }
+
+    /// With the value along x that a pointer shows, where the symbol is drawn beside it.
+    pub fn true_x(mut self, value: f64) -> Point {
+        self.true_x = Some(value);
+        self
     }
 
     /// Hollow.
