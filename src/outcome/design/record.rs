@@ -114,8 +114,8 @@ pub struct DesignRow {
     pub not_monotone: u64,
     /// What each network says.
     pub networks: Vec<NetworkBoundaries>,
-    /// The band of a specification, up to what holds over the whole range of its curve; `None` for the inverse, where nothing limits it, and where no ratio is
-    /// known that all but 5 % of networks hold.
+    /// The band of a specification, up to what holds over the whole range of its curve; `None` for the
+    /// inverse, where nothing limits it, and where no ratio is known that all but 5 % of networks hold.
     pub band: Option<Band>,
     /// Why there is no band, where networks erode at every ratio that was searched.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -239,7 +239,8 @@ fn bands(design: &Design) -> Markup {
             p {
                 "D15F from the least that drains the base to the greatest at which all but 5 % of networks \
                  show no erosion, and what the strictest rule of retention allows. It is empty where the \
-                 least is more than either of the two. Where the constriction curve is known within a range                  only, all of the range must hold."
+                 least is more than either of the two. Where the constriction curve is known \
+                 within a range only, all of the range must hold."
             }
             (Table::of(rows.iter().copied()).class("study")
                 .name("Density, thickness", |row| clean(&format!("{}, {}", row.density, row.thickness)))

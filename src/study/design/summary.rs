@@ -108,7 +108,8 @@ fn range<'a>(
     rows.iter().zip(boundaries).filter(move |(other, _)| is_of_it(other)).map(|(_, of)| of)
 }
 
-/// The ratio that nearly all networks hold, of every curve of the range; `None` where that of one is not known.
+/// The ratio that nearly all networks hold, of every curve of the range; `None` where that of one is not
+/// known.
 fn held_over_range(row: &Row, rows: &[Row], boundaries: &[DesignRow]) -> Option<f64> {
     let each = range(row, rows, boundaries).map(|of| of.no_erosion.as_ref().and_then(Boundary::cautious));
     each.reduce(|a, b| Some(a?.min(b?))).flatten()
