@@ -19,7 +19,8 @@ pub fn export(folder: &Path) -> Result<(), RunError> {
     if into.symlink_metadata().is_ok_and(|found| !found.is_dir()) {
         let what = if into.is_symlink() { "a symbolic link" } else { "a file" };
         return Err(RunError::Refused(format!(
-            "{}: is {what}, and the tables go into a folder of that name; move it away or give it another name",
+            "{}: is {what}, and the tables go into a folder of that name; move it away or \
+             give it another name",
             shown(&into)
         )));
     }

@@ -129,8 +129,8 @@ pub enum ConstrictionsError {
     /// Grains inside others, which a periodic cell of another size or unit makes of grains side by side.
     #[error(
         "the grains do not fit their cell: {hidden} of {grains} lie inside others, the first of them grain \
-         {first} (counted from 0). The cell is too small, or in another unit than the grains, or grains stand \
-         twice in the file"
+         {first} (counted from 0). The cell is too small, or in another unit than the grains, or grains \
+         stand twice in the file"
     )]
     Hidden {
         /// Grains inside others.
@@ -386,8 +386,8 @@ impl Constrictions {
         let is_loose = self.region == Region::Everything && self.void_ratio > LOOSEST;
         is_loose.then(|| {
             format!(
-                "the void ratio is {:.4}, and grains that rest on each other hardly leave more than {LOOSEST}: the \
-                 cell may be too large, or in another unit than the grains",
+                "the void ratio is {:.4}, and grains that rest on each other hardly leave more than \
+                 {LOOSEST}: the cell may be too large, or in another unit than the grains",
                 self.void_ratio
             )
         })

@@ -57,7 +57,8 @@ impl Network {
     ///
     /// # Errors
     /// Columns of unequal length, a void that is none, a diameter or conductance that none can have; no
-    /// constriction, no inlet, no way out, no open way between the two; a rule that goes by height, of which the columns say nothing.
+    /// constriction, no inlet, no way out, no open way between the two; a rule that goes by
+    /// height, of which the columns say nothing.
     pub fn from_columns(columns: &NetworkColumns) -> Result<(Self, Vec<u32>), NetworkError> {
         let diameter = columns.checked()?;
         match columns.rule {

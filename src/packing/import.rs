@@ -254,8 +254,8 @@ fn fits(file: &str, packing: &Packing, by_hand: bool) -> Result<(), ImportError>
         let high = column.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         if by_hand && high - low > length * (1.0 + ROUNDING) {
             return misfit(format!(
-                "the centres spread over {} along {axis}, and the cell is {length} long there. A cell is given \
-                 in the file's unit; grains that have crossed it must be brought back into it",
+                "the centres spread over {} along {axis}, and the cell is {length} long there. A cell is \
+                 given in the file's unit; grains that have crossed it must be brought back into it",
                 high - low
             ));
         }

@@ -88,8 +88,8 @@ pub fn of_line(text: &str, line: usize) -> Option<String> {
     })
 }
 
-/// What is wrong with a value of the setting `name` that is meant to be a number, where it is one of the usual
-/// mistakes. A number is named only where the setting's unit is certain.
+/// What is wrong with a value of the setting `name` that is meant to be a number, where it is one of the
+/// usual mistakes. A number is named only where the setting's unit is certain.
 pub fn of_value(name: &str, value: &str) -> Option<String> {
     let number = value.trim();
     if let Some((whole, part)) = number.split_once(',')
