@@ -75,10 +75,9 @@ mod tests {
         figure.add(line.label("first"));
         figure.add(Point::new(0.985, 20.0, BLUE, Shape::Circle).true_x(1.0));
         let drawn = figure.inline("one", Size::Wide);
-        for title in ["first: Times the grains 1; Eroded (%) 20", "first: Times the grains 2; Eroded (%) 60"]
-        {
-            assert!(drawn.contains(&format!("<title>{title}</title>")), "{title}: {drawn}");
+        for values in ["Times the grains 1.00; Eroded (%) 20.0", "Times the grains 2.00; Eroded (%) 60.0"] {
+            assert!(drawn.contains(&format!("<title>first: {values}</title>")), "{values}: {drawn}");
         }
-        assert!(drawn.contains("<title>Times the grains 1; Eroded (%) 20</title>"), "{drawn}");
+        assert!(drawn.contains("<title>Times the grains 1.00; Eroded (%) 20.0</title>"), "{drawn}");
     }
 }
