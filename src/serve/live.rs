@@ -182,4 +182,20 @@ mod tests {
         walked(&mut live, 5, 2, 0.9);
         assert_eq!(live.snapshot(2)["so_far"]["class"], "undecided");
     }
+
+    #[test]
+    fn the_runs_of_each_case_are_counted_while_it_is_walked() {
+        let mut live = Live::default();
+        live.cases(2, 0);
+        live.tell_case("a.csv", CaseEvent::Begun { resumes: false });
+        live.tell_case("a.csv", CaseEvent::Walked { done: 3, runs: 20 });
+        live.tell_case("b.csv", CaseEvent::Walked { done: 1, runs: 20 });
+        live.tell_case("a.csv", CaseEvent::Walked { done: 4, runs: 22 });
+        let walking = |live: &Live| live.snapshot(2)["walking"].clone();
+        let case = |case: &str, done: u64, runs: u64| json!({ "case": case, "done": done, "runs": runs });
+        assert_eq!(walking(&live), json!([case("a.csv", 4, 22), case("b.csv", 1, 20)]));
+        live.tell_case("a.csv", CaseEvent::Failed("it is wrong"));
+        assert_eq!(walking(&live), json!([case("b.csv", 1, 20)]));
+        assert_eq!(live.warnings, ["a.csv: it is wrong"]);
+    }
 }
