@@ -279,8 +279,8 @@ def told(rows):
     layers = sorted({row["layers"] for row in rows})
     layers = f"{layers[0]} layers of voids" if len(layers) == 1 else f"{layers[0]} to {layers[-1]} layers of voids at the boundary"
     first = dict(setting.split("=") for setting in rows[0]["settings"].split())
-    lines = [f"Lines: what 95 % of {rows[0]['networks']} networks of {first['network.nx']} x {first['network.ny']} voids across hold (no erosion), or continue "
-             f"above (continuing); {layers}; bars: up to 95 %."]
+    lines = [f"Lines: the lower end of the band (5 %) of {rows[0]['networks']} networks of {first['network.nx']} x {first['network.ny']} voids across, {layers}; "
+             "bars: up to 95 %."]
     of_base = f"D85 of the base is {float(first['base.d85_mm']):g} mm. " if rows[0]["thickness"].endswith("mm") else ""
     cases = {(row["cu_f"], row["cu_b"]): row["confidence"] for row in rows}
     doubted = [case for case, confidence in cases.items() if confidence != "within checked range"]
