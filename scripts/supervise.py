@@ -114,9 +114,11 @@ class Find(Exception):
     """What should not be."""
 
 
-def grains(number):
-    chance = random.Random(1)
-    rows = [",".join(f"{5 * chance.random():.6f}" for _ in range(3)) + ",0.8" for _ in range(number)]
+def grains(side):
+    """Grains on a disturbed cubic lattice of so many each way, which fit their cell."""
+    chance, step = random.Random(1), 5 / side
+    places = [(x, y, z) for x in range(side) for y in range(side) for z in range(side)]
+    rows = [",".join(f"{step * (at + 0.06 * chance.random()):.6f}" for at in place) + f",{0.93 * step:.6f}" for place in places]
     return "# cell_mm = 5, 5, 5\nx_mm,y_mm,z_mm,diameter_mm\n" + "\n".join(rows) + "\n"
 
 
@@ -224,7 +226,7 @@ class Supervisor:
         work, before, folders = WORKS[command]
         at = os.path.join(self.at, f"{command}-unbroken")
         os.mkdir(at)
-        for name, text in {**FILES, "grains.csv": grains(800), "fewer.csv": grains(300)}.items():
+        for name, text in {**FILES, "grains.csv": grains(9), "fewer.csv": grains(7)}.items():
             with open(os.path.join(at, name), "w") as file:
                 file.write(text)
         if before:
