@@ -99,10 +99,10 @@ class Packing:
         """
         import warnings
 
-        (coords, diameter, cell), notes = _voidwalk.read_packing(os.fspath(path), unit, cell)
+        (coords, diameter, lengths), notes = _voidwalk.read_packing(os.fspath(path), unit, cell)
         for note in notes:
             warnings.warn(note, stacklevel=2)
-        return cls(coords, diameter, cell)
+        return cls(coords, diameter, lengths)
 
     from_lammps = from_file
 
