@@ -35,13 +35,13 @@ except KeyboardInterrupt as error:
 """
 
 
-def interrupted(scene: Dict[str, Any], out: str) -> "tuple[float, str]":
-    """Seconds from Ctrl-C to the end of a walk in a process of its own, and what it said."""
+def interrupted(scene: Dict[str, Any], out: str, after: float = 1.5) -> "tuple[float, str]":
+    """Seconds from Ctrl-C, so long after it began, to the end of a walk in a process of its own, and what it said."""
     child = subprocess.Popen(
         [sys.executable, "-c", CHILD, json.dumps(scene), out], stdout=subprocess.PIPE, text=True
     )
     assert child.stdout is not None and child.stdout.readline() == "begun\n"
-    time.sleep(1.5)
+    time.sleep(after)
     sent = time.time()
     child.send_signal(signal.SIGINT)
     word, at, *text = child.communicate(timeout=60)[0].split(maxsplit=2)
@@ -56,8 +56,9 @@ def test_ctrl_c_ends_a_walk_within_a_second(long: Dict[str, Any]) -> None:
 
 def test_ctrl_c_loses_nothing_that_was_saved(small: Dict[str, Any], tmp_path: Path) -> None:
     scene = {**small, "replicates": 3, "engine": "particles"}
-    scene["base"] = {**small["base"], "n_base": 2_000_000}
-    seconds, text = interrupted(scene, str(tmp_path / "run"))
+    scene["base"] = {**small["base"], "n_base": 6_000_000}
+    # It takes some seconds on a quick machine.
+    seconds, text = interrupted(scene, str(tmp_path / "run"), after=0.4)
     assert "progress saved" in text and not (tmp_path / "run" / "outcome.json").exists()
     resumed = vw.resume(tmp_path / "run")
     whole = vw.run(scene)
