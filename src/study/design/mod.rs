@@ -175,6 +175,7 @@ impl DraftedRow {
             inverse: options.inverse,
             limits: limits(options),
             end_of: None,
+            ends: Vec::new(),
         };
         row.check_room(options.bracket)?;
         // Of a filter that is still to be packed the curve itself is not known yet.
@@ -203,9 +204,10 @@ fn with_curve_ends(rows: Vec<Row>) -> Vec<Row> {
     let mut all: Vec<Row> = Vec::new();
     for row in &rows {
         let ends = row.at_curve_ends();
+        let names = ends.iter().map(|end| end.wanted.density.clone()).collect();
         let asked_for = |end: &Row| rows.iter().chain(&all).any(|other| same(end, other));
         let ends: Vec<Row> = ends.into_iter().filter(|end| !asked_for(end)).collect();
-        all.push(row.clone());
+        all.push(Row { ends: names, ..row.clone() });
         all.extend(ends);
     }
     all

@@ -42,6 +42,8 @@ pub(super) struct Row {
     pub limits: ResourceLimits,
     /// The density of which this is an end of the range in which its constriction curve is known.
     pub end_of: Option<String>,
+    /// The densities of the ends of its own range.
+    pub ends: Vec<String>,
 }
 
 impl Row {

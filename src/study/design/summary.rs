@@ -99,11 +99,10 @@ fn range<'a>(
     rows: &'a [Row],
     boundaries: &'a [DesignRow],
 ) -> impl Iterator<Item = &'a DesignRow> {
-    let ends: Vec<String> = row.at_curve_ends().into_iter().map(|end| end.wanted.density).collect();
     let is_of_it = move |other: &Row| {
         let density = &other.wanted.density;
         other.wanted.thickness == row.wanted.thickness
-            && (*density == row.wanted.density || row.end_of.is_none() && ends.contains(density))
+            && (*density == row.wanted.density || row.ends.contains(density))
     };
     rows.iter().zip(boundaries).filter(move |(other, _)| is_of_it(other)).map(|(_, of)| of)
 }
