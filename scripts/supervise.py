@@ -4,6 +4,7 @@
     scripts/supervise.py [--kills 1000] [--seed 1] [--binary target/release/voidwalk] [--commands run pack ...] [--seconds S]
     scripts/supervise.py --kills 10000              # overnight
     scripts/supervise.py --trial 1-run-17           # one trial again, by the name that a find gives it
+    scripts/supervise.py --python target/python/bin/python    # also works of the Python package that is installed there
 
 A trial is one work that is harmed one to six times, each time in one of these ways, and is continued as a user would who does not
 know how far it was (`resume`, or the same command); when it has ended well, every file of its folder is compared:
@@ -100,6 +101,28 @@ WORKS = {
         ["r"],
     ),
 }
+# Works of the Python package, each line a call of its own; a run is resumed by the package or by the program.
+PYTHON_WORKS = {
+    "python-run": (["python", "run", "files.toml"], None, ["r"]),
+    "python-campaign": (["python", "campaign", "plan.toml"], None, ["r"]),
+}
+PYTHON = """
+import sys, voidwalk
+call, file = sys.argv[1:]
+more = {"checkpoint_every": "10increments"}
+try:
+    if call == "run":
+        voidwalk.run(file, "r", **more)
+    elif call == "campaign":
+        voidwalk.campaign(file, "r", **more)
+    else:
+        voidwalk.resume(file, **more)
+except ValueError as problem:
+    sys.exit(print("refused:", problem, file=sys.stderr) or 2)
+except voidwalk.VoidwalkError as problem:
+    sys.exit(print("error:", problem, file=sys.stderr) or 1)
+"""
+WORKS |= PYTHON_WORKS
 HARMS = ["kill", "kill", "kill", "kill", "kill", "stop", "full", "cut", "flip", "other"]
 
 # What a record says of the clock, the machine and the call.
@@ -173,14 +196,18 @@ def files_of(folder):
 
 
 class Supervisor:
-    def __init__(self, binary, at):
-        self.binary, self.at = binary, at
+    def __init__(self, binary, python, at):
+        self.binary, self.python, self.at = binary, python, at
         self.ready = {}  # command: files to begin with, what unbroken work leaves, what was there before, seconds
         self.count = {}
         self.notes = {}
 
+    def program(self, words):
+        """The program that these words are for, with them."""
+        return [self.python, "-c", PYTHON, *words[1:]] if words[0] == "python" else [self.binary, *words]
+
     def call(self, words, at, **more):
-        return subprocess.run([self.binary, *words], cwd=at, capture_output=True, text=True, errors="replace", timeout=600, **more)
+        return subprocess.run(self.program(words), cwd=at, capture_output=True, text=True, errors="replace", timeout=600, **more)
 
     def must(self, words, at):
         done = self.call(words, at)
@@ -273,6 +300,7 @@ class Trial:
     def __init__(self, supervisor, command, at, chance, seconds, old, log):
         self.all, self.command, self.at, self.chance, self.seconds, self.old = supervisor, command, at, chance, seconds, old
         self.out = os.path.join(at, "r")
+        self.is_campaign = command.endswith("campaign")
         self.log = log
 
     def words(self):
@@ -281,7 +309,10 @@ class Trial:
         if self.old is not None and self.is_old():
             return work
         plain = [word for word in work if word != "--overwrite"]
-        if work[0] in ("run", "judge") and os.path.isfile(os.path.join(self.out, "scene.toml")):
+        resumable = {"run", "judge"} & set(work) and os.path.isfile(os.path.join(self.out, "scene.toml"))
+        if resumable and work[0] == "python" and self.chance.random() < 0.5:
+            return ["python", "resume", "r"]
+        if resumable:
             return ["resume", "r", "-q"] + (["--checkpoint-every", "5increments"] if self.chance.random() < 0.3 else [])
         return plain
 
@@ -295,7 +326,7 @@ class Trial:
             return False
 
     def is_begun(self):
-        return os.path.isdir(self.out) and os.path.exists(os.path.join(self.out, MARK)) or self.command == "campaign"
+        return os.path.isdir(self.out) and os.path.exists(os.path.join(self.out, MARK)) or self.is_campaign
 
     def did(self, harm, how):
         key = (self.command, harm, how)
@@ -309,7 +340,7 @@ class Trial:
     def is_done(self):
         """Whether a kill came when the last file had been written and the mark was gone."""
         has = lambda name: os.path.exists(os.path.join(self.out, name))
-        return self.command != "campaign" and not has(MARK) and any(map(has, RECORDS)) and not (self.old and self.is_old())
+        return not self.is_campaign and not has(MARK) and any(map(has, RECORDS)) and not (self.old and self.is_old())
 
     def harmed(self, wanted):
         harms = 0
@@ -341,7 +372,7 @@ class Trial:
             self.find(f"{' '.join(words)} did not end well", done)
 
     def started(self, words, **more):
-        return subprocess.Popen([self.all.binary, *words], cwd=self.at, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+        return subprocess.Popen(self.all.program(words), cwd=self.at, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                                 text=True, errors="replace", **more)
 
     def signalled(self, number):
@@ -493,11 +524,11 @@ class Trial:
             "precision": ["precision", "--out", "r", "--budget", "100ms", "--tier", "scaling", *STUDY],
             "design": DESIGN,
         }
-        if not os.path.exists(os.path.join(self.out, MARK)) and self.command != "campaign":
+        if not os.path.exists(os.path.join(self.out, MARK)) and not self.is_campaign:
             return False
-        if self.command == "campaign" and not os.path.isdir(os.path.join(self.out, "cases")):
+        if self.is_campaign and not os.path.isdir(os.path.join(self.out, "cases")):
             return False
-        own = WORKS[self.command][0][0].replace("judge", "run")
+        own = next(word for word in WORKS[self.command][0] if word != "python").replace("judge", "run")
         other = self.chance.choice(sorted(set(kinds) - {own}))
         more = ["--overwrite"] if other != "campaign" and self.chance.random() < 0.5 else []
         kept = lambda: {n: d for n, d in files_of(self.out).items() if os.path.basename(n) != LOCK and PART not in n}
@@ -533,20 +564,24 @@ def table(supervisor, commands, trials, works):
 def main():
     words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     words.add_argument("--binary", default=str(ROOT / "target/release/voidwalk"))
+    words.add_argument("--python", help="interpreter in which the package is installed: its works too")
     words.add_argument("--kills", type=int, default=1000, help="harms in all")
     words.add_argument("--seed", type=int, default=1)
     words.add_argument("--seconds", type=float, default=float("inf"), help="end after so long")
-    words.add_argument("--commands", nargs="+", default=list(WORKS), choices=list(WORKS), metavar="COMMAND")
+    words.add_argument("--commands", nargs="+", choices=list(WORKS), metavar="COMMAND", help="these works alone")
     words.add_argument("--trial", help="SEED-COMMAND-NUMBER: this one alone")
     words.add_argument("--at", help="where to work [default: in memory]")
     words = words.parse_args()
     if words.trial:
         words.commands = [words.trial.split("-", 1)[1].rsplit("-", 1)[0]]
+    words.commands = words.commands or [c for c in WORKS if words.python or c not in PYTHON_WORKS]
+    if not words.python and set(words.commands) & set(PYTHON_WORKS):
+        sys.exit("say --python INTERPRETER for works of the package")
     room = words.at or ("/dev/shm" if os.path.isdir("/dev/shm") else None)
     trials, works = ({command: 0 for command in words.commands} for _ in range(2))
     begun = time.monotonic()
     with tempfile.TemporaryDirectory(dir=room) as at:
-        supervisor = Supervisor(os.path.abspath(words.binary), at)
+        supervisor = Supervisor(os.path.abspath(words.binary), words.python and os.path.abspath(words.python), at)
         try:
             for command in words.commands:
                 supervisor.prepare(command)

@@ -32,4 +32,6 @@ python/bin/python -m pytest -c "$here/pyproject.toml" --rootdir "$here" -p no:ca
     "$here/scripts/python/tests" "$@"
 step "examples in docstrings"
 python/bin/python -m pytest -c "$here/pyproject.toml" -p no:cacheprovider --pyargs voidwalk
+step "killed, cut and without room"
+../scripts/supervise.py --kills 16 --binary "$VOIDWALK_PROGRAM" --python python/bin/python --commands python-run python-campaign
 step "done"

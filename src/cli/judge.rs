@@ -3,8 +3,8 @@
 use super::args::{JudgeArgs, TableArgs};
 use super::print::{plain, shown, to_stdout};
 use super::progress::followed;
-use super::run::{command_line, show};
-use crate::run::{self, RunError, RunOptions};
+use super::run::show;
+use crate::run::{self, RunError};
 use crate::scene::{Scene, TableOptions};
 
 impl TableArgs {
@@ -19,16 +19,10 @@ impl TableArgs {
 
 /// Judges a base and a filter.
 pub fn judge(args: &JudgeArgs) -> Result<(), RunError> {
-    let (tables, quiet) = (&args.tables, args.walk.quiet);
+    let (tables, quiet) = (&args.tables, args.results.walk.quiet);
     let scene = Scene::of_tables(&args.base, &args.filter, &tables.options())?;
     let words = scene.constrictions_in_words();
-    let options = RunOptions {
-        out: args.out.clone(),
-        overwrite: args.overwrite,
-        prepare: tables.set.prepare(args.walk.threads),
-        checkpoint_interval: args.walk.checkpoint_every,
-        command: command_line(),
-    };
+    let options = args.results.options(&tables.set);
     let run = followed(quiet, |callbacks| run::walk_scene(scene, &options, callbacks))?;
     let in_words = !tables.set.json && !quiet;
     if in_words {

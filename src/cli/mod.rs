@@ -26,6 +26,7 @@ mod run;
 mod serve;
 mod shell;
 mod soil;
+mod values;
 
 use std::ffi::OsString;
 use std::process::ExitCode;

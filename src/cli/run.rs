@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::args::{ResumeArgs, RunArgs};
+use super::args::{ResultArgs, ResumeArgs, RunArgs, SettingArgs};
 use super::print::{count, counted, json, percent, shown, to_stdout};
 use super::progress::followed;
 use crate::outcome::record::RunSummary;
@@ -10,16 +10,23 @@ use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
 
 /// Walks a scene and writes its folder.
 pub fn run(args: &RunArgs) -> Result<(), RunError> {
-    let scene = args.scene.scene()?;
-    let options = RunOptions {
-        out: args.out.clone(),
-        overwrite: args.overwrite,
-        prepare: args.scene.set.prepare(args.walk.threads),
-        checkpoint_interval: args.walk.checkpoint_every,
-        command: command_line(),
-    };
-    let run = followed(args.walk.quiet, |callbacks| run::walk_scene(scene, &options, callbacks))?;
-    show(&run, args.scene.set.json, args.walk.quiet)
+    let (scene, set, quiet) = (args.scene.scene()?, &args.scene.set, args.results.walk.quiet);
+    let options = args.results.options(set);
+    let run = followed(quiet, |callbacks| run::walk_scene(scene, &options, callbacks))?;
+    show(&run, set.json, quiet)
+}
+
+impl ResultArgs {
+    /// How the run is done that a command asks for.
+    pub fn options(&self, set: &SettingArgs) -> RunOptions {
+        RunOptions {
+            out: self.out.clone(),
+            overwrite: self.overwrite,
+            prepare: set.prepare(self.walk.threads),
+            checkpoint_interval: self.walk.checkpoint_every,
+            command: command_line(),
+        }
+    }
 }
 
 /// Continues a run that was stopped or killed.

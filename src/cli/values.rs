@@ -1,0 +1,108 @@
+//! Values of options, as a user writes them, with what to write instead where they are not understood.
+
+use std::ops::RangeInclusive;
+use std::time::Duration;
+
+use crate::constrictions::Facets;
+use crate::scene::Density;
+
+/// Two ratios.
+pub(super) fn bracket(text: &str) -> Result<(f64, f64), String> {
+    let parts = text.split_once(',').map(|(low, high)| (low.trim().parse(), high.trim().parse()));
+    match parts {
+        Some((Ok(low), Ok(high))) => Ok((low, high)),
+        _ => Err("write two D15F/D85B, as 0.5,100".into()),
+    }
+}
+
+/// A setting and its value.
+pub(super) fn assignment(text: &str) -> Result<String, String> {
+    match text.split_once('=') {
+        Some((name, _)) if !name.trim().is_empty() => Ok(text.to_owned()),
+        _ => Err("write KEY=VALUE, as --set filter.cu=3".into()),
+    }
+}
+
+/// How densely a filter lies. A number could be a void ratio, a relative density or a friction.
+pub(super) fn density(text: &str) -> Result<Density, String> {
+    match text {
+        "medium" => Ok(Density::Intermediate),
+        word => Density::ALL.into_iter().find(|density| density.name() == word).ok_or_else(|| {
+            "write loose, medium or dense; the friction between grains while they are compressed is a \
+             number: --set filter.friction=0.2"
+                .into()
+        }),
+    }
+}
+
+/// Which facets between voids are counted.
+pub(super) fn facets(text: &str) -> Result<Facets, String> {
+    match text {
+        "all" => Ok(Facets::All),
+        "on-both-hulls" => Ok(Facets::OnBothHulls),
+        _ => Err("all or on-both-hulls".into()),
+    }
+}
+
+/// A seed.
+pub(super) fn seed(text: &str) -> Result<u64, String> {
+    text.trim().parse().map_err(|_| format!("write a whole number from 0 to {}", u64::MAX))
+}
+
+/// A number of threads.
+pub(super) fn threads(text: &str) -> Result<usize, String> {
+    let number = text.parse().ok().filter(|number| (1..=1024).contains(number));
+    number.ok_or_else(|| "write a whole number from 1 to 1024".into())
+}
+
+/// A span of time.
+pub(super) fn time(text: &str) -> Result<Duration, String> {
+    humantime::parse_duration(text).map_err(|e| format!("{e}; write a time as 30s, 4min or 1h"))
+}
+
+/// A length above 0 (mm).
+pub(super) fn millimetres(text: &str) -> Result<f64, String> {
+    let size: f64 = text.trim().parse().map_err(|_| "write a number of millimetres above 0".to_owned())?;
+    if size > 0.0 && size.is_finite() {
+        Ok(size)
+    } else {
+        Err("write a number of millimetres above 0".into())
+    }
+}
+
+/// How far the interval may reach, in percentage points.
+pub(super) fn target_error(text: &str) -> Result<f64, String> {
+    let allowed = "write a number of percentage points above 0 and below 100 with its unit, as 0.5pp";
+    number_with(text, "pp", f64::MIN_POSITIVE..=99.999_999, allowed)
+}
+
+/// The probability with which the verdict is to be right, in percent.
+pub(super) fn decide(text: &str) -> Result<f64, String> {
+    let allowed = "write a probability from 50% to 99.999% with its unit, as 99.9%";
+    number_with(text, "%", 50.0..=99.999, allowed)
+}
+
+/// A number of a range, with its unit.
+fn number_with(text: &str, unit: &str, range: RangeInclusive<f64>, allowed: &str) -> Result<f64, String> {
+    let number = text.trim().strip_suffix(unit).and_then(|digits| digits.trim().parse::<f64>().ok());
+    number.filter(|n| range.contains(n)).ok_or_else(|| allowed.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{assignment, decide, seed, target_error};
+
+    #[test]
+    fn numbers_carry_their_unit_and_lie_in_their_range() {
+        assert_eq!(target_error("0.1pp"), Ok(0.1));
+        assert_eq!(decide(" 99.9 %"), Ok(99.9));
+        for text in ["0.1", "pp", "nanpp", "0.1%", "1e400pp", "0pp", "-1pp", "100pp"] {
+            assert!(target_error(text).unwrap_err().contains("as 0.5pp"), "{text}");
+        }
+        for text in ["99", "150%", "100%", "0.999", "%", "nan%", "-99%"] {
+            assert!(decide(text).unwrap_err().contains("from 50% to 99.999%"), "{text}");
+        }
+        assert!(seed("-1").is_err() && seed("18446744073709551615") == Ok(u64::MAX));
+        assert!(assignment("filter.cu").is_err() && assignment("=3").is_err() && assignment("a=").is_ok());
+    }
+}
