@@ -15,6 +15,9 @@ use super::{END, Network};
 /// The residual is below this part of what flows in.
 const CONVERGED: f64 = 1e-10;
 
+/// The residual that is taken, as part of what flows in, where rounding lets it come no closer.
+const BEST_OF_ROUNDING: f64 = 1e-6;
+
 /// A flux below this part of what an inlet passes on average is none: pressures are no more exact.
 const NO_FLUX: f64 = 1e-8;
 
@@ -92,7 +95,7 @@ impl Flow {
     }
 
     /// Solves for the constrictions that `blocked` leaves open. A conductance below 1e-10 of the inlets' is
-    /// 0: pressures are no more exact.
+    /// 0, and so is one that what comes out does not bear out: pressures are no more exact.
     ///
     /// # Errors
     /// Conductances too far apart.
@@ -123,9 +126,17 @@ impl Flow {
         let inlets = network.exits(reservoir);
         let least = CONVERGED * inlets.clone().map(|c| self.open[c]).sum::<f64>();
         let through: f64 = inlets.map(|c| self.flux(reservoir, c)).sum();
-        let conductance = if through > least { through } else { 0.0 };
+        let imbalance = (through - self.outflow(network)).abs();
+        let conductance = if through > least.max(imbalance) { through } else { 0.0 };
         let factor = undirected.and_then(|u| u.permeability_mm2);
         Ok(Permeability { conductance, k_mm2: factor.map(|factor| factor * conductance) })
+    }
+
+    /// Flow times viscosity out behind the filter.
+    fn outflow(&self, network: &Network) -> f64 {
+        let of =
+            |void: u32| network.exits(void).filter(|&c| network.targets()[c] == END).map(move |c| (void, c));
+        (0..network.voids() as u32).flat_map(of).map(|(void, c)| self.flux(void, c)).sum()
     }
 
     /// Gives each exit of the network its weight by the flow that was solved last.
@@ -254,11 +265,23 @@ impl System {
             system.diagonal.push(diagonal);
             system.inflow.push(inflow);
         }
+        system.normalise();
         system.factor();
         let parts = system.void.iter().map(|&v| part(v)).collect();
         let coarse = Coarse::new(parts, |entry| system.entries(entry));
         system.coarse = Some(coarse);
         system
+    }
+
+    /// Divides both sides by a power of two, which changes no digit of a solution, so that squares of very
+    /// large and very small conductances are numbers still.
+    fn normalise(&mut self) {
+        let largest = self.diagonal.iter().fold(0.0, |a: f64, &b| a.max(b));
+        if largest > 0.0 && largest.is_finite() {
+            let unit = libm::scalbn(1.0, -libm::ilogb(largest).max(-1000));
+            let sides = self.conductance.iter_mut().chain(&mut self.diagonal).chain(&mut self.inflow);
+            sides.for_each(|side| *side *= unit);
+        }
     }
 
     /// Modified incomplete Cholesky without fill in (Gustafsson 1978, doi:10.1007/BF01931691): only the
@@ -293,32 +316,70 @@ impl System {
         }
     }
 
-    /// Conjugate gradients from the pressures that there are.
+    /// Conjugate gradients from the pressures that there are, and again from where they end while what they
+    /// carry along as the residual has left the true one.
     pub(super) fn solve(&self, pressure: &mut [f64], layers: usize) -> Result<(), FlowError> {
-        let rows = self.void.len();
-        if rows == 0 {
+        let scale = dot(&self.inflow, &self.inflow).sqrt();
+        if self.void.is_empty() || scale == 0.0 {
             return Ok(());
         }
+        if !scale.is_finite() {
+            return Err(FlowError::NotConverged { rounds: 0, residual: f64::INFINITY });
+        }
         let mut x: Vec<f64> = self.void.iter().map(|&v| pressure[v as usize]).collect();
+        let (mut rounds, mut before) = (0, f64::INFINITY);
+        loop {
+            let mut residual = self.residual(&x);
+            let size = dot(&residual, &residual).sqrt();
+            let is_close = size <= if rounds == 0 { 1.0 } else { 2.0 } * CONVERGED * scale;
+            // Closer than rounding lets them come they do not get.
+            let is_stuck = size > 0.5 * before && size <= BEST_OF_ROUNDING * scale;
+            if is_close || is_stuck {
+                break;
+            }
+            if size > 0.5 * before {
+                return Err(FlowError::NotConverged { rounds, residual: size / scale });
+            }
+            before = size;
+            rounds = self.descend(&mut x, &mut residual, scale, rounds, layers)?;
+        }
+        self.void.iter().zip(&x).for_each(|(&v, &p)| pressure[v as usize] = p);
+        Ok(())
+    }
+
+    /// What is missing of the right side.
+    fn residual(&self, x: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; x.len()];
+        self.times(x, &mut product);
+        self.inflow.iter().zip(&product).map(|(b, a)| b - a).collect()
+    }
+
+    /// Conjugate gradients until the residual that they carry along is small; the rounds that there were.
+    fn descend(
+        &self,
+        x: &mut [f64],
+        residual: &mut [f64],
+        scale: f64,
+        begun: usize,
+        layers: usize,
+    ) -> Result<usize, FlowError> {
+        let rows = self.void.len();
         let mut product = vec![0.0; rows];
-        self.times(&x, &mut product);
-        let mut residual: Vec<f64> = self.inflow.iter().zip(&product).map(|(b, a)| b - a).collect();
-        let scale = dot(&self.inflow, &self.inflow).sqrt();
         let mut direction = vec![0.0; rows];
         let mut solved = vec![0.0; rows];
         let mut before = 0.0;
         let most = ROUNDS * (layers + 100);
-        for round in 0.. {
-            let size = dot(&residual, &residual).sqrt();
-            if size <= CONVERGED * scale || scale == 0.0 {
-                break;
+        for round in begun.. {
+            let size = dot(residual, residual).sqrt();
+            if size <= CONVERGED * scale {
+                return Ok(round);
             }
             if round == most || !size.is_finite() {
                 return Err(FlowError::NotConverged { rounds: round, residual: size / scale });
             }
-            self.precondition(&residual, &mut solved);
-            let now = dot(&residual, &solved);
-            let keep = if round == 0 { 0.0 } else { now / before };
+            self.precondition(residual, &mut solved);
+            let now = dot(residual, &solved);
+            let keep = if round == begun { 0.0 } else { now / before };
             direction.par_chunks_mut(BLOCK).zip(solved.par_chunks(BLOCK)).for_each(|(d, s)| {
                 d.iter_mut().zip(s).for_each(|(d, s)| *d = s + keep * *d);
             });
@@ -333,8 +394,7 @@ impl System {
                 },
             );
         }
-        self.void.iter().zip(&x).for_each(|(&v, &p)| pressure[v as usize] = p);
-        Ok(())
+        unreachable!("rounds are counted up to the most")
     }
 
     /// The matrix times a column.

@@ -63,6 +63,22 @@ fn resistors_add_up() {
     );
 }
 
+/// A unit of conductance changes no digit, however large or small: squares of such numbers are none.
+#[test]
+fn the_unit_of_conductance_is_free() {
+    use LinkEnd::Void;
+    let of = |unit: f64| {
+        let links = [(OUTSIDE, Void(0), 1.0), (Void(0), Void(1), 2.0), (Void(1), OUTSIDE, 5.0)];
+        let network = linked(2, &links.map(|(from, to, g)| link(from, to, g * unit)));
+        let mut flow = Flow::new(&network);
+        let found = flow.solve(&network, &open(&network)).unwrap().conductance;
+        (found / unit, flow.pressure().to_vec())
+    };
+    assert!((of(1.0).0 - 1.0 / 1.7).abs() < 1e-10);
+    assert_eq!(of(2f64.powi(900)), of(1.0));
+    assert_eq!(of(2f64.powi(-900)), of(1.0));
+}
+
 /// What flows in flows out, pressures lie between those outside, and the work of the pressure is dissipated.
 #[test]
 fn water_is_kept_and_its_work_dissipated() {
