@@ -213,6 +213,11 @@ section! {
             only("a list of increments, from 1", |list: &Vec<u64>| !list.contains(&0));
         /// Size classes of those curves.
         pub size_classes: u64 = 64, set, whole(1..=4096);
+        /// Increments after which it is kept what each void of the first replicate holds, besides the last of
+        /// each run; with them its voids, its constrictions and when each was blocked are kept, which
+        /// `voidwalk export` shows in ParaView. [] keeps the last only; without it none of all that.
+        pub voids: Option<Vec<u64>> = None, off "[1, 10, 50, 100]",
+            only("a list of increments, from 1", |list: &Vec<u64>| !list.contains(&0));
         /// Multiples of N_base that show how the verdict moves; [] leaves the study out.
         pub sensitivity: Vec<f64> = vec![0.25, 0.5, 2.0, 4.0], set,
             only("a list of numbers above 0", |list: &Vec<f64>| list.iter().all(|factor| *factor > 0.0));

@@ -239,6 +239,7 @@ impl Record {
             series_every: self.series_every,
             size_curves: self.size_curves.clone(),
             size_classes: self.size_classes as usize,
+            voids: self.voids.clone(),
         }
     }
 }
