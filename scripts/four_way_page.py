@@ -119,7 +119,7 @@ def figure(cells, found):
              f'<rect width="1040" height="{height}" fill="white"/>',
              '<text x="20" y="26" font-size="16">How coarse may the filter be? Base with Cu 1.5</text>']
     bottom = height - 58
-    for name, (a, b), colour, y in [("design rules (Sherard)", DESIGN, "#dfe6f2", 62), ("tests of sands hold up to here (Foster &amp; Fell)", TESTED, "#e7e0ef", 62)]:
+    for name, (a, b), colour, y in [("design rules (Sherard)", DESIGN, "#dfe6f2", 46), ("tests of sands hold up to here (Foster &amp; Fell)", TESTED, "#e7e0ef", 62)]:
         parts.append(f'<rect x="{x(a):.1f}" y="{top - 6}" width="{x(b) - x(a):.1f}" height="{bottom - top + 6}" fill="{colour}"/>')
         parts.append(f'<text x="{(x(a) + x(b)) / 2:.1f}" y="{y}" text-anchor="middle">{name}</text>')
     y = top
