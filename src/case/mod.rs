@@ -3,10 +3,12 @@
 mod curve_ends;
 mod cut;
 mod files;
+mod left_out;
 mod memory;
 mod packed_filter;
 mod packing_plan;
 mod pan;
+mod places;
 mod record;
 mod regrade;
 mod resolved;
@@ -40,6 +42,7 @@ use crate::scene::{
 use crate::store::Placement;
 use crate::stream::{Key, Purpose};
 use rand::Rng;
+use std::sync::Arc;
 
 /// Why a scene cannot be walked.
 #[derive(Debug, thiserror::Error)]
@@ -143,6 +146,8 @@ pub struct Case {
     pub fixed_network: Option<Network>,
     /// Copies of a packing whose voids are the network, and their thickness together (mm).
     pub copies: Option<(u32, f64)>,
+    /// What was measured on the packing whose voids are the network.
+    graph: Option<Arc<GraphPacking>>,
     /// Voids, constrictions (of the first replicate), start nodes, layers.
     pub counts: [u64; 4],
     /// Connectivity and percent of the voids, where not all voids have the same.
@@ -168,17 +173,26 @@ impl Case {
     ///
     /// # Errors
     /// As [`Case::new`]; the scene's filter is to be packed and has not been.
-    pub fn with_packed(mut scene: Scene, packed: Option<PackedFilter>) -> Result<Self, CaseError> {
+    pub fn with_packed(scene: Scene, packed: Option<PackedFilter>) -> Result<Self, CaseError> {
+        Self::with_graph(scene, packed, None)
+    }
+
+    /// The same with the voids of its packing, where they have been measured.
+    fn with_graph(
+        mut scene: Scene,
+        packed: Option<PackedFilter>,
+        measured: Option<Arc<GraphPacking>>,
+    ) -> Result<Self, CaseError> {
         let packed = match (&scene.filter.measured, scene.filter.grains_per_void) {
             (Some(curve), Some(grains_per_void)) => Some(PackedFilter::kept(curve, grains_per_void)?),
             _ => packed,
         };
         let mut files = Files::default();
-        let graph = match scene.network.source() {
-            NetworkSource::Graph(file, _) => {
-                GraphPacking::read(&scene, file.as_ref(), packed.as_ref(), &mut files)?
+        let graph = match (measured, scene.network.source()) {
+            (None, NetworkSource::Graph(file, _)) => {
+                GraphPacking::read(&scene, file.as_ref(), packed.as_ref(), &mut files)?.map(Arc::new)
             }
-            _ => None,
+            (measured, _) => measured,
         };
         let curve = match (&scene.filter.curve, &packed) {
             (_, Some(packed)) => Some((files.packed(packed)?, None)),
@@ -310,6 +324,7 @@ impl Case {
             unit_mm,
             fixed_network,
             copies,
+            graph,
             counts,
             connectivity,
             inputs: files.0,
@@ -381,44 +396,6 @@ impl Case {
         let d = |gradation: &Gradation, percent| gradation.d(percent).unwrap_or(f64::NAN);
         let d15f = d(&self.filter, 15.0);
         Ratios { d15f_over_d85b: d15f / d(&self.base, 85.0), d15f_over_d95b: d15f / d(&self.base, 95.0) }
-    }
-
-    /// Parts of the program that this scene does not need, in words.
-    pub fn left_out(&self) -> Vec<String> {
-        let mut left_out = vec![match self.fixed_network {
-            Some(_) if self.copies.is_some() => {
-                "a lattice: the voids of the packing are the network".to_string()
-            }
-            Some(_) => "packing, triangulation and constriction curve: the network is given".to_string(),
-            None if self.packed.is_some() => {
-                "a given constriction curve: it is measured on the packing".to_string()
-            }
-            None if self.scene.filter.estimate.is_some() => {
-                "packing and triangulation: the constriction curve is guessed from the gradation".to_string()
-            }
-            None => "packing and triangulation: the constriction curve is given".to_string(),
-        }];
-        if let Some(other) = self.packed.as_ref().and_then(|packed| packed.same_shape.as_ref()) {
-            left_out.push(format!(
-                "packing the filter: the packing in {} has its shape, and was taken {:.4} times as large",
-                other.folder, other.factor
-            ));
-        }
-        if self.scene.walk.runs == 1 {
-            left_out.push("the second run: it was not asked for".into());
-        }
-        if self.scene.record.sensitivity.is_empty() {
-            left_out.push("sensitivity to the number of base particles: it was not asked for".into());
-        }
-        for factor in self.thickness_factors() {
-            if let Err(error) = self.of_thickness(factor) {
-                left_out.push(format!("a filter {factor} times as thick: {error}"));
-            }
-        }
-        if self.thickness_factors().is_empty() && self.copies.is_none() && self.fixed_network.is_none() {
-            left_out.push("how the verdict moves with the filter's thickness: it was not asked for".into());
-        }
-        left_out
     }
 }
 

@@ -37,6 +37,8 @@ pub struct PackingPlan {
     pub linear: bool,
     /// What part of the filter it is, where the whole is not packed.
     pub part: Option<PackedPart>,
+    /// Height of the cell by its width.
+    pub aspect: f64,
     /// How it is compressed.
     pub compression: Compression,
     /// Overlap of two inscribed spheres from which their tetrahedra are one void.
@@ -78,6 +80,7 @@ impl PackingPlan {
             name,
             linear,
             part: None,
+            aspect: recipe.aspect,
             compression: recipe.compression.clone(),
             merge_overlap: recipe.merge_overlap,
             inputs: files.0,
@@ -91,6 +94,8 @@ impl PackingPlan {
     /// can be packed; and decides on the number of grains.
     fn take_part(&mut self, recipe: &PackingSpec) -> Result<(), CaseError> {
         let (whole, grains) = (self.gradation.clone(), recipe.grains);
+        let aspect = self.aspect;
+        let width = |gradation: &Gradation, grains| width_by_largest(gradation, grains, aspect);
         let part = match recipe.coarsest {
             Some(percent) if percent < 100.0 => Some(cut::finer_part(&whole, percent).ok_or_else(|| {
                 let problem = format!(
@@ -98,9 +103,9 @@ impl PackingPlan {
                 );
                 SceneError::Clash { file: recipe.file.clone(), problem }
             })?),
-            None if width_by_largest(&whole, grains.unwrap_or_else(|| grains_for(&whole))) < LEAST_WIDTH => {
-                let most = grains.unwrap_or(GRAINS_OF_PART);
-                cut::that_can_be_packed(&whole, |part| width_by_largest(part, most))
+            None if width(&whole, grains.unwrap_or_else(|| self.tall(grains_for(&whole)))) < LEAST_WIDTH => {
+                let most = grains.unwrap_or(self.tall(GRAINS_OF_PART));
+                cut::that_can_be_packed(&whole, |part| width(part, most))
             }
             _ => None,
         };
@@ -111,12 +116,12 @@ impl PackingPlan {
             usual = grains_for(&gradation).min(most);
             (self.gradation, self.part, self.linear) = (gradation, Some(packed), false);
         }
-        self.compression.grains = grains.unwrap_or(usual);
-        let width = width_by_largest(&self.gradation, self.compression.grains);
+        self.compression.grains = grains.unwrap_or(self.tall(usual));
+        let width = width(&self.gradation, self.compression.grains);
         if width >= LEAST_WIDTH {
             return Ok(());
         }
-        let grains = grains_at_least(&self.gradation);
+        let grains = self.tall(grains_at_least(&self.gradation));
         let problem = format!(
             "packing.grains = {}: the cell would be about {width:.1} times as wide as the largest grain, at \
              least {LEAST_WIDTH} times is needed; about {grains} grains would do",
@@ -124,6 +129,11 @@ impl PackingPlan {
         );
         self.compression.grains = grains;
         Err(CaseError::NarrowCell { file: recipe.file.clone(), problem, would_do: Box::new(self.clone()) })
+    }
+
+    /// Grains of a cell as wide as a cube of so many, as tall as this one.
+    fn tall(&self, grains: usize) -> usize {
+        (grains as f64 * self.aspect).round() as usize
     }
 
     /// Grains that are packed of a gradation where nobody says how many: enough for a cell 5.4 times as wide
@@ -139,7 +149,10 @@ impl PackingPlan {
 
     /// The same of a gradation with these points, compressed likewise.
     pub(super) fn fingerprint_of(&self, points: &[(f64, f64)]) -> String {
-        let text = format!("{PROTOCOL} {points:?} {:?}", self.compression);
+        let mut text = format!("{PROTOCOL} {points:?} {:?}", self.compression);
+        if self.aspect != 1.0 {
+            text += &format!(" {:?} times as tall", self.aspect);
+        }
         format!("{:016x}", xxhash_rust::xxh3::xxh3_64(text.as_bytes()))
     }
 
@@ -171,18 +184,18 @@ impl PackingPlan {
 
 /// Grains that make the cell wide enough.
 fn grains_for(gradation: &Gradation) -> usize {
-    let wanted = (CELLS_WIDTH / width_by_largest(gradation, 1)).powi(3);
+    let wanted = (CELLS_WIDTH / width_by_largest(gradation, 1, 1.0)).powi(3);
     (wanted as usize).clamp(GRAINS.0, GRAINS.1)
 }
 
 /// Grains with which the cell is wide enough, and a little more.
 fn grains_at_least(gradation: &Gradation) -> usize {
-    libm::ceil(((LEAST_WIDTH + 0.1) / width_by_largest(gradation, 1)).powi(3)) as usize
+    libm::ceil(((LEAST_WIDTH + 0.1) / width_by_largest(gradation, 1, 1.0)).powi(3)) as usize
 }
 
-/// Width of the cell of this many grains, by the largest grain.
-fn width_by_largest(gradation: &Gradation, grains: usize) -> f64 {
+/// Width of the cell of this many grains, by the largest grain; the cell is `aspect` times as tall.
+fn width_by_largest(gradation: &Gradation, grains: usize, aspect: f64) -> f64 {
     let largest = gradation.largest_mm();
     let grain_mm3 = 1.0 / gradation.particles_per_unit_volume();
-    libm::cbrt(grains as f64 * grain_mm3 / FRACTION) / largest
+    libm::cbrt(grains as f64 * grain_mm3 / FRACTION / aspect) / largest
 }

@@ -40,7 +40,11 @@ impl Case {
             Some(_) => scene.network.set_copies(parts),
             None => scene.network.set_layers(parts),
         }
-        let mut other = Self::with_packed(scene, self.packed.clone())?;
+        let mut other = Self::with_graph(scene, self.packed.clone(), self.graph.clone())?;
+        if self.graph.is_some() {
+            // What is not read again is kept all the same.
+            other.inputs = self.inputs.clone();
+        }
         (other.memory, other.placement) = (self.memory, self.placement.clone());
         Ok(other)
     }

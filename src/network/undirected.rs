@@ -277,7 +277,7 @@ impl Network {
     }
 
     /// Conductance times viscosity of an exit; 0 on a network whose constrictions have a direction.
-    pub(super) fn conductance(&self, exit: usize) -> f64 {
+    pub fn conductance(&self, exit: usize) -> f64 {
         self.undirected.as_ref().map_or(0.0, |u| u.conductance[exit])
     }
 }

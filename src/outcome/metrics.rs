@@ -1,9 +1,9 @@
 //! The numbers of one run at its end, and its rows of the CSV files.
 
-use super::by_connectivity;
-use super::record::{FlowRow, LayerRow, Run, SeriesRow, SizeRow};
+use super::record::{BlockedRow, FlowRow, LayerRow, RetainedRow, Run, SeriesRow, SizeRow};
 use super::recorder::Recorder;
 use super::verdict::{below_by_count, below_by_mass};
+use super::{by_connectivity, by_void};
 use crate::network::{NO_LAYER, Network};
 use crate::walk::{FlowRecord, SizeClasses, SizeCounts, State, Tally};
 
@@ -43,6 +43,12 @@ pub struct Recorded {
     /// Rows of `flow.csv`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub flow: Vec<FlowRow>,
+    /// Rows of `retained_by_void.csv`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub voids: Vec<RetainedRow>,
+    /// Rows of `blocked.csv`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub blocked: Vec<BlockedRow>,
 }
 
 /// Mass eroded over the mass that the run inserts in all.
@@ -162,6 +168,9 @@ impl Recorded {
             series: series.collect(),
             layers: layers(network, state, of),
             flow: flow.collect(),
+            // What no void was recorded with, nobody asked for.
+            blocked: if recorder.voids.is_empty() { Vec::new() } else { by_void::blocked(network, state) },
+            voids: recorder.voids.clone(),
             ..Self::default()
         };
         for (increment, retained, eroded) in &recorder.sizes {
@@ -179,6 +188,8 @@ impl Recorded {
         self.retained.append(&mut later.retained);
         self.eroded.append(&mut later.eroded);
         self.flow.append(&mut later.flow);
+        self.voids.append(&mut later.voids);
+        self.blocked.append(&mut later.blocked);
     }
 }
 

@@ -4,6 +4,7 @@
 //! - [`Recorder`] records of a running walk what was asked for.
 //! - [`RunMetrics`] are the numbers of one run at its end.
 //! - [`by_connectivity`] splits what a run retained by the connectivity of the voids (Table 3).
+//! - [`by_void`] is what happened in each void and constriction, for pictures.
 //! - [`verdict`] classifies, by mass eroded, one replicate or many; [`stopping`] says how many are enough.
 //! - [`paper`] holds what the paper states.
 //! - [`rules`] applies the rules of filter practice to the same two curves; [`PairRules`] without a walk.
@@ -18,6 +19,7 @@
 mod applied;
 mod beside;
 pub mod by_connectivity;
+pub mod by_void;
 pub mod comparison;
 pub mod confidence;
 mod curve_range;

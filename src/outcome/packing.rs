@@ -110,8 +110,11 @@ pub struct PackingRecord {
     pub simulated_s: f64,
     /// Wall time, s, over all starts of the program.
     pub seconds: f64,
-    /// Edge of the periodic cell (mm).
+    /// Edge of the periodic cell (mm), or its width where it is taller.
     pub cell_mm: f64,
+    /// Height (mm) of a cell that is taller than wide.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub height_mm: Option<f64>,
     /// Rows of diameter (mm) and percent smaller by number of the curves estimated by inscribed circles:
     /// dense, loose.
     pub inscribed: [Vec<[f64; 2]>; 2],
@@ -126,7 +129,12 @@ impl PackingRecord {
         let sizes = self.gradation.iter_mut().map(|row| &mut row[0]);
         let inscribed = self.inscribed.iter_mut().flatten().map(|row| &mut row[0]);
         let slice = self.slice.iter_mut().flatten();
-        sizes.chain(inscribed).chain(slice).chain([&mut self.cell_mm]).for_each(|mm| *mm *= factor);
+        sizes
+            .chain(inscribed)
+            .chain(slice)
+            .chain([&mut self.cell_mm])
+            .chain(&mut self.height_mm)
+            .for_each(|mm| *mm *= factor);
         self
     }
 }

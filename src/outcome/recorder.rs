@@ -1,5 +1,7 @@
 //! Records of a running walk what was asked for.
 
+use super::by_void;
+use super::record::RetainedRow;
 use crate::walk::{SizeCounts, State, Tally};
 
 /// What to record of a run.
@@ -12,6 +14,8 @@ pub struct Wanted {
     pub size_curves: Vec<u64>,
     /// Number of size classes of those curves.
     pub size_classes: usize,
+    /// Increments after which it is recorded what each void holds, besides the last; `None` leaves that out.
+    pub voids: Option<Vec<u64>>,
 }
 
 /// Rows that a series may have before it is thinned.
@@ -24,6 +28,9 @@ pub struct Recorder {
     pub series: Vec<(u64, Tally)>,
     /// Increment, retained and eroded sizes.
     pub sizes: Vec<(u64, SizeCounts, SizeCounts)>,
+    /// What each void held.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub voids: Vec<RetainedRow>,
     /// How often the series was thinned by half.
     thinned: u32,
 }
@@ -43,6 +50,11 @@ impl Recorder {
         }
         if state.finished || wanted.size_curves.contains(&t) {
             self.sizes.push((t, state.retained_sizes.clone(), state.eroded_sizes.clone()));
+        }
+        if let Some(increments) = &wanted.voids
+            && (state.finished || increments.contains(&t))
+        {
+            self.voids.extend(by_void::retained(state));
         }
     }
 }

@@ -6,9 +6,9 @@
 //! 1e-3 for the smallest grains.
 //!
 //! # Step
-//! Positions are in units of the cell and relative to its deformation, at full steps; velocities (without the
-//! motion of the cell) and spins at half steps. A step: forces from positions and the last half step's
-//! velocities, kick, drift, and the cell grows by the servo's strain rate.
+//! Positions are in units of the cell's width and relative to its deformation, at full steps; velocities
+//! (without the motion of the cell) and spins at half steps. A step: forces from positions and the last half
+//! step's velocities, kick, drift, and the cell grows by the servo's strain rate.
 //!
 //! # Masses
 //! A grain of diameter `D` weighs `pi/6 D^(3 - mass_exponent)`. With the true masses (0) the smallest grains
@@ -19,11 +19,14 @@ use super::contact::{Grains, Law, Now, Work, pass};
 use super::grains::{Cell, Packing};
 use super::limits::{critical_step, damped_part, law, mass, stability};
 use super::motion::{ChunkInStep, LONGEST_MOVE, StepRule, Sums, split};
-use super::neighbours::{GrainChunk, Reach, chunk_bounds};
+use super::neighbours::{Aspect, GrainChunk, Reach, chunk_bounds};
 use super::observed::HoldState;
 use super::settings::{PackingError, Settings};
 use rayon::prelude::*;
 use std::f64::consts::PI;
+
+/// A cell is at most so many times as tall as wide.
+pub(super) const TALLEST: f64 = 100.0;
 
 /// Steps between two looks at the time step.
 const STEP_CHECK: u64 = 16;
@@ -85,8 +88,10 @@ pub struct Compression {
     pub(super) close: Reach,
     /// Step in which the close pairs were picked.
     pub(super) picked_at: u64,
-    /// Edge of the cell.
+    /// Width of the cell.
     pub(super) cell: f64,
+    /// Its height by its width, which stays.
+    pub(super) aspect: Aspect,
     /// Relative growth of the cell per unit of time.
     pub(super) strain_rate: f64,
     /// Time step.
@@ -140,8 +145,12 @@ impl Compression {
         if columns.iter().any(|&c| c != n) || n == 0 {
             return Err(PackingError::Columns(columns));
         }
-        let cell_mm = match packing.cell {
-            Cell::Periodic([x, y, z]) if x == y && y == z && x > 0.0 && x < f64::INFINITY => x,
+        let (cell_mm, aspect) = match packing.cell {
+            Cell::Periodic([x, y, z])
+                if x == y && x > 0.0 && x < f64::INFINITY && z >= x && z <= 1.001 * TALLEST * x =>
+            {
+                (x, Aspect::new(z / x))
+            }
             other => return Err(PackingError::Cell(format!("{other:?}"))),
         };
         for (column, values) in [("x", &packing.x), ("y", &packing.y), ("z", &packing.z)] {
@@ -169,17 +178,14 @@ impl Compression {
         if cell_mm < 2.0 * largest_mm {
             return Err(PackingError::NarrowCell { cell_mm, largest_mm });
         }
-        let wrap = |v: f64| {
-            let s = v / cell_mm;
-            let s = s - libm::floor(s);
-            if s < 1.0 { s } else { 0.0 }
-        };
         let position: Vec<[f64; 4]> = origin
             .iter()
             .map(|&i| {
                 let i = i as usize;
                 let radius = 0.5 * (packing.diameter[i] / unit_mm);
-                [wrap(packing.x[i]), wrap(packing.y[i]), wrap(packing.z[i]), radius]
+                let [x, y, z] =
+                    aspect.wrapped([packing.x[i], packing.y[i], packing.z[i]].map(|mm| mm / cell_mm));
+                [x, y, z, radius]
             })
             .collect();
         let mut by_place: Vec<usize> = (0..n).collect();
@@ -191,7 +197,7 @@ impl Compression {
         let velocity: Vec<[f64; 4]> =
             position.iter().map(|p| [0.0, 0.0, 0.0, mass(p[3], settings.mass_exponent)]).collect();
         let cell = cell_mm / unit_mm;
-        let mut this = Self::blank(settings, position, velocity, unit_mm, origin, cell);
+        let mut this = Self::blank(settings, position, velocity, unit_mm, origin, (cell, aspect));
         if let Some(step) = settings.step
             && step >= this.loose_step
         {
@@ -210,7 +216,7 @@ impl Compression {
         velocity: Vec<[f64; 4]>,
         unit_mm: f64,
         origin: Vec<u32>,
-        cell: f64,
+        (cell, aspect): (f64, Aspect),
     ) -> Self {
         let n = position.len();
         let (critical, _) = critical_step(&position, &velocity, settings);
@@ -237,6 +243,7 @@ impl Compression {
             close: Reach { relative, absolute },
             picked_at: 0,
             cell,
+            aspect,
             strain_rate: 0.0,
             step: settings.step.unwrap_or(settings.step_fraction * critical),
             time: 0.0,
@@ -282,7 +289,11 @@ impl Compression {
 
     /// Volume of the cell by volume of the grains, less one.
     pub fn void_ratio(&self) -> f64 {
-        self.cell * self.cell * self.cell / self.grain_volume() - 1.0
+        self.cell_volume() / self.grain_volume() - 1.0
+    }
+
+    fn cell_volume(&self) -> f64 {
+        self.cell * self.cell * self.cell * self.aspect.height()
     }
 
     pub(super) fn grain_volume(&self) -> f64 {
@@ -302,7 +313,13 @@ impl Compression {
     pub(super) fn advance_once(&mut self, servo: Option<(f64, f64)>) -> Result<(), PackingError> {
         let pick = self.renew();
         self.steps += 1;
-        let now = Now { cell: self.cell, strain_rate: self.strain_rate, step: self.step, pick };
+        let now = Now {
+            cell: self.cell,
+            aspect: self.aspect,
+            strain_rate: self.strain_rate,
+            step: self.step,
+            pick,
+        };
         let parallel = rayon::current_num_threads() > 1 && self.chunks.len() > 1;
         {
             let grains = Grains {
@@ -332,7 +349,7 @@ impl Compression {
             normal += work.normal;
             self.contacts += work.contacts;
         }
-        self.pressure = virial / (3.0 * self.cell * self.cell * self.cell);
+        self.pressure = virial / (3.0 * self.cell * self.cell * self.cell * self.aspect.height());
         self.mean_normal = if self.contacts > 0 { normal / self.contacts as f64 } else { 0.0 };
         if let Some((rate, gain)) = servo {
             let goal = (gain * (self.pressure - 1.0)).clamp(-rate, rate);
@@ -424,7 +441,7 @@ impl Compression {
         let n = self.rank.len();
         let edge = self.cell * self.unit_mm;
         let mut packing = Packing {
-            cell: Cell::Periodic([edge; 3]),
+            cell: Cell::Periodic([edge, edge, edge * self.aspect.height()]),
             x: vec![0.0; n],
             y: vec![0.0; n],
             z: vec![0.0; n],
@@ -432,10 +449,11 @@ impl Compression {
         };
         for (p, &r) in self.position.iter().zip(&self.rank) {
             let i = self.origin[r as usize] as usize;
-            let wrapped = |s: f64| (s - libm::floor(s)) * edge;
-            packing.x[i] = wrapped(p[0]);
-            packing.y[i] = wrapped(p[1]);
-            packing.z[i] = wrapped(p[2]);
+            let height = self.aspect.height();
+            let wrapped = |s: f64, length: f64| (s - length * libm::floor(s / length)) * edge;
+            packing.x[i] = wrapped(p[0], 1.0);
+            packing.y[i] = wrapped(p[1], 1.0);
+            packing.z[i] = wrapped(p[2], height);
             packing.diameter[i] = 2.0 * p[3] * self.unit_mm;
         }
         packing

@@ -32,7 +32,7 @@
 //! senders. All sums therefore have one order, whatever the number of threads or the width of the vector
 //! unit.
 
-use super::neighbours::{GrainChunk, Reach, nearest};
+use super::neighbours::{Aspect, GrainChunk, Reach, nearest};
 use multiversion::multiversion;
 
 /// Contacts computed together.
@@ -58,8 +58,10 @@ pub(super) struct Law {
 /// What one step needs besides the grains.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Now {
-    /// Edge of the cell.
+    /// Width of the cell.
     pub cell: f64,
+    /// Its height by its width.
+    pub aspect: Aspect,
     /// Relative growth of the cell per unit of time.
     pub strain_rate: f64,
     /// Time step.
@@ -215,7 +217,7 @@ fn sweep<const FRICTION: bool, const HERTZ: bool>(
         torque.fill([0.0; 4]);
     }
     if let Some(reach) = now.pick {
-        chunk.pick(grains.position, now.cell, reach);
+        chunk.pick(grains.position, now.cell, now.aspect, reach);
     }
     let mut from = 0;
     while from < chunk.close.len() {
@@ -309,7 +311,7 @@ fn compute<const FRICTION: bool, const HERTZ: bool>(b: &mut Block, lanes: usize,
     let tangential_damping = law.damping * law.tangential.sqrt();
     for k in 0..lanes.min(BLOCK) {
         let [x, y, z] = [b.gap[0][k], b.gap[1][k], b.gap[2][k]];
-        let [x, y, z] = [nearest(x) * now.cell, nearest(y) * now.cell, nearest(z) * now.cell];
+        let [x, y, z] = [nearest(x) * now.cell, nearest(y) * now.cell, now.aspect.nearest(z) * now.cell];
         let [ux, uy, uz] = [b.motion[0][k], b.motion[1][k], b.motion[2][k]];
         let (ri, rj) = (b.radius[0][k], b.radius[1][k]);
         let (mi, mj) = (b.mass[0][k], b.mass[1][k]);

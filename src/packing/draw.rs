@@ -1,6 +1,8 @@
 //! Grains drawn from a gradation, and their loose start.
 
+use super::compression::TALLEST;
 use super::grains::{Cell, Packing};
+use super::neighbours::Aspect;
 use super::place::place;
 use super::settings::{PackingError, Settings};
 use crate::gradation::Gradation;
@@ -36,7 +38,19 @@ pub fn draw(gradation: &Gradation, grains: usize, seed: u64) -> Vec<f64> {
 /// # Errors
 /// Settings out of range; a diameter that is none; a cell narrower than two of the largest grain; no room.
 pub fn random_start(diameter_mm: &[f64], settings: &Settings) -> Result<Packing, PackingError> {
+    tall_start(diameter_mm, 1.0, settings)
+}
+
+/// The same in a cell that is `aspect` times as tall (along z) as wide, 1 to 100 times.
+///
+/// # Errors
+/// As [`random_start`]; an aspect out of range.
+pub fn tall_start(diameter_mm: &[f64], aspect: f64, settings: &Settings) -> Result<Packing, PackingError> {
     settings.check()?;
+    if !(1.0..=TALLEST).contains(&aspect) {
+        return Err(PackingError::Aspect(aspect));
+    }
+    let aspect = Aspect::new(aspect);
     if diameter_mm.is_empty() {
         return Err(PackingError::Columns([0; 4]));
     }
@@ -50,16 +64,16 @@ pub fn random_start(diameter_mm: &[f64], settings: &Settings) -> Result<Packing,
     let unit_mm = diameter[diameter.len() - 1];
     let radius: Vec<f64> = diameter.iter().map(|d| 0.5 * (d / unit_mm)).collect();
     let volume = radius.iter().map(|r| r * r * r).sum::<f64>() * (4.0 / 3.0 * PI);
-    let cell = libm::cbrt(volume / settings.start_fraction);
+    let cell = libm::cbrt(volume / settings.start_fraction / aspect.height());
     if cell < 4.0 * radius[0] {
         return Err(PackingError::NarrowCell { cell_mm: cell * unit_mm, largest_mm: diameter[0] });
     }
     let mut generator =
         Key { seed: settings.seed, purpose: Purpose::Packing, run: 0, increment: 0, chunk: 1 }.generator();
-    let centre = place(&radius, cell, &mut generator)?;
+    let centre = place(&radius, cell, aspect, &mut generator)?;
     let edge = cell * unit_mm;
     Ok(Packing {
-        cell: Cell::Periodic([edge; 3]),
+        cell: Cell::Periodic([edge, edge, edge * aspect.height()]),
         x: centre.iter().map(|c| c[0] * edge).collect(),
         y: centre.iter().map(|c| c[1] * edge).collect(),
         z: centre.iter().map(|c| c[2] * edge).collect(),

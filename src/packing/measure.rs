@@ -12,7 +12,8 @@ impl Compression {
             for (&[i, j], memory) in chunk.close.iter().zip(&chunk.memory) {
                 let (i, j) = (i as usize, j as usize);
                 let (p, q) = (self.position[i], self.position[j]);
-                let d: [f64; 3] = std::array::from_fn(|a| nearest(q[a] - p[a]) * self.cell);
+                let along = self.aspect.nearest(q[2] - p[2]);
+                let d = [nearest(q[0] - p[0]), nearest(q[1] - p[1]), along].map(|d| d * self.cell);
                 let r = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
                 let overlap = p[3] + q[3] - r;
                 if overlap > 0.0 {

@@ -52,7 +52,7 @@ mod state;
 mod unit;
 
 pub use compression::{Compression, Stage};
-pub use draw::{draw, random_start};
+pub use draw::{draw, random_start, tall_start};
 pub use export::vtp_points;
 pub use fields::ImportError;
 pub use grains::{Cell, Packing};

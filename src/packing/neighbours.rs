@@ -29,6 +29,45 @@ pub(super) fn nearest(d: f64) -> f64 {
     d - ((d + ROUND) - ROUND)
 }
 
+/// Height of the cell by its width, which is the unit of all positions: along z they repeat after it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Aspect {
+    height: f64,
+    per_height: f64,
+}
+
+impl Aspect {
+    /// Of a cell that is so many times as tall as wide.
+    pub fn new(height: f64) -> Self {
+        Self { height, per_height: 1.0 / height }
+    }
+
+    /// Height by width.
+    pub fn height(self) -> f64 {
+        self.height
+    }
+
+    /// A difference of two positions along z to its nearest image; of a cube the bits of [`nearest`].
+    #[inline(always)]
+    pub fn nearest(self, d: f64) -> f64 {
+        d - self.height * ((d * self.per_height + ROUND) - ROUND)
+    }
+
+    /// Whole cells along z that are no flatter than `across` of them are wide.
+    pub fn along(self, across: usize) -> usize {
+        (across as f64 * self.height) as usize
+    }
+
+    /// A position inside the cell.
+    pub fn wrapped(self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        let inside = |s: f64, length: f64| {
+            let s = s - length * libm::floor(s / length);
+            if s < length { s } else { 0.0 }
+        };
+        [inside(x, 1.0), inside(y, 1.0), inside(z, self.height)]
+    }
+}
+
 /// How far beyond contact the lists reach.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -87,7 +126,7 @@ impl GrainChunk {
     }
 
     /// Picks the close pairs anew; those that stay close keep their memory, and those that touch stay close.
-    pub fn pick(&mut self, position: &[[f64; 4]], cell: f64, reach: Reach) {
+    pub fn pick(&mut self, position: &[[f64; 4]], cell: f64, aspect: Aspect, reach: Reach) {
         let per_cell = 1.0 / cell;
         let old_pair = std::mem::take(&mut self.close_pair);
         let old_memory = std::mem::take(&mut self.memory);
@@ -100,7 +139,7 @@ impl GrainChunk {
             for pair in self.start[i - self.first]..self.start[i - self.first + 1] {
                 let j = self.neighbour[pair as usize];
                 let q = position[j as usize];
-                let gap = [nearest(q[0] - p[0]), nearest(q[1] - p[1]), nearest(q[2] - p[2])];
+                let gap = [nearest(q[0] - p[0]), nearest(q[1] - p[1]), aspect.nearest(q[2] - p[2])];
                 let far = ((p[3] + q[3]) * (1.0 + reach.relative) + reach.absolute) * per_cell;
                 if gap[0] * gap[0] + gap[1] * gap[1] + gap[2] * gap[2] < far * far {
                     while old.next_if(|o| *o.0 < pair).is_some() {}
@@ -126,9 +165,11 @@ pub(super) fn chunk_bounds(grains: usize) -> Vec<(usize, usize)> {
 struct Level {
     /// Largest radius.
     radius: f64,
-    /// Cells along each axis.
+    /// Cells along x and along y.
     cells: usize,
-    /// Where the grains of cell `(x * cells + y) * cells + z` start.
+    /// Cells along z.
+    along: usize,
+    /// Where the grains of cell `(x * cells + y) * along + z` start.
     start: Vec<u32>,
     /// Grain, by cell.
     grain: Vec<u32>,
@@ -159,7 +200,14 @@ fn levels_of(position: &[[f64; 4]]) -> (Vec<u8>, usize) {
     (level, count)
 }
 
-fn grids(position: &[[f64; 4]], level: &[u8], count: usize, cell: f64, reach: Reach) -> Vec<Level> {
+fn grids(
+    position: &[[f64; 4]],
+    level: &[u8],
+    count: usize,
+    cell: f64,
+    aspect: Aspect,
+    reach: Reach,
+) -> Vec<Level> {
     (0..count)
         .map(|l| {
             let members: Vec<u32> =
@@ -168,18 +216,20 @@ fn grids(position: &[[f64; 4]], level: &[u8], count: usize, cell: f64, reach: Re
             let mut cells = 1;
             while radius > 0.0
                 && (cells + 1) as f64 * (2.0 * radius * (1.0 + reach.relative) + reach.absolute) <= cell
-                && (cells + 1) * (cells + 1) * (cells + 1) <= 8 * members.len() + 64
+                && (cells + 1) * (cells + 1) * aspect.along(cells + 1) <= 8 * members.len() + 64
             {
                 cells += 1;
             }
+            let along = aspect.along(cells);
             let home: Vec<u32> = members
                 .iter()
                 .map(|&i| {
                     let [x, y, z, _] = position[i as usize];
-                    ((cell_of(x, cells) * cells + cell_of(y, cells)) * cells + cell_of(z, cells)) as u32
+                    let column = cell_of(x, cells) * cells + cell_of(y, cells);
+                    (column * along + cell_of(z / aspect.height, along)) as u32
                 })
                 .collect();
-            let mut start = vec![0u32; cells * cells * cells + 1];
+            let mut start = vec![0u32; cells * cells * along + 1];
             for &c in &home {
                 start[c as usize + 1] += 1;
             }
@@ -193,7 +243,7 @@ fn grids(position: &[[f64; 4]], level: &[u8], count: usize, cell: f64, reach: Re
                 next[c as usize] += 1;
             }
             let position = grain.iter().map(|&i| position[i as usize]).collect();
-            Level { radius, cells, start, grain, position }
+            Level { radius, cells, along, start, grain, position }
         })
         .collect()
 }
@@ -211,11 +261,17 @@ fn runs(s: f64, half: f64, cells: usize) -> [(usize, usize); 2] {
     if low <= high { [(low, high + 1), (0, 0)] } else { [(0, high + 1), (low, cells)] }
 }
 
-/// Lists every pair within `reach`. Positions are in units of the cell, `0 <= s < 1`, the fourth entry the
-/// radius; `rank` orders the grains from large to small.
-pub(super) fn list(position: &[[f64; 4]], rank: &[u32], cell: f64, reach: Reach) -> Vec<GrainChunk> {
+/// Lists every pair within `reach`. Positions are in units of the cell's width, `0 <= s < 1` and along z
+/// below its height, the fourth entry the radius; `rank` orders the grains from large to small.
+pub(super) fn list(
+    position: &[[f64; 4]],
+    rank: &[u32],
+    cell: f64,
+    aspect: Aspect,
+    reach: Reach,
+) -> Vec<GrainChunk> {
     let (level, count) = levels_of(position);
-    let grids = grids(position, &level, count, cell, reach);
+    let grids = grids(position, &level, count, cell, aspect, reach);
     let build = |&(first, last): &(usize, usize)| {
         let mut chunk = GrainChunk { first, last, start: vec![0], ..GrainChunk::default() };
         for i in first..last {
@@ -226,8 +282,8 @@ pub(super) fn list(position: &[[f64; 4]], rank: &[u32], cell: f64, reach: Reach)
                     for cx in x0..x1 {
                         for (y0, y1) in runs(y, half, grid.cells) {
                             for cy in y0..y1 {
-                                let row = (cx * grid.cells + cy) * grid.cells;
-                                for (z0, z1) in runs(z, half, grid.cells) {
+                                let row = (cx * grid.cells + cy) * grid.along;
+                                for (z0, z1) in runs(z / aspect.height, half / aspect.height, grid.along) {
                                     if z1 <= z0 {
                                         continue;
                                     }
@@ -236,7 +292,7 @@ pub(super) fn list(position: &[[f64; 4]], rank: &[u32], cell: f64, reach: Reach)
                                     {
                                         let dx = nearest(p[0] - x);
                                         let dy = nearest(p[1] - y);
-                                        let dz = nearest(p[2] - z);
+                                        let dz = aspect.nearest(p[2] - z);
                                         let far = ((radius + p[3]) * (1.0 + reach.relative) + reach.absolute)
                                             / cell;
                                         if dx * dx + dy * dy + dz * dz < far * far
@@ -345,17 +401,18 @@ mod tests {
     /// The lists against all pairs, for size ratios up to 100 and cells from two of the largest grain up.
     #[test]
     fn lists_equal_all_pairs() {
-        for (seed, (ratio, cell)) in
-            [(1.0, 9.0), (1.5, 12.0), (10.0, 45.0), (36.0, 150.0), (100.0, 450.0), (3.0, 30.0)]
-                .iter()
-                .enumerate()
-        {
+        let cubes = [(1.0, 9.0), (1.5, 12.0), (10.0, 45.0), (36.0, 150.0), (100.0, 450.0), (3.0, 30.0)];
+        let cubes = cubes.map(|(ratio, cell)| (ratio, cell, 1.0));
+        let tall = [(1.5, 6.0, 7.0), (10.0, 25.0, 2.5), (36.0, 80.0, 1.3)];
+        for (seed, (ratio, cell, height)) in cubes.iter().chain(&tall).enumerate() {
+            let aspect = Aspect::new(*height);
             let mut position = random(400, *ratio, seed as u64);
+            position.iter_mut().for_each(|p| p[2] *= height);
             position.sort_by(|a, b| b[3].total_cmp(&a[3]));
             let rank: Vec<u32> = (0..400).collect();
             let reach = Reach { relative: 0.01, absolute: 0.3 };
             let mut listed = BTreeSet::new();
-            for chunk in list(&position, &rank, *cell, reach) {
+            for chunk in list(&position, &rank, *cell, aspect, reach) {
                 for i in chunk.first..chunk.last {
                     for k in chunk.pairs(i) {
                         let fresh = listed.insert((i, chunk.neighbour[k] as usize));
@@ -367,7 +424,11 @@ mod tests {
             for i in 0..400 {
                 for j in i + 1..400 {
                     let (p, q) = (position[i], position[j]);
-                    let d2: f64 = (0..3).map(|a| nearest(q[a] - p[a]) * nearest(q[a] - p[a])).sum();
+                    let [x, y, z] = [0, 1, 2].map(|a| q[a] - p[a]);
+                    // By hand, apart from the fast way.
+                    let z =
+                        [z - height, z, z + height].map(f64::abs).into_iter().fold(f64::INFINITY, f64::min);
+                    let d2 = nearest(x) * nearest(x) + nearest(y) * nearest(y) + z * z;
                     if d2.sqrt() * cell < (p[3] + q[3]) * 1.01 + 0.3 {
                         expected.insert((i, j));
                     }

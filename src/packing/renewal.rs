@@ -65,17 +65,14 @@ impl Compression {
     pub(super) fn relist(&mut self) {
         let remembered = Remembered::collect(&self.chunks, &self.rank);
         for p in &mut self.position {
-            for s in &mut p[..3] {
-                *s -= libm::floor(*s);
-                if *s >= 1.0 {
-                    *s = 0.0;
-                }
-            }
+            let [x, y, z, radius] = *p;
+            let [x, y, z] = self.aspect.wrapped([x, y, z]);
+            *p = [x, y, z, radius];
         }
         let mut order: Vec<u64> = (0..self.rank.len() as u64)
             .map(|i| {
                 let [x, y, z, _] = self.position[i as usize];
-                (u64::from(morton([x, y, z])) << 32) | u64::from(self.rank[i as usize])
+                (u64::from(morton([x, y, z / self.aspect.height()])) << 32) | u64::from(self.rank[i as usize])
             })
             .collect();
         order.sort_unstable();
@@ -92,7 +89,7 @@ impl Compression {
         self.listed.clone_from(&self.position);
         self.listed_cell = self.cell;
         self.listed_at = self.steps;
-        self.chunks = list(&self.position, &self.rank, self.cell, self.reach);
+        self.chunks = list(&self.position, &self.rank, self.cell, self.aspect, self.reach);
         remembered.restore(&mut self.chunks, &self.rank);
     }
 }

@@ -153,9 +153,12 @@ pub enum PackingError {
         "grain columns x, y, z, diameter have {0:?} entries: they must have the same number, at least one"
     )]
     Columns([usize; 4]),
-    /// The cell is not periodic and cubic.
-    #[error("compression needs a periodic cubic cell, not {0}")]
+    /// The cell is not periodic, not square, or flatter than wide.
+    #[error("compression needs a periodic cell, square across z and 1 to 100 times as tall as wide, not {0}")]
     Cell(String),
+    /// A cell so flat or so tall.
+    #[error("a cell {0} times as tall as wide: allowed: a number from 1 to 100")]
+    Aspect(f64),
     /// A grain would touch itself or another grain twice.
     #[error(
         "the cell is {cell_mm} mm wide, narrower than two of the largest grain ({largest_mm} mm): use more \

@@ -1,7 +1,7 @@
 //! A compression as bytes, and back: a resumed compression gives the same bits as an unbroken one.
 
-use super::compression::{Compression, Stage};
-use super::neighbours::{Reach, list};
+use super::compression::{Compression, Stage, TALLEST};
+use super::neighbours::{Aspect, Reach, list};
 use super::observed::HoldState;
 use super::settings::{PackingError, Settings};
 use serde::{Deserialize, Serialize};
@@ -25,6 +25,9 @@ struct Record {
     step: f64,
     unit_mm: f64,
     cell: f64,
+    /// Height by width of the cell; a cube does not say.
+    #[serde(default = "cube", skip_serializing_if = "is_cube")]
+    aspect: f64,
     strain_rate: f64,
     friction: f64,
     listed_at: u64,
@@ -42,6 +45,14 @@ struct Record {
     unbalanced: f64,
     mean_normal: f64,
     hold: HoldState,
+}
+
+fn cube() -> f64 {
+    1.0
+}
+
+fn is_cube(aspect: &f64) -> bool {
+    *aspect == 1.0
 }
 
 impl Compression {
@@ -87,6 +98,7 @@ impl Compression {
             step: self.step,
             unit_mm: self.unit_mm,
             cell: self.cell,
+            aspect: self.aspect.height(),
             strain_rate: self.strain_rate,
             friction: self.law.friction,
             listed_at: self.listed_at,
@@ -143,16 +155,20 @@ impl Compression {
         let mut row = || rows.next().unwrap_or_default();
         let (position, velocity) = (row(), row());
         let origin = bytemuck::pod_collect_to_vec(origin);
-        let mut this = Self::blank(settings, position, velocity, record.unit_mm, origin, record.cell);
+        if !(1.0..=1.001 * TALLEST).contains(&record.aspect) {
+            return Err(PackingError::State("its cell is none"));
+        }
+        let cell = (record.cell, Aspect::new(record.aspect));
+        let mut this = Self::blank(settings, position, velocity, record.unit_mm, origin, cell);
         this.rank = bytemuck::pod_collect_to_vec(rank);
         (this.spin, this.listed, this.picked) = (row(), row(), row());
         let memory: Vec<[f64; 4]> = bytemuck::pod_collect_to_vec(&rest[160 * n..]);
         this.take(&record);
-        this.chunks = list(&this.listed, &this.rank, this.listed_cell, this.reach);
+        this.chunks = list(&this.listed, &this.rank, this.listed_cell, this.aspect, this.reach);
         let mut taken = 0;
         for chunk in &mut this.chunks {
             if this.moved < f64::INFINITY {
-                chunk.pick(&this.picked, this.picked_cell, this.close);
+                chunk.pick(&this.picked, this.picked_cell, this.aspect, this.close);
             }
             let own = memory.get(taken..taken + chunk.close.len());
             chunk.memory.copy_from_slice(own.ok_or(PackingError::State("memory is missing"))?);

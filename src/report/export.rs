@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use super::by_void;
 use super::error::ReportError;
 use super::files::{rows, text};
 use super::vtu::{CellKind, Grid};
@@ -19,8 +20,9 @@ pub struct Exported {
 }
 
 /// Writes `export/arrays.npz`, with an array `TABLE.COLUMN` of every column of numbers of every CSV table in
-/// the folder; `export/layers.vtu` of a run: a block for each layer, with the means over the replicates; and
-/// `export/grains.vtu` of a packing: a point for each grain, with its diameter.
+/// the folder; `export/layers.vtu` of a run: a block for each layer, with the means over the replicates;
+/// `export/grains.vtu` of a packing: a point for each grain, with its diameter; and of a run that kept its
+/// voids the files of [`by_void::grids`].
 ///
 /// # Errors
 /// [`ReportError`] names the file that cannot be read, is no table, or cannot be written.
@@ -48,6 +50,9 @@ pub fn export(folder: &Path) -> Result<Exported, ReportError> {
     write("arrays.npz", &npz(&arrays).map_err(unwritten)?)?;
     if tables.contains_key("layers") {
         write("layers.vtu", &layers(&folder.join("layers.csv"))?)?;
+    }
+    if tables.contains_key("retained_by_void") {
+        by_void::grids(folder, &mut write)?;
     }
     if let Some(bytes) = tables.get("grains").and_then(grains) {
         write("grains.vtu", &bytes)?;

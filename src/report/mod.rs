@@ -30,6 +30,7 @@
 
 mod appendix;
 mod boundaries;
+mod by_void;
 mod campaign;
 mod campaign_cases;
 mod comparison;

@@ -7,6 +7,8 @@ use std::fmt::Write;
 pub(super) enum CellKind {
     /// One point.
     Vertex,
+    /// Two ends.
+    Line,
     /// Eight corners.
     Hexahedron,
 }
@@ -15,6 +17,7 @@ impl CellKind {
     fn number(self) -> u8 {
         match self {
             Self::Vertex => 1,
+            Self::Line => 3,
             Self::Hexahedron => 12,
         }
     }
@@ -22,6 +25,7 @@ impl CellKind {
     fn corners(self) -> usize {
         match self {
             Self::Vertex => 1,
+            Self::Line => 2,
             Self::Hexahedron => 8,
         }
     }

@@ -18,8 +18,11 @@ pub(crate) const STUDY: [&str; 2] = ["study.0", "study.1"];
 /// The files of the checkpoint of a design that is not finished.
 pub(crate) const DESIGN: [&str; 2] = ["networks.0", "networks.1"];
 
-/// What `voidwalk export` writes into a folder of that name.
-const EXPORTED: [&str; 3] = ["arrays.npz", "layers.vtu", "grains.vtu"];
+/// What `voidwalk export` writes into a folder of that name ...
+const EXPORTED: [&str; 5] = ["arrays.npz", "layers.vtu", "grains.vtu", "voids.pvd", "constrictions.pvd"];
+
+/// ... and how the names of the moments of a walk begin, before their numbers.
+const EXPORTED_MOMENTS: [&str; 2] = ["voids_", "constrictions_"];
 
 /// What a folder holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -122,6 +125,10 @@ impl FolderKind {
                 "flow.csv",
                 "retained.csv",
                 "eroded.csv",
+                "voids.csv",
+                "network.csv",
+                "blocked.csv",
+                "retained_by_void.csv",
             ],
             Self::Packing => &[
                 RECORD,
@@ -272,11 +279,22 @@ pub fn clear(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
     let both = |name: &&str| ["svg", "png"].map(|ending| format!("{name}.{ending}"));
     let figures: Vec<String> = kind.figures().iter().flat_map(both).collect();
     folder.remove_all_in("figures", &figures)?;
-    folder.remove_all_in("export", &EXPORTED)?;
+    folder.remove_all_in("export", &exported(folder.path()))?;
     if kind == FolderKind::Run {
         folder.remove_all_in("inputs", &INPUT_FILES)?;
     }
     folder.remove_all(&[unfinished::FILE])
+}
+
+/// Names of what `voidwalk export` wrote in a folder.
+fn exported(folder: &Path) -> Vec<String> {
+    let is_moment = |name: &str| {
+        let number = EXPORTED_MOMENTS.iter().find_map(|begin| name.strip_prefix(begin)?.strip_suffix(".vtu"));
+        number.is_some_and(|number| !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit()))
+    };
+    let inside = std::fs::read_dir(folder.join("export")).into_iter().flatten().flatten();
+    let moments = inside.filter_map(|entry| entry.file_name().into_string().ok()).filter(|n| is_moment(n));
+    EXPORTED.iter().map(ToString::to_string).chain(moments).collect()
 }
 
 /// Claims the first of `NAME`, `NAME-2`, ... for a run that is new, or that an earlier run left without

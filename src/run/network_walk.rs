@@ -134,7 +134,7 @@ impl NetworkWalk {
             seed: 1,
             runs: 2,
             replicates: 10,
-            wanted: Wanted { series_every: 1, size_curves: Vec::new(), size_classes: 64 },
+            wanted: Wanted { series_every: 1, size_curves: Vec::new(), size_classes: 64, voids: None },
             d15f_mm: None,
         }
     }

@@ -19,7 +19,7 @@ use super::unfinished::{self, Unfinished};
 use crate::case::{CaseError, GRAINS, PackedFilter, PackingPlan, RECORD};
 use crate::constrictions::Constrictions;
 use crate::outcome::packing::PackingRecord;
-use crate::packing::{Compression, PackReport, PackingError, draw, random_start};
+use crate::packing::{Compression, PackReport, PackingError, draw, tall_start};
 use crate::scene::PackingSpec;
 use crate::store::checkpoint::{CheckpointError, Identity, Label, Section, newest, save};
 use crate::store::{Folder, StoreError};
@@ -206,7 +206,8 @@ fn compress(
     let (mut compression, seconds_before, mut generation) = match saved(folder, plan, callbacks)? {
         Some(saved) => saved,
         None => {
-            let start = random_start(&draw(&plan.gradation, settings.grains, settings.seed), settings)?;
+            let sizes = draw(&plan.gradation, settings.grains, settings.seed);
+            let start = tall_start(&sizes, plan.aspect, settings)?;
             (Compression::new(&start, settings)?, 0.0, 0)
         }
     };

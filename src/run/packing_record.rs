@@ -14,9 +14,9 @@ pub(super) fn record(
     seconds: f64,
 ) -> Result<PackingRecord, CurveError> {
     let s = &plan.compression;
-    let cell_mm = match packing.cell {
-        Cell::Periodic([x, ..]) => x,
-        Cell::Free => f64::NAN,
+    let [cell_mm, height_mm] = match packing.cell {
+        Cell::Periodic([x, _, z]) => [x, z],
+        Cell::Free => [f64::NAN; 2],
     };
     let mut settings = match serde_json::to_value(s) {
         Ok(serde_json::Value::Object(settings)) => settings,
@@ -54,16 +54,17 @@ pub(super) fn record(
         simulated_s: report.simulated_s,
         seconds,
         cell_mm,
-        slice: slice(packing, cell_mm),
+        height_mm: (plan.aspect != 1.0).then_some(height_mm),
+        slice: slice(packing, cell_mm, height_mm),
     })
 }
 
 /// The grains that the plane through the middle of the cell cuts, with those that reach over its sides on
 /// both.
-fn slice(packing: &Packing, cell_mm: f64) -> Vec<[f64; 4]> {
+fn slice(packing: &Packing, cell_mm: f64, height_mm: f64) -> Vec<[f64; 4]> {
     let mut cuts = Vec::new();
     for i in 0..packing.x.len() {
-        let height = packing.z[i] - 0.5 * cell_mm;
+        let height = packing.z[i] - 0.5 * height_mm;
         let radius = 0.5 * packing.diameter[i];
         let cut = radius * radius - height * height;
         if cut <= 0.0 {

@@ -289,9 +289,12 @@ impl RunContext<'_> {
         }
         let mut walk = Walk::new(network, &supply, &state);
         let (mut last, mut failed) = (Instant::now(), None);
+        let mut wanted = case.scene.record.wanted();
+        // One replicate is picture enough.
+        wanted.voids = wanted.voids.filter(|_| of.replicate == 1);
         let walked = walk.run(&mut state, &mut |state| {
             if part == 0 {
-                done.recorder.observe(&case.scene.record.wanted(), state);
+                done.recorder.observe(&wanted, state);
             }
             let (increment, moving) = (state.increment, state.tally.moving);
             context.tell(Event::Increment { replicate: of.replicate, run: of.run, increment, moving });

@@ -8,14 +8,14 @@ use super::error::RunError;
 use super::machine::Machine;
 use super::other_walks::OtherWalks;
 use super::replicates::{ReplicateResult, as_it_is, stopping, summarise};
-use crate::case::{Case, INPUT_NAMES};
+use crate::case::{Case, INPUT_NAMES, replicate_seed};
 use crate::network::ExitRule;
 use crate::outcome::record::{
     CurveRange, Manifest, Outcome, PanBounds, PanReading, RunSummary, Sensitivity, Statistic, Stopping,
-    Verdict,
+    Verdict, VoidRow,
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
-use crate::outcome::{Recorded, confidence, infiltration, leaves_out, rules, verdict};
+use crate::outcome::{Recorded, by_void, confidence, infiltration, leaves_out, rules, verdict};
 use crate::scene::NetworkSource;
 use crate::store::{Folder, StoreError};
 
@@ -213,12 +213,35 @@ pub fn write(
     if !recorded.flow.is_empty() {
         folder.write("flow.csv", &csv("flow.csv", FLOW, &recorded.flow)?)?;
     }
+    if case.scene.record.voids.is_some() {
+        write_voids(folder, case, &recorded)?;
+    }
     folder.write("outcome.json", &json("outcome.json", outcome)?)?;
     // Last, so that a folder with a manifest is whole.
     folder.write("manifest.json", &json("manifest.json", manifest)?)?;
     Ok(())
 }
 
+/// Writes the first replicate's voids and constrictions, and what became of them.
+fn write_voids(folder: &Folder, case: &Case, recorded: &Recorded) -> Result<(), RunError> {
+    let Some(places) = case.places() else { return Ok(()) };
+    let network = case.network(replicate_seed(case.scene.walk.seed, 1))?;
+    let rows: Vec<VoidRow> = (0u64..)
+        .zip(places.point_mm.iter().zip(network.layer_of()))
+        .map(|(void, (&[x_mm, y_mm, z_mm], &layer))| VoidRow { void, layer: layer.into(), x_mm, y_mm, z_mm })
+        .collect();
+    folder.write("voids.csv", &csv("voids.csv", VOIDS, &rows)?)?;
+    let rows = by_void::constrictions(&network, &places);
+    folder.write("network.csv", &csv("network.csv", NETWORK, &rows)?)?;
+    folder.write("blocked.csv", &csv("blocked.csv", BLOCKED, &recorded.blocked)?)?;
+    let bytes = csv("retained_by_void.csv", RETAINED_BY_VOID, &recorded.voids)?;
+    Ok(folder.write("retained_by_void.csv", &bytes)?)
+}
+
+const VOIDS: &str = "void,layer,x_mm,y_mm,z_mm";
+const NETWORK: &str = "constriction,from,to,dx_mm,dy_mm,dz_mm,diameter_mm,conductance";
+const BLOCKED: &str = "run,increment,constriction";
+const RETAINED_BY_VOID: &str = "run,increment,void,retained_in_constrictions,retained_in_voids";
 const SERIES: &str = "replicate,run,increment,inserted,moving,eroded,retained_in_constrictions,\
     retained_in_voids,trapped,blocked,eroded_mass_fraction";
 const LAYERS: &str = "replicate,run,layer,constrictions,blocked,retained_in_constrictions,retained_in_voids";

@@ -92,6 +92,9 @@ section! {
     pub struct FilterPacking in "packing" {
         /// Grains: by default enough for a cell 5.4 times as wide as the largest one, 9,000 to 60,000.
         pub grains: Option<u64> = None, off "10000", whole(10..=10_000_000);
+        /// Height of the cell by its width, along the flow: 1, a cube, by default. A tall cell has as many
+        /// times the grains, and a filter as thick as it is needs no copies.
+        pub aspect: Option<f64> = None, off "4.0", within(1.0..=100.0, "a number from 1 to 100");
         /// Percent of the filter's mass, from its finest grain on, that is packed; 100 is all of it. By
         /// default all, or of a filter so broad that the whole would need more grains as much as they
         /// suffice for; warnings and the verdict's range say what that leaves open.
@@ -210,6 +213,11 @@ section! {
             only("a list of increments, from 1", |list: &Vec<u64>| !list.contains(&0));
         /// Size classes of those curves.
         pub size_classes: u64 = 64, set, whole(1..=4096);
+        /// Increments after which it is kept what each void of the first replicate holds, besides the last of
+        /// each run; with them its voids, its constrictions and when each was blocked are kept, which
+        /// `voidwalk export` shows in ParaView. [] keeps the last only; without it none of all that.
+        pub voids: Option<Vec<u64>> = None, off "[1, 10, 50, 100]",
+            only("a list of increments, from 1", |list: &Vec<u64>| !list.contains(&0));
         /// Multiples of N_base that show how the verdict moves; [] leaves the study out.
         pub sensitivity: Vec<f64> = vec![0.25, 0.5, 2.0, 4.0], set,
             only("a list of numbers above 0", |list: &Vec<f64>| list.iter().all(|factor| *factor > 0.0));

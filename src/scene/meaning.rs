@@ -239,6 +239,7 @@ impl Record {
             series_every: self.series_every,
             size_curves: self.size_curves.clone(),
             size_classes: self.size_classes as usize,
+            voids: self.voids.clone(),
         }
     }
 }
@@ -250,6 +251,8 @@ pub struct PackingSpec {
     pub gradation: FilterGradation,
     /// Grains, where the user says how many.
     pub grains: Option<usize>,
+    /// Height of the cell by its width.
+    pub aspect: f64,
     /// Percent of the mass, from the finest grain on, that is packed, where the user says it.
     pub coarsest: Option<f64>,
     /// How the grains are compressed; its number of grains counts only where the user gave one.
@@ -280,8 +283,8 @@ impl PackingSpec {
         compression.grains = grains.unwrap_or(compression.grains);
         compression.check().map_err(|e| clash(format!("packing.{e}")))?;
         let merge_overlap = packing.filter.merge_overlap;
-        let coarsest = packing.filter.coarsest;
-        Ok(Self { gradation, grains, coarsest, compression, merge_overlap, file: file.to_owned() })
+        let (coarsest, aspect) = (packing.filter.coarsest, packing.filter.aspect.unwrap_or(1.0));
+        Ok(Self { gradation, grains, aspect, coarsest, compression, merge_overlap, file: file.to_owned() })
     }
 
     /// The sieve table of the gradation, if there is one.

@@ -280,6 +280,12 @@ impl Scene {
         } else {
             wrong(&["network.packing", "network.copies"], "goes with network.kind = \"graph\"")?;
         }
+        if self.network.file.is_some() {
+            wrong(
+                &["record.voids"],
+                "needs to know where voids lie, which a network from a file does not say",
+            )?;
+        }
         let of_arrays = self.network.is_of_arrays();
         if self.network.packing.is_none() {
             wrong(&["network.cell"], "goes with network.packing")?;

@@ -214,3 +214,72 @@ fn a_graph_of_twice_the_copies_is_walked_beside_it() {
     assert_eq!((&row["n_base"], &row["verdict"]), (&whole["n_base"], &whole["verdict"]));
     assert_eq!(row["runs"][1], whole["summary"][1]["eroded_mass_fraction"]);
 }
+
+/// The numbers of an array of doubles in a `.vtu`.
+fn doubles(file: &[u8], name: &str) -> Vec<f64> {
+    let begin = file.windows(2).position(|pair| pair == b"\n_").unwrap() + 2;
+    let head = String::from_utf8_lossy(&file[..begin]).into_owned();
+    let (_, rest) = head.split_once(&format!("Name=\"{name}\"")).unwrap();
+    let offset: usize = rest.split_once("offset=\"").unwrap().1.split('"').next().unwrap().parse().unwrap();
+    let data = &file[begin + offset..];
+    let length = u64::from_le_bytes(data[..8].try_into().unwrap()) as usize;
+    data[8..8 + length].chunks_exact(8).map(|bytes| f64::from_le_bytes(bytes.try_into().unwrap())).collect()
+}
+
+#[test]
+fn voids_and_constrictions_are_shown_as_they_fill_and_close() {
+    let root = tempfile::tempdir().unwrap();
+    prepared(root.path());
+    let lattice = ["--set", "network.nx=5", "--set", "network.ny=6", "--set", "network.nz=7"];
+    let built_in = ["init", "lattice.toml"];
+    done(&call(root.path(), &built_in));
+    let graph = ["--set", "base.d15f_over_d85b=2"];
+    for (out, scene, more) in [("g", "scene.toml", &graph[..]), ("l", "lattice.toml", &lattice[..])] {
+        let wanted = [
+            &["run", scene, "--out", out, "--quiet", "--set", "record.voids=[5, 20]"][..],
+            &["--set", "record.sensitivity=[]", "--set", "replicates=2"],
+            more,
+        ];
+        done(&call(root.path(), &wanted.concat()));
+        done(&call(root.path(), &["export", out]));
+        let file = |name: &str| fs::read(root.path().join(out).join("export").join(name)).unwrap();
+        let outcome = json(&root.path().join(out).join("outcome.json"));
+        let runs = &outcome["replicates"][0]["runs"];
+        // Clean, after 5 and 20 increments and at the end of the first run, and likewise of the second.
+        let series = String::from_utf8(file("voids.pvd")).unwrap();
+        assert_eq!(series.matches("<DataSet").count(), 7, "{series}");
+        let end = |run: usize| runs[run]["increments"].as_u64().unwrap();
+        assert!(series.contains(&format!("timestep=\"{}\" file=\"voids_0003.vtu\"", end(0))));
+        assert!(series.contains(&format!("timestep=\"{}\" file=\"voids_0006.vtu\"", end(0) + end(1))));
+        for (run, last) in [(0, 3), (1, 6)] {
+            let grid = file(&format!("voids_{last:04}.vtu"));
+            for name in ["retained_in_constrictions", "retained_in_voids"] {
+                let all: f64 = doubles(&grid, name).iter().sum();
+                assert!(all <= runs[run][name].as_f64().unwrap(), "{out} {name}");
+                // At a graph's face some are retained before the first void.
+                assert!(out == "g" || all == runs[run][name].as_f64().unwrap(), "{out} {name}");
+            }
+            let lines = file(&format!("constrictions_{last:04}.vtu"));
+            let blocked = doubles(&lines, "blocked");
+            assert!(blocked.contains(&1.0), "{out}");
+            assert_eq!(blocked.iter().sum::<f64>(), runs[run]["blocked"].as_f64().unwrap(), "{out}");
+            let times = doubles(&lines, "blocked_at");
+            assert!(times.iter().zip(&blocked).all(|(&at, &is)| (at > 0.0) == (is == 1.0)));
+            // Ends of a line are neighbours, though the network repeats.
+            let points = doubles(&lines, "points");
+            assert_eq!(points.len(), 6 * blocked.len());
+            // Half a cell of the packing across the flow; a layer of the lattice.
+            let (axes, most) = if out == "g" { (2, 3.001) } else { (3, 1.5) };
+            let across = |p: &[f64]| (0..axes).map(|k| (p[k] - p[3 + k]).abs()).fold(0.0, f64::max);
+            assert!(points.chunks_exact(6).map(across).fold(0.0, f64::max) < most, "{out}");
+        }
+        assert!(doubles(&file("constrictions_0000.vtu"), "blocked").iter().all(|&is| is == 0.0));
+    }
+    // A run that takes the place of one leaves none of its moments behind.
+    done(&call(root.path(), &["run", "scene.toml", "--out", "g", "--overwrite", "--quiet"]));
+    assert!(!root.path().join("g/export").exists() && !root.path().join("g/voids.csv").exists());
+    fs::write(root.path().join("n.csv"), "from,to,diameter_mm\nstart,0,\n0,end,1\n").unwrap();
+    let scene = "[base]\nsingle_mm = 0.1\nn_base = 100\n[network]\nfile = \"n.csv\"\n[record]\nvoids = []\n";
+    fs::write(root.path().join("n.toml"), scene).unwrap();
+    refused(&call(root.path(), &["check", "n.toml"]), "record.voids needs to know where voids lie");
+}

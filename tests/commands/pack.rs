@@ -292,3 +292,36 @@ fn a_guess_by_inscribed_circles_walks_without_a_packing_and_says_so() {
     let clash = call(&at, &["run", "both.toml", "--out", "r3"]);
     refused(&clash, "keep one");
 }
+
+/// A filter as thick as its cell is tall is one copy of it; the page and the record know the height.
+#[test]
+fn a_tall_cell_takes_the_place_of_copies() {
+    let (_root, at) = with_filter(FILTER);
+    refused(
+        &call(&at, &["pack", "filter.toml", "--set", "packing.aspect=0.5"]),
+        "packing.aspect: `0.5` is not allowed",
+    );
+    let tall = ["--set", "packing.aspect=4", "--set", "packing.grains=1600"];
+    done(&call(&at, &[&["pack", "filter.toml", "--out", "tall"][..], &tall].concat()));
+    let record: serde_json::Value =
+        serde_json::from_slice(&fs::read(at.join("tall/packing.json")).unwrap()).unwrap();
+    let [width, height] = ["cell_mm", "height_mm"].map(|name| record[name].as_f64().unwrap());
+    assert!((height / width - 4.0).abs() < 1e-9);
+    let scene = "[filter]\ncu = 1.5\n[base]\ncu = 1.5\nd15f_over_d85b = 4\n[network]\nkind = \"graph\"\n\
+                 packing = \"tall/grains.csv\"\ncopies = 1\n";
+    fs::write(at.join("scene.toml"), scene).unwrap();
+    let said = call(&at, &["check", "scene.toml", "--json"]);
+    done(&said);
+    // Without a number of grains, four times those of a cube.
+    let cost = |aspect: &str| {
+        let scene = "[filter]\ncu = 1.5\ndensity = \"loose\"\n[base]\ncu = 1.5\nd15f_over_d85b = 4\n";
+        fs::write(at.join("packed.toml"), scene).unwrap();
+        let said = call(&at, &["check", "packed.toml", "--set", aspect]);
+        done(&said);
+        String::from_utf8(said.stdout).unwrap()
+    };
+    assert!(cost("packing.aspect=1").contains("9\u{202f}000") || cost("packing.aspect=1").contains("9 000"));
+    assert!(
+        cost("packing.aspect=4").contains("36\u{202f}000") || cost("packing.aspect=4").contains("36 000")
+    );
+}

@@ -17,6 +17,7 @@ mod inputs;
 mod manifest;
 mod rows;
 mod varied;
+mod voids;
 
 use serde::{Deserialize, Serialize};
 
@@ -24,6 +25,7 @@ pub use inputs::{BaseRecord, FilterRecord, Inputs, NetworkKind, NetworkRecord, N
 pub use manifest::{InputFile, Manifest};
 pub use rows::{FlowRow, LayerRow, SeriesRow, SizeRow};
 pub use varied::{CurveEnd, CurveRange, OfThickness, Sensitivity};
+pub use voids::{BlockedRow, ConstrictionRow, RetainedRow, VoidRow};
 
 pub use super::applied::{AppliedRule, Confidence, RuleRole};
 pub use super::pan::{PanBounds, PanReading, PanSize};

@@ -1,0 +1,154 @@
+//! The voids and constrictions of a run as they fill and close, for ParaView.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use super::error::ReportError;
+use super::files::rows;
+use super::vtu::{CellKind, Grid};
+use crate::outcome::record::{BlockedRow, ConstrictionRow, RetainedRow, VoidRow};
+
+/// A moment: run, and increments that were done.
+type Moment = (u64, u64);
+
+/// What is drawn, and when: the tables of a folder.
+struct Tables {
+    voids: Vec<[f64; 3]>,
+    constrictions: Vec<ConstrictionRow>,
+    /// When each constriction was blocked, by its number.
+    blocked: BTreeMap<u64, Moment>,
+    /// What voids hold, by moment.
+    retained: BTreeMap<Moment, Vec<RetainedRow>>,
+    /// Moments that are drawn.
+    moments: BTreeSet<Moment>,
+}
+
+/// Writes grids of a run that kept its voids: for each moment `voids_N.vtu`, a point for each void with what
+/// it holds, and `constrictions_N.vtu`, a line for each constriction with its diameter, its conductance and
+/// whether and when it was blocked; and `voids.pvd` and `constrictions.pvd`, which ParaView opens as moments
+/// one after the other.
+///
+/// # Errors
+/// [`ReportError`] names the table and the line; whatever `write` says.
+pub(super) fn grids(
+    folder: &Path,
+    mut write: impl FnMut(&str, &[u8]) -> Result<(), ReportError>,
+) -> Result<(), ReportError> {
+    let tables = Tables::read(folder)?;
+    for (kind, grid) in GRIDS {
+        let mut sets = String::new();
+        for (number, &moment) in tables.moments.iter().enumerate() {
+            let name = format!("{kind}_{number:04}.vtu");
+            write(&name, &grid(&tables, moment))?;
+            let time = tables.time_of(moment);
+            sets += &format!("<DataSet timestep=\"{time}\" file=\"{name}\"/>\n");
+        }
+        let text = format!(
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" \
+             byte_order=\"LittleEndian\">\n<Collection>\n{sets}</Collection>\n</VTKFile>\n"
+        );
+        write(&format!("{kind}.pvd"), text.as_bytes())?;
+    }
+    Ok(())
+}
+
+/// Draws a moment: the bytes of a grid.
+type Draw = fn(&Tables, Moment) -> Vec<u8>;
+
+/// What is drawn at each moment, by the name of its files.
+const GRIDS: [(&str, Draw); 2] = [("voids", Tables::voids_at), ("constrictions", Tables::lines_at)];
+
+impl Tables {
+    fn read(folder: &Path) -> Result<Self, ReportError> {
+        let path = |name: &str| folder.join(name);
+        let voids = rows::<VoidRow>(&path("voids.csv"))?;
+        let count = voids.len() as u64;
+        // Each void stands in the row of its number.
+        for (index, (line, row)) in (0u64..).zip(&voids) {
+            check(&path("voids.csv"), *line, row.void == index, || {
+                format!("void is {}, allowed: {index}", row.void)
+            })?;
+        }
+        let mut constrictions = Vec::new();
+        for (line, row) in rows::<ConstrictionRow>(&path("network.csv"))? {
+            let known = |void: i64| void < count as i64;
+            check(
+                &path("network.csv"),
+                line,
+                known(row.from) && known(row.to) && row.from.max(row.to) >= 0,
+                || format!("joins {} and {}, but voids.csv holds {count} voids", row.from, row.to),
+            )?;
+            constrictions.push(row);
+        }
+        let mut blocked = BTreeMap::new();
+        for (_, row) in rows::<BlockedRow>(&path("blocked.csv"))? {
+            blocked.entry(row.constriction).or_insert((row.run, row.increment));
+        }
+        let mut retained: BTreeMap<Moment, Vec<RetainedRow>> = BTreeMap::new();
+        for (_, row) in rows::<RetainedRow>(&path("retained_by_void.csv"))? {
+            retained.entry((row.run, row.increment)).or_default().push(row);
+        }
+        let moments = [(1, 0)].into_iter().chain(retained.keys().copied()).collect();
+        let voids = voids.into_iter().map(|(_, row)| [row.x_mm, row.y_mm, row.z_mm]).collect();
+        Ok(Self { voids, constrictions, blocked, retained, moments })
+    }
+
+    /// The time of a moment: increments, those of the second run after those of the first.
+    fn time_of(&self, (run, increment): Moment) -> u64 {
+        let last = |run: u64| self.moments.iter().filter(|m| m.0 == run).map(|m| m.1).max().unwrap_or(0);
+        let before: u64 = self.moments.iter().map(|m| m.0).filter(|&r| r < run).max().map_or(0, last);
+        before.saturating_add(increment)
+    }
+
+    fn voids_at(&self, moment: Moment) -> Vec<u8> {
+        let mut held = [vec![0.0; self.voids.len()], vec![0.0; self.voids.len()]];
+        for row in self.retained.get(&moment).into_iter().flatten() {
+            // The reservoir before the filter is no void of it.
+            let void = row.void as usize;
+            if void < self.voids.len() {
+                held[0][void] = row.retained_in_constrictions as f64;
+                held[1][void] = row.retained_in_voids as f64;
+            }
+        }
+        let [in_constrictions, in_voids] = held;
+        let columns = [
+            ("retained_in_constrictions".to_owned(), in_constrictions),
+            ("retained_in_voids".to_owned(), in_voids),
+        ];
+        let corners: Vec<i64> = (0..self.voids.len() as i64).collect();
+        Grid { points: &self.voids, kind: CellKind::Vertex, corners: &corners, columns: &columns }.file()
+    }
+
+    fn lines_at(&self, moment: Moment) -> Vec<u8> {
+        let ends = |row: &ConstrictionRow| {
+            let way = [row.dx_mm, row.dy_mm, row.dz_mm];
+            let by = |p: [f64; 3], sign: f64| [0, 1, 2].map(|axis| p[axis] + sign * way[axis]);
+            match usize::try_from(row.from) {
+                Ok(from) => [self.voids[from], by(self.voids[from], 1.0)],
+                Err(_) => [by(self.voids[row.to as usize], -1.0), self.voids[row.to as usize]],
+            }
+        };
+        let points: Vec<[f64; 3]> = self.constrictions.iter().flat_map(ends).collect();
+        let corners: Vec<i64> = (0..points.len() as i64).collect();
+        let column = |name: &str, of: &dyn Fn(&ConstrictionRow) -> f64| {
+            (name.to_owned(), self.constrictions.iter().map(of).collect::<Vec<f64>>())
+        };
+        let blocked_at =
+            |row: &ConstrictionRow| self.blocked.get(&row.constriction).filter(|&&at| at <= moment);
+        let columns = [
+            column("diameter_mm", &|row| row.diameter_mm),
+            column("conductance", &|row| row.conductance),
+            column("blocked", &|row| f64::from(u8::from(blocked_at(row).is_some()))),
+            // Minus one where it is open.
+            column("blocked_at", &|row| blocked_at(row).map_or(-1.0, |&at| self.time_of(at) as f64)),
+        ];
+        Grid { points: &points, kind: CellKind::Line, corners: &corners, columns: &columns }.file()
+    }
+}
+
+fn check(path: &Path, line: u64, holds: bool, message: impl Fn() -> String) -> Result<(), ReportError> {
+    match holds {
+        true => Ok(()),
+        false => Err(ReportError::Form { path: path.to_owned(), line, message: message() }),
+    }
+}
