@@ -2,6 +2,8 @@
 """How coarse may the filter be, for ten bases: the boundaries of `voidwalk design`, and what they cost.
 
     scripts/ten_bases.py [--out target/ten-bases] [--binary target/release/voidwalk] [--filter cu1.5-loose] [--threads 2] [--set KEY=VALUE]
+    scripts/ten_bases.py --only "linear, Cu 1.5"          # one of them
+    VOIDWALK_ISA=avx2 scripts/ten_bases.py --out other    # as on a machine without AVX-512
 
 Five bases that are linear on semi-log paper (D85 0.2 mm) and five sieve tables. A base that is done is not walked again: the same command
 continues. Settings are the program's defaults but for --set. Prints a table in Markdown: boundaries with their 5 to 95 % over networks, ratios walked, processor time, wall time, and the
@@ -85,13 +87,15 @@ def main():
     parser.add_argument("--filter", default="cu1.5-loose")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
+    parser.add_argument("--only", action="append", default=[], metavar="BASE", help="the bases with these names")
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
     kept = args.out / "done.jsonl"
     done = {one["base"]: one for one in map(json.loads, kept.read_text().splitlines())} if kept.exists() else {}
     version = subprocess.run([args.binary, "--version"], capture_output=True, text=True, check=True).stdout.strip()
-    asked = {"filter": args.filter, "set": args.set, "version": version}
-    for name, told in bases(args):
+    asked = {"filter": args.filter, "set": args.set, "version": version, "isa": os.environ.get("VOIDWALK_ISA")}
+    wanted = [(name, told) for name, told in bases(args) if name in args.only or not args.only]
+    for name, told in wanted:
         if name in done and done[name].get("asked") != asked:
             sys.exit(f"{kept}: {name} was found with {done[name].get('asked')}, not {asked}: give these, or another --out")
         if name not in done:
@@ -99,7 +103,7 @@ def main():
             with kept.open("a") as file:
                 file.write(json.dumps(done[name]) + "\n")
             print(f"{name}: {done[name]['processor_s']:.0f} s of processor time", file=sys.stderr)
-    table([done[name] for name, _ in bases(args)])
+    table([done[name] for name, _ in wanted])
 
 
 if __name__ == "__main__":

@@ -208,6 +208,12 @@ impl Lanes {
     pub(crate) fn state(&self) -> &[[u64; LANES]; 4] {
         &self.state
     }
+
+    /// The same, for a kernel to put back where it has drawn on.
+    #[cfg(target_arch = "x86_64")]
+    pub(crate) fn state_mut(&mut self) -> &mut [[u64; LANES]; 4] {
+        &mut self.state
+    }
 }
 
 /// Sixteen-bit draw `j` of a block, `j < DRAWS_PER_BLOCK`.

@@ -210,8 +210,9 @@ pub struct RunArgs {
 /// How two sieve tables become a scene.
 #[derive(Debug, Args)]
 pub struct TableArgs {
-    /// How densely the filter lies, loose, medium or dense: its grains are packed so. Without it the
-    /// constrictions are guessed from the gradation, and the verdict is that of the whole range of the guess
+    /// How densely the filter lies, loose, medium (or intermediate) or dense: its grains are packed so.
+    /// Without it the constrictions are guessed from the gradation, and the verdict is that of the whole
+    /// range of the guess
     #[arg(long, value_name = "WORD", value_parser = density)]
     pub density: Option<Density>,
     /// A first look: four replicates, and no studies of the amount of base and of the thickness
@@ -320,8 +321,8 @@ pub struct DesignArgs {
     /// shire2016-cu1.5-loose, or what --set says]
     #[arg(long, value_name = "SHAPE", allow_hyphen_values = true)]
     pub filter: Option<String>,
-    /// How densely it is packed: dense, intermediate or loose, friction=F, or estimate=D (a relative density,
-    /// without a packing); can be given again [default for a table or a Cu: loose]
+    /// How densely it is packed: dense, medium (or intermediate) or loose, friction=F, or estimate=D (a
+    /// relative density, without a packing); can be given again [default for a table or a Cu: loose]
     #[arg(long = "density", value_name = "DENSITY", value_delimiter = ',', allow_hyphen_values = true)]
     pub densities: Vec<String>,
     /// How thick the filter is: 60layers, 500mm or 75D50F; can be given again [default: 60layers]

@@ -25,14 +25,11 @@ pub(super) fn assignment(text: &str) -> Result<String, String> {
 
 /// How densely a filter lies. A number could be a void ratio, a relative density or a friction.
 pub(super) fn density(text: &str) -> Result<Density, String> {
-    match text {
-        "medium" => Ok(Density::Intermediate),
-        word => Density::ALL.into_iter().find(|density| density.name() == word).ok_or_else(|| {
-            "write loose, medium or dense; the friction between grains while they are compressed is a \
-             number: --set filter.friction=0.2"
-                .into()
-        }),
-    }
+    Density::named(text).ok_or_else(|| {
+        "write loose, medium (or intermediate) or dense; the friction between grains while they are \
+         compressed is a number: --set filter.friction=0.2"
+            .into()
+    })
 }
 
 /// Which facets between voids are counted.

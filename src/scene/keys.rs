@@ -323,6 +323,14 @@ impl Density {
         }
     }
 
+    /// The density that a word names, as a scene reads it.
+    pub fn named(word: &str) -> Option<Self> {
+        match word {
+            "medium" => Some(Self::Intermediate),
+            word => Self::ALL.into_iter().find(|density| density.name() == word),
+        }
+    }
+
     /// Friction between grains during compression that makes a packing of this density.
     pub fn friction(self) -> f64 {
         match self {

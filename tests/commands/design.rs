@@ -118,7 +118,7 @@ fn what_is_wrong_is_refused_with_what_is_allowed() {
     let cases: [(&[&str], &str); 8] = [
         (&["nowhere.csv"], "nowhere.csv"),
         (&["base.csv", "--thickness", "0"], "allowed: a length above 0"),
-        (&["base.csv", "--density", "2", "--filter", "3"], "dense, intermediate or loose"),
+        (&["base.csv", "--density", "2", "--filter", "3"], "dense, medium (or intermediate) or loose"),
         (&["base.csv", "--density", "friction=20", "--filter", "3"], "a number from 0 to 10"),
         (&["base.csv", "--density", "dense", "--filter", "cu3-loose"], "constrictions are"),
         (&["base.csv", "--filter", "0.5"], "from 1 to 1000"),

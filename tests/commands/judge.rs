@@ -146,7 +146,7 @@ fn a_density_packs_the_filter() {
 fn what_is_wrong_is_refused_before_anything_is_written() {
     let (_root, at) = soils();
     let judge = |more: &[&str]| call(&at, &[&["judge", "base.csv"][..], more].concat());
-    refused(&judge(&["fine.csv", "--density", "0.45"]), "write loose, medium or dense");
+    refused(&judge(&["fine.csv", "--density", "0.45"]), "write loose, medium (or intermediate) or dense");
     refused(&judge(&["no.csv"]), "no.csv");
     refused(&judge(&["fine.csv", "--set", "base.uc=3"]), "did you mean `base.cu`");
     refused(&judge(&["fine.csv", "--density", "loose", "--set", "filter.estimate=1"]), "keep one");

@@ -1,8 +1,7 @@
 //! Standard products beside a band: which of them have their D15 between its two sides. Their own shapes are
 //! not walked.
 //!
-//! Only products whose limits could be read in a public source are here; of ASTM's No. 78 and No. 8 stone no
-//! readable source was found.
+//! Only products whose limits could be read in a public source are here.
 
 use serde::{Deserialize, Serialize};
 
@@ -19,7 +18,7 @@ pub struct Product {
 }
 
 /// Products that are sold by name.
-pub const PRODUCTS: [Product; 3] = [
+pub const PRODUCTS: [Product; 5] = [
     Product {
         name: "ASTM C33 fine aggregate",
         limits: &[
@@ -34,6 +33,33 @@ pub const PRODUCTS: [Product; 3] = [
         ],
         source: "civilengineer.co.in/articles/grading-requirements-of-fine-aggregates, which cites Table 1 \
                  of ASTM C33",
+    },
+    Product {
+        name: "ASTM C33/D448 No. 8 stone",
+        limits: &[
+            (1.18, 0.0, 5.0),
+            (2.36, 0.0, 10.0),
+            (4.75, 10.0, 30.0),
+            (9.5, 85.0, 100.0),
+            (12.5, 100.0, 100.0),
+        ],
+        source: "a highway specification's table 703.01-1M (AASHTO M 43), at \
+                 muhaz.org/100-general-provisions.html?page=80; Colorado DOT's table 703-1 (from AASHTO \
+                 M 43) has the same limits",
+    },
+    Product {
+        name: "ASTM C33/D448 No. 78 stone",
+        limits: &[
+            (1.18, 0.0, 5.0),
+            (2.36, 0.0, 10.0),
+            (4.75, 5.0, 25.0),
+            (9.5, 40.0, 75.0),
+            (12.5, 90.0, 100.0),
+            (19.0, 100.0, 100.0),
+        ],
+        source: "a highway specification's table 703.01-1M (AASHTO M 43), at \
+                 muhaz.org/100-general-provisions.html?page=80, whose No. 57, 67 and 8 are those of other \
+                 sources",
     },
     Product {
         name: "ASTM C33/D448 No. 67 stone",
@@ -142,7 +168,11 @@ mod tests {
         let [fine, coarse] = PRODUCTS[0].d15_mm();
         // 10 to 30 % between 0.15 and 0.3 mm, 5 to 25 % between 0.3 and 0.6 mm.
         assert!(near(fine, 0.15 * libm::pow(2.0, 0.25)) && near(coarse, 0.3 * libm::pow(2.0, 0.5)));
-        let [fine, coarse] = PRODUCTS[2].d15_mm();
+        // 10 to 30 % between 2.36 and 4.75 mm, 10 to 85 % between 4.75 and 9.5 mm.
+        let [fine, coarse] = PRODUCTS[1].d15_mm();
+        assert!(near(fine, 2.36 * libm::pow(4.75 / 2.36, 0.25)));
+        assert!(near(coarse, 4.75 * libm::pow(2.0, 5.0 / 75.0)));
+        let [fine, coarse] = PRODUCTS[4].d15_mm();
         let step = 12.5 / 4.75;
         assert!(near(fine, 4.75 * libm::pow(step, 0.1)) && near(coarse, 4.75 * libm::pow(step, 0.6)));
     }

@@ -80,11 +80,11 @@ fn density_setting(density: &str) -> Result<String, RunError> {
     if let Some((name @ ("friction" | "estimate"), value)) = density.split_once('=') {
         return Ok(format!("filter.{name}={value}"));
     }
-    if Density::ALL.iter().any(|word| word.name() == density) {
-        return Ok(format!("filter.density={density}"));
+    if let Some(word) = Density::named(density) {
+        return Ok(format!("filter.density={}", word.name()));
     }
     Err(RunError::Refused(format!(
-        "--density {density}: allowed: dense, intermediate or loose, friction=0.2 (0 to 10), or \
+        "--density {density}: allowed: dense, medium (or intermediate) or loose, friction=0.2 (0 to 10), or \
          estimate=0.5 (a relative density from 0 to 1, without a packing)"
     )))
 }
@@ -261,10 +261,17 @@ mod tests {
         );
         let plain = wanted(&options(&[], &[])).unwrap();
         assert_eq!((plain[0].density.as_str(), plain[0].thickness), ("loose", Thickness::Layers(60)));
-        let twice = wanted(&options(&["loose", "loose"], &[])).unwrap_err();
-        assert!(twice.to_string().contains("asked for twice") && twice.exit().code() == 2);
+        for same in [["loose", "loose"], ["medium", "intermediate"]] {
+            let twice = wanted(&options(&same, &[])).unwrap_err();
+            assert!(twice.to_string().contains("asked for twice") && twice.exit().code() == 2);
+        }
+        // As a scene reads it.
+        let medium = wanted(&options(&["medium"], &[])).unwrap();
+        let scene = Scene::built_in(&["filter.cu=3".into(), "filter.density=medium".into()]).unwrap();
+        assert_eq!(medium[0].density, "intermediate");
+        assert_eq!(medium[0].scene.filter.density, scene.filter.density);
         let wrong = wanted(&options(&["2"], &[])).unwrap_err().to_string();
-        assert!(wrong.contains("dense, intermediate or loose"), "{wrong}");
+        assert!(wrong.contains("dense, medium (or intermediate) or loose"), "{wrong}");
         let wrong = wanted(&options(&["estimate=1.5"], &[])).unwrap_err().to_string();
         assert!(wrong.contains("relative density from 0 (loose) to 1"), "{wrong}");
     }

@@ -251,7 +251,10 @@ fn what_cannot_be_is_refused_before_any_work() {
         ),
         (DesignOptions { base: base("sand.csv", &sand), ..options(&out, &["base.cu=3"]) }, "base.cu"),
         (DesignOptions { thicknesses: vec![Thickness::Mm(500.0)], ..thick() }, "needs a base in mm"),
-        (DesignOptions { densities: vec!["2".into()], ..plain() }, "dense, intermediate or loose"),
+        (
+            DesignOptions { densities: vec!["2".into()], ..plain() },
+            "dense, medium (or intermediate) or loose",
+        ),
         (
             DesignOptions { densities: vec!["loose".into()], ..plain() },
             "filter.cu or filter.sieve is missing",

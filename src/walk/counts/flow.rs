@@ -12,7 +12,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::binomial::{CERTAIN, Draws, FEW, below_both, fill, one};
+#[cfg(target_arch = "x86_64")]
+use super::binomial::{Avx2, Avx512};
+use super::binomial::{CERTAIN, Draws, FEW, FewTrials, Portable, fill, one};
 use super::shares::Shares;
 use super::sizes::fraction;
 use crate::network::{END, Network};
@@ -215,20 +217,23 @@ fn step(isa: Isa, worker: &mut Worker, block: Block) {
         // SAFETY: the machine has the instructions.
         #[cfg(target_arch = "x86_64")]
         Isa::Avx2 => unsafe { with_avx2(worker, block) },
-        _ => worker.step(block),
+        // SAFETY: it has what every machine has.
+        _ => unsafe { worker.step::<Portable>(block) },
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
 fn with_avx512(worker: &mut Worker, block: Block) {
-    worker.step(block);
+    // SAFETY: this is called where the machine has AVX-512 only.
+    unsafe { worker.step::<Avx512>(block) };
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,popcnt")]
 fn with_avx2(worker: &mut Worker, block: Block) {
-    worker.step(block);
+    // SAFETY: this is called where the machine has AVX2 only.
+    unsafe { worker.step::<Avx2>(block) };
 }
 
 fn downstream(network: &Network, block: usize) -> Vec<u32> {
@@ -247,8 +252,11 @@ fn downstream(network: &Network, block: usize) -> Vec<u32> {
 
 impl Worker {
     /// Moves the particles of the voids of a block.
+    ///
+    /// # Safety
+    /// The machine has the instructions of `F`.
     #[inline(always)]
-    fn step(&mut self, block: Block) {
+    unsafe fn step<F: FewTrials>(&mut self, block: Block) {
         let Block { network, shares, key, counts, voids } = block;
         let Self { next, moved, batch, .. } = self;
         let targets = network.targets();
@@ -259,6 +267,8 @@ impl Worker {
         let mut waiting = Vec::new();
         batch.rows = 0;
         let mut draws = Draws::new(key);
+        // SAFETY: as promised.
+        let mut few = unsafe { F::begin(&draws) };
         for (void, &n) in voids.clone().zip(&counts[voids]) {
             if n == 0 {
                 continue;
@@ -277,7 +287,7 @@ impl Worker {
             let exits = network.exits(void as u32);
             if n <= FEW && exits.len() == 3 {
                 let (first, second, thresholds) = shares.of_three(exits.start);
-                let [mut to_first, mut to_second] = below_both(&mut draws, n, thresholds);
+                let [mut to_first, mut to_second] = few.below_both(&mut draws, n, thresholds);
                 to_first = if first == CERTAIN { n } else { to_first };
                 to_second = if first == CERTAIN || second == CERTAIN { n } else { to_second };
                 arrive(exits.start, to_first);
@@ -288,6 +298,7 @@ impl Worker {
             let row = batch.rows;
             batch.rows = batch.face(row, exits.start, n, shares, &mut arrive);
         }
+        few.end(&mut draws);
         while batch.rows > 0 {
             batch.round(&mut draws, shares, &mut arrive);
         }

@@ -31,6 +31,20 @@ impl Draws {
         self.block[self.used - 1]
     }
 
+    /// State word by lane of the stream's generators.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    pub(super) fn state(&self) -> &[[u64; LANES]; 4] {
+        self.lanes.state()
+    }
+
+    /// The same, for whoever has drawn blocks in vector registers.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    pub(super) fn state_mut(&mut self) -> &mut [[u64; LANES]; 4] {
+        self.lanes.state_mut()
+    }
+
     /// A fresh block; words left of the current one stay for [`Draws::word`].
     #[inline(always)]
     pub(super) fn block(&mut self) -> [u64; LANES] {

@@ -18,6 +18,7 @@
 //! bit.
 
 mod draws;
+mod few;
 mod normal;
 mod quantile;
 mod rejection;
@@ -27,9 +28,11 @@ mod trials;
 use crate::stream::{LANES, unit};
 pub(super) use draws::{CERTAIN, Draws};
 use draws::{as_unit, rarer, turned};
+#[cfg(target_arch = "x86_64")]
+pub(super) use few::{Avx2, Avx512};
+pub(super) use few::{FewTrials, Portable};
 use rejection::{Hat, LEAST_MEAN};
-pub(super) use trials::below_both;
-use trials::by_bits;
+use trials::{below_both, by_bits};
 
 /// Most trials of a single draw by rejection or inversion.
 const LARGEST: u64 = 1 << 50;

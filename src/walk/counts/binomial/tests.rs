@@ -258,6 +258,42 @@ fn two_thresholds_are_compared_with_the_same_words() {
     assert!((below as f64 - runs * as_unit(first)).abs() < 4.0 * sigma);
 }
 
+/// With the instructions of every machine that this one can be: the same counts void after void, ties of
+/// sixteen bits among them, and the same stream afterwards.
+#[test]
+fn few_trials_are_the_same_with_any_instructions() {
+    /// # Safety
+    /// The machine has the instructions of `F`.
+    unsafe fn drawn<F: FewTrials>() -> Vec<u64> {
+        let (mut words, mut draws, mut all) = (draws(4200), draws(4300), Vec::new());
+        // SAFETY: as promised.
+        let mut few = unsafe { F::begin(&draws) };
+        for void in 0..20_000 {
+            // Every number of trials, and thresholds of which every seventh pair shares its top sixteen bits.
+            let (n, first) = (void % (FEW + 1), words.word());
+            let second = if void % 7 == 0 { first | 0xffff } else { words.word() };
+            all.extend(few.below_both(&mut draws, n, [first.min(second), first.max(second)]));
+        }
+        few.end(&mut draws);
+        all.extend((0..100).map(|_| draws.word()));
+        all
+    }
+    // SAFETY: it has what every machine has.
+    let wanted = unsafe { drawn::<Portable>() };
+    #[cfg(target_arch = "x86_64")]
+    {
+        use crate::walk::Isa;
+        // SAFETY: each is called where the machine has it.
+        let found = [
+            Isa::Avx2.is_available().then(|| unsafe { drawn::<Avx2>() }),
+            Isa::Avx512.is_available().then(|| unsafe { drawn::<Avx512>() }),
+        ];
+        assert!(found.iter().flatten().all(|found| *found == wanted));
+    }
+    // Some 20,000 x 32 draws, each equal to either threshold's top with 2^-15.
+    assert_eq!(wanted.len(), 40_100);
+}
+
 /// Draws are part of what a seed means: these may not change unnoticed.
 #[test]
 fn draws_are_pinned() {

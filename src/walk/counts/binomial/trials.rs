@@ -34,7 +34,7 @@ pub(in crate::walk::counts) fn below_both(draws: &mut Draws, n: u64, thresholds:
 /// Adds those whose sixteen bits are equal to a threshold's, and that are below it.
 #[cold]
 #[inline(never)]
-fn complete(draws: &mut Draws, sixteens: &[u16], thresholds: [u64; 2], below: &mut [u64; 2]) {
+pub(super) fn complete(draws: &mut Draws, sixteens: &[u16], thresholds: [u64; 2], below: &mut [u64; 2]) {
     let top = |word: u64| (word >> 48) as u16;
     for draw in sixteens.iter().map(|&draw| u16::from_le(draw)) {
         if thresholds.iter().any(|&t| draw == top(t)) {

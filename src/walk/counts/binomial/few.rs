@@ -1,0 +1,229 @@
+//! Few trials for one void after another, with the instructions of a machine: the same bits as
+//! [`below_both`] of [`trials`](super::trials).
+//!
+//! The eight generators of the stream stay in vector registers from void to void; in memory, every void would
+//! wait for what the one before it has just stored.
+
+use super::draws::Draws;
+use super::trials::below_both;
+
+/// How few trials are made, for void after void of one stream.
+pub(in crate::walk::counts) trait FewTrials {
+    /// Takes the stream's generators from where they are.
+    ///
+    /// # Safety
+    /// The machine has the instructions that this is made with.
+    unsafe fn begin(draws: &Draws) -> Self;
+
+    /// How many of `n` uniform 64-bit words are below each of two thresholds.
+    fn below_both(&mut self, draws: &mut Draws, n: u64, thresholds: [u64; 2]) -> [u64; 2];
+
+    /// Puts the generators back, for whatever else draws from the stream.
+    fn end(self, draws: &mut Draws);
+}
+
+/// With what every machine has.
+pub(in crate::walk::counts) struct Portable;
+
+impl FewTrials for Portable {
+    #[inline(always)]
+    unsafe fn begin(_: &Draws) -> Self {
+        Self
+    }
+
+    #[inline(always)]
+    fn below_both(&mut self, draws: &mut Draws, n: u64, thresholds: [u64; 2]) -> [u64; 2] {
+        below_both(draws, n, thresholds)
+    }
+
+    #[inline(always)]
+    fn end(self, _: &mut Draws) {}
+}
+
+#[cfg(target_arch = "x86_64")]
+pub(in crate::walk::counts) use x86::{Avx2, Avx512};
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use std::arch::x86_64::*;
+
+    use super::super::draws::Draws;
+    use super::super::trials::complete;
+    use super::FewTrials;
+    use crate::stream::DRAWS_PER_BLOCK;
+
+    /// With AVX-512: the generators' state words.
+    pub(in crate::walk::counts) struct Avx512([__m512i; 4]);
+
+    /// With AVX2: the state words of the lower and the upper four generators.
+    pub(in crate::walk::counts) struct Avx2([[__m256i; 4]; 2]);
+
+    impl FewTrials for Avx512 {
+        #[inline(always)]
+        unsafe fn begin(draws: &Draws) -> Self {
+            // SAFETY: each state word has eight lanes; the machine has AVX-512.
+            Self(draws.state().map(|row| unsafe { _mm512_loadu_si512(row.as_ptr().cast()) }))
+        }
+
+        #[inline(always)]
+        fn below_both(&mut self, draws: &mut Draws, n: u64, thresholds: [u64; 2]) -> [u64; 2] {
+            let (mut below, mut left) = ([0, 0], n);
+            while left > 0 {
+                let counted = left.min(DRAWS_PER_BLOCK as u64);
+                // SAFETY: whoever began has promised AVX-512.
+                let (less, block) = unsafe { block_avx512(&mut self.0, counted, thresholds) };
+                if let Some(block) = block {
+                    self.store(draws);
+                    complete(draws, &block[..counted as usize], thresholds, &mut below);
+                    // SAFETY: as above.
+                    *self = unsafe { Self::begin(draws) };
+                }
+                below = [below[0] + u64::from(less[0]), below[1] + u64::from(less[1])];
+                left -= counted;
+            }
+            below
+        }
+
+        #[inline(always)]
+        fn end(self, draws: &mut Draws) {
+            self.store(draws);
+        }
+    }
+
+    impl Avx512 {
+        #[inline(always)]
+        fn store(&self, draws: &mut Draws) {
+            for (row, state) in draws.state_mut().iter_mut().zip(self.0) {
+                // SAFETY: each state word has eight lanes; the machine has AVX-512.
+                unsafe { _mm512_storeu_si512(row.as_mut_ptr().cast(), state) };
+            }
+        }
+    }
+
+    /// How many of the first `counted` draws of the next block are below each threshold, and the block where
+    /// one is equal to the top of a threshold.
+    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
+    #[inline]
+    fn block_avx512(
+        state: &mut [__m512i; 4],
+        counted: u64,
+        thresholds: [u64; 2],
+    ) -> ([u32; 2], Option<[u16; DRAWS_PER_BLOCK]>) {
+        let [s0, s1, s2, s3] = *state;
+        let block = _mm512_add_epi64(_mm512_rol_epi64::<23>(_mm512_add_epi64(s0, s3)), s0);
+        let (t, s2, s3) = (_mm512_slli_epi64::<17>(s1), _mm512_xor_si512(s2, s0), _mm512_xor_si512(s3, s1));
+        let (s1, s0) = (_mm512_xor_si512(s1, s2), _mm512_xor_si512(s0, s3));
+        *state = [s0, s1, _mm512_xor_si512(s2, t), _mm512_rol_epi64::<45>(s3)];
+        let mask = ((1u64 << counted) - 1) as u32;
+        let [first, second] = thresholds.map(|t| _mm512_set1_epi16((t >> 48) as i16));
+        let less = [
+            _mm512_mask_cmplt_epu16_mask(mask, block, first).count_ones(),
+            _mm512_mask_cmplt_epu16_mask(mask, block, second).count_ones(),
+        ];
+        let same = _mm512_mask_cmpeq_epu16_mask(mask, block, first)
+            | _mm512_mask_cmpeq_epu16_mask(mask, block, second);
+        let block = (same != 0).then(|| {
+            let mut sixteens = [0; DRAWS_PER_BLOCK];
+            // SAFETY: as many sixteens as the vector has.
+            unsafe { _mm512_storeu_si512(sixteens.as_mut_ptr().cast(), block) };
+            sixteens
+        });
+        (less, block)
+    }
+
+    impl FewTrials for Avx2 {
+        #[inline(always)]
+        unsafe fn begin(draws: &Draws) -> Self {
+            let half = |half: usize| {
+                // SAFETY: four lanes from `4 half` on are within the eight; the machine has AVX2.
+                draws.state().map(|row| unsafe { _mm256_loadu_si256(row[4 * half..][..4].as_ptr().cast()) })
+            };
+            Self([half(0), half(1)])
+        }
+
+        #[inline(always)]
+        fn below_both(&mut self, draws: &mut Draws, n: u64, thresholds: [u64; 2]) -> [u64; 2] {
+            let (mut below, mut left) = ([0, 0], n);
+            while left > 0 {
+                let counted = left.min(DRAWS_PER_BLOCK as u64);
+                // SAFETY: whoever began has promised AVX2.
+                let (less, block) = unsafe { block_avx2(&mut self.0, counted, thresholds) };
+                if let Some(block) = block {
+                    self.store(draws);
+                    complete(draws, &block[..counted as usize], thresholds, &mut below);
+                    // SAFETY: as above.
+                    *self = unsafe { Self::begin(draws) };
+                }
+                below = [below[0] + u64::from(less[0]), below[1] + u64::from(less[1])];
+                left -= counted;
+            }
+            below
+        }
+
+        #[inline(always)]
+        fn end(self, draws: &mut Draws) {
+            self.store(draws);
+        }
+    }
+
+    impl Avx2 {
+        #[inline(always)]
+        fn store(&self, draws: &mut Draws) {
+            for (at, half) in self.0.iter().enumerate() {
+                for (row, state) in draws.state_mut().iter_mut().zip(half) {
+                    // SAFETY: four lanes from `4 at` on are within the eight; the machine has AVX2.
+                    unsafe { _mm256_storeu_si256(row[4 * at..][..4].as_mut_ptr().cast(), *state) };
+                }
+            }
+        }
+    }
+
+    /// [`block_avx512`] in two halves.
+    #[target_feature(enable = "avx2,popcnt")]
+    #[inline]
+    fn block_avx2(
+        state: &mut [[__m256i; 4]; 2],
+        counted: u64,
+        thresholds: [u64; 2],
+    ) -> ([u32; 2], Option<[u16; DRAWS_PER_BLOCK]>) {
+        // What is unsigned is compared as signed, less 2^15.
+        let sign = _mm256_set1_epi16(i16::MIN);
+        let tops = thresholds.map(|t| _mm256_set1_epi16(((t >> 48) as u16 ^ 0x8000) as i16));
+        // Two bits for each draw that counts.
+        let mask = ((1u128 << (2 * counted)) - 1) as u64;
+        let (mut less, mut same, mut blocks) = ([0; 2], 0, [sign; 2]);
+        for (half, block) in blocks.iter_mut().enumerate() {
+            *block = next_avx2(&mut state[half]);
+            let mask = (mask >> (32 * half)) as u32;
+            let signed = _mm256_xor_si256(*block, sign);
+            for (less, top) in less.iter_mut().zip(tops) {
+                let below = _mm256_movemask_epi8(_mm256_cmpgt_epi16(top, signed)) as u32;
+                *less += (below & mask).count_ones() / 2;
+                same |= _mm256_movemask_epi8(_mm256_cmpeq_epi16(top, signed)) as u32 & mask;
+            }
+        }
+        let block = (same != 0).then(|| {
+            let mut sixteens = [0; DRAWS_PER_BLOCK];
+            for (sixteens, block) in sixteens.chunks_exact_mut(DRAWS_PER_BLOCK / 2).zip(blocks) {
+                // SAFETY: as many sixteens as the vector has.
+                unsafe { _mm256_storeu_si256(sixteens.as_mut_ptr().cast(), block) };
+            }
+            sixteens
+        });
+        (less, block)
+    }
+
+    /// The next word of four generators.
+    #[target_feature(enable = "avx2,popcnt")]
+    #[inline]
+    fn next_avx2(state: &mut [__m256i; 4]) -> __m256i {
+        let [s0, s1, s2, s3] = *state;
+        let sum = _mm256_add_epi64(s0, s3);
+        let turned = _mm256_or_si256(_mm256_slli_epi64::<23>(sum), _mm256_srli_epi64::<41>(sum));
+        let (t, s2, s3) = (_mm256_slli_epi64::<17>(s1), _mm256_xor_si256(s2, s0), _mm256_xor_si256(s3, s1));
+        let (s1, s0_next) = (_mm256_xor_si256(s1, s2), _mm256_xor_si256(s0, s3));
+        let s3 = _mm256_or_si256(_mm256_slli_epi64::<45>(s3), _mm256_srli_epi64::<19>(s3));
+        *state = [s0_next, s1, _mm256_xor_si256(s2, t), s3];
+        _mm256_add_epi64(turned, s0)
+    }
+}
