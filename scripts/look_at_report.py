@@ -35,6 +35,39 @@ INSPECT = """(() => {
 })()"""
 
 
+# Each box of a figure hides its curve and no other; the larger figure is larger, and the page no wider.
+TRY_BOXES = """(() => {
+  const found = [];
+  const seen = (part) => part.getClientRects().length > 0;
+  for (const figure of document.querySelectorAll('figure:has(.looks)')) {
+    const name = figure.querySelector('.looks').getAttribute('aria-label');
+    const shown = () => [...figure.querySelectorAll('[class^=curve-]')].filter(seen).map(part => part.getAttribute('class'));
+    const all = shown();
+    for (const box of figure.querySelectorAll('input:not(.larger)')) {
+      const curve = box.className.replace('show-', 'curve-');
+      if (!all.includes(curve)) found.push(`${name}: ${curve} is not drawn`);
+      box.click();
+      if (shown().join() !== all.filter(other => other !== curve).join()) found.push(`${name}: the box of ${curve} hides something else`);
+      box.click();
+    }
+    const [larger, wide] = [figure.querySelector('.larger'), figure.querySelector('.wide svg')];
+    const before = Math.max(...[...figure.querySelectorAll('svg')].map(svg => svg.getBoundingClientRect().width));
+    larger.click();
+    if (!(wide.getBoundingClientRect().width > 1.2 * before)) found.push(`${name}: larger is not larger`);
+    if (document.documentElement.scrollWidth > document.documentElement.clientWidth) found.push(`${name}: larger makes the page wide`);
+    larger.click();
+    if (shown().join() !== all.join()) found.push(`${name}: a curve stays hidden`);
+  }
+  return found;
+})()"""
+
+# Every box the other way round than the page has it.
+TURN_BOXES = "document.querySelectorAll('.looks input').forEach(box => box.click())"
+
+# What a reader has hidden on the screen is printed all the same, and no box is.
+PRINTED_CURVES = """[...document.querySelectorAll('[class^=curve-]')].filter(part => getComputedStyle(part).display === 'none')
+  .concat([...document.querySelectorAll('.looks')].filter(part => part.getClientRects().length > 0)).length"""
+
 # What must stand on the first printed page, so that it can be handed in by itself.
 FIRST_PAGE = """[...document.querySelectorAll('.names, .about, .verdict .word, .warnings, .short, .leaves')]
   .map(part => part.innerText)"""
@@ -102,6 +135,8 @@ def look(page, picture, width, dark):
             faults.append("is light on a dark screen" if dark else "is dark on a light screen")
         inspected = browser.ask("Runtime.evaluate", tab, expression=INSPECT, returnByValue=True)
         faults += inspected["result"].get("value", ["the page could not be inspected"])
+        boxes = browser.ask("Runtime.evaluate", tab, expression=TRY_BOXES, returnByValue=True)
+        faults += boxes["result"].get("value", ["the boxes could not be tried"])
         size = browser.ask("Page.getLayoutMetrics", tab)["cssContentSize"]
         area = {"x": 0, "y": 0, "width": width, "height": size["height"]}
 
@@ -125,15 +160,19 @@ def print_out(page, pdf, paper):
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile, Browser(profile) as browser:
         tab = browser.open(pathlib.Path(page).resolve().as_uri(), 1280, 900)
         first = browser.ask("Runtime.evaluate", tab, expression=FIRST_PAGE, returnByValue=True)
+        browser.ask("Runtime.evaluate", tab, expression=TURN_BOXES)
         inside = int(96 * (width - 2 * MARGIN))
         browser.ask("Emulation.setDeviceMetricsOverride", tab, width=inside, height=900, deviceScaleFactor=1, mobile=False)
         browser.ask("Emulation.setEmulatedMedia", tab, media="print")
         wide = browser.ask("Runtime.evaluate", tab, expression="document.documentElement.scrollWidth", returnByValue=True)
+        hidden = browser.ask("Runtime.evaluate", tab, expression=PRINTED_CURVES, returnByValue=True)
         browser.ask("Emulation.setEmulatedMedia", tab, media="")
         printed = browser.ask("Page.printToPDF", tab, paperWidth=width, paperHeight=height,
                               printBackground=False, preferCSSPageSize=True)
         pathlib.Path(pdf).write_bytes(base64.b64decode(printed["data"]))
     faults = list(faults_of_sheets(sheets(pdf), first["result"]["value"]))
+    if hidden["result"].get("value") != 0:
+        faults.append("what is hidden on the screen is not printed, or a box is")
     if wide["result"]["value"] > inside:
         faults.append(f"is {wide['result']['value']} px wide on a sheet of {inside} px: all of it is printed smaller")
     return faults

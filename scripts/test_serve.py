@@ -155,8 +155,22 @@ def look(browser, url, pictures, workbook, root, process, binary):
 
     tab.paste("base", BASE)
     tab.drop("filter", "../<b>fine\u202e.csv", FINE.encode())
-    tab.until("document.querySelectorAll('#rules tr').length > 10 && document.querySelector('#curves').naturalWidth > 0")
+    tab.until("document.querySelectorAll('#rules tr').length > 10 && document.querySelector('#curves svg')")
     tab.picture("03-curves-and-rules")
+    read = "document.querySelector('#read').textContent"
+    tab.run("""(() => {
+      const [svg, path] = [document.querySelector('#curves svg'), document.querySelector('#curves .curve-1 path')];
+      const place = path.getPointAtLength(0).matrixTransform(svg.getScreenCTM());
+      svg.dispatchEvent(new PointerEvent('pointermove', { clientX: place.x, clientY: place.y, bubbles: true }));
+    })()""")
+    pointed = tab.run(read)
+    keys = []
+    for key in ["ArrowRight", "ArrowDown"]:
+        tab.run(f"document.querySelector('#curves').dispatchEvent(new KeyboardEvent('keydown', {{ key: '{key}' }}))")
+        keys.append(tab.run(read))
+    if not (all("Size (mm)" in said for said in [pointed, *keys]) and pointed.startswith("base: ") and keys[0].startswith("base: ")
+            and keys[1].startswith("filter: ") and pointed != keys[0]):
+        raise SystemExit(f"the curves do not say their values: {pointed!r}, {keys}")
     if tab.run("document.querySelector('.sheet[data-role=filter] select').selectedOptions[0].text") != "bfine.csv":
         raise SystemExit("the hostile name is not harmless")
     tab.drop("more", "site.xlsx", workbook)

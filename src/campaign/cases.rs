@@ -188,7 +188,8 @@ impl<'a> PreparedCase<'a> {
 
     /// Folder of the results, inside the campaign's.
     pub fn folder(&self) -> PathBuf {
-        Path::new(CASES).join(self.planned.folder_name())
+        // As it is written into ledger and table, on every system.
+        PathBuf::from(format!("{CASES}/{}", self.planned.folder_name()))
     }
 
     /// The finished case, if these very results are there.

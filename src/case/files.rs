@@ -98,11 +98,12 @@ fn kept_name(kept_as: &str, path: &Path) -> String {
     }
 }
 
-/// What there is to say of a path in which a backslash, or what one and the letter after it become in double
-/// quotes, stands for a folder.
+/// What there is to say of a path in which a backslash stands for a folder where the system takes none, or
+/// in which stands what one and the letter after it become in double quotes.
 fn of_windows(path: &Path) -> &'static str {
     let text = path.to_string_lossy();
-    match text.contains(['\\', '\t', '\n', '\r', '\u{8}', '\u{c}', '\u{1b}']) {
+    let escaped = text.contains(['\t', '\n', '\r', '\u{8}', '\u{c}', '\u{1b}']);
+    match escaped || text.contains('\\') && !std::path::is_separator('\\') {
         true => " (write / between folders, not a backslash)",
         false => "",
     }

@@ -35,7 +35,7 @@ pub(super) fn draw(figure: &mut Figure, boundaries: &[Boundary]) {
     for (place, limit) in boundaries {
         let (_, name, colour, _) = LIMITS[*place];
         let line = Line::new(vec![(*limit, 15.0 - HALF), (*limit, 15.0 + HALF)], colour);
-        figure.add(line.width(3.0).label(name));
+        figure.add(line.width(3.0).stays().label(name));
     }
 }
 

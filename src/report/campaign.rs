@@ -10,7 +10,7 @@ use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, PURPLE, Point, Rul
 use super::files::{json, json_of, lines, lines_of};
 use super::numbers::{duration, interval, interval_in_percent, whole};
 use super::run_figures::verdict_colour;
-use super::shell::{Drawn, citation, clean, figures, leaves_out, whole_page};
+use super::shell::{Drawn, citation, clean, contents, figures, leaves_out, whole_page};
 use super::table::Table;
 use super::written::{Written, write_page};
 use crate::outcome::MODEL_LEAVES_OUT;
@@ -176,6 +176,7 @@ fn page(about: &Campaign, ledger: &[LedgerLine], drawn: &[Drawn], cases: &Markup
             }
             (leaves_out(&MODEL_LEAVES_OUT, &html! {}))
         }
+        (contents())
         @if !about.missing.is_empty() {
             h2 { "Not done" }
             p { (whole(about.missing.len() as u64)) " cases are missing: continue with the same command." }

@@ -11,7 +11,7 @@ use super::numbers::{
     capital, interval_in_percent, percent, percent_interval, significant, size, threshold, whole,
 };
 use super::run_figures::run_name;
-use super::shell::{Drawn, citation, clean, figures, leaves_out, whole_page};
+use super::shell::{Drawn, citation, clean, contents, figures, leaves_out, whole_page};
 use super::table::Table;
 use super::written::{Written, write_page_as};
 use crate::outcome::MODEL_LEAVES_OUT;
@@ -133,6 +133,7 @@ fn page(folder: &Path, comparison: &Comparison, drawn: &[Drawn]) -> String {
                      judgement." }
             }))
         }
+        (contents())
         h2 { "Cases" }
         (cases(folder, comparison))
         p.small {

@@ -141,6 +141,7 @@ fn page(record: &NetworkWalkRecord, walks: &Walks, figures: &[Drawn]) -> String 
                 }))
             }
         }
+        (shell::contents())
         h2 { "Figures" }
         (shell::figures(figures))
         (results(walks, &[]))

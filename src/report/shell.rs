@@ -131,8 +131,22 @@ pub(super) fn figures(drawn: &[Drawn]) -> Markup {
 pub(super) fn figure(number: usize, drawn: &Drawn) -> Markup {
     html! {
         figure.tall[drawn.figure.is_tall()] {
+            (looks(number, &drawn.figure.curves()))
             (drawing(drawn))
             figcaption { b { "Figure " (number) ". " } (clean(&drawn.caption)) }
+        }
+    }
+}
+
+/// What a reader can change of a figure on a screen: which curves are shown, and how large. Boxes that the
+/// style alone obeys, as no script runs on a page; in print every curve is there.
+fn looks(number: usize, curves: &[String]) -> Markup {
+    html! {
+        div.looks role="group" aria-label=(format!("Figure {number}, as shown on a screen")) {
+            @for (index, name) in curves.iter().enumerate() {
+                label { input.(format!("show-{}", index + 1)) type="checkbox" checked; " " (clean(name)) }
+            }
+            label { input.larger type="checkbox"; " larger" }
         }
     }
 }

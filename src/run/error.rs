@@ -158,7 +158,10 @@ impl RunError {
                 "nothing may be written there; name a folder of your own by --out, or have somebody give \
                  you leave"
             }
-            InvalidFilename => "name a folder with a shorter name by --out",
+            InvalidFilename => {
+                "name another folder by --out: this name is too long, or has a character that is not \
+                 allowed there"
+            }
             NotADirectory => "a part of that path is a file; name another folder by --out",
             _ => return None,
         })

@@ -179,7 +179,7 @@ async function showPair() {
   $("#soil-options").hidden = !both;
   if (!any || state.seen === String(query)) return;
   state.seen = String(query);
-  $("#curves").src = "api/curves.svg?" + query;
+  showCurves(query);
   const shown = [["Base", state.base], ["Filter", state.filter], ...state.more.map((key) => ["More", key])]
     .filter(([, key]) => key).map(([role, key]) => [role, soilOf(key).soil]);
   const row = (name, of, long) => el("tr", { class: long ? "long" : null }, el("th", {}, name), ...shown.map(([, soil]) => el("td", { class: "n" }, of(soil))));
@@ -199,6 +199,58 @@ async function showPair() {
     $("#rules").replaceChildren();
     show($("#rules-problem"), error.message);
   }
+}
+
+/** Puts the drawing into the page itself, so that it can be asked for its values. */
+async function showCurves(query) {
+  const request = { cache: "no-store", credentials: "same-origin" };
+  const drawn = await fetch("api/curves.svg?" + query, request).then((answer) => (answer.ok ? answer.text() : ""), () => "");
+  if (state.seen !== String(query)) return;
+  const svg = new DOMParser().parseFromString(drawn, "image/svg+xml").documentElement;
+  const isDrawn = svg.nodeName === "svg";
+  $("#curves").replaceChildren(...(isDrawn ? [document.importNode(svg, true)] : []));
+  $("#read").textContent = isDrawn ? ASK : "The curves are not drawn.";
+  if (isDrawn) readCurves($("#curves svg"));
+}
+
+const ASK = "Point at a curve, or use the arrow keys, to read its values.";
+
+/** Says the values of the point of a curve that is nearest to the pointer, or that the arrow keys move to. */
+function readCurves(svg) {
+  const curves = [...new Set($$("circle[pointer-events]", svg).map((spot) => spot.parentNode))]
+    .map((curve) => $$("circle[pointer-events]", curve).map((spot) => {
+      const title = $("title", spot);
+      title.remove(); // the browser would show it over the curve as well
+      return { x: Number(spot.getAttribute("cx")), y: Number(spot.getAttribute("cy")), text: title.textContent };
+    }).sort((a, b) => a.x - b.x));
+  if (!curves.length) return;
+  const ring = el("circle", { r: 7, class: "ring", visibility: "hidden" });
+  svg.append(ring);
+  let at = null;
+  const nearest = (spots, away) => spots.reduce((best, spot) => (away(spot) < away(best) ? spot : best));
+  const read = (spot) => {
+    at = spot;
+    $("#read").textContent = spot ? spot.text : ASK;
+    ring.setAttribute("visibility", spot ? "visible" : "hidden");
+    if (spot) for (const [key, value] of [["cx", spot.x], ["cy", spot.y]]) ring.setAttribute(key, value);
+  };
+  const point = (event) => {
+    const here = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
+    const away = (spot) => Math.hypot(spot.x - here.x, spot.y - here.y);
+    const spot = nearest(curves.flat(), away);
+    read(away(spot) < 60 ? spot : null);
+  };
+  for (const kind of ["pointermove", "pointerdown"]) svg.addEventListener(kind, point);
+  svg.addEventListener("pointerleave", (event) => { if (event.pointerType === "mouse") read(null); });
+  $("#curves").onkeydown = (event) => {
+    const [along, across] = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key] || [0, 0];
+    if (!along && !across) return;
+    event.preventDefault();
+    const row = Math.max(0, curves.findIndex((curve) => curve.includes(at)));
+    if (!at) read(curves[0][0]);
+    else if (along) read(curves[row][Math.min(curves[row].length - 1, Math.max(0, curves[row].indexOf(at) + along))]);
+    else read(nearest(curves[(row + across + curves.length) % curves.length], (spot) => Math.abs(spot.x - at.x)));
+  };
 }
 
 const ROLES = [["retention", "The filter retains the base"],

@@ -75,8 +75,11 @@ pub enum StoreError {
 impl StoreError {
     /// Whether the user can fix it by naming another folder, before any work is done.
     pub fn is_refusal(&self) -> bool {
-        use io::ErrorKind::{InvalidFilename, NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem};
-        let by_name = [InvalidFilename, NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem];
+        use io::ErrorKind::{InvalidFilename, InvalidInput, NotADirectory, NotFound};
+        use io::ErrorKind::{PermissionDenied, ReadOnlyFilesystem};
+        // Windows calls the name of a device, as NUL, an input that is invalid.
+        let by_name =
+            [InvalidFilename, InvalidInput, NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem];
         !matches!(self, Self::Io { source, .. } if !by_name.contains(&source.kind()))
     }
 }

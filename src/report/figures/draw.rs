@@ -2,6 +2,7 @@
 
 use super::axis::{Axis, Tick};
 use super::colour::Colour;
+use super::curves;
 use super::figure::{Figure, Naming, Size};
 use super::hover;
 use super::marks::{Across, Dash, Line, Mark, Point, Shape};
@@ -143,8 +144,9 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
     svg.rect(left - 1.0, top - 1.0, right - left + 2.0, bottom - top + 2.0, "");
     svg.raw(&format!("</clipPath>\n<g clip-path=\"url(#{clip})\" stroke-linejoin=\"round\">\n"));
     let mut canvas = Canvas { frame: inset(&frame.area), ink: Vec::new(), taken: Vec::new() };
+    let classes = curves::classes(figure);
     for (index, mark) in figure.marks.iter().enumerate() {
-        draw_mark(&mut svg, &mut canvas, &frame, mark, index);
+        in_group(&mut svg, &classes[index], |svg| draw_mark(svg, &mut canvas, &frame, mark, index));
     }
     svg.raw("</g>\n");
     let paint = r##"fill="none" stroke="#1a1a1a" stroke-width="1.2""##;
@@ -153,7 +155,7 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
     // Narrow figures are for screens without a pointer.
     let is_pointed_at = width == figure.wide.0;
     if is_pointed_at {
-        hover::draw(&mut svg, figure, &frame.area, |point| frame.at(point));
+        hover::draw(&mut svg, figure, &classes, &frame.area, |point| frame.at(point));
     }
     let mut symbols = Vec::new();
     for (index, mark) in figure.marks.iter().enumerate() {
@@ -162,9 +164,11 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
                 let said = (point.true_x.unwrap_or(point.at.0), point.at.1);
                 hover::title(figure, point.label.as_deref(), said)
             });
-            title.iter().for_each(|title| svg.raw(&format!("<g>{title}\n")));
-            symbols.extend(draw_point(&mut svg, &mut canvas, &frame, point, index));
-            title.iter().for_each(|_| svg.raw("</g>\n"));
+            in_group(&mut svg, &classes[index], |svg| {
+                title.iter().for_each(|title| svg.raw(&format!("<g>{title}\n")));
+                symbols.extend(draw_point(svg, &mut canvas, &frame, point, index));
+                title.iter().for_each(|_| svg.raw("</g>\n"));
+            });
         }
     }
     canvas.taken.extend(symbols);
@@ -194,18 +198,31 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
         match canvas.place(&anchors, wide, LINE_HEIGHT * lines.len() as f64 - 2.0, index) {
             None => homeless.push(index),
             Some(found) => {
-                let (at, anchor) = side(&found, &anchors);
-                for (row, line) in lines.iter().enumerate() {
-                    let baseline = found.top + 12.0 + row as f64 * LINE_HEIGHT;
-                    let halo =
-                        r##"stroke="#ffffff" stroke-width="3" stroke-linejoin="round" paint-order="stroke""##;
-                    let paint = format!("fill=\"{}\" {halo}", colour.text);
-                    svg.text((at, baseline), anchor, line, &paint);
-                }
+                let place = side(&found, &anchors);
+                in_group(&mut svg, &classes[index], |svg| name(svg, &lines, &found, place, colour));
             }
         }
     }
     (svg.finish(), height, homeless)
+}
+
+/// Draws what belongs to a curve, so that a page can hide it.
+fn in_group(svg: &mut Svg, class: &str, draw: impl FnOnce(&mut Svg)) {
+    if class.is_empty() {
+        return draw(svg);
+    }
+    svg.raw(&format!("<g{class}>\n"));
+    draw(svg);
+    svg.raw("</g>\n");
+}
+
+/// Writes a name beside its mark, on a light ground that keeps it apart from what lies below.
+fn name(svg: &mut Svg, lines: &[&str], found: &Rect, (at, anchor): (f64, Anchor), colour: Colour) {
+    let halo = r##"stroke="#ffffff" stroke-width="3" stroke-linejoin="round" paint-order="stroke""##;
+    let paint = format!("fill=\"{}\" {halo}", colour.text);
+    for (row, line) in lines.iter().enumerate() {
+        svg.text((at, found.top + 12.0 + row as f64 * LINE_HEIGHT), anchor, line, &paint);
+    }
 }
 
 /// Text that stands left of its curve ends there, so that a narrower font leaves no gap.

@@ -25,14 +25,15 @@ pub(super) fn title(figure: &Figure, label: Option<&str>, (x, y): (f64, f64)) ->
     format!("<title>{}</title>", escape(&format!("{name}{}", values.join("; "))))
 }
 
-/// Draws the spots; `at` gives the pixel of a point.
+/// Draws the spots, those of a mark in a group of its class; `at` gives the pixel of a point.
 pub(super) fn draw(
     svg: &mut Svg,
     figure: &Figure,
+    classes: &[String],
     area: &Rect,
     at: impl Fn((f64, f64)) -> Option<(f64, f64)>,
 ) {
-    for mark in &figure.marks {
+    for (mark, class) in figure.marks.iter().zip(classes) {
         let Mark::Line(line) = mark else { continue };
         let Some(label) = line.label.as_deref() else { continue };
         let inside = |(x, y): &(f64, f64)| {
@@ -46,6 +47,7 @@ pub(super) fn draw(
         let few = simplify(seen.iter().map(|(_, pixel)| *pixel)).len().clamp(2, SPOTS);
         let stride = seen.len().div_ceil(few).max(1);
         let mut last: Option<(f64, f64)> = None;
+        svg.raw(&format!("<g{class}>\n"));
         for (point, (x, y)) in seen.into_iter().step_by(stride) {
             if last.is_some_and(|(a, b)| libm::hypot(x - a, y - b) < APART) {
                 continue;
@@ -58,6 +60,7 @@ pub(super) fn draw(
                 title(figure, Some(label), point)
             ));
         }
+        svg.raw("</g>\n");
     }
 }
 

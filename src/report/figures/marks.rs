@@ -22,13 +22,15 @@ pub struct Line {
     pub(super) width: f64,
     pub(super) dash: Dash,
     pub(super) opacity: f64,
+    pub(super) stays: bool,
     pub(super) label: Option<String>,
 }
 
 impl Line {
     /// A solid line, 2 pixels wide.
     pub fn new(points: Vec<(f64, f64)>, colour: Colour) -> Line {
-        Line { points, true_x: None, colour, width: 2.0, dash: Dash::Solid, opacity: 1.0, label: None }
+        let (width, dash, opacity) = (2.0, Dash::Solid, 1.0);
+        Line { points, true_x: None, colour, width, dash, opacity, stays: false, label: None }
     }
 
     /// With the values along x that a pointer shows, where the points are drawn beside them.
@@ -52,6 +54,12 @@ impl Line {
     /// See-through: 1 is opaque.
     pub fn opacity(mut self, opacity: f64) -> Line {
         self.opacity = opacity;
+        self
+    }
+
+    /// Standing for a limit, which no reader of a page can hide.
+    pub fn stays(mut self) -> Line {
+        self.stays = true;
         self
     }
 

@@ -18,6 +18,7 @@
 
 mod axis;
 mod colour;
+mod curves;
 mod draw;
 mod figure;
 mod hover;

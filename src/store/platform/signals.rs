@@ -4,39 +4,49 @@ use std::io;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use signal_hook::consts::SIGINT;
-use signal_hook::flag::{register, register_conditional_shutdown};
-
 /// A flag that the first request to end sets; an interrupt (Ctrl-C) after that ends the program at once.
 ///
 /// On Linux and macOS the requests are SIGINT, SIGTERM, SIGHUP where the terminal is closed (but on Linux not
 /// under `nohup`), and SIGXCPU where the processor time is used up. SIGTERM may come several times: a
 /// cluster's scheduler sends it to a job's script, which hands it on, and to all of the job's processes.
-/// Elsewhere it is the interrupt alone: a window that is closed ends the program, which continues from its
-/// last checkpoint.
+/// On Windows they are Ctrl-C, Ctrl-Break, the window that is closed, and the end of the session; for the
+/// last two the system gives the program some seconds.
 ///
 /// # Errors
 /// What the system says when it takes no handler.
 pub fn stop_on_request() -> io::Result<Arc<AtomicBool>> {
     let stop = Arc::new(AtomicBool::new(false));
-    register_conditional_shutdown(SIGINT, 1, Arc::clone(&stop))?;
-    for signal in requests() {
-        register(signal, Arc::clone(&stop))?;
-    }
+    listen(&stop)?;
     Ok(stop)
 }
 
 #[cfg(unix)]
+fn listen(stop: &Arc<AtomicBool>) -> io::Result<()> {
+    use signal_hook::consts::SIGINT;
+    use signal_hook::flag::{register, register_conditional_shutdown};
+
+    register_conditional_shutdown(SIGINT, 1, Arc::clone(stop))?;
+    for signal in requests() {
+        register(signal, Arc::clone(stop))?;
+    }
+    Ok(())
+}
+
+#[cfg(windows)]
+use super::windows::listen;
+
+/// Nothing is known of such a system: whatever ends the program kills it.
+#[cfg(not(any(unix, windows)))]
+fn listen(_stop: &Arc<AtomicBool>) -> io::Result<()> {
+    Ok(())
+}
+
+#[cfg(unix)]
 fn requests() -> impl Iterator<Item = i32> {
-    use signal_hook::consts::{SIGHUP, SIGTERM, SIGXCPU};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXCPU};
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = move |signal| signal == SIGHUP && is_ignored(&status, signal);
     [SIGINT, SIGTERM, SIGHUP, SIGXCPU].into_iter().filter(move |signal| !ignored(*signal))
-}
-
-#[cfg(not(unix))]
-fn requests() -> impl Iterator<Item = i32> {
-    [SIGINT].into_iter()
 }
 
 /// Whether whoever started the process had it ignore a signal, by `/proc/self/status`.
@@ -52,7 +62,7 @@ fn is_ignored(status: &str, signal: i32) -> bool {
 #[cfg(unix)]
 pub fn outlive_large_files() {
     let noticed = Arc::new(AtomicBool::new(false));
-    let _ = register(signal_hook::consts::SIGXFSZ, noticed);
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, noticed);
 }
 
 /// Does nothing: only on unix does the system end a program for that.

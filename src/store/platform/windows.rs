@@ -6,12 +6,18 @@ use std::os::windows::ffi::OsStrExt;
 use std::os::windows::fs::{FileExt, OpenOptionsExt};
 use std::os::windows::io::AsRawHandle;
 use std::path::Path;
+#[cfg(feature = "cli")]
+use std::sync::atomic::{AtomicBool, Ordering};
+#[cfg(feature = "cli")]
+use std::sync::{Arc, Mutex, PoisonError};
 
 use windows_sys::Win32::Foundation::{CloseHandle, ERROR_IO_PENDING, ERROR_LOCK_VIOLATION, FILETIME};
 use windows_sys::Win32::Storage::FileSystem::{
     BY_HANDLE_FILE_INFORMATION, FILE_FLAG_OPEN_REPARSE_POINT, GetDiskFreeSpaceExW,
     GetFileInformationByHandle, LOCKFILE_EXCLUSIVE_LOCK, LOCKFILE_FAIL_IMMEDIATELY, LockFileEx,
 };
+#[cfg(feature = "cli")]
+use windows_sys::Win32::System::Console::{CTRL_BREAK_EVENT, CTRL_C_EVENT, SetConsoleCtrlHandler};
 use windows_sys::Win32::System::IO::{OVERLAPPED, OVERLAPPED_0, OVERLAPPED_0_0};
 use windows_sys::Win32::System::SystemInformation::{GlobalMemoryStatusEx, MEMORYSTATUSEX};
 use windows_sys::Win32::System::Threading::{
@@ -183,6 +189,39 @@ pub fn processor() -> Option<String> {
 /// Nothing: the system has no such table.
 pub fn mounts() -> Option<String> {
     None
+}
+
+/// The flags that a request to end sets.
+#[cfg(feature = "cli")]
+static STOPS: Mutex<Vec<Arc<AtomicBool>>> = Mutex::new(Vec::new());
+
+/// Has requests to end set the flag. Not by `signal` of the C library, which tells of no window that is
+/// closed, and whose ways differ from one such library to the next.
+#[cfg(feature = "cli")]
+pub fn listen(stop: &Arc<AtomicBool>) -> io::Result<()> {
+    STOPS.lock().unwrap_or_else(PoisonError::into_inner).push(Arc::clone(stop));
+    // SAFETY: the handler is a function of the program itself, of the type that the system calls.
+    or_error(unsafe { SetConsoleCtrlHandler(Some(on_request), 1) })
+}
+
+/// The system calls this on a thread of its own. When it returns from what is no interrupt the program ends:
+/// so that waits, for as long as the system lets it, until the state is saved and the program ends by itself.
+#[cfg(feature = "cli")]
+unsafe extern "system" fn on_request(kind: u32) -> i32 {
+    let is_interrupt = matches!(kind, CTRL_C_EVENT | CTRL_BREAK_EVENT);
+    if request(&STOPS.lock().unwrap_or_else(PoisonError::into_inner)) && is_interrupt {
+        std::process::exit(1);
+    }
+    while !is_interrupt {
+        std::thread::park();
+    }
+    1
+}
+
+/// Sets the flags; whether one was set before.
+#[cfg(feature = "cli")]
+fn request(stops: &[Arc<AtomicBool>]) -> bool {
+    stops.iter().fold(false, |was, stop| stop.swap(true, Ordering::SeqCst) || was)
 }
 
 fn or_error(done: i32) -> io::Result<()> {

@@ -102,9 +102,9 @@ pub fn run(
     }
     let mut outcomes = Vec::new();
     for line in walked.lines.iter().flatten() {
-        let case = Path::new(WALKS).join(&line.folder);
+        let case = format!("{WALKS}/{}", line.folder);
         let outcome = outcome(&folder.path().join(&case))?;
-        outcomes.push((line.case.clone(), case.display().to_string(), outcome));
+        outcomes.push((line.case.clone(), case, outcome));
     }
     let comparison = Comparison::new(plan.of, &plan.common, plan.seed, &outcomes);
     write(&folder, &comparison)?;

@@ -1,0 +1,140 @@
+//! Which marks make a curve that a reader can hide: a named line or kind of symbol, and what is drawn in its
+//! colour alone. Rules, lines that stand for a limit and named areas stay: a threshold, and where a verdict
+//! holds, is never hidden.
+
+use super::colour::Colour;
+use super::figure::Figure;
+use super::marks::Mark;
+
+/// Curves that the style of a page can hide, at most; a figure with more hides none.
+const MOST: usize = 16;
+
+impl Figure {
+    /// Names of the curves that a reader can hide, in the order of their classes `curve-1` ...; none where
+    /// there are fewer than two.
+    pub fn curves(&self) -> Vec<String> {
+        let names = names(self);
+        if (2..=MOST).contains(&names.len()) { names } else { Vec::new() }
+    }
+}
+
+/// The class of each mark, as it stands in an element; empty of marks that stay.
+pub(super) fn classes(figure: &Figure) -> Vec<String> {
+    let names = figure.curves();
+    let class = |mark: &Mark| {
+        let name = curve_of(figure, mark)?;
+        let index = names.iter().position(|other| *other == name)?;
+        Some(format!(" class=\"curve-{}\"", index + 1))
+    };
+    figure.marks.iter().map(|mark| class(mark).unwrap_or_default()).collect()
+}
+
+/// The name of every curve, once, in the order in which they are drawn.
+fn names(figure: &Figure) -> Vec<String> {
+    let mut names = Vec::new();
+    for mark in &figure.marks {
+        match curve_of(figure, mark) {
+            Some(name) if !names.contains(&name) => names.push(name),
+            _ => {}
+        }
+    }
+    names
+}
+
+/// The curve that a mark is a part of.
+fn curve_of(figure: &Figure, mark: &Mark) -> Option<String> {
+    let (own, colour) = look(mark)?;
+    let alone = |names: Vec<String>| if names.len() == 1 { names.into_iter().next() } else { None };
+    let line = || alone(of_colour(figure, colour, |mark| matches!(mark, Mark::Line(_))));
+    let any = || alone(of_colour(figure, colour, |_| true));
+    match (mark, own) {
+        // A value that is marked on a line goes with it.
+        (Mark::Point(_), Some(name)) => line().or(Some(name)),
+        (_, Some(name)) => Some(name),
+        (Mark::Area(_), None) => line(),
+        (_, None) => line().or_else(any),
+    }
+}
+
+/// Names that stand for a colour, each once.
+fn of_colour(figure: &Figure, colour: Colour, is_meant: impl Fn(&Mark) -> bool) -> Vec<String> {
+    let mut names = Vec::new();
+    for mark in figure.marks.iter().filter(|mark| is_meant(mark)) {
+        if let Some((Some(name), other)) = look(mark)
+            && other == colour
+            && !names.contains(&name)
+        {
+            names.push(name);
+        }
+    }
+    names
+}
+
+/// Name and colour of what may be hidden.
+fn look(mark: &Mark) -> Option<(Option<String>, Colour)> {
+    let (label, colour) = match mark {
+        Mark::Line(line) if !line.stays => (&line.label, line.colour),
+        Mark::Area(area) if area.label.is_none() => (&None, area.colour),
+        Mark::Point(point) => (&point.label, point.colour),
+        _ => return None,
+    };
+    Some((label.as_ref().map(|label| label.replace('\n', " ")), colour))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Across, Area, Axis, BLACK, BLUE, GREEN, GREY, Line, Point, Rule, Shape, Size};
+    use super::*;
+
+    fn figure() -> Figure {
+        let axis = || Axis::linear("x", 0.0, 10.0);
+        Figure::new("t", "d", "", axis(), axis())
+    }
+
+    fn line(colour: Colour) -> Line {
+        Line::new(vec![(0.0, 0.0), (9.0, 9.0)], colour)
+    }
+
+    #[test]
+    fn what_is_drawn_in_a_curves_colour_goes_with_it_and_a_threshold_stays() {
+        let mut figure = figure();
+        figure.add(line(BLUE).width(0.8));
+        figure.add(Area::new(vec![(0.0, 0.0), (9.0, 9.0), (9.0, 0.0)], GREEN, 0.2));
+        figure.add(Rule::new(Across::Y, 7.5, BLUE).label("7.5 %"));
+        figure.add(line(BLUE).label("first\nrun"));
+        figure.add(line(GREEN).label("second run"));
+        figure.add(Point::new(1.0, 1.0, GREEN, Shape::Circle).label("D15"));
+        figure.add(line(GREY));
+        figure.add(line(BLACK).stays().label("limit"));
+        figure.add(Area::new(vec![(0.0, 0.0), (9.0, 0.0), (9.0, 9.0)], GREEN, 0.1).label("no erosion"));
+        assert_eq!(figure.curves(), ["first run", "second run"]);
+        let (one, two) = (r#" class="curve-1""#, r#" class="curve-2""#);
+        assert_eq!(classes(&figure), [one, two, "", one, two, two, "", "", ""]);
+        // Lines, their names, what a pointer shows and the symbol: of each curve all, of the rule nothing.
+        let drawn = figure.inline("one", Size::Wide);
+        let of = |class: &str| -> Vec<String> {
+            let begin = format!("<g{class}>");
+            let parts = drawn.split(&begin).skip(1);
+            parts.map(|part| part.split("</g>").next().unwrap().to_owned()).collect()
+        };
+        let (one, two) = (of(one), of(two));
+        assert!(one.iter().all(|part| !part.contains("7.5")) && two.len() > 3, "{drawn}");
+        assert!(one.iter().any(|part| part.contains(">first</text>")));
+        assert!(two.iter().any(|part| part.contains("<title>second run: ")));
+        assert!(two.iter().any(|part| part.contains(">D15</text>")));
+    }
+
+    #[test]
+    fn one_curve_cannot_be_hidden_nor_can_too_many() {
+        let mut one = figure();
+        one.add(line(BLUE).label("only"));
+        assert!(one.curves().is_empty());
+        let mut many = figure();
+        for index in 0..=MOST {
+            many.add(line(BLACK).label(&format!("curve {index}")));
+        }
+        assert!(many.curves().is_empty() && !many.inline("m", Size::Wide).contains("curve-"));
+        many.marks.pop();
+        assert_eq!(many.curves().len(), MOST);
+    }
+}
