@@ -18,7 +18,7 @@
 use super::contact::{Grains, Law, Now, Work, pass};
 use super::grains::{Cell, Packing};
 use super::limits::{critical_step, damped_part, law, mass, stability};
-use super::motion::{ChunkInStep, LONGEST_MOVE, StepRule, Sums, split};
+use super::motion::{ChunkInStep, LONGEST_MOVE, StepRule, Sums, advance, split};
 use super::neighbours::{Aspect, GrainChunk, Reach, chunk_bounds};
 use super::observed::HoldState;
 use super::settings::{PackingError, Settings};
@@ -400,10 +400,10 @@ impl Compression {
             })
             .collect();
         if parallel {
-            parts.par_iter_mut().for_each(|part| part.advance(work, &rule));
+            parts.par_iter_mut().for_each(|part| advance(part, work, &rule));
         } else {
             for part in &mut parts {
-                part.advance(work, &rule);
+                advance(part, work, &rule);
             }
         }
         let mut total = Sums::default();

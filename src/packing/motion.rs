@@ -2,6 +2,7 @@
 
 use super::contact::Work;
 use super::neighbours::chunk_bounds;
+use multiversion::multiversion;
 
 /// Farthest a grain may move in a step, in units of the smallest diameter: only an overlapping start comes
 /// near it.
@@ -52,81 +53,71 @@ pub(super) struct ChunkInStep<'a> {
     pub sums: Sums,
 }
 
-impl ChunkInStep<'_> {
-    pub fn advance(&mut self, work: &[Work], rule: &StepRule) {
-        for sender in work {
-            let outbox = &sender.outbox[self.chunk];
-            for (&i, f) in outbox.grain.iter().zip(&outbox.force) {
-                let to = &mut self.force[i as usize - self.first];
-                *to = [to[0] + f[0], to[1] + f[1], to[2] + f[2], to[3] + f[3]];
-            }
-            if rule.rotate {
-                for (&i, t) in outbox.grain.iter().zip(&outbox.torque) {
-                    let to = &mut self.torque[i as usize - self.first];
-                    *to = [to[0] + t[0], to[1] + t[1], to[2] + t[2], to[3] + t[3]];
-                }
-            }
+/// Takes the forces that other chunks sent, and moves the grains of `part` by a step.
+#[multiversion(targets("x86_64+avx+avx2+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx+avx2"))]
+pub(super) fn advance(part: &mut ChunkInStep<'_>, work: &[Work], rule: &StepRule) {
+    for sender in work {
+        let outbox = &sender.outbox[part.chunk];
+        collect(part.force, part.first, &outbox.grain, &outbox.force);
+        if rule.rotate {
+            collect(part.torque, part.first, &outbox.grain, &outbox.torque);
         }
-        let mut sums = Sums::default();
-        let columns = self.position.iter_mut().zip(self.velocity.iter_mut()).zip(self.spin.iter_mut());
-        let loads = self.force.iter().zip(self.torque.iter()).zip(self.picked);
-        for (((p, v), w), ((f, t), picked)) in columns.zip(loads) {
-            let per_mass = 1.0 / v[3];
-            let kick = rule.step * per_mass * rule.kick;
-            let mut u = [0.0; 3];
-            for a in 0..3 {
-                let f = if rule.local > 0.0 {
-                    f[a] - rule.local
-                        * f[a].abs()
-                        * if v[a] > 0.0 {
-                            1.0
-                        } else if v[a] < 0.0 {
-                            -1.0
-                        } else {
-                            0.0
-                        }
-                } else {
-                    f[a]
-                };
-                u[a] = v[a] * rule.keep + kick * f;
-            }
-            let mut square = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
-            if square > rule.fastest * rule.fastest {
-                let cut = rule.fastest / square.sqrt();
-                u = u.map(|u| u * cut);
-                square = rule.fastest * rule.fastest;
-            }
-            let mut far = 0.0;
-            for a in 0..3 {
-                v[a] = u[a];
-                p[a] += u[a] * rule.per_cell;
-                far += (p[a] - picked[a]) * (p[a] - picked[a]);
-            }
-            if rule.rotate {
-                let twist = kick * 2.5 / (p[3] * p[3]);
-                for a in 0..3 {
-                    let m = if rule.local > 0.0 {
-                        t[a] - rule.local
-                            * t[a].abs()
-                            * if w[a] > 0.0 {
-                                1.0
-                            } else if w[a] < 0.0 {
-                                -1.0
-                            } else {
-                                0.0
-                            }
-                    } else {
-                        t[a]
-                    };
-                    w[a] = w[a] * rule.keep + twist * m;
-                }
-            }
-            sums.moved = if far > sums.moved { far } else { sums.moved };
-            let stiff = f[3] * per_mass;
-            sums.stiffest = if stiff > sums.stiffest { stiff } else { sums.stiffest };
-            sums.twice_kinetic += square * v[3];
-            sums.unbalanced += f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
-        }
-        self.sums = sums;
     }
+    match (rule.rotate, rule.local > 0.0) {
+        (true, true) => part.sums = kick::<true, true>(part, rule),
+        (true, false) => part.sums = kick::<true, false>(part, rule),
+        (false, true) => part.sums = kick::<false, true>(part, rule),
+        (false, false) => part.sums = kick::<false, false>(part, rule),
+    }
+}
+
+#[inline(always)]
+fn collect(to: &mut [[f64; 4]], first: usize, grain: &[u32], sent: &[[f64; 4]]) {
+    for (&i, s) in grain.iter().zip(sent) {
+        let to = &mut to[i as usize - first];
+        *to = std::array::from_fn(|a| to[a] + s[a]);
+    }
+}
+
+/// A load as the local damping leaves it: less where it drives the motion, more where it resists.
+#[inline(always)]
+fn damped(load: f64, velocity: f64, local: f64) -> f64 {
+    let along = f64::from(u8::from(velocity > 0.0)) - f64::from(u8::from(velocity < 0.0));
+    load - local * load.abs() * along
+}
+
+/// Kick and drift. The fourth entries go along, so that a row is one vector: they are set or added nothing.
+#[inline(always)]
+fn kick<const ROTATE: bool, const LOCAL: bool>(part: &mut ChunkInStep<'_>, rule: &StepRule) -> Sums {
+    let mut sums = Sums::default();
+    let columns = part.position.iter_mut().zip(part.velocity.iter_mut()).zip(part.spin.iter_mut());
+    let loads = part.force.iter().zip(part.torque.iter()).zip(part.picked);
+    for (((p, v), w), ((f, t), picked)) in columns.zip(loads) {
+        let mass = v[3];
+        let per_mass = 1.0 / mass;
+        let kick = rule.step * per_mass * rule.kick;
+        let load = |f: f64, v: f64| if LOCAL { damped(f, v, rule.local) } else { f };
+        let mut u: [f64; 4] = std::array::from_fn(|a| v[a] * rule.keep + kick * load(f[a], v[a]));
+        u[3] = 0.0;
+        let mut square = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
+        if square > rule.fastest * rule.fastest {
+            let cut = rule.fastest / square.sqrt();
+            u = u.map(|u| u * cut);
+            square = rule.fastest * rule.fastest;
+        }
+        *v = [u[0], u[1], u[2], mass];
+        *p = std::array::from_fn(|a| p[a] + u[a] * rule.per_cell);
+        let d: [f64; 4] = std::array::from_fn(|a| (p[a] - picked[a]) * (p[a] - picked[a]));
+        let far = d[0] + d[1] + d[2];
+        if ROTATE {
+            let twist = kick * 2.5 / (p[3] * p[3]);
+            *w = std::array::from_fn(|a| w[a] * rule.keep + twist * load(t[a], w[a]));
+        }
+        sums.moved = if far > sums.moved { far } else { sums.moved };
+        let stiff = f[3] * per_mass;
+        sums.stiffest = if stiff > sums.stiffest { stiff } else { sums.stiffest };
+        sums.twice_kinetic += square * mass;
+        sums.unbalanced += f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
+    }
+    sums
 }
