@@ -54,7 +54,7 @@ pub(super) struct Lattice {
     /// first exit. Bit 3: the third exit.
     pub moves: [u32; 16],
     /// Bits, as an integer, of a diameter that no open exit is finer than. Particles up to
-    /// `finest + (class << CLASS_SHIFT)`, compared as such bits, pass every open exit of a void of that class.
+    /// `finest + (class << CLASS_SHIFT)`, compared as bits, pass every open exit of a void of that class.
     pub finest: u32,
     nx: u32,
     plane: u32,

@@ -80,7 +80,8 @@ fn predict(chunk: &mut LatticeChunk, begin: usize, draws: &Draws, kept: usize) -
         let by = _mm256_castps_si256(_mm256_blendv_ps(by, downstream, _mm256_castsi256_ps(past)));
         let to = _mm256_add_epi32(from, by);
 
-        // The sign says whether: leaves (neither reaches 2^31), no open exit, a tie in either half, perhaps too coarse.
+        // The sign says whether: leaves (neither reaches 2^31), no open exit, a tie in either half, perhaps
+        // too coarse.
         let out = _mm256_cmpgt_epi32(to, last);
         let closed = _mm256_andnot_si256(_mm256_slli_epi32::<16>(past), past);
         let tie = _mm256_or_si256(tie, _mm256_slli_epi32::<16>(tie));

@@ -207,7 +207,7 @@ impl LatticeChunk<'_> {
     /// Exit picked by a draw that equals a threshold in the bits that the table has; `None` where no exit is
     /// open.
     #[cold]
-    fn undecided(&self, void: u32, index: usize, draw: u16) -> Option<u32> {
+    pub fn undecided(&self, void: u32, index: usize, draw: u16) -> Option<u32> {
         let mut thresholds = Vec::with_capacity(3);
         let last_open = exits::thresholds(self.exits.network, self.exits.blocked, void, &mut thresholds)?;
         let draw = self.lanes.extension().complete(draw, index as u64);
