@@ -1,9 +1,9 @@
 //! The step on the cubic lattice: one table word a void, targets by arithmetic. The portable kernel, and
 //! what the vector kernels share with it.
 //!
-//! A kernel takes a block of particles at a time. It predicts where they go, without a branch, and says for
-//! which particles it may be wrong: a draw that equals a threshold as far as the table's word goes, no open
-//! exit, coarser than the void's finest open exit may be, leaves. Those few then go the long way
+//! It and the AVX2 kernel take a block of particles at a time. They predict where these go, without a branch,
+//! and say for which that may be wrong: a draw that equals a threshold as far as the table's word goes, no
+//! open exit, coarser than the void's finest open exit may be, leaves. Those few then go the long way
 //! ([`LatticeChunk::settle`]), one by one and in order.
 //!
 //! The halves of a table word hold the two thresholds above other bits; beside a draw with ones in place of
