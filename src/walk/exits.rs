@@ -46,15 +46,25 @@ pub(super) enum Form {
 
 /// Thresholds of a cubic lattice, one word a void, and its shape.
 pub(super) struct Lattice {
-    /// Bits 17..32: top fifteen bits of the first threshold. Bits 2..17: of the second. Bit 1: +y wraps.
-    /// Bit 0: +x wraps. A void without open exits has the first above the second.
+    /// Bits 21..32: top eleven bits of the second threshold. Bits 16..21: class of the finest open exit. Bits
+    /// 2..16: top fourteen bits of the first threshold. Bit 1: +y wraps. Bit 0: +x wraps. A void without open
+    /// exits has the first above the second.
     pub entry: Vec<u32>,
     /// What a move adds to the void, modulo 2^32. Bits 0 and 1 of the index: as in `entry`. Bit 2: not the
     /// first exit. Bit 3: the third exit.
     pub moves: [u32; 16],
+    /// Bits, as an integer, of a diameter that no open exit is finer than. Particles up to
+    /// `finest + (class << CLASS_SHIFT)`, compared as bits, pass every open exit of a void of that class.
+    pub finest: u32,
     nx: u32,
     plane: u32,
 }
+
+/// Bits of a diameter below those of its class: 32 classes in a factor of two.
+pub(super) const CLASS_SHIFT: u32 = 18;
+
+/// Bits of the class in a word of [`Lattice::entry`].
+pub(super) const CLASS: u32 = 0x001f_0000;
 
 /// Thresholds of a general network.
 pub(super) struct General {
@@ -88,7 +98,10 @@ impl ExitTable {
     /// The table for the constrictions that `blocked` leaves open.
     pub fn new(network: &Network, blocked: &BitSlice) -> Self {
         let form = match network.shape() {
-            Some([nx, ny, _]) => Form::Lattice(Lattice::new(network.voids(), nx, nx * ny)),
+            Some([nx, ny, _]) => {
+                let finest = network.finest_open(|c| blocked[c]).to_bits();
+                Form::Lattice(Lattice::new(network.voids(), nx, nx * ny, finest))
+            }
             None => Form::General(General {
                 threshold: vec![0; network.constrictions()],
                 last_open: vec![NONE; network.voids()],
@@ -118,7 +131,11 @@ impl ExitTable {
     fn set(&mut self, network: &Network, blocked: &BitSlice, void: u32, scratch: &mut Vec<u64>) {
         let last_open = thresholds(network, blocked, void, scratch);
         match &mut self.form {
-            Form::Lattice(lattice) => lattice.set(void, scratch, last_open),
+            Form::Lattice(lattice) => {
+                let open = network.exits(void).filter(|&c| !blocked[c] && network.exit_weight(c) > 0.0);
+                let finest = open.map(|c| network.diameters()[c]).fold(f32::INFINITY, f32::min);
+                lattice.set(void, scratch, last_open, finest);
+            }
             Form::General(general) => {
                 let exits = network.exits(void);
                 general.threshold[exits.clone()].copy_from_slice(scratch);
@@ -150,7 +167,7 @@ impl ExitTable {
 }
 
 impl Lattice {
-    fn new(voids: usize, nx: u32, plane: u32) -> Self {
+    fn new(voids: usize, nx: u32, plane: u32, finest: u32) -> Self {
         let moves = std::array::from_fn(|index| match index {
             0 | 2 => 1,
             1 | 3 => 1u32.wrapping_sub(nx),
@@ -158,17 +175,25 @@ impl Lattice {
             6 | 7 => nx.wrapping_sub(plane),
             _ => plane,
         });
-        Self { entry: vec![0; voids], moves, nx, plane }
+        Self { entry: vec![0; voids], moves, finest, nx, plane }
     }
 
-    fn set(&mut self, void: u32, thresholds: &[u64], last_open: Option<usize>) {
+    fn set(&mut self, void: u32, thresholds: &[u64], last_open: Option<usize>, finest: f32) {
         let (x, row) = (void % self.nx, void % self.plane);
         let wraps = u32::from(x + 1 == self.nx) | u32::from(row + self.nx >= self.plane) << 1;
         let [first, second] = match last_open {
-            Some(_) => [thresholds[0] >> 49, thresholds[1] >> 49],
-            None => [0x7fff, 0],
+            Some(_) => [thresholds[0] >> 50, thresholds[1] >> 53],
+            None => [0x3fff, 0],
         };
-        self.entry[void as usize] = (first as u32) << 17 | (second as u32) << 2 | wraps;
+        // Nothing opens again.
+        let class = finest.to_bits().checked_sub(self.finest).expect("no open exit is finer") >> CLASS_SHIFT;
+        let class = (class << 16).min(CLASS);
+        self.entry[void as usize] = (second as u32) << 21 | class | (first as u32) << 2 | wraps;
+    }
+
+    /// Thresholds in a word: fourteen bits of the first, eleven of the second.
+    pub fn parts(entry: u32) -> [u32; 2] {
+        [entry >> 2 & 0x3fff, entry >> 21]
     }
 }
 

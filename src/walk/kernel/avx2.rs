@@ -1,14 +1,126 @@
-//! The step on the cubic lattice with AVX2: eight particles at once, as [`super::avx512`] does sixteen.
+//! The step on the cubic lattice with AVX2: eight particles at once.
+//!
+//! Both thresholds of a void are compared with the draw in one instruction, as halves of the table's word.
 
 use std::arch::x86_64::*;
 
-use super::lattice::{BELOW_FIRST, LatticeChunk, SECOND, fits_gathers};
-use crate::stream::{DRAWS_PER_BLOCK, LANES, draw16};
+use super::lattice::{BELOW, BLOCK, CLASS_UP, Draws, LatticeChunk, PAST_FIRST, fits_gathers};
+use crate::stream::{LANES, Lanes};
 use crate::walk::Isa;
+use crate::walk::exits::CLASS;
 
 const WIDTH: usize = 8;
 
-/// By mask of the lanes that leave: the lanes that stay, in order, then any.
+/// Moves the particles of one chunk; returns how many still move.
+pub(super) fn step(chunk: LatticeChunk) -> usize {
+    assert!(Isa::Avx2.is_available() && fits_gathers(chunk.table));
+    // SAFETY: the machine has the instructions.
+    unsafe { step_vectors(chunk) }
+}
+
+#[target_feature(enable = "avx2,popcnt")]
+fn step_vectors(mut chunk: LatticeChunk) -> usize {
+    let count = chunk.void.len();
+    let mut state = load_state(&chunk.lanes);
+    let mut kept = 0;
+    for begin in (0..count - count % BLOCK).step_by(BLOCK) {
+        let draws = bytemuck::cast([next_block(&mut state), next_block(&mut state)]);
+        let rare = predict(&mut chunk, begin, &draws, kept);
+        let gone = if rare == 0 { 0 } else { chunk.settle(begin, &draws, rare, kept) };
+        kept = if gone == 0 { kept + BLOCK } else { close_up(&mut chunk, kept, gone) };
+    }
+    chunk.step_rest(|| next_block(&mut state), kept)
+}
+
+/// As [`super::lattice`]'s.
+#[inline]
+#[target_feature(enable = "avx2,popcnt")]
+fn predict(chunk: &mut LatticeChunk, begin: usize, draws: &Draws, kept: usize) -> u64 {
+    assert!(kept <= begin && begin + BLOCK <= chunk.void.len() && begin + BLOCK <= chunk.diameter.len());
+    let table = chunk.table;
+    let last = _mm256_set1_epi32(table.entry.len() as i32 - 1);
+    let below = _mm256_set1_epi32(BELOW as i32);
+    let finest = _mm256_set1_epi32(table.finest as i32);
+    let downstream = _mm256_castsi256_ps(_mm256_set1_epi32(table.moves[15] as i32));
+    // The first eight entries of `moves`: those of the first two exits.
+    // SAFETY: `moves` has sixteen entries.
+    let moves = unsafe { _mm256_loadu_si256(table.moves.as_ptr().cast()) };
+    // A draw into both halves of its word.
+    let (low, high) = (_mm_set_epi64x(0x0706_0706_0504_0504, 0x0302_0302_0100_0100), 0x0808_0808_0808_0808);
+    let twice = _mm256_set_m128i(_mm_add_epi8(low, _mm_set1_epi64x(high)), low);
+    let zero = _mm256_setzero_si256();
+    let mut greatest = zero;
+    let mut rare = 0;
+    for (group, words) in draws.as_chunks::<2>().0.iter().enumerate() {
+        let at = begin + WIDTH * group;
+        // SAFETY: eight entries from `at` on are within both columns, as asserted.
+        let (from, d) = unsafe {
+            (
+                _mm256_loadu_si256(chunk.void.as_ptr().add(at).cast()),
+                _mm256_loadu_si256(chunk.diameter.as_ptr().add(at).cast()),
+            )
+        };
+        greatest = _mm256_max_epu32(greatest, from);
+        let within = _mm256_min_epu32(from, last);
+        // SAFETY: `within` is less than the table's length.
+        let entry = unsafe { look_up(&table.entry, within) };
+        // SAFETY: two words are sixteen bytes.
+        let draw = unsafe { _mm_loadu_si128(words.as_ptr().cast()) };
+        let draw = _mm256_or_si256(_mm256_shuffle_epi8(_mm256_broadcastsi128_si256(draw), twice), below);
+
+        // Upper half: no less than the second threshold. Lower half: than the first.
+        let past = _mm256_cmpeq_epi16(_mm256_subs_epu16(entry, draw), zero);
+        let differ = _mm256_andnot_si256(below, _mm256_xor_si256(entry, draw));
+        let tie = _mm256_cmpeq_epi16(differ, zero);
+        let sideways = _mm256_or_si256(
+            _mm256_and_si256(entry, _mm256_set1_epi32(3)),
+            _mm256_and_si256(past, _mm256_set1_epi32(PAST_FIRST as i32)),
+        );
+        let by = _mm256_castsi256_ps(_mm256_permutevar8x32_epi32(moves, sideways));
+        let by = _mm256_castps_si256(_mm256_blendv_ps(by, downstream, _mm256_castsi256_ps(past)));
+        let to = _mm256_add_epi32(from, by);
+
+        // The sign says whether: leaves (neither reaches 2^31), no open exit, a tie in either half, perhaps
+        // too coarse.
+        let out = _mm256_cmpgt_epi32(to, last);
+        let closed = _mm256_andnot_si256(_mm256_slli_epi32::<16>(past), past);
+        let tie = _mm256_or_si256(tie, _mm256_slli_epi32::<16>(tie));
+        let class = _mm256_and_si256(entry, _mm256_set1_epi32(CLASS as i32));
+        let passes = _mm256_add_epi32(finest, _mm256_slli_epi32::<{ CLASS_UP as i32 }>(class));
+        let coarse = _mm256_cmpgt_epi32(d, passes);
+        let long_way = _mm256_or_si256(_mm256_or_si256(out, closed), _mm256_or_si256(tie, coarse));
+        let long_way = _mm256_castsi256_ps(long_way);
+        rare |= u64::from(_mm256_movemask_ps(long_way) as u32) << (WIDTH * group);
+        let to = _mm256_blendv_ps(_mm256_castsi256_ps(to), _mm256_castsi256_ps(from), long_way);
+        let place = kept + WIDTH * group;
+        // SAFETY: `place <= at`, so eight entries from there on are within both columns; those up to
+        // `at + 8` have been read.
+        unsafe {
+            _mm256_storeu_ps(chunk.void.as_mut_ptr().add(place).cast(), to);
+            _mm256_storeu_si256(chunk.diameter.as_mut_ptr().add(place).cast(), d);
+        }
+    }
+    let inside = _mm256_cmpeq_epi32(_mm256_min_epu32(greatest, last), greatest);
+    assert!(_mm256_movemask_epi8(inside) == -1, "a void that the network does not have");
+    rare
+}
+
+/// Words of the table: eight loads, which take less time than a gather.
+///
+/// # Safety
+/// Each of `voids` is less than the table's length.
+#[inline]
+#[target_feature(enable = "avx2")]
+unsafe fn look_up(table: &[u32], voids: __m256i) -> __m256i {
+    let mut at = [0u32; WIDTH];
+    // SAFETY: eight entries.
+    unsafe { _mm256_storeu_si256(at.as_mut_ptr().cast(), voids) };
+    // SAFETY: as asked for.
+    let [a, b, c, d, e, f, g, h] = at.map(|void| unsafe { *table.get_unchecked(void as usize) } as i32);
+    _mm256_setr_epi32(a, b, c, d, e, f, g, h)
+}
+
+/// By mask of the lanes that are gone: the lanes that stay, in order, then any.
 static STAYING: [[u32; WIDTH]; 1 << WIDTH] = staying();
 
 const fn staying() -> [[u32; WIDTH]; 1 << WIDTH] {
@@ -28,162 +140,68 @@ const fn staying() -> [[u32; WIDTH]; 1 << WIDTH] {
     table
 }
 
-/// Moves the particles of one chunk; returns how many still move.
-pub(super) fn step(chunk: LatticeChunk) -> usize {
-    assert!(Isa::Avx2.is_available() && fits_gathers(chunk.table));
-    // SAFETY: the machine has the instructions.
-    unsafe { step_vectors(chunk) }
-}
-
-#[target_feature(enable = "avx2,popcnt")]
-fn step_vectors(mut chunk: LatticeChunk) -> usize {
-    let count = chunk.void.len();
-    assert_eq!(count, chunk.diameter.len());
-    assert_eq!(chunk.exits.network.diameters().len(), 3 * chunk.table.entry.len());
-    let mut lanes = chunk.lanes.clone();
-    let mut kept = 0;
-    for begin in (0..count).step_by(DRAWS_PER_BLOCK) {
-        let block = lanes.next_block();
-        if begin + DRAWS_PER_BLOCK > count {
-            return chunk.step_block(begin, count, &block, kept);
-        }
-        for (quarter, words) in block.as_chunks::<2>().0.iter().enumerate() {
-            kept = step_eight(&mut chunk, begin + WIDTH * quarter, words, kept);
-        }
-    }
-    kept
-}
-
-/// Moves particles `begin .. begin + 8` by the eight draws in `words`; `kept <= begin` before them still
-/// move.
+/// Closes up the block of particles from `kept` on over those that are gone; returns where it ends then.
 #[inline]
 #[target_feature(enable = "avx2,popcnt")]
-fn step_eight(chunk: &mut LatticeChunk, begin: usize, words: &[u64; 2], kept: usize) -> usize {
-    assert!(kept <= begin && begin + WIDTH <= chunk.void.len() && begin + WIDTH <= chunk.diameter.len());
-    let table = chunk.table;
-    let last = _mm256_set1_epi32(table.entry.len() as i32 - 1);
-    // SAFETY: eight entries from `begin` on are within both columns, as asserted.
-    let (from, d) = unsafe {
-        (
-            _mm256_loadu_si256(chunk.void.as_ptr().add(begin).cast()),
-            _mm256_loadu_ps(chunk.diameter.as_ptr().add(begin)),
-        )
-    };
-    let within = _mm256_min_epu32(from, last);
-    let inside = _mm256_cmpeq_epi32(within, from);
-    // SAFETY: `within` is less than the table's length, which fits an i32.
-    let entry = unsafe { _mm256_i32gather_epi32::<4>(table.entry.as_ptr().cast(), within) };
-
-    // There is no unsigned comparison: `a >= b` where `min(a, b) == b`.
-    let below = _mm256_set1_epi32(BELOW_FIRST as i32);
-    // SAFETY: two words are sixteen bytes.
-    let draws = unsafe { _mm_loadu_si128(words.as_ptr().cast()) };
-    let top = _mm256_or_si256(_mm256_slli_epi32::<16>(_mm256_cvtepu16_epi32(draws)), below);
-    let second = _mm256_slli_epi32::<{ SECOND as i32 }>(entry);
-    let past_first = _mm256_cmpeq_epi32(_mm256_min_epu32(top, entry), entry);
-    let past_second = _mm256_cmpeq_epi32(_mm256_min_epu32(top, second), second);
-    let nearest = _mm256_min_epu32(_mm256_xor_si256(top, entry), _mm256_xor_si256(top, second));
-    let tie = _mm256_cmpeq_epi32(_mm256_srli_epi32::<17>(nearest), _mm256_setzero_si256());
-    // The first threshold is above the second only where every exit is closed.
-    let closed = _mm256_andnot_si256(past_first, past_second);
-    let stranded = bits(closed);
-    if bits(tie) | !bits(inside) & 0xff != 0 {
-        return step_singly(chunk, begin, words, kept);
-    }
-
-    // The first eight entries of `moves`: those of the first two exits.
-    // SAFETY: `moves` has sixteen entries.
-    let moves = unsafe { _mm256_loadu_si256(table.moves.as_ptr().cast()) };
-    let sideways = _mm256_or_si256(
-        _mm256_and_si256(entry, _mm256_set1_epi32(3)),
-        _mm256_and_si256(past_first, _mm256_set1_epi32(4)),
-    );
-    let downstream = _mm256_set1_epi32(table.moves[15] as i32);
-    let by = _mm256_blendv_epi8(_mm256_permutevar8x32_epi32(moves, sideways), downstream, past_second);
-    let to = _mm256_add_epi32(from, by);
-    // Neither reaches 2^31.
-    let out = bits(_mm256_cmpgt_epi32(to, last));
-
-    let coarse = _mm256_cmp_ps::<_CMP_GT_OQ>(d, _mm256_set1_ps(chunk.exits.passive_limit));
-    let mut stays = stranded;
-    if stranded != 0 {
-        note(&mut chunk.events.stranded, from, d, stranded);
-    }
-    let able = _mm256_andnot_ps(_mm256_castsi256_ps(closed), coarse);
-    if _mm256_movemask_ps(able) != 0 {
-        // A true lane is -1.
-        let exit = _mm256_add_epi32(past_first, past_second);
-        let constriction = _mm256_sub_epi32(_mm256_add_epi32(from, _mm256_slli_epi32::<1>(from)), exit);
-        let diameters = chunk.exits.network.diameters();
-        // SAFETY: voids are less than the table's length and exits less than 3, so that constrictions are
-        // less than 3 times it, the number of diameters.
-        let width = unsafe {
-            _mm256_mask_i32gather_ps::<4>(_mm256_setzero_ps(), diameters.as_ptr(), constriction, able)
-        };
-        let coarser = _mm256_and_ps(able, _mm256_cmp_ps::<_CMP_GT_OQ>(d, width));
-        let stopped = _mm256_movemask_ps(coarser) as u32;
-        if stopped != 0 {
-            note(&mut chunk.events.stopped, constriction, d, stopped);
-            stays |= stopped;
+fn close_up(chunk: &mut LatticeChunk, kept: usize, gone: u64) -> usize {
+    assert!(kept + BLOCK <= chunk.void.len() && kept + BLOCK <= chunk.diameter.len());
+    let (void, diameter) = (chunk.void.as_mut_ptr(), chunk.diameter.as_mut_ptr());
+    let mut end = kept;
+    for group in 0..BLOCK / WIDTH {
+        let (at, gone) = (kept + WIDTH * group, (gone >> (WIDTH * group)) as u8);
+        // SAFETY: a row of the table has eight entries. `at + 8` and `end + 8` are within both columns, since
+        // `end <= at`; and what is written over has been read.
+        unsafe {
+            let order = _mm256_loadu_si256(STAYING[usize::from(gone)].as_ptr().cast());
+            let (place, d) =
+                (_mm256_loadu_si256(void.add(at).cast()), _mm256_loadu_si256(diameter.add(at).cast()));
+            _mm256_storeu_si256(void.add(end).cast(), _mm256_permutevar8x32_epi32(place, order));
+            _mm256_storeu_si256(diameter.add(end).cast(), _mm256_permutevar8x32_epi32(d, order));
         }
+        end += WIDTH - gone.count_ones() as usize;
     }
-    let gone = out | stays;
-    let (mut to, mut d) = (to, d);
-    if gone != 0 {
-        note_eroded(chunk, d, out & !stays);
-        // SAFETY: a row of the table has eight entries.
-        let order = unsafe { _mm256_loadu_si256(STAYING[gone as usize].as_ptr().cast()) };
-        to = _mm256_permutevar8x32_epi32(to, order);
-        d = _mm256_permutevar8x32_ps(d, order);
-    }
-    // SAFETY: `kept <= begin`, so eight entries from `kept` on are within both columns.
-    unsafe {
-        _mm256_storeu_si256(chunk.void.as_mut_ptr().add(kept).cast(), to);
-        _mm256_storeu_ps(chunk.diameter.as_mut_ptr().add(kept), d);
-    }
-    kept + WIDTH - gone.count_ones() as usize
+    end
 }
 
-/// One bit a lane.
-#[inline]
-#[target_feature(enable = "avx2")]
-fn bits(lanes: __m256i) -> u32 {
-    _mm256_movemask_ps(_mm256_castsi256_ps(lanes)) as u32
-}
-
-#[cold]
-#[inline(never)]
-fn step_singly(chunk: &mut LatticeChunk, begin: usize, words: &[u64; 2], mut kept: usize) -> usize {
-    let mut block = [0; LANES];
-    block[..2].copy_from_slice(words);
-    for j in 0..WIDTH {
-        kept = chunk.attempt(begin + j, draw16(&block, j), kept);
-    }
-    kept
-}
-
-/// Appends place and diameter of some lanes.
-#[inline]
-#[target_feature(enable = "avx2")]
-fn note(column: &mut Vec<(u32, f32)>, place: __m256i, d: __m256, lanes: u32) {
-    let (mut places, mut diameters) = ([0u32; WIDTH], [0f32; WIDTH]);
-    // SAFETY: both arrays have eight entries.
-    unsafe {
-        _mm256_storeu_si256(places.as_mut_ptr().cast(), place);
-        _mm256_storeu_ps(diameters.as_mut_ptr(), d);
-    }
-    let lanes = (0..WIDTH).filter(|lane| lanes >> lane & 1 != 0);
-    column.extend(lanes.map(|lane| (places[lane], diameters[lane])));
-}
+/// The generators of a stream, four of them by register: one state word a row.
+type State = [[__m256i; 2]; 4];
 
 #[inline]
 #[target_feature(enable = "avx2")]
-fn note_eroded(chunk: &mut LatticeChunk, d: __m256, mut eroded: u32) {
-    let mut diameters = [0f32; WIDTH];
-    // SAFETY: eight entries.
-    unsafe { _mm256_storeu_ps(diameters.as_mut_ptr(), d) };
-    while eroded != 0 {
-        chunk.events.eroded.push(diameters[eroded.trailing_zeros() as usize % WIDTH]);
-        eroded &= eroded - 1;
+fn load_state(lanes: &Lanes) -> State {
+    lanes.state().each_ref().map(|row| {
+        let halves = row.as_chunks::<4>().0;
+        // SAFETY: a half of a row has four words.
+        [0, 1].map(|half| unsafe { _mm256_loadu_si256(halves[half].as_ptr().cast()) })
+    })
+}
+
+/// [`Lanes::next_block`] in registers.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn next_block(state: &mut State) -> [u64; LANES] {
+    let mut words = [0; LANES];
+    for (half, words) in words.as_chunks_mut::<4>().0.iter_mut().enumerate() {
+        let [s0, s1, s2, s3] = state.each_ref().map(|row| row[half]);
+        let out = _mm256_add_epi64(rotate::<23, 41>(_mm256_add_epi64(s0, s3)), s0);
+        let t = _mm256_slli_epi64::<17>(s1);
+        let s2 = _mm256_xor_si256(s2, s0);
+        let s3 = _mm256_xor_si256(s3, s1);
+        let s1 = _mm256_xor_si256(s1, s2);
+        let s0 = _mm256_xor_si256(s0, s3);
+        let next = [s0, s1, _mm256_xor_si256(s2, t), rotate::<45, 19>(s3)];
+        for (row, word) in state.iter_mut().zip(next) {
+            row[half] = word;
+        }
+        // SAFETY: four words.
+        unsafe { _mm256_storeu_si256(words.as_mut_ptr().cast(), out) };
     }
+    words
+}
+
+/// Every word rotated to the left by `LEFT` bits; `RIGHT` is what is missing from it to 64.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn rotate<const LEFT: i32, const RIGHT: i32>(words: __m256i) -> __m256i {
+    _mm256_or_si256(_mm256_slli_epi64::<LEFT>(words), _mm256_srli_epi64::<RIGHT>(words))
 }

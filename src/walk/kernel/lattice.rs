@@ -1,20 +1,31 @@
 //! The step on the cubic lattice: one table word a void, targets by arithmetic. The portable kernel, and
 //! what the vector kernels share with it.
 //!
-//! The fifteen top bits of a sixteen-bit draw stand beside the thresholds in a word as `draw << 16`, with
-//! ones below: that is no less than the word exactly where they are no less than the first threshold, and no
-//! less than the word shifted by fifteen where they are no less than the second. Where fifteen bits equal a
-//! threshold, the particle goes the long way ([`LatticeChunk::attempt`]).
+//! It and the AVX2 kernel take a block of particles at a time. They predict where these go, without a branch,
+//! and say for which that may be wrong: a draw that equals a threshold as far as the table's word goes, no
+//! open exit, coarser than the void's finest open exit may be, leaves. Those few then go the long way
+//! ([`LatticeChunk::settle`]), one by one and in order.
+//!
+//! The halves of a table word hold the two thresholds above other bits; beside a draw with ones in place of
+//! those bits ([`BELOW`]), a half is no greater exactly where the draw is no less than the threshold, unless
+//! the two are equal in the bits that the word has.
 
 use crate::stream::{DRAWS_PER_BLOCK, LANES, Lanes, draw16};
-use crate::walk::exits::{self, Lattice, OpenExits};
+use crate::walk::exits::{self, CLASS, CLASS_SHIFT, Lattice, OpenExits};
 use crate::walk::merge::Events;
 
-/// Ones below the bits of the first threshold in a word of [`Lattice::entry`].
-pub(super) const BELOW_FIRST: u32 = (1 << 17) - 1;
+/// Particles of a block.
+pub(super) const BLOCK: usize = 2 * DRAWS_PER_BLOCK;
 
-/// Shift that brings the second threshold where the first one is.
-pub(super) const SECOND: u32 = 15;
+/// The draws of a block of particles, as they come.
+pub(super) type Draws = [u64; 2 * LANES];
+
+/// Bits below the thresholds in a word of [`Lattice::entry`]: the second stands in the upper half, the first
+/// in the lower.
+pub(super) const BELOW: u32 = 0x001f_0003;
+
+/// What brings a class in its place in a word to that in the bits of a diameter.
+pub(super) const CLASS_UP: u32 = CLASS_SHIFT - CLASS.trailing_zeros();
 
 /// Bit of an index of [`Lattice::moves`]: the draw is no less than the first threshold.
 pub(super) const PAST_FIRST: u32 = 4;
@@ -40,66 +51,66 @@ pub(super) struct LatticeChunk<'a> {
 }
 
 /// Moves the particles of one chunk; returns how many still move.
-///
-/// Whole blocks in three passes: table words one by one, then arithmetic alone, which compiles to vector
-/// code, then what few particles leave.
 #[inline(never)]
 pub(super) fn step(mut chunk: LatticeChunk) -> usize {
     let mut lanes = chunk.lanes.clone();
     let count = chunk.void.len();
     let mut kept = 0;
-    for begin in (0..count).step_by(DRAWS_PER_BLOCK) {
-        let block = lanes.next_block();
-        let end = begin + DRAWS_PER_BLOCK;
-        let whole = (chunk.void.get(begin..end), chunk.diameter.get(begin..end));
-        kept = match whole {
-            (Some(from), Some(diameter)) => {
-                let (from, diameter) = (from.try_into().unwrap(), diameter.try_into().unwrap());
-                let (to, rare) = predict(chunk.exits, chunk.table, from, diameter, &block);
-                chunk.commit(begin, &block, &to, rare, kept)
-            }
-            _ => chunk.step_block(begin, count, &block, kept),
-        };
+    for begin in (0..count - count % BLOCK).step_by(BLOCK) {
+        let draws = next_draws(&mut lanes);
+        let rare = predict(&mut chunk, begin, &draws, kept);
+        let gone = chunk.settle(begin, &draws, rare, kept);
+        kept = chunk.close_up(kept, gone);
     }
-    kept
+    chunk.step_rest(|| lanes.next_block(), kept)
 }
 
-/// Predicts where a block of particles goes if nothing rare happens, and a bit for each particle for which it
-/// may: a tie, no open exit, not passive, leaves.
+/// The draws of the next block of particles.
+#[inline(always)]
+pub(super) fn next_draws(lanes: &mut Lanes) -> Draws {
+    bytemuck::cast([lanes.next_block(), lanes.next_block()])
+}
+
+/// Predicts where the block of particles from `begin` on goes, and writes it, and their diameters, from
+/// `kept` on. Where the prediction may be wrong there is a bit, and the void that the particle is in.
+///
+/// Passes of arithmetic alone over halves of words and whole words: they compile to vector code.
 #[inline]
-fn predict(
-    exits: &OpenExits,
-    table: &Lattice,
-    from: &[u32; DRAWS_PER_BLOCK],
-    diameter: &[f32; DRAWS_PER_BLOCK],
-    block: &[u64; LANES],
-) -> ([u32; DRAWS_PER_BLOCK], u32) {
-    let entry: [u32; DRAWS_PER_BLOCK] = std::array::from_fn(|j| table.entry[from[j] as usize]);
-    let draws: [u16; DRAWS_PER_BLOCK] = bytemuck::cast(block.map(u64::to_le));
+fn predict(chunk: &mut LatticeChunk, begin: usize, draws: &Draws, kept: usize) -> u64 {
+    let table = chunk.table;
+    let (from, d): (&[u32; BLOCK], &[f32; BLOCK]) =
+        (chunk.void[begin..].first_chunk().unwrap(), chunk.diameter[begin..].first_chunk().unwrap());
+    let (from, d) = (*from, *d);
+    let entry: [u32; BLOCK] = from.map(|from| table.entry[from as usize]);
+    let draws: [u16; BLOCK] = bytemuck::cast(draws.map(u64::to_le));
     let (nx, plane) = (table.moves[4], table.moves[15]);
     let last_layer = (table.entry.len() as u32 - plane) as i32;
-    let mut to = [0; DRAWS_PER_BLOCK];
-    let mut rare = [0; DRAWS_PER_BLOCK];
-    for j in 0..DRAWS_PER_BLOCK {
-        let top = i32::from(u16::from_le(draws[j]) >> 1);
-        let (first, second) = ((entry[j] >> 17) as i32, (entry[j] >> 2 & 0x7fff) as i32);
+    let mut to = [0; BLOCK];
+    let mut rare = [0u32; BLOCK];
+    for j in 0..BLOCK {
+        let draw = u32::from(u16::from_le(draws[j]));
+        let (top_first, top_second) = ((draw >> 2) as i32, (draw >> 5) as i32);
+        let (first, second) = ((entry[j] >> 2 & 0x3fff) as i32, (entry[j] >> 21) as i32);
         let (wraps_x, wraps_y) = (0u32.wrapping_sub(entry[j] & 1), 0u32.wrapping_sub(entry[j] >> 1 & 1));
-        let (before_first, before_second) = (ones(top < first), ones(top < second));
+        let (before_first, before_second) = (ones(top_first < first), ones(top_second < second));
         let sideways = 1u32.wrapping_sub(wraps_x & nx);
         let across = nx.wrapping_sub(wraps_y & plane);
         let by = before_first & sideways | !before_first & across;
         let by = before_second & by | !before_second & plane;
-        to[j] = from[j].wrapping_add(by);
-        rare[j] = ones(top == first)
-            | ones(top == second)
+        let passes = table.finest + ((entry[j] & CLASS) << CLASS_UP);
+        rare[j] = ones(top_first == first)
+            | ones(top_second == second)
             | before_first & !before_second
-            | ones(diameter[j] > exits.passive_limit)
+            | ones(d[j].to_bits() as i32 > passes as i32)
             | !before_second & ones(from[j] as i32 >= last_layer);
+        to[j] = from[j].wrapping_add(by & !rare[j]);
     }
+    chunk.void[kept..kept + BLOCK].copy_from_slice(&to);
+    chunk.diameter[kept..kept + BLOCK].copy_from_slice(&d);
     if rare.iter().fold(0, |any, &one| any | one) == 0 {
-        return (to, 0);
+        return 0;
     }
-    (to, rare.iter().enumerate().fold(0, |bits, (j, &one)| bits | one & 1 << j))
+    rare.iter().enumerate().fold(0, |bits, (j, &one)| bits | u64::from(one & 1) << j)
 }
 
 /// All bits where `yes`, else none: conditions as arithmetic.
@@ -109,92 +120,98 @@ fn ones(yes: bool) -> u32 {
 }
 
 impl LatticeChunk<'_> {
-    /// Writes what [`predict`] says, and takes the rare particles the long way.
+    /// Takes the particles of the block from `begin` on that have a bit in `rare` the long way; all were
+    /// written from `kept` on. Returns a bit for each that is gone from there.
     #[inline]
-    fn commit(
-        &mut self,
-        begin: usize,
-        block: &[u64; LANES],
-        to: &[u32; DRAWS_PER_BLOCK],
-        mut rare: u32,
-        mut kept: usize,
-    ) -> usize {
-        if rare == 0 {
-            let end = begin + DRAWS_PER_BLOCK;
-            self.void[kept..kept + DRAWS_PER_BLOCK].copy_from_slice(to);
-            self.diameter.copy_within(begin..end, kept);
-            return kept + DRAWS_PER_BLOCK;
-        }
-        let mut done = 0;
-        loop {
-            let until = (rare.trailing_zeros() as usize).min(DRAWS_PER_BLOCK);
-            for (j, &to) in to.iter().enumerate().take(until).skip(done) {
-                self.void[kept + j - done] = to;
-                self.diameter[kept + j - done] = self.diameter[begin + j];
-            }
-            kept += until - done;
-            if until == DRAWS_PER_BLOCK {
-                return kept;
-            }
-            kept = self.attempt(begin + until, draw16(block, until), kept);
+    pub fn settle(&mut self, begin: usize, draws: &Draws, mut rare: u64, kept: usize) -> u64 {
+        let mut gone = 0;
+        while rare != 0 {
+            let j = rare.trailing_zeros() as usize;
             rare &= rare - 1;
-            done = until + 1;
+            let draw = (draws[j / 4] >> (16 * (j % 4))) as u16;
+            match self.attempt(kept + j, begin + j, draw) {
+                Some(to) => self.void[kept + j] = to,
+                None => gone |= 1 << j,
+            }
         }
+        gone
     }
 
-    /// Moves particles `begin .. end`, which take the first draws of `block`; `kept` before them still
-    /// move.
-    pub fn step_block(&mut self, begin: usize, end: usize, block: &[u64; LANES], mut kept: usize) -> usize {
-        let voids = self.table.entry.len() as u32;
-        let limit = self.exits.passive_limit;
-        for j in begin..end {
-            let (from, d) = (self.void[j], self.diameter[j]);
-            let entry = self.table.entry[from as usize];
-            let draw = draw16(block, j - begin);
-            let top = u32::from(draw) << 16 | BELOW_FIRST;
-            let second = entry << SECOND;
-            let (past_first, past_second) = (top >= entry, top >= second);
-            let tie = (top ^ entry).min(top ^ second) <= BELOW_FIRST;
-            let past = u32::from(past_first) * PAST_FIRST + u32::from(past_second) * PAST_SECOND;
-            let index = (entry & 3) + past;
-            let to = from.wrapping_add(self.table.moves[index as usize & 15]);
-            if tie | (past_second & !past_first) | (d > limit) | (to >= voids) {
-                kept = self.attempt(j, draw, kept);
-            } else {
-                self.void[kept] = to;
-                self.diameter[kept] = d;
-                kept += 1;
+    /// Closes up the block of particles from `kept` on over those that are gone; returns where it ends then.
+    #[inline]
+    fn close_up(&mut self, kept: usize, mut gone: u64) -> usize {
+        let (mut done, mut end) = (kept, kept);
+        while done < kept + BLOCK {
+            let next = (kept + gone.trailing_zeros() as usize).min(kept + BLOCK);
+            gone &= gone.wrapping_sub(1);
+            if done != end {
+                self.void.copy_within(done..next, end);
+                self.diameter.copy_within(done..next, end);
             }
+            end += next - done;
+            done = next + 1;
+        }
+        end
+    }
+
+    /// Moves what particles are left after whole blocks, by the blocks of the stream that come next; `kept`
+    /// before them still move.
+    pub fn step_rest(&mut self, mut next_block: impl FnMut() -> [u64; LANES], mut kept: usize) -> usize {
+        let count = self.void.len();
+        let mut begin = count - count % BLOCK;
+        while begin < count {
+            let block = next_block();
+            let end = count.min(begin + DRAWS_PER_BLOCK);
+            for j in begin..end {
+                if let Some(to) = self.attempt(j, j, draw16(&block, j - begin)) {
+                    self.void[kept] = to;
+                    self.diameter[kept] = self.diameter[j];
+                    kept += 1;
+                }
+            }
+            begin = end;
         }
         kept
     }
 
-    /// The attempt of particle `j` in full; `kept` before it still move.
-    pub fn attempt(&mut self, j: usize, draw: u16, kept: usize) -> usize {
-        let (from, d) = (self.void[j], self.diameter[j]);
+    /// The attempt of the particle at `place` by draw `index` in full: where it is then, if it still moves.
+    #[inline]
+    fn attempt(&mut self, place: usize, index: usize, draw: u16) -> Option<u32> {
+        let (from, d) = (self.void[place], self.diameter[place]);
         let entry = self.table.entry[from as usize];
-        let (first, second, top) = (entry >> 17, entry >> 2 & 0x7fff, u32::from(draw >> 1));
-        if first > second {
-            self.events.stranded.push((from, d));
-            return kept;
-        }
-        let exit = if top == first || top == second {
-            undecided(self.exits, from, self.lanes.extension().complete(draw, j as u64))
+        let [first, second] = Lattice::parts(entry);
+        let (top_first, top_second) = (u32::from(draw >> 2), u32::from(draw >> 5));
+        let exit = if top_first == first || top_second == second || first >> 3 > second {
+            match self.undecided(from, index, draw) {
+                Some(exit) => exit,
+                None => {
+                    self.events.stranded.push((from, d));
+                    return None;
+                }
+            }
         } else {
-            u32::from(top >= first) + u32::from(top >= second)
+            u32::from(top_first >= first) + u32::from(top_second >= second)
         };
         if d > self.exits.passive_limit && d > self.exits.network.diameters()[(3 * from + exit) as usize] {
             self.events.stopped.push((3 * from + exit, d));
-            return kept;
+            return None;
         }
         let to = self.table.target(from, exit, entry);
         if to >= self.table.entry.len() as u32 {
             self.events.eroded.push(d);
-            return kept;
+            return None;
         }
-        self.void[kept] = to;
-        self.diameter[kept] = d;
-        kept + 1
+        Some(to)
+    }
+
+    /// Exit picked by a draw that equals a threshold in the bits that the table has; `None` where no exit is
+    /// open.
+    #[cold]
+    pub fn undecided(&self, void: u32, index: usize, draw: u16) -> Option<u32> {
+        let mut thresholds = Vec::with_capacity(3);
+        let last_open = exits::thresholds(self.exits.network, self.exits.blocked, void, &mut thresholds)?;
+        let draw = self.lanes.extension().complete(draw, index as u64);
+        Some(thresholds.iter().position(|&t| draw < t).unwrap_or(last_open) as u32)
     }
 }
 
@@ -205,13 +222,4 @@ impl Lattice {
         let index = entry & 3 | [0, PAST_FIRST, PAST_FIRST | PAST_SECOND][exit as usize];
         from.wrapping_add(self.moves[index as usize])
     }
-}
-
-/// Exit picked by a draw whose fifteen top bits equal a threshold's, in a void with an open exit.
-#[cold]
-fn undecided(exits: &OpenExits, void: u32, draw: u64) -> u32 {
-    let mut thresholds = Vec::with_capacity(3);
-    let last_open = exits::thresholds(exits.network, exits.blocked, void, &mut thresholds);
-    let last_open = last_open.expect("thresholds in order say that an exit is open");
-    thresholds.iter().position(|&t| draw < t).unwrap_or(last_open) as u32
 }

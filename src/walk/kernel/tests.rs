@@ -1,13 +1,13 @@
-//! Every kernel against the portable one, on plain columns.
+//! Every kernel against the portable one, and that one against the definition, on plain columns.
 
 use bitvec::vec::BitVec;
 use proptest::prelude::*;
 
 use super::*;
 use crate::gradation::{Gradation, SizeSampler};
-use crate::stream::{DRAWS_PER_BLOCK, draw16};
+use crate::stream::{DRAWS_PER_BLOCK, LANES, draw16};
 use crate::walk::fill::fill_diameters;
-use crate::walk::{Isa, SizeClasses};
+use crate::walk::{Isa, SizeClasses, exits};
 
 /// A lattice, and what is blocked in it.
 #[derive(Clone, Debug)]
@@ -79,10 +79,12 @@ proptest! {
         shape in [1u32..7, 1u32..7, 1u32..5],
         constrictions in prop::sample::select(vec![
             vec![1.0f32, 1.5, 2.0], vec![0.0, 1.0, 2.0], vec![1e-6, 1.0, 1e6], vec![1.0], vec![0.0],
+            vec![1.0, 1.05, 1.1, 1.2, 1.5, 2.1, 3.0],
         ]),
         sizes in prop::sample::select(vec![
             vec![0.5f32], vec![0.5, 1.0, 1.5, 2.0, 3.0],
             vec![0.5, 0.5, 0.5, 0.5, 1.25], vec![9.0], vec![1e-7, 1e7],
+            vec![1.0, 1.03, 1.06, 1.1, 1.19, 1.21, 2.0],
         ]),
         blocked in prop::sample::select(vec![
             vec![false], vec![false, false, false, true], vec![false, true, true], vec![true],
@@ -98,12 +100,45 @@ proptest! {
         };
         let (void, diameter) = (picked(count, &voids, seed ^ 1), picked(count, &sizes, seed ^ 2));
         let expected = after(&scene, key(seed), Isa::Portable, &void, &diameter);
+        prop_assert_eq!(&by_definition(&scene, key(seed), &void, &diameter), &expected);
         let gone = expected.eroded.len() + expected.stopped.len() + expected.stranded.len();
         prop_assert_eq!(expected.void.len() + gone, count);
         for isa in available() {
             prop_assert_eq!(&after(&scene, key(seed), isa, &void, &diameter), &expected, "{:?}", isa);
         }
     }
+}
+
+/// The step by the definition: all 64 bits of every draw, every diameter looked at.
+fn by_definition(scene: &Scene, key: Key, void: &[u32], diameter: &[f32]) -> After {
+    let network = Network::cubic_from_diameters(scene.shape, scene.diameters.clone(), 1.0).unwrap();
+    let blocked: BitVec = scene.blocked.iter().copied().collect();
+    let (mut lanes, mut block) = (key.lanes(), [0; LANES]);
+    let mut after =
+        After { void: vec![], diameter: vec![], eroded: vec![], stopped: vec![], stranded: vec![] };
+    for (j, (&from, &d)) in void.iter().zip(diameter).enumerate() {
+        if j % DRAWS_PER_BLOCK == 0 {
+            block = lanes.next_block();
+        }
+        let draw = lanes.extension().complete(draw16(&block, j % DRAWS_PER_BLOCK), j as u64);
+        let mut thresholds = Vec::new();
+        let last_open = exits::thresholds(&network, &blocked, from, &mut thresholds);
+        let Some(last_open) = last_open else {
+            after.stranded.push((from, d));
+            continue;
+        };
+        let exit = thresholds.iter().position(|&t| draw < t).unwrap_or(last_open);
+        let constriction = network.exits(from).start + exit;
+        match network.targets()[constriction] {
+            _ if d > network.diameters()[constriction] => after.stopped.push((constriction as u32, d)),
+            crate::network::END => after.eroded.push(d),
+            to => {
+                after.void.push(to);
+                after.diameter.push(d);
+            }
+        }
+    }
+    after
 }
 
 /// Thresholds whose sixteen top bits equal the draw of a particle, just above and just below it.
