@@ -24,7 +24,7 @@ fn recorded(folder: &Path) -> Recorded {
         layers: of(folder, "layers.csv"),
         retained: of(folder, "retained.csv"),
         eroded: of(folder, "eroded.csv"),
-        flow: Vec::new(),
+        ..Recorded::default()
     }
 }
 

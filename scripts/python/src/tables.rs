@@ -4,7 +4,7 @@ use numpy::{Element, IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use voidwalk::outcome::Recorded;
-use voidwalk::outcome::record::{FlowRow, LayerRow, SeriesRow, SizeRow};
+use voidwalk::outcome::record::{BlockedRow, FlowRow, LayerRow, RetainedRow, SeriesRow, SizeRow};
 
 use crate::arrays::column;
 use crate::problem::refused;
@@ -48,6 +48,11 @@ table!(
     percent_finer_by_number: f64
 );
 table!(of_flow, to_flow, FlowRow, replicate: u64, run: u64, increment: u64, k_over_k0: f64);
+table!(
+    of_voids, to_voids, RetainedRow,
+    run: u64, increment: u64, void: u64, retained_in_constrictions: u64, retained_in_voids: u64
+);
+table!(of_blocked, to_blocked, BlockedRow, run: u64, increment: u64, constriction: u64);
 
 fn column_of<T: Element + Copy>(name: &str, table: &Bound<'_, PyDict>, field: &str) -> PyResult<Vec<T>> {
     let wrong = || refused(format!("{name}[{field:?}] is not the column that the walk gave"));
@@ -61,7 +66,7 @@ fn column_of<T: Element + Copy>(name: &str, table: &Bound<'_, PyDict>, field: &s
 
 /// The tables of a run, each a dict of columns.
 pub fn of_recorded<'py>(py: Python<'py>, recorded: &Recorded) -> PyResult<Bound<'py, PyDict>> {
-    let Recorded { series, layers, retained, eroded, flow } = recorded;
+    let Recorded { series, layers, retained, eroded, flow, voids, blocked } = recorded;
     let tables = PyDict::new(py);
     tables.set_item("series", of_series(py, series)?)?;
     tables.set_item("layers", of_layers(py, layers)?)?;
@@ -70,23 +75,30 @@ pub fn of_recorded<'py>(py: Python<'py>, recorded: &Recorded) -> PyResult<Bound<
     if !flow.is_empty() {
         tables.set_item("flow", of_flow(py, flow)?)?;
     }
+    if !voids.is_empty() {
+        tables.set_item("retained_by_void", of_voids(py, voids)?)?;
+    }
+    if !blocked.is_empty() {
+        tables.set_item("blockings", of_blocked(py, blocked)?)?;
+    }
     Ok(tables)
 }
 
-/// The rows of the tables of a run.
+/// The rows of the tables of a run; those of flow, voids and blocked constrictions where they were kept.
 pub fn to_recorded(tables: &Bound<'_, PyDict>) -> PyResult<Recorded> {
     let table = |name: &str| -> PyResult<Bound<'_, PyDict>> {
         let found = tables.get_item(name)?.ok_or_else(|| refused(format!("there is no table {name}")))?;
         Ok(found.cast_into()?)
     };
+    let kept = |name: &str| tables.contains(name)?.then(|| table(name)).transpose();
     Ok(Recorded {
         series: to_series("series", &table("series")?)?,
         layers: to_layers("layers", &table("layers")?)?,
         retained: to_sizes("retained", &table("retained")?)?,
         eroded: to_sizes("eroded", &table("eroded")?)?,
-        flow: match tables.contains("flow")? {
-            true => to_flow("flow", &table("flow")?)?,
-            false => Vec::new(),
-        },
+        flow: kept("flow")?.map_or(Ok(Vec::new()), |table| to_flow("flow", &table))?,
+        voids: kept("retained_by_void")?
+            .map_or(Ok(Vec::new()), |table| to_voids("retained_by_void", &table))?,
+        blocked: kept("blockings")?.map_or(Ok(Vec::new()), |table| to_blocked("blockings", &table))?,
     })
 }

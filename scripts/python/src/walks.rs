@@ -62,7 +62,7 @@ pub fn walk<'py>(
         seed,
         runs,
         replicates,
-        wanted: Wanted { series_every, size_curves, size_classes },
+        wanted: Wanted { series_every, size_curves, size_classes, voids: None },
         d15f_mm,
     };
     let throats = networks.first().map_or(0, |network| network.throat_count());

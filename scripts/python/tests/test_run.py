@@ -32,6 +32,7 @@ SCENES: Dict[str, List[str]] = {
         "network.nx=", "network.ny=", "network.nz=", "network.copies=2", "base.d85_at_dc=30",
     ],
     "water through a lattice": ["walk.exit=flux"],
+    "what each void came to": ["record.voids=[1, 5]"],
 }  # fmt: skip
 
 #: Numbers and words that no two calls share.
@@ -95,7 +96,7 @@ def test_a_scene_gives_the_same_files_as_the_command_line(
     # Once more from the dict, in memory: the same columns.
     memory = vw.run(scene, threads=1)
     assert memory.summary == ours.summary and memory.folder is None
-    for table in ("series", "layers", "retained", "eroded", "flow"):
+    for table in ("series", "layers", "retained", "eroded", "flow", "retained_by_void", "blockings"):
         kept, read = getattr(memory, table), getattr(ours, table)
         assert kept.keys() == read.keys()
         for key in kept:

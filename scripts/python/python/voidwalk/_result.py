@@ -22,7 +22,16 @@ Table = Dict[str, NDArray[Any]]
 #: Columns of the tables that are no whole numbers.
 _FRACTIONS = ("eroded_mass_fraction", "diameter_mm", "percent_finer_by_mass", "percent_finer_by_number", "k_over_k0")
 
-_TABLES = ("series", "layers", "retained", "eroded", "flow")
+#: The tables of a result, and the file of each in the folder of a run.
+_TABLES = {
+    "series": "series.csv",
+    "layers": "layers.csv",
+    "retained": "retained.csv",
+    "eroded": "eroded.csv",
+    "flow": "flow.csv",
+    "retained_by_void": "retained_by_void.csv",
+    "blockings": "blocked.csv",
+}
 
 
 class Result:
@@ -43,6 +52,9 @@ class Result:
         percent_finer_by_mass, percent_finer_by_number, by replicate, run and increment.
     flow : dict of ndarray
         Conductance of the network over its first one, by replicate, run and increment, where water flows.
+    retained_by_void, blockings : dict of ndarray
+        With ``record.voids``, of the first replicate: what each void retained, and which constriction was blocked in
+        which increment, by run and increment.
     blocked : ndarray of bool, shape (replicates, runs, constrictions), or None
         Of a walk on a network: which constrictions were blocked at the end of each run.
     folder : pathlib.Path or None
@@ -55,6 +67,8 @@ class Result:
     retained: Table
     eroded: Table
     flow: Table
+    retained_by_void: Table
+    blockings: Table
     blocked: Optional[NDArray[np.bool_]]
     folder: Optional[Path]
 
@@ -70,6 +84,7 @@ class Result:
         self.series, self.layers = tables["series"], tables["layers"]
         self.retained, self.eroded = tables["retained"], tables["eroded"]
         self.flow = tables.get("flow", {})
+        self.retained_by_void, self.blockings = tables.get("retained_by_void", {}), tables.get("blockings", {})
 
     @property
     def verdict(self) -> str:
@@ -94,18 +109,22 @@ class Result:
         return np.array([replicate["runs"][run - 1]["eroded_mass_fraction"] for replicate in self.replicates])
 
     def to_pandas(self, table: str = "series") -> Any:
-        """One of the tables series, layers, retained, eroded and flow as a pandas.DataFrame."""
+        """One of the tables (series, layers, retained, eroded, flow, ...) as a pandas.DataFrame."""
         pandas: Any = import_module("pandas")
         if table not in _TABLES:
             raise ValueError(f"table = {table} is not allowed; one of {', '.join(_TABLES)}")
         return pandas.DataFrame(getattr(self, table))
 
     def to_xarray(self, table: str = "series") -> Any:
-        """One of the tables as an xarray.Dataset over replicate, run and increment, or layer, or size."""
-        over = ["replicate", "run", "layer" if table == "layers" else "increment"]
-        if table in ("retained", "eroded"):
-            over.append("diameter_mm")
-        return self.to_pandas(table).set_index(over).to_xarray()
+        """One of the tables as an xarray.Dataset over replicate, run and increment, or layer, size, void."""
+        over = {
+            "layers": ["replicate", "run", "layer"],
+            "retained": ["replicate", "run", "increment", "diameter_mm"],
+            "eroded": ["replicate", "run", "increment", "diameter_mm"],
+            "retained_by_void": ["run", "increment", "void"],
+            "blockings": ["run", "increment", "constriction"],
+        }
+        return self.to_pandas(table).set_index(over.get(table, ["replicate", "run", "increment"])).to_xarray()
 
     def report(self, path: Union[None, str, os.PathLike[str]] = None) -> Path:
         """Writes the page of the walk: verdict, figures, tables, what the model leaves out.
@@ -224,5 +243,5 @@ def _read_csv(path: Path) -> Table:
 def read_run(folder: Path) -> Result:
     """The result of a run folder."""
     outcome = json.loads((folder / "outcome.json").read_text(encoding="utf-8"))
-    tables = {name: _read_csv(folder / f"{name}.csv") for name in _TABLES if (folder / f"{name}.csv").exists()}
+    tables = {name: _read_csv(folder / file) for name, file in _TABLES.items() if (folder / file).exists()}
     return Result(outcome, tables, folder=folder)
