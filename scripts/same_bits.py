@@ -3,6 +3,7 @@
 
     scripts/same_bits.py --binary target/release/voidwalk record results/same-bits.json
     scripts/same_bits.py --binary target/release/voidwalk check results/same-bits.json
+    scripts/same_bits.py --binary target/release/voidwalk --isa avx2 check results/same-bits.json
 
 For changes of the code that must change no result. `record` writes down what the program gives; `check` works the same scenes and says
 of each `same` or what differs, with exit code 1 where anything does. Run, resume, pack, constrictions, campaign, percolation and
@@ -241,10 +242,11 @@ def settings(sets):
 class Program:
     """The program, and how each kind of scene is worked in a folder that holds the input files; gives what is compared by file."""
 
-    def __init__(self, binary, threads):
-        self.binary, self.threads = binary, str(threads)
+    def __init__(self, binary, threads, isa):
+        self.binary, self.threads, self.isa = binary, str(threads), isa
 
     def start(self, folder, words, threads=None, isa=None):
+        isa = isa or self.isa
         environment = {k: v for k, v in os.environ.items() if k != "VOIDWALK_ISA"} | ({"VOIDWALK_ISA": isa} if isa else {})
         if words[0] != "constrictions":
             words = [*words, "--threads", str(threads or self.threads)]
@@ -450,11 +452,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--binary", required=True, type=pathlib.Path, help="the program itself: it is killed")
     parser.add_argument("--threads", type=int, default=1, help="of scenes that do not set them; they change no bit")
+    parser.add_argument("--isa", choices=["avx512", "avx2", "portable"], help="instructions of scenes that do not set them; they change no bit")
     parser.add_argument("--keep", type=pathlib.Path, help="a new folder, in which the results stay")
     parser.add_argument("what", choices=["record", "check"])
     parser.add_argument("file", type=pathlib.Path)
     options = parser.parse_args()
-    program = Program(options.binary.resolve(), options.threads)
+    program = Program(options.binary.resolve(), options.threads, options.isa)
     known = json.loads(options.file.read_text())["scenes"] if options.what == "check" else None
     with tempfile.TemporaryDirectory() as temporary:
         folder = options.keep or pathlib.Path(temporary)
