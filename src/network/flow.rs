@@ -273,12 +273,13 @@ impl System {
         system
     }
 
-    /// Divides both sides by a power of two, which changes no digit of a solution, so that squares of very
+    /// Divides both sides by a power of four, which changes no digit of a solution, so that squares of very
     /// large and very small conductances are numbers still.
     fn normalise(&mut self) {
         let largest = self.diagonal.iter().fold(0.0, |a: f64, &b| a.max(b));
         if largest > 0.0 && largest.is_finite() {
-            let unit = libm::scalbn(1.0, -libm::ilogb(largest).max(-1000));
+            // An even power: the coarse system has square roots of the entries.
+            let unit = libm::scalbn(1.0, -(libm::ilogb(largest).max(-1000) & !1));
             let sides = self.conductance.iter_mut().chain(&mut self.diagonal).chain(&mut self.inflow);
             sides.for_each(|side| *side *= unit);
         }

@@ -284,8 +284,12 @@ fn limits_of_the_system_end_a_run_with_a_word_or_a_checkpoint() {
     fs::write(root.path().join("long.toml"), long.replace("runs = 1", "runs = 1\nengine = \"particles\""))
         .unwrap();
     for signal in ["HUP", "XCPU", "TERM"] {
-        let script =
-            format!("\"$1\" run long.toml --out {signal} -q & sleep 1.5; kill -{signal} $!; wait $!");
+        // Not as `nohup` would have it, and as soon as the walk has begun.
+        let script = format!(
+            "env --default-signal={signal} \"$1\" run long.toml --out {signal} -q & \
+             until [ -e {signal}/.voidwalk.unfinished ] || ! kill -0 $!; do sleep 0.02; done; \
+             sleep 0.1; kill -{signal} $!; wait $!"
+        );
         let output = shell(&script);
         let stderr = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(3), "{signal}: {stderr}");
