@@ -21,6 +21,9 @@ const BEST_OF_ROUNDING: f64 = 1e-6;
 /// A flux below this part of what an inlet passes on average is none: pressures are no more exact.
 const NO_FLUX: f64 = 1e-8;
 
+/// The mean flux of an inlet is at least so many times what the residual may stand for.
+const RESOLVED: f64 = 30.0;
+
 /// Rounds after which a system that has not converged is given up, for each layer and a hundred besides.
 const ROUNDS: usize = 100;
 
@@ -46,6 +49,16 @@ pub enum FlowError {
         /// Residual over inflow.
         residual: f64,
     },
+    /// So large conductances where water comes in that what passes is lost in their rounding.
+    #[error(
+        "the flow through the network cannot be told: constrictions from the reservoir conduct so well that \
+         what passes them is {part:.1e} of what rounding may stand for, where {RESOLVED} times is needed; \
+         give them conductances that lie fewer orders above those inside"
+    )]
+    Unresolved {
+        /// Mean flux of an inlet over what the residual may stand for.
+        part: f64,
+    },
 }
 
 /// How well a network conducts.
@@ -65,6 +78,8 @@ pub struct Flow {
     pressure: Vec<f64>,
     /// Conductance by exit, as it is now.
     open: Vec<f64>,
+    /// Residual that the last solution may have, over the inflow.
+    accuracy: f64,
 }
 
 impl Flow {
@@ -81,7 +96,7 @@ impl Flow {
             }
             pressure[reservoir as usize] = 1.0;
         }
-        Self { other, pressure, open: vec![0.0; network.constrictions()] }
+        Self { other, pressure, open: vec![0.0; network.constrictions()], accuracy: CONVERGED }
     }
 
     /// Pressure by void (1 in the reservoir), and 0 behind the filter.
@@ -122,7 +137,9 @@ impl Flow {
             }
         }
         let system = System::new(network, self, &inside, reservoir);
-        system.solve(&mut self.pressure, network.layers())?;
+        let residual = system.solve(&mut self.pressure, network.layers())?;
+        // What is asked for, but where rounding allows no more.
+        self.accuracy = if residual <= 2.0 * CONVERGED { CONVERGED } else { residual };
         let inlets = network.exits(reservoir);
         let least = CONVERGED * inlets.clone().map(|c| self.open[c]).sum::<f64>();
         let through: f64 = inlets.map(|c| self.flux(reservoir, c)).sum();
@@ -130,6 +147,32 @@ impl Flow {
         let conductance = if through > least.max(imbalance) { through } else { 0.0 };
         let factor = undirected.and_then(|u| u.permeability_mm2);
         Ok(Permeability { conductance, k_mm2: factor.map(|factor| factor * conductance) })
+    }
+
+    /// Whether the flow that was solved last tells where water goes. Where it does not, every flux counts as
+    /// none, and all particles would wait: a filter that lets everything through would seem to hold it.
+    ///
+    /// # Errors
+    /// Open ways lead through the network, but conductances of the inlets are so large that rounding hides
+    /// what passes.
+    pub fn resolved(&self, network: &Network) -> Result<(), FlowError> {
+        let Some(reservoir) = network.reservoir() else { return Ok(()) };
+        let outside = network.voids() as u32;
+        let inlets = network.exits(reservoir);
+        let (from, to) =
+            (self.joined(network, reservoir, reservoir), self.joined(network, reservoir, outside));
+        let leads_through = from.iter().zip(&to).any(|(from, to)| *from && *to);
+        let mean = inlets.clone().map(|c| self.flux(reservoir, c)).sum::<f64>() / inlets.len().max(1) as f64;
+        let part = mean / self.residual_of(inlets);
+        if leads_through && part.is_nan() | (part < RESOLVED) {
+            return Err(FlowError::Unresolved { part });
+        }
+        Ok(())
+    }
+
+    /// Flux that the residual may stand for.
+    fn residual_of(&self, inlets: std::ops::Range<usize>) -> f64 {
+        self.accuracy * inlets.map(|c| self.open[c] * self.open[c]).sum::<f64>().sqrt()
     }
 
     /// Flow times viscosity out behind the filter.
@@ -145,9 +188,8 @@ impl Flow {
         let rule = network.exit_rule();
         let inlets = network.exits(reservoir);
         let through: f64 = inlets.clone().map(|c| self.flux(reservoir, c)).sum();
-        let inflow: f64 = inlets.clone().map(|c| self.open[c] * self.open[c]).sum();
         // Nor is one that the residual may stand for.
-        let least = (NO_FLUX * through / inlets.len().max(1) as f64).max(CONVERGED * inflow.sqrt());
+        let least = (NO_FLUX * through / inlets.len().max(1) as f64).max(self.residual_of(inlets));
         let mut weight = std::mem::take(&mut network.undirected.as_mut().expect("it has a reservoir").weight);
         for void in 0..network.voids() as u32 {
             for c in network.exits(void) {
@@ -319,10 +361,11 @@ impl System {
 
     /// Conjugate gradients from the pressures that there are, and again from where they end while what they
     /// carry along as the residual has left the true one.
-    pub(super) fn solve(&self, pressure: &mut [f64], layers: usize) -> Result<(), FlowError> {
+    /// Gives the residual over the inflow.
+    pub(super) fn solve(&self, pressure: &mut [f64], layers: usize) -> Result<f64, FlowError> {
         let scale = dot(&self.inflow, &self.inflow).sqrt();
         if self.void.is_empty() || scale == 0.0 {
-            return Ok(());
+            return Ok(0.0);
         }
         if !scale.is_finite() {
             return Err(FlowError::NotConverged { rounds: 0, residual: f64::INFINITY });
@@ -336,7 +379,8 @@ impl System {
             // Closer than rounding lets them come they do not get.
             let is_stuck = size > 0.5 * before && size <= BEST_OF_ROUNDING * scale;
             if is_close || is_stuck {
-                break;
+                self.void.iter().zip(&x).for_each(|(&v, &p)| pressure[v as usize] = p);
+                return Ok(size / scale);
             }
             if size > 0.5 * before {
                 return Err(FlowError::NotConverged { rounds, residual: size / scale });
@@ -344,8 +388,6 @@ impl System {
             before = size;
             rounds = self.descend(&mut x, &mut residual, scale, rounds, layers)?;
         }
-        self.void.iter().zip(&x).for_each(|(&v, &p)| pressure[v as usize] = p);
-        Ok(())
     }
 
     /// What is missing of the right side.

@@ -63,7 +63,8 @@ fn resistors_add_up() {
     );
 }
 
-/// A unit of conductance changes no digit, however large or small: squares of such numbers are none.
+/// A unit of conductance changes no digit, however large or small: squares of such numbers are none. What the
+/// unit is worked out from are even powers of two; `scripts/same_bits.py` holds the digits of packings.
 #[test]
 fn the_unit_of_conductance_is_free() {
     use LinkEnd::Void;
@@ -77,6 +78,24 @@ fn the_unit_of_conductance_is_free() {
     assert!((of(1.0).0 - 1.0 / 1.7).abs() < 1e-10);
     assert_eq!(of(2f64.powi(900)), of(1.0));
     assert_eq!(of(2f64.powi(-900)), of(1.0));
+}
+
+/// Where inlets conduct so well that rounding hides what passes them, no flux could be told from none, and a filter
+/// that lets everything through would hold it.
+#[test]
+fn a_flow_that_rounding_hides_is_refused() {
+    use LinkEnd::Void;
+    let of = |inlet: f64| {
+        let links = [(OUTSIDE, Void(0), inlet), (Void(0), Void(1), 1.0), (Void(1), OUTSIDE, 1.0)];
+        let network = linked(2, &links.map(|(from, to, g)| link(from, to, g)));
+        let mut flow = Flow::new(&network);
+        flow.solve(&network, &open(&network)).unwrap();
+        flow.resolved(&network)
+    };
+    assert_eq!(of(1e6), Ok(()));
+    for inlet in [1e10, 1e12, 1e20, 1e200, 1e300] {
+        assert!(of(inlet).unwrap_err().to_string().contains("cannot be told"), "{inlet}");
+    }
 }
 
 /// What flows in flows out, pressures lie between those outside, and the work of the pressure is dissipated.
