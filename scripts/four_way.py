@@ -5,7 +5,7 @@
 
 Packs each filter with several seeds into FOLDER (once), walks the cells of PLAN in their order until the time is over, and writes
 OUT.csv (every walk), OUT.svg and OUT.md. What is in OUT.csv is not walked again, so that a study that was stopped goes on; with
---minutes 0 the page alone is written anew. Replicate r is packing r with seed r.
+--minutes 0 the page alone is written anew, with the version that it names. Replicate r is packing r with seed r.
 
 A replicate's boundary is the smallest D15F/D85B at which its first run (no erosion turns to some) or its second (some turns to
 continuing) loses 7.5 % of the mass: bracketed on a ladder of 6 %, halved once, linear in between, with two rungs below walked so
@@ -24,7 +24,7 @@ import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from four_way_page import EXPECTED, write_page  # noqa: E402
+from four_way_page import EXPECTED, FILTERS, version_of_page, write_page  # noqa: E402
 
 THRESHOLD = 0.075
 RUNG, TOP = 1.06, 47  # D15F/D85B from 1 to 15.5
@@ -33,15 +33,6 @@ MODELS = {
     "lattice, flux": ['walk.exit="flux"'],
     "graph, flux": ['walk.exit="flux"'],
     "graph, area along flow": ['walk.exit="area-along-flow"'],
-}
-# Cu, friction and number of grains of the six filters of the paper's Table 2, fewer grains than there.
-FILTERS = {
-    "Cu 1.5 loose": (1.5, 0.3, 3000),
-    "Cu 1.5 dense": (1.5, 0.0, 3000),
-    "Cu 3 loose": (3.0, 0.3, 6000),
-    "Cu 3 dense": (3.0, 0.0, 6000),
-    "Cu 1.2 dense": (1.2, 0.0, 3000),
-    "Cu 6 loose": (6.0, 0.7, 8000),
 }
 FOUR = ["Cu 1.5 loose", "Cu 3 loose", "Cu 1.5 dense", "Cu 3 dense"]
 # Voids across a lattice, each way.
@@ -277,7 +268,9 @@ def main():
         except RuntimeError as problem:
             refused[cell] = str(problem).strip().splitlines()[-1]
             print("!!", *cell, problem, flush=True)
-    version = subprocess.run([options.binary, "--version"], capture_output=True, text=True).stdout.strip()
+    version = version_of_page(options.out) if options.minutes <= 0 else None
+    if version is None:
+        version = subprocess.run([options.binary, "--version"], capture_output=True, text=True).stdout.strip()
     write_page(options.out, plan(), study.found, refused, list(study.known.values()), version, study.come_and_go())
 
 

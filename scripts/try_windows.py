@@ -185,7 +185,7 @@ class Trials:
         self.call("run", "scene.toml", "--out", "mapped", "-q", "--memory", "4MB")
         self.alike("whole", "mapped")
 
-    def a_packing_is_made_and_exported_twice(self):
+    def a_packing_is_made_twice_and_its_constrictions_measured(self):
         words = ["--set", "packing.grains=300", "--set", "packing.stiffness_ratio=0.01"]
         for more in [[], ["--overwrite"]]:
             self.call("pack", "packed.toml", *words, "--out", "packed", "-q", *more)

@@ -93,7 +93,8 @@ section! {
         /// Grains: by default enough for a cell 5.4 times as wide as the largest one, 9,000 to 60,000.
         pub grains: Option<u64> = None, off "10000", whole(10..=10_000_000);
         /// Height of the cell by its width, along the flow: 1, a cube, by default. A tall cell has as many
-        /// times the grains, and a filter as thick as it is needs no copies.
+        /// times the grains, unless packing.grains says how many; a filter as thick as it is needs no
+        /// copies.
         pub aspect: Option<f64> = None, off "4.0", within(1.0..=100.0, "a number from 1 to 100");
         /// Percent of the filter's mass, from its finest grain on, that is packed; 100 is all of it. By
         /// default all, or of a filter so broad that the whole would need more grains as much as they
@@ -322,6 +323,9 @@ impl Density {
             Self::Loose => "loose",
         }
     }
+
+    /// The words that [`Density::named`] takes, for a message.
+    pub const WORDS: &str = "dense, medium (or intermediate), loose";
 
     /// The density that a word names, as a scene reads it.
     pub fn named(word: &str) -> Option<Self> {

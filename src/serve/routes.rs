@@ -356,10 +356,7 @@ fn asked<T: DeserializeOwned>(body: &[u8]) -> Result<T, Problem> {
 fn options(asked: &Asked) -> Result<TableOptions, Problem> {
     let density = match asked.density.as_str() {
         "" => None,
-        word => Some(Density::named(word).ok_or_else(|| {
-            let words = Density::ALL.map(Density::name).join(", ");
-            wrong(format!("density: {words}"))
-        })?),
+        word => Some(Density::named(word).ok_or_else(|| wrong(format!("density: {}", Density::WORDS)))?),
     };
     bounded(&asked.changes)?;
     Ok(TableOptions { density, quick: asked.quick, changes: asked.changes.clone() })

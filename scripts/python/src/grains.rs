@@ -38,13 +38,9 @@ pub fn pack<'py>(
         Ok(friction) => friction,
         Err(_) => {
             let word: String = density.extract()?;
-            let known = Density::ALL.into_iter().find(|density| density.name() == word);
-            let words = Density::ALL.map(Density::name).join(", ");
-            known
-                .ok_or_else(|| {
-                    refused(format!("density = {word} is not allowed; one of {words}, or a friction"))
-                })?
-                .friction()
+            let words = Density::WORDS;
+            let problem = || refused(format!("density = {word} is not allowed; {words}, or a friction"));
+            Density::named(&word).ok_or_else(problem)?.friction()
         }
     };
     let grains = grains.unwrap_or_else(|| PackingPlan::usual_grains(gradation));

@@ -138,14 +138,17 @@ def pack(
     threads: Optional[int] = None,
     progress: Follower = None,
 ) -> Packing:
-    """Packs grains of a gradation into a periodic cell, as ``voidwalk pack`` does, to the same bits.
+    """Packs grains of a gradation into a periodic cube, to the same bits as ``voidwalk pack``.
+
+    Cubes only, and always the whole gradation: nothing stands here for ``packing.aspect`` and ``packing.coarsest``,
+    and of a filter so broad that ``voidwalk pack`` takes its finer part, all is packed.
 
     Parameters
     ----------
     gradation : Gradation
         Of the filter.
-    density : {"loose", "intermediate", "dense"} or float
-        How dense; or the friction between grains while they are compressed (0.3, 0.1 and 0).
+    density : {"loose", "medium", "intermediate", "dense"} or float
+        How dense; or the friction between grains while they are compressed (0.3, 0.1, 0.1 and 0).
     grains : int, optional
         How many; enough for a cell 5.4 times as wide as the largest grain without it, 9,000 to 60,000.
     seed : int
