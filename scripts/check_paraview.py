@@ -66,7 +66,7 @@ def check(folder):
                 before = blocked
                 print(f"{path.name}: time {time:g}, {len(blocked)} constrictions, {blocked.sum()} blocked")
             else:
-                held = columns["retained_in_constrictions"] + columns["retained_in_voids"]
+                held = columns["retained_in_constrictions_in_this_run"] + columns["retained_in_voids_in_this_run"]
                 print(f"{path.name}: time {time:g}, {len(held)} voids, {held.sum():g} particles in {(held > 0).sum()} of them")
             last[kind] = grid
     return last
@@ -102,11 +102,11 @@ def draw(last, image):
     renderer = vtk.vtkRenderer()
     renderer.SetBackground(1, 1, 1)
     lines, voids = last["constrictions"], last["voids"]
-    blocked, held = over(lines, "blocked", 1), over(voids, "retained_in_constrictions", 1)
+    blocked, held = over(lines, "blocked", 1), over(voids, "retained_in_constrictions_in_this_run", 1)
     renderer.AddActor(actor(lines, "diameter_mm", lines.GetCellData().GetArray("diameter_mm").GetRange(), 2, 0.12))
     renderer.AddActor(actor(blocked, "blocked_at", (0, max(1, lines.GetCellData().GetArray("blocked_at").GetRange()[1])), 6, 1))
-    most = voids.GetCellData().GetArray("retained_in_constrictions").GetRange()[1]
-    renderer.AddActor(actor(held, "retained_in_constrictions", (1, max(2, most)), 6, 1))
+    most = voids.GetCellData().GetArray("retained_in_constrictions_in_this_run").GetRange()[1]
+    renderer.AddActor(actor(held, "retained_in_constrictions_in_this_run", (1, max(2, most)), 6, 1))
     camera = renderer.GetActiveCamera()
     camera.SetPosition(0.3, -2, -0.3)
     camera.SetViewUp(0, 0, -1)

@@ -21,6 +21,11 @@ const COUNTS_A_WORKER: (u64, u64) = (8, 32 << 10);
 /// flow, 12 of the system and 24 of tables each.
 const FLOW_BYTES: u64 = 2 * (2 * 28 + 12 + 12 + 24);
 
+/// What `record.voids` keeps, while it is written (bytes): for a void that holds particles at a moment its
+/// row in two copies, in room that grows, and its line (measured: up to 184); for a void its place, row and
+/// line; for a constriction its row, its line, and when it was blocked.
+const KEPT_BYTES: [u64; 3] = [200, 240, 420];
+
 /// What the walks of a case may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ResourceLimits {
@@ -110,6 +115,23 @@ impl Case {
         }
     }
 
+    /// Bytes of what each void of the first replicate comes to, where `record.voids` keeps it: at most a row
+    /// for each void, or for each particle so far, after each increment of the list and at the end of each
+    /// run.
+    pub fn kept_bytes(&self) -> u64 {
+        let Some(increments) = &self.scene.record.voids else { return 0 };
+        let [voids, constrictions, ..] = self.counts;
+        let [of_row, of_void, of_constriction] = KEPT_BYTES;
+        let an_increment = self.n_base.div_ceil(self.increments());
+        // Void 0 has a row always.
+        let rows_after = |increment: u64| voids.min(an_increment.saturating_mul(increment).saturating_add(1));
+        let rows: u64 = increments.iter().copied().chain([self.increments()]).map(rows_after).sum();
+        rows.saturating_mul(self.scene.walk.runs)
+            .saturating_mul(of_row)
+            .saturating_add(voids.saturating_mul(of_void))
+            .saturating_add(constrictions.saturating_mul(of_constriction))
+    }
+
     /// Bytes that walking `n_base` particles on this many threads takes, network and tallies included.
     pub fn bytes(&self, n_base: u64, threads: u64) -> u64 {
         self.column_bytes(n_base).saturating_add(self.other_bytes(n_base, threads))
@@ -133,7 +155,8 @@ impl Case {
     pub fn peak_bytes(&self, threads: u64) -> u64 {
         let of = |case: &Case| {
             let n_base = case.most_particles();
-            case.bytes(n_base, threads).saturating_mul(case.side_by_side(n_base, threads))
+            let walks = case.bytes(n_base, threads).saturating_mul(case.side_by_side(n_base, threads));
+            walks.saturating_add(case.kept_bytes())
         };
         // One reading is walked after the other, and then the thickest filter.
         self.readings().map(of).chain(self.thickest().as_ref().map(of)).max().unwrap_or(0)
@@ -160,25 +183,33 @@ impl Case {
             self.thickest().map(|mut case| case.place(room, threads, folder).map(|()| case.placement));
         let thickest = thickest.transpose()?;
         let n_base = self.most_particles();
-        let needed = self.bytes(n_base, threads).saturating_mul(self.side_by_side(n_base, threads));
+        let kept = self.kept_bytes();
+        let walks = self.bytes(n_base, threads).saturating_mul(self.side_by_side(n_base, threads));
+        let needed = walks.saturating_add(kept);
+        let without_columns = self.other_bytes(n_base, threads).saturating_add(kept);
         if needed <= room.memory {
             self.placement = Placement::Memory;
             // Where the thickest filter of its study needs files, it and its like get them.
             if let Some(placement) = thickest {
                 self.placement = placement;
             }
-        } else if self.other_bytes(n_base, threads) <= room.memory && self.column_bytes(n_base) <= room.disk {
+        } else if without_columns <= room.memory && self.column_bytes(n_base) <= room.disk {
             self.placement = Placement::Mapped(folder.to_owned());
         } else {
+            let disk = match without_columns <= room.memory {
+                true => format!(" and the disk has {} for the particles", in_words(room.disk)),
+                false => String::new(),
+            };
+            let of_voids = match kept {
+                0 => String::new(),
+                kept => format!(" (record.voids keeps up to {}: name fewer increments)", in_words(kept)),
+            };
             return Err(CaseError::Memory {
                 n_base: self.one_by_one(self.n_base),
                 voids: self.counts[0],
                 needed: in_words(needed),
                 available: in_words(room.memory),
-                disk: match self.other_bytes(n_base, threads) <= room.memory {
-                    true => format!(" and the disk has {} for the particles", in_words(room.disk)),
-                    false => String::new(),
-                },
+                disk: [disk, of_voids].concat(),
             });
         }
         Ok(())
@@ -194,10 +225,14 @@ impl Case {
         }
         let bytes = in_words(self.bytes(self.n_base, threads));
         let limit = in_words(self.memory);
+        let kept = match self.kept_bytes() {
+            0 => String::new(),
+            kept => format!(", and up to {} for what record.voids keeps", in_words(kept)),
+        };
         match &self.placement {
-            Placement::Memory => format!("{bytes} a walk, of {limit} that it may take"),
+            Placement::Memory => format!("{bytes} a walk{kept}, of {limit} that it may take"),
             Placement::Mapped(_) => format!(
-                "{} a walk, of {limit} that it may take, and {} in files in the run folder for the \
+                "{} a walk{kept}, of {limit} that it may take, and {} in files in the run folder for the \
                  particles, mapped into memory: slower, the same bits",
                 in_words(self.other_bytes(self.n_base, threads)),
                 in_words(self.column_bytes(self.most_particles()))
@@ -252,5 +287,30 @@ mod tests {
         let small =
             case(&["network.nx=40", "network.ny=40", "network.nz=60", "base.single_mm=0.1", "engine=counts"]);
         assert!(small.side_by_side(small.n_base, 4) == 4 && small.side_by_side(small.n_base, 64) == 1);
+    }
+
+    #[test]
+    fn what_each_void_comes_to_is_counted() {
+        let of = |base: &str, set: &[&str]| case(&[&[base], set].concat());
+        let many = |set: &[&str]| of("base.n_base=1e9", set);
+        let (none, more) = (many(&["record.voids=[]"]), many(&["record.voids=[1, 5, 10]"]));
+        assert_eq!(many(&[]).kept_bytes(), 0);
+        // Three more moments of two runs, of a row in two copies at least.
+        let rows = more.kept_bytes() - none.kept_bytes();
+        let row = size_of::<crate::outcome::record::RetainedRow>() as u64;
+        assert!(rows >= none.counts[0] * 3 * 2 * 2 * row, "{rows}");
+        let one_run = |list| many(&[list, "runs=1"]).kept_bytes();
+        assert_eq!(rows, 2 * (one_run("record.voids=[1, 5, 10]") - one_run("record.voids=[]")));
+        // Few particles are in few voids.
+        let few = |list| of("base.n_base=1000", &[list]).kept_bytes();
+        let bytes = few("record.voids=[1, 5, 10]") - few("record.voids=[]");
+        assert!(bytes > 0 && bytes < rows / 100, "{bytes}");
+        // Where there is memory for the one only.
+        assert_eq!(more.peak_bytes(1) - none.peak_bytes(1), rows);
+        let room = ResourceLimits { memory: none.peak_bytes(1) + rows / 2, disk: 0 };
+        let place = |mut case: Case| case.place(&room, 1, Path::new("."));
+        assert!(place(none).is_ok());
+        let error = place(more).unwrap_err().to_string();
+        assert!(error.contains("record.voids keeps up to"), "{error}");
     }
 }

@@ -75,7 +75,7 @@ pub fn blocked(network: &Network, state: &State) -> Vec<BlockedRow> {
 /// The voids that hold retained particles of a run, and void 0, so that the moment is known where none does.
 pub fn retained(state: &State) -> Vec<RetainedRow> {
     let each = state.retained_in_constrictions.iter().zip(&state.retained_in_voids);
-    (0u64..)
+    (0i64..)
         .zip(each)
         .filter(|(void, (in_constrictions, in_void))| *void == 0 || **in_constrictions + **in_void > 0)
         .map(|(void, (&retained_in_constrictions, &retained_in_voids))| RetainedRow {
@@ -86,6 +86,13 @@ pub fn retained(state: &State) -> Vec<RetainedRow> {
             retained_in_voids,
         })
         .collect()
+}
+
+/// The same rows, the reservoir before the filter being the outside instead of the void after the last.
+pub fn of_filter(network: &Network, rows: &[RetainedRow]) -> Vec<RetainedRow> {
+    let filter = network.filter_voids() as i64;
+    let void = |row: &RetainedRow| if row.void < filter { row.void } else { OUTSIDE };
+    rows.iter().map(|row| RetainedRow { void: void(row), ..row.clone() }).collect()
 }
 
 /// The number of the constriction that an exit is, whichever way it is passed.

@@ -170,7 +170,7 @@ impl Recorded {
             flow: flow.collect(),
             // What no void was recorded with, nobody asked for.
             blocked: if recorder.voids.is_empty() { Vec::new() } else { by_void::blocked(network, state) },
-            voids: recorder.voids.clone(),
+            voids: by_void::of_filter(network, &recorder.voids),
             ..Self::default()
         };
         for (increment, retained, eroded) in &recorder.sizes {

@@ -12,7 +12,7 @@ use crate::outcome::record::{BlockedRow, ConstrictionRow, RetainedRow, VoidRow};
 type Moment = (u64, u64);
 
 /// What is drawn, and when: the tables of a folder.
-struct Tables {
+pub(super) struct Tables {
     voids: Vec<[f64; 3]>,
     constrictions: Vec<ConstrictionRow>,
     /// When each constriction was blocked, by its number.
@@ -29,17 +29,16 @@ struct Tables {
 /// one after the other.
 ///
 /// # Errors
-/// [`ReportError`] names the table and the line; whatever `write` says.
+/// Whatever `write` says.
 pub(super) fn grids(
-    folder: &Path,
+    tables: &Tables,
     mut write: impl FnMut(&str, &[u8]) -> Result<(), ReportError>,
 ) -> Result<(), ReportError> {
-    let tables = Tables::read(folder)?;
     for (kind, grid) in GRIDS {
         let mut sets = String::new();
         for (number, &moment) in tables.moments.iter().enumerate() {
             let name = format!("{kind}_{number:04}.vtu");
-            write(&name, &grid(&tables, moment))?;
+            write(&name, &grid(tables, moment))?;
             let time = tables.time_of(moment);
             sets += &format!("<DataSet timestep=\"{time}\" file=\"{name}\"/>\n");
         }
@@ -59,7 +58,11 @@ type Draw = fn(&Tables, Moment) -> Vec<u8>;
 const GRIDS: [(&str, Draw); 2] = [("voids", Tables::voids_at), ("constrictions", Tables::lines_at)];
 
 impl Tables {
-    fn read(folder: &Path) -> Result<Self, ReportError> {
+    /// The tables of a folder.
+    ///
+    /// # Errors
+    /// [`ReportError`] names the table and the line.
+    pub(super) fn read(folder: &Path) -> Result<Self, ReportError> {
         let path = |name: &str| folder.join(name);
         let voids = rows::<VoidRow>(&path("voids.csv"))?;
         let count = voids.len() as u64;
@@ -70,10 +73,10 @@ impl Tables {
             })?;
         }
         let mut constrictions = Vec::new();
-        for (line, row) in rows::<ConstrictionRow>(&path("network.csv"))? {
+        for (line, row) in rows::<ConstrictionRow>(&path("constrictions_of_network.csv"))? {
             let known = |void: i64| void < count as i64;
             check(
-                &path("network.csv"),
+                &path("constrictions_of_network.csv"),
                 line,
                 known(row.from) && known(row.to) && row.from.max(row.to) >= 0,
                 || format!("joins {} and {}, but voids.csv holds {count} voids", row.from, row.to),
@@ -85,7 +88,10 @@ impl Tables {
             blocked.entry(row.constriction).or_insert((row.run, row.increment));
         }
         let mut retained: BTreeMap<Moment, Vec<RetainedRow>> = BTreeMap::new();
-        for (_, row) in rows::<RetainedRow>(&path("retained_by_void.csv"))? {
+        for (line, row) in rows::<RetainedRow>(&path("retained_by_void.csv"))? {
+            check(&path("retained_by_void.csv"), line, row.void < count as i64, || {
+                format!("void is {}, but voids.csv holds {count} voids", row.void)
+            })?;
             retained.entry((row.run, row.increment)).or_default().push(row);
         }
         let moments = [(1, 0)].into_iter().chain(retained.keys().copied()).collect();
@@ -103,17 +109,17 @@ impl Tables {
     fn voids_at(&self, moment: Moment) -> Vec<u8> {
         let mut held = [vec![0.0; self.voids.len()], vec![0.0; self.voids.len()]];
         for row in self.retained.get(&moment).into_iter().flatten() {
-            // The reservoir before the filter is no void of it.
-            let void = row.void as usize;
-            if void < self.voids.len() {
+            // The reservoir before the filter, -1, is no void of it.
+            if let Ok(void) = usize::try_from(row.void) {
                 held[0][void] = row.retained_in_constrictions as f64;
                 held[1][void] = row.retained_in_voids as f64;
             }
         }
         let [in_constrictions, in_voids] = held;
+        // The second run counts anew.
         let columns = [
-            ("retained_in_constrictions".to_owned(), in_constrictions),
-            ("retained_in_voids".to_owned(), in_voids),
+            ("retained_in_constrictions_in_this_run".to_owned(), in_constrictions),
+            ("retained_in_voids_in_this_run".to_owned(), in_voids),
         ];
         let corners: Vec<i64> = (0..self.voids.len() as i64).collect();
         Grid { points: &self.voids, kind: CellKind::Vertex, corners: &corners, columns: &columns }.file()

@@ -37,8 +37,17 @@ pub fn export(folder: &Path) -> Result<Exported, ReportError> {
             }
         }
     }
-    let mut files = Vec::new();
     let out = folder.join("export");
+    let unwritten = |source| ReportError::Read { path: out.join("arrays.npz"), source };
+    // Everything is read before anything is written.
+    let mut grids = vec![("arrays.npz", npz(&arrays).map_err(unwritten)?)];
+    if tables.contains_key("layers") {
+        grids.push(("layers.vtu", layers(&folder.join("layers.csv"))?));
+    }
+    let of_voids =
+        tables.contains_key("retained_by_void").then(|| by_void::Tables::read(folder)).transpose()?;
+    grids.extend(tables.get("grains").and_then(grains).map(|bytes| ("grains.vtu", bytes)));
+    let mut files = Vec::new();
     make_folder(&out)?;
     let mut write = |name: &str, bytes: &[u8]| -> Result<(), ReportError> {
         let path = out.join(name);
@@ -46,16 +55,11 @@ pub fn export(folder: &Path) -> Result<Exported, ReportError> {
         files.push(path);
         Ok(())
     };
-    let unwritten = |source| ReportError::Read { path: out.join("arrays.npz"), source };
-    write("arrays.npz", &npz(&arrays).map_err(unwritten)?)?;
-    if tables.contains_key("layers") {
-        write("layers.vtu", &layers(&folder.join("layers.csv"))?)?;
+    for (name, bytes) in grids {
+        write(name, &bytes)?;
     }
-    if tables.contains_key("retained_by_void") {
-        by_void::grids(folder, &mut write)?;
-    }
-    if let Some(bytes) = tables.get("grains").and_then(grains) {
-        write("grains.vtu", &bytes)?;
+    if let Some(tables) = of_voids {
+        by_void::grids(&tables, &mut write)?;
     }
     Ok(Exported { files, words })
 }

@@ -100,7 +100,7 @@ pub(super) fn slice(record: &PackingRecord) -> Drawn {
     let caption = format!(
         "The plane z = {} mm through the middle of the periodic cell. A circle is the cut of a grain, not \
          its diameter; the darker, the larger the grain.",
-        significant(0.5 * edge)
+        significant(0.5 * record.height_mm.unwrap_or(edge))
     );
     Drawn::new("slice", figure, caption)
 }
@@ -166,6 +166,9 @@ fn page(packed: &Packed, drawn: &[Drawn]) -> String {
         table.facts { tbody {
             (fact("Mean pressure", format!("{} kPa", significant(record.pressure_kpa))))
             (fact("Edge of the periodic cell", format!("{} mm", significant(record.cell_mm))))
+            @if let Some(height) = record.height_mm {
+                (fact("Height of the cell", format!("{} mm", significant(height))))
+            }
             (fact("Steps", whole(record.steps)))
             (fact("Simulated time", format!("{} s, with masses scaled so that small grains do not set the \
                                              step alone",

@@ -114,7 +114,11 @@ pub fn check(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError> 
         one_by_one: case.one_by_one(case.n_base),
         runs_to_walk: runs_to_walk(&case),
         increments: case.increments(),
-        bytes: case.readings().map(|case| case.bytes(case.n_base, threads)).max().unwrap_or(0),
+        bytes: case
+            .readings()
+            .map(|case| case.bytes(case.n_base, threads).saturating_add(case.kept_bytes()))
+            .max()
+            .unwrap_or(0),
         bytes_allowed: case.memory,
         memory: case.memory_in_words(threads),
         core_seconds: case.core_seconds(),

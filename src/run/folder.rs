@@ -126,7 +126,7 @@ impl FolderKind {
                 "retained.csv",
                 "eroded.csv",
                 "voids.csv",
-                "network.csv",
+                "constrictions_of_network.csv",
                 "blocked.csv",
                 "retained_by_void.csv",
             ],

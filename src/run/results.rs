@@ -232,7 +232,7 @@ fn write_voids(folder: &Folder, case: &Case, recorded: &Recorded) -> Result<(), 
         .collect();
     folder.write("voids.csv", &csv("voids.csv", VOIDS, &rows)?)?;
     let rows = by_void::constrictions(&network, &places);
-    folder.write("network.csv", &csv("network.csv", NETWORK, &rows)?)?;
+    folder.write("constrictions_of_network.csv", &csv("constrictions_of_network.csv", NETWORK, &rows)?)?;
     folder.write("blocked.csv", &csv("blocked.csv", BLOCKED, &recorded.blocked)?)?;
     let bytes = csv("retained_by_void.csv", RETAINED_BY_VOID, &recorded.voids)?;
     Ok(folder.write("retained_by_void.csv", &bytes)?)

@@ -218,7 +218,10 @@ section! {
         /// each run; with them its voids, its constrictions and when each was blocked are kept, which
         /// `voidwalk export` shows in ParaView. [] keeps the last only; without it none of all that.
         pub voids: Option<Vec<u64>> = None, off "[1, 10, 50, 100]",
-            only("a list of increments, from 1", |list: &Vec<u64>| !list.contains(&0));
+            only(
+                format!("a list of at most {MOST_MOMENTS} increments, from 1"),
+                |list: &Vec<u64>| !list.contains(&0) && list.len() <= MOST_MOMENTS,
+            );
         /// Multiples of N_base that show how the verdict moves; [] leaves the study out.
         pub sensitivity: Vec<f64> = vec![0.25, 0.5, 2.0, 4.0], set,
             only("a list of numbers above 0", |list: &Vec<f64>| list.iter().all(|factor| *factor > 0.0));
@@ -397,6 +400,9 @@ impl Leaf for Sampling {}
 /// Percent of the voids by connectivity, as a scene says it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VoidConnectivity(pub Connectivity);
+
+/// Increments after which it may be kept what each void holds.
+const MOST_MOMENTS: usize = 100;
 
 const TABLE_3: &str = "table3";
 

@@ -245,6 +245,18 @@ fn voids_and_constrictions_are_shown_as_they_fill_and_close() {
         let file = |name: &str| fs::read(root.path().join(out).join("export").join(name)).unwrap();
         let outcome = json(&root.path().join(out).join("outcome.json"));
         let runs = &outcome["replicates"][0]["runs"];
+        // Every void is one of voids.csv, or the reservoir, -1; with it the counts are those of the run.
+        let table = |name: &str| fs::read_to_string(root.path().join(out).join(name)).unwrap();
+        let voids = table("voids.csv").lines().count() as i64 - 1;
+        let mut held = 0;
+        for line in table("retained_by_void.csv").lines().skip(1) {
+            let row: Vec<i64> = line.split(',').map(|field| field.parse().unwrap()).collect();
+            assert!((-1..voids).contains(&row[2]) && (out == "g" || row[2] >= 0), "{out} {line}");
+            if row[0] == 1 && row[1] == runs[0]["increments"].as_i64().unwrap() {
+                held += row[3];
+            }
+        }
+        assert_eq!(held, runs[0]["retained_in_constrictions"].as_i64().unwrap(), "{out}");
         // Clean, after 5 and 20 increments and at the end of the first run, and likewise of the second.
         let series = String::from_utf8(file("voids.pvd")).unwrap();
         assert_eq!(series.matches("<DataSet").count(), 7, "{series}");
@@ -254,7 +266,7 @@ fn voids_and_constrictions_are_shown_as_they_fill_and_close() {
         for (run, last) in [(0, 3), (1, 6)] {
             let grid = file(&format!("voids_{last:04}.vtu"));
             for name in ["retained_in_constrictions", "retained_in_voids"] {
-                let all: f64 = doubles(&grid, name).iter().sum();
+                let all: f64 = doubles(&grid, &format!("{name}_in_this_run")).iter().sum();
                 assert!(all <= runs[run][name].as_f64().unwrap(), "{out} {name}");
                 // At a graph's face some are retained before the first void.
                 assert!(out == "g" || all == runs[run][name].as_f64().unwrap(), "{out} {name}");
@@ -275,9 +287,22 @@ fn voids_and_constrictions_are_shown_as_they_fill_and_close() {
         }
         assert!(doubles(&file("constrictions_0000.vtu"), "blocked").iter().all(|&is| is == 0.0));
     }
-    // A run that takes the place of one leaves none of its moments behind.
+    // A void that there is not: nothing is written.
+    fs::remove_dir_all(root.path().join("l/export")).unwrap();
+    let kept = root.path().join("l/retained_by_void.csv");
+    fs::write(&kept, fs::read_to_string(&kept).unwrap() + "2,1,210,1,0\n").unwrap();
+    let damaged = call(root.path(), &["export", "l"]);
+    assert_eq!(damaged.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&damaged.stderr).contains("void is 210, but voids.csv holds 210 voids"));
+    assert!(!root.path().join("l/export").exists());
+    // A run that takes the place of one leaves none of its moments behind, but a file of its user's.
+    fs::write(root.path().join("g/network.csv"), "from,to,diameter_mm\n").unwrap();
     done(&call(root.path(), &["run", "scene.toml", "--out", "g", "--overwrite", "--quiet"]));
     assert!(!root.path().join("g/export").exists() && !root.path().join("g/voids.csv").exists());
+    assert!(root.path().join("g/network.csv").exists());
+    assert!(!root.path().join("g/constrictions_of_network.csv").exists());
+    let many = format!("record.voids={:?}", (1..102).collect::<Vec<_>>());
+    refused(&call(root.path(), &["check", "scene.toml", "--set", &many]), "at most 100 increments");
     fs::write(root.path().join("n.csv"), "from,to,diameter_mm\nstart,0,\n0,end,1\n").unwrap();
     let scene = "[base]\nsingle_mm = 0.1\nn_base = 100\n[network]\nfile = \"n.csv\"\n[record]\nvoids = []\n";
     fs::write(root.path().join("n.toml"), scene).unwrap();

@@ -307,6 +307,15 @@ fn a_tall_cell_takes_the_place_of_copies() {
         serde_json::from_slice(&fs::read(at.join("tall/packing.json")).unwrap()).unwrap();
     let [width, height] = ["cell_mm", "height_mm"].map(|name| record[name].as_f64().unwrap());
     assert!((height / width - 4.0).abs() < 1e-9);
+    let page = fs::read_to_string(at.join("tall/report.html")).unwrap();
+    // Words of the page with their numbers, of three to four digits.
+    let number_after = |words: &str| -> f64 {
+        let (_, rest) = page.split_once(words).unwrap_or_else(|| panic!("{words}"));
+        let from = &rest[rest.find(|c: char| c.is_ascii_digit()).unwrap()..];
+        from[..from.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap()].parse().unwrap()
+    };
+    assert!((number_after("The plane z = ") / (0.5 * height) - 1.0).abs() < 0.01);
+    assert!((number_after("Height of the cell") / height - 1.0).abs() < 0.01);
     let scene = "[filter]\ncu = 1.5\n[base]\ncu = 1.5\nd15f_over_d85b = 4\n[network]\nkind = \"graph\"\n\
                  packing = \"tall/grains.csv\"\ncopies = 1\n";
     fs::write(at.join("scene.toml"), scene).unwrap();

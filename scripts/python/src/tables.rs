@@ -50,7 +50,7 @@ table!(
 table!(of_flow, to_flow, FlowRow, replicate: u64, run: u64, increment: u64, k_over_k0: f64);
 table!(
     of_voids, to_voids, RetainedRow,
-    run: u64, increment: u64, void: u64, retained_in_constrictions: u64, retained_in_voids: u64
+    run: u64, increment: u64, void: i64, retained_in_constrictions: u64, retained_in_voids: u64
 );
 table!(of_blocked, to_blocked, BlockedRow, run: u64, increment: u64, constriction: u64);
 

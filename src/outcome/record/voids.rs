@@ -17,8 +17,8 @@ pub struct VoidRow {
     pub z_mm: f64,
 }
 
-/// One row of `network.csv`: a constriction between two voids; -1 is the outside, before the filter as the
-/// first of the two and behind it as the second.
+/// One row of `constrictions_of_network.csv`: a constriction between two voids; -1 is the outside, before the
+/// filter as the first of the two and behind it as the second.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConstrictionRow {
     /// Its number in `blocked.csv`.
@@ -60,8 +60,8 @@ pub struct RetainedRow {
     pub run: u64,
     /// Increments that were done.
     pub increment: u64,
-    /// The void.
-    pub void: u64,
+    /// The void; -1 is the reservoir before the filter.
+    pub void: i64,
     /// Particles stopped by its constrictions so far in this run.
     pub retained_in_constrictions: u64,
     /// Particles retained in it so far in this run for want of an open exit.

@@ -183,6 +183,11 @@ fn refuse(scene: &Scene) -> Result<(), RunError> {
                        how many networks its bands are taken over";
         return Err(RunError::refused(problem));
     }
+    if scene.record.voids.is_some() {
+        let problem =
+            "record.voids does not go with a design, which keeps no walk: set it in the scene of a run";
+        return Err(RunError::refused(problem));
+    }
     if scene.walk.runs != 2 {
         let problem = "runs = 1 does not go with a design: continuing erosion is what the second run erodes";
         return Err(RunError::refused(problem));
@@ -270,6 +275,9 @@ mod tests {
         let scene = Scene::built_in(&["filter.cu=3".into(), "filter.density=medium".into()]).unwrap();
         assert_eq!(medium[0].density, "intermediate");
         assert_eq!(medium[0].scene.filter.density, scene.filter.density);
+        let voids = DesignOptions { settings: vec!["record.voids=[1]".into()], ..options(&[], &[]) };
+        let refused = wanted(&voids).unwrap_err();
+        assert!(refused.to_string().contains("record.voids does not go") && refused.exit().code() == 2);
         let wrong = wanted(&options(&["2"], &[])).unwrap_err().to_string();
         assert!(wrong.contains("dense, medium (or intermediate) or loose"), "{wrong}");
         let wrong = wanted(&options(&["estimate=1.5"], &[])).unwrap_err().to_string();

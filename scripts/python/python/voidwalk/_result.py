@@ -223,7 +223,7 @@ class CampaignResult:
 
 def _column(name: str, cells: List[str]) -> NDArray[Any]:
     """A column of a CSV file: of whole numbers, of numbers (no number where a cell is empty), or of words."""
-    kinds: List[Any] = [np.float64] if name in _FRACTIONS else [np.uint64, np.float64]
+    kinds: List[Any] = [np.float64] if name in _FRACTIONS else [np.int64 if name == "void" else np.uint64, np.float64]
     for kind in kinds:
         try:
             return np.array([float("nan") if kind is np.float64 and c == "" else c for c in cells]).astype(kind)
