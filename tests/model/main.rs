@@ -8,5 +8,6 @@ mod flow;
 mod gradation;
 mod packing;
 mod sampling;
+mod tiny_networks;
 mod walk_against_reference;
 mod walk_paths;
