@@ -22,7 +22,7 @@ pub struct Exported {
 /// Writes `export/arrays.npz`, with an array `TABLE.COLUMN` of every column of numbers of every CSV table in
 /// the folder; `export/layers.vtu` of a run: a block for each layer, with the means over the replicates;
 /// `export/grains.vtu` of a packing: a point for each grain, with its diameter; and of a run that kept its
-/// voids the files of [`by_void::grids`].
+/// voids `voids.pvd` and `constrictions.pvd`, with a grid for each moment.
 ///
 /// # Errors
 /// [`ReportError`] names the file that cannot be read, is no table, or cannot be written.
