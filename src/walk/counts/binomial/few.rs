@@ -58,6 +58,47 @@ mod x86 {
     /// With AVX2: the state words of the lower and the upper four generators.
     pub(in crate::walk::counts) struct Avx2([[__m256i; 4]; 2]);
 
+    /// How many draws of a block are below each threshold, and the block where one is equal to the top of a
+    /// threshold.
+    type Counted = ([u32; 2], Option<[u16; DRAWS_PER_BLOCK]>);
+
+    /// Generators in vector registers.
+    trait InRegisters: FewTrials {
+        /// The first `counted` draws of the next block.
+        ///
+        /// # Safety
+        /// The machine has the instructions that this is made with.
+        unsafe fn block(&mut self, counted: u64, thresholds: [u64; 2]) -> Counted;
+
+        /// Writes the generators where `draws` has them.
+        fn store(&self, draws: &mut Draws);
+    }
+
+    /// Block by block; a block with a draw that equals the top of a threshold is completed with more bits.
+    #[inline(always)]
+    fn below_both<V: InRegisters>(
+        vectors: &mut V,
+        draws: &mut Draws,
+        n: u64,
+        thresholds: [u64; 2],
+    ) -> [u64; 2] {
+        let (mut below, mut left) = ([0, 0], n);
+        while left > 0 {
+            let counted = left.min(DRAWS_PER_BLOCK as u64);
+            // SAFETY: whoever began has promised the instructions.
+            let (less, block) = unsafe { vectors.block(counted, thresholds) };
+            if let Some(block) = block {
+                vectors.store(draws);
+                complete(draws, &block[..counted as usize], thresholds, &mut below);
+                // SAFETY: as above.
+                *vectors = unsafe { V::begin(draws) };
+            }
+            below = [below[0] + u64::from(less[0]), below[1] + u64::from(less[1])];
+            left -= counted;
+        }
+        below
+    }
+
     impl FewTrials for Avx512 {
         #[inline(always)]
         unsafe fn begin(draws: &Draws) -> Self {
@@ -67,21 +108,7 @@ mod x86 {
 
         #[inline(always)]
         fn below_both(&mut self, draws: &mut Draws, n: u64, thresholds: [u64; 2]) -> [u64; 2] {
-            let (mut below, mut left) = ([0, 0], n);
-            while left > 0 {
-                let counted = left.min(DRAWS_PER_BLOCK as u64);
-                // SAFETY: whoever began has promised AVX-512.
-                let (less, block) = unsafe { block_avx512(&mut self.0, counted, thresholds) };
-                if let Some(block) = block {
-                    self.store(draws);
-                    complete(draws, &block[..counted as usize], thresholds, &mut below);
-                    // SAFETY: as above.
-                    *self = unsafe { Self::begin(draws) };
-                }
-                below = [below[0] + u64::from(less[0]), below[1] + u64::from(less[1])];
-                left -= counted;
-            }
-            below
+            below_both(self, draws, n, thresholds)
         }
 
         #[inline(always)]
@@ -90,7 +117,13 @@ mod x86 {
         }
     }
 
-    impl Avx512 {
+    impl InRegisters for Avx512 {
+        #[inline(always)]
+        unsafe fn block(&mut self, counted: u64, thresholds: [u64; 2]) -> Counted {
+            // SAFETY: as the caller promises.
+            unsafe { block_avx512(&mut self.0, counted, thresholds) }
+        }
+
         #[inline(always)]
         fn store(&self, draws: &mut Draws) {
             for (row, state) in draws.state_mut().iter_mut().zip(self.0) {
@@ -104,11 +137,7 @@ mod x86 {
     /// one is equal to the top of a threshold.
     #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
     #[inline]
-    fn block_avx512(
-        state: &mut [__m512i; 4],
-        counted: u64,
-        thresholds: [u64; 2],
-    ) -> ([u32; 2], Option<[u16; DRAWS_PER_BLOCK]>) {
+    fn block_avx512(state: &mut [__m512i; 4], counted: u64, thresholds: [u64; 2]) -> Counted {
         let [s0, s1, s2, s3] = *state;
         let block = _mm512_add_epi64(_mm512_rol_epi64::<23>(_mm512_add_epi64(s0, s3)), s0);
         let (t, s2, s3) = (_mm512_slli_epi64::<17>(s1), _mm512_xor_si512(s2, s0), _mm512_xor_si512(s3, s1));
@@ -143,21 +172,7 @@ mod x86 {
 
         #[inline(always)]
         fn below_both(&mut self, draws: &mut Draws, n: u64, thresholds: [u64; 2]) -> [u64; 2] {
-            let (mut below, mut left) = ([0, 0], n);
-            while left > 0 {
-                let counted = left.min(DRAWS_PER_BLOCK as u64);
-                // SAFETY: whoever began has promised AVX2.
-                let (less, block) = unsafe { block_avx2(&mut self.0, counted, thresholds) };
-                if let Some(block) = block {
-                    self.store(draws);
-                    complete(draws, &block[..counted as usize], thresholds, &mut below);
-                    // SAFETY: as above.
-                    *self = unsafe { Self::begin(draws) };
-                }
-                below = [below[0] + u64::from(less[0]), below[1] + u64::from(less[1])];
-                left -= counted;
-            }
-            below
+            below_both(self, draws, n, thresholds)
         }
 
         #[inline(always)]
@@ -166,7 +181,13 @@ mod x86 {
         }
     }
 
-    impl Avx2 {
+    impl InRegisters for Avx2 {
+        #[inline(always)]
+        unsafe fn block(&mut self, counted: u64, thresholds: [u64; 2]) -> Counted {
+            // SAFETY: as the caller promises.
+            unsafe { block_avx2(&mut self.0, counted, thresholds) }
+        }
+
         #[inline(always)]
         fn store(&self, draws: &mut Draws) {
             for (at, half) in self.0.iter().enumerate() {
@@ -181,11 +202,7 @@ mod x86 {
     /// [`block_avx512`] in two halves.
     #[target_feature(enable = "avx2,popcnt")]
     #[inline]
-    fn block_avx2(
-        state: &mut [[__m256i; 4]; 2],
-        counted: u64,
-        thresholds: [u64; 2],
-    ) -> ([u32; 2], Option<[u16; DRAWS_PER_BLOCK]>) {
+    fn block_avx2(state: &mut [[__m256i; 4]; 2], counted: u64, thresholds: [u64; 2]) -> Counted {
         // What is unsigned is compared as signed, less 2^15.
         let sign = _mm256_set1_epi16(i16::MIN);
         let tops = thresholds.map(|t| _mm256_set1_epi16(((t >> 48) as u16 ^ 0x8000) as i16));
