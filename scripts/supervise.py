@@ -170,10 +170,13 @@ def made_alike(name, data):
     if name == LOCK:
         return b""
     if name.endswith((".json", ".jsonl")):
-        text, values, at = data.decode(), [], 0
+        text, values, at = data.decode(errors="replace"), [], 0
         while text[at:].strip():
             at += len(text[at:]) - len(text[at:].lstrip())
-            value, at = json.JSONDecoder().raw_decode(text, at)
+            try:
+                value, at = json.JSONDecoder().raw_decode(text, at)
+            except json.JSONDecodeError:
+                return data  # harmed: like no other
             values.append(alike(value))
         return "\n".join(json.dumps(value) for value in values).encode()
     if name.endswith(".csv") and TIMES & set(data.split(b"\n", 1)[0].decode(errors="replace").split(",")):

@@ -26,6 +26,30 @@ LONG = "network.nx=12\nnetwork.ny=12\nnetwork.nz=20\nreplicates=2000\nrecord.sen
 WIDE = "document.documentElement.scrollWidth > document.documentElement.clientWidth"
 
 
+# Words whose contrast with what lies behind them is below 4.5, as WCAG 2 asks at level AA; buttons that cannot be pressed and drawings apart.
+FAINT = """(() => {
+  const parts = (text) => { const [r, g, b, a = 1] = text.match(/[\\d.]+/g).map(Number); return { rgb: [r, g, b], a }; };
+  const light = (rgb) => rgb.map((c) => c / 255).map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4))
+    .reduce((sum, c, i) => sum + c * [0.2126, 0.7152, 0.0722][i], 0);
+  const behind = (at) => {
+    for (; at; at = at.parentElement) {
+      const found = parts(getComputedStyle(at).backgroundColor);
+      if (found.a === 1) return found.rgb;
+    }
+    return matchMedia("(prefers-color-scheme: dark)").matches ? [18, 18, 18] : [255, 255, 255];
+  };
+  const found = [];
+  for (const at of document.querySelectorAll("body *")) {
+    const says = [...at.childNodes].some((node) => node.nodeType === 3 && node.textContent.trim());
+    if (!says || at.closest("svg, :disabled, script, noscript, [hidden]") || !at.getClientRects().length) continue;
+    const [a, b] = [parts(getComputedStyle(at).color).rgb, behind(at)].map(light);
+    const contrast = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+    if (contrast < 4.5) found.push(`${at.textContent.trim().slice(0, 40)}: ${contrast.toFixed(2)}`);
+  }
+  return found;
+})()"""
+
+
 class Tab:
     """The page in a tab."""
 
@@ -88,6 +112,17 @@ class Tab:
         picture = self.browser.ask("Page.captureScreenshot", self.tab, captureBeyondViewport=True)["data"]
         (self.pictures / f"{name}.png").write_bytes(base64.b64decode(picture))
 
+    def readable(self, name):
+        """Nothing is faint, in the light and in the dark; a picture of the latter."""
+        for scheme in ("light", "dark"):
+            self.browser.ask("Emulation.setEmulatedMedia", self.tab, features=[{"name": "prefers-color-scheme", "value": scheme}])
+            faint = self.run(FAINT)
+            if faint:
+                raise SystemExit(f"{name}: faint in the {scheme}: {faint}")
+            if scheme == "dark":
+                self.picture(f"{name}-in-the-dark")
+        self.browser.ask("Emulation.setEmulatedMedia", self.tab, features=[])
+
     def printed(self, name):
         page = self.browser.ask("Page.printToPDF", self.tab, printBackground=True, paperWidth=8.27, paperHeight=11.69)["data"]
         (self.pictures / f"{name}.pdf").write_bytes(base64.b64decode(page))
@@ -147,6 +182,7 @@ def look(browser, url, pictures, workbook, root, process, binary):
     tab.paste("base", "size_mm,percent\n0.1,10\n0.2,x\n")
     tab.until("document.querySelector('.sheet[data-role=base] .problem').textContent.includes('base.csv')")
     tab.picture("02-wrong-input")
+    tab.readable("02-wrong-input")
     said = tab.run("document.querySelector('.sheet[data-role=base] .problem').textContent")
     (root / "base.csv").write_text("size_mm,percent\n0.1,10\n0.2,x\n")
     told = subprocess.run([binary, "soil", "base.csv"], cwd=root, capture_output=True, text=True).stderr
@@ -157,6 +193,7 @@ def look(browser, url, pictures, workbook, root, process, binary):
     tab.drop("filter", "../<b>fine\u202e.csv", FINE.encode())
     tab.until("document.querySelectorAll('#rules tr').length > 10 && document.querySelector('#curves svg')")
     tab.picture("03-curves-and-rules")
+    tab.readable("03-curves-and-rules")
     read = "document.querySelector('#read').textContent"
     tab.run("""(() => {
       const [svg, path] = [document.querySelector('#curves svg'), document.querySelector('#curves .curve-1 path')];
@@ -224,6 +261,7 @@ def look(browser, url, pictures, workbook, root, process, binary):
     tab.run("document.querySelectorAll('.job')[1].querySelector('button').click()")
     tab.job(0, "done", 60)
     tab.picture("12-done")
+    tab.readable("12-done")
     tab.printed("12-done")
     page = tab.run("document.querySelectorAll('.job')[0].querySelector('.actions a').href")
     report = Tab(browser, page, pictures)
@@ -237,6 +275,7 @@ def look(browser, url, pictures, workbook, root, process, binary):
     tab.until("document.querySelectorAll('.job').length === 3")
     tab.job(0, "done", 60)
     tab.picture("14-compared")
+    tab.readable("14-compared")
     page = tab.run("document.querySelectorAll('.job')[0].querySelector('.actions a').href")
     report.browser.show(report.tab, page, 1280, 900)
     if report.run("document.querySelectorAll('.cases a').length") != 2:
@@ -258,6 +297,7 @@ def look(browser, url, pictures, workbook, root, process, binary):
     tab.until("document.querySelectorAll('.job').length === 4")
     tab.job(0, "done", 120)
     tab.picture("16-how-coarse")
+    tab.readable("16-how-coarse")
     if tab.run("document.querySelectorAll('.job')[0].querySelectorAll('.boundaries tbody tr').length") != 2:
         raise SystemExit("not a row a thickness")
     other.until("document.querySelectorAll('.job').length === 4 && document.querySelector('.boundaries')")
