@@ -343,7 +343,9 @@ class Trial:
     def is_done(self):
         """Whether a kill came when the last file had been written and the mark was gone."""
         has = lambda name: os.path.exists(os.path.join(self.out, name))
-        return not self.is_campaign and not has(MARK) and any(map(has, RECORDS)) and not (self.old and self.is_old())
+        # Of a run that is replaced the scene goes first, and its record a moment later.
+        whole = any(map(has, RECORDS)) and has("scene.toml") >= has("outcome.json")
+        return not self.is_campaign and not has(MARK) and whole and not (self.old and self.is_old())
 
     def harmed(self, wanted):
         harms = 0
