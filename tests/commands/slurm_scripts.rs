@@ -5,7 +5,7 @@ use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 use serde_json::Value;
 
@@ -118,7 +118,7 @@ fn done(output: Output) -> String {
 
 /// Waits until a file is there.
 fn await_file(folder: &Path, is: impl Fn(&Path) -> bool) {
-    for _ in 0..600 {
+    for _ in 0..6000 {
         let mut open = vec![folder.to_owned()];
         while let Some(path) = open.pop() {
             if is(&path) {
@@ -205,6 +205,10 @@ fn a_task_that_is_stopped_goes_back_into_the_queue_and_goes_on() {
     done(place.voidwalk(&["campaign", "plan.toml", "--out", "local", "--quiet"]));
     place.write_scripts(&["--checkpoint-every", "50ms"]);
     let in_checkpoints = |path: &Path| path.parent().is_some_and(|p| p.ends_with("checkpoint"));
+    // Saved after this moment: by a task that has begun and listens.
+    let saved_since = |moment: SystemTime| {
+        move |path: &Path| in_checkpoints(path) && path.metadata().is_ok_and(|m| m.modified().unwrap() > moment)
+    };
     // Asked to stop, as before a time limit. The processes may be asked twice.
     let child = place.script("array.sh", "1", "0").spawn().unwrap();
     await_file(&place.at.join("out"), in_checkpoints);
@@ -216,8 +220,9 @@ fn a_task_that_is_stopped_goes_back_into_the_queue_and_goes_on() {
     assert_eq!(place.notes(), "scontrol -o show job 7_1\nscontrol requeue 7_1\n", "{}", text(&output));
     // Cancelled: it is left where it is, and what was kept is taken up.
     place.state("CANCELLED");
+    let begun = SystemTime::now();
     let child = place.script("array.sh", "1", "1").spawn().unwrap();
-    std::thread::sleep(Duration::from_millis(300));
+    await_file(&place.at.join("out"), saved_since(begun));
     signal(&child, "-TERM");
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(3), "{}", text(&output));
@@ -232,8 +237,9 @@ fn a_task_that_is_stopped_goes_back_into_the_queue_and_goes_on() {
     );
     // Stopped too often.
     place.state("RUNNING");
+    let begun = SystemTime::now();
     let child = place.script("array.sh", "1", "100").spawn().unwrap();
-    std::thread::sleep(Duration::from_millis(300));
+    await_file(&place.at.join("out"), saved_since(begun));
     signal(&child, "-TERM");
     assert_eq!(child.wait_with_output().unwrap().status.code(), Some(3));
     assert_eq!(place.notes().matches("requeue").count(), 1);
