@@ -207,7 +207,9 @@ fn a_task_that_is_stopped_goes_back_into_the_queue_and_goes_on() {
     let in_checkpoints = |path: &Path| path.parent().is_some_and(|p| p.ends_with("checkpoint"));
     // Saved after this moment: by a task that has begun and listens.
     let saved_since = |moment: SystemTime| {
-        move |path: &Path| in_checkpoints(path) && path.metadata().is_ok_and(|m| m.modified().unwrap() > moment)
+        move |path: &Path| {
+            in_checkpoints(path) && path.metadata().is_ok_and(|m| m.modified().unwrap() > moment)
+        }
     };
     // Asked to stop, as before a time limit. The processes may be asked twice.
     let child = place.script("array.sh", "1", "0").spawn().unwrap();
