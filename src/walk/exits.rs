@@ -44,14 +44,21 @@ pub(super) enum Form {
     General(General),
 }
 
-/// Thresholds of a cubic lattice, one word a void, and its shape.
+/// Thresholds of a cubic lattice, two words a void, and its shape.
+///
+/// A step reads the words that suit the particles of its chunk: they say the same, but where one says it with
+/// fewer bits there are more draws that they leave open.
 pub(super) struct Lattice {
-    /// Bits 21..32: top eleven bits of the second threshold. Bits 16..21: class of the finest open exit. Bits
-    /// 2..16: top fourteen bits of the first threshold. Bit 1: +y wraps. Bit 0: +x wraps. A void without open
-    /// exits has the first above the second.
-    pub entry: Vec<u32>,
-    /// What a move adds to the void, modulo 2^32. Bits 0 and 1 of the index: as in `entry`. Bit 2: not the
-    /// first exit. Bit 3: the third exit.
+    /// For particles that are nearly all as fine as the finest open exit of the network. Bits 16..32: top
+    /// sixteen bits of the second threshold. Bits 2..16: top fourteen bits of the first. Bit 1: +y wraps. Bit
+    /// 0: +x wraps. A void without open exits has the first above the second.
+    pub plain: Vec<u32>,
+    /// For coarser ones: the same, but bits 21..32: top eleven bits of the second threshold, and bits 16..21:
+    /// class of the void's finest open exit.
+    pub classed: Vec<u32>,
+    /// What a move adds to the void, modulo 2^32. Bits 0 and 1 of the index: as in a word. Bit 2: not the
+    /// first exit. Bit 3: the third exit. With the latter alone there is no open exit: a void that does not
+    /// exist.
     pub moves: [u32; 16],
     /// Bits, as an integer, of a diameter that no open exit is finer than. Particles up to
     /// `finest + (class << CLASS_SHIFT)`, compared as bits, pass every open exit of a void of that class.
@@ -63,7 +70,7 @@ pub(super) struct Lattice {
 /// Bits of a diameter below those of its class: 32 classes in a factor of two.
 pub(super) const CLASS_SHIFT: u32 = 18;
 
-/// Bits of the class in a word of [`Lattice::entry`].
+/// Bits of the class in a word of [`Lattice::classed`].
 pub(super) const CLASS: u32 = 0x001f_0000;
 
 /// Thresholds of a general network.
@@ -173,27 +180,49 @@ impl Lattice {
             1 | 3 => 1u32.wrapping_sub(nx),
             4 | 5 => nx,
             6 | 7 => nx.wrapping_sub(plane),
+            8..12 => 1 << 31,
             _ => plane,
         });
-        Self { entry: vec![0; voids], moves, finest, nx, plane }
+        Self { plain: vec![0; voids], classed: vec![0; voids], moves, finest, nx, plane }
     }
 
     fn set(&mut self, void: u32, thresholds: &[u64], last_open: Option<usize>, finest: f32) {
         let (x, row) = (void % self.nx, void % self.plane);
         let wraps = u32::from(x + 1 == self.nx) | u32::from(row + self.nx >= self.plane) << 1;
         let [first, second] = match last_open {
-            Some(_) => [thresholds[0] >> 50, thresholds[1] >> 53],
+            Some(_) => [thresholds[0] >> 50, thresholds[1] >> 48],
             None => [0x3fff, 0],
         };
+        let lower = (first as u32) << 2 | wraps;
         // Nothing opens again.
         let class = finest.to_bits().checked_sub(self.finest).expect("no open exit is finer") >> CLASS_SHIFT;
         let class = (class << 16).min(CLASS);
-        self.entry[void as usize] = (second as u32) << 21 | class | (first as u32) << 2 | wraps;
+        self.plain[void as usize] = (second as u32) << 16 | lower;
+        self.classed[void as usize] = (second as u32 >> 5) << 21 | class | lower;
     }
 
-    /// Thresholds in a word: fourteen bits of the first, eleven of the second.
-    pub fn parts(entry: u32) -> [u32; 2] {
-        [entry >> 2 & 0x3fff, entry >> 21]
+    /// The words with or without classes.
+    pub fn words<const CLASSED: bool>(&self) -> &[u32] {
+        if CLASSED { &self.classed } else { &self.plain }
+    }
+
+    /// Bits of a word that are of no threshold.
+    pub const fn below<const CLASSED: bool>() -> u32 {
+        if CLASSED { CLASS | 3 } else { 3 }
+    }
+
+    /// Exit that a draw picks by a word, unless it equals a threshold as far as the word goes, or no exit is
+    /// open.
+    #[inline(always)]
+    pub fn pick<const CLASSED: bool>(word: u32, draw: u16) -> Option<u32> {
+        let below = Self::below::<CLASSED>();
+        let [first, second] = [word | below, (word | below) >> 16].map(|half| half as u16);
+        let [to_first, to_second] = [draw | below as u16, draw | (below >> 16) as u16];
+        match (to_first > first, to_second > second) {
+            _ if to_first == first || to_second == second => None,
+            (false, true) => None,
+            (past_first, past_second) => Some(u32::from(past_first) + u32::from(past_second)),
+        }
     }
 }
 

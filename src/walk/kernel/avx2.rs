@@ -4,42 +4,43 @@
 
 use std::arch::x86_64::*;
 
-use super::lattice::{BELOW, BLOCK, CLASS_UP, Draws, LatticeChunk, PAST_FIRST, fits_gathers};
+use super::lattice::{BLOCK, CLASS_UP, Draws, LatticeChunk, PAST_FIRST, fits_gathers};
 use crate::stream::{LANES, Lanes};
 use crate::walk::Isa;
-use crate::walk::exits::CLASS;
+use crate::walk::exits::{CLASS, Lattice};
 
 const WIDTH: usize = 8;
 
 /// Moves the particles of one chunk; returns how many still move.
-pub(super) fn step(chunk: LatticeChunk) -> usize {
+pub(super) fn step<const CLASSED: bool>(chunk: LatticeChunk) -> usize {
     assert!(Isa::Avx2.is_available() && fits_gathers(chunk.table));
     // SAFETY: the machine has the instructions.
-    unsafe { step_vectors(chunk) }
+    unsafe { step_vectors::<CLASSED>(chunk) }
 }
 
 #[target_feature(enable = "avx2,popcnt")]
-fn step_vectors(mut chunk: LatticeChunk) -> usize {
+fn step_vectors<const CLASSED: bool>(mut chunk: LatticeChunk) -> usize {
     let count = chunk.void.len();
     let mut state = load_state(&chunk.lanes);
     let mut kept = 0;
     for begin in (0..count - count % BLOCK).step_by(BLOCK) {
+        chunk.fetch_ahead(begin, BLOCK);
         let draws = bytemuck::cast([next_block(&mut state), next_block(&mut state)]);
-        let rare = predict(&mut chunk, begin, &draws, kept);
-        let gone = if rare == 0 { 0 } else { chunk.settle(begin, &draws, rare, kept) };
+        let rare = predict::<CLASSED>(&mut chunk, begin, &draws, kept);
+        let gone = if rare == 0 { 0 } else { chunk.settle::<CLASSED>(begin, &draws, rare, kept) };
         kept = if gone == 0 { kept + BLOCK } else { close_up(&mut chunk, kept, gone) };
     }
-    chunk.step_rest(|| next_block(&mut state), kept)
+    chunk.step_rest::<CLASSED>(|| next_block(&mut state), kept)
 }
 
 /// As [`super::lattice`]'s.
 #[inline]
 #[target_feature(enable = "avx2,popcnt")]
-fn predict(chunk: &mut LatticeChunk, begin: usize, draws: &Draws, kept: usize) -> u64 {
+fn predict<const CLASSED: bool>(chunk: &mut LatticeChunk, begin: usize, draws: &Draws, kept: usize) -> u64 {
     assert!(kept <= begin && begin + BLOCK <= chunk.void.len() && begin + BLOCK <= chunk.diameter.len());
-    let table = chunk.table;
-    let last = _mm256_set1_epi32(table.entry.len() as i32 - 1);
-    let below = _mm256_set1_epi32(BELOW as i32);
+    let (table, words) = (chunk.table, chunk.table.words::<CLASSED>());
+    let last = _mm256_set1_epi32(words.len() as i32 - 1);
+    let below = _mm256_set1_epi32(Lattice::below::<CLASSED>() as i32);
     let finest = _mm256_set1_epi32(table.finest as i32);
     let downstream = _mm256_castsi256_ps(_mm256_set1_epi32(table.moves[15] as i32));
     // The first eight entries of `moves`: those of the first two exits.
@@ -51,7 +52,7 @@ fn predict(chunk: &mut LatticeChunk, begin: usize, draws: &Draws, kept: usize) -
     let zero = _mm256_setzero_si256();
     let mut greatest = zero;
     let mut rare = 0;
-    for (group, words) in draws.as_chunks::<2>().0.iter().enumerate() {
+    for (group, draw) in draws.as_chunks::<2>().0.iter().enumerate() {
         let at = begin + WIDTH * group;
         // SAFETY: eight entries from `at` on are within both columns, as asserted.
         let (from, d) = unsafe {
@@ -63,17 +64,16 @@ fn predict(chunk: &mut LatticeChunk, begin: usize, draws: &Draws, kept: usize) -
         greatest = _mm256_max_epu32(greatest, from);
         let within = _mm256_min_epu32(from, last);
         // SAFETY: `within` is less than the table's length.
-        let entry = unsafe { look_up(&table.entry, within) };
+        let word = unsafe { look_up(words, within) };
         // SAFETY: two words are sixteen bytes.
-        let draw = unsafe { _mm_loadu_si128(words.as_ptr().cast()) };
+        let draw = unsafe { _mm_loadu_si128(draw.as_ptr().cast()) };
         let draw = _mm256_or_si256(_mm256_shuffle_epi8(_mm256_broadcastsi128_si256(draw), twice), below);
 
         // Upper half: no less than the second threshold. Lower half: than the first.
-        let past = _mm256_cmpeq_epi16(_mm256_subs_epu16(entry, draw), zero);
-        let differ = _mm256_andnot_si256(below, _mm256_xor_si256(entry, draw));
-        let tie = _mm256_cmpeq_epi16(differ, zero);
+        let past = _mm256_cmpeq_epi16(_mm256_subs_epu16(word, draw), zero);
+        let tie = _mm256_cmpeq_epi16(_mm256_or_si256(word, below), draw);
         let sideways = _mm256_or_si256(
-            _mm256_and_si256(entry, _mm256_set1_epi32(3)),
+            _mm256_and_si256(word, _mm256_set1_epi32(3)),
             _mm256_and_si256(past, _mm256_set1_epi32(PAST_FIRST as i32)),
         );
         let by = _mm256_castsi256_ps(_mm256_permutevar8x32_epi32(moves, sideways));
@@ -85,8 +85,11 @@ fn predict(chunk: &mut LatticeChunk, begin: usize, draws: &Draws, kept: usize) -
         let out = _mm256_cmpgt_epi32(to, last);
         let closed = _mm256_andnot_si256(_mm256_slli_epi32::<16>(past), past);
         let tie = _mm256_or_si256(tie, _mm256_slli_epi32::<16>(tie));
-        let class = _mm256_and_si256(entry, _mm256_set1_epi32(CLASS as i32));
-        let passes = _mm256_add_epi32(finest, _mm256_slli_epi32::<{ CLASS_UP as i32 }>(class));
+        let mut passes = finest;
+        if CLASSED {
+            let class = _mm256_and_si256(word, _mm256_set1_epi32(CLASS as i32));
+            passes = _mm256_add_epi32(finest, _mm256_slli_epi32::<{ CLASS_UP as i32 }>(class));
+        }
         let coarse = _mm256_cmpgt_epi32(d, passes);
         let long_way = _mm256_or_si256(_mm256_or_si256(out, closed), _mm256_or_si256(tie, coarse));
         let long_way = _mm256_castsi256_ps(long_way);
@@ -111,7 +114,7 @@ fn predict(chunk: &mut LatticeChunk, begin: usize, draws: &Draws, kept: usize) -
 /// Each of `voids` is less than the table's length.
 #[inline]
 #[target_feature(enable = "avx2")]
-unsafe fn look_up(table: &[u32], voids: __m256i) -> __m256i {
+pub(super) unsafe fn look_up(table: &[u32], voids: __m256i) -> __m256i {
     let mut at = [0u32; WIDTH];
     // SAFETY: eight entries.
     unsafe { _mm256_storeu_si256(at.as_mut_ptr().cast(), voids) };

@@ -1,117 +1,143 @@
 //! The step on the cubic lattice with AVX-512: sixteen particles at once.
 //!
-//! The generator stays in four registers; the words of sixteen voids are gathered; constriction
-//! diameters are gathered for particles alone that may be coarser than the void's finest open exit. Particles
-//! that still move are brought together in a register and stored as whole vectors: what lies behind them has
-//! been read. Only draws that tie with a threshold are looked at one by one.
+//! The generator stays in four registers; constriction diameters are gathered for particles alone that may be
+//! coarser than the void's finest open exit. Particles that still move are brought together in a register and
+//! stored as whole vectors: what lies behind them has been read. Only draws that tie with a threshold are
+//! looked at one by one.
 
 use std::arch::x86_64::*;
 
-use super::lattice::{BELOW, BLOCK, CLASS_UP, LatticeChunk, PAST_FIRST, PAST_SECOND, fits_gathers};
+use super::avx2;
+use super::lattice::{BLOCK, CLASS_UP, LatticeChunk, PAST_FIRST, PAST_SECOND, fits_gathers};
 use crate::stream::{DRAWS_PER_BLOCK, LANES, Lanes, draw16};
 use crate::walk::Isa;
-use crate::walk::exits::CLASS;
+use crate::walk::exits::{CLASS, Lattice};
 
 const WIDTH: usize = 16;
 
 /// Moves the particles of one chunk; returns how many still move.
-pub(super) fn step(chunk: LatticeChunk) -> usize {
+pub(super) fn step<const CLASSED: bool>(chunk: LatticeChunk) -> usize {
     assert!(Isa::Avx512.is_available() && fits_gathers(chunk.table));
     // SAFETY: the machine has the instructions.
-    unsafe { step_vectors(chunk) }
+    unsafe { step_vectors::<CLASSED>(chunk) }
 }
 
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
-fn step_vectors(mut chunk: LatticeChunk) -> usize {
+fn step_vectors<const CLASSED: bool>(mut chunk: LatticeChunk) -> usize {
     let count = chunk.void.len();
     let diameters = chunk.exits.network.diameters();
-    let table = &chunk.table.entry[..];
+    let words = chunk.table.words::<CLASSED>();
     assert_eq!(count, chunk.diameter.len());
-    assert_eq!(diameters.len(), 3 * table.len());
-    let voids = _mm512_set1_epi32(table.len() as i32);
-    let below = _mm512_set1_epi32(BELOW as i32);
+    assert_eq!(diameters.len(), 3 * words.len());
+    let voids = _mm512_set1_epi32(words.len() as i32);
+    let last = _mm512_set1_epi32(words.len() as i32 - 1);
+    let below = _mm512_set1_epi32(Lattice::below::<CLASSED>() as i32);
     let finest = _mm512_set1_epi32(chunk.table.finest as i32);
     // SAFETY: `moves` has sixteen entries.
     let moves = unsafe { _mm512_loadu_si512(chunk.table.moves.as_ptr().cast()) };
+    let zero = _mm512_setzero_si512();
+    let halves = [twice(0), twice(WIDTH as i32)];
 
     let mut state = load_state(&chunk.lanes);
-    let mut draws = _mm512_setzero_si512();
     let mut kept = 0;
-    let whole = count - count % BLOCK;
-    for begin in (0..whole).step_by(WIDTH) {
-        draws = match begin % DRAWS_PER_BLOCK {
-            0 => next_block(&mut state),
-            _ => _mm512_shuffle_i64x2::<0b1110>(draws, draws),
-        };
-        // SAFETY: sixteen entries from `begin` on are within both columns, which are `count` long.
-        let (from, d) = unsafe {
-            (
-                _mm512_loadu_si512(chunk.void.as_ptr().add(begin).cast()),
-                _mm512_loadu_si512(chunk.diameter.as_ptr().add(begin).cast()),
-            )
-        };
-        let inside = _mm512_cmplt_epu32_mask(from, voids);
-        let zero = _mm512_setzero_si512();
-        // SAFETY: the lanes read are those whose void is less than the table's length, which fits an i32.
-        let entry = unsafe { _mm512_mask_i32gather_epi32::<4>(zero, inside, from, table.as_ptr().cast()) };
-        let draw = _mm512_cvtepu16_epi32(_mm512_castsi512_si256(draws));
-        let draw = _mm512_or_si512(_mm512_or_si512(draw, _mm512_slli_epi32::<16>(draw)), below);
-
-        // Where the upper halves are equal there is a tie.
-        let mut past_second = _mm512_cmpge_epu32_mask(draw, entry);
-        let mut past_first =
-            _mm512_cmpge_epu32_mask(_mm512_slli_epi32::<16>(draw), _mm512_slli_epi32::<16>(entry));
-        let differ = _mm512_andnot_si512(below, _mm512_xor_si512(entry, draw));
-        let low = _mm512_set1_epi32(0xffff);
-        let tie = _mm512_cmple_epu32_mask(differ, low) | _mm512_testn_epi32_mask(differ, low);
-        if tie | !inside != 0 {
-            assert!(inside == !0, "a void that the network does not have");
-            [past_first, past_second] = decide(&chunk, begin, draws, tie, [past_first, past_second]);
-        }
-        let mut index = _mm512_and_si512(entry, _mm512_set1_epi32(3));
-        index = _mm512_mask_or_epi32(index, past_first, index, _mm512_set1_epi32(PAST_FIRST as i32));
-        index = _mm512_mask_or_epi32(index, past_second, index, _mm512_set1_epi32(PAST_SECOND as i32));
-        let to = _mm512_add_epi32(from, _mm512_permutexvar_epi32(index, moves));
-        let out = _mm512_cmpge_epu32_mask(to, voids);
-        let class = _mm512_and_si512(entry, _mm512_set1_epi32(CLASS as i32));
-        let coarse =
-            _mm512_cmpgt_epi32_mask(d, _mm512_add_epi32(finest, _mm512_slli_epi32::<CLASS_UP>(class)));
-        // The first threshold is above the second only where every exit is closed.
-        let stranded = past_second & !past_first;
-        let mut stays = 0;
-        if coarse | stranded != 0 {
-            let able = coarse & !stranded;
-            let constriction = constriction(from, past_first, past_second);
-            // SAFETY: voids are less than the table's length (no lane is outside here) and exits less than 3,
-            // so that constrictions are less than 3 times it, the number of diameters.
-            let width = unsafe {
-                _mm512_mask_i32gather_epi32::<4>(zero, able, constriction, diameters.as_ptr().cast())
+    for block in (0..count - count % BLOCK).step_by(DRAWS_PER_BLOCK) {
+        chunk.fetch_ahead(block, DRAWS_PER_BLOCK);
+        let draws = next_block(&mut state);
+        for (half, twice) in halves.into_iter().enumerate() {
+            let begin = block + WIDTH * half;
+            // SAFETY: sixteen entries from `begin` on are within both columns, which are `count` long.
+            let (from, d) = unsafe {
+                (
+                    _mm512_loadu_si512(chunk.void.as_ptr().add(begin).cast()),
+                    _mm512_loadu_si512(chunk.diameter.as_ptr().add(begin).cast()),
+                )
             };
-            let stopped = _mm512_mask_cmpgt_epi32_mask(able, d, width);
-            note(&mut chunk.events.stopped, constriction, d, stopped);
-            note(&mut chunk.events.stranded, from, d, stranded);
-            stays = stranded | stopped;
+            let inside = _mm512_cmplt_epu32_mask(from, voids);
+            // SAFETY: each is less than the table's length.
+            let word = unsafe { look_up(words, _mm512_min_epu32(from, last)) };
+            let draw = _mm512_or_si512(_mm512_permutexvar_epi16(twice, draws), below);
+
+            // Upper half of a lane: no less than the second threshold. Lower half: than the first.
+            let past = _mm512_movm_epi16(_mm512_cmpge_epu16_mask(draw, word));
+            let tie = _mm512_cmpeq_epu16_mask(_mm512_or_si512(word, below), draw);
+            let past_first = _mm512_and_si512(past, _mm512_set1_epi32(PAST_FIRST as i32));
+            let past_second =
+                _mm512_and_si512(_mm512_srli_epi32::<16>(past), _mm512_set1_epi32(PAST_SECOND as i32));
+            let wraps = _mm512_and_si512(word, _mm512_set1_epi32(3));
+            let mut index = _mm512_or_si512(_mm512_or_si512(wraps, past_first), past_second);
+            if tie != 0 || inside != !0 {
+                assert!(inside == !0, "a void that the network does not have");
+                index = decide(&chunk, begin, draws, half, tie, index);
+            }
+            let mut to = _mm512_add_epi32(from, _mm512_permutexvar_epi32(index, moves));
+            // Those without an open exit, too.
+            let out = _mm512_cmpge_epu32_mask(to, voids);
+            let mut passes = finest;
+            if CLASSED {
+                let class = _mm512_and_si512(word, _mm512_set1_epi32(CLASS as i32));
+                passes = _mm512_add_epi32(finest, _mm512_slli_epi32::<CLASS_UP>(class));
+            }
+            let coarse = _mm512_cmpgt_epi32_mask(d, passes);
+            let (mut stopped, mut stranded) = (0, 0);
+            if out | coarse != 0 {
+                let past = _mm512_and_si512(index, _mm512_set1_epi32((PAST_FIRST | PAST_SECOND) as i32));
+                stranded = _mm512_cmpeq_epi32_mask(past, _mm512_set1_epi32(PAST_SECOND as i32));
+                let able = coarse & !stranded;
+                if able != 0 {
+                    let constriction = constriction(from, index);
+                    // SAFETY: voids are less than the table's length (no lane is outside here) and exits less
+                    // than 3, so that constrictions are less than 3 times it, the number of diameters.
+                    let width = unsafe {
+                        _mm512_mask_i32gather_epi32::<4>(zero, able, constriction, diameters.as_ptr().cast())
+                    };
+                    stopped = _mm512_mask_cmpgt_epi32_mask(able, d, width);
+                    note(&mut chunk.events.stopped, constriction, d, stopped);
+                }
+                note(&mut chunk.events.stranded, from, d, stranded);
+            }
+            let gone = out | stopped;
+            let mut left = d;
+            if gone != 0 {
+                note_eroded(&mut chunk.events.eroded, d, out & !(stopped | stranded));
+                to = _mm512_maskz_compress_epi32(!gone, to);
+                left = _mm512_maskz_compress_epi32(!gone, d);
+            }
+            // SAFETY: `kept <= begin`, so sixteen entries from `kept` on are within both columns; all up to
+            // `begin + 16` have been read.
+            unsafe {
+                _mm512_storeu_si512(chunk.void.as_mut_ptr().add(kept).cast(), to);
+                _mm512_storeu_si512(chunk.diameter.as_mut_ptr().add(kept).cast(), left);
+            }
+            kept += WIDTH - gone.count_ones() as usize;
         }
-        let gone = out | stays;
-        let (mut to, mut d) = (to, d);
-        if gone != 0 {
-            note_eroded(&mut chunk.events.eroded, d, out & !stays);
-            to = _mm512_maskz_compress_epi32(!gone, to);
-            d = _mm512_maskz_compress_epi32(!gone, d);
-        }
-        // SAFETY: `kept <= begin`, so sixteen entries from `kept` on are within both columns; all up to
-        // `begin + 16` have been read.
-        unsafe {
-            _mm512_storeu_si512(chunk.void.as_mut_ptr().add(kept).cast(), to);
-            _mm512_storeu_si512(chunk.diameter.as_mut_ptr().add(kept).cast(), d);
-        }
-        kept += WIDTH - gone.count_ones() as usize;
     }
-    chunk.step_rest(|| block_of(next_block(&mut state)), kept)
+    chunk.step_rest::<CLASSED>(|| block_of(next_block(&mut state)), kept)
 }
 
-/// Which thresholds the draws of the lanes in `ties` are past, by all bits of the draws; the other lanes as
-/// they are.
+/// Words of the table: sixteen loads, which take less time than a gather.
+///
+/// # Safety
+/// Each of `voids` is less than the table's length.
+#[inline]
+#[target_feature(enable = "avx512f")]
+unsafe fn look_up(table: &[u32], voids: __m512i) -> __m512i {
+    // SAFETY: as asked for.
+    let low = unsafe { avx2::look_up(table, _mm512_castsi512_si256(voids)) };
+    // SAFETY: as asked for.
+    let high = unsafe { avx2::look_up(table, _mm512_extracti64x4_epi64::<1>(voids)) };
+    _mm512_inserti64x4::<1>(_mm512_castsi256_si512(low), high)
+}
+
+/// The order that brings draws `first .. first + 16` of a block into both halves of sixteen lanes.
+#[inline]
+#[target_feature(enable = "avx512f,avx512bw")]
+fn twice(first: i32) -> __m512i {
+    let lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    let draws = _mm512_add_epi32(lanes, _mm512_set1_epi32(first));
+    _mm512_or_si512(draws, _mm512_slli_epi32::<16>(draws))
+}
+
+/// `index` with the exits that the draws with ties, in either half of a lane, pick by all of their bits.
 #[cold]
 #[inline(never)]
 #[target_feature(enable = "avx512f")]
@@ -119,28 +145,33 @@ fn decide(
     chunk: &LatticeChunk,
     begin: usize,
     draws: __m512i,
-    mut ties: __mmask16,
-    [mut first, mut second]: [__mmask16; 2],
-) -> [__mmask16; 2] {
+    half: usize,
+    mut ties: __mmask32,
+    index: __m512i,
+) -> __m512i {
     let words = block_of(draws);
+    let mut indices = [0u32; WIDTH];
+    // SAFETY: sixteen entries.
+    unsafe { _mm512_storeu_si512(indices.as_mut_ptr().cast(), index) };
     while ties != 0 {
-        let j = ties.trailing_zeros() as usize;
-        ties &= ties - 1;
-        let exit = chunk.undecided(chunk.void[begin + j], begin + j, draw16(&words, j));
-        // No open exit: past the second and not the first.
-        let (past_first, past_second) = (matches!(exit, Some(1 | 2)), matches!(exit, None | Some(2)));
-        first = first & !(1 << j) | u16::from(past_first) << j;
-        second = second & !(1 << j) | u16::from(past_second) << j;
+        let j = ties.trailing_zeros() as usize / 2;
+        ties &= !(3 << (2 * j));
+        let exit = chunk.undecided(chunk.void[begin + j], begin + j, draw16(&words, WIDTH * half + j));
+        let past = exit.map_or(PAST_SECOND, |exit| [0, PAST_FIRST, PAST_FIRST | PAST_SECOND][exit as usize]);
+        indices[j] = indices[j] & 3 | past;
     }
-    [first, second]
+    // SAFETY: sixteen entries.
+    unsafe { _mm512_loadu_si512(indices.as_ptr().cast()) }
 }
 
-/// Constriction that each lane's draw picks.
+/// Constriction that each lane's draw picks, by the index of its move.
 #[inline]
 #[target_feature(enable = "avx512f")]
-fn constriction(from: __m512i, past_first: __mmask16, past_second: __mmask16) -> __m512i {
+fn constriction(from: __m512i, index: __m512i) -> __m512i {
     let one = _mm512_set1_epi32(1);
     let first = _mm512_add_epi32(from, _mm512_slli_epi32::<1>(from));
+    let past_first = _mm512_test_epi32_mask(index, _mm512_set1_epi32(PAST_FIRST as i32));
+    let past_second = _mm512_test_epi32_mask(index, _mm512_set1_epi32(PAST_SECOND as i32));
     let exit = _mm512_mask_add_epi32(first, past_first, first, one);
     _mm512_mask_add_epi32(exit, past_second, exit, one)
 }

@@ -12,7 +12,6 @@ mod lattice;
 #[cfg(test)]
 mod tests;
 
-#[cfg(target_arch = "x86_64")]
 use super::Isa;
 use super::chunks::{self, ChunkColumns};
 use super::exits::{Form, OpenExits};
@@ -20,6 +19,7 @@ use super::merge::Events;
 use super::{ExitTable, State, Supply};
 use crate::network::Network;
 use crate::stream::{Key, Purpose};
+use lattice::LatticeChunk;
 
 /// Moves the particles of all chunks, in parallel where that pays; what happened is in `events`.
 pub(super) fn step(
@@ -70,15 +70,22 @@ fn step_chunk(
 ) -> usize {
     match exits.table.form() {
         Form::Lattice(table) => {
-            let chunk = lattice::LatticeChunk { exits, table, lanes: key.lanes(), void, diameter, events };
-            match exits.table.isa() {
-                #[cfg(target_arch = "x86_64")]
-                Isa::Avx512 if lattice::fits_gathers(table) => avx512::step(chunk),
-                #[cfg(target_arch = "x86_64")]
-                Isa::Avx2 if lattice::fits_gathers(table) => avx2::step(chunk),
-                _ => lattice::step(chunk),
-            }
+            let isa = exits.table.isa();
+            let classed = lattice::reads_classes(diameter, exits.passive_limit);
+            let chunk = LatticeChunk { exits, table, lanes: key.lanes(), void, diameter, events };
+            if classed { step_lattice::<true>(chunk, isa) } else { step_lattice::<false>(chunk, isa) }
         }
         Form::General(table) => general::step(exits.network, table, key, void, diameter, events),
+    }
+}
+
+/// The step on a lattice, by words with classes or without.
+fn step_lattice<const CLASSED: bool>(chunk: LatticeChunk, isa: Isa) -> usize {
+    match isa {
+        #[cfg(target_arch = "x86_64")]
+        Isa::Avx512 if lattice::fits_gathers(chunk.table) => avx512::step::<CLASSED>(chunk),
+        #[cfg(target_arch = "x86_64")]
+        Isa::Avx2 if lattice::fits_gathers(chunk.table) => avx2::step::<CLASSED>(chunk),
+        _ => lattice::step::<CLASSED>(chunk),
     }
 }

@@ -27,8 +27,11 @@ struct After {
     stranded: Vec<(u32, f32)>,
 }
 
-/// One step of the particles in `void` and `diameter` by `isa`.
-fn after(scene: &Scene, key: Key, isa: Isa, void: &[u32], diameter: &[f32]) -> After {
+/// A kernel: its instructions, and whether it reads words with classes.
+type Kernel = (Isa, bool);
+
+/// One step of the particles in `void` and `diameter`.
+fn after(scene: &Scene, key: Key, (isa, classed): Kernel, void: &[u32], diameter: &[f32]) -> After {
     let network = Network::cubic_from_diameters(scene.shape, scene.diameters.clone(), 1.0).unwrap();
     let blocked: BitVec = scene.blocked.iter().copied().collect();
     let supply = Supply::new(SizeSampler::new(&Gradation::single(1.0).unwrap(), 1.0).unwrap(), 1, 1);
@@ -44,7 +47,16 @@ fn after(scene: &Scene, key: Key, isa: Isa, void: &[u32], diameter: &[f32]) -> A
     };
     let (mut void, mut diameter) = (void.to_vec(), diameter.to_vec());
     let mut events = Events::default();
-    let kept = step_chunk(&exits, key, &mut void, &mut diameter, &mut events);
+    let Form::Lattice(form) = table.form() else { panic!("a lattice") };
+    let chunk = LatticeChunk {
+        exits: &exits,
+        table: form,
+        lanes: key.lanes(),
+        void: &mut void,
+        diameter: &mut diameter,
+        events: &mut events,
+    };
+    let kept = if classed { step_lattice::<true>(chunk, isa) } else { step_lattice::<false>(chunk, isa) };
     void.truncate(kept);
     diameter.truncate(kept);
     let Events { eroded, stopped, stranded, .. } = events;
@@ -58,6 +70,12 @@ fn key(seed: u64) -> Key {
 fn available() -> impl Iterator<Item = Isa> {
     Isa::ALL.into_iter().filter(|isa| isa.is_available())
 }
+
+fn kernels() -> impl Iterator<Item = Kernel> {
+    available().flat_map(|isa| [(isa, false), (isa, true)])
+}
+
+const PORTABLE: Kernel = (Isa::Portable, false);
 
 /// `count` values picked from `palette` by a plain congruence.
 fn picked<T: Copy>(count: usize, palette: &[T], mut seed: u64) -> Vec<T> {
@@ -99,12 +117,12 @@ proptest! {
             blocked: picked(3 * voids.len(), &blocked, !seed),
         };
         let (void, diameter) = (picked(count, &voids, seed ^ 1), picked(count, &sizes, seed ^ 2));
-        let expected = after(&scene, key(seed), Isa::Portable, &void, &diameter);
+        let expected = after(&scene, key(seed), PORTABLE, &void, &diameter);
         prop_assert_eq!(&by_definition(&scene, key(seed), &void, &diameter), &expected);
         let gone = expected.eroded.len() + expected.stopped.len() + expected.stranded.len();
         prop_assert_eq!(expected.void.len() + gone, count);
-        for isa in available() {
-            prop_assert_eq!(&after(&scene, key(seed), isa, &void, &diameter), &expected, "{:?}", isa);
+        for kernel in kernels() {
+            prop_assert_eq!(&after(&scene, key(seed), kernel, &void, &diameter), &expected, "{:?}", kernel);
         }
     }
 }
@@ -165,33 +183,42 @@ fn a_draw_that_equals_a_threshold_is_decided_by_all_of_its_bits() {
             let stays = extension.complete(draw, place as u64) < threshold;
             seen[usize::from(stays)] += 1;
             let (void, diameter) = (vec![0; DRAWS_PER_BLOCK], vec![1e-6; DRAWS_PER_BLOCK]);
-            let expected = after(&scene, key(3), Isa::Portable, &void, &diameter);
-            for isa in available() {
-                assert_eq!(after(&scene, key(3), isa, &void, &diameter), expected, "{isa:?}");
+            let expected = after(&scene, key(3), PORTABLE, &void, &diameter);
+            for kernel in kernels() {
+                assert_eq!(after(&scene, key(3), kernel, &void, &diameter), expected, "{kernel:?}");
             }
             // The particle alone at its place: those before it are too coarse for anything.
             let mut diameter = vec![9e9; DRAWS_PER_BLOCK];
             diameter[place] = 1e-6;
-            for isa in available() {
-                let after = after(&scene, key(3), isa, &void, &diameter);
-                assert_eq!(after.void.len() == 1, stays, "{isa:?}, draw {draw}");
+            for kernel in kernels() {
+                let after = after(&scene, key(3), kernel, &void, &diameter);
+                assert_eq!(after.void.len() == 1, stays, "{kernel:?}, draw {draw}");
             }
         }
     }
     assert!(seen[0].min(seen[1]) > 100, "{seen:?} ties");
 }
 
+/// A chunk's words are chosen by its first particles, and by no more of them than there are.
+#[test]
+fn words_with_classes_are_for_chunks_with_coarse_particles() {
+    let chunk = |fine: usize, coarse: usize| [vec![1.0; fine], vec![1.5; coarse]].concat();
+    let reads_classes = |diameter: &[f32]| lattice::reads_classes(diameter, 1.0);
+    assert!(!reads_classes(&[]) && !reads_classes(&chunk(300, 0)) && !reads_classes(&chunk(10, 1)));
+    assert!(reads_classes(&chunk(0, 2)) && reads_classes(&chunk(254, 2)) && !reads_classes(&chunk(256, 900)));
+}
+
 /// A column that a damaged file might hold: an error, never a read beyond the table.
 #[test]
 fn a_void_that_does_not_exist_is_refused() {
     let scene = Scene { shape: [2, 2, 1], diameters: vec![1.0; 12], blocked: vec![false; 12] };
-    for isa in available() {
+    for kernel in kernels() {
         for bad in [4, 1 << 31, u32::MAX] {
             for place in [0, 17, 63, 64] {
                 let mut void = vec![0; 65];
                 void[place] = bad;
-                let step = || after(&scene, key(1), isa, &void, &[0.5; 65]);
-                assert!(std::panic::catch_unwind(step).is_err(), "{isa:?}: {bad} at {place}");
+                let step = || after(&scene, key(1), kernel, &void, &[0.5; 65]);
+                assert!(std::panic::catch_unwind(step).is_err(), "{kernel:?}: {bad} at {place}");
             }
         }
     }
