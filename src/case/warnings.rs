@@ -253,9 +253,9 @@ impl Case {
         let plan = PackingPlan::new(&self.scene.packing_spec().ok()??).ok()?;
         let (width, usual) = plan.narrow_and_tall()?;
         Some(format!(
-            "packing.grains = {} in a cell {} times as tall as wide leave it about {width:.1} times as wide as \
-             the largest grain, where {usual} times is usual: it is periodic, so that its voids repeat across, \
-             and every layer has few of them",
+            "packing.grains = {} in a cell {} times as tall as wide leave it about {width:.1} times as wide \
+             as the largest grain, where {usual} times is usual: it is periodic, so that its voids repeat \
+             across, and every layer has few of them",
             plan.compression.grains, plan.aspect
         ))
     }

@@ -174,7 +174,8 @@ impl Rest {
         self.links.push(Link { to, next, conductance });
     }
 
-    /// The places that are left and meet this one, each once, in rising order of conductance. `at` is scratch.
+    /// The places that are left and meet this one, each once, in rising order of conductance; `at` is
+    /// scratch.
     fn neighbours(&self, place: usize, meeting: &mut Vec<(f64, u32)>, at: &mut [u32]) {
         meeting.clear();
         let mut next = self.first[place];

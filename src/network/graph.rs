@@ -126,10 +126,10 @@ mod tests {
         }
     }
 
-    /// Body-centred and face-centred cubic touching: the scheme's closed form. All throats are equal, so that
-    /// each has its part of the void and of the surface, and pressure falls evenly along the axis: k is the sum
-    /// of g dz^2 over the throats of a cell of edge 1, by its volume. Zick & Homsy's drag for these two could not
-    /// be read, so nothing is said here of how near the scheme comes to it.
+    /// Body-centred and face-centred cubic touching: the scheme's closed form. All throats are equal, so
+    /// that each has its part of the void and of the surface, and pressure falls evenly along the axis: k is
+    /// the sum of g dz^2 over the throats of a cell of edge 1, by its volume. Zick & Homsy's drag for these
+    /// two could not be read, so nothing is said here of how near the scheme comes to it.
     #[test]
     fn permeability_of_body_centred_and_face_centred_cubic_packings() {
         let pi = std::f64::consts::PI;
