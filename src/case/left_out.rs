@@ -35,7 +35,14 @@ impl Case {
                 left_out.push(format!("a filter {factor} times as thick: {error}"));
             }
         }
-        if self.thickness_factors().is_empty() && self.copies.is_none() && self.fixed_network.is_none() {
+        let not_walked = self.thickness_not_walked();
+        let is_said = !not_walked.is_empty();
+        left_out.extend(not_walked);
+        if !is_said
+            && self.thickness_factors().is_empty()
+            && self.copies.is_none()
+            && self.fixed_network.is_none()
+        {
             left_out.push("how the verdict moves with the filter's thickness: it was not asked for".into());
         }
         left_out

@@ -174,6 +174,13 @@ impl PackingPlan {
         self.scale_from(&points).is_some() && self.fingerprint_of(&points) == other.fingerprint()
     }
 
+    /// How many times as wide as the largest grain a tall cell is about, and how many times the program makes
+    /// it, where it is narrower than that.
+    pub fn narrow_and_tall(&self) -> Option<(f64, f64)> {
+        let width = width_by_largest(&self.gradation, self.compression.grains, self.aspect);
+        (self.aspect > 1.0 && width < CELLS_WIDTH).then_some((width, CELLS_WIDTH))
+    }
+
     /// Name of the folder in which the packing is kept among others.
     pub fn folder_name(&self) -> String {
         let cu = self.gradation.cu().map_or("graded".to_string(), |cu| format!("cu{:.3}", cu));

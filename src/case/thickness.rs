@@ -8,17 +8,44 @@ const HALF_AND_TWICE: [f64; 2] = [0.5, 2.0];
 
 impl Case {
     /// Multiples of the thickness that the study walks: those asked for, else half and twice where the study
-    /// of the number of base particles is walked. None of a network from a file, which is as thick as it is.
+    /// of the number of base particles is walked. None of a network from a file, which is as thick as it is,
+    /// and none that is to the nearest layer or copy the thickness of the case itself.
     pub fn thickness_factors(&self) -> Vec<f64> {
-        let record = &self.scene.record;
-        let factors = match (self.scene.network.source(), &record.thickness) {
-            (NetworkSource::File(_), _) => return Vec::new(),
-            (_, Some(factors)) => factors,
-            (_, None) if record.sensitivity.is_empty() => return Vec::new(),
-            (_, None) => &HALF_AND_TWICE.to_vec(),
-        };
         let parts = self.thickness_parts();
-        factors.iter().copied().filter(|&factor| times(parts, factor) != parts).collect()
+        self.thickness_wanted().into_iter().filter(|&factor| times(parts, factor) != parts).collect()
+    }
+
+    /// Multiples that are asked for, but of which nothing is walked, each with the reason.
+    pub(super) fn thickness_not_walked(&self) -> Vec<String> {
+        if matches!(self.scene.network.source(), NetworkSource::File(_)) {
+            let asked = self.scene.record.thickness.as_ref().is_some_and(|factors| !factors.is_empty());
+            let reason = "filters of another thickness: a network from a file is as thick as it is";
+            return if asked { vec![reason.to_string()] } else { Vec::new() };
+        }
+        let parts = self.thickness_parts();
+        let noun = match (self.copies.is_some(), parts) {
+            (true, 1) => "copy of the packing",
+            (true, _) => "copies of the packing",
+            (false, 1) => "layer",
+            (false, _) => "layers",
+        };
+        let same = |factor: &f64| times(parts, *factor) == parts;
+        let say = |factor| {
+            format!(
+                "a filter {factor} times as thick: to the nearest whole number it has the same {parts} {noun}"
+            )
+        };
+        self.thickness_wanted().into_iter().filter(same).map(say).collect()
+    }
+
+    fn thickness_wanted(&self) -> Vec<f64> {
+        let record = &self.scene.record;
+        match (self.scene.network.source(), &record.thickness) {
+            (NetworkSource::File(_), _) => Vec::new(),
+            (_, Some(factors)) => factors.clone(),
+            (_, None) if record.sensitivity.is_empty() => Vec::new(),
+            (_, None) => HALF_AND_TWICE.to_vec(),
+        }
     }
 
     /// What its network is made of along the flow: copies of a packing, or layers.
@@ -74,6 +101,10 @@ mod tests {
         );
         assert_eq!(thick.network(5).unwrap().fingerprint(), asked.network(5).unwrap().fingerprint());
         assert!(case(&["network.nz=20", "record.thickness=[1.01]"]).thickness_factors().is_empty());
+        let unsaid = case(&["network.nz=20", "record.thickness=[1.01, 2]"]);
+        let reason = "a filter 1.01 times as thick: to the nearest whole number it has the same 20 layers";
+        assert_eq!(unsaid.left_out().iter().filter(|line| *line == reason).count(), 1);
+        assert_eq!(unsaid.thickness_factors(), [2.0]);
         let given = case(&["base.n_base=1000"]).of_thickness(0.5).unwrap();
         assert_eq!((given.n_base, given.counts[3]), (1000, 30));
         let capped = case(&["base.cap=5000"]).of_thickness(2.0).unwrap();

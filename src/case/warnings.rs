@@ -1,7 +1,7 @@
 //! Where a case leaves the range in which the model was checked, and what else a reader must know.
 
 use super::packed_filter::GUESSED_GRAINS_PER_VOID;
-use super::{Case, Input, guesses_grains_per_void, replicate_seed};
+use super::{Case, Input, PackingPlan, guesses_grains_per_void, replicate_seed};
 use crate::gradation::{FEW_FINES, FINES_MM};
 use crate::network::ExitRule;
 use crate::outcome::Mistake;
@@ -218,6 +218,7 @@ impl Case {
                 100.0 * loose
             ));
         }
+        warnings.extend(self.narrow_cell());
         if let Some(eq2) = self.n_base_eq2.filter(|_| self.capped) {
             warnings.push(format!(
                 "capped at {} base particles; Eq. (2) requires {eq2}. Fewer particles are a bias, not \
@@ -243,6 +244,20 @@ impl Case {
             ));
         }
         warnings
+    }
+
+    /// A tall cell whose number of grains was given, and leaves it narrow.
+    fn narrow_cell(&self) -> Option<String> {
+        let packing = self.scene.packing.as_ref()?;
+        packing.filter.grains?;
+        let plan = PackingPlan::new(&self.scene.packing_spec().ok()??).ok()?;
+        let (width, usual) = plan.narrow_and_tall()?;
+        Some(format!(
+            "packing.grains = {} in a cell {} times as tall as wide leave it about {width:.1} times as wide \
+             as the largest grain, where {usual} times is usual: it is periodic, so that its voids repeat \
+             across, and every layer has few of them",
+            plan.compression.grains, plan.aspect
+        ))
     }
 
     /// About how many moves a particle makes that nothing stops, where loops may hold it for long: on a given

@@ -12,10 +12,10 @@
 //! units by a power of two changes no bit of a walk.
 
 mod arrays;
-mod coarse;
 mod columns;
 mod connectivity;
 mod cubic;
+mod elimination;
 mod exit_rule;
 mod file;
 mod first_passage;
@@ -26,6 +26,7 @@ mod percolation;
 mod permeability;
 mod reach;
 mod stratified;
+mod system;
 mod twins;
 mod undirected;
 

@@ -1,10 +1,8 @@
 //! Permeability of a packing's voids in an endless medium.
 
-use super::flow::{FlowError, System};
+use super::flow::FlowError;
+use super::system::{Sides, System};
 use crate::constrictions::VoidGraph;
-
-/// Parts of the coarse picture, across the axis.
-const SLABS: f64 = 16.0;
 
 /// Permeability (mm2) of the medium that the graph repeats without end, along `axis` (0, 1, 2 for x, y, z).
 ///
@@ -39,18 +37,11 @@ pub fn permeability_mm2(graph: &VoidGraph, axis: usize) -> Result<f64, FlowError
             }
         }
     }
-    let along = |void: u32| graph.point_mm[void as usize][axis];
-    let [low, high] = (0..voids as u32)
-        .map(along)
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
-    let part = |void: u32| {
-        let share = (along(void) - low) / (high - low).max(f64::MIN_POSITIVE);
-        (share * SLABS).min(SLABS - 1.0) as u32
-    };
-    let system = System::of_voids(&inside, part, |void, neighbours| {
+    // Conductances to the voids that are held are among those to neighbours.
+    let system = System::of_voids(&inside, |void, neighbours| {
         let all = &meeting[void as usize];
         neighbours.extend(all.iter().map(|&(to, g, _)| (to, g)));
-        (all.iter().map(|(_, g, _)| g).sum(), -all.iter().map(|(_, g, by)| g * by).sum::<f64>())
+        Sides { ground: 0.0, inflow: -all.iter().map(|(_, g, by)| g * by).sum::<f64>() }
     });
     let mut pressure = vec![0.0; voids];
     let layers = libm::cbrt(voids as f64) as usize;

@@ -187,7 +187,7 @@ impl Scene {
         let (mut filter, packing) = (Filter::read(&s)?, packing_keys(&s)?);
         filter.fill_in();
         let Some(packing) = packing else {
-            let words = Density::ALL.map(|word| format!("\"{}\"", word.name())).join(", ");
+            let words = Density::WORDS;
             return Err(s.clash(format!("filter.density is missing: {words}; or filter.friction")));
         };
         PackingSpec::new(&filter, &packing, s.file())

@@ -79,6 +79,61 @@ pub(super) struct General {
     pub threshold: Vec<u64>,
     /// By void: its last open exit as a constriction, or `NONE`, or `WAIT`.
     pub last_open: Vec<u32>,
+    /// By void: the same of few open exits, in half a cache line.
+    pub few: Vec<FewExits>,
+    /// By constriction: the void that it leads to and its diameter, beside each other.
+    pub beyond: Vec<(u32, f32)>,
+}
+
+/// Open exits of a void, where they are few.
+#[derive(Clone, Copy)]
+#[repr(align(32))]
+pub(super) struct FewExits {
+    /// Top sixteen bits of the threshold of each open exit but the last; the largest number after them.
+    pub top: [u16; FEW_EXITS],
+    /// Position of each open exit among all.
+    pub position: [u8; FEW_EXITS],
+    /// First exit of the void.
+    pub begin: u32,
+    /// Whether it has an open exit, and no more than fit in here.
+    pub is_few: bool,
+}
+
+/// Open exits that fit in a [`FewExits`].
+pub(super) const FEW_EXITS: usize = 8;
+
+impl FewExits {
+    const NONE: Self = Self { top: [u16::MAX; FEW_EXITS], position: [0; FEW_EXITS], begin: 0, is_few: false };
+
+    /// Of a void whose exits from `begin` on have these thresholds, which rise where an exit is open; `last`
+    /// is the position of its last open one.
+    fn new(begin: u32, thresholds: &[u64], last: usize) -> Self {
+        let mut few = Self { begin, ..Self::NONE };
+        let mut before = 0;
+        let mut open = 0;
+        for (position, &threshold) in thresholds[..=last].iter().enumerate() {
+            if threshold == before && position != last {
+                continue;
+            }
+            let (Ok(place), true) = (u8::try_from(position), open < FEW_EXITS) else { return few };
+            few.position[open] = place;
+            if position != last {
+                few.top[open] = (threshold >> 48) as u16;
+            }
+            (before, open) = (threshold, open + 1);
+        }
+        few.is_few = true;
+        few
+    }
+
+    /// The exit that a draw picks by its top sixteen bits, unless they do not decide.
+    #[inline(always)]
+    pub fn chosen(&self, draw: u16) -> Option<usize> {
+        let passed: u16 = self.top.iter().map(|&top| u16::from(top < draw)).sum();
+        let is_tie = self.top.iter().fold(false, |tie, &top| tie | (top == draw));
+        // Thresholds rise, and there is none for the last exit.
+        (!is_tie).then(|| self.begin as usize + usize::from(self.position[usize::from(passed)]))
+    }
 }
 
 /// Stands for "no open exit".
@@ -112,6 +167,8 @@ impl ExitTable {
             None => Form::General(General {
                 threshold: vec![0; network.constrictions()],
                 last_open: vec![NONE; network.voids()],
+                few: vec![FewExits::NONE; network.voids()],
+                beyond: network.targets().iter().zip(network.diameters()).map(|(&to, &d)| (to, d)).collect(),
             }),
         };
         let mut table = Self { form, isa: Isa::chosen(), upstream: network.upstream() };
@@ -146,6 +203,10 @@ impl ExitTable {
             Form::General(general) => {
                 let exits = network.exits(void);
                 general.threshold[exits.clone()].copy_from_slice(scratch);
+                general.few[void as usize] = match last_open {
+                    Some(last) => FewExits::new(exits.start as u32, scratch, last),
+                    None => FewExits::NONE,
+                };
                 general.last_open[void as usize] = match last_open {
                     Some(e) => (exits.start + e) as u32,
                     None if waits(network, void) => WAIT,
@@ -253,6 +314,50 @@ mod tests {
         assert_eq!(of([1.0, 1.0, 1.0], [true, true, false]), (vec![0, 0, u64::MAX], Some(2)));
         assert_eq!(of([1.0, 1.0, 1.0], [false, true, true]), (vec![u64::MAX; 3], Some(0)));
         assert_eq!(of([0.0, 1.0, 1.0], [false, true, true]).1, None);
+    }
+
+    /// Any number of exits, closed ones among them, and every sixteen-bit draw: the exit by the definition,
+    /// whatever the other bits, or none where these decide.
+    #[test]
+    fn few_exits_are_chosen_as_by_the_definition() {
+        let mut word = 1u64;
+        let mut next = || {
+            word = word.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            word >> 33
+        };
+        for _ in 0..300 {
+            let exits = 1 + next() % 14;
+            let of = |next: u64| match next % 5 {
+                0 | 1 => 0.0,
+                2 => 1e-9,
+                _ => (next % 97) as f64,
+            };
+            let weight: Vec<f64> = (0..exits).map(|_| of(next())).collect();
+            let Some(last) = weight.iter().rposition(|&w| w > 0.0) else { continue };
+            let total: f64 = weight.iter().sum();
+            let mut sum = 0.0;
+            let mut add = |w: &f64| {
+                sum += w;
+                (sum / total * TWO_TO_64) as u64
+            };
+            let thresholds: Vec<u64> = weight.iter().map(&mut add).collect();
+            let few = FewExits::new(100, &thresholds, last);
+            let open = weight.iter().filter(|&&w| w > 0.0).count();
+            assert!(few.is_few || open > FEW_EXITS, "{weight:?}");
+            for draw in (0..=u16::MAX).filter(|_| few.is_few) {
+                let by = |low: u64| {
+                    let draw = u64::from(draw) << 48 | low;
+                    100 + thresholds.iter().position(|&t| draw < t).unwrap_or(last)
+                };
+                match few.chosen(draw) {
+                    Some(exit) => assert_eq!([exit; 2], [by(0), by((1 << 48) - 1)], "{weight:?} {draw}"),
+                    None => assert!(
+                        draw == u16::MAX || thresholds.iter().any(|&t| (t >> 48) as u16 == draw),
+                        "{weight:?} {draw}"
+                    ),
+                }
+            }
+        }
     }
 
     /// Once the exit with nearly all the area is blocked, the others keep their exact ratio.

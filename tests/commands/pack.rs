@@ -220,7 +220,7 @@ fn a_folder_of_another_kind_is_left_alone() {
 #[test]
 fn bad_filters_are_refused_before_any_work() {
     for (text, message) in [
-        ("[filter]\ncu = 1.5\n", "filter.density is missing"),
+        ("[filter]\ncu = 1.5\n", "filter.density is missing: dense, medium (or intermediate), loose"),
         ("[filter]\ndensity = \"loose\"\n", "filter.cu or filter.sieve is missing"),
         ("[filter]\ncu = 1.5\ndensity = \"lose\"\n", "line 3, filter.density: `lose` is not allowed"),
         ("[filter]\ncu = 1.5\nfriction = -1\n", "line 3, filter.friction: `-1` is not allowed"),
@@ -321,6 +321,15 @@ fn a_tall_cell_takes_the_place_of_copies() {
     fs::write(at.join("scene.toml"), scene).unwrap();
     let said = call(&at, &["check", "scene.toml", "--json"]);
     done(&said);
+    // A cell that the number of grains makes narrow is said to be so, and one that is wide enough is not.
+    let narrow = |grains: &str| {
+        let scene = "[filter]\ncu = 1.5\ndensity = \"loose\"\n[base]\ncu = 1.5\nd15f_over_d85b = 4\n";
+        fs::write(at.join("packed.toml"), scene).unwrap();
+        let said = call(&at, &["check", "packed.toml", "--set", "packing.aspect=4", "--set", grains]);
+        done(&said);
+        String::from_utf8(said.stdout).unwrap().contains("times as wide as the largest grain")
+    };
+    assert!(narrow("packing.grains=1600") && !narrow("packing.grains=16000"));
     // Without a number of grains, four times those of a cube.
     let cost = |aspect: &str| {
         let scene = "[filter]\ncu = 1.5\ndensity = \"loose\"\n[base]\ncu = 1.5\nd15f_over_d85b = 4\n";

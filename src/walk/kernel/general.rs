@@ -21,26 +21,29 @@ pub(super) fn step(
         let block = lanes.next_block();
         for j in begin..void.len().min(begin + DRAWS_PER_BLOCK) {
             let (from, d) = (void[j], diameter[j]);
-            let last_open = table.last_open[from as usize];
-            if last_open >= WAIT {
-                if last_open == NONE {
+            let draw = draw16(&block, j - begin);
+            let few = &table.few[from as usize];
+            let quick = if few.is_few { few.chosen(draw) } else { None };
+            let exit = match quick.map_or_else(|| any(network, table, from, draw, j, extension), Chosen::Exit)
+            {
+                Chosen::Exit(exit) => exit,
+                Chosen::None => {
                     events.stranded.push((from, d));
-                } else {
+                    continue;
+                }
+                Chosen::Wait => {
                     events.waiting += 1;
                     (void[kept], diameter[kept]) = (from, d);
                     kept += 1;
+                    continue;
                 }
-                continue;
-            }
-            let exits = network.exits(from);
-            let thresholds = &table.threshold[exits.clone()];
-            let chosen = choose(thresholds, draw16(&block, j - begin), j, extension);
-            let exit = chosen.map_or(last_open as usize, |e| exits.start + e);
-            if d > network.diameters()[exit] {
+            };
+            let (target, width) = table.beyond[exit];
+            if d > width {
                 events.stopped.push((exit as u32, d));
                 continue;
             }
-            match network.targets()[exit] {
+            match target {
                 END => events.eroded.push(d),
                 target => {
                     void[kept] = target;
@@ -53,6 +56,38 @@ pub(super) fn step(
     kept
 }
 
+/// Where a particle goes.
+enum Chosen {
+    /// Through this exit, where it fits.
+    Exit(usize),
+    /// No exit is open.
+    None,
+    /// No exit is open until the flow is solved again.
+    Wait,
+}
+
+/// The exit by the definition: of any number of them, and with all bits of the draw where they are needed.
+#[cold]
+#[inline(never)]
+fn any(
+    network: &Network,
+    table: &General,
+    from: u32,
+    draw: u16,
+    index: usize,
+    extension: Extension,
+) -> Chosen {
+    let last_open = table.last_open[from as usize];
+    match last_open {
+        NONE => return Chosen::None,
+        WAIT => return Chosen::Wait,
+        _ => {}
+    }
+    let exits = network.exits(from);
+    let chosen = choose(&table.threshold[exits.clone()], draw, index, extension);
+    Chosen::Exit(chosen.map_or(last_open as usize, |e| exits.start + e))
+}
+
 /// The first exit whose threshold exceeds the draw; sixteen bits decide unless they are equal.
 #[inline]
 fn choose(thresholds: &[u64], draw: u16, index: usize, extension: Extension) -> Option<usize> {
@@ -60,7 +95,7 @@ fn choose(thresholds: &[u64], draw: u16, index: usize, extension: Extension) -> 
         let top = (threshold >> 48) as u16;
         draw < top || (draw == top && extension.complete(draw, index as u64) < threshold)
     };
-    if thresholds.len() <= FEW_EXITS {
+    if thresholds.len() <= LOOKED_AT {
         return thresholds.iter().position(|&threshold| is_above(threshold));
     }
     // Thresholds rise. A reservoir has thousands.
@@ -69,4 +104,4 @@ fn choose(thresholds: &[u64], draw: u16, index: usize, extension: Extension) -> 
 }
 
 /// Up to so many exits are looked at one after another.
-const FEW_EXITS: usize = 16;
+const LOOKED_AT: usize = 16;
