@@ -7,7 +7,7 @@ use super::{Case, guesses_grains_per_void};
 use crate::scene::{About, CurveSource, Scene};
 
 /// Part of the fingerprint of every case: raised whenever the program gives other results for the same scene.
-const PROTOCOL: u32 = 1;
+const PROTOCOL: u32 = 2;
 
 impl Case {
     /// The scene with what its files and its filter's packing say of it, and with its files' names in a run
