@@ -120,6 +120,7 @@ RUNS = {
     "record": ["record.series_every=7", "record.size_curves=[3, 20]", "record.size_classes=20"],
     "record the end only": ["record.series_every=0", "record.size_curves=[]"],
     "sensitivity": ["record.sensitivity=[0.5, 2]", "record.sensitivity_replicates=2"],
+    "studies that stop": ["replicates=8", "record.sensitivity=[0.5, 2]"],
 }
 
 # Packings. The last sets all but two settings, whose names may change.
@@ -150,6 +151,7 @@ LIKE = {
     "counts, killed and resumed on 3 threads": ("counts", {"kill": True, "threads": 3}),
     "stratified counts, killed and resumed": ("stratified counts", {"kill": True}),
     "expected, killed and resumed": ("expected", {"kill": True}),
+    "studies that stop, 3 threads": ("studies that stop", {"threads": 3}),
     "sensitivity, its own scene": ("sensitivity", {"again": True}),
     "filter by sieve and curve file, its own scene": ("filter by sieve and curve file", {"again": True}),
     "network from a file, its own scene": ("network from a file", {"again": True}),

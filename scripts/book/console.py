@@ -16,7 +16,7 @@ import subprocess
 
 FENCE = re.compile(r"^```([\w-]*)(.*)$")
 # Lines that are there or not, by how fast the machine is.
-PROGRESS = re.compile(r" gone,|^ *\d+\.\d s  |^packing .* steps$")
+PROGRESS = re.compile(r" gone,|^after .* not yet final: |^ *\d+\.\d s  |^packing .* steps$")
 TIME = re.compile(r"\b\d+(?:\.\d+)? (?:s|min|h)\b")
 # Of the machine, too.
 MEMORY = re.compile(r"\b\d+(?:\.\d+)? [kMGT]B\b")

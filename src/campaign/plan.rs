@@ -2,6 +2,7 @@
 //!
 //! ```toml
 //! seed = 1
+//! seeds = "common"                   # one for all cases, which share networks; each its own without it
 //! scene = "common.toml"              # settings that all cases start from; the built-in scene without it
 //! [set]
 //! replicates = 10
@@ -22,8 +23,8 @@
 //! set = { "base.sieve" = "site.csv" }
 //! ```
 //!
-//! A case is called after its levels (`filter=loose,cu_b=3`), and its seed follows from the plan's seed and
-//! that name alone: a case that is added, left out or changed changes no other.
+//! A case is called after its levels (`filter=loose,cu_b=3`). Unless `seeds = "common"`, its seed follows
+//! from the plan's seed and that name alone: a case that is added, left out or changed changes no other.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -84,7 +85,7 @@ pub enum Seeds {
     #[default]
     Own,
     /// All the plan's: cases that differ in one factor then share their random numbers, and so differ less by
-    /// chance.
+    /// chance. Cases whose filter and lattice are the same walk the same networks, each built once.
     Common,
 }
 

@@ -1,5 +1,6 @@
 //! Walks a plan, collects it, and makes one of its packings.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::cases::{CASES, CasePart, CaseState, Drafts, FailedCase, PreparedCase, named, wanted};
@@ -17,6 +18,7 @@ use crate::run::folder::{FolderKind, claim, shown};
 use crate::run::machine::{on_threads, threads};
 use crate::run::pack::provide;
 use crate::run::prepare::PrepareOptions;
+use crate::run::shared_networks::SharedNetworks;
 
 /// How a campaign is walked; no setting changes a result.
 #[derive(Clone, Debug)]
@@ -72,6 +74,12 @@ impl CampaignOptions {
     pub(super) fn packed(&self, plan: &PackingPlan) -> Result<Option<PackedFilter>, RunError> {
         Ok(PackedFilter::find(&self.packings()?, plan)?)
     }
+}
+
+/// Whether any two cases have one seed, and so may have networks in common.
+fn have_common_seeds(cases: &[PreparedCase]) -> bool {
+    let seeds: BTreeSet<u64> = cases.iter().map(|case| case.case.scene.walk.seed).collect();
+    seeds.len() < cases.len()
 }
 
 /// A campaign of which this process has done what it can.
@@ -145,6 +153,7 @@ pub fn run(
         threads,
         callbacks,
         checkpoint_interval: options.checkpoint_interval,
+        networks: have_common_seeds(&cases).then(SharedNetworks::default),
         job: Allocation::here().map(|allocation| allocation.job),
         command: options.command.clone(),
     };

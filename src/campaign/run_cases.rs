@@ -28,6 +28,8 @@ use crate::run::machine::Machine;
 use crate::run::other_walks::OtherWalks;
 use crate::run::replicates::{self, ReplicateContext};
 use crate::run::results;
+use crate::run::shared_networks::SharedNetworks;
+use crate::run::studies::Studies;
 use crate::store::{Folder, StoreError, make_folder};
 
 /// What is said of a case whose results are gone.
@@ -94,6 +96,8 @@ pub(super) struct CaseRunner<'a> {
     pub callbacks: &'a CampaignCallbacks<'a>,
     /// How often a case that is being walked is saved.
     pub checkpoint_interval: CheckpointInterval,
+    /// Networks, where cases with one seed may have them in common.
+    pub networks: Option<SharedNetworks>,
     /// Job and task of a cluster.
     pub job: Option<String>,
     /// What a case's `manifest.json` says that it was started with.
@@ -246,14 +250,15 @@ impl CaseRunner<'_> {
         };
         let stop = self.callbacks.run.stop;
         let counting = Callbacks { on_event: &count, stop, ..Callbacks::default() };
-        let context = ReplicateContext { callbacks: &counting, checkpoints: Some(&checkpoints) };
+        let (callbacks, networks) = (&counting, self.networks.as_ref());
+        let context = ReplicateContext { callbacks, checkpoints: Some(&checkpoints), networks };
         let walked = replicates::replicates(case, &context)
             .and_then(|walked| Ok((OtherWalks::walk(case, &walked, &context)?, walked)))
-            .and_then(|(other, walked)| Ok((other, replicates::sensitivity(case, &context)?, walked)));
+            .and_then(|(other, walked)| Ok((other, Studies::walk(case, &walked, &context)?, walked)));
         for problem in checkpoints.passed_over() {
             self.warn(name, &format!("{problem}; the checkpoint before it was taken"));
         }
-        let (other, sensitivity, walked) = match walked {
+        let (other, studies, walked) = match walked {
             Err(error) if error.exit() == Exit::Stopped => {
                 checkpoints.flush()?;
                 return Ok(false);
@@ -275,7 +280,7 @@ impl CaseRunner<'_> {
         }
         let seconds = begun.elapsed().as_secs_f64();
         let threads = rayon::current_num_threads() as u64;
-        let outcome = results::outcome(case, &walked, &other, sensitivity, seconds);
+        let outcome = results::outcome(case, &walked, &other, studies, seconds);
         let manifest = results::manifest(case, threads, started, self.command.clone());
         folder.remove(LINE)?;
         // Results of what the case was before the plan was changed; another process that walks this very case

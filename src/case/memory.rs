@@ -52,18 +52,27 @@ impl Case {
     /// Base particles of a run of `n_base` that are walked one by one: all, or those that may be coarser than
     /// the finest constriction.
     pub fn one_by_one(&self, n_base: u64) -> u64 {
-        if self.scene.walk.engine.takes_each(n_base / self.increments(), self.counts[2]) {
+        if self.takes_each(n_base) {
             return n_base;
         }
         let passive = self.first_word(n_base) as f64 / 18_446_744_073_709_551_616.0;
         (n_base as f64 * (1.0 - passive)).ceil() as u64
     }
 
+    /// Whether all of `n_base` particles are walked one by one, whatever their sizes: on a network that has
+    /// its finest constriction.
+    pub fn takes_each(&self, n_base: u64) -> bool {
+        let passive = Engine::passive_share(n_base / self.increments(), self.passive_words());
+        self.scene.walk.engine.takes_each(passive, self.counts[2])
+    }
+
     /// The first random word that draws one of those particles.
     pub fn first_word(&self, n_base: u64) -> u128 {
-        if self.scene.walk.engine.takes_each(n_base / self.increments(), self.counts[2]) {
-            return 0;
-        }
+        if self.takes_each(n_base) { 0 } else { self.passive_words() }
+    }
+
+    /// How many of all 2^64 words draw a particle no coarser than the finest constriction.
+    fn passive_words(&self) -> u128 {
         let finest = match &self.fixed_network {
             Some(network) => network.finest_open(|_| false),
             None => (self.curve.smallest() / self.unit_mm) as f32,
@@ -106,7 +115,7 @@ impl Case {
     fn worker_bytes(&self, n_base: u64) -> u64 {
         let engine = self.scene.walk.engine;
         let counts = matches!(engine, Engine::Auto | Engine::Counts)
-            && !engine.takes_each(n_base / self.increments(), self.counts[2])
+            && !self.takes_each(n_base)
             && self.one_by_one(n_base) < n_base;
         if counts {
             self.counts[0].saturating_mul(COUNTS_A_WORKER.0).saturating_add(COUNTS_A_WORKER.1)

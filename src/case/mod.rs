@@ -5,6 +5,7 @@ mod cut;
 mod files;
 mod left_out;
 mod memory;
+mod network_key;
 mod packed_filter;
 mod packing_plan;
 mod pan;

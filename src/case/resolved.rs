@@ -7,7 +7,7 @@ use super::{Case, guesses_grains_per_void};
 use crate::scene::{About, CurveSource, Scene};
 
 /// Part of the fingerprint of every case: raised whenever the program gives other results for the same scene.
-const PROTOCOL: u32 = 1;
+const PROTOCOL: u32 = 2;
 
 /// The same where water decides on the way: raised also when pressures come out otherwise.
 const PROTOCOL_WITH_FLOW: u32 = 2;

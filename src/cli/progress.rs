@@ -11,6 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::print::{count, plain, shown, to_stderr};
 use super::report::page;
 use crate::case::PackingPlan;
+use crate::outcome::so_far::SoFar;
 use crate::packing::{CompressionProgress, Stage};
 use crate::run::{Callbacks, Event, RunError};
 use crate::store::platform::signals::stop_on_request;
@@ -62,6 +63,9 @@ pub fn bar_on_terminal(length: u64, style: &str) -> Option<ProgressBar> {
     Some(bar)
 }
 
+/// Looks at the replicates so far come at most this often as plain lines.
+const BETWEEN_LOOKS: Duration = Duration::from_secs(1);
+
 /// What is shown of the work.
 struct Display {
     quiet: bool,
@@ -82,9 +86,36 @@ const BETWEEN_INCREMENTS: Duration = Duration::from_secs(30);
 
 enum Work {
     /// Steps that it usually takes, and that were done when this start of the program began.
-    Packing { usual: u64, first: Option<u64> },
-    /// Runs done, of how many.
-    Walk { done: u64, runs: u64 },
+    Packing {
+        usual: u64,
+        first: Option<u64>,
+    },
+    Walk(Walk),
+}
+
+/// Runs done, of how many, and what the replicates came to so far.
+#[derive(Default)]
+struct Walk {
+    done: u64,
+    runs: u64,
+    so_far: SoFar,
+    /// Replicates that the verdict is to have, and runs of each.
+    needs: [u64; 2],
+    /// Replicates at the last look, and when that was said.
+    looked_at: usize,
+    said: Option<Instant>,
+}
+
+impl Walk {
+    /// A look that has not been said yet, where two or more replicates are whole and others are to come.
+    fn new_look(&mut self) -> Option<String> {
+        let [replicates, runs] = self.needs;
+        let look = self.so_far.look(runs)?;
+        let is_new = look.replicates > self.looked_at && (look.replicates as u64) < replicates;
+        let words = look.words(replicates).filter(|_| is_new)?;
+        self.looked_at = look.replicates;
+        Some(words)
+    }
 }
 
 impl Display {
@@ -107,13 +138,20 @@ impl Display {
             Event::PackingEnded => self.end(),
             Event::WalkBegun { runs } => {
                 let style = "{bar:30} {pos}/{len} runs, {elapsed} gone, about {eta} to go  {msg}";
-                self.begin(runs, style, Work::Walk { done: 0, runs });
+                self.begin(runs, style, Work::Walk(Walk { runs, ..Walk::default() }));
             }
             Event::Studying(what) => {
                 to_stderr(&format!("{:6.1} s  {}\n", self.begun.elapsed().as_secs_f64(), plain(what)));
             }
-            Event::RunWalked { .. } => {}
-            Event::Packing(_) | Event::Increment { .. } | Event::RunDone | Event::MoreRuns { .. } => {
+            Event::VerdictStands(outcome) => {
+                self.line(&format!("verdict: {}; the studies beside it follow\n", plain(&outcome.headline())))
+            }
+            Event::Packing(_)
+            | Event::Increment { .. }
+            | Event::RunDone
+            | Event::RunWalked { .. }
+            | Event::VerdictNeeds { .. }
+            | Event::MoreRuns { .. } => {
                 if let Some(shown) = self.shown.lock().ok().as_mut().and_then(|shown| shown.as_mut()) {
                     shown.tell(event);
                 }
@@ -122,11 +160,15 @@ impl Display {
     }
 
     fn warn(&self, warning: &str) {
-        let text = format!("warning: {}\n", plain(warning));
+        self.line(&format!("warning: {}\n", plain(warning)));
+    }
+
+    /// Says a line, above the bar where there is one.
+    fn line(&self, text: &str) {
         let shown = self.shown.lock().ok();
         match shown.as_ref().and_then(|shown| shown.as_ref()?.bar.as_ref()) {
-            Some(bar) => bar.suspend(|| to_stderr(&text)),
-            None => to_stderr(&text),
+            Some(bar) => bar.suspend(|| to_stderr(text)),
+            None => to_stderr(text),
         }
     }
 
@@ -158,19 +200,35 @@ impl Shown {
                     to_stderr(&(packing_line(progress, *usual, here, seconds) + "\n"));
                 }
             }
-            (Work::Walk { .. }, Event::Increment { replicate, run, increment, moving }) => {
+            (Work::Walk(walk), Event::VerdictNeeds { replicates, runs }) => walk.needs = [replicates, runs],
+            (
+                Work::Walk(walk),
+                Event::RunWalked { replicate, run, eroded_mass_fraction, below_threshold },
+            ) => {
+                walk.so_far.add(replicate, run, eroded_mass_fraction, below_threshold);
+                let Some(words) = walk.new_look() else { return };
                 if let Some(bar) = &self.bar {
+                    bar.set_message(words);
+                } else if walk.said.is_none_or(|said| said.elapsed() >= BETWEEN_LOOKS) {
+                    walk.said = Some(Instant::now());
+                    to_stderr(&(words + "\n"));
+                }
+            }
+            (Work::Walk(walk), Event::Increment { replicate, run, increment, moving }) => {
+                if walk.looked_at > 0 {
+                    // The bar shows what the replicates come to.
+                } else if let Some(bar) = &self.bar {
                     bar.set_message(increment_line(replicate, run, increment, moving));
                 } else if self.last.elapsed() >= BETWEEN_INCREMENTS {
                     self.last = Instant::now();
                     to_stderr(&(increment_line(replicate, run, increment, moving) + "\n"));
                 }
             }
-            (Work::Walk { runs, .. }, Event::MoreRuns { runs: more }) => {
-                *runs += more;
+            (Work::Walk(walk), Event::MoreRuns { runs: more }) => {
+                walk.runs += more;
                 self.bar.iter().for_each(|bar| bar.inc_length(more));
             }
-            (Work::Walk { done, runs }, Event::RunDone) => {
+            (Work::Walk(Walk { done, runs, .. }), Event::RunDone) => {
                 *done += 1;
                 if let Some(bar) = &self.bar {
                     bar.inc(1);

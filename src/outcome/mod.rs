@@ -5,7 +5,9 @@
 //! - [`RunMetrics`] are the numbers of one run at its end.
 //! - [`by_connectivity`] splits what a run retained by the connectivity of the voids (Table 3).
 //! - [`by_void`] is what happened in each void and constriction, for pictures.
-//! - [`verdict`] classifies, by mass eroded, one replicate or many; [`stopping`] says how many are enough.
+//! - [`verdict`] classifies, by mass eroded, one replicate or many; [`stopping`] says how many are enough,
+//!   [`early_stop`] how many of a study.
+//! - [`so_far`] is a look at the replicates of a run that is under way.
 //! - [`paper`] holds what the paper states.
 //! - [`rules`] applies the rules of filter practice to the same two curves; [`PairRules`] without a walk.
 //! - [`confidence`] says how far a verdict can be relied on, and why no further.
@@ -25,6 +27,7 @@ pub mod confidence;
 mod curve_range;
 pub mod design;
 pub(crate) mod digits;
+pub mod early_stop;
 mod flow_words;
 mod infiltration;
 mod least_squares;
@@ -40,6 +43,7 @@ pub mod precision;
 pub mod record;
 mod recorder;
 pub mod rules;
+pub mod so_far;
 mod statistic;
 pub mod stopping;
 pub(crate) mod student;

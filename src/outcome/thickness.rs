@@ -1,4 +1,4 @@
-//! How the verdict moves with the thickness of the filter.
+//! How the verdict moves with the thickness of the filter, in a sentence.
 
 use super::record::OfThickness;
 
@@ -15,7 +15,13 @@ pub fn sentence(rows: &[OfThickness]) -> Option<String> {
         let eroded: Vec<String> = row.runs.iter().map(|s| format!("{:.2} %", 100.0 * s.mean)).collect();
         let times = format!("{:.3}", row.factor);
         let times = times.trim_end_matches('0').trim_end_matches('.');
-        format!("{times} times as thick: {}, {} eroded", row.verdict.words(), eroded.join(" then "))
+        let replicates = if row.replicates == 1 { "replicate" } else { "replicates" };
+        format!(
+            "{times} times as thick: {}, {} eroded in {} {replicates}",
+            row.verdict.words(),
+            eroded.join(" then "),
+            row.replicates
+        )
     };
     let each: Vec<String> = others.iter().map(of_row).collect();
     let said = if stays { "The verdict stays with thickness" } else { "The verdict moves with thickness" };
@@ -30,7 +36,16 @@ mod tests {
     fn row(factor: f64, verdict: Verdict, mean: f64) -> OfThickness {
         let runs = vec![Statistic { mean, sd: None, low: None, high: None }];
         let layers = (60.0 * factor) as u64;
-        OfThickness { factor, layers, thickness_mm: None, n_base: 100, replicates: 1, verdict, runs }
+        OfThickness {
+            factor,
+            layers,
+            thickness_mm: None,
+            n_base: 100,
+            replicates: 1,
+            stopped_when_clear: false,
+            verdict,
+            runs,
+        }
     }
 
     #[test]
@@ -40,12 +55,13 @@ mod tests {
         let stays = sentence(&[own.clone(), row(2.0, Verdict::Some, 0.1)]).unwrap();
         assert_eq!(
             stays,
-            "The verdict stays with thickness (2 times as thick: some erosion, 10.00 % eroded)."
+            "The verdict stays with thickness (2 times as thick: some erosion, 10.00 % eroded in 1 \
+             replicate)."
         );
         let moves = sentence(&[row(0.5, Verdict::Some, 0.2), own, row(2.5, Verdict::None, 0.04)]).unwrap();
         assert!(
             moves.starts_with("The verdict moves with thickness (0.5 times as thick: some erosion, 20.00 %")
         );
-        assert!(moves.ends_with("2.5 times as thick: no erosion, 4.00 % eroded)."), "{moves}");
+        assert!(moves.ends_with("2.5 times as thick: no erosion, 4.00 % eroded in 1 replicate)."), "{moves}");
     }
 }

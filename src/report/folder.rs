@@ -121,6 +121,7 @@ fn stand_among_its_variations(outcome: &mut Outcome) {
         grains_per_void: outcome.grains_per_void,
         mass_ratio: outcome.inputs.mass_ratio,
         replicates: outcome.replicates.len() as u64,
+        stopped_when_clear: false,
         verdict: outcome.verdict,
         runs: outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect(),
     };

@@ -7,6 +7,7 @@ use super::numbers::{
 };
 use super::run_figures::run_name;
 use super::table::Table;
+use super::varied::STOPPED_WHEN_CLEAR;
 use super::walks::Walks;
 use crate::outcome::record::{OfThickness, Outcome, Replicate, Run, RunSummary, Sensitivity, Statistic};
 
@@ -134,6 +135,11 @@ pub(super) fn replicates(walks: &Walks) -> Markup {
     }
 }
 
+/// What is said below a study of which points stopped early.
+fn few(stopped: bool) -> Markup {
+    html! { @if stopped { p.small { (STOPPED_WHEN_CLEAR) } } }
+}
+
 /// Filters of other thicknesses, collapsed.
 pub(super) fn thickness(outcome: &Outcome) -> Markup {
     let scale_free = outcome.inputs.scale_free;
@@ -151,6 +157,7 @@ pub(super) fn thickness(outcome: &Outcome) -> Markup {
         @if !outcome.thickness.is_empty() { details {
             summary { "Filters of other thicknesses, in numbers" }
             (table.text("Verdict", |row| row.verdict.words()))
+            (few(outcome.thickness.iter().any(|row| row.stopped_when_clear)))
         } }
     }
 }
@@ -171,6 +178,7 @@ pub(super) fn sensitivity(outcome: &Outcome) -> Markup {
         @if !outcome.sensitivity.is_empty() { details {
             summary { "Sensitivity to the number of base particles, in numbers" }
             (table.text("Verdict", |case| case.verdict.words()))
+            (few(outcome.sensitivity.iter().any(|case| case.stopped_when_clear)))
         } }
     }
 }

@@ -8,6 +8,11 @@ use super::shell::Drawn;
 use super::walks::Walks;
 use crate::outcome::record::{OfThickness, Statistic, Verdict};
 
+/// What is said where points of a study stopped early.
+pub(super) const STOPPED_WHEN_CLEAR: &str = "A point stops after one or two replicates where its class is \
+    clearly that of this scene: its interval then takes twice the scatter of this scene’s own replicates, \
+    because so few say nothing sure of theirs.";
+
 /// One of several filters or bases that differ in one thing: how many times that of this scene.
 struct Varied<'a> {
     factor: f64,
@@ -15,6 +20,8 @@ struct Varied<'a> {
     below: String,
     verdict: Verdict,
     runs: &'a [Statistic],
+    replicates: u64,
+    stopped_when_clear: bool,
 }
 
 /// Eroded mass against the number of base particles, and the class that each number gives.
@@ -25,6 +32,8 @@ pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
         below: known(case.grains_per_void, significant),
         verdict: case.verdict,
         runs: &case.runs,
+        replicates: case.replicates,
+        stopped_when_clear: case.stopped_when_clear,
     });
     let titles = [
         "How the verdict moves with the number of base particles",
@@ -32,12 +41,14 @@ pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
          colour behind is the verdict",
         "Times the base particles of this scene; below, grains per void",
     ];
-    let figure = varied(&folder.walks(), cases.collect(), titles)?;
+    let cases: Vec<Varied> = cases.collect();
+    let behind = behind(&cases);
+    let figure = varied(&folder.walks(), cases, titles)?;
     let caption = format!(
         "How the verdict moves with the number of base particles, N_base. Grains per void and mass ratio \
          enter N_base only as a product (Eq. 2), so this one axis answers for both: ×2 is twice the grains \
          per void or twice the mass ratio. ×1 is this scene: {} grains per void, mass ratio {}. Bars: 95 % \
-         intervals.",
+         intervals. {behind}",
         known(folder.outcome.grains_per_void, significant),
         known(folder.outcome.inputs.mass_ratio, percent),
     );
@@ -54,6 +65,8 @@ pub(super) fn thickness(folder: &RunFolder) -> Option<Drawn> {
         below: of_row(row),
         verdict: row.verdict,
         runs: &row.runs,
+        replicates: row.replicates,
+        stopped_when_clear: row.stopped_when_clear,
     });
     let titles = [
         "How the verdict moves with the thickness of the filter",
@@ -61,14 +74,24 @@ pub(super) fn thickness(folder: &RunFolder) -> Option<Drawn> {
          colour behind is the verdict",
         "Times the thickness of this scene; below, the thickness modelled",
     ];
-    let figure = varied(&folder.walks(), rows.collect(), titles)?;
+    let rows: Vec<Varied> = rows.collect();
+    let behind = behind(&rows);
+    let figure = varied(&folder.walks(), rows, titles)?;
     let caption = format!(
         "How the verdict moves with the thickness of the filter: more layers are more constrictions to \
          pass. ×1 is this scene, {} layers of voids. By Eq. (2) a thicker filter is offered as many times \
-         the base. Bars: 95 % intervals.",
+         the base. Bars: 95 % intervals. {behind}",
         whole(folder.outcome.inputs.network.layers),
     );
     Some(Drawn::new("thickness", figure, caption))
+}
+
+/// How many replicates stand behind each point, in words.
+fn behind(cases: &[Varied]) -> String {
+    let each = cases.iter().map(|case| format!("×{} {}", trimmed(case.factor), case.replicates));
+    let each = each.collect::<Vec<_>>().join(", ");
+    let stopped = cases.iter().any(|case| case.stopped_when_clear);
+    format!("Replicates: {each}.{}", if stopped { format!(" {STOPPED_WHEN_CLEAR}") } else { String::new() })
 }
 
 /// Eroded mass against multiples of one thing, with title, description and name of the axis; `None` without

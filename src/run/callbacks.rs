@@ -7,6 +7,7 @@ use super::error::{AnyError, RunError};
 use super::folder::FolderKind;
 use super::unfinished;
 use crate::case::PackingPlan;
+use crate::outcome::record::Outcome;
 use crate::packing::CompressionProgress;
 use crate::store::Folder;
 
@@ -55,6 +56,15 @@ pub enum Event<'a> {
         /// Whether that is below the threshold, exactly.
         below_threshold: bool,
     },
+    /// What the verdict follows from, as far as is known; said again where more replicates are needed.
+    VerdictNeeds {
+        /// Replicates of the case itself.
+        replicates: u64,
+        /// Runs of each.
+        runs: u64,
+    },
+    /// The verdict stands, and what else is walked are studies beside it.
+    VerdictStands(&'a Outcome),
     /// More runs are needed than was known.
     MoreRuns {
         /// How many.

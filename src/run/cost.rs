@@ -6,7 +6,8 @@
 //! estimates against measured times (`scripts/check_times.py`).
 
 use super::pilot::{WorkByVoid, pilot};
-use super::replicates::networks_to_walk;
+use super::replicates::first_replicates;
+use super::studies::likely_replicates;
 use crate::case::{Case, PackingPlan};
 use crate::scene::NetworkSource;
 use crate::walk::Engine;
@@ -24,15 +25,15 @@ struct Rates {
 }
 
 /// Of a walk whose occupied voids are counted.
-const WALK: Rates = Rates { moved_s: 3.05e-9, inserted_s: 2.85e-8, void_s: 2.8e-8, looked_at_s: 1.35e-8 };
+const WALK: Rates = Rates { moved_s: 2.05e-9, inserted_s: 6.5e-8, void_s: 1.65e-8, looked_at_s: 8e-9 };
 /// With engine `expected` the counts of a void take so many times as long.
-const EXPECTED: f64 = 0.4;
+const EXPECTED: f64 = 0.55;
 /// Of a walk of which only the number of voids is known, empty ones included. A study of precision plans by
 /// these: another number changes what it walks.
 const COUNTED: Rates = Rates { moved_s: 2.5e-9, inserted_s: 1.5e-8, void_s: 1.7e-8, looked_at_s: 0.0 };
 /// On a network of any other kind, whose voids have any number of exits, the counts of a void take this many
 /// times as long.
-const OTHER_NETWORK: f64 = 3.9;
+const OTHER_NETWORK: f64 = 5.5;
 /// A void holds counts for the increments of insertion and, as the front that passes it is spread out, this
 /// many times the root of the number of layers.
 const SPREAD: f64 = 24.0;
@@ -50,7 +51,7 @@ const FILES_S: f64 = 0.12;
 /// ... and those of a packing besides.
 const PACKED_FILES_S: f64 = 0.1;
 /// The most that a pilot walk of a case may take.
-const PILOT_S: f64 = 0.2;
+const PILOT_S: f64 = 0.25;
 /// Share of a case's threads that walks keep busy.
 const BUSY: f64 = 0.7;
 /// Seconds for one grain in one step of a compression of `GRAINS` grains; more fit the cache less well, and
@@ -97,34 +98,40 @@ impl Case {
 
     /// The same for one reading of its base, its files apart.
     fn reading_seconds(&self) -> f64 {
-        let factors = self.sensitivity_factors();
-        let most_s = PILOT_S / (1 + factors.len() + self.thickness_factors().len()) as f64;
-        let own = self.replicate_seconds(self.n_base, most_s);
-        let of_factor = |f: f64| self.replicate_seconds((self.n_base as f64 * f) as u64, most_s);
-        let others: f64 = factors.into_iter().map(of_factor).sum();
-        let [replicates, studied] = networks_to_walk(self).map(|n| n as f64);
-        let [voids, constrictions, ..] = self.counts.map(|n| n as f64);
-        let networks = (replicates + studied) * (voids + constrictions) * NETWORK_S;
+        let (factors, thicknesses) = (self.sensitivity_factors(), self.thickness_factors());
+        let most_s = PILOT_S / (1 + factors.len() + thicknesses.len()) as f64;
+        let own = self.of_replicate(self.n_base, most_s);
+        let of_base = |f: f64| self.of_replicate((self.n_base as f64 * f) as u64, most_s);
         let of_thickness = |factor: f64| match self.copies {
-            None => {
-                self.of_thickness(factor).map_or(own, |other| other.replicate_seconds(other.n_base, most_s))
-            }
+            None => self.of_thickness(factor).ok().map(|other| other.of_replicate(other.n_base, most_s)),
             // As many times the base on as many times the copies.
-            Some(_) => own * factor * factor.max(1.0),
+            Some(_) => Some(Foreseen { seconds: own.seconds * factor * factor.max(1.0), eroded: None }),
         };
-        let thick: f64 = self.thickness_factors().into_iter().map(of_thickness).sum();
-        let others = others + thick;
-        replicates * (1 + self.curve_ends().len()) as f64 * own
-            + self.scene.record.sensitivity_replicates as f64 * others
-            + networks
+        let points = factors.into_iter().map(of_base);
+        let points = points.chain(thicknesses.into_iter().filter_map(of_thickness));
+        let studies: f64 = points
+            .map(|point| {
+                // What is not walked by a pilot is taken to erode as the case does.
+                let own = own.eroded.as_deref();
+                let eroded = own.map(|own| (own, point.eroded.as_deref().unwrap_or(own)));
+                likely_replicates(self, eroded) as f64 * point.seconds
+            })
+            .sum();
+        let replicates = first_replicates(self) * (1 + self.curve_ends().len()) as u64;
+        replicates as f64 * own.seconds + studies
     }
 
-    /// Seconds of all runs of a replicate with so many base particles: by a pilot walk, else by a guess.
-    fn replicate_seconds(&self, n_base: u64, most_s: f64) -> f64 {
+    /// All runs of a replicate with so many base particles, its network included: by a pilot walk, else by a
+    /// guess.
+    fn of_replicate(&self, n_base: u64, most_s: f64) -> Foreseen {
         let runs = self.scene.walk.runs as f64;
         let guess = self.guessed(n_base);
-        let walked = pilot(self, n_base, runs * guess.seconds, most_s).map(|work| self.walked(&work));
-        walked.unwrap_or(runs * guess.seconds) + runs * guess.solved
+        let [voids, constrictions, ..] = self.counts.map(|n| n as f64);
+        let besides = runs * guess.solved + (voids + constrictions) * NETWORK_S;
+        match pilot(self, n_base, runs * guess.seconds, most_s) {
+            Some(work) => Foreseen { seconds: self.walked(&work) + besides, eroded: Some(work.eroded) },
+            None => Foreseen { seconds: runs * guess.seconds + besides, eroded: None },
+        }
     }
 
     /// Seconds of all runs of a replicate that do so much work for each void.
@@ -137,8 +144,8 @@ impl Case {
 
     /// Seconds of one run that meets a clean network all the way.
     fn guessed(&self, n_base: u64) -> Guess {
-        let [voids, constrictions, start_nodes, layers] = self.counts.map(|n| n as f64);
-        let each = self.scene.walk.engine.takes_each(n_base / self.increments(), start_nodes as u64);
+        let [voids, constrictions, _, layers] = self.counts.map(|n| n as f64);
+        let each = self.takes_each(n_base);
         let one_by_one = self.one_by_one(n_base) as f64;
         let increments = self.increments() as f64 + SPREAD * layers.sqrt();
         let occupied = if each { 0.0 } else { self.slower() * voids * increments };
@@ -193,6 +200,13 @@ impl Rates {
             + self.inserted_s * one_by_one
             + self.moved_s * moves
     }
+}
+
+/// What is foreseen of a replicate.
+struct Foreseen {
+    seconds: f64,
+    /// Eroded mass fraction by run, where a pilot walk says.
+    eroded: Option<Vec<f64>>,
 }
 
 /// Seconds of a run, those in which the flow is solved apart.

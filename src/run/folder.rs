@@ -218,7 +218,7 @@ impl FolderKind {
         let has = |name: &str| folder.join(name).symlink_metadata().is_ok();
         Ok(!has(unfinished::FILE)
             && match self {
-                // With checkpoints, a study of the sensitivity is still to come.
+                // With checkpoints, its studies are still to come.
                 Self::Run => has("scene.toml") && has("manifest.json") && !Checkpoints::is_in(folder)?,
                 // With a state beside it, whoever wrote the record was killed before all was done.
                 Self::Packing => has(RECORD) && !STATES.iter().any(|state| has(state)),

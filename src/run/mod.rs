@@ -30,7 +30,8 @@ mod pilot;
 pub mod prepare;
 pub mod replicates;
 pub mod results;
-mod thickness;
+pub mod shared_networks;
+pub mod studies;
 pub mod unfinished;
 pub mod walk;
 

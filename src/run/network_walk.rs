@@ -185,10 +185,11 @@ impl NetworkWalk {
     /// What one walk on the largest of these networks takes (bytes).
     fn bytes(&self, networks: &[Arc<Network>]) -> u64 {
         let of = |network: &Arc<Network>| {
-            let share = self.n_base / self.increments;
-            let one_by_one = match self.engine.takes_each(share, network.entries() as u64) {
+            let coarse = self.coarse_particles(network);
+            let passive_share = (self.n_base - coarse) / self.increments;
+            let one_by_one = match self.engine.takes_each(passive_share, network.entries() as u64) {
                 true => self.n_base,
-                false => self.coarse_particles(network),
+                false => coarse,
             };
             let voids = (network.voids() as u64).saturating_mul(BYTES_A_VOID);
             one_by_one.saturating_mul(BYTES_A_PARTICLE).saturating_add(voids)

@@ -1,12 +1,11 @@
 //! What is walked of a case besides itself, where its inputs leave open what it is: the other reading of a
-//! pan fraction, the ends of the range of its constriction curve, and other thicknesses.
+//! pan fraction, and the ends of the range of its constriction curve.
 
 use super::curve_range::curve_range;
 use super::error::RunError;
 use super::replicates::{ReplicateContext, ReplicateResult, other_reading};
-use super::thickness::thicknesses;
 use crate::case::Case;
-use crate::outcome::record::{CurveRange, OfThickness};
+use crate::outcome::record::CurveRange;
 
 /// What was walked besides the case itself.
 #[derive(Default)]
@@ -15,8 +14,6 @@ pub struct OtherWalks {
     pub reading: Vec<ReplicateResult>,
     /// What came of the ends of the curve's range; `None` where the curve is no range.
     pub range: Option<CurveRange>,
-    /// What came of other thicknesses, and of its own; none where they are left out.
-    pub thickness: Vec<OfThickness>,
 }
 
 impl OtherWalks {
@@ -29,10 +26,6 @@ impl OtherWalks {
         walked: &[ReplicateResult],
         context: &ReplicateContext,
     ) -> Result<Self, RunError> {
-        Ok(Self {
-            reading: other_reading(case, context)?,
-            range: curve_range(case, walked, context)?,
-            thickness: thicknesses(case, walked, context)?,
-        })
+        Ok(Self { reading: other_reading(case, context)?, range: curve_range(case, walked, context)? })
     }
 }

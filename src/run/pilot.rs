@@ -10,12 +10,13 @@ use bitvec::vec::BitVec;
 
 use crate::case::{Case, replicate_seed};
 use crate::network::Network;
+use crate::outcome::Eroded;
 use crate::walk::{Passive, SizeClasses, State, Walk, WalkControl};
 
 use super::replicates::plan;
 
 /// Work of all runs of one replicate, for each void of its network.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct WorkByVoid {
     /// Voids that held counts, summed over the increments.
     pub occupied: f64,
@@ -25,6 +26,8 @@ pub(super) struct WorkByVoid {
     pub moves: f64,
     /// Particles that are walked by themselves.
     pub one_by_one: f64,
+    /// Eroded mass fraction of each run: a slim lattice erodes about as much.
+    pub eroded: Vec<f64>,
 }
 
 /// Greatest width of the slim lattice: voids along x and y.
@@ -71,6 +74,7 @@ pub(super) fn pilot(case: &Case, n_base: u64, whole_s: f64, most_s: f64) -> Opti
                 WalkControl::Continue
             })
             .ok()?;
+        work.eroded.push(Eroded::of(&state, case.pan_by_mass_only()).mass_fraction);
         blocked = state.blocked;
     }
     let each = network.voids() as f64;
@@ -79,6 +83,7 @@ pub(super) fn pilot(case: &Case, n_base: u64, whole_s: f64, most_s: f64) -> Opti
         looked_at: work.looked_at / each,
         moves: work.moves / each,
         one_by_one: work.one_by_one / each,
+        eroded: work.eroded,
     })
 }
 

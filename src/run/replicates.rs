@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::ops::RangeInclusive;
+use std::sync::Arc;
 use std::time::Instant;
 
 use bitvec::slice::BitSlice;
@@ -11,10 +12,12 @@ use rayon::prelude::*;
 use super::callbacks::{Callbacks, Event};
 use super::checkpoints::{Checkpoints, Done, WalkId};
 use super::error::RunError;
+use super::shared_networks::SharedNetworks;
+use super::studies::replicates_at_least;
 use crate::case::{Case, replicate_seed};
-use crate::network::Network;
-use crate::outcome::record::{Replicate, Run, RunSummary, Sensitivity, Statistic, Stopping, Verdict};
-use crate::outcome::stopping::Look;
+use crate::network::{Network, NetworkError};
+use crate::outcome::record::{Replicate, Run, RunSummary, Statistic, Stopping, Verdict};
+use crate::outcome::stopping::{Look, ReplicateValues};
 use crate::outcome::verdict::{below_by_interval, classify};
 use crate::outcome::{Recorded, RunId, RunMetrics};
 use crate::scene::NetworkSource;
@@ -28,11 +31,20 @@ pub struct ReplicateContext<'a> {
     pub callbacks: &'a Callbacks<'a>,
     /// Saves what is done, so that the next start continues from there; nothing is saved without it.
     pub checkpoints: Option<&'a Checkpoints>,
+    /// Networks that other cases walk, too; each replicate builds its own without them.
+    pub networks: Option<&'a SharedNetworks>,
 }
 
 impl ReplicateContext<'_> {
-    fn tell(&self, event: Event) {
+    pub(super) fn tell(&self, event: Event) {
         (self.callbacks.on_event)(event);
+    }
+
+    fn network(&self, case: &Case, seed: u64) -> Result<Arc<Network>, NetworkError> {
+        match self.networks {
+            Some(shared) => shared.get(case, seed),
+            None => Ok(Arc::new(case.network(seed)?)),
+        }
     }
 }
 
@@ -50,20 +62,13 @@ pub struct ReplicateResult {
     pub(super) below: Vec<bool>,
 }
 
-/// Number of runs that [`replicates`], the ends of the curve's range, other thicknesses and [`sensitivity`]
-/// walk for a case, as far as it is known before.
+/// Number of runs that are walked for a case: of itself, of the ends of its curve's range, and of its
+/// studies, as far as it is known before.
 pub fn runs_to_walk(case: &Case) -> u64 {
-    let of_readings: u64 = case.readings().map(|case| networks_to_walk(case).iter().sum::<u64>()).sum();
-    let at_ends = case.curve_ends().len() as u64 * first_replicates(case);
-    let thicknesses = case.thickness_factors().len() as u64 * case.scene.record.sensitivity_replicates;
-    case.scene.walk.runs * (of_readings + at_ends + thicknesses)
-}
-
-/// Networks that one reading of a case is walked on, as far as it is known before: for itself, and for its
-/// sensitivity study.
-pub fn networks_to_walk(case: &Case) -> [u64; 2] {
-    let studied = case.sensitivity_factors().len() as u64 * case.scene.record.sensitivity_replicates;
-    [first_replicates(case), studied]
+    let first = first_replicates(case);
+    let of_verdict = first * (case.readings().count() + case.curve_ends().len()) as u64;
+    let points = (case.sensitivity_factors().len() + case.thickness_factors().len()) as u64;
+    case.scene.walk.runs * (of_verdict + points * replicates_at_least(case))
 }
 
 /// Walks every replicate of the case: as many as the scene says, or until its rule stops.
@@ -93,6 +98,9 @@ fn all_replicates(
     let mut walked = Vec::new();
     let mut wanted = first_replicates(case);
     loop {
+        if part == 0 {
+            context.tell(Event::VerdictNeeds { replicates: wanted, runs: case.scene.walk.runs });
+        }
         let more = walked.len() as u64 + 1..=wanted;
         walked.extend(some_replicates(case, part, more, case.n_base, context)?);
         match look(case, &walked) {
@@ -113,7 +121,8 @@ pub fn stopping(case: &Case, walked: &[ReplicateResult]) -> Option<Stopping> {
     }
 }
 
-fn first_replicates(case: &Case) -> u64 {
+/// Replicates of a case as far as it is known before it is walked.
+pub(super) fn first_replicates(case: &Case) -> u64 {
     let (rule, replicates) = (&case.scene.stop, case.scene.walk.replicates);
     if rule.is_set() { rule.replicates_at(replicates, 1) } else { replicates }
 }
@@ -121,11 +130,16 @@ fn first_replicates(case: &Case) -> u64 {
 /// A look of the scene's rule at what is walked.
 fn look(case: &Case, walked: &[ReplicateResult]) -> Option<Look> {
     let rule = Some(&case.scene.stop).filter(|rule| rule.is_set())?;
+    Some(rule.look(case.scene.walk.replicates, &values_by_run(walked)))
+}
+
+/// The eroded mass of each run, replicate by replicate, and whether it is below the threshold.
+pub(super) fn values_by_run(walked: &[ReplicateResult]) -> Vec<ReplicateValues> {
+    let runs = walked.first().map_or(0, |w| w.below.len());
     let of_run = |run: usize| {
         walked.iter().map(|w| (w.replicate.runs[run].eroded_mass_fraction, w.below[run])).collect()
     };
-    let runs: Vec<_> = (0..case.scene.walk.runs as usize).map(of_run).collect();
-    Some(rule.look(case.scene.walk.replicates, &runs))
+    (0..runs).map(of_run).collect()
 }
 
 /// Replicates with `n_base` particles each; part 0 are those of the case itself, the only ones that are
@@ -146,7 +160,8 @@ pub(super) fn some_replicates(
     }
 }
 
-fn walk_replicate(
+/// Walks one replicate with `n_base` particles, or takes it from its checkpoint.
+pub(super) fn walk_replicate(
     case: &Case,
     part: u64,
     replicate: u64,
@@ -155,7 +170,7 @@ fn walk_replicate(
 ) -> Result<ReplicateResult, RunError> {
     let seed = replicate_seed(case.scene.walk.seed, replicate);
     let id = WalkId { part, replicate, seed, n_base };
-    let network = case.network(seed)?;
+    let network = context.network(case, seed)?;
     let mut blocked = BitVec::repeat(false, network.constrictions());
     let first = plan(case, &network, &blocked, n_base);
     let loaded = context.checkpoints.map(|checkpoints| checkpoints.load(id));
@@ -365,45 +380,5 @@ fn run_summary(walked: &[ReplicateResult], run: usize) -> RunSummary {
         blocked_fraction: of(|r| r.blocked_fraction),
         blocked_first_three_layers_fraction: of(|r| r.blocked_first_three_layers_fraction),
         backbone_fraction: of(|r| r.backbone_fraction),
-    }
-}
-
-/// How the verdict moves with the number of base particles, on the networks of the first replicates.
-///
-/// # Errors
-/// As [`replicates`].
-pub fn sensitivity(case: &Case, context: &ReplicateContext) -> Result<Vec<Sensitivity>, RunError> {
-    let each = case.scene.record.sensitivity_replicates;
-    let factors = case.sensitivity_factors().into_iter().zip(1..);
-    factors.map(|(factor, part)| one_sensitivity(case, part, factor, each, context)).collect()
-}
-
-fn one_sensitivity(
-    case: &Case,
-    part: u64,
-    factor: f64,
-    replicates: u64,
-    context: &ReplicateContext,
-) -> Result<Sensitivity, RunError> {
-    let n_base = ((case.n_base as f64 * factor).round() as u64).max(1);
-    let walked = some_replicates(case, part, 1..=replicates, n_base, context)?;
-    Ok(of_walked(case, factor, n_base, &walked))
-}
-
-/// The scene itself as one row of its sensitivity.
-pub fn as_it_is(case: &Case, walked: &[ReplicateResult]) -> Sensitivity {
-    of_walked(case, 1.0, case.n_base, walked)
-}
-
-fn of_walked(case: &Case, factor: f64, n_base: u64, walked: &[ReplicateResult]) -> Sensitivity {
-    let (verdict, summaries) = summarise(walked);
-    Sensitivity {
-        factor,
-        n_base,
-        grains_per_void: case.grains_per_void.map(|g| g * factor),
-        mass_ratio: case.mass_ratio.map(|m| m * factor),
-        replicates: walked.len() as u64,
-        verdict,
-        runs: summaries.iter().map(|s| s.eroded_mass_fraction).collect(),
     }
 }

@@ -7,33 +7,30 @@ use serde::Serialize;
 use super::error::RunError;
 use super::machine::Machine;
 use super::other_walks::OtherWalks;
-use super::replicates::{ReplicateResult, as_it_is, stopping, summarise};
+use super::replicates::{ReplicateResult, stopping, summarise};
+use super::studies::Studies;
 use crate::case::{Case, INPUT_NAMES, replicate_seed};
 use crate::network::ExitRule;
 use crate::outcome::record::{
-    CurveRange, Manifest, Outcome, PanBounds, PanReading, RunSummary, Sensitivity, Statistic, Stopping,
-    Verdict, VoidRow,
+    CurveRange, Manifest, Outcome, PanBounds, PanReading, RunSummary, Statistic, Stopping, Verdict, VoidRow,
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
 use crate::outcome::{Recorded, by_void, confidence, infiltration, leaves_out, rules, verdict};
 use crate::scene::NetworkSource;
 use crate::store::{Folder, StoreError};
 
-/// The outcome of a case that has been walked; with what was walked besides.
+/// The outcome of a case that has been walked; with what was walked besides, and its studies, none so far
+/// where they are to come.
 pub fn outcome(
     case: &Case,
     walked: &[ReplicateResult],
     other: &OtherWalks,
-    mut sensitivity: Vec<Sensitivity>,
+    studies: Studies,
     seconds: f64,
 ) -> Outcome {
     let (verdict, summary, stopping) = concluded(case, walked);
     let pan_bounds = pan_bounds(case, [walked, &other.reading]);
     let verdict = pan_bounds.as_ref().map_or(verdict, PanBounds::verdict);
-    if !sensitivity.is_empty() {
-        sensitivity.push(as_it_is(case, walked));
-        sensitivity.sort_by(|a, b| a.factor.total_cmp(&b.factor));
-    }
     let rules = rules::apply(&rule_inputs(case, walked));
     // What was to be walked twice has been.
     let told = |sentences: Vec<String>| match (&pan_bounds, case.pan_doubt()) {
@@ -89,8 +86,8 @@ pub fn outcome(
             _ => None,
         },
         curve_range: other.range.clone(),
-        sensitivity,
-        thickness: other.thickness.clone(),
+        sensitivity: studies.sensitivity,
+        thickness: studies.thickness,
         seconds,
     }
 }

@@ -10,12 +10,13 @@ use super::folder::{FolderKind, claim, claim_first_free, clear, own_packings, sh
 use super::machine::on_threads;
 use super::other_walks::OtherWalks;
 use super::prepare::{PrepareOptions, prepare_into};
-use super::replicates::{ReplicateContext, ReplicateResult, replicates, runs_to_walk, sensitivity};
+use super::replicates::{ReplicateContext, ReplicateResult, replicates, runs_to_walk};
 use super::results;
+use super::studies::Studies;
 use super::unfinished::{self, Unfinished};
 use crate::case::Case;
 use crate::outcome::Recorded;
-use crate::outcome::record::{Outcome, Sensitivity};
+use crate::outcome::record::Outcome;
 use crate::scene::Scene;
 use crate::store::Folder;
 
@@ -121,12 +122,16 @@ pub fn walk_case(case: &Case, callbacks: &Callbacks) -> Result<Outcome, RunError
 pub fn walk_case_recorded(case: &Case, callbacks: &Callbacks) -> Result<(Outcome, Recorded), RunError> {
     let walk = || {
         let begun = Instant::now();
-        let context = ReplicateContext { callbacks, checkpoints: None };
+        let context = ReplicateContext { callbacks, checkpoints: None, networks: None };
         (callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(case) });
         let walked = replicates(case, &context)?;
         let other = OtherWalks::walk(case, &walked, &context)?;
-        let sensitivity = sensitivity(case, &context)?;
-        let outcome = results::outcome(case, &walked, &other, sensitivity, begun.elapsed().as_secs_f64());
+        if !Studies::are_none(case) {
+            let first = results::outcome(case, &walked, &other, Studies::default(), seconds(begun));
+            (callbacks.on_event)(Event::VerdictStands(&first));
+        }
+        let studies = Studies::walk(case, &walked, &context)?;
+        let outcome = results::outcome(case, &walked, &other, studies, seconds(begun));
         let mut recorded = Recorded::default();
         walked.into_iter().for_each(|replicate| recorded.append(replicate.recorded));
         Ok((outcome, recorded))
@@ -231,7 +236,11 @@ fn without_page(folder: &Folder, case: &Case) -> Result<Option<Outcome>, RunErro
     }
     let outcome = folder.read(FolderKind::Run.record())?;
     let outcome: Option<Outcome> = outcome.and_then(|bytes| serde_json::from_slice(&bytes).ok());
-    Ok(outcome.filter(|o| case.sensitivity_factors().is_empty() || !o.sensitivity.is_empty()))
+    Ok(outcome.filter(|o| Studies::are_whole(case, &o.sensitivity, &o.thickness)))
+}
+
+fn seconds(begun: Instant) -> f64 {
+    begun.elapsed().as_secs_f64()
 }
 
 /// A case that is walked into a folder.
@@ -243,35 +252,34 @@ struct CaseRun<'a> {
 }
 
 impl CaseRun<'_> {
-    /// Walks the replicates, and what is walked besides, writes what came of them, then
-    /// adds the study of the sensitivity and writes the whole.
+    /// Walks what the verdict follows from, the replicates and what is walked besides, writes what came of
+    /// them, then adds the studies and writes the whole.
     fn walk(
         &self,
         write: impl Fn(&Outcome, &[ReplicateResult]) -> Result<(), RunError>,
     ) -> Result<Outcome, RunError> {
         let begun = Instant::now();
-        let context = ReplicateContext { callbacks: self.callbacks, checkpoints: Some(self.checkpoints) };
+        let (callbacks, checkpoints) = (self.callbacks, Some(self.checkpoints));
+        let context = ReplicateContext { callbacks, checkpoints, networks: None };
         (self.callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(self.case) });
         let walked = replicates(self.case, &context).map_err(|error| self.ended(error))?;
         let other = OtherWalks::walk(self.case, &walked, &context).map_err(|error| self.ended(error))?;
-        let outcome = |sensitivity: Vec<Sensitivity>| {
-            results::outcome(self.case, &walked, &other, sensitivity, begun.elapsed().as_secs_f64())
-        };
+        let outcome =
+            |studies: Studies| results::outcome(self.case, &walked, &other, studies, seconds(begun));
         for problem in self.checkpoints.passed_over() {
             (self.callbacks.warn)(&format!("{problem}; the checkpoint before it was taken"));
         }
-        let first = outcome(Vec::new());
-        if !self.case.sensitivity_factors().is_empty() {
-            // A folder with results counts as finished unless it holds checkpoints, and the study of the
-            // sensitivity is to come.
-            self.checkpoints.flush()?;
-        }
-        write(&first, &walked)?;
-        let sensitivity = sensitivity(self.case, &context).map_err(|error| self.ended(error))?;
-        if sensitivity.is_empty() {
+        let first = outcome(Studies::default());
+        if Studies::are_none(self.case) {
+            write(&first, &walked)?;
             return Ok(first);
         }
-        let whole = outcome(sensitivity);
+        // A folder with results counts as finished unless it holds checkpoints, and the studies are to come.
+        self.checkpoints.flush()?;
+        write(&first, &walked)?;
+        (self.callbacks.on_event)(Event::VerdictStands(&first));
+        let studies = Studies::walk(self.case, &walked, &context).map_err(|error| self.ended(error))?;
+        let whole = outcome(studies);
         write(&whole, &walked)?;
         Ok(whole)
     }

@@ -21,8 +21,8 @@ section! {
         pub seed: u64 = 1, set, whole(0..=u64::MAX);
         /// How passive particles, which can block nothing, are walked: "counts" keeps exact counts of them
         /// per void; "particles" walks every one by itself; "expected" keeps their expectation only; "auto"
-        /// is counts, but particles where none is passive or where they are few (below 8 a start node and
-        /// increment).
+        /// is counts, but particles where fewer than 6.5 passive ones are inserted on a start node in an
+        /// increment.
         pub engine: Engine = Engine::Auto, set, words(&Engine::ALL.map(Engine::name));
         /// 1, or 2: fresh base on the constrictions that the first run left blocked.
         pub runs: u64 = 2, set, whole(1..=2);
@@ -229,7 +229,7 @@ section! {
         /// default half and twice, where `sensitivity` is walked.
         pub thickness: Option<Vec<f64>> = None, off "[0.5, 2.0]",
             only("a list of numbers above 0", |list: &Vec<f64>| list.iter().all(|factor| *factor > 0.0));
-        /// Replicates of each of both.
+        /// Replicates of each point of both, at the most: one that is clear stops after one or two.
         pub sensitivity_replicates: u64 = 3, set, whole(1..=1000);
     }
 }

@@ -5,8 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::{Value, json};
 
 use crate::campaign::CaseEvent;
-use crate::outcome::record::{Statistic, Verdict};
-use crate::outcome::verdict::{below_by_interval, classify};
+use crate::outcome::so_far::SoFar;
 use crate::run::Event;
 
 /// Fewer replicates have no class while more are to come.
@@ -26,8 +25,8 @@ pub struct Live {
     waits_for_packing: bool,
     /// Runs that are done, and that are to be walked, as far as it is known.
     runs: [u64; 2],
-    /// Mass eroded, and whether it is below the threshold, by run and replicate.
-    walked: BTreeMap<u64, BTreeMap<u64, (f64, bool)>>,
+    /// What the runs came to.
+    walked: SoFar,
     /// Cases that are done, and all.
     cases: [usize; 2],
     /// Cases with what came of them.
@@ -63,14 +62,13 @@ impl Live {
             Event::MoreRuns { runs } => self.runs[1] += runs,
             Event::RunDone => self.runs[0] += 1,
             Event::RunWalked { replicate, run, eroded_mass_fraction, below_threshold } => {
-                let of_run = self.walked.entry(run).or_default();
-                of_run.insert(replicate, (eroded_mass_fraction, below_threshold));
+                self.walked.add(replicate, run, eroded_mass_fraction, below_threshold);
             }
             Event::Studying(line) => {
                 self.lines.push(line.to_owned());
                 self.lines.drain(..self.lines.len().saturating_sub(LINES));
             }
-            Event::Increment { .. } => {}
+            Event::VerdictNeeds { .. } | Event::VerdictStands(_) | Event::Increment { .. } => {}
         }
     }
 
@@ -129,28 +127,11 @@ impl Live {
         })
     }
 
-    /// What the replicates that are whole come to. It is no verdict: others are to come, and whoever looks
-    /// at an interval again and again sees it on the wrong side more often than its level says.
+    /// What the replicates that are whole come to; few of them have no class.
     fn so_far(&self, runs: u64) -> Value {
-        let whole = |replicate: &&u64| {
-            (1..=runs).all(|run| self.walked.get(&run).is_some_and(|of| of.contains_key(replicate)))
-        };
-        let Some(first) = self.walked.get(&1) else { return Value::Null };
-        let replicates: Vec<u64> = first.keys().filter(whole).copied().collect();
-        if replicates.is_empty() {
-            return Value::Null;
-        }
-        let (mut below, mut eroded) = (Vec::new(), Vec::new());
-        for run in 1..=runs {
-            let of = &self.walked[&run];
-            let (values, each): (Vec<f64>, Vec<bool>) = replicates.iter().map(|r| of[r]).unzip();
-            let statistic = Statistic::of_fraction(&values);
-            below.push(below_by_interval(&statistic, &each));
-            eroded.push(statistic);
-        }
-        let class = classify(below.first().copied().flatten(), below.get(1).copied().flatten());
-        let class = Some(class).filter(|_| replicates.len() >= FEW).map(Verdict::words);
-        json!({ "replicates": replicates.len(), "class": class, "runs": eroded, "few": FEW })
+        let Some(look) = self.walked.look(runs) else { return Value::Null };
+        let class = Some(look.class.words()).filter(|_| look.replicates >= FEW);
+        json!({ "replicates": look.replicates, "class": class, "runs": look.eroded, "few": FEW })
     }
 }
 

@@ -25,15 +25,20 @@ impl Engine {
     /// Every engine, in the order in which a user is told of them.
     pub const ALL: [Engine; 4] = [Engine::Auto, Engine::Particles, Engine::Counts, Engine::Expected];
 
-    /// Whether it walks every base particle one by one when each increment inserts `share` of them on this
-    /// many start nodes, whatever their sizes. A question of numbers alone, so that a seed gives the same
-    /// bits on every machine.
-    pub fn takes_each(self, share: u64, start_nodes: u64) -> bool {
+    /// Whether it walks every base particle one by one when each increment inserts so many passive ones on
+    /// this many start nodes: the others are walked one by one by every engine. A question of numbers alone,
+    /// so that a seed gives the same bits on every machine.
+    pub fn takes_each(self, passive_share: u64, start_nodes: u64) -> bool {
         match self {
             Engine::Particles => true,
-            Engine::Auto => share < start_nodes.saturating_mul(WORTH_COUNTS),
+            Engine::Auto => 2 * u128::from(passive_share) < WORTH_TWICE * u128::from(start_nodes),
             Engine::Counts | Engine::Expected => false,
         }
+    }
+
+    /// Passive ones of `share` base particles, where this many of all 2^64 words draw one.
+    pub fn passive_share(share: u64, passive_words: u128) -> u64 {
+        ((u128::from(share) * passive_words) >> 64) as u64
     }
 
     /// Its name in a scene.
@@ -47,9 +52,10 @@ impl Engine {
     }
 }
 
-/// Base particles inserted on a start node in an increment from which counts are faster than particles one by
-/// one: where both took as long lies between 4 (portable instructions) and 13 (AVX-512), see `results/`.
-const WORTH_COUNTS: u64 = 8;
+/// Twice the passive particles inserted on a start node in an increment from which counts of them are faster
+/// than one by one: both take as long between 5 (AVX2, base Cu 3) and 9 (AVX-512, base Cu 1.5), see
+/// `results/auto-*.md`.
+const WORTH_TWICE: u128 = 13;
 
 /// What one run needs: an engine, and how much of the base is passive.
 ///
@@ -91,8 +97,9 @@ impl RunPlan {
     ) -> Self {
         let limit = network.finest_open(|c| blocked[c]);
         let passive_words = sampler.word_limit(limit);
+        let passive = Engine::passive_share(share, passive_words);
         let engine = match wanted {
-            wanted if wanted.takes_each(share, network.entries() as u64) => Engine::Particles,
+            wanted if wanted.takes_each(passive, network.entries() as u64) => Engine::Particles,
             _ if passive_words == 0 => Engine::Particles,
             Engine::Auto => Engine::Counts,
             chosen => chosen,
@@ -104,9 +111,8 @@ impl RunPlan {
         }
         if wanted == Engine::Auto && engine == Engine::Particles && passive_words > 0 {
             left_out.push(format!(
-                "None is kept as a count: {share} base particles an increment for {} start nodes are so \
-                 few that walking each by \
-                 itself is faster, and the distribution is the same.",
+                "None is kept as a count: {passive} passive base particles an increment for {} start nodes \
+                 are so few that walking each by itself is faster, and the distribution is the same.",
                 network.entries()
             ));
         }
@@ -184,5 +190,29 @@ fn digits(percent: f64) -> String {
     match percent {
         few if few < 1e-3 => format!("{few:.3e}"),
         many => format!("{many:.*}", (3.0 - libm::log10(many).floor()).max(0.0) as usize),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gradation::Gradation;
+    use bitvec::vec::BitVec;
+
+    #[test]
+    fn auto_weighs_the_passive_particles_and_no_others() {
+        // 16 start nodes; one constriction of the base's median size by number, the others wider than all.
+        let base = Gradation::linear_from_d0(0.2, 1.5).unwrap();
+        let sampler = SizeSampler::new(&base, 1.0).unwrap();
+        let mut diameters = vec![1.0; 288];
+        diameters[7] = sampler.part(0..1 << 64).d_by_number(0.5).unwrap() as f32;
+        let network = Network::cubic_from_diameters([4, 4, 6], diameters, 1.0).unwrap();
+        let open: BitVec = BitVec::repeat(false, network.constrictions());
+        let engine = |share| RunPlan::new(Engine::Auto, &network, &sampler, &open, share).engine();
+        // Half of them are passive.
+        let least = 16 * WORTH_TWICE as u64;
+        assert_eq!((engine(least - 16), engine(least + 16)), (Engine::Particles, Engine::Counts));
+        assert_eq!(Engine::passive_share(u64::MAX, 1 << 64), u64::MAX);
+        assert_eq!(Engine::passive_share(1000, 1 << 62), 250);
     }
 }

@@ -67,6 +67,30 @@ fn a_campaign_folder_holds_what_is_promised() {
     assert_eq!(again["summary"], lines[3]["runs"]);
 }
 
+/// Cases of one filter walk the same networks, built once for all of them; a case that is walked by itself
+/// builds its own.
+#[test]
+fn cases_that_share_networks_are_walked_to_the_same_bits() {
+    let (_root, at) = with_plan(&format!("seeds = \"common\"\n{PLAN}"));
+    done(&call(&at, &["campaign", "plan.toml", "--out", "shared"]));
+    let together = ledger(&at.join("shared"));
+    assert_eq!(together.len(), 6);
+    for line in &together {
+        let folder = at.join("shared").join(line["folder"].as_str().unwrap());
+        let again = call(&folder, &["run", "scene.toml", "--out", "alone"]);
+        done(&again);
+        let alone: Value =
+            serde_json::from_slice(&fs::read(folder.join("alone/outcome.json")).unwrap()).unwrap();
+        assert_eq!((&alone["summary"], &alone["verdict"]), (&line["runs"], &line["verdict"]));
+        assert_eq!(alone["seed"], 5);
+    }
+    // Common random numbers are not those of seeds of their own.
+    fs::write(at.join("plan.toml"), PLAN).unwrap();
+    done(&call(&at, &["campaign", "plan.toml", "--out", "own"]));
+    let own = ledger(&at.join("own"));
+    assert!(own.iter().zip(&together).all(|(own, together)| own["runs"] != together["runs"]));
+}
+
 #[test]
 fn only_what_has_changed_is_walked_again() {
     let (_root, at) = with_plan(PLAN);

@@ -24,5 +24,6 @@ mod second_command;
 mod serve;
 mod slurm_scripts;
 mod soils;
+mod studies;
 mod thickness;
 mod trial;

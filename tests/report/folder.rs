@@ -103,6 +103,7 @@ pub fn outcome(replicates: u64) -> Outcome {
             thickness_mm: Some(70.6 * factor),
             n_base: (21_443_871.0 * factor) as u64,
             replicates: 4,
+            stopped_when_clear: false,
             verdict: if first < 0.075 { Verdict::None } else { Verdict::Some },
             runs: vec![statistic(first, 0.01, 4), statistic(0.25 * first, 0.005, 4)],
         });
@@ -117,6 +118,7 @@ pub fn outcome(replicates: u64) -> Outcome {
                 grains_per_void: Some(0.61 * factor),
                 mass_ratio: Some(0.05 * factor),
                 replicates: 4,
+                stopped_when_clear: false,
                 verdict,
                 runs: vec![statistic(first, 0.012, 4), statistic(second, 0.006, 4)],
             }

@@ -103,6 +103,8 @@ impl<T> Desk<T> {
             Event::PackingElsewhere { .. }
             | Event::PackingEnded
             | Event::Studying(_)
+            | Event::VerdictNeeds { .. }
+            | Event::VerdictStands(_)
             | Event::RunWalked { .. } => {}
         }
     }

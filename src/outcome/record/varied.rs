@@ -19,6 +19,10 @@ pub struct Sensitivity {
     pub mass_ratio: Option<f64>,
     /// How many replicates were walked.
     pub replicates: u64,
+    /// Whether it was clear before all replicates of a study were walked: its intervals then take twice the
+    /// scatter of the scene's own replicates ([`crate::outcome::early_stop`]).
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub stopped_when_clear: bool,
     /// Their class.
     pub verdict: Verdict,
     /// Eroded mass fraction, one per run.
@@ -38,6 +42,10 @@ pub struct OfThickness {
     pub n_base: u64,
     /// How many replicates were walked.
     pub replicates: u64,
+    /// Whether it was clear before all replicates of a study were walked: its intervals then take twice the
+    /// scatter of the scene's own replicates ([`crate::outcome::early_stop`]).
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub stopped_when_clear: bool,
     /// Their class.
     pub verdict: Verdict,
     /// Eroded mass fraction, one per run.

@@ -1,0 +1,153 @@
+//! When a point of a study is clear: another number of base particles, another thickness of the filter.
+//!
+//! A point is walked on the networks and random numbers of the scene's first replicates. Beside them stand
+//! all the scene's own replicates, so the first one or two of the point can tell its class where that is the
+//! scene's own and far from the threshold. Such a point stops; any other, and above all one whose class is
+//! another, is walked in full and judged by the scatter of its own replicates alone.
+//!
+//! # What is asked of a point that stops
+//! - The scene has at least [`FEWEST_OWN`] replicates, and a class.
+//! - Each run that decides lies wholly on one side of the threshold, by an interval that takes **twice** the
+//!   larger scatter, that of the scene's replicates or of the point's own, with Student's factor for the
+//!   scene's replicates. Its error is 5 % over all looks and runs (Bonferroni).
+//! - In every replicate, each such run lies on the side on which the scene's lies on the same network, and
+//!   keeps at least a third of its distance from the threshold. A point that moves more may scatter more.
+//! - Its class is that of the scene. One replicate does for continuing erosion; no and some erosion, which a
+//!   reader may rely on, take two.
+//!
+//! That the scatter of a point is at most twice that of the scene is an assumption; `results/studies-*.md`
+//! counts how often it misled.
+
+use super::record::{Statistic, Verdict};
+use super::stopping::ReplicateValues;
+use super::student;
+use super::verdict::{BelowThreshold, THRESHOLD, classify};
+
+/// Replicates of the scene from which its scatter is taken.
+pub const FEWEST_OWN: usize = 5;
+
+/// How many times the scatter of the scene that of a point may be.
+const SCATTER: f64 = 2.0;
+
+/// Part of its distance from the threshold that a point keeps.
+const KEPT: f64 = 1.0 / 3.0;
+
+/// Error probability of all looks and runs together, and that of the intervals that are shown.
+const ERROR: f64 = 0.05;
+
+/// Looks at a point: after one replicate and after two.
+const LOOKS: usize = 2;
+
+/// Numbers of replicates at which to look at a point of a study of so many, the last of them all; `own` is
+/// the scene's class, by `replicates` of it.
+pub fn looks(own: Verdict, replicates: usize, of_study: u64) -> Vec<u64> {
+    let fewest = match own {
+        _ if replicates < FEWEST_OWN => of_study,
+        Verdict::Continuing => 1,
+        Verdict::None | Verdict::Some => 2,
+        Verdict::Undecided => of_study,
+    };
+    (fewest..=LOOKS as u64).filter(|&look| look < of_study).chain([of_study]).collect()
+}
+
+/// The eroded mass of each run at a point that is clear, with wide 95 % intervals; `None` where it is not
+/// clear. `own[run]` holds the scene's replicates, `point[run]` the first of them at the point.
+pub fn clear(own: &[ReplicateValues], class: Verdict, point: &[ReplicateValues]) -> Option<Vec<Statistic>> {
+    let replicates = point.first()?.len();
+    if own.first()?.len() < FEWEST_OWN || !looks(class, own[0].len(), u64::MAX).contains(&(replicates as u64))
+    {
+        return None;
+    }
+    let each = ERROR / (LOOKS * own.len()) as f64;
+    let side = |run: usize| side(own.get(run)?, point.get(run)?, each);
+    let is_clear = classify(side(0), side(1)) == class && class != Verdict::Undecided;
+    is_clear.then(|| own.iter().zip(point).map(|(own, point)| wide(own, point, ERROR)).collect())
+}
+
+/// On which side of the threshold a run of a point lies for certain.
+fn side(own: &ReplicateValues, point: &ReplicateValues, error: f64) -> BelowThreshold {
+    let below = point.first()?.1;
+    let keeps = |(&(own, own_below), &(value, value_below)): (&(f64, bool), &(f64, bool))| {
+        own_below == below
+            && value_below == below
+            && (value - THRESHOLD).abs() >= KEPT * (own - THRESHOLD).abs()
+    };
+    let interval = wide(own, point, error);
+    let (low, high) = (interval.low?, interval.high?);
+    let whole = if below { high < THRESHOLD } else { low >= THRESHOLD };
+    (whole && own.iter().zip(point).all(keeps)).then_some(below)
+}
+
+/// The interval of a point that takes twice the larger scatter.
+fn wide(own: &ReplicateValues, point: &ReplicateValues, error: f64) -> Statistic {
+    let values = |values: &ReplicateValues| values.iter().map(|&(value, _)| value).collect::<Vec<f64>>();
+    let found = Statistic::of(&values(point));
+    let scatter = SCATTER * Statistic::of(&values(own)).sd.unwrap_or(0.0).max(found.sd.unwrap_or(0.0));
+    let t = student::two_sided((own.len() as u64).saturating_sub(1).max(1), error);
+    let half = t * scatter / (point.len() as f64).sqrt();
+    Statistic { low: Some((found.mean - half).max(0.0)), high: Some((found.mean + half).min(1.0)), ..found }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn values(values: &[f64]) -> ReplicateValues {
+        values.iter().map(|&v| (v, v < THRESHOLD)).collect()
+    }
+
+    /// Ten replicates of a run about this mean, with a standard deviation of 0.02.
+    fn own(mean: f64) -> ReplicateValues {
+        let steps = [-1.5, -1.2, -0.8, -0.4, -0.1, 0.1, 0.4, 0.8, 1.2, 1.5];
+        values(&steps.map(|step| mean + 0.02 * step))
+    }
+
+    #[test]
+    fn one_replicate_does_for_continuing_erosion_far_from_the_threshold() {
+        let scene = [own(0.6), own(0.55)];
+        let found = clear(&scene, Verdict::Continuing, &[values(&[0.5]), values(&[0.4])]).unwrap();
+        // Student's t for 9 degrees of freedom is 2.262; twice the scatter of the scene.
+        let sd = Statistic::of(&scene[0].iter().map(|v| v.0).collect::<Vec<_>>()).sd.unwrap();
+        assert!((found[0].low.unwrap() - (0.5 - 2.262_157 * 2.0 * sd)).abs() < 1e-6);
+        assert_eq!((found[0].mean, found[0].sd), (0.5, None));
+        // Close to the threshold, or moved over two thirds of the way to it, it does not.
+        assert_eq!(clear(&scene, Verdict::Continuing, &[values(&[0.5]), values(&[0.17])]), None);
+        assert_eq!(clear(&scene, Verdict::Continuing, &[values(&[0.2]), values(&[0.5])]), None);
+    }
+
+    #[test]
+    fn what_a_reader_may_rely_on_takes_two() {
+        let some = [own(0.6), values(&[0.01; 10])];
+        assert_eq!(clear(&some, Verdict::Some, &[values(&[0.5]), values(&[0.01])]), None);
+        assert!(clear(&some, Verdict::Some, &[values(&[0.5, 0.52]), values(&[0.01, 0.011])]).is_some());
+        // The point's own scatter counts where it is the larger.
+        assert_eq!(clear(&some, Verdict::Some, &[values(&[0.5, 0.52]), values(&[0.0, 0.04])]), None);
+        let none = [values(&[0.001; 10]), values(&[0.001; 10])];
+        assert_eq!(clear(&none, Verdict::None, &[values(&[0.002]), values(&[0.002])]), None);
+        assert!(clear(&none, Verdict::None, &[values(&[0.002, 0.003]), values(&[0.2, 0.0])]).is_some());
+    }
+
+    #[test]
+    fn another_class_is_never_clear() {
+        let scene = [own(0.6), own(0.55)];
+        for point in [[0.001, 0.001], [0.6, 0.001]] {
+            let point = point.map(|value| values(&[value, value]));
+            assert_eq!(clear(&scene, Verdict::Continuing, &point), None);
+        }
+        assert_eq!(clear(&scene, Verdict::Undecided, &[values(&[0.6, 0.6]), values(&[0.5, 0.5])]), None);
+    }
+
+    #[test]
+    fn few_replicates_of_the_scene_tell_nothing_of_its_scatter() {
+        let four = [values(&[0.6, 0.61, 0.62, 0.63]), values(&[0.6, 0.61, 0.62, 0.63])];
+        assert_eq!(clear(&four, Verdict::Continuing, &[values(&[0.6]), values(&[0.6])]), None);
+        assert_eq!(looks(Verdict::Continuing, 4, 3), [3]);
+        assert_eq!(looks(Verdict::Continuing, 5, 3), [1, 2, 3]);
+        assert_eq!(looks(Verdict::None, 10, 3), [2, 3]);
+        assert_eq!(looks(Verdict::Undecided, 10, 3), [3]);
+        assert_eq!(
+            (looks(Verdict::Some, 10, 1), looks(Verdict::Continuing, 10, 100)),
+            (vec![1], vec![1, 2, 100])
+        );
+    }
+}

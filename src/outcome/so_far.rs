@@ -1,0 +1,109 @@
+//! What the replicates of a run that is under way come to so far.
+
+use std::collections::BTreeMap;
+
+use super::record::{Statistic, Verdict};
+use super::verdict::{below_by_interval, classify};
+
+/// Runs of replicates as they come, in any order.
+#[derive(Clone, Debug, Default)]
+pub struct SoFar {
+    /// Mass eroded, and whether it is below the threshold, by run and replicate.
+    walked: BTreeMap<u64, BTreeMap<u64, (f64, bool)>>,
+}
+
+/// A look at the replicates that are whole. It is no verdict: others are to come, and whoever looks at an
+/// interval again and again sees it on the wrong side more often than its level says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FirstLook {
+    /// How many are whole.
+    pub replicates: usize,
+    /// The class that their intervals support, undecided where they support none.
+    pub class: Verdict,
+    /// Eroded mass fraction, one per run.
+    pub eroded: Vec<Statistic>,
+}
+
+impl SoFar {
+    /// Takes a run of a replicate, both counted from 1.
+    pub fn add(&mut self, replicate: u64, run: u64, eroded_mass_fraction: f64, below_threshold: bool) {
+        self.walked.entry(run).or_default().insert(replicate, (eroded_mass_fraction, below_threshold));
+    }
+
+    /// The replicates that have `runs` runs; `None` while no replicate is whole.
+    pub fn look(&self, runs: u64) -> Option<FirstLook> {
+        let whole = |replicate: &&u64| {
+            (1..=runs).all(|run| self.walked.get(&run).is_some_and(|of| of.contains_key(replicate)))
+        };
+        let replicates: Vec<u64> = self.walked.get(&1)?.keys().filter(whole).copied().collect();
+        if replicates.is_empty() {
+            return None;
+        }
+        let (mut below, mut eroded) = (Vec::new(), Vec::new());
+        for run in 1..=runs {
+            let of = &self.walked[&run];
+            let (values, each): (Vec<f64>, Vec<bool>) = replicates.iter().map(|r| of[r]).unzip();
+            let statistic = Statistic::of_fraction(&values);
+            below.push(below_by_interval(&statistic, &each));
+            eroded.push(statistic);
+        }
+        let class = classify(below.first().copied().flatten(), below.get(1).copied().flatten());
+        Some(FirstLook { replicates: replicates.len(), class, eroded })
+    }
+}
+
+impl FirstLook {
+    /// In a line, of so many replicates that the verdict is to have; `None` of one replicate, which says
+    /// nothing of the scatter.
+    ///
+    /// ```
+    /// use voidwalk::outcome::so_far::SoFar;
+    /// let mut so_far = SoFar::default();
+    /// for (replicate, eroded) in [(1, 0.31), (2, 0.33), (3, 0.32)] {
+    ///     so_far.add(replicate, 1, eroded, false);
+    /// }
+    /// let words = so_far.look(1).and_then(|look| look.words(10)).unwrap();
+    /// assert!(words.starts_with("after 3 of 10 replicates, not yet final: undecided; first run 29.5"));
+    /// ```
+    pub fn words(&self, of: u64) -> Option<String> {
+        let interval = |statistic: &Statistic| Some((statistic.low?, statistic.high?));
+        let runs = self.eroded.iter().zip(["first run", "second run"]).map(|(statistic, run)| {
+            let (low, high) = interval(statistic)?;
+            Some(format!("{run} {:.1} to {:.1} %", 100.0 * low, 100.0 * high))
+        });
+        let runs = runs.collect::<Option<Vec<String>>>()?.join(", ");
+        let (replicates, class) = (self.replicates, self.class.words());
+        Some(format!(
+            "after {replicates} of {of} replicates, not yet final: {class}; {runs} of the mass eroded"
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_whole_replicates_count_and_one_has_no_words() {
+        let mut so_far = SoFar::default();
+        assert_eq!(so_far.look(2), None);
+        so_far.add(2, 1, 0.5, false);
+        assert_eq!(so_far.look(2), None, "half a replicate");
+        so_far.add(2, 2, 0.01, true);
+        so_far.add(1, 1, 0.52, false);
+        let one = so_far.look(2).unwrap();
+        assert_eq!((one.replicates, one.class, one.words(10)), (1, Verdict::Some, None));
+        so_far.add(1, 2, 0.011, true);
+        let two = so_far.look(2).unwrap();
+        assert_eq!((two.replicates, two.class), (2, Verdict::Some));
+        let words = two.words(10).unwrap();
+        assert!(
+            words.starts_with("after 2 of 10 replicates, not yet final: some erosion; first run 38."),
+            "{words}"
+        );
+        // Far apart, they support no class.
+        so_far.add(3, 1, 0.0, true);
+        so_far.add(3, 2, 0.9, false);
+        assert!(so_far.look(2).unwrap().words(10).unwrap().contains("not yet final: undecided;"));
+    }
+}

@@ -1,0 +1,98 @@
+//! Networks that several cases of a campaign walk, built once.
+//!
+//! Cases with one seed draw their networks from the same random numbers; where nothing that makes a network
+//! differs, it is the same network, and one of them is enough. The bits are those of networks that each case
+//! builds for itself.
+
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex};
+
+use crate::case::Case;
+use crate::network::{Network, NetworkError};
+
+/// Networks that are kept take no more than this (bytes); the one that was kept first goes first.
+const MOST_BYTES: u64 = 1 << 27;
+
+/// Networks by what makes them.
+#[derive(Default)]
+pub struct SharedNetworks {
+    kept: Mutex<VecDeque<(u128, Arc<Network>)>>,
+}
+
+impl SharedNetworks {
+    /// The network of the replicate of a case with this seed, as [`Case::network`] builds it.
+    ///
+    /// # Errors
+    /// As [`Case::network`].
+    pub fn get(&self, case: &Case, seed: u64) -> Result<Arc<Network>, NetworkError> {
+        let Some(key) = case.network_key(seed) else { return Ok(Arc::new(case.network(seed)?)) };
+        if let Some(network) = self.find(key) {
+            return Ok(network);
+        }
+        // Others are found meanwhile; two that build the same one build the same bits.
+        let network = Arc::new(case.network(seed)?);
+        let most = (MOST_BYTES / case.network_bytes().max(1)) as usize;
+        if let Ok(mut kept) = self.kept.lock() {
+            if kept.iter().all(|(other, _)| *other != key) {
+                kept.push_back((key, network.clone()));
+            }
+            while kept.len() > most {
+                kept.pop_front();
+            }
+        }
+        Ok(network)
+    }
+
+    fn find(&self, key: u128) -> Option<Arc<Network>> {
+        let kept = self.kept.lock().ok()?;
+        kept.iter().find(|(other, _)| *other == key).map(|(_, network)| network.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    fn case(settings: &[&str]) -> Case {
+        let small = ["network.nx=6", "network.ny=6", "network.nz=8"];
+        let settings: Vec<String> = small.iter().chain(settings).map(|s| s.to_string()).collect();
+        Case::new(Scene::built_in(&settings).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn what_makes_no_network_shares_it_and_what_makes_one_does_not() {
+        let shared = SharedNetworks::default();
+        let own = case(&[]);
+        let network = shared.get(&own, 5).unwrap();
+        assert_eq!(network.fingerprint(), own.network(5).unwrap().fingerprint());
+        for same in [vec!["base.cu=3"], vec!["base.n_base=1000"], vec!["replicates=3"], vec!["engine=counts"]]
+        {
+            assert!(Arc::ptr_eq(&network, &shared.get(&case(&same), 5).unwrap()), "{same:?}");
+        }
+        for other in [
+            vec!["network.nx=7"],
+            vec!["filter.curve=shire2016-cu1.5-dense"],
+            vec!["walk.exit=flux"],
+            vec!["network.connectivity=table3"],
+            vec!["filter.d0_mm=2"],
+        ] {
+            let (other, name) = (case(&other), other);
+            let found = shared.get(&other, 5).unwrap();
+            assert!(!Arc::ptr_eq(&network, &found), "{name:?}");
+            assert_eq!(found.fingerprint(), other.network(5).unwrap().fingerprint(), "{name:?}");
+        }
+        assert!(!Arc::ptr_eq(&network, &shared.get(&own, 6).unwrap()));
+    }
+
+    #[test]
+    fn no_more_are_kept_than_there_is_room_for() {
+        let (shared, case) = (SharedNetworks::default(), case(&["network.nx=80", "network.ny=80"]));
+        let most = MOST_BYTES / case.network_bytes();
+        assert!((1..200).contains(&most), "{most}");
+        for seed in 0..most + 2 {
+            shared.get(&case, seed).unwrap();
+        }
+        assert_eq!(shared.kept.lock().unwrap().len() as u64, most);
+    }
+}

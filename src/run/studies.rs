@@ -1,0 +1,254 @@
+//! Walks the studies of a case: how its verdict moves with the number of base particles and with the
+//! thickness of the filter.
+//!
+//! A point of a study, one other number or thickness, is walked on the random numbers of the first
+//! replicates: the same networks, of which a lattice of another thickness has the first layers in common. It
+//! stops when it is clear ([`crate::outcome::early_stop`]). All points are walked side by side, so that one
+//! replicate of each keeps all threads busy.
+
+use std::borrow::Cow;
+use std::cmp::Reverse;
+
+use rayon::prelude::*;
+
+use super::callbacks::Event;
+use super::error::RunError;
+use super::replicates::{
+    ReplicateContext, ReplicateResult, first_replicates, summarise, values_by_run, walk_replicate,
+};
+use crate::case::Case;
+use crate::outcome::early_stop::{FEWEST_OWN, clear, looks};
+use crate::outcome::record::{OfThickness, Sensitivity, Statistic, Verdict};
+use crate::outcome::stopping::ReplicateValues;
+use crate::outcome::verdict::{THRESHOLD, classify};
+
+/// What came of the studies; empty where they are left out.
+#[derive(Clone, Default)]
+pub struct Studies {
+    /// Other numbers of base particles, and the case's own.
+    pub sensitivity: Vec<Sensitivity>,
+    /// Filters of other thicknesses, and the case's own.
+    pub thickness: Vec<OfThickness>,
+}
+
+/// One other number of base particles, or one other thickness.
+struct Point<'a> {
+    case: Cow<'a, Case>,
+    /// Names its checkpoints.
+    part: u64,
+    n_base: u64,
+    /// So many times the base particles; none where it is the thickness that is another.
+    base_factor: Option<f64>,
+}
+
+/// What was walked of a point.
+#[derive(Default)]
+struct Walked {
+    replicates: Vec<ReplicateResult>,
+    /// Eroded mass by run, where it stopped because it was clear.
+    clear: Option<Vec<Statistic>>,
+}
+
+/// The points of both studies of a case.
+fn points(case: &Case) -> Vec<Point<'_>> {
+    let factors = case.sensitivity_factors();
+    // The parts between are those of the other reading and of the ends of the curve's range.
+    let thicknesses = (factors.len() + 2 + case.curve_ends().len()) as u64..;
+    let of_base = |(part, factor): (u64, f64)| Point {
+        case: Cow::Borrowed(case),
+        part,
+        n_base: ((case.n_base as f64 * factor).round() as u64).max(1),
+        base_factor: Some(factor),
+    };
+    // What cannot be is said among what is left out.
+    let of_thickness = |(part, factor): (u64, f64)| {
+        let other = case.of_thickness(factor).ok()?;
+        Some(Point { part, n_base: other.n_base, case: Cow::Owned(other), base_factor: None })
+    };
+    let thick = thicknesses.zip(case.thickness_factors()).filter_map(of_thickness);
+    (1..).zip(factors).map(of_base).chain(thick).collect()
+}
+
+/// Replicates of each point that are walked at the least, as far as it is known before the case is walked.
+pub(super) fn replicates_at_least(case: &Case) -> u64 {
+    let each = case.scene.record.sensitivity_replicates;
+    if first_replicates(case) >= FEWEST_OWN as u64 { each.min(1) } else { each }
+}
+
+/// Scatter of replicates over their mean that is taken where nothing is walked yet: that of the built-in
+/// scene.
+const LIKELY_SCATTER: f64 = 0.05;
+
+/// Replicates of a point that are likely to be walked, where a replicate of the case and one of the point
+/// erode so much in each run; all of them where that is not known.
+pub(super) fn likely_replicates(case: &Case, eroded: Option<(&[f64], &[f64])>) -> u64 {
+    let each = case.scene.record.sensitivity_replicates;
+    let Some((own, point)) = eroded else { return each };
+    let several = |values: &[f64], replicates: u64| -> Vec<ReplicateValues> {
+        let about = |&value: &f64| {
+            let sign = |k: u64| if k.is_multiple_of(2) { -LIKELY_SCATTER } else { LIKELY_SCATTER };
+            (0..replicates).map(|k| value * (1.0 + sign(k))).map(|v| (v, v < THRESHOLD)).collect()
+        };
+        values.iter().map(about).collect()
+    };
+    let below = |run: usize| own.get(run).map(|&eroded| eroded < THRESHOLD);
+    let class = classify(below(0), below(1));
+    let replicates = first_replicates(case);
+    let own = several(own, replicates);
+    let is_clear = |&look: &u64| clear(&own, class, &several(point, look)).is_some();
+    let looks = looks(class, replicates as usize, each);
+    looks.into_iter().find(is_clear).map_or(each, |look| look.min(each))
+}
+
+impl Studies {
+    /// Walks the studies of a case of which these replicates were walked.
+    ///
+    /// # Errors
+    /// As [`super::replicates::replicates`].
+    pub fn walk(case: &Case, own: &[ReplicateResult], context: &ReplicateContext) -> Result<Self, RunError> {
+        let points = points(case);
+        let (class, _) = summarise(own);
+        let own_values = values_by_run(own);
+        let each = case.scene.record.sensitivity_replicates;
+        let mut walked: Vec<Walked> = points.iter().map(|_| Walked::default()).collect();
+        let mut known = replicates_at_least(case);
+        for until in looks(class, own.len(), each) {
+            let open: Vec<usize> = (0..points.len()).filter(|&point| walked[point].clear.is_none()).collect();
+            let more = until.saturating_sub(known) * open.len() as u64 * case.scene.walk.runs;
+            if more > 0 {
+                context.tell(Event::MoreRuns { runs: more });
+            }
+            known = known.max(until);
+            let first = |point: usize| walked[point].replicates.len() as u64 + 1;
+            let jobs = open.iter().flat_map(|&point| (first(point)..=until).map(move |k| (point, k)));
+            for (point, _, replicate) in walk_all(&points, jobs.collect(), context)? {
+                walked[point].replicates.push(replicate);
+            }
+            for &point in open.iter().filter(|_| until < each) {
+                let found = &mut walked[point];
+                found.clear = clear(&own_values, class, &values_by_run(&found.replicates));
+            }
+        }
+        let mut studies = Self::default();
+        for (point, found) in points.iter().zip(&walked) {
+            studies.add(case, point, found, class);
+        }
+        studies.add_own(case, own);
+        Ok(studies)
+    }
+
+    /// Whether these are all that the case has.
+    pub(super) fn are_whole(case: &Case, sensitivity: &[Sensitivity], thickness: &[OfThickness]) -> bool {
+        points(case).iter().all(|point| match point.base_factor {
+            Some(_) => !sensitivity.is_empty(),
+            None => !thickness.is_empty(),
+        })
+    }
+
+    /// Whether a case has none.
+    pub(super) fn are_none(case: &Case) -> bool {
+        case.sensitivity_factors().is_empty() && case.thickness_factors().is_empty()
+    }
+
+    fn add(&mut self, case: &Case, point: &Point, walked: &Walked, class: Verdict) {
+        let (verdict, summaries) = summarise(&walked.replicates);
+        let runs = || summaries.iter().map(|summary| summary.eroded_mass_fraction).collect();
+        let judged = Judged {
+            replicates: walked.replicates.len() as u64,
+            stopped_when_clear: walked.clear.is_some(),
+            verdict: if walked.clear.is_some() { class } else { verdict },
+            runs: walked.clear.clone().unwrap_or_else(runs),
+        };
+        match point.base_factor {
+            Some(factor) => self.sensitivity.push(judged.of_base(case, factor, point.n_base)),
+            None => self.thickness.push(judged.of_thickness(case, &point.case)),
+        }
+    }
+
+    /// The case itself is a point of each of its studies.
+    fn add_own(&mut self, case: &Case, own: &[ReplicateResult]) {
+        let (verdict, summaries) = summarise(own);
+        let judged = || Judged {
+            replicates: own.len() as u64,
+            stopped_when_clear: false,
+            verdict,
+            runs: summaries.iter().map(|summary| summary.eroded_mass_fraction).collect(),
+        };
+        if !self.sensitivity.is_empty() {
+            self.sensitivity.push(judged().of_base(case, 1.0, case.n_base));
+            self.sensitivity.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+        }
+        if !self.thickness.is_empty() {
+            self.thickness.push(judged().of_thickness(case, case));
+            self.thickness.sort_by_key(|row| row.layers);
+        }
+    }
+}
+
+/// Walks replicates of points, those of which several fit into the memory side by side; in the order of the
+/// points and replicates.
+fn walk_all(
+    points: &[Point],
+    jobs: Vec<(usize, u64)>,
+    context: &ReplicateContext,
+) -> Result<Vec<(usize, u64, ReplicateResult)>, RunError> {
+    let threads = rayon::current_num_threads() as u64;
+    let is_small = |&(point, _): &(usize, u64)| {
+        let Point { case, n_base, .. } = &points[point];
+        case.side_by_side(*n_base, threads) > 1
+    };
+    let one = |(point, replicate): (usize, u64)| {
+        let Point { case, part, n_base, .. } = &points[point];
+        Ok((point, replicate, walk_replicate(case, *part, replicate, *n_base, context)?))
+    };
+    let (mut small, large): (Vec<_>, Vec<_>) = jobs.into_iter().partition(is_small);
+    // The longest first, so that no thread is left with one at the end.
+    small.sort_by_key(|&(point, _)| {
+        Reverse(points[point].n_base.saturating_mul(points[point].case.counts[3]))
+    });
+    let walked: Result<Vec<_>, RunError> = small.into_par_iter().with_max_len(1).map(one).collect();
+    let mut walked = walked?;
+    for job in large {
+        walked.push(one(job)?);
+    }
+    walked.sort_by_key(|&(point, replicate, _)| (point, replicate));
+    Ok(walked)
+}
+
+/// What came of a point.
+struct Judged {
+    replicates: u64,
+    stopped_when_clear: bool,
+    verdict: Verdict,
+    runs: Vec<Statistic>,
+}
+
+impl Judged {
+    fn of_base(self, case: &Case, factor: f64, n_base: u64) -> Sensitivity {
+        let Self { replicates, stopped_when_clear, verdict, runs } = self;
+        Sensitivity {
+            factor,
+            n_base,
+            grains_per_void: case.grains_per_void.map(|g| g * factor),
+            mass_ratio: case.mass_ratio.map(|m| m * factor),
+            replicates,
+            stopped_when_clear,
+            verdict,
+            runs,
+        }
+    }
+
+    fn of_thickness(self, case: &Case, other: &Case) -> OfThickness {
+        let Self { replicates, stopped_when_clear, verdict, runs } = self;
+        OfThickness {
+            factor: other.counts[3] as f64 / case.counts[3] as f64,
+            layers: other.counts[3],
+            thickness_mm: other.thickness(),
+            n_base: other.n_base,
+            replicates,
+            stopped_when_clear,
+            verdict,
+            runs,
+        }
+    }
+}
