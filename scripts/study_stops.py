@@ -4,13 +4,14 @@
     scripts/study_stops.py --binary target/release/voidwalk [--values FILE]
 
 Walks 16 replicates of small scenes and of six points of each (a quarter to four times the base, half and twice the thickness) on the
-same random numbers, and applies the rule of src/outcome/early_stop.rs to every window of ten replicates of the scene (cyclic) and the
-first one, two or three of the point. A class counts as right where it is that of the mean of all 16. Beside it: three replicates judged
-by their own scatter, as all points were before. `--values` keeps what was walked, and takes it from there. Python 3 alone.
+same random numbers, and applies the rule of src/outcome/early_stop.rs to every window of 5, 6, 8 and 10 replicates of the scene (cyclic)
+and the first one, two or three of the point. A class counts as right where it is that of the mean of all 16. Beside it: three replicates
+judged by their own scatter, as all points were before; and those that stopped though they scatter more than twice as much as their scene. `--values` keeps what was walked, and takes it from there. Python 3 alone.
 """
 
 import argparse
 import collections
+import functools
 import itertools
 import json
 import math
@@ -19,7 +20,7 @@ import statistics
 import subprocess
 import tempfile
 
-THRESHOLD, REPLICATES, OWN, ERROR = 0.075, 16, 10, 0.05
+THRESHOLD, REPLICATES, OWN, ERROR = 0.075, 16, [5, 6, 8, 10], 0.05
 FILTERS = ["shire2016-cu1.5-loose", "cu3-loose"]
 CU = [1.5, 3]
 DC = [2, 5, 10, 15, 20, 25, 30, 40, 50]
@@ -57,7 +58,7 @@ def run_of(replicates, run):
 
 
 def half(values, error):
-    return student(len(values) - 1, error) * statistics.stdev(values) / math.sqrt(len(values))
+    return factor(len(values) - 1, error) * statistics.stdev(values) / math.sqrt(len(values))
 
 
 def by_own_scatter(replicates):
@@ -67,25 +68,28 @@ def by_own_scatter(replicates):
     return class_of(*[below(run_of(replicates, run)) for run in (0, 1)])
 
 
+@functools.lru_cache(None)
+def factor(degrees, error):
+    return student(degrees, error)
+
+
 def doubled(own, point, error):
-    scatter = 2 * max(statistics.stdev(own), statistics.stdev(point) if len(point) > 1 else 0)
-    return student(len(own) - 1, error) * scatter / math.sqrt(len(point))
+    reach = 2 * factor(len(own) - 1, error) * statistics.stdev(own)
+    if len(point) > 1:
+        reach = max(reach, factor(len(point) - 1, error) * statistics.stdev(point))
+    return reach / math.sqrt(len(point))
 
 
-def side(own, point):
-    below, mean, reach = point[0] < THRESHOLD, statistics.mean(point), doubled(own, point, ERROR / 4)
-    keeps = all(
-        (o < THRESHOLD) == below == (p < THRESHOLD) and abs(p - THRESHOLD) >= abs(o - THRESHOLD) / 3 for o, p in zip(own, point)
-    )
-    return below if keeps and (mean + reach < THRESHOLD if below else mean - reach >= THRESHOLD) else None
+def is_above(own, point):
+    keeps = all(o >= THRESHOLD and p >= THRESHOLD and p - THRESHOLD >= (o - THRESHOLD) / 3 for o, p in zip(own, point))
+    return keeps and statistics.mean(point) - doubled(own, point, ERROR / 4) >= THRESHOLD
 
 
 def by_rule(own, point):
     """How many replicates of the point are walked, and its class."""
-    class_of_own = by_own_scatter(own)
-    for count in {"continuing": [1, 2], "no": [2], "some": [2]}.get(class_of_own, []):
-        if class_of(*[side(run_of(own, run), run_of(point[:count], run)) for run in (0, 1)]) == class_of_own:
-            return count, class_of_own
+    for count in [1, 2] if by_own_scatter(own) == "continuing" else []:
+        if all(is_above(run_of(own, run), run_of(point[:count], run)) for run in (0, 1)):
+            return count, "continuing"
     return 3, by_own_scatter(point[:3])
 
 
@@ -119,28 +123,37 @@ def main():
         scenes = list(values(options.binary.resolve()))
         if options.values:
             options.values.write_text("".join(json.dumps(scene) + "\n" for scene in scenes))
-    rule, before, covered = collections.Counter(), collections.Counter(), collections.Counter()
+    print(f"{len(scenes)} scenes, six points each\n")
+    print("| replicates of the scene | replicates walked | class right | undecided | wrong | intervals that hold the mean of all "
+          "| scatter more than twice as much |\n|---|---|---|---|---|---|---|")
+    for replicates in OWN:
+        table(scenes, replicates)
+
+
+def table(scenes, replicates):
+    rule, before, covered, scattered = (collections.Counter() for _ in range(4))
     for scene in scenes:
         for point in scene["points"].values():
             means = [statistics.mean(run_of(point, run)) for run in (0, 1)]
             true = class_of(*[mean < THRESHOLD for mean in means])
             said = lambda found: "undecided" if found == "undecided" else "right" if found == true else "wrong"
+            times = max(statistics.stdev(run_of(point, run)) / statistics.stdev(run_of(scene["main"], run)) for run in (0, 1))
             for start in range(REPLICATES):
-                window = [(start + k) % REPLICATES for k in range(OWN)]
+                window = [(start + k) % REPLICATES for k in range(replicates)]
                 own, here = [scene["main"][k] for k in window], [point[k] for k in window]
                 count, found = by_rule(own, here)
                 rule[count, said(found)] += 1
+                scattered[count] += times > 2
                 before[said(by_own_scatter(here[:3]))] += 1
                 for run in (0, 1):
                     few = run_of(here[:count], run)
                     reach = half(few, ERROR) if count == 3 else doubled(run_of(own, run), few, ERROR)
                     covered[count, abs(statistics.mean(few) - means[run]) <= reach + 1e-12] += 1
-    print(f"{len(scenes)} scenes, {sum(rule.values())} points seen\n")
-    print("| replicates walked | class right | undecided | wrong | intervals that hold the mean of all |\n|---|---|---|---|---|")
     for count in (1, 2, 3):
-        inside = covered[count, True] / max(1, covered[count, True] + covered[count, False])
-        print(f"| {count} | {rule[count, 'right']} | {rule[count, 'undecided']} | {rule[count, 'wrong']} | {100 * inside:.1f} % |")
-    print(f"| before: always 3 | {before['right']} | {before['undecided']} | {before['wrong']} | |")
+        seen = covered[count, True] + covered[count, False]
+        inside = f"{100 * covered[count, True] / seen:.1f} %" if seen else ""
+        print(f"| {replicates} | {count} | {rule[count, 'right']} | {rule[count, 'undecided']} | {rule[count, 'wrong']} | {inside} | {scattered[count]} |")
+    print(f"| {replicates} | before: always 3 | {before['right']} | {before['undecided']} | {before['wrong']} | | |")
 
 
 if __name__ == "__main__":

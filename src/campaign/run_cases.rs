@@ -254,7 +254,10 @@ impl CaseRunner<'_> {
         let context = ReplicateContext { callbacks, checkpoints: Some(&checkpoints), networks };
         let walked = replicates::replicates(case, &context)
             .and_then(|walked| Ok((OtherWalks::walk(case, &walked, &context)?, walked)))
-            .and_then(|(other, walked)| Ok((other, Studies::walk(case, &walked, &context)?, walked)));
+            .and_then(|(other, walked)| {
+                let verdict = results::outcome(case, &walked, &other, Studies::default(), 0.0).verdict;
+                Ok((other, Studies::walk(case, &walked, verdict, &context)?, walked))
+            });
         for problem in checkpoints.passed_over() {
             self.warn(name, &format!("{problem}; the checkpoint before it was taken"));
         }

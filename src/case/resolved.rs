@@ -9,9 +9,6 @@ use crate::scene::{About, CurveSource, Scene};
 /// Part of the fingerprint of every case: raised whenever the program gives other results for the same scene.
 const PROTOCOL: u32 = 2;
 
-/// The same where water decides on the way: raised also when pressures come out otherwise.
-const PROTOCOL_WITH_FLOW: u32 = 2;
-
 impl Case {
     /// The scene with what its files and its filter's packing say of it, and with its files' names in a run
     /// folder: run again from there, it gives the same bits.
@@ -50,8 +47,7 @@ impl Case {
     pub fn fingerprint(&self) -> String {
         // Nothing follows from what is only said of it.
         let scene = Scene { about: About::default(), ..self.resolved() };
-        let protocol = if scene.exit_rule().needs_flow() { PROTOCOL_WITH_FLOW } else { PROTOCOL };
-        let mut text = format!("{protocol}\n{}", scene.to_toml()).into_bytes();
+        let mut text = format!("{PROTOCOL}\n{}", scene.to_toml()).into_bytes();
         text.extend_from_slice(self.shipped.map_or("", |shipped| shipped.curve_csv).as_bytes());
         for input in self.inputs.iter().filter(|input| input.setting != "filter.density") {
             text.extend_from_slice(input.setting.as_bytes());

@@ -101,6 +101,8 @@ struct Walk {
     so_far: SoFar,
     /// Replicates that the verdict is to have, and runs of each.
     needs: [u64; 2],
+    /// Whether the verdict also waits for other readings of the inputs.
+    readings: bool,
     /// Replicates at the last look, and when that was said.
     looked_at: usize,
     said: Option<Instant>,
@@ -112,8 +114,11 @@ impl Walk {
         let [replicates, runs] = self.needs;
         let look = self.so_far.look(runs)?;
         let is_new = look.replicates > self.looked_at && (look.replicates as u64) < replicates;
-        let words = look.words(replicates).filter(|_| is_new)?;
+        let mut words = look.words(replicates).filter(|_| is_new)?;
         self.looked_at = look.replicates;
+        if self.readings {
+            words += "; by one of several readings of the inputs";
+        }
         Some(words)
     }
 }
@@ -200,7 +205,10 @@ impl Shown {
                     to_stderr(&(packing_line(progress, *usual, here, seconds) + "\n"));
                 }
             }
-            (Work::Walk(walk), Event::VerdictNeeds { replicates, runs }) => walk.needs = [replicates, runs],
+            (Work::Walk(walk), Event::VerdictNeeds { replicates, runs, readings }) => {
+                walk.needs = [replicates, runs];
+                walk.readings = readings;
+            }
             (
                 Work::Walk(walk),
                 Event::RunWalked { replicate, run, eroded_mass_fraction, below_threshold },

@@ -21,10 +21,12 @@ impl CurveRange {
 
     /// The class that the whole range supports: undecided where its curves do not agree.
     pub fn whole(&self) -> Verdict {
-        match self.ends.iter().all(|end| end.verdict == self.verdict) {
-            true => self.verdict,
-            false => Verdict::Undecided,
-        }
+        if self.agrees() { self.verdict } else { Verdict::Undecided }
+    }
+
+    /// Whether the ends have the class of the curve itself.
+    fn agrees(&self) -> bool {
+        self.ends.iter().all(|end| end.verdict == self.verdict)
     }
 
     /// What the range comes to, in a sentence.
@@ -35,7 +37,7 @@ impl CurveRange {
         };
         let ends: Vec<String> = self.ends.iter().map(end).collect();
         let [low, high] = self.eroded_mass_fraction.first().copied().unwrap_or([f64::NAN; 2]);
-        let agree = match self.whole() == self.verdict {
+        let agree = match self.agrees() {
             true => "the verdict is the same over the whole range of the constriction curve",
             false => "the verdict is not the same over the whole range of the constriction curve",
         };
@@ -76,6 +78,8 @@ mod tests {
         assert!(agreed.sentence().starts_with("the verdict is the same"));
         let open = range(Verdict::None, Verdict::Some);
         assert_eq!(open.whole(), Verdict::Undecided);
+        let said = range(Verdict::Undecided, Verdict::None).sentence();
+        assert!(said.starts_with("the verdict is not the same"), "{said}");
         assert!(open.sentence().contains("4.00 to 10.00 % of the mass eroded in the first run"));
         assert!(open.sentence().contains("2 % coarser: some erosion, 9.00 % then 2.00 % eroded"));
         assert_eq!(CurveRange::new(Verdict::None, &[], Vec::new()), None);

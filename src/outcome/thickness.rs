@@ -1,6 +1,6 @@
 //! How the verdict moves with the thickness of the filter, in a sentence.
 
-use super::record::OfThickness;
+use super::record::{OfThickness, Statistic};
 
 /// What the rows say, in a sentence: whether the verdict stays, and how much erodes; `None` without another
 /// thickness.
@@ -12,7 +12,7 @@ pub fn sentence(rows: &[OfThickness]) -> Option<String> {
     }
     let stays = others.iter().all(|row| row.verdict == own.verdict);
     let of_row = |row: &&OfThickness| {
-        let eroded: Vec<String> = row.runs.iter().map(|s| format!("{:.2} %", 100.0 * s.mean)).collect();
+        let eroded: Vec<String> = row.runs.iter().map(|s| percent(s, row.stopped_when_clear)).collect();
         let times = format!("{:.3}", row.factor);
         let times = times.trim_end_matches('0').trim_end_matches('.');
         let replicates = if row.replicates == 1 { "replicate" } else { "replicates" };
@@ -28,10 +28,18 @@ pub fn sentence(rows: &[OfThickness]) -> Option<String> {
     Some(format!("{said} ({}).", each.join("; ")))
 }
 
+/// The eroded mass; of a point that stopped early its interval, as one replicate has no digits to show.
+fn percent(eroded: &Statistic, stopped: bool) -> String {
+    match (eroded.low, eroded.high) {
+        (Some(low), Some(high)) if stopped => format!("{:.0} to {:.0} %", 100.0 * low, 100.0 * high),
+        _ => format!("{:.2} %", 100.0 * eroded.mean),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::record::{Statistic, Verdict};
+    use crate::outcome::record::Verdict;
 
     fn row(factor: f64, verdict: Verdict, mean: f64) -> OfThickness {
         let runs = vec![Statistic { mean, sd: None, low: None, high: None }];
@@ -63,5 +71,12 @@ mod tests {
             moves.starts_with("The verdict moves with thickness (0.5 times as thick: some erosion, 20.00 %")
         );
         assert!(moves.ends_with("2.5 times as thick: no erosion, 4.00 % eroded in 1 replicate)."), "{moves}");
+        let clear = OfThickness {
+            stopped_when_clear: true,
+            runs: vec![Statistic { mean: 0.59, sd: None, low: Some(0.386), high: Some(0.797) }],
+            ..row(2.0, Verdict::Continuing, 0.59)
+        };
+        let said = sentence(&[row(1.0, Verdict::Continuing, 0.6), clear]).unwrap();
+        assert!(said.contains("continuing erosion, 39 to 80 % eroded in 1 replicate"), "{said}");
     }
 }

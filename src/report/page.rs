@@ -246,9 +246,14 @@ fn warnings(outcome: &Outcome) -> Markup {
     }
 }
 
+/// Of a page that was written before the studies were walked.
+const TO_COME: &str = "How the verdict moves with the thickness of the filter and the number of base \
+    particles is not walked yet, and nothing moves it more: voidwalk resume goes on with it.";
+
 /// Says which figures are missing, and why.
 fn missing(folder: &RunFolder, figures: &[Drawn]) -> Markup {
     let has = |name: &str| figures.iter().any(|drawn| drawn.name == name);
+    let to_come = folder.outcome.studies_to_come;
     let reasons = [
         ("eroded", "series.csv has no rows: the progress of erosion is not drawn."),
         ("layers", "layers.csv has no rows: blocking by layer is not drawn."),
@@ -256,11 +261,14 @@ fn missing(folder: &RunFolder, figures: &[Drawn]) -> Markup {
             "retained",
             "retained.csv and eroded.csv have no rows for the first run: size curves are not drawn.",
         ),
-        ("sensitivity", "Sensitivity to the number of base particles was not asked for."),
-        ("thickness", "Filters of other thicknesses were not asked for."),
+        (
+            "sensitivity",
+            if to_come { TO_COME } else { "Sensitivity to the number of base particles was not asked for." },
+        ),
+        ("thickness", if to_come { "" } else { "Filters of other thicknesses were not asked for." }),
     ];
     html! {
-        @for (name, reason) in reasons { @if !has(name) { p.small { (reason) } } }
+        @for (name, reason) in reasons { @if !has(name) && !reason.is_empty() { p.small { (reason) } } }
         @if has("eroded")
             && folder.rows.series.len() != folder.outcome.replicates.len() * folder.outcome.summary.len()
         {

@@ -99,7 +99,8 @@ fn all_replicates(
     let mut wanted = first_replicates(case);
     loop {
         if part == 0 {
-            context.tell(Event::VerdictNeeds { replicates: wanted, runs: case.scene.walk.runs });
+            let readings = case.other_reading.is_some() || !case.curve_ends().is_empty();
+            context.tell(Event::VerdictNeeds { replicates: wanted, runs: case.scene.walk.runs, readings });
         }
         let more = walked.len() as u64 + 1..=wanted;
         walked.extend(some_replicates(case, part, more, case.n_base, context)?);

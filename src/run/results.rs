@@ -88,6 +88,7 @@ pub fn outcome(
         curve_range: other.range.clone(),
         sensitivity: studies.sensitivity,
         thickness: studies.thickness,
+        studies_to_come: false,
         seconds,
     }
 }

@@ -101,13 +101,18 @@ pub(super) fn likely_replicates(case: &Case, eroded: Option<(&[f64], &[f64])>) -
 }
 
 impl Studies {
-    /// Walks the studies of a case of which these replicates were walked.
+    /// Walks the studies of a case of which these replicates were walked, and which has this verdict, all
+    /// that was walked besides taken in.
     ///
     /// # Errors
     /// As [`super::replicates::replicates`].
-    pub fn walk(case: &Case, own: &[ReplicateResult], context: &ReplicateContext) -> Result<Self, RunError> {
+    pub fn walk(
+        case: &Case,
+        own: &[ReplicateResult],
+        class: Verdict,
+        context: &ReplicateContext,
+    ) -> Result<Self, RunError> {
         let points = points(case);
-        let (class, _) = summarise(own);
         let own_values = values_by_run(own);
         let each = case.scene.record.sensitivity_replicates;
         let mut walked: Vec<Walked> = points.iter().map(|_| Walked::default()).collect();

@@ -126,11 +126,11 @@ pub fn walk_case_recorded(case: &Case, callbacks: &Callbacks) -> Result<(Outcome
         (callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(case) });
         let walked = replicates(case, &context)?;
         let other = OtherWalks::walk(case, &walked, &context)?;
+        let first = results::outcome(case, &walked, &other, Studies::default(), seconds(begun));
         if !Studies::are_none(case) {
-            let first = results::outcome(case, &walked, &other, Studies::default(), seconds(begun));
             (callbacks.on_event)(Event::VerdictStands(&first));
         }
-        let studies = Studies::walk(case, &walked, &context)?;
+        let studies = Studies::walk(case, &walked, first.verdict, &context)?;
         let outcome = results::outcome(case, &walked, &other, studies, seconds(begun));
         let mut recorded = Recorded::default();
         walked.into_iter().for_each(|replicate| recorded.append(replicate.recorded));
@@ -201,8 +201,8 @@ fn unchanged(folder: &Folder, fingerprint: &str) -> Result<(), RunError> {
         // Of a corrupt mark nothing is known.
         Some(begun) if !begun.work.is_empty() && begun.work != fingerprint => {
             Err(RunError::Refused(format!(
-                "{}: scene.toml or a file in inputs is not what this run was begun with; put it back, or \
-                 walk the scene anew: voidwalk run SCENE --out DIR --overwrite",
+                "{}: scene.toml or a file in inputs is not what this run was begun with, or another version of \
+                 voidwalk began it; put it back, or walk the scene anew: voidwalk run SCENE --out DIR --overwrite",
                 shown(folder.path())
             )))
         }
@@ -221,8 +221,8 @@ fn begun(folder: &Folder, fingerprint: &str, overwrite: bool) -> Result<Option<U
         Some(scene) if scene == fingerprint => Ok(Some(begun.unwrap_or_default())),
         // Without a scene they are what was left when a run was to be replaced: nothing continues from them.
         Some(_) if folder.has("scene.toml") => Err(RunError::Refused(format!(
-            "{}: holds checkpoints of another scene; continue with that one by `voidwalk resume`, or add \
-             --overwrite",
+            "{}: holds checkpoints of another scene, or of another version of voidwalk; continue with that \
+             one by `voidwalk resume`, or add --overwrite",
             shown(folder.path())
         ))),
         _ => Ok(begun),
@@ -269,16 +269,18 @@ impl CaseRun<'_> {
         for problem in self.checkpoints.passed_over() {
             (self.callbacks.warn)(&format!("{problem}; the checkpoint before it was taken"));
         }
-        let first = outcome(Studies::default());
+        let mut first = outcome(Studies::default());
         if Studies::are_none(self.case) {
             write(&first, &walked)?;
             return Ok(first);
         }
         // A folder with results counts as finished unless it holds checkpoints, and the studies are to come.
         self.checkpoints.flush()?;
+        first.studies_to_come = true;
         write(&first, &walked)?;
         (self.callbacks.on_event)(Event::VerdictStands(&first));
-        let studies = Studies::walk(self.case, &walked, &context).map_err(|error| self.ended(error))?;
+        let studies =
+            Studies::walk(self.case, &walked, first.verdict, &context).map_err(|error| self.ended(error))?;
         let whole = outcome(studies);
         write(&whole, &walked)?;
         Ok(whole)

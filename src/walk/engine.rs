@@ -97,7 +97,9 @@ impl RunPlan {
     ) -> Self {
         let limit = network.finest_open(|c| blocked[c]);
         let passive_words = sampler.word_limit(limit);
-        let passive = Engine::passive_share(share, passive_words);
+        // On the open network, so that all runs of a replicate have one engine.
+        let on_open = sampler.word_limit(network.finest_open(|_| false));
+        let passive = Engine::passive_share(share, on_open);
         let engine = match wanted {
             wanted if wanted.takes_each(passive, network.entries() as u64) => Engine::Particles,
             _ if passive_words == 0 => Engine::Particles,
@@ -109,7 +111,7 @@ impl RunPlan {
         {
             left_out.push("The base has one size: no column of diameters is kept.".into());
         }
-        if wanted == Engine::Auto && engine == Engine::Particles && passive_words > 0 {
+        if wanted == Engine::Auto && engine == Engine::Particles && on_open > 0 {
             left_out.push(format!(
                 "None is kept as a count: {passive} passive base particles an increment for {} start nodes \
                  are so few that walking each by itself is faster, and the distribution is the same.",

@@ -273,6 +273,7 @@ pub fn outcome(replicates: u64) -> Outcome {
         curve_range: None,
         sensitivity: sensitivity.collect(),
         thickness: thickness.collect(),
+        studies_to_come: false,
         seconds: 239.4,
     }
 }

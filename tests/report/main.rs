@@ -220,6 +220,12 @@ fn one_replicate_has_no_interval_and_says_so() {
     assert!(text.contains("Sensitivity to the number of base particles was not asked for"));
     assert!(!text.contains("Before you rely on this"));
     assert!(!figures.iter().any(|(name, _)| name == "sensitivity.svg"));
+    // Ended before the studies were walked, which is not that nobody asked for them.
+    plan.outcome.thickness.clear();
+    plan.outcome.studies_to_come = true;
+    let text = words(&made(&plan).0);
+    assert!(text.contains("is not walked yet, and nothing moves it more: voidwalk resume goes on with it"));
+    assert!(!text.contains("not asked for"));
 }
 
 #[test]

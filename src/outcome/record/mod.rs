@@ -94,6 +94,9 @@ pub struct Outcome {
     /// for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub thickness: Vec<OfThickness>,
+    /// Whether both studies are still being walked, or their walk was ended: `voidwalk resume` goes on.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub studies_to_come: bool,
     /// Wall time of everything, s.
     pub seconds: f64,
 }
