@@ -120,6 +120,10 @@ RUNS = {
     "record": ["record.series_every=7", "record.size_curves=[3, 20]", "record.size_classes=20"],
     "record the end only": ["record.series_every=0", "record.size_curves=[]"],
     "sensitivity": ["record.sensitivity=[0.5, 2]", "record.sensitivity_replicates=2"],
+    "water on the lattice": ["walk.exit=flux", "base.cu=2"],
+    "water on the lattice, counts": ["walk.exit=flux", "engine=counts", *MANY],
+    "area along the water": ["walk.exit=area-along-flow", "base.cu=2"],
+    "water on the packing's own voids": ["filter.density=loose", *FEW_GRAINS, "network.kind=graph", "walk.exit=flux", "base.mass_ratio=0.02"],
     "studies that stop": ["replicates=8", "record.sensitivity=[0.5, 2]"],
 }
 
@@ -141,6 +145,10 @@ LIKE = {
     "particles, 3 threads": ("particles", {"threads": 3}),
     "stop at an error, 3 threads": ("stop at an error", {"threads": 3}),
     "filter packed loose, 3 threads": ("filter packed loose", {"threads": 3}),
+    "water on the lattice, 3 threads": ("water on the lattice", {"threads": 3}),
+    "water on the lattice, portable": ("water on the lattice", {"isa": "portable"}),
+    "water on the lattice, killed and resumed": ("water on the lattice", {"kill": True}),
+    "water on the packing's own voids, 3 threads": ("water on the packing's own voids", {"threads": 3}),
     "particles, portable": ("particles", {"isa": "portable"}),
     "particles, AVX2": ("particles", {"isa": "avx2"}),
     "counts, portable": ("counts", {"isa": "portable"}),

@@ -246,15 +246,13 @@ impl Case {
         warnings
     }
 
-    /// A tall cell whose number of grains was given, and leaves it narrow.
+    /// A tall cell whose number of grains leaves it narrow.
     fn narrow_cell(&self) -> Option<String> {
-        let packing = self.scene.packing.as_ref()?;
-        packing.filter.grains?;
         let plan = PackingPlan::new(&self.scene.packing_spec().ok()??).ok()?;
         let (width, usual) = plan.narrow_and_tall()?;
         Some(format!(
-            "packing.grains = {} in a cell {} times as tall as wide leave it about {width:.1} times as wide \
-             as the largest grain, where {usual} times is usual: it is periodic, so that its voids repeat \
+            "{} grains (packing.grains) in a cell {} times as tall as wide leave it about {width:.1} times as \
+             wide as the largest grain, where {usual} times is usual: it is periodic, so that its voids repeat \
              across, and every layer has few of them",
             plan.compression.grains, plan.aspect
         ))

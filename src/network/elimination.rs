@@ -68,7 +68,8 @@ impl Factor {
             rest.neighbours(place, &mut meeting, &mut at);
             let ground = rest.ground[place];
             let all: f64 = meeting.iter().map(|(g, _)| g).sum();
-            let pivot = if ground + all > 0.0 { 1.0 / (ground + all) } else { 0.0 };
+            // Of nothing, and of so little that its inverse is no number, nothing is known.
+            let pivot = Some(1.0 / (ground + all)).filter(|inverse| inverse.is_finite()).unwrap_or(0.0);
             for &(g, to) in &meeting {
                 factor.neighbour.push((to, (g * pivot) as f32));
                 rest.ground[to as usize] += g * ground * pivot;
@@ -152,7 +153,7 @@ impl Rest {
         let mut place_of = vec![NONE; order.len()];
         order.iter().zip(0..).for_each(|(&row, place)| place_of[row as usize] = place);
         let mut rest = Self {
-            links: Vec::with_capacity(2 * row.len()),
+            links: Vec::with_capacity(row.len()),
             first: vec![NONE; order.len()],
             ground: order.iter().map(|&row| ground[row as usize]).collect(),
         };
@@ -170,7 +171,8 @@ impl Rest {
     /// Adds a conductance between two places, beside those that there are.
     fn join(&mut self, one: u32, other: u32, conductance: f64) {
         let (from, to) = (one.min(other), one.max(other));
-        let next = std::mem::replace(&mut self.first[from as usize], self.links.len() as u32);
+        let link = u32::try_from(self.links.len()).expect("fewer links than a factor has bits for");
+        let next = std::mem::replace(&mut self.first[from as usize], link);
         self.links.push(Link { to, next, conductance });
     }
 
@@ -222,6 +224,65 @@ mod tests {
         for i in 0..7 {
             let out: f64 = meeting[i].iter().map(|&(j, g)| g * (x[i] - x[j as usize])).sum();
             assert!((ground[i] * x[i] + out - right[i]).abs() < 1e-5, "{x:?}");
+        }
+    }
+
+    /// Conjugate gradients on a lattice of 16 x 16 x 16 rows between known pressures above and below: links
+    /// over six orders of magnitude, three in ten blocked. Without a factor they take thousands of rounds.
+    #[test]
+    fn few_rounds_do_on_a_lattice_that_clogs() {
+        const N: usize = 16;
+        let mut state = 1u64;
+        let mut draw = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let mut meeting = vec![Vec::new(); N * N * N];
+        let mut ground = vec![0.0; N * N * N];
+        for i in 0..N * N * N {
+            let [x, y, z] = [i % N, i / N % N, i / (N * N)];
+            if z == 0 || z == N - 1 {
+                ground[i] = 1.0;
+            }
+            let ahead = [
+                (x + 1 < N).then_some(i + 1),
+                (y + 1 < N).then_some(i + N),
+                (z + 1 < N).then_some(i + N * N),
+            ];
+            for j in ahead.into_iter().flatten() {
+                let g = libm::pow(10.0, 6.0 * draw() - 3.0);
+                if draw() > 0.3 {
+                    meeting[i].push((j as u32, g));
+                    meeting[j].push((i as u32, g));
+                }
+            }
+        }
+        let (mut begin, mut row, mut conductance) = (vec![0], Vec::new(), Vec::new());
+        for of in &meeting {
+            row.extend(of.iter().map(|(to, _)| to));
+            conductance.extend(of.iter().map(|(_, g)| g));
+            begin.push(row.len() as u32);
+        }
+        let factor = Factor::new(&ground, &begin, &row, &conductance);
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let mut residual: Vec<f64> = (0..ground.len()).map(|i| if i < N * N { 1.0 } else { 0.0 }).collect();
+        let (first, mut scratch) = (dot(&residual, &residual).sqrt(), vec![0.0; ground.len()]);
+        let (mut solved, mut direction) = (vec![0.0; ground.len()], vec![0.0; ground.len()]);
+        let (mut before, mut rounds) = (0.0, 0);
+        while dot(&residual, &residual).sqrt() > 1e-8 * first {
+            factor.solve(&residual, &mut scratch, &mut solved);
+            let now = dot(&residual, &solved);
+            let kept = if rounds == 0 { 0.0 } else { now / before };
+            direction.iter_mut().zip(&solved).for_each(|(d, s)| *d = s + kept * *d);
+            let times = |i: usize| {
+                let flow = |&(j, g): &(u32, f64)| g * (direction[i] - direction[j as usize]);
+                ground[i] * direction[i] + meeting[i].iter().map(flow).sum::<f64>()
+            };
+            let product: Vec<f64> = (0..ground.len()).map(times).collect();
+            let step = now / dot(&direction, &product);
+            residual.iter_mut().zip(&product).for_each(|(r, p)| *r -= step * p);
+            (before, rounds) = (now, rounds + 1);
+            assert!(rounds <= 60, "{rounds} rounds");
         }
     }
 

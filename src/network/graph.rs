@@ -131,7 +131,7 @@ mod tests {
     /// the sum of g dz^2 over the throats of a cell of edge 1, by its volume. Zick & Homsy's drag for these
     /// two could not be read, so nothing is said here of how near the scheme comes to it.
     #[test]
-    fn permeability_of_body_centred_and_face_centred_cubic_packings() {
+    fn body_centred_and_face_centred_cubic_packings_have_the_schemes_closed_form() {
         let pi = std::f64::consts::PI;
         struct Kind<'a> {
             basis: &'a [[f64; 3]],

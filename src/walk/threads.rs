@@ -44,7 +44,8 @@ mod tests {
         let all = processors();
         let pool = threads(0, true).unwrap();
         let seen = pool.broadcast(|_| processors());
-        if all.len() > 1 && seen.len() == all.len() {
+        // Windows tells the processors of a program, not of its threads, and macOS pins none.
+        if cfg!(target_os = "linux") && all.len() > 1 && seen.len() == all.len() {
             assert_eq!(seen.concat(), all);
         }
         assert_eq!(threads(1, true).unwrap().broadcast(|_| processors()), [all.as_slice()]);
