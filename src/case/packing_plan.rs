@@ -174,8 +174,8 @@ impl PackingPlan {
         self.scale_from(&points).is_some() && self.fingerprint_of(&points) == other.fingerprint()
     }
 
-    /// How many times as wide as the largest grain a tall cell is about, and how many times is usual, where it
-    /// is narrower than that, by a number of grains that was given or by the most that the program takes.
+    /// How many times as wide as the largest grain a tall cell is about, and how many times is usual, where
+    /// it is narrower than that, by a number of grains that was given or by the most that the program takes.
     pub fn narrow_and_tall(&self) -> Option<(f64, f64)> {
         let width = width_by_largest(&self.gradation, self.compression.grains, self.aspect);
         (self.aspect > 1.0 && width < 0.99 * CELLS_WIDTH).then_some((width, CELLS_WIDTH))

@@ -251,9 +251,9 @@ impl Case {
         let plan = PackingPlan::new(&self.scene.packing_spec().ok()??).ok()?;
         let (width, usual) = plan.narrow_and_tall()?;
         Some(format!(
-            "{} grains (packing.grains) in a cell {} times as tall as wide leave it about {width:.1} times as \
-             wide as the largest grain, where {usual} times is usual: it is periodic, so that its voids repeat \
-             across, and every layer has few of them",
+            "{} grains (packing.grains) in a cell {} times as tall as wide leave it about {width:.1} times \
+             as wide as the largest grain, where {usual} times is usual: it is periodic, so that its voids \
+             repeat across, and every layer has few of them",
             plan.compression.grains, plan.aspect
         ))
     }

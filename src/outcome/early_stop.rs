@@ -1,16 +1,16 @@
 //! When a point of a study is clear: another number of base particles, another thickness of the filter.
 //!
 //! A point is walked on the networks and random numbers of the scene's first replicates. Beside them stand
-//! all the scene's own replicates, so the first one or two of the point can tell its class where that is the
-//! scene's own and far from the threshold. Such a point stops; any other, and above all one whose class is
-//! another, is walked in full and judged by the scatter of its own replicates alone.
+//! all the scene's own replicates, so the first one or two of the point can tell that its erosion continues
+//! where that of the scene does, far above the threshold. Such a point stops; any other is walked in full and
+//! judged by the scatter of its own replicates alone.
 //!
 //! # What is asked of a point that stops
-//! - The scene's verdict is **continuing erosion**, by at least [`FEWEST_OWN`] replicates. No and some erosion,
-//!   which a reader may rely on, are walked in full.
+//! - The scene's verdict is **continuing erosion**, by at least [`FEWEST_OWN`] replicates. Points of no and
+//!   some erosion, which a reader may rely on, are walked in full.
 //! - Each run lies wholly above the threshold, by an interval that takes **twice** the scatter of the
-//!   scene's replicates, or the point's own where that makes it wider, each with its own Student's factor. The
-//!   error is 5 % over both looks and all runs (Bonferroni).
+//!   scene's replicates, or the point's own where that makes it wider, each with its own Student's factor.
+//!   The error is 5 % over both looks and all runs (Bonferroni).
 //! - In every replicate, each run lies above the threshold, as the scene's does on the same network, and
 //!   keeps at least a third of its distance from it. A point that moves more may scatter more.
 //!

@@ -10,8 +10,8 @@ use crate::outcome::record::{OfThickness, Statistic, Verdict};
 
 /// What is said where points of a study stopped early.
 pub(super) const STOPPED_WHEN_CLEAR: &str = "A point stops after one or two replicates where its erosion \
-    clearly continues, as that of this scene does: its interval then takes twice the scatter of this scene’s own \
-    replicates, or its own where that is wider, because so few say nothing sure of theirs.";
+    clearly continues, as that of this scene does: its interval then takes twice the scatter of this scene’s \
+    own replicates, or its own where that is wider, because so few say nothing sure of theirs.";
 
 /// One of several filters or bases that differ in one thing: how many times that of this scene.
 struct Varied<'a> {

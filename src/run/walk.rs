@@ -201,8 +201,9 @@ fn unchanged(folder: &Folder, fingerprint: &str) -> Result<(), RunError> {
         // Of a corrupt mark nothing is known.
         Some(begun) if !begun.work.is_empty() && begun.work != fingerprint => {
             Err(RunError::Refused(format!(
-                "{}: scene.toml or a file in inputs is not what this run was begun with, or another version of \
-                 voidwalk began it; put it back, or walk the scene anew: voidwalk run SCENE --out DIR --overwrite",
+                "{}: scene.toml or a file in inputs is not what this run was begun with, or another version \
+                 of voidwalk began it; put it back, or walk the scene anew: voidwalk run SCENE --out DIR \
+                 --overwrite",
                 shown(folder.path())
             )))
         }
