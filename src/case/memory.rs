@@ -18,8 +18,8 @@ const EVENT_BYTES: u64 = 16 << 10;
 const COUNTS_A_WORKER: (u64, u64) = (8, 32 << 10);
 
 /// Bytes for a constriction where water flows: two exits of 28 in the network and in its copy, 12 of the
-/// flow, 12 of the system and 32 of tables each; and while the flow is solved links and entries of a factor in
-/// room that grows, and what reading a file leaves (measured: up to 500 in all, 1.2 million throats of a file).
+/// flow, 12 of the system and 32 of tables each; and while the flow is solved links and entries of a factor
+/// in room that grows, and what reading a file leaves (measured: 500 in all, 1.2 million throats of a file).
 const FLOW_BYTES: u64 = 2 * (2 * 28 + 12 + 12 + 32) + 300;
 
 /// What `record.voids` keeps, while it is written (bytes): for a void that holds particles at a moment its
