@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::cases::{CASES, CasePart, CaseState, Drafts, FailedCase, PreparedCase, named, wanted};
 use super::changed;
 use super::ledger;
-use super::plan::CampaignPlan;
+use super::plan::{CampaignPlan, PlannedCase};
 use super::run_cases::{CampaignCallbacks, CaseRunner, LOST};
 use crate::case::{PackedFilter, PackingPlan};
 use crate::outcome::ledger::LedgerLine;
@@ -77,8 +77,8 @@ impl CampaignOptions {
 }
 
 /// Whether any two cases have one seed, and so may have networks in common.
-fn have_common_seeds(cases: &[PreparedCase]) -> bool {
-    let seeds: BTreeSet<u64> = cases.iter().map(|case| case.case.scene.walk.seed).collect();
+fn have_common_seeds(cases: &[&PlannedCase]) -> bool {
+    let seeds: BTreeSet<u64> = cases.iter().map(|case| case.scene.walk.seed).collect();
     seeds.len() < cases.len()
 }
 
@@ -129,14 +129,16 @@ pub fn run(
     callbacks: &CampaignCallbacks,
 ) -> Result<FinishedCampaign, RunError> {
     let wanted = wanted(plan, &options.part)?;
-    let count = wanted.len();
+    let (count, share_networks) = (wanted.len(), have_common_seeds(&wanted));
     let drafts = Drafts::new(wanted)?;
     let pool = threads(options.threads)?;
     let threads = pool.current_num_threads();
     let folder = claim(&options.out, FolderKind::Campaign, false)?;
     let (out, packings) = (folder.path(), options.packings()?);
     let prepare = PrepareOptions { packings, memory: options.memory, threads: options.threads };
-    let limits = prepare.limits(out);
+    let mut limits = prepare.limits(out);
+    let shared = share_networks.then(|| SharedNetworks::bytes(limits.memory));
+    limits.memory -= shared.unwrap_or(0);
     let (cases, mut failed) = drafts.finish(
         |packing| pool.install(|| provide(packing, &prepare.packings, &callbacks.run)),
         |case| Ok(case.place(&limits, threads as u64, out)?),
@@ -153,7 +155,7 @@ pub fn run(
         threads,
         callbacks,
         checkpoint_interval: options.checkpoint_interval,
-        networks: have_common_seeds(&cases).then(SharedNetworks::default),
+        networks: shared.map(SharedNetworks::new),
         job: Allocation::here().map(|allocation| allocation.job),
         command: options.command.clone(),
     };

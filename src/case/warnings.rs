@@ -19,8 +19,7 @@ const SKELETON: f64 = 0.9;
 const FEW_REPLICATES: u64 = 5;
 
 /// What a first look leaves out.
-const NOT_STUDIED: &str =
-    "; how the verdict moves with the amount of base and with thickness was not studied";
+const NOT_STUDIED: &str = "how the verdict moves with the amount of base and with thickness was not studied";
 
 /// Constrictions that are looked at to find that out, each as often as it is looked at.
 const LOOKED_AT: u64 = 50_000_000;
@@ -111,28 +110,33 @@ impl Case {
         dispersive.into_iter().chain(joint).collect()
     }
 
-    /// That the replicates say little of their own scatter, and what a first look leaves out besides. Where a
-    /// rule adds replicates, it says itself whether they are enough.
+    /// That the replicates say little of their own scatter.
     fn few_replicates(&self) -> Option<String> {
-        let (scene, record) = (&self.scene, &self.scene.record);
-        let few = match scene.walk.replicates {
-            _ if scene.stop.is_set() => return None,
-            1 => "one replicate: the scatter is unknown; walk more before relying on this (replicates = 10)"
-                .to_owned(),
-            few if few < FEW_REPLICATES => format!("only {few} replicates"),
-            _ => return None,
+        let walk = &self.scene.walk;
+        // Where a rule adds replicates, it says itself whether they are enough, unless it may add none.
+        let least = match self.scene.stop.is_set() {
+            true => self.scene.stop.replicates_at(walk.replicates, 1),
+            false => walk.replicates,
         };
-        // Without a list of its own the study of the thickness goes with the other.
-        let studied = |list: &[f64]| list.iter().any(|factor| *factor != 1.0);
-        match studied(&record.sensitivity) || studied(record.thickness.as_deref().unwrap_or_default()) {
-            true => Some(few),
-            false => Some(few + NOT_STUDIED),
+        match least {
+            1 => Some(
+                "one replicate: the scatter is unknown; walk more before relying on this (replicates = 10)"
+                    .to_owned(),
+            ),
+            few if few < FEW_REPLICATES => Some(format!("only {few} replicates")),
+            _ => None,
         }
     }
 
-    /// The same where no such study belongs to the answer.
-    pub fn without_studies(doubt: &str) -> String {
-        doubt.replace(NOT_STUDIED, "")
+    /// That neither study was asked for. It says nothing against the range in which the model was checked,
+    /// and stands beside the verdict all the same.
+    pub fn not_studied(&self) -> Option<&'static str> {
+        let record = &self.scene.record;
+        // Without a list of its own the study of the thickness goes with the other.
+        let studied = |list: &[f64]| list.iter().any(|factor| *factor != 1.0);
+        let is_studied =
+            studied(&record.sensitivity) || studied(record.thickness.as_deref().unwrap_or_default());
+        (!is_studied).then_some(NOT_STUDIED)
     }
 
     /// A real filter layer that is thinner than the modelled one.
@@ -251,9 +255,9 @@ impl Case {
         let plan = PackingPlan::new(&self.scene.packing_spec().ok()??).ok()?;
         let (width, usual) = plan.narrow_and_tall()?;
         Some(format!(
-            "{} grains (packing.grains) in a cell {} times as tall as wide leave it about {width:.1} times \
-             as wide as the largest grain, where {usual} times is usual: it is periodic, so that its voids \
-             repeat across, and every layer has few of them",
+            "{} grains in a cell {} times as tall as wide leave it about {width:.1} times as wide as the \
+             largest grain, where {usual} times is usual: it is periodic, so that its voids repeat across, \
+             and every layer has few of them; packing.grains says how many",
             plan.compression.grains, plan.aspect
         ))
     }

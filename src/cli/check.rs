@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::args::{SceneArgs, SettingArgs};
 use super::print::{count, json, plain, to_stdout};
+use super::values::with_options;
 use crate::constrictions::shipped;
 use crate::run::cost::duration;
 use crate::run::{self, Check, PackingCheck, PrepareOptions, RunError};
@@ -11,12 +12,16 @@ use crate::scene::Scene;
 
 impl SettingArgs {
     /// All settings that the arguments give.
-    pub fn settings(&self) -> Vec<String> {
-        let mut settings = self.settings.clone();
-        settings.extend(self.seed.map(|seed| format!("seed={seed}")));
-        settings.extend(self.target_error.map(|pp| format!("stop.target_error_pp={pp:?}")));
-        settings.extend(self.decide.map(|percent| format!("stop.decide_percent={percent:?}")));
-        settings
+    ///
+    /// # Errors
+    /// One is given by an option of its own and by --set, too.
+    pub fn settings(&self) -> Result<Vec<String>, RunError> {
+        let options = [
+            ("--seed", self.seed.map(|seed| format!("seed={seed}"))),
+            ("--target-error", self.target_error.map(|pp| format!("stop.target_error_pp={pp:?}"))),
+            ("--decide", self.decide.map(|percent| format!("stop.decide_percent={percent:?}"))),
+        ];
+        with_options(&self.settings, options)
     }
 
     /// How the scene is prepared.
@@ -28,7 +33,7 @@ impl SettingArgs {
 impl SceneArgs {
     /// The scene that the arguments name, with their settings applied.
     pub fn scene(&self) -> Result<Scene, RunError> {
-        let settings = self.set.settings();
+        let settings = self.set.settings()?;
         Ok(match &self.scene {
             Some(path) => Scene::read(path, &settings)?,
             None => Scene::built_in(&settings)?,

@@ -27,7 +27,7 @@ impl CompareArgs {
 /// Walks the cases, and compares them.
 pub fn compare(args: &CompareArgs) -> Result<(), RunError> {
     let (tables, quiet) = (&args.tables, args.walk.quiet);
-    let plan = ComparePlan::new(&args.compared(), &tables.options())?;
+    let plan = ComparePlan::new(&args.compared(), &tables.options()?)?;
     if plan.seeds_differed && !quiet {
         to_stderr(&format!("the scenes' seeds differ; all are walked with seed {}\n", plan.seed));
     }

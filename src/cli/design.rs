@@ -3,6 +3,7 @@
 use super::args::DesignArgs;
 use super::print::{counted, json, plain, shown, to_stdout};
 use super::progress::followed;
+use super::values::with_options;
 use crate::outcome::design::{Boundary, Design, DesignRow, Range};
 use crate::outcome::record::Confidence;
 use crate::run::{PrepareOptions, RunError};
@@ -10,8 +11,8 @@ use crate::study::design::{self, DesignOptions};
 
 /// Finds the boundaries and writes them into a folder.
 pub fn design(args: &DesignArgs) -> Result<(), RunError> {
-    let mut settings = args.settings.clone();
-    settings.extend(args.seed.map(|seed| format!("seed={seed}")));
+    let seed = args.seed.map(|seed| format!("seed={seed}"));
+    let settings = with_options(&args.settings, [("--seed", seed)])?;
     let options = DesignOptions {
         base: args.base.clone(),
         filter: args.filter.clone(),

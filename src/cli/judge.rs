@@ -4,23 +4,29 @@ use super::args::{JudgeArgs, TableArgs};
 use super::print::{plain, shown, to_stdout};
 use super::progress::followed;
 use super::run::show;
+use super::values::with_options;
 use crate::run::{self, RunError};
 use crate::scene::{Scene, TableOptions};
 
 impl TableArgs {
     /// What a scene of two tables is given besides them.
-    pub fn options(&self) -> TableOptions {
-        let mut changes = self.set.settings();
-        changes.extend(self.dispersive.then(|| "base.dispersive=true".to_owned()));
-        changes.extend(self.joint_mm.map(|mm| format!("filter.joint_mm={mm:?}")));
-        TableOptions { density: self.density, quick: self.quick, changes }
+    ///
+    /// # Errors
+    /// A setting is given by an option of its own and by --set, too.
+    pub fn options(&self) -> Result<TableOptions, RunError> {
+        let options = [
+            ("--dispersive", self.dispersive.then(|| "base.dispersive=true".to_owned())),
+            ("--joint-mm", self.joint_mm.map(|mm| format!("filter.joint_mm={mm:?}"))),
+        ];
+        let changes = with_options(&self.set.settings()?, options)?;
+        Ok(TableOptions { density: self.density, quick: self.quick, changes })
     }
 }
 
 /// Judges a base and a filter.
 pub fn judge(args: &JudgeArgs) -> Result<(), RunError> {
     let (tables, quiet) = (&args.tables, args.results.walk.quiet);
-    let scene = Scene::of_tables(&args.base, &args.filter, &tables.options())?;
+    let scene = Scene::of_tables(&args.base, &args.filter, &tables.options()?)?;
     let words = scene.constrictions_in_words();
     let options = args.results.options(&tables.set);
     let run = followed(quiet, |callbacks| run::walk_scene(scene, &options, callbacks))?;
@@ -32,7 +38,11 @@ pub fn judge(args: &JudgeArgs) -> Result<(), RunError> {
     show(&run, tables.set.json, quiet)?;
     if in_words {
         let scene = shown(&run.folder.join("scene.toml"));
-        to_stdout(&format!("to go on from: voidwalk run {scene} --set replicates=30\n"));
+        let studies = match run.outcome.sensitivity.is_empty() && run.outcome.thickness.is_empty() {
+            true => " --set \"record.sensitivity=[0.25, 0.5, 2, 4]\"",
+            false => "",
+        };
+        to_stdout(&format!("to go on from: voidwalk run {scene} --set replicates=30{studies}\n"));
     }
     Ok(())
 }

@@ -3,13 +3,14 @@
 use super::args::PackArgs;
 use super::print::{count, plain, to_stdout};
 use super::progress::followed;
+use super::values::with_options;
 use crate::run::{self, FinishedPacking, PackOptions, RunError};
 use crate::scene::Scene;
 
 /// Packs a filter into a folder.
 pub fn pack(args: &PackArgs) -> Result<(), RunError> {
-    let mut settings = args.settings.clone();
-    settings.extend(args.seed.map(|seed| format!("packing.seed={seed}")));
+    let seed = args.seed.map(|seed| format!("packing.seed={seed}"));
+    let settings = with_options(&args.settings, [("--seed", seed)])?;
     let spec = Scene::read_packing(&args.filter, &settings)?;
     let options = PackOptions {
         out: args.out.clone(),

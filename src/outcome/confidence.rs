@@ -51,13 +51,26 @@ fn stricter(verdict: Verdict, rules: &[AppliedRule]) -> Option<String> {
 
 /// A value with its unit.
 fn size(value: Option<f64>, unit: &str) -> String {
-    let number = value.map_or("unknown".into(), short);
+    with_unit(value.map_or("unknown".into(), short), unit)
+}
+
+fn with_unit(number: String, unit: &str) -> String {
     if unit.is_empty() { number } else { format!("{number} {unit}") }
+}
+
+/// A value and its limit, with as many digits as tell them apart.
+fn against(rule: &AppliedRule) -> [String; 2] {
+    let (Some(value), Some(limit)) = (rule.value, rule.limit) else {
+        return [size(rule.value, &rule.unit), size(rule.limit, &rule.unit)];
+    };
+    let pair = |digits| [value, limit].map(|number| digits_of(number, digits));
+    let [value, limit] = (2..9).map(pair).find(|[value, limit]| value != limit).unwrap_or_else(|| pair(2));
+    [value, limit].map(|number| with_unit(number, &rule.unit))
 }
 
 /// What a rule that is not kept says, in a sentence.
 fn sentence(rule: &AppliedRule) -> String {
-    let (value, limit) = (size(rule.value, &rule.unit), size(rule.limit, &rule.unit));
+    let [value, limit] = against(rule);
     let quantity = &rule.quantity;
     let whose = rule.name.split(':').next().unwrap_or_default();
     match rule.id.as_str() {
@@ -88,10 +101,14 @@ fn sentence(rule: &AppliedRule) -> String {
 
 /// Two digits that mean something, or three from 100 on.
 fn short(value: f64) -> String {
+    digits_of(value, 2)
+}
+
+fn digits_of(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
     }
-    let decimals = (1 - value.abs().log10().floor() as i32).clamp(0, 6);
+    let decimals = (digits - 1 - value.abs().log10().floor() as i32).clamp(0, digits + 4);
     format!("{value:.*}", decimals as usize)
 }
 
@@ -174,6 +191,15 @@ mod tests {
             }
         }
         assert!((20..195).contains(&failed), "{failed}");
+    }
+
+    /// D15F 0.704 mm on a silt, for which practice allows 0.7 mm.
+    #[test]
+    fn a_value_just_beyond_its_limit_is_told_from_it() {
+        let silt = [(0.01, 0.0), (0.05, 40.0), (0.075, 55.0), (0.3, 100.0)];
+        let all = rules(&[(0.6, 0.0), (0.704, 15.0), (1.5, 100.0)], &silt);
+        let (_, reasons) = judge(Verdict::None, &all, Vec::new());
+        assert!(reasons[0].starts_with("practice allows D15F 0.700 mm, this is 0.704 mm"), "{reasons:?}");
     }
 
     #[test]

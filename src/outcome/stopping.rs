@@ -142,8 +142,7 @@ impl StopRule {
         let sd = sd.unwrap_or(0.0);
         let which = if open == 0 { "first" } else { "second" };
         let distance = (mean - THRESHOLD).abs();
-        let needed = student::two_sided(1000, error) * sd / distance;
-        let needed = match needed * needed {
+        let needed = match needed(runs[open].len() as f64, sd / distance, error) {
             n if n < 1e9 => {
                 format!("about {} replicates would decide, if the mean stayed where it is", two_digits(n))
             }
@@ -182,6 +181,21 @@ impl StopRule {
     }
 }
 
+impl Stopping {
+    /// That the verdict was decided at a lower level than that of all intervals, where it is open at that
+    /// one: `usual` is the verdict of the 95 % intervals.
+    pub fn less_than_usual(&self, usual: Verdict) -> Option<String> {
+        let percent = self.decide_percent.filter(|percent| *percent < 95.0)?;
+        let is_decided = self.verdict.is_some_and(|verdict| verdict != Verdict::Undecided);
+        (is_decided && self.verdict != Some(usual)).then(|| {
+            format!(
+                "the verdict is decided at the {percent} % confidence level, as asked; at 95 % these \
+                 replicates leave it open"
+            )
+        })
+    }
+}
+
 /// Where the mean of a run lies, by an interval with this error probability.
 fn lies(run: &ReplicateValues, error: f64) -> BelowThreshold {
     let each: Vec<bool> = run.iter().map(|&(_, below)| below).collect();
@@ -191,6 +205,20 @@ fn lies(run: &ReplicateValues, error: f64) -> BelowThreshold {
 fn statistic(values: &ReplicateValues, error: f64) -> Statistic {
     let values: Vec<f64> = values.iter().map(|&(value, _)| value).collect();
     Statistic::with_error(&values, error)
+}
+
+/// Replicates, more than there are, whose interval is as narrow as the mean's distance, where their SD is so
+/// many times that.
+fn needed(walked: f64, sd: f64, error: f64) -> f64 {
+    let mut n = walked + 1.0;
+    loop {
+        let wanted = (student::two_sided(n.min(1001.0) as u64 - 1, error) * sd).powi(2);
+        if wanted <= n || n > 1e9 {
+            return n.max(wanted);
+        }
+        // Student's factor falls with more of them, so that fewer than these may do.
+        n = (1.1 * n).ceil().min(wanted.ceil()).max(n + 1.0);
+    }
 }
 
 /// A number of replicates to two digits.

@@ -29,6 +29,7 @@ pub fn outcome(
     seconds: f64,
 ) -> Outcome {
     let (verdict, summary, stopping) = concluded(case, walked);
+    let unsure = stopping.as_ref().and_then(|stopping| stopping.less_than_usual(summarise(walked).0));
     let pan_bounds = pan_bounds(case, [walked, &other.reading]);
     let verdict = pan_bounds.as_ref().map_or(verdict, PanBounds::verdict);
     let rules = rules::apply(&rule_inputs(case, walked));
@@ -45,9 +46,10 @@ pub fn outcome(
         _ => verdict,
     };
     let of_range = other.range.iter().map(CurveRange::sentence);
+    let of_case = unsure.into_iter().chain(told(case.doubts()));
     let doubts = match agreed == verdict {
-        true => told(case.doubts()).into_iter().chain(of_range).collect(),
-        false => of_range.chain(told(case.doubts())).collect(),
+        true => of_case.chain(of_range).collect(),
+        false => of_range.chain(of_case).collect(),
     };
     let verdict = agreed;
     let (confidence, mut reasons) = confidence::judge(verdict, &rules, doubts);
@@ -56,6 +58,7 @@ pub fn outcome(
         reasons.retain(|reason| *reason != bounds.sentence());
         reasons.insert(0, bounds.sentence());
     }
+    reasons.extend(case.not_studied().map(String::from));
     let warnings = told(case.warnings());
     Outcome {
         verdict,

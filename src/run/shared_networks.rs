@@ -10,16 +10,28 @@ use std::sync::{Arc, Mutex};
 use crate::case::Case;
 use crate::network::{Network, NetworkError};
 
-/// Networks that are kept take no more than this (bytes); the one that was kept first goes first.
+/// Networks that are kept take no more than this (bytes), and no more than one part in so many of what the
+/// walks may take.
 const MOST_BYTES: u64 = 1 << 27;
+const PART: u64 = 16;
 
 /// Networks by what makes them.
-#[derive(Default)]
 pub struct SharedNetworks {
     kept: Mutex<VecDeque<(u128, Arc<Network>)>>,
+    most_bytes: u64,
 }
 
 impl SharedNetworks {
+    /// What is kept, where walks and networks together may take so much memory (bytes).
+    pub fn bytes(memory: u64) -> u64 {
+        MOST_BYTES.min(memory / PART)
+    }
+
+    /// Keeps none yet, and never more than so many bytes; the network that was kept first goes first.
+    pub fn new(most_bytes: u64) -> Self {
+        Self { kept: Mutex::default(), most_bytes }
+    }
+
     /// The network of the replicate of a case with this seed, as [`Case::network`] builds it.
     ///
     /// # Errors
@@ -31,7 +43,7 @@ impl SharedNetworks {
         }
         // Others are found meanwhile; two that build the same one build the same bits.
         let network = Arc::new(case.network(seed)?);
-        let most = (MOST_BYTES / case.network_bytes().max(1)) as usize;
+        let most = (self.most_bytes / case.network_bytes().max(1)) as usize;
         if let Ok(mut kept) = self.kept.lock() {
             if kept.iter().all(|(other, _)| *other != key) {
                 kept.push_back((key, network.clone()));
@@ -62,7 +74,7 @@ mod tests {
 
     #[test]
     fn what_makes_no_network_shares_it_and_what_makes_one_does_not() {
-        let shared = SharedNetworks::default();
+        let shared = SharedNetworks::new(MOST_BYTES);
         let own = case(&[]);
         let network = shared.get(&own, 5).unwrap();
         assert_eq!(network.fingerprint(), own.network(5).unwrap().fingerprint());
@@ -87,12 +99,12 @@ mod tests {
 
     #[test]
     fn no_more_are_kept_than_there_is_room_for() {
-        let (shared, case) = (SharedNetworks::default(), case(&["network.nx=80", "network.ny=80"]));
-        let most = MOST_BYTES / case.network_bytes();
-        assert!((1..200).contains(&most), "{most}");
-        for seed in 0..most + 2 {
+        let case = case(&[]);
+        let shared = SharedNetworks::new(7 * case.network_bytes());
+        for seed in 0..9 {
             shared.get(&case, seed).unwrap();
         }
-        assert_eq!(shared.kept.lock().unwrap().len() as u64, most);
+        assert_eq!(shared.kept.lock().unwrap().len(), 7);
+        assert_eq!((SharedNetworks::bytes(1 << 40), SharedNetworks::bytes(160)), (MOST_BYTES, 10));
     }
 }

@@ -152,7 +152,7 @@ impl Studies {
 
     /// Whether a case has none.
     pub(super) fn are_none(case: &Case) -> bool {
-        case.sensitivity_factors().is_empty() && case.thickness_factors().is_empty()
+        points(case).is_empty()
     }
 
     fn add(&mut self, case: &Case, point: &Point, walked: &Walked, class: Verdict) {

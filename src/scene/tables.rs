@@ -44,7 +44,19 @@ const FILTER: [&str; 2] = ["filter.sieve", "filter.cu"];
 
 impl TableOptions {
     /// The settings that say all of this.
-    pub fn settings(&self) -> Vec<String> {
+    ///
+    /// # Errors
+    /// [`SceneError::Clash`]: a change says the density, too.
+    pub fn settings(&self) -> Result<Vec<String>, SceneError> {
+        if let (Some(density), true) = (self.density, self.is_set(&["filter.density"])) {
+            return Err(SceneError::Clash {
+                file: Origin::CommandLine.to_string(),
+                problem: format!(
+                    "density {} and filter.density say the same thing twice: give one",
+                    density.name()
+                ),
+            });
+        }
         let density = self.density.map(|density| format!("filter.density=\"{}\"", density.name()));
         let mut settings: Vec<String> = density.into_iter().collect();
         if self.quick && !self.is_set(&REPLICATES) {
@@ -54,7 +66,7 @@ impl TableOptions {
             settings.push("record.sensitivity=[]".into());
         }
         settings.extend(self.changes.iter().cloned());
-        settings
+        Ok(settings)
     }
 
     fn is_set(&self, names: &[&str]) -> bool {
@@ -78,7 +90,7 @@ impl Scene {
         if options.density.is_none() && !options.is_set(&CONSTRICTIONS) {
             settings.push(format!("filter.estimate={MIDDLE}"));
         }
-        settings.extend(options.settings());
+        settings.extend(options.settings()?);
         Self::built_in(&settings)
     }
 
@@ -168,6 +180,8 @@ mod tests {
         assert!(given.filter.estimate.is_none() && given.walk.replicates == 3);
         let both = TableOptions { density: Some(Density::Loose), ..with(&["filter.estimate=1"]) };
         assert!(scene(&both).unwrap_err().to_string().contains("both say what the filter's constrictions"));
+        let twice = TableOptions { density: Some(Density::Loose), ..with(&["filter.density=dense"]) };
+        assert!(scene(&twice).unwrap_err().to_string().contains("say the same thing twice"));
         let odd = scene(&with(&["base.uc=3"])).unwrap_err().to_string();
         assert!(odd.contains("there is no setting `base.uc`"), "{odd}");
     }

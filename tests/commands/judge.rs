@@ -64,17 +64,19 @@ fn a_first_look_says_so_beside_the_verdict() {
         serde_json::from_slice::<Value>(&said.stdout).unwrap()
     };
     let whole = run(&["--set", "record.sensitivity=[]"]);
+    let unstudied = "how the verdict moves with the amount of base and with thickness was not studied";
     assert_eq!(
         (&whole["confidence"], &whole["reasons"]),
-        (&"within checked range".into(), &Value::Array(vec![]))
+        (&"within checked range".into(), &vec![Value::from(unstudied)].into())
     );
     let few = run(&["--set", "replicates=4", "--set", "record.sensitivity=[]"]);
-    let said =
-        "only 4 replicates; how the verdict moves with the amount of base and with thickness was not studied";
     assert_eq!(
         (&few["confidence"], &few["reasons"]),
-        (&"outside checked range".into(), &vec![Value::from(said)].into())
+        (&"outside checked range".into(), &vec![Value::from("only 4 replicates"), unstudied.into()].into())
     );
+    // A rule that may add none is no better.
+    let most = ["--set", "stop.most_replicates=2", "--decide", "50%", "--set", "replicates=2"];
+    assert_eq!(run(&most)["reasons"][0], "only 2 replicates");
     assert_eq!(run(&["--set", "replicates=4"])["reasons"][0], "only 4 replicates");
     let one = run(&["--set", "replicates=1"]);
     assert!(one["reasons"][0].as_str().unwrap().starts_with("one replicate: the scatter is unknown"));
@@ -83,8 +85,8 @@ fn a_first_look_says_so_beside_the_verdict() {
         call(&at, &[&["judge", "base.csv", "fine.csv", "--quick", "--out", "b"][..], &SMALL].concat());
     done(&judged);
     let text = String::from_utf8(judged.stdout).unwrap();
-    assert!(text.contains(&format!("also: {said}")), "{text}");
-    assert!(fs::read_to_string(at.join("b/report.html")).unwrap().contains(said));
+    assert!(text.contains(&format!("also: {unstudied}")), "{text}");
+    assert!(fs::read_to_string(at.join("b/report.html")).unwrap().contains(unstudied));
 }
 
 /// Silt, and a filter whose D15F of 0.6 mm lies between the limits: 0.5 mm where the base is dispersive, 0.7 mm.

@@ -76,7 +76,7 @@ impl ComparePlan {
             let scene = match compared {
                 Compared::Filters { base, .. } => Scene::of_tables(base, file, options)?,
                 Compared::Bases { filter, .. } => Scene::of_tables(file, filter, options)?,
-                Compared::Scenes(_) => Scene::read(file, &options.settings())?,
+                Compared::Scenes(_) => Scene::read(file, &options.settings()?)?,
             };
             cases.push(PlannedCase { name, levels: Vec::new(), scene });
         }

@@ -423,14 +423,13 @@ impl Judged {
 
     /// How far "no erosion" can be relied on, why no further, and what else is to be said.
     fn confidence(&self, row: &Row, rules: &[AppliedRule]) -> Said {
-        let told = |said: String| Case::without_studies(&said);
-        let doubts: Vec<String> = self.case.doubts().into_iter().map(told).collect();
+        let doubts = self.case.doubts();
         let coarse = self.d85_mm.filter(|d85| *d85 > COARSE_BASE_MM).map(|d85| {
             format!("the base's D85 is {d85:.1} mm: are its sizes micrometres under a header in mm?")
         });
         let of_search = [few_networks(row), of_amount(row)].into_iter().flatten();
         let doubts: Vec<String> = coarse.into_iter().chain(doubts).chain(of_search).collect();
-        let others = self.case.warnings().into_iter().map(told).filter(|said| !doubts.contains(said));
+        let others = self.case.warnings().into_iter().filter(|said| !doubts.contains(said));
         let warnings = others.collect();
         let (confidence, reasons) = confidence::judge(Verdict::None, rules, doubts);
         (confidence, reasons, warnings)
