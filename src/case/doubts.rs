@@ -29,7 +29,7 @@ impl Case {
                 100.0 * PAPER_MASS_RATIO
             ))),
             Some(_) if self.scene.base.n_base.is_none() && ratio < PAPER_MASS_RATIO => Some(few(format!(
-                "base.mass_ratio is {ratio}; the model was checked with {PAPER_MASS_RATIO} of base over filter"
+                "base.mass_ratio is {ratio}; the model was checked with {PAPER_MASS_RATIO}, base over filter"
             ))),
             _ => None,
         }
@@ -69,10 +69,10 @@ impl Case {
         let (increments, layers) = (self.increments(), self.counts[3]);
         (self.scene.exit_rule().needs_flow() && increments <= layers).then(|| {
             format!(
-                "the whole base is inserted before any of it can be through the filter; inject_share {} makes \
-                 {increments} increments, and a particle needs {layers} to pass as many layers. Where water \
-                 flows, all that is on its way when the filter clogs counts as retained: take inject_share = \
-                 {:.1e} or less",
+                "the whole base is inserted before any of it can be through the filter; inject_share {} \
+                 makes {increments} increments, and a particle needs {layers} to pass as many layers. Where water \
+                 flows, all that is on its way when the filter clogs counts as retained: take inject_share \
+                 = {:.1e} or less",
                 self.scene.walk.inject_share,
                 LITTLE_ON_ITS_WAY / layers.max(1) as f64
             )

@@ -287,7 +287,9 @@ fn missing(folder: &RunFolder, figures: &[Drawn]) -> Markup {
         ("thickness", &of_thickness),
     ];
     html! {
-        @for (name, reason) in reasons { @if !has(name) && !reason.is_empty() { p.small { (clean(reason)) } } }
+        @for (name, reason) in reasons {
+            @if !has(name) && !reason.is_empty() { p.small { (clean(reason)) } }
+        }
         // What was asked for beside the points that were walked.
         @for (name, study) in [("sensitivity", SENSITIVITY), ("thickness", THICKER)] {
             @if has(name) { @for said in left_out_of(outcome, study) { p.small { (clean(&said)) } } }

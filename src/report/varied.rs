@@ -15,8 +15,8 @@ pub(super) const STOPPED_WHEN_CLEAR: &str = "A point stops after one or two repl
 
 /// What is said where not every thickness has its base.
 pub(super) const HELD: &str = "A cap or base.n_base holds the number of base particles (marked * in the \
-    table), so that a thicker filter is not offered as many times the base, as Eq. (2) asks: it seems to hold \
-    better than it would.";
+    table), so that a thicker filter is not offered as many times the base, as Eq. (2) asks: it seems to \
+    hold better than it would.";
 
 /// One of several filters or bases that differ in one thing: how many times that of this scene.
 struct Varied<'a> {
