@@ -8,7 +8,7 @@ use super::packed_filter::PackedError;
 use super::packed_filter::{GRAINS, PackedFilter, RECORD};
 use crate::constrictions::{Curve, ShippedFilter, find};
 use crate::gradation::{Gradation, Soil, file_and_soil};
-use crate::network::{ArrayOptions, Network};
+use crate::network::{ArrayOptions, Network, NetworkError};
 use crate::packing::{PACKING_FILE_LIMIT_BYTES, Packing};
 use crate::scene::{CurveSource, Scene, SceneError};
 use crate::store::read_regular;
@@ -237,7 +237,13 @@ impl Files {
         let kept_as = if of_arrays { ARRAYS } else { "network.csv" };
         let (name, bytes) = self.read("network.file", path, kept_as, LARGEST_NETWORK)?;
         if !of_arrays {
-            return Ok(Network::from_csv(bytes, &name, unit_mm)?);
+            let network = Network::from_csv(bytes, &name, unit_mm)?;
+            if !network.leads_out() {
+                let problem = "no open way leads from a start node to an outlet: rows with diameters above 0 \
+                               must lead from a `start,ID,` to a `FROM,end,DIAMETER`";
+                return Err(NetworkError::Whole { file: name, problem: problem.into() }.into());
+            }
+            return Ok(network);
         }
         let unit = scene.network.unit.ok_or_else(|| {
             scene.clash(format!(

@@ -1,6 +1,7 @@
 //! What a case does not need.
 
 use super::Case;
+use super::sensitivity::SENSITIVITY;
 
 impl Case {
     /// Parts of the program that this scene does not need, in words.
@@ -28,8 +29,9 @@ impl Case {
             left_out.push("the second run: it was not asked for".into());
         }
         if self.scene.record.sensitivity.is_empty() {
-            left_out.push("sensitivity to the number of base particles: it was not asked for".into());
+            left_out.push(format!("{SENSITIVITY}: it was not asked for"));
         }
+        left_out.extend(self.sensitivity_not_walked());
         for factor in self.thickness_factors() {
             if let Err(error) = self.of_thickness(factor) {
                 left_out.push(format!("a filter {factor} times as thick: {error}"));

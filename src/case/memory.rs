@@ -189,8 +189,15 @@ impl Case {
             other.place(room, threads, folder)?;
         }
         self.memory = room.memory;
-        let thickest =
-            self.thickest().map(|mut case| case.place(room, threads, folder).map(|()| case.placement));
+        let thickest = self.thickest().map(|mut case| match case.place(room, threads, folder) {
+            Err(CaseError::Memory { n_base, voids, needed, available, disk, .. })
+                if case.n_base != self.n_base || case.counts[0] != self.counts[0] =>
+            {
+                let study = " (record.thickness: the thickest filter of the study; leave that out)".into();
+                Err(CaseError::Memory { n_base, study, voids, needed, available, disk })
+            }
+            placed => placed.map(|()| case.placement),
+        });
         let thickest = thickest.transpose()?;
         let n_base = self.most_particles();
         let kept = self.kept_bytes();
@@ -214,8 +221,19 @@ impl Case {
                 0 => String::new(),
                 kept => format!(" (record.voids keeps up to {}: name fewer increments)", in_words(kept)),
             };
+            let study = match n_base == self.n_base {
+                true => String::new(),
+                false => {
+                    let factor = n_base as f64 / self.n_base as f64;
+                    format!(
+                        " (record.sensitivity: {factor} times the {} of the scene; leave that out)",
+                        self.n_base
+                    )
+                }
+            };
             return Err(CaseError::Memory {
-                n_base: self.one_by_one(self.n_base),
+                n_base: self.one_by_one(n_base),
+                study,
                 voids: self.counts[0],
                 needed: in_words(needed),
                 available: in_words(room.memory),
@@ -322,5 +340,23 @@ mod tests {
         assert!(place(none).is_ok());
         let error = place(more).unwrap_err().to_string();
         assert!(error.contains("record.voids keeps up to"), "{error}");
+    }
+
+    #[test]
+    fn a_refusal_names_what_asks_for_the_memory() {
+        let all = ["network.nx=10", "network.ny=10", "network.nz=12", "base.n_base=1000"];
+        let refused = |set: &str| {
+            let all: Vec<String> = all.iter().chain(&[set]).map(ToString::to_string).collect();
+            let mut case = Case::new(Scene::built_in(&all).unwrap()).unwrap();
+            let room = ResourceLimits { memory: 100_000_000, disk: 0 };
+            case.place(&room, 1, Path::new(".")).unwrap_err().to_string()
+        };
+        let error = refused("record.sensitivity=[1e12]");
+        assert!(
+            error.starts_with("1000000000000000 base particles walked one by one (record.sensit"),
+            "{error}"
+        );
+        let error = refused("record.thickness=[10000]");
+        assert!(error.contains("(record.thickness: the thickest"), "{error}");
     }
 }

@@ -2,6 +2,7 @@
 
 mod curve_ends;
 mod cut;
+mod doubts;
 mod files;
 mod left_out;
 mod memory;
@@ -14,6 +15,7 @@ mod record;
 mod regrade;
 mod resolved;
 mod scaled;
+mod sensitivity;
 mod sizes;
 mod supply;
 mod thickness;
@@ -84,12 +86,14 @@ pub enum CaseError {
     },
     /// More memory, or more disk, than there is.
     #[error(
-        "{n_base} base particles walked one by one on {voids} voids need {needed} of memory, but \
+        "{n_base} base particles walked one by one{study} on {voids} voids need {needed} of memory, but \
          {available} are available{disk}; set base.cap or base.n_base lower, or a smaller network"
     )]
     Memory {
         /// Base particles.
         n_base: u64,
+        /// The study that asks for them, where it is not the scene itself.
+        study: String,
         /// Voids.
         voids: u64,
         /// Bytes needed, in words.
@@ -380,16 +384,6 @@ impl Case {
     /// Increments over which the base is inserted: a whole number, so that every part is equal.
     pub fn increments(&self) -> u64 {
         (1.0 / self.scene.walk.inject_share).round().max(1.0) as u64
-    }
-
-    /// Multiples of N_base that the sensitivity study walks: those asked for, none above a cap that the user
-    /// set.
-    pub fn sensitivity_factors(&self) -> Vec<f64> {
-        let cap = match self.scene.base.amount() {
-            Amount::MassRatio(_, Some(cap)) => cap as f64,
-            _ => f64::INFINITY,
-        };
-        self.scene.record.sensitivity.iter().copied().filter(|f| f * self.n_base as f64 <= cap).collect()
     }
 
     /// D15F over D85B and D95B.

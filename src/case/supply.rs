@@ -7,7 +7,7 @@ use crate::outcome::record::PanSize;
 use crate::scene::{Amount, Scene};
 
 /// The mass ratio that Eq. (2) speaks of where the scene gives a number: the paper's 5 %.
-const PAPER_MASS_RATIO: f64 = 0.05;
+pub(super) const PAPER_MASS_RATIO: f64 = 0.05;
 
 /// The base as it is walked.
 pub(super) struct WalkedBase {
@@ -84,7 +84,11 @@ impl Against<'_> {
             return Err(self.scene.clash(problem).into());
         }
         let sampler = SizeSampler::new(taken, self.unit_mm)?;
-        Ok(WalkedBase { pan_size, sampler, n_base, has_eq2: true, mass_ratio: Some(ratio) })
+        let mass_ratio = match n_base.capped {
+            true => ratio * n_base.n_base as f64 / n_base.n_base_eq2 as f64,
+            false => ratio,
+        };
+        Ok(WalkedBase { pan_size, sampler, n_base, has_eq2: true, mass_ratio: Some(mass_ratio) })
     }
 
     /// The base of which the user gives the number of particles.

@@ -9,10 +9,17 @@ const HALF_AND_TWICE: [f64; 2] = [0.5, 2.0];
 impl Case {
     /// Multiples of the thickness that the study walks: those asked for, else half and twice where the study
     /// of the number of base particles is walked. None of a network from a file, which is as thick as it is,
-    /// and none that is to the nearest layer or copy the thickness of the case itself.
+    /// none
+    /// that is to the nearest layer or copy the thickness of the case itself, and no thickness twice.
     pub fn thickness_factors(&self) -> Vec<f64> {
-        let parts = self.thickness_parts();
-        self.thickness_wanted().into_iter().filter(|&factor| times(parts, factor) != parts).collect()
+        let mut known = vec![self.thickness_parts()];
+        let mut is_other = |factor: &f64| {
+            let parts = times(known[0], *factor);
+            let is_new = !known.contains(&parts);
+            known.push(parts);
+            is_new
+        };
+        self.thickness_wanted().into_iter().filter(|factor| is_other(factor)).collect()
     }
 
     /// Multiples that are asked for, but of which nothing is walked, each with the reason.

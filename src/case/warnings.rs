@@ -32,6 +32,8 @@ impl Case {
         doubts.extend(self.errs_unsafe());
         doubts.extend(self.not_walked());
         doubts.extend(self.too_thick());
+        doubts.extend(self.too_little_base());
+        doubts.extend(self.network_doubts());
         for (whose, soil, low, high) in [("filter", &self.filter, 1.2, 6.0), ("base", &self.base, 1.2, 4.5)] {
             match soil.cu() {
                 Some(cu) if cu < low - 1e-9 || cu > high + 1e-9 => doubts
@@ -223,13 +225,6 @@ impl Case {
             ));
         }
         warnings.extend(self.narrow_cell());
-        if let Some(eq2) = self.n_base_eq2.filter(|_| self.capped) {
-            warnings.push(format!(
-                "capped at {} base particles; Eq. (2) requires {eq2}. Fewer particles are a bias, not \
-                 noise, and its sign depends on the case",
-                self.n_base
-            ));
-        }
         if let Some((copies, _)) = self.copies {
             let equal = if copies > 1 { format!(", {copies} equal copies of it,") } else { String::new() };
             warnings.push(format!(

@@ -167,13 +167,7 @@ impl NetworkColumns<'_> {
             undirected: None,
         };
         network.layer = network.distances(|_| true);
-        let open = |c: usize| network.diameter[c] > 0.0;
-        let reached = network.distances(open);
-        let leads_out = |&void: &u32| {
-            reached[void as usize] != NO_LAYER
-                && network.exits(void).any(|c| network.target[c] == END && open(c))
-        };
-        if !(0..self.voids as u32).any(|void| leads_out(&void)) {
+        if !network.leads_out() {
             return Err(wrong(
                 "no open way leads from an inlet to an outlet. By area each constriction is passed in one \
                  direction, from the first of its two voids to the second; by flux both ways",

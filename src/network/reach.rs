@@ -18,6 +18,17 @@ impl Network {
         Reachability { from_start, to_end: self.leading_to_end(&passable) }
     }
 
+    /// Whether an open way leads from a start node out of the network: nothing can leave any other, whatever
+    /// it would hold.
+    pub fn leads_out(&self) -> bool {
+        let open = |c: usize| self.diameter[c] > 0.0;
+        let reached = self.distances(open);
+        let is_last = |&void: &u32| {
+            reached[void as usize] != NO_LAYER && self.exits(void).any(|c| self.target[c] == END && open(c))
+        };
+        (0..self.voids() as u32).any(|void| is_last(&void))
+    }
+
     /// Share of all constrictions that lie on a path from start to end through constrictions that
     /// `open` admits.
     pub fn backbone_fraction(&self, open: impl Fn(usize) -> bool) -> f64 {

@@ -23,7 +23,8 @@ impl Outcome {
         first.into_iter().chain(second).flatten().collect()
     }
 
-    fn trapped_sentence(&self) -> Option<String> {
+    /// How many particles circle for ever.
+    pub fn trapped_sentence(&self) -> Option<String> {
         let trapped: u64 = self.replicates.iter().flat_map(|r| &r.runs).map(|r| r.trapped).sum();
         (trapped > 0)
             .then(|| format!("{} particles trapped in closed loops; they count as retained", count(trapped)))

@@ -11,6 +11,7 @@
 //! - [`paper`] holds what the paper states.
 //! - [`rules`] applies the rules of filter practice to the same two curves; [`PairRules`] without a walk.
 //! - [`confidence`] says how far a verdict can be relied on, and why no further.
+//! - [`walk_doubts`] are what a walk itself says against its verdict.
 //! - [`infiltration()`] is Eq. (1) beside the walk.
 //! - [`network_walk`] is what comes of walks on given networks, without a scene.
 //! - [`percolation`] fits percolation thresholds of several lattice sizes.
@@ -49,6 +50,7 @@ pub mod stopping;
 pub(crate) mod student;
 pub mod thickness;
 pub mod verdict;
+pub mod walk_doubts;
 
 pub use infiltration::infiltration;
 pub(crate) use least_squares::log_log_slope;
@@ -62,7 +64,7 @@ pub const MODEL_LEAVES_OUT: [&str; 6] = [
     "hydraulics: no flow, no gradient, no time; an increment is not an interval of time",
     "bridging: a particle is stopped only by a constriction finer than itself",
     "partial clogging: a constriction is open at its full size or blocked",
-    "a limit to what enters: all the base that Eq. (2) gives is offered to the filter",
+    "a limit to what enters: all base particles of the scene are offered to the filter",
     "the excessive-erosion class of Foster and Fell: the verdict knows no, some and continuing erosion",
     "cohesion, suffusion of the filter itself, segregation and layering of the filter",
 ];

@@ -16,8 +16,9 @@ pub fn sentence(rows: &[OfThickness]) -> Option<String> {
         let times = format!("{:.3}", row.factor);
         let times = times.trim_end_matches('0').trim_end_matches('.');
         let replicates = if row.replicates == 1 { "replicate" } else { "replicates" };
+        let held = if row.has_its_base(own.n_base) { "" } else { ", not as many times the base" };
         format!(
-            "{times} times as thick: {}, {} eroded in {} {replicates}",
+            "{times} times as thick{held}: {}, {} eroded in {} {replicates}",
             row.verdict.words(),
             eroded.join(" then "),
             row.replicates
@@ -48,7 +49,7 @@ mod tests {
             factor,
             layers,
             thickness_mm: None,
-            n_base: 100,
+            n_base: (100.0 * factor) as u64,
             replicates: 1,
             stopped_when_clear: false,
             verdict,
@@ -71,6 +72,9 @@ mod tests {
             moves.starts_with("The verdict moves with thickness (0.5 times as thick: some erosion, 20.00 %")
         );
         assert!(moves.ends_with("2.5 times as thick: no erosion, 4.00 % eroded in 1 replicate)."), "{moves}");
+        let held = OfThickness { n_base: 100, ..row(2.0, Verdict::Some, 0.1) };
+        let held = sentence(&[row(1.0, Verdict::Some, 0.12), held]).unwrap();
+        assert!(held.contains("(2 times as thick, not as many times the base: some erosion"), "{held}");
         let clear = OfThickness {
             stopped_when_clear: true,
             runs: vec![Statistic { mean: 0.59, sd: None, low: Some(0.386), high: Some(0.797) }],

@@ -155,6 +155,7 @@ fn verdict_section(folder: &RunFolder, verdict: &Drawn) -> Markup {
             (verdict_box::eroded_table(walks))
             @if let Some(bounds) = &outcome.pan_bounds { (both_readings(bounds)) }
             @if let Some(stopping) = &outcome.stopping { p { (stopped(stopping)) } }
+            @if let Some(trapped) = outcome.trapped_sentence() { p { (trapped) "." } }
             @if let Some(next) = outcome.what_would_decide() { p { (capital(next)) "." } }
             (verdict_box::replicates_in_words(walks, REPLICATE))
         }
@@ -228,12 +229,14 @@ fn reasons(outcome: &Outcome) -> Markup {
 fn warnings(outcome: &Outcome) -> Markup {
     let said = |warning: &&String| !outcome.reasons.contains(warning);
     let warnings: Vec<&String> = outcome.warnings.iter().filter(said).collect();
+    let all = || outcome.warnings.iter().chain(&outcome.reasons);
+    let is_capped = outcome.capped && !all().any(|said| said.starts_with("capped at"));
     html! {
-        @if !warnings.is_empty() || outcome.capped {
+        @if !warnings.is_empty() || is_capped {
             section.warnings {
                 h2 { "Before you rely on this" }
                 ul {
-                    @if outcome.capped && !warnings.iter().any(|warning| warning.starts_with("capped at")) {
+                    @if is_capped {
                         li {
                             "Capped: " (whole(outcome.n_base)) " base particles were walked; "
                             "Eq. (2) requires " (known(outcome.n_base_eq2, whole)) "."
@@ -250,10 +253,29 @@ fn warnings(outcome: &Outcome) -> Markup {
 const TO_COME: &str = "How the verdict moves with the thickness of the filter and the number of base \
     particles is not walked yet, and nothing moves it more: voidwalk resume goes on with it.";
 
+/// How what is left out of a study begins: of the number of base particles, and of the thickness.
+const SENSITIVITY: &[&str] = &["sensitivity to the number of base particles"];
+const THICKER: &[&str] =
+    &["a filter ", "filters of another thickness", "how the verdict moves with the filter"];
+
+/// What was left out of a study, in sentences.
+fn left_out_of(outcome: &Outcome, study: &[&str]) -> Vec<String> {
+    let is_of = |said: &&String| study.iter().any(|begin| said.starts_with(begin));
+    outcome.left_out.iter().filter(is_of).map(|said| format!("{}.", capital(said))).collect()
+}
+
 /// Says which figures are missing, and why.
 fn missing(folder: &RunFolder, figures: &[Drawn]) -> Markup {
     let has = |name: &str| figures.iter().any(|drawn| drawn.name == name);
-    let to_come = folder.outcome.studies_to_come;
+    let outcome = &folder.outcome;
+    let to_come = outcome.studies_to_come;
+    let because = |study: &[&str], asked: &str| match (to_come, left_out_of(outcome, study)) {
+        (true, _) => String::new(),
+        (false, said) if said.is_empty() => asked.to_owned(),
+        (false, said) => said.join(" "),
+    };
+    let of_base = because(SENSITIVITY, "Sensitivity to the number of base particles was not asked for.");
+    let of_thickness = because(THICKER, "Filters of other thicknesses were not asked for.");
     let reasons = [
         ("eroded", "series.csv has no rows: the progress of erosion is not drawn."),
         ("layers", "layers.csv has no rows: blocking by layer is not drawn."),
@@ -261,14 +283,17 @@ fn missing(folder: &RunFolder, figures: &[Drawn]) -> Markup {
             "retained",
             "retained.csv and eroded.csv have no rows for the first run: size curves are not drawn.",
         ),
-        (
-            "sensitivity",
-            if to_come { TO_COME } else { "Sensitivity to the number of base particles was not asked for." },
-        ),
-        ("thickness", if to_come { "" } else { "Filters of other thicknesses were not asked for." }),
+        ("sensitivity", if to_come { TO_COME } else { &of_base }),
+        ("thickness", &of_thickness),
     ];
     html! {
-        @for (name, reason) in reasons { @if !has(name) && !reason.is_empty() { p.small { (reason) } } }
+        @for (name, reason) in reasons {
+            @if !has(name) && !reason.is_empty() { p.small { (clean(reason)) } }
+        }
+        // What was asked for beside the points that were walked.
+        @for (name, study) in [("sensitivity", SENSITIVITY), ("thickness", THICKER)] {
+            @if has(name) { @for said in left_out_of(outcome, study) { p.small { (clean(&said)) } } }
+        }
         @if has("eroded")
             && folder.rows.series.len() != folder.outcome.replicates.len() * folder.outcome.summary.len()
         {

@@ -7,7 +7,7 @@ use super::numbers::{
 };
 use super::run_figures::run_name;
 use super::table::Table;
-use super::varied::STOPPED_WHEN_CLEAR;
+use super::varied::{HELD, STOPPED_WHEN_CLEAR};
 use super::walks::Walks;
 use crate::outcome::record::{OfThickness, Outcome, Replicate, Run, RunSummary, Sensitivity, Statistic};
 
@@ -143,11 +143,15 @@ fn few(stopped: bool) -> Markup {
 /// Filters of other thicknesses, collapsed.
 pub(super) fn thickness(outcome: &Outcome) -> Markup {
     let scale_free = outcome.inputs.scale_free;
+    let own = outcome.n_base;
+    let is_held = move |row: &OfThickness| !row.has_its_base(own);
     let mut table = Table::of(&outcome.thickness)
         .number("Times the thickness", |row| format!("×{}", trimmed(row.factor)))
         .number("Layers of voids", |row| whole(row.layers))
         .number("Thickness", move |row| known(row.thickness_mm, |t| size(t, scale_free)))
-        .number("Base particles, N_base", |row| whole(row.n_base))
+        .number("Base particles, N_base", move |row| {
+            format!("{}{}", whole(row.n_base), if is_held(row) { " *" } else { "" })
+        })
         .number("Replicates", |row| row.replicates);
     for (index, run) in outcome.summary.iter().enumerate() {
         let of = move |row: &OfThickness| row.runs.get(index).map_or_else(|| html! { "–" }, fraction);
@@ -157,6 +161,7 @@ pub(super) fn thickness(outcome: &Outcome) -> Markup {
         @if !outcome.thickness.is_empty() { details {
             summary { "Filters of other thicknesses, in numbers" }
             (table.text("Verdict", |row| row.verdict.words()))
+            @if outcome.thickness.iter().any(is_held) { p.small { "* " (HELD) } }
             (few(outcome.thickness.iter().any(|row| row.stopped_when_clear)))
         } }
     }

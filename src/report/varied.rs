@@ -13,6 +13,11 @@ pub(super) const STOPPED_WHEN_CLEAR: &str = "A point stops after one or two repl
     clearly continues, as that of this scene does: its interval then takes twice the scatter of this scene’s \
     own replicates, or its own where that is wider, because so few say nothing sure of theirs.";
 
+/// What is said where not every thickness has its base.
+pub(super) const HELD: &str = "A cap or base.n_base holds the number of base particles (marked * in the \
+    table), so that a thicker filter is not offered as many times the base, as Eq. (2) asks: it seems to \
+    hold better than it would.";
+
 /// One of several filters or bases that differ in one thing: how many times that of this scene.
 struct Varied<'a> {
     factor: f64,
@@ -77,10 +82,14 @@ pub(super) fn thickness(folder: &RunFolder) -> Option<Drawn> {
     let rows: Vec<Varied> = rows.collect();
     let behind = behind(&rows);
     let figure = varied(&folder.walks(), rows, titles)?;
+    let own = folder.outcome.n_base;
+    let offered = match folder.outcome.thickness.iter().all(|row| row.has_its_base(own)) {
+        true => "By Eq. (2) a thicker filter is offered as many times the base.",
+        false => HELD,
+    };
     let caption = format!(
         "How the verdict moves with the thickness of the filter: more layers are more constrictions to \
-         pass. ×1 is this scene, {} layers of voids. By Eq. (2) a thicker filter is offered as many times \
-         the base. Bars: 95 % intervals. {behind}",
+         pass. ×1 is this scene, {} layers of voids. {offered} Bars: 95 % intervals. {behind}",
         whole(folder.outcome.inputs.network.layers),
     );
     Some(Drawn::new("thickness", figure, caption))

@@ -171,6 +171,7 @@ impl NetworkWalk {
         let (needed, available) = (self.bytes(networks), Machine::here().available);
         if needed > available {
             return Err(CaseError::Memory {
+                study: String::new(),
                 n_base: self.n_base,
                 voids: networks.iter().map(|network| network.voids() as u64).max().unwrap_or(0),
                 needed: in_words(needed),

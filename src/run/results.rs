@@ -15,6 +15,7 @@ use crate::outcome::record::{
     CurveRange, Manifest, Outcome, PanBounds, PanReading, RunSummary, Statistic, Stopping, Verdict, VoidRow,
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
+use crate::outcome::walk_doubts::{Walked, is_clogged, walk_doubts};
 use crate::outcome::{Recorded, by_void, confidence, infiltration, leaves_out, rules, verdict};
 use crate::scene::NetworkSource;
 use crate::store::{Folder, StoreError};
@@ -46,7 +47,11 @@ pub fn outcome(
         _ => verdict,
     };
     let of_range = other.range.iter().map(CurveRange::sentence);
-    let of_case = unsure.into_iter().chain(told(case.doubts()));
+    let mut of_walk = doubts_of_walk(case, agreed, walked);
+    if let Some(second) = &case.other_reading {
+        of_walk.extend(doubts_of_walk(second, agreed, &other.reading));
+    }
+    let of_case = unsure.into_iter().chain(of_walk).chain(told(case.doubts()));
     let doubts = match agreed == verdict {
         true => of_case.chain(of_range).collect(),
         false => of_range.chain(of_case).collect(),
@@ -94,6 +99,25 @@ pub fn outcome(
         studies_to_come: false,
         seconds,
     }
+}
+
+/// What these walks say themselves against the verdict.
+fn doubts_of_walk(case: &Case, verdict: Verdict, walked: &[ReplicateResult]) -> Vec<String> {
+    let mut clogged: Vec<[u64; 3]> = Vec::new();
+    for row in walked.iter().flat_map(|w| &w.recorded.flow).filter(|row| is_clogged(row.k_over_k0)) {
+        // The first row of its run.
+        if clogged.last().is_none_or(|last| last[..2] != [row.replicate, row.run]) {
+            clogged.push([row.replicate, row.run, row.increment]);
+        }
+    }
+    let of = Walked {
+        replicates: walked.iter().map(|w| &w.replicate).collect(),
+        clogged,
+        base: &case.base,
+        share: 1.0 / case.increments() as f64,
+        layers: case.counts[3],
+    };
+    walk_doubts(verdict, &of)
 }
 
 /// The verdict of replicates, their statistics by run, and what a rule that adds replicates came to.

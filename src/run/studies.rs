@@ -57,7 +57,7 @@ fn points(case: &Case) -> Vec<Point<'_>> {
     let of_base = |(part, factor): (u64, f64)| Point {
         case: Cow::Borrowed(case),
         part,
-        n_base: ((case.n_base as f64 * factor).round() as u64).max(1),
+        n_base: case.times_base(factor),
         base_factor: Some(factor),
     };
     // What cannot be is said among what is left out.

@@ -55,10 +55,12 @@ fn a_first_look_says_so_beside_the_verdict() {
     let scene = "[base]\ncu = 1.5\nd85_at_dc = 40\n";
     fs::write(at.join("good.toml"), format!("replicates = 5\n[filter]\ncurve = \"cu1.5-loose\"\n{scene}"))
         .unwrap();
+    // As narrow as a lattice may be without a doubt.
+    let wide = ["--set", "network.nx=10", "--set", "network.ny=10", "--set", "network.nz=8"];
     let run = |more: &[&str]| {
         let said = call(
             &at,
-            &[&["run", "good.toml", "--json", "--overwrite", "--out", "a"][..], &SMALL, more].concat(),
+            &[&["run", "good.toml", "--json", "--overwrite", "--out", "a"][..], &wide, more].concat(),
         );
         done(&said);
         serde_json::from_slice::<Value>(&said.stdout).unwrap()

@@ -379,6 +379,29 @@ fn a_network_from_a_file_is_walked_and_kept() {
     // Void 0 has one exit finer than the particles; everything else leaves.
     assert_eq!(run["blocked"], 1);
     assert_eq!(run["eroded"].as_u64().unwrap() + run["retained_in_constrictions"].as_u64().unwrap(), 1000);
+    // Its five ways are nobody's filter.
+    assert_ne!(outcome["confidence"], "within checked range");
+    assert!(outcome["reasons"].to_string().contains("the network is that of the file, 3 voids"));
+    // One that nothing leaves holds everything.
+    for rows in ["start,0,\n0,1,2\n1,0,2\n2,end,3\n2,0,1", "start,0,\n0,1,2", "start,0,\n0,end,0"] {
+        let network = root.path().join("noway.csv");
+        fs::write(&network, format!("from,to,diameter_mm\n{rows}\n")).unwrap();
+        let set = format!("network.file={}", network.display());
+        let args = ["check", "--set", &set, "--set", "base.single_mm=0.25", "--set", "base.n_base=10"];
+        refused(&voidwalk(&args), &["noway.csv: no open way leads from a start node"]);
+    }
+    // A ring with ways out so narrow that hardly anything leaves.
+    let ring = root.path().join("ring.csv");
+    let rows = "start,0,\n0,1,2\n1,2,2\n2,0,2\n0,end,0.05\n";
+    fs::write(&ring, format!("from,to,diameter_mm\n{rows}")).unwrap();
+    let set = format!("network.file={}", ring.display());
+    let base = ["--set", "base.single_mm=0.25", "--set", "base.n_base=1000", "--set", "replicates=2"];
+    let out = root.path().join("ring");
+    let args = [&["run", "--out", out.to_str().unwrap(), "--set", &set][..], &base].concat();
+    assert!(voidwalk(&args).status.success());
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("particles trapped in closed loops; they count as retained."), "no word of them");
+    assert!(page.contains("are trapped in closed loops, up to"));
     // The kept scene runs again from its own folder.
     let again = root.path().join("again");
     let scene = folder.join("scene.toml");

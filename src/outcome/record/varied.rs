@@ -52,6 +52,14 @@ pub struct OfThickness {
     pub runs: Vec<Statistic>,
 }
 
+impl OfThickness {
+    /// Whether it has as many times the base particles as it is thick, as by Eq. (2), where a filter of one
+    /// time the thickness has `own`: not where a cap or a number in the scene holds them.
+    pub fn has_its_base(&self, own: u64) -> bool {
+        (self.n_base as f64 - self.factor * own as f64).abs() <= 0.5 + 0.5 * self.factor + 1e-6
+    }
+}
+
 /// The walks at the ends of the range of a constriction curve.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CurveRange {

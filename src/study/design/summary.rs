@@ -423,7 +423,10 @@ impl Judged {
 
     /// How far "no erosion" can be relied on, why no further, and what else is to be said.
     fn confidence(&self, row: &Row, rules: &[AppliedRule]) -> Said {
-        let doubts = self.case.doubts();
+        // Said of every ratio below.
+        let of_one = self.case.too_little_base().filter(|_| of_amount(row).is_some());
+        let doubts = self.case.doubts().into_iter();
+        let doubts: Vec<String> = doubts.filter(|said| Some(said) != of_one.as_ref()).collect();
         let coarse = self.d85_mm.filter(|d85| *d85 > COARSE_BASE_MM).map(|d85| {
             format!("the base's D85 is {d85:.1} mm: are its sizes micrometres under a header in mm?")
         });

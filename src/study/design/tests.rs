@@ -334,7 +334,8 @@ fn every_row_is_judged_and_the_worst_counts() {
 fn what_no_answer_can_rest_on_takes_the_green_away() {
     let folder = tempfile::tempdir().unwrap();
     let of = |more: &[&str]| {
-        found(&tiny(&folder.path().join(more.concat()), &[&["network.nz=20"], more].concat()))
+        let lattice = ["network.nx=10", "network.ny=10", "network.nz=20"];
+        found(&tiny(&folder.path().join(more.concat()), &[&lattice, more].concat()))
     };
     let plain = of(&[]);
     assert_eq!((plain.confidence, &plain.reasons[..]), (Confidence::Within, &[][..]));

@@ -1,0 +1,81 @@
+//! Which other numbers of base particles a case is walked with.
+
+use super::Case;
+use crate::scene::Amount;
+
+impl Case {
+    /// Multiples of N_base that the sensitivity study walks: those asked for, none above a cap that the user
+    /// set, none that gives the number of the case itself, and no number twice.
+    pub fn sensitivity_factors(&self) -> Vec<f64> {
+        let cap = self.cap();
+        let mut numbers = vec![self.n_base];
+        let mut is_other = |factor: &f64| {
+            let number = self.times_base(*factor);
+            let is_new = !numbers.contains(&number);
+            numbers.push(number);
+            is_new && *factor * self.n_base as f64 <= cap
+        };
+        self.scene.record.sensitivity.iter().copied().filter(|factor| is_other(factor)).collect()
+    }
+
+    /// Multiples that are asked for, but not walked, each with the reason.
+    pub(super) fn sensitivity_not_walked(&self) -> Vec<String> {
+        let asked = &self.scene.record.sensitivity;
+        let walked = self.sensitivity_factors();
+        let cap = self.cap();
+        let (mut above, mut same) = (Vec::new(), Vec::new());
+        for factor in asked.iter().filter(|factor| !walked.contains(factor)) {
+            match *factor * self.n_base as f64 > cap {
+                true => above.push(format!("x{factor}")),
+                false => same.push(format!("x{factor}")),
+            }
+        }
+        let said = |factors: Vec<String>, why: String| {
+            let factors = factors.join(", ");
+            (!factors.is_empty()).then(|| format!("{SENSITIVITY}, {factors}: {why}"))
+        };
+        let is_capped = said(above, format!("more than base.cap, {cap}, allows"));
+        let is_same = said(same, "the same number of particles as the scene itself or another factor".into());
+        is_capped.into_iter().chain(is_same).collect()
+    }
+
+    /// So many times the base particles, one at the least.
+    pub fn times_base(&self, factor: f64) -> u64 {
+        ((self.n_base as f64 * factor).round() as u64).max(1)
+    }
+
+    fn cap(&self) -> f64 {
+        match self.scene.base.amount() {
+            Amount::MassRatio(_, Some(cap)) => cap as f64,
+            _ => f64::INFINITY,
+        }
+    }
+}
+
+/// What the study is called among what is left out.
+pub(super) const SENSITIVITY: &str = "sensitivity to the number of base particles";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    #[test]
+    fn what_is_not_walked_is_said_with_its_reason() {
+        let of = |set: &[&str]| {
+            let all: Vec<String> = set.iter().map(ToString::to_string).collect();
+            let case = Case::new(Scene::built_in(&all).unwrap()).unwrap();
+            (case.sensitivity_factors(), case.left_out())
+        };
+        let (factors, left_out) = of(&["base.cap=1000"]);
+        assert_eq!(factors, [0.25, 0.5]);
+        let said = "sensitivity to the number of base particles, x2, x4: more than base.cap, 1000, allows";
+        assert!(left_out.iter().any(|line| line == said), "{left_out:?}");
+        let (factors, left_out) = of(&["record.sensitivity=[1, 2, 2.0, 0.5]", "base.n_base=1000"]);
+        assert_eq!(factors, [2.0, 0.5]);
+        assert!(left_out.iter().any(|line| line.contains("particles, x1: the same number")), "{left_out:?}");
+        let (factors, left_out) = of(&["base.n_base=1000"]);
+        assert_eq!(factors.len(), 4);
+        assert!(!left_out.iter().any(|line| line.starts_with(SENSITIVITY)), "{left_out:?}");
+    }
+}
