@@ -54,8 +54,14 @@ pub(super) fn collect(
 }
 
 /// Columns of `cases.csv` after the case and its levels.
-const COLUMNS: [&str; 22] = [
+const COLUMNS: [&str; 28] = [
     "verdict",
+    "confidence",
+    "reason",
+    "rules_not_met",
+    "warnings",
+    "layers",
+    "thickness_mm",
     "replicates",
     "n_base",
     "capped",
@@ -104,7 +110,19 @@ fn table(factors: &[String], lines: &[LedgerLine]) -> Result<Vec<u8>, RunError> 
         };
         let mut row = vec![line.case.clone()];
         row.extend(factors.iter().map(level));
-        row.extend([line.verdict.words().to_string(), line.replicates.to_string(), line.n_base.to_string()]);
+        // What a line of an earlier version does not say stays empty.
+        let known = |value: Option<String>| value.unwrap_or_default();
+        let thickness = line.thickness;
+        row.extend([
+            line.verdict.words().to_string(),
+            known(line.confidence.map(|confidence| confidence.words().to_string())),
+            known(line.reason.clone()),
+            known(line.rules_not_met.as_ref().map(|rules| rules.len().to_string())),
+            line.warnings.len().to_string(),
+            known(thickness.map(|thickness| thickness.layers.to_string())),
+            known(thickness.filter(|t| !t.scale_free).and_then(|t| t.mm).map(|mm| format!("{mm:.3}"))),
+        ]);
+        row.extend([line.replicates.to_string(), line.n_base.to_string()]);
         row.extend([
             line.capped.to_string(),
             line.grains_per_void.map_or(String::new(), |grains| format!("{grains:.5}")),

@@ -8,16 +8,17 @@ use super::changed;
 use super::ledger;
 use super::plan::{CampaignPlan, PlannedCase};
 use super::run_cases::{CampaignCallbacks, CaseRunner, LOST};
-use crate::case::{PackedFilter, PackingPlan};
+use crate::case::{PackedFilter, PackingPlan, ResourceLimits};
 use crate::outcome::ledger::LedgerLine;
 use crate::run::allocation::Allocation;
 use crate::run::callbacks::Callbacks;
 use crate::run::checkpoints::CheckpointInterval;
 use crate::run::error::RunError;
 use crate::run::folder::{FolderKind, claim, shown};
-use crate::run::machine::{on_threads, threads};
+use crate::run::machine::{Machine, on_threads, threads};
 use crate::run::pack::provide;
-use crate::run::prepare::PrepareOptions;
+use crate::run::prepare::{Draft, PrepareOptions};
+use crate::run::replicates::have_networks;
 use crate::run::shared_networks::SharedNetworks;
 
 /// How a campaign is walked; no setting changes a result.
@@ -82,6 +83,13 @@ fn have_common_seeds(cases: &[&PlannedCase]) -> bool {
     seeds.len() < cases.len()
 }
 
+/// Of what there is, what a case may take; and what the networks may that cases have in common.
+fn rooms(mut limits: ResourceLimits, share_networks: bool) -> (ResourceLimits, Option<u64>) {
+    let shared = share_networks.then(|| SharedNetworks::bytes(limits.memory));
+    limits.memory -= shared.unwrap_or(0);
+    (limits, shared)
+}
+
 /// A campaign of which this process has done what it can.
 pub struct FinishedCampaign {
     /// Finished cases in the order of the plan; none where only a part of it was seen to.
@@ -128,6 +136,42 @@ pub fn run(
     options: &CampaignOptions,
     callbacks: &CampaignCallbacks,
 ) -> Result<FinishedCampaign, RunError> {
+    run_after(plan, options, callbacks, |_| Ok(()))
+}
+
+/// Finds the cases sound and placed, as far as that is known before their filters are packed; claims and
+/// writes nothing.
+///
+/// # Errors
+/// The cases that are wrong, or that do not fit the memory.
+pub fn check(plan: &CampaignPlan, options: &CampaignOptions) -> Result<(), RunError> {
+    let all = ResourceLimits::new(options.memory, Machine::here().available, &options.out);
+    let wanted = wanted(plan, &options.part)?;
+    let (limits, _) = rooms(all, have_common_seeds(&wanted));
+    let workers = threads(options.threads)?.current_num_threads() as u64;
+    let sound = |planned: &PlannedCase| -> Result<(), RunError> {
+        let (_, mut case) = Draft::new(planned.scene.clone())?;
+        case.place(&limits, workers, &options.out)?;
+        have_networks(&case)
+    };
+    let wrong = |planned: &PlannedCase| {
+        let problem = sound(planned).err()?.to_string();
+        Some(FailedCase { case: planned.name.clone(), problem })
+    };
+    let failed: Vec<FailedCase> = wanted.into_iter().filter_map(wrong).collect();
+    if failed.is_empty() { Ok(()) } else { Err(RunError::Refused(named(&failed))) }
+}
+
+/// The cases of a campaign when their filters are packed and before the first is walked: all, or why not.
+pub(crate) type ReadyCases<'a, 'b> = Result<&'b [PreparedCase<'a>], RunError>;
+
+/// As [`run()`], but for what is seen to when all cases are ready and nothing is walked yet.
+pub(crate) fn run_after(
+    plan: &CampaignPlan,
+    options: &CampaignOptions,
+    callbacks: &CampaignCallbacks,
+    ready: impl FnOnce(ReadyCases) -> Result<(), RunError>,
+) -> Result<FinishedCampaign, RunError> {
     let wanted = wanted(plan, &options.part)?;
     let (count, share_networks) = (wanted.len(), have_common_seeds(&wanted));
     let drafts = Drafts::new(wanted)?;
@@ -136,13 +180,21 @@ pub fn run(
     let folder = claim(&options.out, FolderKind::Campaign, false)?;
     let (out, packings) = (folder.path(), options.packings()?);
     let prepare = PrepareOptions { packings, memory: options.memory, threads: options.threads };
-    let mut limits = prepare.limits(out);
-    let shared = share_networks.then(|| SharedNetworks::bytes(limits.memory));
-    limits.memory -= shared.unwrap_or(0);
+    let (limits, shared) = rooms(prepare.limits(out), share_networks);
+    let mut has_room = true;
     let (cases, mut failed) = drafts.finish(
         |packing| pool.install(|| provide(packing, &prepare.packings, &callbacks.run)),
-        |case| Ok(case.place(&limits, threads as u64, out)?),
+        |case| {
+            let placed = case.place(&limits, threads as u64, out);
+            has_room &= placed.is_ok();
+            Ok(placed?)
+        },
     )?;
+    ready(match (failed.is_empty(), has_room) {
+        (true, _) => Ok(&cases),
+        (false, true) => Err(RunError::failed(named(&failed))),
+        (false, false) => Err(RunError::Refused(named(&failed))),
+    })?;
     if cases.is_empty() && drafts.packings().is_empty() {
         return Err(RunError::Refused(named(&failed)));
     }

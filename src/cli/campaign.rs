@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::args::CampaignArgs;
 use super::case_progress::CaseProgress;
-use super::print::{percent, plain, shown, to_stdout};
+use super::print::{grains_per_void, leaves_out, percent, plain, shown, to_stdout};
 use super::progress::{followed, unfollowed};
 use super::run::command_line;
 use crate::campaign::cluster::scripts::quoted_if_needed;
@@ -13,8 +13,8 @@ use crate::campaign::{
     self, CampaignCallbacks, CampaignOptions, CampaignPlan, CasePart, FinishedCampaign, JobOptions,
     WrittenJobs,
 };
-use crate::outcome::ledger::LedgerLine;
-use crate::outcome::record::Verdict;
+use crate::outcome::ledger::{self, LedgerLine, confidences, of_earlier_versions};
+use crate::outcome::record::{Confidence, Verdict};
 use crate::run::RunError;
 use crate::run::allocation::Allocation;
 use crate::run::cost::duration;
@@ -90,20 +90,40 @@ fn words(lines: &[LedgerLine], out: &Path) -> String {
         let count = lines.iter().filter(|line| line.verdict == verdict).count();
         if count > 0 {
             // Writing to a string cannot fail.
-            let _ = writeln!(text, "{count:>5}  {}", verdict.words());
+            let _ = writeln!(text, "{count:>5}  {} ({})", verdict.words(), confidences(lines, verdict));
         }
     }
     for line in lines.iter().filter(|_| lines.len() <= SHOWN) {
         let eroded: Vec<String> =
             line.runs.iter().map(|run| percent(run.eroded_mass_fraction.mean)).collect();
         let eroded = eroded.join(" then ");
-        let _ =
-            writeln!(text, "{}: {}, {eroded} of the mass eroded", plain(&line.case), line.verdict.words());
+        let confidence = line.confidence.map_or("unknown confidence", Confidence::words);
+        let (case, verdict) = (plain(&line.case), line.verdict.words());
+        let _ = writeln!(text, "{case}: {verdict} ({confidence}), {eroded} of the mass eroded");
+        if let Some(reason) = &line.reason {
+            let _ = writeln!(text, "  {}", plain(reason));
+        }
+        let _ = writeln!(text, "  {}; {}", thickness(line), grains_per_void(line.grains_per_void));
     }
+    if lines.len() > SHOWN {
+        let same = lines.iter().all(|line| line.thickness == lines[0].thickness);
+        let said =
+            if same { thickness(&lines[0]) } else { "modelled filter thickness: see cases.csv".into() };
+        let _ = writeln!(text, "{said}");
+    }
+    if let Some(said) = of_earlier_versions(lines) {
+        let _ = writeln!(text, "{said}");
+    }
+    let _ = writeln!(text, "{}", leaves_out(&ledger::leaves_out(lines)));
     let seconds: f64 = lines.iter().map(|line| line.made.seconds).sum();
     let page = shown(&out.join("report.html"));
     let _ = writeln!(text, "{} cases, {seconds:.1} s of walks; report: {page}", lines.len());
     text
+}
+
+fn thickness(line: &LedgerLine) -> String {
+    let words = line.thickness.map_or("not in the ledger of an earlier version".into(), |t| t.words());
+    format!("modelled filter thickness: {words}")
 }
 
 /// Writes the job scripts for the cases that are not done.

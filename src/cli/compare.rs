@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::args::CompareArgs;
 use super::case_progress::CaseProgress;
-use super::print::{json, percent, plain, shown, to_stderr, to_stdout};
+use super::print::{grains_per_void, json, leaves_out, percent, plain, shown, to_stderr, to_stdout};
 use super::progress::followed;
 use super::run::command_line;
 use crate::campaign::CampaignCallbacks;
@@ -71,9 +71,12 @@ fn words(comparison: &Comparison) -> String {
     for case in &comparison.cases {
         let runs: Vec<String> = case.runs.iter().map(eroded).collect();
         line(format!("{}: {} ({})", case.name, case.verdict.words(), case.confidence.words()));
-        line(format!("  {} of the mass eroded; D15F/D85B {:.2}", runs.join(", then "), {
-            case.ratios.d15f_over_d85b
-        }));
+        line(format!(
+            "  {} of the mass eroded; D15F/D85B {:.2}, {}",
+            runs.join(", then "),
+            case.ratios.d15f_over_d85b,
+            grains_per_void(case.grains_per_void)
+        ));
         for reason in case.reasons.iter().chain(&case.beside) {
             line(format!("  {reason}"));
         }
@@ -89,6 +92,7 @@ fn words(comparison: &Comparison) -> String {
     if let Some(what) = comparison.not_in_intervals() {
         line(format!("Not in these intervals: {what}"));
     }
+    line(leaves_out(&comparison.model_leaves_out));
     text
 }
 

@@ -1,7 +1,7 @@
 //! `voidwalk design`: how coarse a filter may be.
 
 use super::args::DesignArgs;
-use super::print::{counted, json, plain, shown, to_stdout};
+use super::print::{counted, json, leaves_out, plain, shown, to_stdout};
 use super::progress::followed;
 use super::values::with_options;
 use crate::outcome::design::{Boundary, Design, DesignRow, Range};
@@ -69,8 +69,7 @@ fn words(design: &Design) -> String {
             _ => "of the standard products none is said to fit, as the answer is in doubt".into(),
         });
     }
-    let left_out = design.model_leaves_out.iter().filter_map(|item| item.split(':').next());
-    lines.push(format!("The model leaves out: {}.", left_out.collect::<Vec<_>>().join("; ")));
+    lines.push(leaves_out(&design.model_leaves_out));
     lines.push(format!("{:.1} s, {} networks each, seed {}", design.seconds, design.replicates, design.seed));
     lines.into_iter().map(|line| plain(&line) + "\n").collect()
 }

@@ -40,6 +40,20 @@ pub fn counted(n: u64, one: &str, many: &str) -> String {
     format!("{} {}", count(n), if n == 1 { one } else { many })
 }
 
+/// Grains per void, or that they are not given.
+pub fn grains_per_void(grains: Option<f64>) -> String {
+    match grains {
+        Some(grains) => format!("{} grains per void", (grains * 1e4).round() / 1e4),
+        None => "grains per void not given".into(),
+    }
+}
+
+/// What the model leaves out, the first words of each thing.
+pub fn leaves_out(items: &[String]) -> String {
+    let first: Vec<&str> = items.iter().filter_map(|item| item.split(':').next()).collect();
+    format!("The model leaves out: {}.", first.join("; "))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

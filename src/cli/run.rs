@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::args::{ResultArgs, ResumeArgs, RunArgs, SettingArgs};
-use super::print::{count, counted, json, percent, shown, to_stdout};
+use super::print::{count, counted, grains_per_void, json, leaves_out, percent, shown, to_stdout};
 use super::progress::followed;
 use crate::outcome::record::RunSummary;
 use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
@@ -83,14 +83,9 @@ fn summary(run: &FinishedRun) -> String {
         count(inputs.network.voids),
         outcome.ratios.d15f_over_d85b,
         outcome.ratios.d15f_over_d95b,
-        match outcome.grains_per_void {
-            Some(grains) => format!("{} grains per void", (grains * 1e4).round() / 1e4),
-            None => "grains per void not given".into(),
-        }
+        grains_per_void(outcome.grains_per_void)
     ));
-    // The first words of each thing.
-    let left_out = outcome.model_leaves_out.iter().filter_map(|item| item.split(':').next());
-    line(format!("The model leaves out: {}.", left_out.collect::<Vec<_>>().join("; ")));
+    line(leaves_out(&outcome.model_leaves_out));
     let page = shown(&run.folder.join("report.html"));
     line(format!("{:.1} s, seed {}; report: {page}", outcome.seconds, outcome.seed));
     text

@@ -2,7 +2,6 @@
 
 use super::digits::{count, percent};
 use super::record::{Outcome, PanBounds};
-use super::thickness;
 
 impl Outcome {
     /// What a reader must see beside the verdict and its reasons, in sentences: both readings of the base's
@@ -16,7 +15,7 @@ impl Outcome {
             self.trapped_sentence(),
             self.capped_sentence(),
             self.thickness_sentence(),
-            thickness::sentence(&self.thickness),
+            self.with_thickness(),
             self.flow_sentence(),
             self.overfull_sentence(),
         ];

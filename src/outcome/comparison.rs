@@ -7,6 +7,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::leaves_out_of_all;
 use super::record::{Confidence, Outcome, Ratios, Statistic, Verdict};
 
 /// Error of all differences together where it is said that two cases differ.
@@ -29,6 +30,9 @@ pub struct Comparison {
     pub pairs: Vec<ComparedPair>,
     /// Eroded mass fraction that divides the classes: 0.075.
     pub threshold: f64,
+    /// What the model does not contain; records of earlier versions do not say.
+    #[serde(default)]
+    pub model_leaves_out: Vec<String>,
 }
 
 /// A case of a comparison.
@@ -59,6 +63,9 @@ pub struct ComparedCase {
     pub scale_free: bool,
     /// Base particles of each run.
     pub n_base: u64,
+    /// Filter grains per void, where given.
+    #[serde(default)]
+    pub grains_per_void: Option<f64>,
     /// D15F over D85B and D95B.
     pub ratios: Ratios,
     /// Eroded mass fraction of each run.
@@ -112,6 +119,7 @@ impl Comparison {
             cases: cases.collect(),
             pairs: compared,
             threshold: super::verdict::THRESHOLD,
+            model_leaves_out: leaves_out_of_all(outcomes.iter().map(|(.., outcome)| outcome.is_with_flow())),
         }
     }
 
@@ -148,6 +156,7 @@ impl ComparedCase {
             thickness_mm: outcome.inputs.network.thickness_mm,
             scale_free: outcome.inputs.scale_free,
             n_base: outcome.n_base,
+            grains_per_void: outcome.grains_per_void,
             ratios: outcome.ratios,
             runs: outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect(),
             curve_range: outcome

@@ -1,7 +1,7 @@
 //! How far a verdict can be relied on: what rules of practice say against it, and where the model was not
 //! checked.
 
-use super::record::{AppliedRule, Confidence, Outcome, RuleRole, RunSummary, Verdict};
+use super::record::{AppliedRule, Confidence, Outcome, RuleRole, Verdict};
 
 /// How far a verdict can be relied on, and why no further: sentences, the weightiest first; then what else
 /// the rules say of the pair.
@@ -113,25 +113,6 @@ fn digits_of(value: f64, digits: i32) -> String {
 }
 
 impl Outcome {
-    /// What to do where the replicates leave the class open and nothing was to add to them.
-    pub fn what_would_decide(&self) -> Option<&'static str> {
-        let said = self.stopping.is_some()
-            || self.pan_bounds.as_ref().is_some_and(|bounds| bounds.differ())
-            || self.curve_range.as_ref().is_some_and(|range| range.whole() != range.verdict);
-        if self.verdict != Verdict::Undecided || said {
-            return None;
-        }
-        let straddles = |run: &RunSummary| {
-            let eroded = &run.eroded_mass_fraction;
-            eroded.low.is_some_and(|low| low < self.threshold)
-                && eroded.high.is_some_and(|high| high >= self.threshold)
-        };
-        Some(match self.summary.len() == 1 && !self.summary.iter().any(straddles) {
-            true => "two runs tell some from continuing erosion (runs = 2)",
-            false => "more replicates may decide it: --decide 99% adds them until the class is that certain",
-        })
-    }
-
     /// The verdict in a line, with the first reason why it cannot be relied on as it stands.
     pub fn headline(&self) -> String {
         let verdict = self.verdict.words();

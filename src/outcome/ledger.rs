@@ -2,7 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::digits::count;
+use super::leaves_out_of_all;
 use super::record::{Confidence, Outcome, Ratios, RunSummary, Verdict};
+use super::undecided::UndecidedBy;
 
 /// A finished case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,6 +29,18 @@ pub struct LedgerLine {
     /// How far it can be relied on; lines of earlier versions do not say.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub confidence: Option<Confidence>,
+    /// The first reason why no further, where there is one; lines of earlier versions do not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// What leaves the verdict undecided; lines of earlier versions do not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub undecided_by: Option<UndecidedBy>,
+    /// The filter that was modelled, along the flow; lines of earlier versions do not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thickness: Option<ModelledThickness>,
+    /// Whether water gave particles their way; lines of earlier versions do not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub with_flow: Option<bool>,
     /// The rules of practice that were made for these soils and are not kept, by their names for programs;
     /// lines of earlier versions do not say.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -67,6 +82,33 @@ pub struct Campaign {
     pub missing: Vec<String>,
 }
 
+/// How thick the filter is that was modelled.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ModelledThickness {
+    /// Layers of voids.
+    pub layers: u64,
+    /// Along the flow (mm); `None` where the network does not say.
+    pub mm: Option<f64>,
+    /// Whether sizes are multiples of D0F instead of mm.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub scale_free: bool,
+}
+
+impl ModelledThickness {
+    /// Of an outcome.
+    fn of(outcome: &Outcome) -> Self {
+        let network = &outcome.inputs.network;
+        Self { layers: network.layers, mm: network.thickness_mm, scale_free: outcome.inputs.scale_free }
+    }
+
+    /// `60 layers, 93.1 mm`.
+    pub fn words(&self) -> String {
+        let unit = if self.scale_free { "D0F" } else { "mm" };
+        let size = self.mm.map_or("no size in particular".into(), |mm| format!("{mm:.1} {unit}"));
+        format!("{} {}, {size}", count(self.layers), if self.layers == 1 { "layer" } else { "layers" })
+    }
+}
+
 /// Where and when a case was walked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Made {
@@ -103,6 +145,10 @@ impl LedgerLine {
             commit: option_env!("VOIDWALK_COMMIT").map(String::from),
             verdict: outcome.verdict,
             confidence: Some(outcome.confidence),
+            reason: outcome.reasons.first().cloned(),
+            undecided_by: outcome.undecided_by(),
+            thickness: Some(ModelledThickness::of(outcome)),
+            with_flow: Some(outcome.is_with_flow()),
             rules_not_met: Some(
                 outcome.rules.iter().filter(|rule| rule.is_broken()).map(|rule| rule.id.clone()).collect(),
             ),
@@ -118,4 +164,32 @@ impl LedgerLine {
             made,
         }
     }
+}
+
+/// What the model does not contain in the cases of a ledger.
+pub fn leaves_out(lines: &[LedgerLine]) -> Vec<String> {
+    leaves_out_of_all(lines.iter().filter_map(|line| line.with_flow))
+}
+
+/// How many cases of a class there are by their confidence, in words: `2 contradicted by practice, 1 within
+/// checked range`; empty without cases.
+pub fn confidences(lines: &[LedgerLine], class: Verdict) -> String {
+    let count = |wanted| lines.iter().filter(|l| l.verdict == class && l.confidence == wanted).count();
+    let doubts = [Confidence::Contradicted, Confidence::Outside, Confidence::Within].map(Some);
+    let counted = doubts.into_iter().chain([None]).filter(|wanted| count(*wanted) > 0).map(|wanted| {
+        format!("{} {}", count(wanted), wanted.map_or("of unknown confidence", Confidence::words))
+    });
+    counted.collect::<Vec<_>>().join(", ")
+}
+
+/// What lines of an earlier version do not say, in a sentence; `None` where there are none.
+pub fn of_earlier_versions(lines: &[LedgerLine]) -> Option<String> {
+    let count = lines.iter().filter(|line| line.thickness.is_none()).count();
+    (count > 0).then(|| {
+        let were = if count == 1 { "was" } else { "were" };
+        format!(
+            "{count} of these cases {were} walked by an earlier version: the thickness modelled, why a verdict is \
+             in doubt or undecided, and whether water gave particles their way, stand on their own pages"
+        )
+    })
 }

@@ -15,7 +15,8 @@
 //! - [`infiltration()`] is Eq. (1) beside the walk.
 //! - [`network_walk`] is what comes of walks on given networks, without a scene.
 //! - [`percolation`] fits percolation thresholds of several lattice sizes.
-//! - [`thickness`] is how the verdict moves with the thickness of the filter.
+//! - [`thickness`] is how the verdict moves with the thickness of the filter, [`undecided`] what leaves it
+//!   open.
 //! - [`precision`] is error against run time; [`comparison`] is several cases side by side.
 //! - [`design`] is how coarse a filter may be, and the band of a specification.
 
@@ -49,6 +50,7 @@ mod statistic;
 pub mod stopping;
 pub(crate) mod student;
 pub mod thickness;
+pub mod undecided;
 pub mod verdict;
 pub mod walk_doubts;
 
@@ -58,6 +60,8 @@ pub(crate) use metrics::eroded_mass_fraction;
 pub use metrics::{Eroded, Recorded, RunId, RunMetrics};
 pub use pair::{BaseSizes, FilterSizes, Mistake, PairOptions, PairRules};
 pub use recorder::{Recorder, Wanted};
+
+use crate::network::ExitRule;
 
 /// What the model does not contain, for any scene; shown next to every verdict.
 pub const MODEL_LEAVES_OUT: [&str; 6] = [
@@ -71,14 +75,35 @@ pub const MODEL_LEAVES_OUT: [&str; 6] = [
 
 /// What stands in the place of the first where water gives particles their way.
 const LEAVES_OUT_OF_FLOW: &str = "hydraulics but for the direction and the shares of slow flow: no gradient, \
-    no \
-    time; an increment is not an interval of time";
+    no time; an increment is not an interval of time";
 
 /// What the model does not contain where particles choose by this rule.
-pub fn leaves_out(rule: crate::network::ExitRule) -> Vec<String> {
+pub fn leaves_out(rule: ExitRule) -> Vec<String> {
     let mut all = MODEL_LEAVES_OUT.map(String::from).to_vec();
     if rule.needs_flow() {
         all[0] = LEAVES_OUT_OF_FLOW.into();
     }
     all
+}
+
+/// What the model does not contain in any of several cases, each with water that gives particles their way or
+/// without.
+pub fn leaves_out_of_all(with_flow: impl IntoIterator<Item = bool>) -> Vec<String> {
+    let (with, without): (Vec<bool>, Vec<bool>) = with_flow.into_iter().partition(|with| *with);
+    let mut all = leaves_out(if with.is_empty() { ExitRule::Area } else { ExitRule::Flux });
+    if !with.is_empty() && !without.is_empty() {
+        all[0] = LEAVES_OUT_OF_FLOW.replacen(':', ", where water gives particles their way:", 1);
+        all.insert(0, MODEL_LEAVES_OUT[0].replacen(':', ", in the other cases:", 1));
+        all.swap(0, 1);
+    }
+    all
+}
+
+impl record::Outcome {
+    /// Whether water gave particles their way.
+    pub fn is_with_flow(&self) -> bool {
+        let with_flow =
+            |exit: &str| ExitRule::ALL.iter().any(|rule| rule.name() == exit && rule.needs_flow());
+        self.network.as_ref().is_some_and(|network| with_flow(&network.exit))
+    }
 }

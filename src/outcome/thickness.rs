@@ -1,16 +1,23 @@
 //! How the verdict moves with the thickness of the filter, in a sentence.
 
-use super::record::{OfThickness, Statistic};
+use super::record::{OfThickness, Outcome, Statistic, Verdict};
 
-/// What the rows say, in a sentence: whether the verdict stays, and how much erodes; `None` without another
-/// thickness.
-pub fn sentence(rows: &[OfThickness]) -> Option<String> {
-    let own = rows.iter().find(|row| row.factor == 1.0)?;
+impl Outcome {
+    /// How the verdict moves with the thickness of the filter, in a sentence; `None` without another thickness.
+    pub fn with_thickness(&self) -> Option<String> {
+        sentence(&self.thickness, self.verdict, self.points_are())
+    }
+}
+
+/// What the rows say beside a verdict, in a sentence: whether it stays, and how much erodes; `None` without
+/// another thickness. What is undecided neither stays nor moves.
+fn sentence(rows: &[OfThickness], verdict: Verdict, points: Option<&str>) -> Option<String> {
     let others: Vec<&OfThickness> = rows.iter().filter(|row| row.factor != 1.0).collect();
     if others.is_empty() {
         return None;
     }
-    let stays = others.iter().all(|row| row.verdict == own.verdict);
+    let own = rows.iter().find(|row| row.factor == 1.0)?;
+    let stays = others.iter().all(|row| row.verdict == verdict);
     let of_row = |row: &&OfThickness| {
         let eroded: Vec<String> = row.runs.iter().map(|s| percent(s, row.stopped_when_clear)).collect();
         let times = format!("{:.3}", row.factor);
@@ -25,7 +32,14 @@ pub fn sentence(rows: &[OfThickness]) -> Option<String> {
         )
     };
     let each: Vec<String> = others.iter().map(of_row).collect();
-    let said = if stays { "The verdict stays with thickness" } else { "The verdict moves with thickness" };
+    let said = match (verdict, stays) {
+        (Verdict::Undecided, _) => {
+            let points = points.map_or(String::new(), |points| format!(", {points}"));
+            format!("The verdict is undecided; at other thicknesses{points}")
+        }
+        (_, true) => "The verdict stays with thickness".into(),
+        (_, false) => "The verdict moves with thickness".into(),
+    };
     Some(format!("{said} ({}).", each.join("; ")))
 }
 
@@ -40,7 +54,6 @@ fn percent(eroded: &Statistic, stopped: bool) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::record::Verdict;
 
     fn row(factor: f64, verdict: Verdict, mean: f64) -> OfThickness {
         let runs = vec![Statistic { mean, sd: None, low: None, high: None }];
@@ -60,27 +73,42 @@ mod tests {
     #[test]
     fn a_sentence_says_whether_the_verdict_moves() {
         let own = row(1.0, Verdict::Some, 0.12);
-        assert_eq!(sentence(std::slice::from_ref(&own)), None);
-        let stays = sentence(&[own.clone(), row(2.0, Verdict::Some, 0.1)]).unwrap();
+        assert_eq!(sentence(std::slice::from_ref(&own), Verdict::Some, None), None);
+        let stays = sentence(&[own.clone(), row(2.0, Verdict::Some, 0.1)], Verdict::Some, None).unwrap();
         assert_eq!(
             stays,
             "The verdict stays with thickness (2 times as thick: some erosion, 10.00 % eroded in 1 \
              replicate)."
         );
-        let moves = sentence(&[row(0.5, Verdict::Some, 0.2), own, row(2.5, Verdict::None, 0.04)]).unwrap();
+        let rows = [row(0.5, Verdict::Some, 0.2), own, row(2.5, Verdict::None, 0.04)];
+        let moves = sentence(&rows, Verdict::Some, None).unwrap();
         assert!(
             moves.starts_with("The verdict moves with thickness (0.5 times as thick: some erosion, 20.00 %")
         );
         assert!(moves.ends_with("2.5 times as thick: no erosion, 4.00 % eroded in 1 replicate)."), "{moves}");
         let held = OfThickness { n_base: 100, ..row(2.0, Verdict::Some, 0.1) };
-        let held = sentence(&[row(1.0, Verdict::Some, 0.12), held]).unwrap();
+        let held = sentence(&[row(1.0, Verdict::Some, 0.12), held], Verdict::Some, None).unwrap();
         assert!(held.contains("(2 times as thick, not as many times the base: some erosion"), "{held}");
         let clear = OfThickness {
             stopped_when_clear: true,
             runs: vec![Statistic { mean: 0.59, sd: None, low: Some(0.386), high: Some(0.797) }],
             ..row(2.0, Verdict::Continuing, 0.59)
         };
-        let said = sentence(&[row(1.0, Verdict::Continuing, 0.6), clear]).unwrap();
+        let said = sentence(&[row(1.0, Verdict::Continuing, 0.6), clear], Verdict::Continuing, None).unwrap();
         assert!(said.contains("continuing erosion, 39 to 80 % eroded in 1 replicate"), "{said}");
+    }
+
+    /// Neither "stays" nor "moves" stands under a verdict that is undecided.
+    #[test]
+    fn what_is_undecided_neither_stays_nor_moves() {
+        let rows = [0.5, 1.0, 2.0].map(|factor| row(factor, Verdict::None, 0.05));
+        for (points, said) in [
+            (Some("by the curve itself"), "at other thicknesses, by the curve itself (0.5 times"),
+            (None, "at other thicknesses (0.5 times as thick: no erosion"),
+        ] {
+            let said = format!("The verdict is undecided; {said}");
+            let found = sentence(&rows, Verdict::Undecided, points).unwrap();
+            assert!(found.starts_with(&said), "{found}");
+        }
     }
 }

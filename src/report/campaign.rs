@@ -13,8 +13,7 @@ use super::run_figures::verdict_colour;
 use super::shell::{Drawn, citation, clean, contents, figures, leaves_out, whole_page};
 use super::table::Table;
 use super::written::{Written, write_page};
-use crate::outcome::MODEL_LEAVES_OUT;
-use crate::outcome::ledger::{Campaign, LedgerLine};
+use crate::outcome::ledger::{Campaign, LedgerLine, leaves_out as of_ledger};
 use crate::outcome::record::{Statistic, Verdict};
 use crate::outcome::verdict::THRESHOLD;
 
@@ -166,15 +165,10 @@ fn page(about: &Campaign, ledger: &[LedgerLine], drawn: &[Drawn], cases: &Markup
                 (Table::of(classes.iter().filter(|(_, count)| *count > 0))
                     .name("Class", |(class, _)| class.words())
                     .number("cases", |(_, count)| whole(*count)))
-                @if count(Verdict::Undecided) > 0 {
-                    p {
-                        "Undecided: an interval over replicates straddles 7.5 %. More replicates may decide \
-                         it."
-                    }
-                }
+                (cases::undecided(ledger))
                 (cases::doubted(ledger))
             }
-            (leaves_out(&MODEL_LEAVES_OUT, &html! {}))
+            (leaves_out(&of_ledger(ledger), &html! {}))
         }
         (contents())
         @if !about.missing.is_empty() {

@@ -6,12 +6,13 @@ use std::path::Path;
 use maud::{Markup, Render, html};
 
 use super::figures::shorten;
-use super::numbers::{percent, percent_interval, significant, whole};
+use super::numbers::{percent, percent_interval, significant, size, whole};
 use super::shell::clean;
 use super::table::Table;
-use crate::outcome::ledger::{Campaign, LedgerLine};
+use crate::outcome::ledger::{Campaign, LedgerLine, of_earlier_versions};
 use crate::outcome::record::{Confidence, Statistic, Verdict};
 use crate::outcome::rules::RULES;
+use crate::outcome::undecided::UndecidedBy;
 use crate::text::is_plain_part;
 
 /// Cases listed in the page; all are in `cases.csv`.
@@ -28,7 +29,7 @@ pub(super) fn cases(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> M
         p.small {
             "Class: with a link to the page of the case; below it the replicates by class, where they \
              differ. Confidence: within or outside the range in which the model was checked, or \
-             contradicted by a rule of practice. Below a number its 95 % interval over the replicates."
+             contradicted by a rule of practice; below it the first reason. Below a number its 95 % interval over the replicates."
         }
         (listed("Rules of practice that are not met", &tally(ledger, rules_of)))
         (listed("Warnings", &tally(ledger, |line| line.warnings.clone())))
@@ -45,6 +46,22 @@ pub(super) fn doubted(ledger: &[LedgerLine]) -> Markup {
                 span.amber {
                     (whole(count)) @if count == 1 { " case: " } @else { " cases: " } (doubt.words())
                 }
+            }
+        }
+        @if let Some(said) = of_earlier_versions(ledger) { p { (said) "." } }
+    }
+}
+
+/// What leaves verdicts undecided, each thing once with the number of cases.
+pub(super) fn undecided(ledger: &[LedgerLine]) -> Markup {
+    let open = || ledger.iter().filter(|line| line.verdict == Verdict::Undecided);
+    let count = |by| open().filter(|line| line.undecided_by == by).count() as u64;
+    let by = UndecidedBy::ALL.map(Some).into_iter().chain([None]).map(|by| (by, count(by)));
+    html! {
+        @for (by, count) in by.filter(|(_, count)| *count > 0) {
+            p {
+                "Undecided, " (whole(count)) @if count == 1 { " case: " } @else { " cases: " }
+                (by.map_or("the page of the case says why", UndecidedBy::words)) "."
             }
         }
     }
@@ -70,13 +87,15 @@ fn table(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Markup {
             table.text("Case", move |line| if line.levels.is_empty() { name(line) } else { String::new() });
     }
     table
-        .text("Confidence", |line| confidence(line.confidence))
+        .text("Confidence", confidence)
         .number("Rules not met", |line| known(line.rules_not_met.as_ref().map(Vec::len)))
         .number("Warnings", |line| line.warnings.len())
         .number("Eroded, first run", move |line| eroded(line, 0))
         .number("second run", move |line| eroded(line, 1))
         .number("D15F/ D85B", |line| significant(line.ratios.d15f_over_d85b))
         .number("D15F/ D95B", |line| significant(line.ratios.d15f_over_d95b))
+        .number("Thickness", thickness)
+        .number("Grains per void", |line| line.grains_per_void.map_or_else(|| "–".to_owned(), significant))
         .number("Largest eroded/ D15F", |line| {
             let largest = line.runs.first().and_then(|run| run.largest_eroded_over_d15f);
             largest.map_or_else(|| "–".to_owned(), |largest| significant(largest.mean))
@@ -122,13 +141,30 @@ fn with_interval(statistic: &Statistic) -> Markup {
     }
 }
 
-fn confidence(confidence: Option<Confidence>) -> Markup {
-    html! { @match confidence {
-        None => "–",
-        Some(Confidence::Within) => "within",
-        Some(Confidence::Outside) => span.amber { "outside" },
-        Some(Confidence::Contradicted) => span.amber { "contradicted" },
-    } }
+/// The confidence, and below it the first reason why it is no more.
+fn confidence(line: &LedgerLine) -> Markup {
+    html! {
+        @match line.confidence {
+            None => "–",
+            Some(Confidence::Within) => "within",
+            Some(Confidence::Outside) => span.amber { "outside" },
+            Some(Confidence::Contradicted) => span.amber { "contradicted" },
+        }
+        @if let Some(reason) = &line.reason { br; span.small { (clean(&shorten(reason, 200))) } }
+    }
+}
+
+/// The thickness modelled, with its layers below it.
+fn thickness(line: &LedgerLine) -> Markup {
+    html! {
+        @match line.thickness {
+            None => "–",
+            Some(of) => {
+                (of.mm.map_or_else(|| "–".to_owned(), |mm| size(mm, of.scale_free)))
+                br; span.small { (whole(of.layers)) " layers" }
+            }
+        }
+    }
 }
 
 fn known(count: Option<usize>) -> Markup {

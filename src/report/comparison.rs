@@ -8,13 +8,12 @@ use super::error::ReportError;
 use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, PURPLE, Point, Rule, Shape, shorten};
 use super::files::json;
 use super::numbers::{
-    capital, interval_in_percent, percent, percent_interval, significant, size, threshold, whole,
+    capital, interval_in_percent, known, percent, percent_interval, significant, size, threshold, whole,
 };
 use super::run_figures::run_name;
 use super::shell::{Drawn, citation, clean, contents, figures, leaves_out, whole_page};
 use super::table::Table;
 use super::written::{Written, write_page_as};
-use crate::outcome::MODEL_LEAVES_OUT;
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
 use crate::outcome::record::{Confidence, Statistic, Verdict};
 use crate::text::is_plain_part;
@@ -128,7 +127,10 @@ fn page(folder: &Path, comparison: &Comparison, drawn: &[Drawn]) -> String {
                 }
                 (doubts(comparison))
             }
-            (leaves_out(&MODEL_LEAVES_OUT, &html! {
+            (leaves_out(&comparison.model_leaves_out, &html! {
+                @if comparison.model_leaves_out.is_empty() {
+                    p { "compare.json of this earlier version does not say; the page of each case does." }
+                }
                 p { "The verdicts are the model’s. They do not replace a filter test or a designer’s \
                      judgement." }
             }))
@@ -229,6 +231,7 @@ fn cases(folder: &Path, comparison: &Comparison) -> Markup {
         .number("Thickness", |case| {
             case.thickness_mm.map_or_else(|| "–".to_owned(), |thickness| size(thickness, case.scale_free))
         })
+        .number("Grains per void", |case| known(case.grains_per_void, significant))
         .number("Replicates", |case| case.replicates)
         .number("Base particles", |case| whole(case.n_base))
         .render()

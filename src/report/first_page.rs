@@ -11,7 +11,6 @@ use super::numbers::{in_digits, significant, size, whole};
 use super::shell::clean;
 use super::table::Table;
 use crate::outcome::record::{AppliedRule, Outcome, RuleRole};
-use crate::outcome::thickness;
 
 /// Characters of a text of the user's that are shown.
 const LINE: usize = 120;
@@ -125,7 +124,7 @@ fn thickness(outcome: &Outcome) -> Markup {
             p.thickness {
                 "Thickness modelled: " b { (size(thickness, outcome.inputs.scale_free)) } " along the flow, "
                 (whole(network.layers)) " layers of voids. "
-                @if let Some(sentence) = thickness::sentence(&outcome.thickness) { (clean(&sentence)) }
+                @if let Some(sentence) = outcome.with_thickness() { (clean(&sentence)) }
             }
         }
     }

@@ -25,6 +25,7 @@ use super::written::{Written, write_page};
 use super::{appendix, packing, shell::leaves_out};
 use crate::outcome::packing::PackingRecord;
 use crate::outcome::record::{Confidence, NetworkKind, Outcome, PanBounds, PanReading, Stopping, Verdict};
+use crate::outcome::undecided::UndecidedBy;
 
 /// Characters of `scene.toml` that are shown.
 const SCENE: usize = 100_000;
@@ -204,13 +205,10 @@ fn stopped(stopping: &Stopping) -> String {
 
 /// What the class means, in a sentence.
 fn in_words(outcome: &Outcome, walks: &Walks) -> String {
-    let differ = outcome.pan_bounds.as_ref().is_some_and(PanBounds::differ);
-    if outcome.verdict == Verdict::Undecided && differ {
-        return "Inconclusive: the finest part of the base, whose sizes the sieves do not tell, decides \
-                between the classes."
-            .to_owned();
+    match outcome.undecided_by() {
+        Some(open @ (UndecidedBy::Pan | UndecidedBy::Curve)) => format!("Inconclusive: {}.", open.words()),
+        _ => verdict_box::in_words(walks),
     }
-    verdict_box::in_words(walks)
 }
 
 /// Why the verdict cannot be relied on as it stands.

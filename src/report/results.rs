@@ -7,7 +7,7 @@ use super::numbers::{
 };
 use super::run_figures::run_name;
 use super::table::Table;
-use super::varied::{HELD, STOPPED_WHEN_CLEAR};
+use super::varied::{HELD, STOPPED_WHEN_CLEAR, classes_of_points};
 use super::walks::Walks;
 use crate::outcome::record::{OfThickness, Outcome, Replicate, Run, RunSummary, Sensitivity, Statistic};
 
@@ -135,9 +135,12 @@ pub(super) fn replicates(walks: &Walks) -> Markup {
     }
 }
 
-/// What is said below a study of which points stopped early.
-fn few(stopped: bool) -> Markup {
-    html! { @if stopped { p.small { (STOPPED_WHEN_CLEAR) } } }
+/// What is said below a study: that points stopped early, and of what their classes are.
+fn below(outcome: &Outcome, stopped: bool) -> Markup {
+    html! {
+        @if stopped { p.small { (STOPPED_WHEN_CLEAR) } }
+        @if let Some(classes) = classes_of_points(outcome) { p.small { (classes) } }
+    }
 }
 
 /// Filters of other thicknesses, collapsed.
@@ -162,7 +165,7 @@ pub(super) fn thickness(outcome: &Outcome) -> Markup {
             summary { "Filters of other thicknesses, in numbers" }
             (table.text("Verdict", |row| row.verdict.words()))
             @if outcome.thickness.iter().any(is_held) { p.small { "* " (HELD) } }
-            (few(outcome.thickness.iter().any(|row| row.stopped_when_clear)))
+            (below(outcome, outcome.thickness.iter().any(|row| row.stopped_when_clear)))
         } }
     }
 }
@@ -183,7 +186,7 @@ pub(super) fn sensitivity(outcome: &Outcome) -> Markup {
         @if !outcome.sensitivity.is_empty() { details {
             summary { "Sensitivity to the number of base particles, in numbers" }
             (table.text("Verdict", |case| case.verdict.words()))
-            (few(outcome.sensitivity.iter().any(|case| case.stopped_when_clear)))
+            (below(outcome, outcome.sensitivity.iter().any(|case| case.stopped_when_clear)))
         } }
     }
 }

@@ -6,7 +6,7 @@ use super::numbers::{interval_in_percent, known, percent, significant, size, tri
 use super::run_figures::{eroded_axis, run_look, run_name, threshold_rule, upper, verdict_colour};
 use super::shell::Drawn;
 use super::walks::Walks;
-use crate::outcome::record::{OfThickness, Statistic, Verdict};
+use crate::outcome::record::{OfThickness, Outcome, Statistic, Verdict};
 
 /// What is said where points of a study stopped early.
 pub(super) const STOPPED_WHEN_CLEAR: &str = "A point stops after one or two replicates where its erosion \
@@ -17,6 +17,13 @@ pub(super) const STOPPED_WHEN_CLEAR: &str = "A point stops after one or two repl
 pub(super) const HELD: &str = "A cap or base.n_base holds the number of base particles (marked * in the \
     table), so that a thicker filter is not offered as many times the base, as Eq. (2) asks: it seems to \
     hold better than it would.";
+
+/// What is said of the classes of a study where the verdict is undecided and its other points know nothing of
+/// what leaves it so.
+pub(super) fn classes_of_points(outcome: &Outcome) -> Option<String> {
+    let points = outcome.points_are()?;
+    Some(format!("×1 has the verdict of this page; the others are classed {points}."))
+}
 
 /// One of several filters or bases that differ in one thing: how many times that of this scene.
 struct Varied<'a> {
@@ -47,7 +54,7 @@ pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
         "Times the base particles of this scene; below, grains per void",
     ];
     let cases: Vec<Varied> = cases.collect();
-    let behind = behind(&cases);
+    let behind = behind(&folder.outcome, &cases);
     let figure = varied(&folder.walks(), cases, titles)?;
     let caption = format!(
         "How the verdict moves with the number of base particles, N_base. Grains per void and mass ratio \
@@ -80,7 +87,7 @@ pub(super) fn thickness(folder: &RunFolder) -> Option<Drawn> {
         "Times the thickness of this scene; below, the thickness modelled",
     ];
     let rows: Vec<Varied> = rows.collect();
-    let behind = behind(&rows);
+    let behind = behind(&folder.outcome, &rows);
     let figure = varied(&folder.walks(), rows, titles)?;
     let own = folder.outcome.n_base;
     let offered = match folder.outcome.thickness.iter().all(|row| row.has_its_base(own)) {
@@ -95,12 +102,19 @@ pub(super) fn thickness(folder: &RunFolder) -> Option<Drawn> {
     Some(Drawn::new("thickness", figure, caption))
 }
 
-/// How many replicates stand behind each point, in words.
-fn behind(cases: &[Varied]) -> String {
+/// How many replicates stand behind each point, and of what its class is, in words.
+fn behind(outcome: &Outcome, cases: &[Varied]) -> String {
     let each = cases.iter().map(|case| format!("×{} {}", trimmed(case.factor), case.replicates));
     let each = each.collect::<Vec<_>>().join(", ");
     let stopped = cases.iter().any(|case| case.stopped_when_clear);
-    format!("Replicates: {each}.{}", if stopped { format!(" {STOPPED_WHEN_CLEAR}") } else { String::new() })
+    let mut said = format!("Replicates: {each}.");
+    if stopped {
+        said += &format!(" {STOPPED_WHEN_CLEAR}");
+    }
+    if let Some(classes) = classes_of_points(outcome) {
+        said += &format!(" {classes}");
+    }
+    said
 }
 
 /// Eroded mass against multiples of one thing, with title, description and name of the axis; `None` without

@@ -1,7 +1,7 @@
 //! Walks a case at the ends of the range in which its constriction curve is known.
 
 use super::error::RunError;
-use super::replicates::{ReplicateContext, ReplicateResult, some_replicates, summarise};
+use super::replicates::{ReplicateContext, ReplicateResult, some_replicates, stopping, summarise};
 use crate::case::Case;
 use crate::outcome::record::{CurveEnd, CurveRange};
 
@@ -33,6 +33,8 @@ pub fn curve_range(
         });
     }
     let (verdict, summaries) = summarise(walked);
+    // A verdict that was to be certain is one at the level asked for, here too.
+    let verdict = stopping(case, walked).and_then(|stopping| stopping.verdict).unwrap_or(verdict);
     let runs: Vec<_> = summaries.iter().map(|s| s.eroded_mass_fraction).collect();
     Ok(CurveRange::new(verdict, &runs, ends))
 }

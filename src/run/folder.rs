@@ -1,6 +1,6 @@
 //! Claims the folder that a command writes to, by one rule for all commands.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::checkpoints::Checkpoints;
 use super::error::RunError;
@@ -274,16 +274,55 @@ pub fn clear(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
         Unfinished { kind: kind.name().into(), ..Unfinished::default() }.begin(folder)?;
     }
     folder.remove_all(&files[..files.len().min(1)])?;
-    folder.remove_all(files)?;
-    // The pictures were made of the drawings by others, as `scripts/figures_to_png.sh`.
-    let both = |name: &&str| ["svg", "png"].map(|ending| format!("{name}.{ending}"));
-    let figures: Vec<String> = kind.figures().iter().flat_map(both).collect();
-    folder.remove_all_in("figures", &figures)?;
-    folder.remove_all_in("export", &exported(folder.path()))?;
+    clear_results(folder, kind)?;
     if kind == FolderKind::Run {
         folder.remove_all_in("inputs", &INPUT_FILES)?;
     }
     folder.remove_all(&[unfinished::FILE])
+}
+
+/// The same, but for the scene of a run and its input files, from which it is walked anew.
+///
+/// # Errors
+/// What the system says.
+pub(super) fn clear_but_scene(folder: &Folder) -> Result<(), StoreError> {
+    clear_results(folder, FolderKind::Run)?;
+    folder.remove_all(&[unfinished::FILE])
+}
+
+fn clear_results(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
+    let files: Vec<&str> = kind.files().iter().copied().filter(|name| *name != "scene.toml").collect();
+    folder.remove_all(&files)?;
+    // The pictures were made of the drawings by others, as `scripts/figures_to_png.sh`.
+    let both = |name: &&str| ["svg", "png"].map(|ending| format!("{name}.{ending}"));
+    let figures: Vec<String> = kind.figures().iter().flat_map(both).collect();
+    folder.remove_all_in("figures", &figures)?;
+    folder.remove_all_in("export", &exported(folder.path()))
+}
+
+/// Refuses files from which work is begun and that [`clear`] would take away before it is: a kill in between
+/// would lose them.
+///
+/// # Errors
+/// The file.
+pub(super) fn outlive_clear(folder: &Folder, kind: FolderKind, files: &[PathBuf]) -> Result<(), RunError> {
+    let Ok(own) = folder.path().canonicalize() else { return Ok(()) };
+    let goes = |name: &Path| match (name.parent(), name.file_name().and_then(|name| name.to_str())) {
+        (Some(parent), Some(name)) if parent == Path::new("") => kind.files().contains(&name),
+        (Some(parent), Some(name)) => parent == Path::new("inputs") && INPUT_FILES.contains(&name),
+        _ => false,
+    };
+    let is_cleared =
+        |file: &&PathBuf| file.canonicalize().is_ok_and(|file| file.strip_prefix(&own).is_ok_and(&goes));
+    match files.iter().find(is_cleared) {
+        Some(file) => Err(RunError::Refused(format!(
+            "{}: lies in {}, and goes before new results are written there: a kill would lose it; name another \
+             folder by --out",
+            shown(file),
+            shown(folder.path())
+        ))),
+        None => Ok(()),
+    }
 }
 
 /// Names of what `voidwalk export` wrote in a folder.

@@ -138,7 +138,7 @@ impl Studies {
         for (point, found) in points.iter().zip(&walked) {
             studies.add(case, point, found, class);
         }
-        studies.add_own(case, own);
+        studies.add_own(case, own, class);
         Ok(studies)
     }
 
@@ -170,9 +170,9 @@ impl Studies {
         }
     }
 
-    /// The case itself is a point of each of its studies.
-    fn add_own(&mut self, case: &Case, own: &[ReplicateResult]) {
-        let (verdict, summaries) = summarise(own);
+    /// The case itself, with its verdict, is a point of each of its studies.
+    fn add_own(&mut self, case: &Case, own: &[ReplicateResult], verdict: Verdict) {
+        let (_, summaries) = summarise(own);
         let judged = || Judged {
             replicates: own.len() as u64,
             stopped_when_clear: false,

@@ -6,7 +6,9 @@ use std::time::{Instant, SystemTime};
 use super::callbacks::{Callbacks, Event};
 use super::checkpoints::{self, CheckpointInterval, Checkpoints};
 use super::error::{Exit, RunError};
-use super::folder::{FolderKind, claim, claim_first_free, clear, own_packings, shown};
+use super::folder::{
+    FolderKind, claim, claim_first_free, clear, clear_but_scene, outlive_clear, own_packings, shown,
+};
 use super::machine::on_threads;
 use super::other_walks::OtherWalks;
 use super::prepare::{PrepareOptions, prepare_into};
@@ -15,9 +17,10 @@ use super::results;
 use super::studies::Studies;
 use super::unfinished::{self, Unfinished};
 use crate::case::Case;
+use crate::gradation::file_and_soil;
 use crate::outcome::Recorded;
 use crate::outcome::record::Outcome;
-use crate::scene::Scene;
+use crate::scene::{CurveSource, Scene};
 use crate::store::Folder;
 
 /// How a scene is walked; no setting changes a result.
@@ -149,8 +152,15 @@ fn walk_here(
     callbacks: &Callbacks,
 ) -> Result<FinishedRun, RunError> {
     let wanted = options.out.as_deref();
+    let files = files_of(&scene);
     let claim = || match wanted {
-        Some(path) => claim(path, FolderKind::Run, options.overwrite),
+        Some(path) => {
+            let folder = claim(path, FolderKind::Run, options.overwrite)?;
+            if options.overwrite {
+                outlive_clear(&folder, FolderKind::Run, &files)?;
+            }
+            Ok(folder)
+        }
         None => claim_first_free("voidwalk-run"),
     };
     let at = wanted.unwrap_or(Path::new("."));
@@ -165,7 +175,13 @@ fn walk_here(
     }
     let begun = begun(&folder, &fingerprint, options.overwrite)?;
     if begun.is_none() {
-        clear(&folder, FolderKind::Run)?;
+        if resumed {
+            // Its own scene and files are all that there is of it.
+            clear_but_scene(&folder)?;
+        } else {
+            outlive_clear(&folder, FolderKind::Run, &files)?;
+            clear(&folder, FolderKind::Run)?;
+        }
         checkpoints::discard(folder.path())?;
     } else if let Some(outcome) = without_page(&folder, &case)? {
         callbacks.results(FolderKind::Run, folder.path())?;
@@ -195,6 +211,19 @@ fn walk_here(
     Ok(FinishedRun { folder: folder.path().to_owned(), outcome })
 }
 
+/// The files that a scene is made of, itself included where it is one.
+fn files_of(scene: &Scene) -> Vec<PathBuf> {
+    let curve = |source: &Option<CurveSource>| match source {
+        Some(CurveSource::File(path)) => Some(path.clone()),
+        _ => None,
+    };
+    let (filter, base, network) = (&scene.filter, &scene.base, &scene.network);
+    let tables = [&filter.sieve, &filter.measured, &base.sieve, &network.file, &network.packing];
+    let named = tables.into_iter().cloned().chain([curve(&filter.curve), curve(&base.dc_curve)]).flatten();
+    // A soil of a workbook is no part of its path.
+    std::iter::once(scene.name.clone().into()).chain(named.map(|path| file_and_soil(&path).0)).collect()
+}
+
 /// Refuses a run to be continued that is no longer the one that was begun.
 fn unchanged(folder: &Folder, fingerprint: &str) -> Result<(), RunError> {
     match Unfinished::read(folder)? {
@@ -202,8 +231,8 @@ fn unchanged(folder: &Folder, fingerprint: &str) -> Result<(), RunError> {
         Some(begun) if !begun.work.is_empty() && begun.work != fingerprint => {
             Err(RunError::Refused(format!(
                 "{}: scene.toml or a file in inputs is not what this run was begun with, or another version \
-                 of voidwalk began it; put it back, or walk the scene anew: voidwalk run SCENE --out DIR \
-                 --overwrite",
+                 of voidwalk began it; put it back, or walk the scene anew into another folder: \
+                 voidwalk run SCENE --out DIR",
                 shown(folder.path())
             )))
         }

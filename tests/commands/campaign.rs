@@ -53,6 +53,23 @@ fn a_campaign_folder_holds_what_is_promised() {
     assert_eq!(table(&at.join("out")).lines().count(), 7);
     let page = fs::read_to_string(at.join("out/report.html")).unwrap();
     assert!(page.contains("three by two") && page.contains("What the model leaves out"));
+    // No verdict stands without what makes it doubtful, on any face.
+    let (text, table) = (String::from_utf8(output.stdout).unwrap(), table(&at.join("out")));
+    assert!(text.contains("The model leaves out: hydraulics;"), "{text}");
+    assert!(table.starts_with(
+        "case,cu_b,filter,verdict,confidence,reason,rules_not_met,warnings,layers,thickness_mm,"
+    ));
+    for (line, row) in lines.iter().zip(table.lines().skip(1)) {
+        let said = |key: &str| line[key].as_str().unwrap();
+        let verdict = format!("{}: {} ({})", said("case"), said("verdict"), said("confidence"));
+        assert!(text.contains(&verdict), "{text}");
+        assert!(text.contains(&format!("\n  {}\n", said("reason"))), "{text}");
+        assert!(row.contains(&format!(",{},{},", said("verdict"), said("confidence"))), "{row}");
+        assert!(row.contains("only 2 replicates"), "{row}");
+        assert_eq!(line["thickness"]["layers"], 10);
+    }
+    assert!(text.contains("  modelled filter thickness: 10 layers, ") && text.contains(" grains per void"));
+    assert!(page.contains("only 2 replicates") && page.contains("10 layers"));
     for line in &lines {
         let folder = at.join("out").join(line["folder"].as_str().unwrap());
         let outcome: Value = serde_json::from_slice(&fs::read(folder.join("outcome.json")).unwrap()).unwrap();

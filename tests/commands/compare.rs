@@ -8,7 +8,7 @@ use serde_json::Value;
 use voidwalk::run::FolderKind;
 
 use crate::judge::{COARSE, SMALL, soils};
-use crate::program::{call, done, figures_are_listed, refused};
+use crate::program::{call, done, figures_are_listed, refused, voidwalk};
 
 fn compare(at: &Path, more: &[&str]) -> std::process::Output {
     call(at, &[&["compare", "--quick", "--out", "c"][..], &SMALL, more].concat())
@@ -110,7 +110,10 @@ fn what_stands_beside_a_verdict_stands_beside_it_here() {
     let (text, page, record) = compare("replicates=5");
     assert!(page.contains(all) && page.contains("Thickness"), "{text}");
     for face in [&text, &page, &record["cases"][1]["beside"].to_string()] {
-        assert!(face.contains("modelled filter thickness: ") && face.contains(" with thickness ("), "{face}");
+        assert!(
+            face.contains("modelled filter thickness: ") && face.contains("at other thicknesses ("),
+            "{face}"
+        );
     }
     let (text, page, record) = compare("replicates=1");
     assert!(!page.contains(all) && page.contains("None of these verdicts is within"));
@@ -136,4 +139,81 @@ fn what_is_wrong_with_one_case_is_refused_before_any_is_walked() {
     refused(&compare(&at, &set), "would put another soil in the place of the filter, fine.csv");
     refused(&compare(&at, &["--base", "base.csv", "fine.csv", "./fine.csv"]), "./fine.csv is named twice");
     assert!(!at.join("c").exists());
+}
+
+/// What is refused, for whatever reason, changes nothing that is there.
+#[test]
+fn a_comparison_that_cannot_be_walked_leaves_the_earlier_one() {
+    let (_root, at) = soils();
+    let files = ["--base", "base.csv", "fine.csv", "coarse.csv"];
+    done(&compare(&at, &files));
+    let names = ["compare.json", "compare.html", "compare.csv", "compare_pairs.csv"];
+    let all = || names.map(|name| fs::read(at.join("c").join(name)).unwrap());
+    let before = all();
+    refused(&compare(&at, &[&files[..], &["--overwrite", "--memory", "10KB"]].concat()), "case fine: ");
+    assert!(before == all());
+    let new = call(&at, &[&["compare", "--out", "new", "--memory", "10KB"][..], &files].concat());
+    refused(&new, "case fine: ");
+    assert!(!at.join("new").exists());
+}
+
+/// Two comparisons do not take each other's folder without being told to.
+#[test]
+fn an_unfinished_comparison_is_gone_on_with_by_itself_alone() {
+    let (_root, at) = soils();
+    let files = ["--base", "base.csv", "fine.csv", "coarse.csv"];
+    let long = [&files[..], &["--set", "replicates=40", "--threads", "1"]].concat();
+    let words = [&["compare", "--quick", "--out", "c"][..], &SMALL, &long].concat();
+    let mut child = voidwalk(&at, &words).spawn().unwrap();
+    let mark = at.join("c/.voidwalk.unfinished");
+    while !mark.exists() {
+        assert!(child.try_wait().unwrap().is_none(), "it ended before it was killed");
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let begun = fs::read(&mark).unwrap();
+    refused(
+        &compare(&at, &["--base", "base.csv", "coarse.csv", "fine.csv"]),
+        "another comparison that is unfinished",
+    );
+    assert_eq!(fs::read(&mark).unwrap(), begun);
+    done(&compare(&at, &long));
+    assert!(!mark.exists() && at.join("c/compare.html").is_file());
+}
+
+/// README: grains per void and thickness are printed with every verdict, and what the model leaves out.
+#[test]
+fn what_the_model_leaves_out_is_that_of_the_cases() {
+    let (_root, at) = soils();
+    for (name, exit) in [("dry", "area"), ("wet", "flux"), ("wetter", "flux")] {
+        let scene = format!(
+            "replicates = 2\n[filter]\ncurve = \"cu1.5-loose\"\n[base]\ncu = 1.5\nd85_at_dc = 40\n\
+            [walk]\nexit = \"{exit}\"\n[record]\nsensitivity = []\n"
+        );
+        fs::write(at.join(format!("{name}.toml")), scene).unwrap();
+    }
+    let compare = |files: &[&str]| {
+        let said = call(&at, &[&["compare", "--overwrite", "--out", "c"], &SMALL[..], files].concat());
+        done(&said);
+        let page = fs::read_to_string(at.join("c/compare.html")).unwrap();
+        (String::from_utf8(said.stdout).unwrap(), page, json(&at.join("c/compare.json")))
+    };
+    let (text, page, record) = compare(&["wet.toml", "wetter.toml"]);
+    assert!(text.contains("The model leaves out: hydraulics but for the direction"), "{text}");
+    assert!(text.contains(" grains per void") && page.contains("Grains per void"), "{text}");
+    assert!(record["cases"][0]["grains_per_void"].as_f64().is_some());
+    let left_out = record["model_leaves_out"].to_string();
+    for face in [&page, &left_out] {
+        assert!(
+            !face.contains("no flow") && face.contains("direction and the shares of slow flow"),
+            "{face}"
+        );
+    }
+    let table = fs::read_to_string(at.join("c/compare.csv")).unwrap();
+    assert!(table.lines().next().unwrap().contains("grains_per_void,thickness_mm,folder"), "{table}");
+    // Of both kinds, each is said.
+    let (text, page, _) = compare(&["wet.toml", "dry.toml"]);
+    assert!(text.contains("where water gives particles their way; hydraulics, in the other cases"), "{text}");
+    assert!(page.contains("no flow") && page.contains("slow flow"));
 }

@@ -166,3 +166,26 @@ fn what_is_wrong_is_refused_before_anything_is_written() {
     ));
     refused(&judge(&["fine.csv", "--out", "a"]), "holds a run already");
 }
+
+/// A kill while the earlier results go would lose what the run is begun from.
+#[test]
+fn what_a_run_is_begun_from_is_not_cleared_with_the_earlier_results() {
+    let (_root, at) = soils();
+    let first = ["judge", "base.csv", "fine.csv", "--quick", "--out", "a"];
+    done(&call(&at, &[&first[..], &SMALL].concat()));
+    let before = fs::read(at.join("a/outcome.json")).unwrap();
+    let again: [&[&str]; 3] = [
+        &["run", "a/scene.toml", "--out", "a", "--overwrite", "--seed", "9"],
+        &["run", "a/scene.toml", "--out", "./a/../a", "--overwrite"],
+        &["judge", "a/inputs/base-sieve.csv", "fine.csv", "--out", "a", "--overwrite"],
+    ];
+    for words in again {
+        refused(&call(&at, words), "a kill would lose it; name another folder by --out");
+        assert_eq!(fs::read(at.join("a/outcome.json")).unwrap(), before, "{words:?}");
+    }
+    // What stands elsewhere in the folder is nobody's to clear.
+    fs::copy(at.join("base.csv"), at.join("a/mine.csv")).unwrap();
+    let words = ["judge", "a/mine.csv", "fine.csv", "--quick", "--out", "a", "--overwrite"];
+    done(&call(&at, &[&words[..], &SMALL].concat()));
+    assert!(at.join("a/mine.csv").is_file());
+}

@@ -140,3 +140,50 @@ fn the_first_replicates_are_said_as_not_final_and_then_the_verdict() {
     let quiet = call(root.path(), &["run", "s.toml", "--out", "q", "--quiet"]);
     assert_eq!((quiet.stderr, quiet.stdout), (Vec::new(), Vec::new()));
 }
+
+/// The scene itself has one class on its page, whatever leaves it undecided.
+#[test]
+fn the_scene_among_its_variations_has_the_verdict_of_its_page() {
+    let root = tempfile::tempdir().unwrap();
+    let scene = |filter: &str, ratio: f64| {
+        format!(
+            "replicates = 3\nseed = 5\n[filter]\n{filter}\n[base]\ncu = 1.5\nd15f_over_d85b = {ratio}\n\
+             [network]\nnx = 8\nny = 8\nnz = 10\n[record]\nsensitivity = [2.0]\n"
+        )
+    };
+    let level = ["--decide", "99.999%", "--set", "stop.most_replicates=10", "--set", "replicates=5"];
+    let of_level = scene("curve = \"cu1.5-loose\"", 3.2);
+    let of_curve = scene("cu = 1.5\nestimate = 0.5", 3.8);
+    let cases: [(&str, &[&str], &str, &str); 2] = [
+        (&of_level, &level, "by their 95 % intervals", "Inconclusive: these replicates do not separate"),
+        (
+            &of_curve,
+            &[],
+            "by the curve itself",
+            "Inconclusive: the constriction curve is known within a range",
+        ),
+    ];
+    for (text, more, points, why) in cases {
+        fs::write(root.path().join("s.toml"), text).unwrap();
+        let said = call(root.path(), &[&["run", "s.toml", "--overwrite", "--out", "u"], more].concat());
+        done(&said);
+        let whole = outcome(&root.path().join("u"));
+        assert_eq!(whole["verdict"], "undecided", "{points}");
+        for study in ["sensitivity", "thickness"] {
+            let rows = whole[study].as_array().unwrap();
+            let own = rows.iter().find(|row| row["factor"] == 1.0).unwrap();
+            assert_eq!(own["verdict"], "undecided", "{study}, {points}");
+        }
+        let stdout = String::from_utf8(said.stdout).unwrap();
+        let page = fs::read_to_string(root.path().join("u/report.html")).unwrap();
+        for face in [&stdout, &page] {
+            assert!(
+                !face.contains("The verdict stays") && !face.contains("The verdict moves with"),
+                "{face}"
+            );
+            let sentence = format!("The verdict is undecided; at other thicknesses, {points} (0.5 times");
+            assert!(face.contains(&sentence), "{face}");
+        }
+        assert!(page.contains(why) && page.contains(&format!("the others are classed {points}")), "{page}");
+    }
+}

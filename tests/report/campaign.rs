@@ -5,7 +5,8 @@ use std::path::Path;
 
 use tempfile::TempDir;
 use voidwalk::outcome::ledger::{Campaign, LedgerLine, Made};
-use voidwalk::outcome::record::{Confidence, Outcome, Verdict};
+use voidwalk::outcome::record::{Confidence, CurveEnd, CurveRange, Outcome, Stopping, Verdict};
+use voidwalk::outcome::undecided::UndecidedBy;
 use voidwalk::report;
 
 use super::{folder, words};
@@ -84,12 +85,60 @@ fn doubts_are_counted_and_said_once() {
     assert!(page.contains("the base is &lt;i&gt;odd&lt;/i&gt; (2 cases)"));
 }
 
+/// More replicates do not decide what the curve or the pan fraction leaves open.
 #[test]
-fn more_replicates_are_spoken_of_where_a_case_is_undecided() {
+fn why_cases_are_undecided_is_said_of_each() {
     let root = TempDir::new().unwrap();
     let mut outcome = folder::outcome(3);
-    let sentence = "More replicates may decide it.";
-    assert!(!words(&page(&[line("one", "cases/one", &outcome)], root.path())).contains(sentence));
+    let more = "more replicates may decide it";
+    let decided = line("decided", "cases/decided", &outcome);
+    assert!(!words(&page(&[decided], root.path())).contains(more));
     outcome.verdict = Verdict::Undecided;
-    assert!(words(&page(&[line("one", "cases/one", &outcome)], root.path())).contains(sentence));
+    let by_replicates = line("one", "cases/one", &outcome);
+    let text = words(&page(std::slice::from_ref(&by_replicates), root.path()));
+    assert!(
+        text.contains(&format!("Undecided, 1 case: the replicates do not separate the classes; {more}."))
+    );
+    let runs: Vec<_> = outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect();
+    let end = CurveEnd {
+        curve: "the loosest".into(),
+        dc50_factor: 1.6,
+        replicates: 3,
+        verdict: Verdict::Continuing,
+        runs: runs.clone(),
+    };
+    outcome.curve_range = CurveRange::new(Verdict::None, &runs, vec![end]);
+    let by_curve = line("two", "cases/two", &outcome);
+    assert_eq!(by_curve.undecided_by, Some(UndecidedBy::Curve));
+    let text = words(&page(std::slice::from_ref(&by_curve), root.path()));
+    assert!(
+        !text.contains(more) && text.contains("Undecided, 1 case: the constriction curve is known"),
+        "{text}"
+    );
+    // As an earlier version wrote it.
+    let old = LedgerLine { undecided_by: None, reason: None, thickness: None, with_flow: None, ..by_curve };
+    let text = words(&page(&[by_replicates, old], root.path()));
+    assert!(text.contains("Undecided, 1 case: the page of the case says why."), "{text}");
+    assert!(text.contains("1 of these cases was walked by an earlier version"), "{text}");
+}
+
+/// A rule that added replicates until the error was small says nothing of the verdict.
+#[test]
+fn what_would_decide_is_said_after_a_target_error_was_met() {
+    let mut outcome = folder::outcome(3);
+    outcome.verdict = Verdict::Undecided;
+    let met = Stopping {
+        target_error_pp: Some(5.0),
+        decide_percent: None,
+        most: 1000,
+        looks: 1,
+        met: true,
+        verdict: None,
+        half_width_pp: Some(4.0),
+        sentence: None,
+    };
+    outcome.stopping = Some(met.clone());
+    assert!(outcome.beside_the_verdict().iter().any(|said| said.contains("--decide 99%")));
+    outcome.stopping = Some(Stopping { met: false, sentence: Some("Inconclusive".into()), ..met });
+    assert!(!outcome.beside_the_verdict().iter().any(|said| said.contains("--decide 99%")));
 }

@@ -10,8 +10,9 @@ use std::path::{Path, PathBuf};
 
 pub use plan::{ComparePlan, Compared};
 
+use crate::campaign::cases::PreparedCase;
 use crate::campaign::ledger::inert;
-use crate::campaign::{self, CampaignCallbacks, CampaignOptions, CasePart};
+use crate::campaign::{self, CampaignCallbacks, CampaignOptions, CasePart, ReadyCases};
 use crate::outcome::comparison::Comparison;
 use crate::outcome::record::{Outcome, Statistic};
 use crate::run::checkpoints::CheckpointInterval;
@@ -75,13 +76,9 @@ pub fn run(
     options: &CompareOptions,
     callbacks: &CampaignCallbacks,
 ) -> Result<Comparison, RunError> {
-    campaign::names(&plan.campaign, &CasePart::All)?;
     let kind = FolderKind::Comparison;
-    let folder = claim(&options.out, kind, options.overwrite)?;
-    clear(&folder, kind)?;
-    Unfinished { kind: kind.name().into(), ..Unfinished::default() }.begin(&folder)?;
     let of_campaign = CampaignOptions {
-        out: folder.path().join(WALKS),
+        out: options.out.join(WALKS),
         part: CasePart::All,
         packings: Some(options.packings.clone()),
         memory: options.memory,
@@ -96,7 +93,12 @@ pub fn run(
         )),
         _ => error,
     };
-    let walked = campaign::run(&plan.campaign, &of_campaign, callbacks).map_err(stopped)?;
+    campaign::check(&plan.campaign, &of_campaign)?;
+    let folder = claim(&options.out, kind, options.overwrite)?;
+    // What is there stays until every case is known to have what it needs.
+    let ready = |cases: ReadyCases| begin(&folder, plan, cases?, options.overwrite);
+    let of_campaign = CampaignOptions { out: folder.path().join(WALKS), ..of_campaign };
+    let walked = campaign::run_after(&plan.campaign, &of_campaign, callbacks, ready).map_err(stopped)?;
     if let Some(problem) = walked.problem() {
         return Err(problem);
     }
@@ -112,6 +114,35 @@ pub fn run(
     Ok(comparison)
 }
 
+/// Clears a claimed folder of an earlier comparison, and marks it as begun with this one.
+fn begin(
+    folder: &Folder,
+    plan: &ComparePlan,
+    cases: &[PreparedCase],
+    overwrite: bool,
+) -> Result<(), RunError> {
+    let kind = FolderKind::Comparison;
+    let of_case = |case: &PreparedCase| format!("{} {}", case.planned.name, case.fingerprint);
+    let all: Vec<String> = cases.iter().map(of_case).collect();
+    let text = format!("{} {} {all:?}", plan.of, plan.common);
+    let work = format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes()));
+    match Unfinished::read(folder)? {
+        // Of a corrupt mark, or one of an earlier version, nothing is known.
+        Some(begun) if !overwrite && !begun.work.is_empty() && begun.work != work => {
+            return Err(RunError::Refused(format!(
+                "{}: holds another comparison that is unfinished, or was begun by another version of \
+                 voidwalk; continue that one with its own command, name another folder or add --overwrite",
+                shown(folder.path())
+            )));
+        }
+        // At no moment is this one without its mark.
+        Some(begun) if begun.work == work => return Ok(()),
+        _ => {}
+    }
+    clear(folder, kind)?;
+    Ok(Unfinished { kind: kind.name().into(), work, ..Unfinished::default() }.begin(folder)?)
+}
+
 /// The outcome of a case that is done.
 fn outcome(case: &Path) -> Result<Outcome, RunError> {
     let path = case.join(FolderKind::Run.record());
@@ -125,14 +156,17 @@ fn write(folder: &Folder, comparison: &Comparison) -> Result<(), RunError> {
     let of = |s: Option<&Statistic>| [s.map(|s| s.mean), s.and_then(|s| s.low), s.and_then(|s| s.high)];
     let header = "case,verdict,confidence,rules_not_kept,replicates,n_base,d15f_over_d85b,d15f_over_d95b,\
         first_eroded_mass_percent,first_low,first_high,second_eroded_mass_percent,second_low,second_high,\
-        folder";
+        grains_per_void,thickness_mm,folder";
     let rows = comparison.cases.iter().map(|case| {
         let words = [case.name.clone(), case.verdict.words().into(), case.confidence.words().into()];
         let counts = [case.rules_not_kept.len() as u64, case.replicates, case.n_base].map(|n| n.to_string());
         let ratios = [case.ratios.d15f_over_d85b, case.ratios.d15f_over_d95b].map(|r| format!("{r:.6}"));
         let eroded = [of(case.runs.first()), of(case.runs.get(1))].concat().into_iter().map(number);
+        let thickness_mm = case.thickness_mm.filter(|_| !case.scale_free);
+        let given = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:.5}"));
+        let sizes = [case.grains_per_void, thickness_mm].map(given);
         let folder = [case.folder.clone()];
-        words.into_iter().chain(counts).chain(ratios).chain(eroded).chain(folder).collect()
+        words.into_iter().chain(counts).chain(ratios).chain(eroded).chain(sizes).chain(folder).collect()
     });
     folder.write(CASES, &table(CASES, header, rows)?)?;
     let header = "first,second,run,replicates,difference_percentage_points,low,high,joint_low,joint_high,\
