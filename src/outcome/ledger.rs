@@ -188,8 +188,9 @@ pub fn of_earlier_versions(lines: &[LedgerLine]) -> Option<String> {
     (count > 0).then(|| {
         let were = if count == 1 { "was" } else { "were" };
         format!(
-            "{count} of these cases {were} walked by an earlier version: the thickness modelled, why a verdict is \
-             in doubt or undecided, and whether water gave particles their way, stand on their own pages"
+            "{count} of these cases {were} walked by an earlier version: the thickness modelled, why a \
+             verdict is in doubt or undecided, and whether water gave particles their way, stand on their \
+             own pages"
         )
     })
 }

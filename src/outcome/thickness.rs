@@ -3,7 +3,8 @@
 use super::record::{OfThickness, Outcome, Statistic, Verdict};
 
 impl Outcome {
-    /// How the verdict moves with the thickness of the filter, in a sentence; `None` without another thickness.
+    /// How the verdict moves with the thickness of the filter, in a sentence; `None` without another
+    /// thickness.
     pub fn with_thickness(&self) -> Option<String> {
         sentence(&self.thickness, self.verdict, self.points_are())
     }

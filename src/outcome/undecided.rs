@@ -64,8 +64,8 @@ impl Outcome {
         })
     }
 
-    /// How the other points of a study are classed, where their classes know nothing of what leaves the verdict
-    /// undecided.
+    /// How the other points of a study are classed, where their classes know nothing of what leaves the
+    /// verdict undecided.
     pub fn points_are(&self) -> Option<&'static str> {
         let level = self.stopping.as_ref().and_then(|stopping| stopping.decide_percent);
         match self.undecided_by()? {

@@ -29,7 +29,8 @@ pub(super) fn cases(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> M
         p.small {
             "Class: with a link to the page of the case; below it the replicates by class, where they \
              differ. Confidence: within or outside the range in which the model was checked, or \
-             contradicted by a rule of practice; below it the first reason. Below a number its 95 % interval over the replicates."
+             contradicted by a rule of practice; below it the first reason. Below a number its 95 % \
+             interval over the replicates."
         }
         (listed("Rules of practice that are not met", &tally(ledger, rules_of)))
         (listed("Warnings", &tally(ledger, |line| line.warnings.clone())))

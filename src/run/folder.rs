@@ -316,8 +316,8 @@ pub(super) fn outlive_clear(folder: &Folder, kind: FolderKind, files: &[PathBuf]
         |file: &&PathBuf| file.canonicalize().is_ok_and(|file| file.strip_prefix(&own).is_ok_and(&goes));
     match files.iter().find(is_cleared) {
         Some(file) => Err(RunError::Refused(format!(
-            "{}: lies in {}, and goes before new results are written there: a kill would lose it; name another \
-             folder by --out",
+            "{}: lies in {}, and goes before new results are written there: a kill would lose it; name \
+             another folder by --out",
             shown(file),
             shown(folder.path())
         ))),
