@@ -71,8 +71,8 @@ impl Case {
             format!(
                 "the whole base is inserted before any of it can be through the filter; inject_share {} \
                  makes {increments} increments, and a particle needs {layers} to pass as many layers. Where \
-                 water flows, all that is on its way when the filter clogs counts as retained: take inject_share \
-                 = {:.1e} or less",
+                 water flows, all that is on its way when the filter clogs counts as retained: take \
+                 inject_share = {:.1e} or less",
                 self.scene.walk.inject_share,
                 LITTLE_ON_ITS_WAY / layers.max(1) as f64
             )

@@ -344,7 +344,7 @@ mod tests {
 
     #[test]
     fn a_refusal_names_what_asks_for_the_memory() {
-        let all = ["network.nx=10", "network.ny=10", "network.nz=12", "base.n_base=1000"];
+        let all = ["network.nx=9", "network.ny=9", "network.nz=12", "base.n_base=1000", "engine=particles"];
         let refused = |set: &str| {
             let all: Vec<String> = all.iter().chain(&[set]).map(ToString::to_string).collect();
             let mut case = Case::new(Scene::built_in(&all).unwrap()).unwrap();
