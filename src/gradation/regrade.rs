@@ -70,7 +70,8 @@ impl Gradation {
 
     /// Whether a soil is broadly graded: Cu of at least 6, as of well-graded sands by ASTM D2487, or 4, as of
     /// gravels; `None` where D10 is not known. The manual asks for Cc of 1 to 3 besides and leaves the last
-    /// word to the engineer; a soil of that Cu whose Cc lies outside has more of one size, and is no narrower.
+    /// word to the engineer; a soil of that Cu whose Cc lies outside has more of one size and is no
+    /// narrower.
     pub fn is_broad(&self) -> Option<bool> {
         let coarse = 100.0 - self.percent_finer_by_mass(FINES_MM);
         let gravel = 100.0 - self.percent_finer_by_mass(GRAVEL_MM);
