@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::record::{Outcome, RunSummary, Verdict};
+use super::record::{Outcome, RunSummary, Stopping, Verdict};
 
 /// What leaves a verdict undecided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -77,8 +77,9 @@ impl Outcome {
 
     /// What to do where the replicates leave the class open and nothing is said of them already.
     pub fn what_would_decide(&self) -> Option<&'static str> {
-        // A rule that was met says nothing.
-        if self.stopping.as_ref().is_some_and(|stopping| stopping.sentence.is_some()) {
+        // A target error that was met says nothing of the class.
+        let said = |stopping: &Stopping| stopping.sentence.is_some() || stopping.decide_percent.is_some();
+        if self.stopping.as_ref().is_some_and(said) {
             return None;
         }
         match self.undecided_by()? {
