@@ -61,8 +61,8 @@ pub struct Design {
     pub rules_at: f64,
     /// Standard products beside the narrowest band.
     pub products: Vec<Fit>,
-    /// How far it can be relied on that a product fits: as `confidence`, but at the greatest D15F that walk and
-    /// practice both allow; `None` without products.
+    /// How far it can be relied on that a product fits: as `confidence`, but at the greatest D15F that walk
+    /// and practice both allow; `None` without products.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub products_confidence: Option<Confidence>,
     /// What else a reader must know.
@@ -216,8 +216,8 @@ impl Design {
         self.boundaries.iter().find(asked)?.band.as_ref()
     }
 
-    /// The row that holds least, of those that are known to hold anything, and the ratio that nearly all of its
-    /// networks hold.
+    /// The row that holds least, of those that are known to hold anything, and the ratio that nearly all of
+    /// its networks hold.
     pub fn least_held(&self) -> Option<(&DesignRow, f64)> {
         let known = self.boundaries.iter().filter_map(|row| Some((row, row.held()?)));
         known.min_by(|a, b| a.1.total_cmp(&b.1))

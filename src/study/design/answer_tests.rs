@@ -45,7 +45,7 @@ fn an_end_that_holds_all_that_was_searched_limits_nothing() {
     assert!(row.band.is_none() && row.band_note.as_ref().unwrap().contains("estimate 0: "), "{row:?}");
 }
 
-/// What is delivered within both limits is no coarser than practice allows, however coarse the walk would have it.
+/// What is delivered within both limits is no coarser than practice allows, however coarse the walk has it.
 #[test]
 fn products_are_judged_at_what_walk_and_practice_both_allow() {
     let folder = tempfile::tempdir().unwrap();

@@ -206,8 +206,8 @@ fn judged_at(&Asked { row, of, .. }: &Asked, ratio: f64) -> Result<Said, RunErro
     Ok((confidence, why, warnings))
 }
 
-/// How far it can be relied on that a product fits, the worst of all rows: each at the greatest D15F that walk
-/// and practice both allow, as no product that fits is coarser.
+/// How far it can be relied on that a product fits, the worst of all rows: each at the greatest D15F that
+/// walk and practice both allow, as no product that fits is coarser.
 fn of_products(asked: &[Asked]) -> Result<Confidence, RunError> {
     let mut worst = Confidence::Within;
     for asked in asked {
@@ -357,8 +357,8 @@ fn of(row: &Row, done: &[&Done]) -> Result<DesignRow, RunError> {
     })
 }
 
-/// The ratio that nearly all networks hold where their median lies above all that was searched: one that erodes
-/// nowhere counts as holding to the greatest ratio that was walked on it.
+/// The ratio that nearly all networks hold where their median lies above all that was searched: one that
+/// erodes nowhere counts as holding to the greatest ratio that was walked on it.
 fn holds_to(done: &[&Done]) -> Option<f64> {
     let one = |done: &&Done| match (done.found.no_erosion, &done.found.no_erosion_beyond) {
         (Some(ratio), _) => Ok(ratio),
