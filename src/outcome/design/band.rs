@@ -29,8 +29,8 @@ pub const PERMEABILITY: &str = "permeability";
 /// Limits of D15F that rules set for a base, in the unit of the rules: name and limit.
 ///
 /// Only rules that were made for it. `d15f` is that of the filter that they judge: a limit of a ratio to a
-/// size of the base (Terzaghi) is as many times it as the limit is times the value. Which size that is, of the
-/// base as it is walked or as practice regrades it, the rule alone knows.
+/// size of the base (Terzaghi) is as many times it as the limit is times the value. Which size that is, of
+/// the base as it is walked or as practice regrades it, the rule alone knows.
 pub fn limits(rules: &[AppliedRule], d15f: f64) -> Vec<(&AppliedRule, f64)> {
     let one = |rule| -> Option<(&AppliedRule, f64)> {
         let rule: &AppliedRule = rule;
