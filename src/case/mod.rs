@@ -244,7 +244,16 @@ impl Case {
             (NetworkSource::Cubic(_), _) => {
                 if let Some(mm) = scene.network.extent().thickness_mm(d50f_mm) {
                     let layer = filter.d_by_number(50.0).unwrap_or(unit_mm);
-                    scene.network.set_layers((mm / layer).round().clamp(1.0, f64::from(u32::MAX)) as u64);
+                    let layers = (mm / layer).round();
+                    if layers < 1.0 {
+                        let problem = format!(
+                            "the network is to be {mm:.4} mm thick, but one layer of voids, D50F by number, \
+                             is {layer:.4} mm: allowed: half a layer or more (network.thickness_mm, \
+                             network.thickness_d50f)"
+                        );
+                        return Err(scene.clash(problem).into());
+                    }
+                    scene.network.set_layers(layers.min(f64::from(u32::MAX)) as u64);
                 }
             }
             _ => {}

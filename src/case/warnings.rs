@@ -21,6 +21,10 @@ const FEW_REPLICATES: u64 = 5;
 /// What a first look leaves out.
 const NOT_STUDIED: &str = "how the verdict moves with the amount of base and with thickness was not studied";
 
+/// What says how thick the graph of a packing is.
+const GRAPH_THICKNESS: &str =
+    "network.copies, or network.thickness_mm, which is rounded up to whole copies, says how thick it is";
+
 /// Constrictions that are looked at to find that out, each as often as it is looked at.
 const LOOKED_AT: u64 = 50_000_000;
 
@@ -141,17 +145,42 @@ impl Case {
         (!is_studied).then_some(NOT_STUDIED)
     }
 
-    /// A real filter layer that is thinner than the modelled one.
+    /// A real filter layer that is thinner than the modelled one by more than half a layer of voids, to which
+    /// a thickness is rounded.
     fn too_thick(&self) -> Option<String> {
-        let (real, modelled) = (self.scene.filter.thickness_mm?, self.thickness()?);
-        let unit = if self.is_scale_free() { "D0F" } else { "mm" };
-        (modelled > real).then(|| {
+        let real = self.scene.filter.thickness_mm?;
+        if self.is_scale_free() {
+            return Some(Self::thickness_without_unit(real, "D0F"));
+        }
+        let Some(modelled) = self.thickness() else {
+            return Some(format!(
+                "how thick a network from a file is, is not known: filter.thickness_mm, {real}, is compared \
+                 with nothing"
+            ));
+        };
+        let half = 0.5 * self.filter.d_by_number(50.0).unwrap_or(0.0);
+        let (what, key) = match self.copies {
+            Some((1, _)) => ("one copy of the packing is".into(), GRAPH_THICKNESS),
+            Some((copies, _)) => (format!("{copies} copies of the packing are"), GRAPH_THICKNESS),
+            None => (
+                format!("{} layers of D50F by number are", self.counts[3]),
+                "network.nz says how many layers",
+            ),
+        };
+        (modelled > real + half * (1.0 + 1e-9)).then(|| {
             format!(
-                "the modelled filter is thicker than the real one; {} layers of D50F by number are \
-                 {modelled:.1} {unit}, filter.thickness_mm is {real}: network.nz says how many layers",
-                self.counts[3]
+                "the modelled filter is thicker than the real one; {what} {modelled:.1} mm, \
+                 filter.thickness_mm is {real}: {key}"
             )
         })
+    }
+
+    /// That a real thickness says nothing where sizes are multiples of another.
+    pub fn thickness_without_unit(real: f64, unit: &str) -> String {
+        format!(
+            "whether the modelled filter is thicker than the real one is not known: filter.thickness_mm is \
+             {real} mm, but sizes are multiples of {unit}; give them in mm, or leave it out"
+        )
     }
 
     /// What is not known of the base's finest part.
@@ -271,5 +300,46 @@ impl Case {
             }
             None => None,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    fn case(changes: &[&str]) -> Result<Case, String> {
+        let changes: Vec<String> = changes.iter().map(|c| c.to_string()).collect();
+        Case::new(Scene::built_in(&changes).unwrap()).map_err(|error| error.to_string())
+    }
+
+    fn said(changes: &[&str]) -> String {
+        let doubts = case(changes).unwrap().doubts();
+        doubts.into_iter().filter(|doubt| doubt.contains("thicker than the real one")).collect()
+    }
+
+    #[test]
+    fn a_real_thickness_is_compared_in_mm_and_to_half_a_layer() {
+        let said_of = said(&["filter.thickness_mm=50"]);
+        assert!(said_of.contains("is 50 mm, but sizes are multiples of D0F"), "{said_of}");
+        let sized = |real: &str| said(&["filter.d0_mm=2.1", "network.thickness_mm=100", real]);
+        let case = case(&["filter.d0_mm=2.1", "network.thickness_mm=100"]).unwrap();
+        let (layer, modelled) = (case.filter.d_by_number(50.0).unwrap(), case.thickness().unwrap());
+        assert!(modelled != 100.0 && sized("filter.thickness_mm=100").is_empty());
+        assert!(sized(&format!("filter.thickness_mm={}", modelled - 0.49 * layer)).is_empty());
+        let thinner = sized(&format!("filter.thickness_mm={}", modelled - 0.51 * layer));
+        assert!(
+            thinner.contains("layers of D50F by number are") && thinner.contains("network.nz"),
+            "{thinner}"
+        );
+    }
+
+    #[test]
+    fn a_network_is_no_thinner_than_half_a_layer() {
+        for thin in ["network.thickness_mm=0.5", "network.thickness_d50f=0.3"] {
+            let error = case(&["filter.d0_mm=2.1", thin]).err().unwrap();
+            assert!(error.contains("allowed: half a layer or more"), "{error}");
+        }
+        assert_eq!(case(&["filter.d0_mm=2.1", "network.thickness_mm=1.5"]).unwrap().counts[3], 1);
     }
 }

@@ -61,12 +61,12 @@ fn words(design: &Design) -> String {
     }
     if !design.products.is_empty() {
         let fit = design.products_that_fit();
-        lines.push(match (design.confidence, fit.is_empty()) {
-            (Confidence::Within, true) => "none of the standard products fits within the band".into(),
-            (Confidence::Within, false) => {
+        lines.push(match (design.may_fit(), fit.is_empty()) {
+            (true, true) => "none of the standard products fits within the band".into(),
+            (true, false) => {
                 format!("D15 within the band (their own shapes were not walked): {}", fit.join(", "))
             }
-            _ => "of the standard products none is said to fit, as the answer is in doubt".into(),
+            (false, _) => "of the standard products none is said to fit, as the answer is in doubt".into(),
         });
     }
     lines.push(leaves_out(&design.model_leaves_out));

@@ -142,7 +142,7 @@ fn set_among<'a>(changes: &[String], names: &[&'a str]) -> Option<&'a str> {
 }
 
 /// A path as a TOML string, so that one like `1e5` stays a name.
-fn quoted(path: &Path) -> Result<String, SceneError> {
+pub fn quoted(path: &Path) -> Result<String, SceneError> {
     let text = path.to_str().ok_or_else(|| SceneError::Clash {
         file: path.display().to_string(),
         problem: "its name is not UTF-8 text; give it another".into(),

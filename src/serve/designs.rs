@@ -161,6 +161,7 @@ pub fn of_design(design: &Design) -> Result<Value, serde_json::Error> {
         "reasons": design.reasons,
         "warnings": design.warnings,
         "compared": design.products.len(),
+        "may_fit": design.may_fit(),
         "fit": design.products_that_fit(),
         "model_leaves_out": design.model_leaves_out,
     }))

@@ -501,7 +501,7 @@ function boundariesOf(done) {
     el("div", { class: "scroll" }, el("table", { class: "boundaries" },
       el("thead", {}, el("tr", {}, ...["Density, thickness", ...head, "Band"].map((text) => el("th", {}, text)))), el("tbody", {}, ...rows))),
     done.compared ? el("p", {}, done.fit.length ? `Standard products with their D15 within the band (their own shapes were not walked): ${done.fit.join(", ")}.`
-      : done.confidence === "within checked range" ? "None of the standard products fits within the band." : "No standard product is said to fit, as the answer is in doubt.") : null,
+      : done.may_fit ? "None of the standard products fits within the band." : "No standard product is said to fit, as the answer is in doubt.") : null,
     done.reasons.length ? el("details", { open: done.confidence !== "within checked range" }, el("summary", {}, "Why no further"), list(done.reasons)) : null,
     done.warnings.length ? el("details", {}, el("summary", {}, `${done.warnings.length} to know`), list(done.warnings)) : null,
     el("p", { class: "small" }, `The model leaves out: ${done.model_leaves_out.map((one) => one.split(":")[0]).join("; ")}.`)].filter(Boolean);

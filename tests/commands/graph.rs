@@ -196,6 +196,14 @@ fn thickness_is_layers_or_copies() {
     assert!((thickness - 30.0).abs() <= 0.5 * thickness / layers, "{thickness} {layers}");
     let graph = of(&["scene.toml", "--set", "network.thickness_mm=13"]);
     assert_eq!((&graph["network"]["copies"], &graph["network"]["thickness_mm"]), (&3.into(), &18.0.into()));
+    // A real layer of what was asked for is thinner than whole copies of the cell are.
+    let args = ["scene.toml", "--set", "network.thickness_mm=13", "--set", "filter.thickness_mm=13"];
+    let reasons = of(&args)["reasons"].to_string();
+    assert!(
+        reasons.contains("3 copies of the packing are 18.0 mm, filter.thickness_mm is 13: "),
+        "{reasons}"
+    );
+    assert!(reasons.contains("whole copies") && !reasons.contains("network.nz"), "{reasons}");
     let flowing = of(&["--set", "walk.exit=flux", "--set", "network.nx=5", "--set", "network.ny=5"]);
     assert_eq!(flowing["network"]["kind"], "lattice");
     assert!(flowing["replicates"][0]["runs"][0]["k_over_k0"].as_f64().unwrap() <= 1.0);

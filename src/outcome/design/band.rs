@@ -28,15 +28,19 @@ pub const PERMEABILITY: &str = "permeability";
 
 /// Limits of D15F that rules set for a base, in the unit of the rules: name and limit.
 ///
-/// Only rules that were made for it; a limit of a ratio to D85B (Terzaghi) or D95B is taken times that size.
-pub fn limits(rules: &[AppliedRule], d85b: f64, d95b: Option<f64>) -> Vec<(&AppliedRule, f64)> {
+/// Only rules that were made for it. `d15f` is that of the filter that they judge: a limit of a ratio to a
+/// size of the base (Terzaghi) is as many times it as the limit is times the value. Which size that is, of
+/// the base as it is walked or as practice regrades it, the rule alone knows.
+pub fn limits(rules: &[AppliedRule], d15f: f64) -> Vec<(&AppliedRule, f64)> {
     let one = |rule| -> Option<(&AppliedRule, f64)> {
         let rule: &AppliedRule = rule;
         let limit = rule.limit.filter(|limit| rule.applies && *limit > 0.0 && limit.is_finite())?;
         match rule.quantity.as_str() {
             "D15F" => Some((rule, limit)),
-            "D15F/D85B" => Some((rule, limit * d85b)),
-            "D15F/D95B" => Some((rule, limit * d95b?)),
+            "D15F/D85B" | "D15F/D95B" => {
+                let value = rule.value.filter(|value| *value > 0.0 && value.is_finite())?;
+                Some((rule, limit * d15f / value))
+            }
             _ => None,
         }
     };
@@ -44,10 +48,10 @@ pub fn limits(rules: &[AppliedRule], d85b: f64, d95b: Option<f64>) -> Vec<(&Appl
 }
 
 impl Band {
-    /// From the rules and the greatest D15F that holds, in the unit of the rules; `None` where the least is
-    /// not known.
-    pub fn new(rules: &[AppliedRule], d85b: f64, greatest: f64, unit: &str) -> Option<Self> {
-        let limits = limits(rules, d85b, None);
+    /// From the rules of a filter of this D15F and the greatest D15F that holds, in the unit of the rules;
+    /// `None` where the least is not known.
+    pub fn new(rules: &[AppliedRule], d15f: f64, greatest: f64, unit: &str) -> Option<Self> {
+        let limits = limits(rules, d15f);
         let (_, least) = *limits.iter().find(|(rule, _)| rule.id == PERMEABILITY)?;
         let retention = limits.iter().filter(|(rule, _)| rule.role == RuleRole::Retention && !rule.at_least);
         let strictest = retention.min_by(|a, b| a.1.total_cmp(&b.1));
@@ -90,16 +94,26 @@ mod tests {
     use crate::gradation::Gradation;
     use crate::outcome::PairRules;
 
-    fn rules(base_cu: f64) -> (Vec<AppliedRule>, f64) {
-        let base = Gradation::linear_from_dx(85.0, 0.4, base_cu).unwrap();
-        let filter = Gradation::linear_from_dx(15.0, 1.6, 1.5).unwrap();
-        (PairRules::of(&filter, &base).rules, base.d(85.0).unwrap())
+    /// D15F of the filter that is judged.
+    const D15F: f64 = 1.6;
+
+    fn rules_of(base: &Gradation) -> Vec<AppliedRule> {
+        let filter = Gradation::linear_from_dx(15.0, D15F, 1.5).unwrap();
+        PairRules::of(&filter, base).rules
+    }
+
+    fn rules(base_cu: f64) -> Vec<AppliedRule> {
+        rules_of(&Gradation::linear_from_dx(85.0, 0.4, base_cu).unwrap())
+    }
+
+    fn limit_of(rules: &[AppliedRule], id: &str) -> Option<f64> {
+        limits(rules, D15F).iter().find(|(rule, _)| rule.id == id).map(|(_, limit)| *limit)
     }
 
     #[test]
     fn a_band_goes_from_permeability_to_the_walk_with_practice_beside() {
-        let (all, d85b) = rules(3.0);
-        let band = Band::new(&all, d85b, 1.8, "mm").unwrap();
+        let all = rules(3.0);
+        let band = Band::new(&all, D15F, 1.8, "mm").unwrap();
         // D15B of a linear Cu 3 base: 0.4 x 3^(-70/50).
         let d15b = 0.4 * libm::pow(3.0, -1.4);
         assert!((band.least - 5.0 * d15b).abs() < 1e-9 && !band.is_empty, "{band:?}");
@@ -109,8 +123,8 @@ mod tests {
 
     #[test]
     fn an_empty_band_names_the_two_numbers_that_clash() {
-        let (all, d85b) = rules(1.2);
-        let band = Band::new(&all, d85b, 1.5, "mm").unwrap();
+        let all = rules(1.2);
+        let band = Band::new(&all, D15F, 1.5, "mm").unwrap();
         let least = 5.0 * 0.4 * libm::pow(1.2, -1.4);
         assert!(band.is_empty && band.said.contains(&format!("{least:.3} mm")), "{}", band.said);
         assert!(band.said.contains("1.500 mm"), "{}", band.said);
@@ -118,8 +132,8 @@ mod tests {
 
     #[test]
     fn practice_that_allows_less_than_drains_leaves_an_empty_band() {
-        let (all, d85b) = rules(1.1);
-        let band = Band::new(&all, d85b, 1.8, "mm").unwrap();
+        let all = rules(1.1);
+        let band = Band::new(&all, D15F, 1.8, "mm").unwrap();
         let least = 5.0 * 0.4 * libm::pow(1.1, -1.4);
         assert!(band.practice.unwrap() < least && least < band.greatest, "{band:?}");
         assert!(band.is_empty && band.said.contains(&format!("{least:.3} mm")), "{}", band.said);
@@ -128,12 +142,30 @@ mod tests {
 
     #[test]
     fn the_limit_of_a_ratio_is_one_of_a_size() {
-        let (all, d85b) = rules(3.0);
-        let of = |id: &str| {
-            limits(&all, d85b, None).iter().find(|(rule, _)| rule.id == id).map(|(_, limit)| *limit)
-        };
-        assert!((of("terzaghi").unwrap() - 1.6).abs() < 1e-9);
-        assert!((of("foster-fell-no-erosion").unwrap() - 2.8).abs() < 1e-9);
-        assert_eq!(of("filter-uniformity"), None);
+        let all = rules(3.0);
+        assert!((limit_of(&all, "terzaghi").unwrap() - 1.6).abs() < 1e-9);
+        assert!((limit_of(&all, "foster-fell-no-erosion").unwrap() - 2.8).abs() < 1e-9);
+        assert!((limit_of(&all, "paper-no-erosion").unwrap() - 2.0).abs() < 1e-9);
+        assert_eq!(limit_of(&all, "filter-uniformity"), None);
+    }
+
+    /// Practice takes four times the D85B of the part that it regrades the base to: of a gap-graded base, and
+    /// of one with gravel, by far less than of the whole.
+    #[test]
+    fn the_limit_of_a_ratio_is_of_the_base_that_its_rule_reads() {
+        let gap = [(0.1, 0.0), (0.2, 20.0), (0.5, 50.0), (4.0, 55.0), (9.5, 80.0), (19.0, 100.0)];
+        let gravel = [(0.2, 0.0), (0.5, 10.0), (2.0, 30.0), (4.75, 58.0), (19.0, 100.0)];
+        for points in [&gap[..], &gravel] {
+            let base = Gradation::from_points(points, None).unwrap();
+            let regraded = base.regraded();
+            let (whole, part) = (base.d(85.0).unwrap(), regraded.gradation.d(85.0).unwrap());
+            assert!(regraded.at_mm.is_some() && whole > 2.0 * part, "{whole} {part}");
+            let all = rules_of(&base);
+            assert!((limit_of(&all, "terzaghi").unwrap() / (4.0 * part) - 1.0).abs() < 1e-9);
+            // That of the model is for the base as it is walked.
+            assert!((limit_of(&all, "paper-no-erosion").unwrap() / (5.0 * whole) - 1.0).abs() < 1e-9);
+            let band = Band::new(&all, D15F, 100.0, "mm").unwrap();
+            assert!(band.practice.unwrap() <= 4.0 * part * (1.0 + 1e-9), "{band:?}");
+        }
     }
 }

@@ -61,6 +61,10 @@ pub struct Design {
     pub rules_at: f64,
     /// Standard products beside the narrowest band.
     pub products: Vec<Fit>,
+    /// How far it can be relied on that a product fits: as `confidence`, but at the greatest D15F that walk
+    /// and practice both allow; `None` without products.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub products_confidence: Option<Confidence>,
     /// What else a reader must know.
     pub warnings: Vec<String>,
     /// What the model does not contain.
@@ -104,6 +108,10 @@ pub struct DesignRow {
     /// Why there is none, or what else is to be said of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub no_erosion_note: Option<String>,
+    /// D15F/D85B to which nearly all networks hold where more than half of them hold all that was searched,
+    /// so that there is no boundary.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub holds_to: Option<f64>,
     /// Where some erosion turns into continuing.
     pub continuing: Option<Boundary>,
     /// Why there is none, or what else is to be said of it.
@@ -133,6 +141,11 @@ impl DesignRow {
             Some(of) => format!("{} (an end of the range of {of})", self.density),
             None => self.density.clone(),
         }
+    }
+
+    /// The ratio that nearly all networks hold; `None` where none is known.
+    pub fn held(&self) -> Option<f64> {
+        self.no_erosion.as_ref().map_or(self.holds_to, Boundary::cautious)
     }
 }
 
@@ -203,9 +216,21 @@ impl Design {
         self.boundaries.iter().find(asked)?.band.as_ref()
     }
 
-    /// Names of the standard products that are said to fit: none where the answer is in doubt.
+    /// The row that holds least, of those that are known to hold anything, and the ratio that nearly all of
+    /// its networks hold.
+    pub fn least_held(&self) -> Option<(&DesignRow, f64)> {
+        let known = self.boundaries.iter().filter_map(|row| Some((row, row.held()?)));
+        known.min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Whether nothing stands against saying that a product fits.
+    pub fn may_fit(&self) -> bool {
+        self.products_confidence == Some(Confidence::Within)
+    }
+
+    /// Names of the standard products that are said to fit: none where that is in doubt.
     pub fn products_that_fit(&self) -> Vec<&str> {
-        let fit = self.products.iter().filter(|of| self.confidence == Confidence::Within && of.fits());
+        let fit = self.products.iter().filter(|of| self.may_fit() && of.fits());
         fit.map(|of| of.name.as_str()).collect()
     }
 }

@@ -22,14 +22,16 @@ const NAMES: [(&str, &str); 8] = [
     ("foster-fell-continuing", "CE"),
 ];
 
-/// The figure, of the first row that has a boundary or was walked at all.
+/// The figure, of the row that the answer is of: that which holds least. Where none is known to hold, of the
+/// first that has a boundary or was walked at all.
 pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
     let is_of =
         |row: &DesignRow, walk: &&WalkRow| walk.density == row.density && walk.thickness == row.thickness;
     let has_walks = |row: &&DesignRow| walks.iter().any(|walk| is_of(row, &walk));
     let with_boundary = |row: &&DesignRow| row.no_erosion.is_some();
     let rows = || design.boundaries.iter().filter(has_walks);
-    let row = rows().find(with_boundary).or_else(|| rows().next())?;
+    let least = design.least_held().map(|(row, _)| row).filter(has_walks);
+    let row = least.or_else(|| rows().find(with_boundary)).or_else(|| rows().next())?;
     let walks: Vec<&WalkRow> = walks.iter().filter(|walk| is_of(row, walk)).collect();
     // In mm where the base has a size and stays as it is.
     let (d85, unit) = match design.base.d85_mm.filter(|_| !design.inverse) {
@@ -66,9 +68,13 @@ pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
         "Base eroded against D15F: {}, {}. Each thin line is a network, blue its first run, purple its \
          second where it was walked. Green: no erosion, orange: some, red: continuing; where colours run \
          into each other are 5 to 95 % of networks.",
-        row.density, row.thickness
+        row.name(),
+        row.thickness
     );
     if design.boundaries.len() > 1 {
+        if least.is_some() {
+            caption += " Of all that were searched this one holds least.";
+        }
         caption += " The other densities and thicknesses are in the table.";
     }
     let lines: Vec<String> =
@@ -85,18 +91,22 @@ fn of_rules(design: &Design, d85: f64) -> Vec<(&AppliedRule, f64)> {
     if design.inverse {
         return Vec::new();
     }
-    limits(&design.rules, d85, design.base.d95_over_d85.map(|ratio| ratio * d85))
+    limits(&design.rules, design.rules_at * d85)
 }
 
 /// The zones, as wide as the figure is.
 fn zones(figure: &mut Figure, row: &DesignRow, d85: f64, (left, right): (f64, f64)) {
-    let Some(first) = &row.no_erosion else { return };
     let of = |boundary: &Boundary| {
         let at = |ratio: f64| (ratio * d85).clamp(left, right);
         // Where no ratio is known that nearly all networks hold, some erosion begins at the left.
         [at(boundary.cautious().unwrap_or(0.0)), at(boundary.high.unwrap_or(boundary.median))]
     };
-    let [from, to] = of(first);
+    // What holds all that was searched is green as far as that.
+    let [from, to] = match (&row.no_erosion, row.holds_to) {
+        (Some(first), _) => of(first),
+        (None, Some(ratio)) => [right, (ratio * d85).clamp(left, right)],
+        (None, None) => return,
+    };
     let continuing = row.continuing.as_ref().map(of);
     let mut zone = |low: f64, high: f64, colour: Colour, opacity: f64, name: &str| {
         if high > low {
@@ -105,6 +115,9 @@ fn zones(figure: &mut Figure, row: &DesignRow, d85: f64, (left, right): (f64, f6
         }
     };
     zone(left, to, GREEN, 0.10, "no erosion");
+    if row.no_erosion.is_none() {
+        return;
+    }
     let [end, most] = continuing.unwrap_or([right, right]);
     zone(from, most, ORANGE, 0.14, if end > 1.05 * to { "some" } else { "" });
     if most < right || continuing.is_some() {

@@ -66,18 +66,8 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
     write_page_as("design.html", folder, &drawn, &whole_page(title, &header, &main, &footer))
 }
 
-/// The boundary that is safe to name, and the ratio that nearly all networks hold, of the row of which it
-/// is the least.
-fn cautious(design: &Design) -> Option<(&DesignRow, &Boundary, f64)> {
-    let known = design.boundaries.iter().filter_map(|row| {
-        let boundary = row.no_erosion.as_ref()?;
-        Some((row, boundary, boundary.cautious()?))
-    });
-    known.min_by(|a, b| a.2.total_cmp(&b.2))
-}
-
 fn answer(design: &Design) -> Markup {
-    let found = cautious(design);
+    let found = design.least_held();
     let others = design.boundaries.iter().filter(|row| row.no_erosion.is_none() || row.band_note.is_some());
     let others = others.count();
     let is_empty = |row: &DesignRow| row.band.as_ref().is_some_and(|band| band.is_empty);
@@ -91,8 +81,8 @@ fn answer(design: &Design) -> Markup {
         section class=(format!("verdict {class}")) {
             p.word.long {
                 @match &found {
-                    Some((_, boundary, held)) => {
-                        (headline(boundary, *held, design.inverse))
+                    Some((row, held)) => {
+                        (headline(row, *held, design))
                         @if design.confidence != Confidence::Within { " in the model" }
                     },
                     None => "No ratio is known that nearly all networks hold",
@@ -101,13 +91,22 @@ fn answer(design: &Design) -> Markup {
             @if design.confidence != Confidence::Within {
                 p { b { (capital(design.confidence.words())) } "; see below." }
             }
-            @if let Some((row, boundary, _)) = &found {
+            @if let Some((row, held)) = &found {
                 p.lead {
                     "No erosion (less than " (threshold(design.threshold)) " of the base in the first run) \
-                     up to D15F/D85B " b { (ratio(boundary.median)) }
-                    @if design.replicates == 1 { " on one network: " } @else {
-                        " in the median of " (whole(design.replicates)) " networks, "
-                        (between(boundary.low, boundary.high, ratio)) " in 5 to 95 % of them: "
+                     up to D15F/D85B "
+                    @match &row.no_erosion {
+                        Some(boundary) => {
+                            b { (ratio(boundary.median)) }
+                            @if design.replicates == 1 { " on one network: " } @else {
+                                " in the median of " (whole(design.replicates)) " networks, "
+                                (between(boundary.low, boundary.high, ratio)) " in 5 to 95 % of them: "
+                            }
+                        },
+                        None => {
+                            b { (ratio(*held)) } " on nearly all of " (whole(design.replicates))
+                            " networks; where erosion begins lies beyond the search: "
+                        },
                     }
                     (clean(&row.name())) ", " (clean(&row.thickness)) "."
                 }
@@ -149,11 +148,19 @@ fn answer(design: &Design) -> Markup {
 }
 
 /// The answer in a few words, on the cautious side.
-fn headline(boundary: &Boundary, held: f64, inverse: bool) -> String {
+fn headline(row: &DesignRow, held: f64, design: &Design) -> String {
+    let Some(boundary) = &row.no_erosion else {
+        let size = match design.inverse {
+            true => design.filter_d15_mm.map(|d15| format!("D85B down to {} mm", significant(d15 / held))),
+            false => design.base.d85_mm.map(|d85| format!("D15F up to {} mm", significant(held * d85))),
+        };
+        let size = size.unwrap_or_else(|| format!("D15F up to {} D85B", ratio(held)));
+        return format!("Holds as far as was searched: {size}");
+    };
     let cautious = |range: &Range| range.low.unwrap_or(range.median);
     match (&boundary.d15f_mm, &boundary.d85b_mm) {
         (Some(range), _) => format!("D15F up to {} mm", significant(cautious(range))),
-        (None, Some(range)) if inverse => {
+        (None, Some(range)) if design.inverse => {
             format!("D85B down to {} mm", significant(range.high.unwrap_or(range.median)))
         }
         _ => format!("D15F up to {} D85B", ratio(held)),
@@ -273,7 +280,10 @@ fn products(design: &Design) -> Markup {
                 "Which of them have the D15 of both their sides within the narrowest band, with practice \
                  agreeing. D15 is interpolated between sieves. Their own shapes were not walked: another \
                  shape holds to another D15."
-                @if design.confidence != Confidence::Within {
+                @if design.may_fit() {
+                    " Judged at the greatest D15F that both walk and practice allow, as none that fits is \
+                     coarser."
+                } @else {
                     " Nothing is said to fit here, as the answer is in doubt."
                 }
             }
@@ -287,9 +297,9 @@ fn products(design: &Design) -> Markup {
                 .text("Drains", |fit| yes(fit.drains))
                 .text("Holds (walk)", |fit| yes(fit.holds))
                 .text("Practice", |fit| fit.practice.map_or_else(|| html! { "–" }, yes))
-                .number("", |fit| match (fit.fits(), design.confidence) {
-                    (true, Confidence::Within) => html! { b { "fits" } },
-                    (true, _) => html! { "in doubt" },
+                .number("", |fit| match (fit.fits(), design.may_fit()) {
+                    (true, true) => html! { b { "fits" } },
+                    (true, false) => html! { "in doubt" },
                     (false, _) => html! { "does not fit" },
                 })
                 .render())
@@ -304,7 +314,7 @@ fn practice(design: &Design) -> Markup {
             h2 { "Rules of practice" }
             p {
                 "Of a filter with D15F/D85B " (ratio(design.rules_at))
-                @if cautious(design).is_some() { ", the coarsest that is said to hold" } "."
+                @if design.least_held().is_some() { ", the coarsest that is said to hold" } "."
             }
             (rules::table(&rules))
         }
@@ -359,6 +369,8 @@ fn made(design: &Design, walks: &[WalkRow]) -> Markup {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gradation::Gradation;
+    use crate::outcome::PairRules;
     use crate::outcome::design::BaseStated;
 
     fn written(design: &Design, csv: &str) -> String {
@@ -381,6 +393,7 @@ mod tests {
                 grains_per_void: Some(0.61),
                 no_erosion_note: no_erosion.is_none().then(|| "nothing erodes".into()),
                 no_erosion,
+                holds_to: None,
                 continuing: None,
                 continuing_note: None,
                 not_monotone: 0,
@@ -405,6 +418,7 @@ mod tests {
             rules: Vec::new(),
             rules_at: 4.0,
             products: Vec::new(),
+            products_confidence: None,
             warnings: Vec::new(),
             model_leaves_out: vec!["water".into()],
             settings: Vec::new(),
@@ -432,6 +446,38 @@ mod tests {
         }
         let none = written(&design(None, Confidence::Outside), CSV);
         assert!(none.contains("verdict undecided") && none.contains("nothing erodes"));
+    }
+
+    #[test]
+    fn a_filter_that_holds_all_that_was_searched_says_so_and_is_not_green() {
+        let mut design = design(None, Confidence::Outside);
+        design.boundaries[0].holds_to = Some(1.08);
+        let page = written(&design, CSV);
+        assert!(page.contains("Holds as far as was searched: D15F up to 1.08 D85B"), "{page}");
+        assert!(page.contains("verdict doubted") && !page.contains("No ratio is known"));
+        design.base.d85_mm = Some(0.5);
+        assert!(written(&design, CSV).contains("Holds as far as was searched: D15F up to 0.540 mm"));
+    }
+
+    #[test]
+    fn the_figure_is_of_the_row_that_counts_and_its_limits_are_those_of_the_rules() {
+        let gap = [(0.1, 0.0), (0.2, 20.0), (0.5, 50.0), (4.0, 55.0), (9.5, 80.0), (19.0, 100.0)];
+        let base = Gradation::from_points(&gap, None).unwrap();
+        let (d85, part) = (base.d(85.0).unwrap(), base.regraded().gradation.d(85.0).unwrap());
+        let of = |ratio: f64| Boundary::of(&[Ok(ratio), Ok(ratio)], Some(d85));
+        let mut design = design(of(5.0), Confidence::Outside);
+        let loose =
+            DesignRow { density: "loosest".into(), no_erosion: of(3.0), ..design.boundaries[0].clone() };
+        design.boundaries.push(loose);
+        design.base.d85_mm = Some(d85);
+        let filter = Gradation::linear_from_dx(15.0, design.rules_at * d85, 1.5).unwrap();
+        design.rules = PairRules::of(&filter, &base).rules;
+        let page = written(&design, &format!("{CSV}loosest,60 layers,1,3.0,0.01,\n"));
+        assert!(page.contains("Base eroded against D15F: loosest, 60 layers"), "{page}");
+        assert!(page.contains("this one holds least"));
+        let terzaghi =
+            |d85b: f64| format!("Terzaghi: the filter retains the base {}", significant(4.0 * d85b));
+        assert!(page.contains(&terzaghi(part)) && !page.contains(&terzaghi(d85)), "{page}");
     }
 
     #[test]

@@ -12,6 +12,9 @@
 //! A base that is twice as large takes a filter twice as large, to the bit, for a thickness in layers or
 //! multiples of D50F.
 
+#[cfg(test)]
+mod answer_tests;
+mod judged;
 mod kept;
 mod options;
 mod plan;
@@ -81,7 +84,13 @@ fn run_here(options: &DesignOptions, callbacks: &Callbacks) -> Result<Design, Ru
         whole(&folder, &kept, callbacks)?;
         return Ok(design);
     }
-    let done = if options.overwrite { Vec::new() } else { kept.newest(callbacks)?.unwrap_or_default() };
+    // What is to be replaced is other work: networks of this very work that was stopped are gone on with.
+    let is_begun = Unfinished::read(&folder)?.as_ref() == Some(&mark);
+    let done = match options.overwrite {
+        true if is_begun => kept.newest(callbacks).ok().flatten().unwrap_or_default(),
+        true => Vec::new(),
+        false => kept.newest(callbacks)?.unwrap_or_default(),
+    };
     if done.is_empty() {
         clear(&folder, kind)?;
     }

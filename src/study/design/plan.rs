@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::outcome::stopping::StopRule;
 use crate::run::error::RunError;
-use crate::scene::{Base, Density, Extent, NetworkSource, Scene, keep_soils};
+use crate::scene::{Base, Density, Extent, NetworkSource, Scene, keep_soils, quoted};
 
 use super::options::{DesignOptions, Thickness};
 
@@ -64,14 +64,16 @@ fn default_density(options: &DesignOptions) -> Option<String> {
 /// Whether a shape has its constrictions, and the setting that says it: a Cu, a sieve table or a shipped
 /// name.
 fn shape_setting(shape: &str) -> (bool, String) {
+    // Or a name that reads as a number, or as anything else that is no text, would not stay one.
+    let text = |name: &str| toml::Value::String(name.to_owned()).to_string();
     let file = shape.split('#').next().unwrap_or(shape);
     let is_file = shape.contains(['/', '\\', '#']) || Path::new(file).is_file();
     let ending = Path::new(file).extension().and_then(|e| e.to_str()).map(str::to_lowercase);
     let is_table = ending.is_some_and(|e| ["csv", "txt", "tsv", "xlsx", "ods", "ags"].contains(&&*e));
     match shape.trim().parse::<f64>() {
         Ok(_) => (false, format!("filter.cu={}", shape.trim())),
-        Err(_) if is_file || is_table => (false, format!("filter.sieve={shape}")),
-        Err(_) => (true, format!("filter.curve={shape}")),
+        Err(_) if is_file || is_table => (false, format!("filter.sieve={}", text(shape))),
+        Err(_) => (true, format!("filter.curve={}", text(shape))),
     }
 }
 
@@ -97,7 +99,7 @@ fn one(
     let mut settings = options.settings.clone();
     let base = options.base.as_ref().map(|base| base.display().to_string());
     keep_soils(&settings, base.as_deref(), options.filter.as_deref())?;
-    let of_base = base.map(|base| format!("base.sieve={base}"));
+    let of_base = options.base.as_deref().map(quoted).transpose()?.map(|base| format!("base.sieve={base}"));
     let of_filter = options.filter.as_deref().map(|shape| shape_setting(shape).1);
     let of_density = density.map(density_setting).transpose()?;
     let of_thickness = thickness.map(|thickness| match thickness {
@@ -221,9 +223,9 @@ mod tests {
     #[test]
     fn a_shape_is_a_cu_a_file_or_a_shipped_name() {
         assert_eq!(shape_setting("3").1, "filter.cu=3");
-        assert_eq!(shape_setting("soils/f.csv").1, "filter.sieve=soils/f.csv");
-        assert_eq!(shape_setting("f.xlsx#Zone 2").1, "filter.sieve=f.xlsx#Zone 2");
-        assert_eq!(shape_setting("cu1.5-loose"), (true, "filter.curve=cu1.5-loose".into()));
+        assert_eq!(shape_setting("soils/f.csv").1, "filter.sieve=\"soils/f.csv\"");
+        assert_eq!(shape_setting("f.xlsx#Zone 2").1, "filter.sieve=\"f.xlsx#Zone 2\"");
+        assert_eq!(shape_setting("cu1.5-loose"), (true, "filter.curve=\"cu1.5-loose\"".into()));
     }
 
     #[test]
@@ -247,6 +249,20 @@ mod tests {
         ] {
             let error = refused(filter, setting);
             assert!(error.contains(said), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_file_whose_name_reads_as_a_number_is_one() {
+        for name in ["7", "1e5", "true", "7#Zone 2"] {
+            let options = DesignOptions {
+                base: Some(name.into()),
+                filter: Some(format!("./{name}")),
+                ..DesignOptions::default()
+            };
+            let wanted = wanted(&options).unwrap().remove(0);
+            assert_eq!(wanted.scene.base.sieve.as_deref(), Some(Path::new(name)));
+            assert_eq!(wanted.scene.filter.sieve, Some(PathBuf::from(format!("./{name}"))));
         }
     }
 

@@ -82,10 +82,32 @@ impl Row {
 
     /// Layers at a ratio, where they hang on it.
     pub fn layers(&self, ratio: f64) -> Option<u64> {
+        let (mm, layer) = self.thickness_and_layer(ratio)?;
+        Some((mm / layer).round().clamp(1.0, f64::from(u32::MAX)) as u64)
+    }
+
+    /// The thickness that was asked for and that of one layer (mm), where the layers hang on the ratio.
+    fn thickness_and_layer(&self, ratio: f64) -> Option<(f64, f64)> {
         let Thickness::Mm(mm) = self.wanted.thickness else { return None };
         let layer = self.case.filter.d_by_number(50.0).unwrap_or(self.case.unit_mm);
-        let layers = (mm / (layer * self.factor(ratio)?)).round();
-        (!self.inverse).then(|| layers.clamp(1.0, f64::from(u32::MAX)) as u64)
+        let layer = layer * self.factor(ratio)?;
+        (!self.inverse).then_some((mm, layer))
+    }
+
+    /// How thick (mm) the one layer is that is walked at a ratio where less than half of one was asked for.
+    pub fn thicker_than_asked(&self, ratio: f64) -> Option<f64> {
+        let (mm, layer) = self.thickness_and_layer(ratio)?;
+        ((mm / layer).round() < 1.0).then_some(layer)
+    }
+
+    /// The same in words.
+    pub fn thicker_in_words(&self, ratio: f64) -> Option<String> {
+        let layer = self.thicker_than_asked(ratio)?;
+        Some(format!(
+            "at D15F/D85B {ratio:.2} one layer of voids, the least that can be walked, is {layer:.3} mm \
+             thick: a filter of {} holds less",
+            self.wanted.thickness
+        ))
     }
 
     /// The case at a ratio.

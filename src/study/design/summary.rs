@@ -1,30 +1,21 @@
 //! Puts what the networks say together: the record and the table of a design.
 
+use super::judged::{Judged, Said};
 use super::kept::Done;
 use super::options::{DesignOptions, Thickness};
 use super::row::Row;
-use crate::case::{Case, StatedBase};
-use crate::outcome::confidence;
 use crate::outcome::design::band::Band;
 use crate::outcome::design::products::fits;
 use crate::outcome::design::{
-    BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignRow, NetworkBoundaries, WalkRow,
+    BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignRow, NetworkBoundaries, WalkRow, spread,
 };
 use crate::outcome::leaves_out;
-use crate::outcome::record::{AppliedRule, Confidence, Verdict};
-use crate::outcome::rules::{BaseSoil, RuleInputs, apply};
+use crate::outcome::record::Confidence;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
-use crate::scene::{Amount, BaseGradation, D85};
 
 /// Ratio at which the rules are read where no boundary is known.
 const USUAL_RATIO: f64 = 4.0;
-
-/// Fewer networks than these give no percentiles.
-const FEW_NETWORKS: u64 = 5;
-
-/// A base coarser than this (D85, mm) is worth a word.
-const COARSE_BASE_MM: f64 = 10.0;
 
 /// The record.
 ///
@@ -45,8 +36,9 @@ pub(super) fn design(
     // An end of a range is no filter that anybody offers: it is judged with the row that it is an end of.
     let asked = || (0..rows.len()).filter(|&at| rows[at].end_of.is_none());
     for at in asked() {
-        (boundaries[at].band, boundaries[at].band_note) =
-            (band(&rows[at], held[at])?, no_band(&rows[at], rows, &boundaries));
+        let note = no_band(&rows[at], rows, &boundaries);
+        let held = held[at].filter(|_| note.is_none());
+        (boundaries[at].band, boundaries[at].band_note) = (band(&rows[at], held)?, note);
     }
     let each: Vec<Asked> =
         asked().map(|at| Asked { row: &rows[at], of: &boundaries[at], held: held[at] }).collect();
@@ -58,6 +50,8 @@ pub(super) fn design(
     let rules = judged.rules();
     let bands = boundaries.iter().filter_map(|of| of.band.as_ref());
     let narrowest = bands.min_by(|a, b| a.greatest.total_cmp(&b.greatest));
+    let products = narrowest.filter(|band| band.unit == "mm").map(fits).unwrap_or_default();
+    let products_confidence = if products.is_empty() { None } else { Some(of_products(&each)?) };
     let first = &rows[0];
     let record = judged.case.record();
     Ok(Design {
@@ -77,7 +71,8 @@ pub(super) fn design(
         reasons,
         rules,
         rules_at: ratio,
-        products: narrowest.filter(|band| band.unit == "mm").map(fits).unwrap_or_default(),
+        products,
+        products_confidence,
         warnings,
         model_leaves_out: leaves_out(first.case.scene.exit_rule()),
         settings: settings(options),
@@ -108,9 +103,9 @@ fn range<'a>(
 }
 
 /// The ratio that nearly all networks hold, of every curve of the range; `None` where that of one is not
-/// known.
+/// known. A curve whose networks hold all that was searched counts as holding to its end.
 fn held_over_range(row: &Row, rows: &[Row], boundaries: &[DesignRow]) -> Option<f64> {
-    let each = range(row, rows, boundaries).map(|of| of.no_erosion.as_ref().and_then(Boundary::cautious));
+    let each = range(row, rows, boundaries).map(DesignRow::held);
     each.reduce(|a, b| Some(a?.min(b?))).flatten()
 }
 
@@ -118,16 +113,29 @@ fn held_over_range(row: &Row, rows: &[Row], boundaries: &[DesignRow]) -> Option<
 fn band(row: &Row, held: Option<f64>) -> Result<Option<Band>, RunError> {
     let Some(ratio) = held.filter(|_| !row.inverse) else { return Ok(None) };
     let judged = Judged::new(row, ratio)?;
-    let d85b = row.d85_mm.unwrap_or(1.0);
-    Ok(Band::new(&judged.rules(), d85b, ratio * d85b, judged.unit()))
+    let d15f = ratio * row.d85_mm.unwrap_or(1.0);
+    Ok(Band::new(&judged.rules(), d15f, d15f, judged.unit()))
 }
 
-/// Why there is no band, where networks erode at every ratio that was searched, with some curve of the range.
+/// Why there is no band, where networks erode at every ratio that was searched, with some curve of the range,
+/// or where they hold every one, and the end of the search is no limit.
 fn no_band(row: &Row, rows: &[Row], boundaries: &[DesignRow]) -> Option<String> {
-    let mut range = range(row, rows, boundaries);
-    range.find_map(|of| {
-        let note = of.band_note.as_ref()?;
-        Some(if of.density == row.wanted.density { note.clone() } else { format!("{}: {note}", of.density) })
+    let eroding = range(row, rows, boundaries).find(|of| of.band_note.is_some());
+    let named = |of: &DesignRow, note: String| match of.density == row.wanted.density {
+        true => note,
+        false => format!("{}: {note}", of.density),
+    };
+    if let Some((of, note)) = eroding.and_then(|of| Some((of, of.band_note.clone()?))) {
+        return Some(named(of, note));
+    }
+    let least = range(row, rows, boundaries).filter_map(|of| Some((of, of.held()?)));
+    let (of, ratio) = least.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    (of.no_erosion.is_none() && !row.inverse).then(|| {
+        let note = format!(
+            "nearly all networks hold as far as was searched, here to D15F/D85B {ratio:.2}, so that no \
+             greatest D15F is known; a higher end of --bracket may find it"
+        );
+        named(of, note)
     })
 }
 
@@ -169,23 +177,51 @@ fn all_judged(
     Ok((worst, said(|(_, reasons, _)| reasons), warnings))
 }
 
-/// How far a row can be relied on, why no further, and what else is to be said.
-type Said = (Confidence, Vec<String>, Vec<String>);
-
-fn judged(&Asked { row, of, held }: &Asked) -> Result<Said, RunError> {
-    let Some(ratio) = held else {
-        // No filter is said to hold, and no rule speaks against one.
-        let (_, reasons, warnings) = Judged::new(row, USUAL_RATIO)?.confidence(row, &[]);
-        let why = [&of.band_note, &of.no_erosion_note].into_iter().flatten().cloned();
-        return Ok((Confidence::Outside, why.chain(reasons).collect(), warnings));
-    };
-    let judged = Judged::new(row, ratio)?;
-    let (mut confidence, mut reasons, warnings) = judged.confidence(row, &judged.rules());
-    if let Some(band) = of.band.as_ref().filter(|band| band.is_empty) {
-        confidence = confidence.max(Confidence::Outside);
-        reasons.insert(0, band.said.clone());
+fn judged(asked: &Asked) -> Result<Said, RunError> {
+    let Asked { row, of, held } = *asked;
+    if let Some(ratio) = held {
+        return judged_at(asked, ratio);
     }
-    Ok((confidence, reasons, warnings))
+    // No filter is said to hold, and no rule speaks against one.
+    let (_, reasons, warnings) = Judged::new(row, USUAL_RATIO)?.confidence(row, &[]);
+    let why = [&of.band_note, &of.no_erosion_note].into_iter().flatten().cloned();
+    Ok((Confidence::Outside, why.chain(reasons).collect(), warnings))
+}
+
+/// How far it can be relied on that a filter with this ratio holds.
+fn judged_at(&Asked { row, of, .. }: &Asked, ratio: f64) -> Result<Said, RunError> {
+    let judged = Judged::new(row, ratio)?;
+    let (mut confidence, reasons, warnings) = judged.confidence(row, &judged.rules());
+    let greatest = of.no_erosion.as_ref().map_or(ratio, |of| of.high.unwrap_or(of.median).max(ratio));
+    let empty = of.band.as_ref().filter(|band| band.is_empty).map(|band| band.said.clone());
+    let unknown = of.no_erosion_note.clone().filter(|_| of.no_erosion.is_none());
+    let mut why: Vec<String> = [row.thicker_in_words(greatest), empty, of.band_note.clone(), unknown]
+        .into_iter()
+        .flatten()
+        .collect();
+    if !why.is_empty() {
+        confidence = confidence.max(Confidence::Outside);
+    }
+    why.extend(reasons);
+    Ok((confidence, why, warnings))
+}
+
+/// How far it can be relied on that a product fits, the worst of all rows: each at the greatest D15F that
+/// walk and practice both allow, as no product that fits is coarser.
+fn of_products(asked: &[Asked]) -> Result<Confidence, RunError> {
+    let mut worst = Confidence::Within;
+    for asked in asked {
+        let band = asked.of.band.as_ref().filter(|band| !band.is_empty);
+        worst = worst.max(match band {
+            // A hair less, so that no rounding breaks the limit itself.
+            Some(band) => {
+                let ratio = band.greatest_of_both() / asked.row.d85_mm.unwrap_or(1.0) * (1.0 - 1e-9);
+                judged_at(asked, ratio)?.0
+            }
+            None => Confidence::Outside,
+        });
+    }
+    Ok(worst)
 }
 
 /// `design.csv`.
@@ -261,7 +297,8 @@ fn of(row: &Row, done: &[&Done]) -> Result<DesignRow, RunError> {
         Some(if row.inverse { boundary.inverted(row.has_size().then(|| row.d15f())) } else { boundary })
     };
     let (no_erosion, continuing) = (boundary(&first), boundary(&second));
-    let ratio = no_erosion.as_ref().map_or(USUAL_RATIO, |boundary| boundary.median);
+    let holds_to = if no_erosion.is_none() { holds_to(done) } else { None };
+    let ratio = no_erosion.as_ref().map_or(holds_to.unwrap_or(USUAL_RATIO), |boundary| boundary.median);
     let layers = row.layers(ratio).unwrap_or(row.case.counts[3]);
     let has_size = row.has_size();
     let of_layers = || {
@@ -269,29 +306,42 @@ fn of(row: &Row, done: &[&Done]) -> Result<DesignRow, RunError> {
         no_erosion.as_ref().filter(|_| has_size)?;
         Some(row.case.thickness()? * row.factor(ratio)?)
     };
-    let held = no_erosion.as_ref().map(Boundary::cautious);
+    let held = no_erosion.as_ref().map_or(holds_to, Boundary::cautious);
     let eroding = first.iter().filter(|of| **of == Err(Beyond::Below)).count();
-    let band_note = (held == Some(None)).then(|| {
-        format!(
+    let band_note = held.is_none().then(|| match eroding {
+        0 => "no ratio of the search could be walked, so that none is known that holds".to_owned(),
+        _ => format!(
             "{eroding} of {} networks erode 7.5 % or more at every ratio that was searched, so that no ratio \
              is known that all but 5 % of networks hold",
             first.len()
-        )
+        ),
     });
+    // Of a filter that is as thin as one layer, or thinner, the layer itself.
+    let thicker = |boundary: &Option<Boundary>| {
+        let greatest = boundary.as_ref().map(|of| of.high.unwrap_or(of.median));
+        row.thicker_in_words(greatest.or(holds_to)?)
+    };
+    let (first_thicker, second_thicker) = (thicker(&no_erosion), thicker(&continuing));
+    let of_first = words(|done| done.found.no_erosion_beyond.as_ref().map(|(_, why)| why));
+    let of_second = words(|done| done.found.continuing_beyond.as_ref().map(|(_, why)| why));
+    let joined = |notes: [Option<String>; 2]| {
+        let notes: Vec<String> = notes.into_iter().flatten().collect();
+        (!notes.is_empty()).then(|| notes.join("; "))
+    };
     Ok(DesignRow {
         density: row.wanted.density.clone(),
         thickness: row.wanted.thickness.to_string(),
         layers,
         thickness_mm: match row.wanted.thickness {
-            Thickness::Mm(mm) => Some(mm),
+            Thickness::Mm(mm) => Some(row.thicker_than_asked(ratio).unwrap_or(mm)),
             _ => of_layers(),
         },
         grains_per_void: row.case.grains_per_void,
         no_erosion,
-        no_erosion_note: words(|done| done.found.no_erosion_beyond.as_ref().map(|(_, why)| why))
-            .map(|why| why + &of_pan(row).unwrap_or_default()),
+        no_erosion_note: joined([of_first.map(|why| why + &of_pan(row).unwrap_or_default()), first_thicker]),
+        holds_to,
         continuing,
-        continuing_note: words(|done| done.found.continuing_beyond.as_ref().map(|(_, why)| why)),
+        continuing_note: joined([of_second, second_thicker]),
         not_monotone: done.iter().filter(|done| done.found.is_not_monotone).count() as u64,
         networks: done
             .iter()
@@ -307,6 +357,18 @@ fn of(row: &Row, done: &[&Done]) -> Result<DesignRow, RunError> {
     })
 }
 
+/// The ratio that nearly all networks hold where their median lies above all that was searched: one that
+/// erodes nowhere counts as holding to the greatest ratio that was walked on it.
+fn holds_to(done: &[&Done]) -> Option<f64> {
+    let one = |done: &&Done| match (done.found.no_erosion, &done.found.no_erosion_beyond) {
+        (Some(ratio), _) => Ok(ratio),
+        (None, Some((Beyond::Below, _))) => Err(Beyond::Below),
+        (None, _) => done.found.walks.last().map(|walk| walk.0).ok_or(Beyond::Below),
+    };
+    let [low, ..] = spread(&done.iter().map(one).collect::<Vec<_>>());
+    low.ok()
+}
+
 /// What is to be said where the base's pan fraction alone is enough to erode.
 fn of_pan(row: &Row) -> Option<String> {
     let pan = row.stated.gradation.pan_fraction();
@@ -317,124 +379,4 @@ fn of_pan(row: &Row) -> Option<String> {
             100.0 * pan
         )
     })
-}
-
-/// That a band over so few networks says little.
-fn few_networks(row: &Row) -> Option<String> {
-    let networks = row.case.scene.walk.replicates;
-    let counted = if networks == 1 { "1 network".to_owned() } else { format!("{networks} networks") };
-    (networks < FEW_NETWORKS).then(|| {
-        format!(
-            "only {counted}: a band of 5 to 95 % needs {FEW_NETWORKS} at least, better 20 \
-             (--set replicates=20)"
-        )
-    })
-}
-
-/// That the number of base particles is not that of Eq. (2) at every ratio.
-fn of_amount(row: &Row) -> Option<String> {
-    let what = match row.case.scene.base.amount() {
-        Amount::Number(n) => format!("base.n_base holds the number of base particles at {n}"),
-        Amount::MassRatio(_, Some(cap)) => {
-            format!("base.cap holds the number of base particles at {cap} or less")
-        }
-        Amount::MassRatio(_, None) => return None,
-    };
-    Some(format!(
-        "{what}, which is not the base that Eq. (2) asks for at every ratio: where there is less, more \
-         filters seem to hold"
-    ))
-}
-
-/// A row at one ratio, as what knows millimetres judges it.
-struct Judged {
-    /// The case with the sizes that filter and base have there; without a unit, that of D85B = 1.
-    case: Case,
-    has_size: bool,
-    /// D85B (mm).
-    d85_mm: Option<f64>,
-    /// The base that was stated.
-    base_name: String,
-}
-
-impl Judged {
-    fn new(row: &Row, ratio: f64) -> Result<Self, RunError> {
-        let has_size = row.has_size();
-        let d85 = match (has_size, row.inverse) {
-            (true, false) => row.d85_mm.unwrap_or(1.0),
-            (true, true) => row.d15f() / ratio,
-            (false, _) => 1.0,
-        };
-        let scaled = |stated: &StatedBase| -> Result<StatedBase, RunError> {
-            let sizes = |gradation: &crate::gradation::Gradation| {
-                let factor = d85 / row.stated.gradation.d(85.0).unwrap_or(d85);
-                gradation.scaled(factor).map_err(crate::case::CaseError::from)
-            };
-            let regraded_from = match &stated.regraded_from {
-                Some((given, at)) => Some((sizes(given)?, *at)),
-                None => None,
-            };
-            Ok(StatedBase { gradation: sizes(&stated.gradation)?, regraded_from, ..stated.clone() })
-        };
-        let stated = if has_size && !row.inverse { row.stated.clone() } else { scaled(&row.stated)? };
-        let mut case = row.case.enlarged(ratio * d85 / row.d15f(), &stated)?;
-        if let Ok(walked) = row.at(ratio) {
-            (case.pan_size, case.counts) = (walked.pan_size, walked.counts);
-            (case.n_base, case.n_base_eq2, case.capped) = (walked.n_base, walked.n_base_eq2, walked.capped);
-        }
-        let base_name = case.record().base.name;
-        if !has_size {
-            // As multiples of a size that is not known, neither soil has fines.
-            (case.scene.filter.d0_mm, case.scene.base) = (Some(1.0), row.case.scene.base.clone());
-        } else if let BaseGradation::Linear { d85: D85::AtDc(..) | D85::Ratio(_), .. } =
-            case.scene.base.gradation()
-        {
-            // The filter's size says the base's.
-            let of = &mut case.scene.base;
-            (of.d85_mm, of.d85_at_dc, of.dc_curve, of.d15f_over_d85b) = (Some(d85), None, None, None);
-        }
-        Ok(Self { case, has_size, d85_mm: has_size.then_some(d85), base_name })
-    }
-
-    fn unit(&self) -> &'static str {
-        if self.has_size { "mm" } else { "D85B" }
-    }
-
-    fn rules(&self) -> Vec<AppliedRule> {
-        let (case, scale_free) = (&self.case, !self.has_size);
-        let inputs = RuleInputs {
-            filter: &case.filter,
-            filter_is_measured: case.filter_is_measured(),
-            base: case.base_as_given(),
-            walked_base: &case.base,
-            base_soil: BaseSoil::of(case.base_as_given(), scale_free),
-            scale_free,
-            filter_curves: Vec::new(),
-            dispersive: case.scene.base.dispersive == Some(true),
-            joint_mm: case.scene.filter.joint_mm,
-            largest_eroded_over_d15f: None,
-        };
-        let mut rules = apply(&inputs);
-        for rule in rules.iter_mut().filter(|rule| rule.unit == "D0F") {
-            rule.unit = "D85B".into();
-        }
-        rules
-    }
-
-    /// How far "no erosion" can be relied on, why no further, and what else is to be said.
-    fn confidence(&self, row: &Row, rules: &[AppliedRule]) -> Said {
-        // Said of every ratio below.
-        let of_one = self.case.too_little_base().filter(|_| of_amount(row).is_some());
-        let doubts = self.case.doubts().into_iter();
-        let doubts: Vec<String> = doubts.filter(|said| Some(said) != of_one.as_ref()).collect();
-        let coarse = self.d85_mm.filter(|d85| *d85 > COARSE_BASE_MM).map(|d85| {
-            format!("the base's D85 is {d85:.1} mm: are its sizes micrometres under a header in mm?")
-        });
-        let of_search = [few_networks(row), of_amount(row)].into_iter().flatten();
-        let doubts: Vec<String> = coarse.into_iter().chain(doubts).chain(of_search).collect();
-        let others = self.case.warnings().into_iter().filter(|said| !doubts.contains(said));
-        let warnings = others.collect();
-        let (confidence, reasons) = confidence::judge(Verdict::None, rules, doubts);
-        (confidence, reasons, warnings)
-    }
 }

@@ -1,0 +1,99 @@
+//! What is said of boundaries: of thin filters, of searches that end too soon, of products.
+
+use super::tests::{found, of_base, options, tiny};
+use super::*;
+use crate::outcome::record::Confidence;
+
+#[test]
+fn a_thickness_of_less_than_a_layer_is_not_passed_off_as_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let base = of_base(folder.path(), "base.csv", &[(0.1, 0.0), (0.2, 100.0)]);
+    let thicknesses = vec![Thickness::Mm(0.05), Thickness::Mm(0.9)];
+    let options = options(&folder.path().join("out"), &["no layers"]);
+    let design = found(&DesignOptions { base: Some(base), thicknesses, ..options });
+    let (thin, row) = (&design.boundaries[0], &design.boundaries[1]);
+    assert!(thin.layers == 1 && thin.thickness_mm.unwrap() > 0.1, "{thin:?}");
+    assert!(thin.no_erosion_note.as_ref().unwrap().contains("a filter of 0.05 mm holds less"), "{thin:?}");
+    assert!(row.thickness_mm == Some(0.9) && row.no_erosion_note.is_none(), "{row:?}");
+    assert_ne!(design.confidence, Confidence::Within);
+    let said = |reason: &String| reason.contains("loose, 0.05 mm: at D15F/D85B");
+    assert!(design.reasons.iter().any(said), "{:?}", design.reasons);
+}
+
+/// An end of the range of a curve that holds more than was searched does not take the band away.
+#[test]
+fn an_end_that_holds_all_that_was_searched_limits_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |name: &str, bracket: [f64; 2]| {
+        let (densities, filter) = (vec!["estimate=0.5".into()], Some("1.5".into()));
+        let options = tiny(&folder.path().join(name), &["network.nz=6"]);
+        found(&DesignOptions { densities, filter, bracket, ..options })
+    };
+    let wide = of("wide", [0.8, 30.0]);
+    let end = |number: usize| wide.boundaries[number].networks.iter().filter_map(|of| of.no_erosion);
+    let narrow = of("narrow", [0.8, 1.01 * end(0).fold(0.0, f64::max)]);
+    assert!(narrow.boundaries[1].no_erosion.is_none(), "{:?}", narrow.boundaries[1]);
+    assert_eq!(narrow.boundaries[0].band, wide.boundaries[0].band);
+    assert!(narrow.boundaries[0].band.is_some() && narrow.boundaries[0].band_note.is_none());
+    // Where even the loosest holds all, or the loosest none, that is said.
+    let short = of("short", [0.5, 0.9 * end(2).fold(f64::MAX, f64::min)]);
+    let row = &short.boundaries[0];
+    assert!(row.band.is_none() && row.band_note.is_some() && row.held().is_some(), "{row:?}");
+    assert_eq!(short.confidence, Confidence::Outside.max(short.confidence));
+    let high = of("high", [1.1 * end(2).fold(0.0, f64::max), 30.0]);
+    let row = &high.boundaries[0];
+    assert!(row.band.is_none() && row.band_note.as_ref().unwrap().contains("estimate 0: "), "{row:?}");
+}
+
+/// What is delivered within both limits is no coarser than practice allows, however coarse the walk has it.
+#[test]
+fn products_are_judged_at_what_walk_and_practice_both_allow() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |name: &str, more: &[&str]| {
+        found(&tiny(&folder.path().join(name), &[&["network.nz=60", "base.d85_mm=0.15"], more].concat()))
+    };
+    let design = of("sand", &[]);
+    let band = design.boundaries[0].band.as_ref().unwrap();
+    assert!(band.practice.unwrap() < band.greatest && !band.is_empty, "{band:?}");
+    assert_eq!((design.confidence, design.may_fit()), (Confidence::Contradicted, true), "{design:?}");
+    let doubted = of("few", &["replicates=4"]);
+    assert!(!doubted.may_fit() && doubted.products_that_fit().is_empty(), "{:?}", doubted.reasons);
+}
+
+#[test]
+fn a_base_that_is_regraded_and_scaled_says_its_share_and_that_practice_would_cut_it_elsewhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let points = [(0.2, 0.0), (0.5, 10.0), (2.0, 30.0), (4.75, 58.0), (19.0, 100.0)];
+    let base = of_base(folder.path(), "gravel.csv", &points);
+    let settings = ["network.nx=6", "network.ny=6", "filter.d0_mm=2", "base.regrade=practice"];
+    let options = options(&folder.path().join("out"), &[]);
+    let settings = options.settings.iter().cloned().chain(settings.map(String::from));
+    let settings = settings.filter(|one| !one.contains("=9")).collect();
+    let design = found(&DesignOptions { inverse: true, base: Some(base), settings, ..options });
+    let said = design.warnings.iter().find(|said| said.contains("as practice regrades it"));
+    assert!(said.unwrap().contains("the 58.0 % of it"), "{said:?}");
+    let doubted = |reason: &String| reason.contains("regraded on 4.750 mm in the size in which it is stated");
+    assert!(design.reasons.iter().any(doubted), "{:?}", design.reasons);
+}
+
+#[test]
+fn a_real_thickness_is_compared_in_mm_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |name: &str, more: &[&str]| {
+        let all = [&["network.nz=20", "filter.thickness_mm=1"], more].concat();
+        found(&tiny(&folder.path().join(name), &all)).reasons.join("; ")
+    };
+    let said = of("no-size", &[]);
+    assert!(said.contains("sizes are multiples of D85B") && !said.contains("20 layers of D50F"), "{said}");
+    let said = of("sized", &["base.d85_mm=0.2"]);
+    assert!(said.contains("20 layers of D50F by number are") && !said.contains("is not known"), "{said}");
+    // What was asked for is rounded to layers.
+    let base = Some(of_base(folder.path(), "base.csv", &[(0.1, 0.0), (0.2, 100.0)]));
+    for mm in [10.0, 10.3, 10.6, 10.9] {
+        let name = format!("of-{mm}");
+        let plain = options(&folder.path().join(&name), &["no layers", &format!("filter.thickness_mm={mm}")]);
+        let design =
+            found(&DesignOptions { base: base.clone(), thicknesses: vec![Thickness::Mm(mm)], ..plain });
+        assert!(!design.reasons.join("; ").contains("thicker than the real one"), "{:?}", design.reasons);
+    }
+}
