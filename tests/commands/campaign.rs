@@ -65,7 +65,7 @@ fn a_campaign_folder_holds_what_is_promised() {
         assert!(text.contains(&verdict), "{text}");
         assert!(text.contains(&format!("\n  {}\n", said("reason"))), "{text}");
         assert!(row.contains(&format!(",{},{},", said("verdict"), said("confidence"))), "{row}");
-        assert!(row.contains("only 2 replicates"), "{row}");
+        assert!(row.contains(&format!(",\"{}\",", said("reason"))), "{row}");
         assert_eq!(line["thickness"]["layers"], 10);
     }
     assert!(text.contains("  modelled filter thickness: 10 layers, ") && text.contains(" grains per void"));

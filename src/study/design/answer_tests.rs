@@ -48,10 +48,10 @@ fn an_end_that_holds_all_that_was_searched_limits_nothing() {
 /// What is delivered within both limits is no coarser than practice allows, however coarse the walk has it.
 #[test]
 fn products_are_judged_at_what_walk_and_practice_both_allow() {
+    // As wide as none is in doubt for.
+    const WIDE: [&str; 4] = ["network.nz=60", "network.nx=10", "network.ny=10", "base.d85_mm=0.15"];
     let folder = tempfile::tempdir().unwrap();
-    let of = |name: &str, more: &[&str]| {
-        found(&tiny(&folder.path().join(name), &[&["network.nz=60", "base.d85_mm=0.15"], more].concat()))
-    };
+    let of = |name: &str, more: &[&str]| found(&tiny(&folder.path().join(name), &[&WIDE[..], more].concat()));
     let design = of("sand", &[]);
     let band = design.boundaries[0].band.as_ref().unwrap();
     assert!(band.practice.unwrap() < band.greatest && !band.is_empty, "{band:?}");
