@@ -148,7 +148,8 @@ pub fn check(plan: &CampaignPlan, options: &CampaignOptions) -> Result<(), RunEr
     let all = ResourceLimits::new(options.memory, Machine::here().available, &options.out);
     let wanted = wanted(plan, &options.part)?;
     let (limits, _) = rooms(all, have_common_seeds(&wanted));
-    let workers = threads(options.threads)?.current_num_threads() as u64;
+    let pool = threads(options.threads)?;
+    let workers = pool.current_num_threads() as u64;
     let sound = |planned: &PlannedCase| -> Result<(), RunError> {
         let (_, mut case) = Draft::new(planned.scene.clone())?;
         case.place(&limits, workers, &options.out)?;
@@ -158,7 +159,7 @@ pub fn check(plan: &CampaignPlan, options: &CampaignOptions) -> Result<(), RunEr
         let problem = sound(planned).err()?.to_string();
         Some(FailedCase { case: planned.name.clone(), problem })
     };
-    let failed: Vec<FailedCase> = wanted.into_iter().filter_map(wrong).collect();
+    let failed: Vec<FailedCase> = pool.install(|| wanted.into_iter().filter_map(wrong).collect());
     if failed.is_empty() { Ok(()) } else { Err(RunError::Refused(named(&failed))) }
 }
 

@@ -31,6 +31,13 @@ impl Case {
             Some(_) if self.scene.base.n_base.is_none() && ratio < PAPER_MASS_RATIO => Some(few(format!(
                 "base.mass_ratio is {ratio}; the model was checked with {PAPER_MASS_RATIO}, base over filter"
             ))),
+            None => {
+                let n = self.scene.base.n_base.filter(|_| self.fixed_network.is_none())?;
+                Some(format!(
+                    "base.n_base gives {n} base particles; without filter.grains_per_void Eq. (2) cannot say \
+                     whether they are enough"
+                ))
+            }
             _ => None,
         }
     }

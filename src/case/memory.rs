@@ -179,6 +179,13 @@ impl Case {
         if all <= SIDE_BY_SIDE_BYTES.min(self.memory) { threads.max(1) } else { 1 }
     }
 
+    /// Whether there is room for the particles of the scene itself, in memory or on the disk.
+    fn has_room(&self, room: &ResourceLimits, threads: u64) -> bool {
+        let columns = self.column_bytes(self.n_base);
+        let besides = self.other_bytes(self.n_base, threads).saturating_add(self.kept_bytes());
+        besides <= room.memory && (columns <= room.memory - besides || columns <= room.disk)
+    }
+
     /// Says where the columns of the particles go: into memory where they fit, else into files in `folder`
     /// that are mapped into memory.
     ///
@@ -189,17 +196,21 @@ impl Case {
             other.place(room, threads, folder)?;
         }
         self.memory = room.memory;
-        let thickest = self.thickest().map(|mut case| match case.place(room, threads, folder) {
-            Err(CaseError::Memory { n_base, voids, needed, available, disk, .. })
-                if case.n_base != self.n_base || case.counts[0] != self.counts[0] =>
-            {
-                let study = " (record.thickness: the thickest filter of the study; leave that out)".into();
-                Err(CaseError::Memory { n_base, study, voids, needed, available, disk })
-            }
-            placed => placed.map(|()| case.placement),
-        });
+        let has_room = self.has_room(room, threads);
+        // Where the scene itself has none, no study is to blame.
+        let thickest =
+            self.thickest().filter(|_| has_room).map(|mut case| match case.place(room, threads, folder) {
+                Err(CaseError::Memory { n_base, voids, needed, available, disk, .. })
+                    if case.n_base != self.n_base || case.counts[0] != self.counts[0] =>
+                {
+                    let study =
+                        " (record.thickness: the thickest filter of the study; leave that out)".into();
+                    Err(CaseError::Memory { n_base, study, voids, needed, available, disk })
+                }
+                placed => placed.map(|()| case.placement),
+            });
         let thickest = thickest.transpose()?;
-        let n_base = self.most_particles();
+        let n_base = if has_room { self.most_particles() } else { self.n_base };
         let kept = self.kept_bytes();
         let walks = self.bytes(n_base, threads).saturating_mul(self.side_by_side(n_base, threads));
         let needed = walks.saturating_add(kept);
@@ -358,5 +369,8 @@ mod tests {
         );
         let error = refused("record.thickness=[10000]");
         assert!(error.contains("(record.thickness: the thickest"), "{error}");
+        // No study is to blame where the scene itself has no room.
+        let error = refused("base.n_base=1e12");
+        assert!(error.starts_with("1000000000000 base particles") && !error.contains("record."), "{error}");
     }
 }

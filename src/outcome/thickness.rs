@@ -24,7 +24,7 @@ fn sentence(rows: &[OfThickness], verdict: Verdict, points: Option<&str>) -> Opt
         let times = format!("{:.3}", row.factor);
         let times = times.trim_end_matches('0').trim_end_matches('.');
         let replicates = if row.replicates == 1 { "replicate" } else { "replicates" };
-        let held = if row.has_its_base(own.n_base) { "" } else { ", not as many times the base" };
+        let held = if row.has_its_base(own) { "" } else { ", not as many times the base" };
         format!(
             "{times} times as thick{held}: {}, {} eroded in {} {replicates}",
             row.verdict.words(),
@@ -90,6 +90,14 @@ mod tests {
         let held = OfThickness { n_base: 100, ..row(2.0, Verdict::Some, 0.1) };
         let held = sentence(&[row(1.0, Verdict::Some, 0.12), held], Verdict::Some, None).unwrap();
         assert!(held.contains("(2 times as thick, not as many times the base: some erosion"), "{held}");
+        // Twice the copies of a packing have not quite twice its layers.
+        let copies = |factor, n_base, mm| OfThickness {
+            n_base,
+            thickness_mm: Some(mm),
+            ..row(factor, Verdict::Some, 0.1)
+        };
+        assert!(copies(1.9, 2000, 20.0).has_its_base(&copies(1.0, 1000, 10.0)));
+        assert!(!copies(1.9, 1000, 20.0).has_its_base(&copies(1.0, 1000, 10.0)));
         let clear = OfThickness {
             stopped_when_clear: true,
             runs: vec![Statistic { mean: 0.59, sd: None, low: Some(0.386), high: Some(0.797) }],

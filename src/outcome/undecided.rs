@@ -48,16 +48,15 @@ impl Outcome {
         if self.verdict != Verdict::Undecided {
             return None;
         }
-        let straddles = |run: &RunSummary| {
+        let erodes = |run: &RunSummary| {
             let eroded = &run.eroded_mass_fraction;
-            eroded.low.is_some_and(|low| low < self.threshold)
-                && eroded.high.is_some_and(|high| high >= self.threshold)
+            eroded.low.unwrap_or(eroded.mean) >= self.threshold
         };
         Some(if self.pan_bounds.as_ref().is_some_and(|bounds| bounds.differ()) {
             UndecidedBy::Pan
         } else if self.curve_range.as_ref().is_some_and(|range| range.whole() != range.verdict) {
             UndecidedBy::Curve
-        } else if self.summary.len() == 1 && !self.summary.iter().any(straddles) {
+        } else if self.summary.len() == 1 && self.summary.iter().all(erodes) {
             UndecidedBy::SecondRun
         } else {
             UndecidedBy::Replicates

@@ -82,7 +82,7 @@ impl Walked<'_> {
             least if percent(least) == percent(most) => format!(", after {} of the base", percent(most)),
             least => format!(", after {} to {} of the base", percent(least), percent(most)),
         };
-        let on_its_way = inserted(self.layers).min(if most > 0.0 { most } else { 1.0 });
+        let on_its_way = inserted(self.layers).min(least);
         Some(format!(
             "the filter clogged wholly in the {which} run{of}{after}; no water flows then, and what was on \
              its way, {} of the base at the least, counts as retained and might have left. Walk it with a \
@@ -173,6 +173,8 @@ mod tests {
         // Less than has been inserted cannot be on its way.
         let found = of(Verdict::None, &closed, &[[1, 1, 10], [1, 2, 0]]);
         assert!(found[0].contains("its way, 10.0 % of"), "{found:?}");
+        let found = of(Verdict::None, &closed, &[[1, 1, 24], [2, 1, 32], [1, 2, 0]]);
+        assert!(found[0].contains("24.0 % to 32.0 % of the base") && found[0].contains("its way, 24.0 % of"));
         assert_eq!(of(Verdict::Continuing, &closed, &[[1, 1, 41]]), Vec::<String>::new());
         for open in [Some(0.01), None] {
             assert_eq!(of(Verdict::None, &[(0.02, 0, open), (0.0, 0, open)], &[]), Vec::<String>::new());

@@ -147,6 +147,11 @@ impl DesignRow {
     pub fn held(&self) -> Option<f64> {
         self.no_erosion.as_ref().map_or(self.holds_to, Boundary::cautious)
     }
+
+    /// Networks that were found to erode at some ratio of the search.
+    pub fn eroding_networks(&self) -> usize {
+        self.networks.iter().filter(|of| of.no_erosion.is_some()).count()
+    }
 }
 
 /// A boundary over networks: D15F/D85B, and the same in mm.
@@ -225,7 +230,8 @@ impl Design {
 
     /// Whether nothing stands against saying that a product fits.
     pub fn may_fit(&self) -> bool {
-        self.products_confidence == Some(Confidence::Within)
+        // An earlier version knew one confidence for all.
+        self.products_confidence.unwrap_or(self.confidence) == Confidence::Within
     }
 
     /// Names of the standard products that are said to fit: none where that is in doubt.

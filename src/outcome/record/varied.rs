@@ -55,10 +55,15 @@ pub struct OfThickness {
 }
 
 impl OfThickness {
-    /// Whether it has as many times the base particles as it is thick, as by Eq. (2), where a filter of one
-    /// time the thickness has `own`: not where a cap or a number in the scene holds them.
-    pub fn has_its_base(&self, own: u64) -> bool {
-        (self.n_base as f64 - self.factor * own as f64).abs() <= 0.5 + 0.5 * self.factor + 1e-6
+    /// Whether it has as many times the base particles of `own`, the row of the scene itself, as it is thick,
+    /// as by Eq. (2): not where a cap or a number in the scene holds them.
+    pub fn has_its_base(&self, own: &Self) -> bool {
+        // Copies of a packing have not quite as many times the layers.
+        let times = match (self.thickness_mm, own.thickness_mm) {
+            (Some(thick), Some(own)) => thick / own,
+            _ => self.factor,
+        };
+        (self.n_base as f64 - times * own.n_base as f64).abs() <= 0.5 + 0.5 * times + 1e-6
     }
 }
 

@@ -105,7 +105,13 @@ fn answer(design: &Design) -> Markup {
                         },
                         None => {
                             b { (ratio(*held)) } " on nearly all of " (whole(design.replicates))
-                            " networks; where erosion begins lies beyond the search: "
+                            " networks; "
+                            @if row.eroding_networks() > 0 {
+                                (row.eroding_networks()) " of them erode within the search, and the \
+                                median lies beyond it: "
+                            } @else {
+                                "where erosion begins lies beyond the search: "
+                            }
                         },
                     }
                     (clean(&row.name())) ", " (clean(&row.thickness)) "."
@@ -155,7 +161,11 @@ fn headline(row: &DesignRow, held: f64, design: &Design) -> String {
             false => design.base.d85_mm.map(|d85| format!("D15F up to {} mm", significant(held * d85))),
         };
         let size = size.unwrap_or_else(|| format!("D15F up to {} D85B", ratio(held)));
-        return format!("Holds as far as was searched: {size}");
+        let held = match row.eroding_networks() {
+            0 => "Holds as far as was searched",
+            _ => "Held by nearly all networks",
+        };
+        return format!("{held}: {size}");
     };
     let cautious = |range: &Range| range.low.unwrap_or(range.median);
     match (&boundary.d15f_mm, &boundary.d85b_mm) {

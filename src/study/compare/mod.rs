@@ -124,7 +124,8 @@ fn begin(
     let kind = FolderKind::Comparison;
     let of_case = |case: &PreparedCase| format!("{} {}", case.planned.name, case.fingerprint);
     let all: Vec<String> = cases.iter().map(of_case).collect();
-    let text = format!("{} {} {all:?}", plan.of, plan.common);
+    // Not the path of what is common: the cases know its bytes.
+    let text = format!("{} {all:?}", plan.of);
     let work = format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes()));
     match Unfinished::read(folder)? {
         // Of a corrupt mark, or one of an earlier version, nothing is known.

@@ -131,10 +131,17 @@ fn no_band(row: &Row, rows: &[Row], boundaries: &[DesignRow]) -> Option<String> 
     let least = range(row, rows, boundaries).filter_map(|of| Some((of, of.held()?)));
     let (of, ratio) = least.min_by(|a, b| a.1.total_cmp(&b.1))?;
     (of.no_erosion.is_none() && !row.inverse).then(|| {
-        let note = format!(
-            "nearly all networks hold as far as was searched, here to D15F/D85B {ratio:.2}, so that no \
-             greatest D15F is known; a higher end of --bracket may find it"
-        );
+        let note = match of.eroding_networks() {
+            0 => format!(
+                "nearly all networks hold as far as was searched, here to D15F/D85B {ratio:.2}, so that no \
+                 greatest D15F is known; a higher end of --bracket may find it"
+            ),
+            eroding => format!(
+                "nearly all networks hold to D15F/D85B {ratio:.2}; {eroding} of {} erode within the search, \
+                 and the median lies beyond it: a higher end of --bracket may find it",
+                of.networks.len()
+            ),
+        };
         named(of, note)
     })
 }
