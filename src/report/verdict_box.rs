@@ -50,7 +50,7 @@ fn undecided(walks: &Walks, limit: &str) -> String {
     if !runs.is_empty() {
         let plural = if runs.len() > 1 { "intervals of the " } else { "interval of the " };
         format!("Inconclusive: the {plural}{} includes {limit}.", runs.join(" and the "))
-    } else if let [first] = &walks.summary[..]
+    } else if let [first] = walks.summary
         && first.eroded_mass_fraction.mean >= walks.threshold
     {
         "Inconclusive: some and continuing erosion differ by the second run, and only a first was asked for."
