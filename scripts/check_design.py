@@ -6,7 +6,7 @@
 
 A case is a shipped constriction curve, a Cu of the base, a lattice of 8 to 11 voids across and 8 to 16 layers, and a seed, all drawn by
 Python's random.Random(CASE). It is searched twice: with the bracket that design has by default, and with one that is drawn. Then every
-ratio D15F/D85B from 0.75 times the least of the boundaries, in steps of 1 % that have nothing to do with those of the search, is walked by
+ratio D15F/D85B from 0.75 times the least of the boundaries, in steps of 0.5 % that have nothing to do with those of the search, is walked by
 `voidwalk run` on the same networks, up to 1.05 times the largest. The boundary of a network by the scan is the smallest ratio from which
 the first run (no erosion), or both (continuing), erode 7.5 % of the mass: halfway down to the ratio below. Where what erodes scatters from
 ratio to ratio, larger ones hold again: the ratio from which all erode is found too.
@@ -29,7 +29,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CURVES = ["shire2016-cu1.5-loose", "shire2016-cu1.5-dense", "shire2016-cu3-loose", "cu1.2-dense", "cu1.5-loose", "cu3-dense", "cu3-loose",
           "cu6-friction0.7"]
-STEP = 0.01
+STEP = 0.005
 THRESHOLD = 0.075
 NETWORKS = 5
 BOUNDARIES = ["no_erosion", "continuing"]
