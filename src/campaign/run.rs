@@ -15,7 +15,7 @@ use crate::run::callbacks::Callbacks;
 use crate::run::checkpoints::CheckpointInterval;
 use crate::run::error::RunError;
 use crate::run::folder::{FolderKind, claim, shown};
-use crate::run::machine::{Machine, on_threads, threads};
+use crate::run::machine::{on_threads, threads};
 use crate::run::pack::provide;
 use crate::run::prepare::{Draft, PrepareOptions};
 use crate::run::replicates::have_networks;
@@ -145,9 +145,9 @@ pub fn run(
 /// # Errors
 /// The cases that are wrong, or that do not fit the memory.
 pub fn check(plan: &CampaignPlan, options: &CampaignOptions) -> Result<(), RunError> {
-    let all = ResourceLimits::new(options.memory, Machine::here().available, &options.out);
+    let prepare = PrepareOptions { memory: options.memory, ..PrepareOptions::default() };
     let wanted = wanted(plan, &options.part)?;
-    let (limits, _) = rooms(all, have_common_seeds(&wanted));
+    let (limits, _) = rooms(prepare.limits(&options.out), have_common_seeds(&wanted));
     let pool = threads(options.threads)?;
     let workers = pool.current_num_threads() as u64;
     let sound = |planned: &PlannedCase| -> Result<(), RunError> {

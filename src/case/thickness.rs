@@ -9,8 +9,7 @@ const HALF_AND_TWICE: [f64; 2] = [0.5, 2.0];
 impl Case {
     /// Multiples of the thickness that the study walks: those asked for, else half and twice where the study
     /// of the number of base particles is walked. None of a network from a file, which is as thick as it is,
-    /// none
-    /// that is to the nearest layer or copy the thickness of the case itself, and no thickness twice.
+    /// none that is to the nearest layer or copy the thickness of the case itself, and no thickness twice.
     pub fn thickness_factors(&self) -> Vec<f64> {
         let mut known = vec![self.thickness_parts()];
         let mut is_other = |factor: &f64| {

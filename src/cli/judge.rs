@@ -6,7 +6,7 @@ use super::progress::followed;
 use super::run::show;
 use super::values::with_options;
 use crate::run::{self, RunError};
-use crate::scene::{Scene, TableOptions};
+use crate::scene::{Record, Scene, TableOptions};
 
 impl TableArgs {
     /// What a scene of two tables is given besides them.
@@ -39,8 +39,11 @@ pub fn judge(args: &JudgeArgs) -> Result<(), RunError> {
     if in_words {
         let scene = shown(&run.folder.join("scene.toml"));
         let studies = match run.outcome.sensitivity.is_empty() && run.outcome.thickness.is_empty() {
-            true => " --set \"record.sensitivity=[0.25, 0.5, 2, 4]\"",
-            false => "",
+            true => {
+                let factors: Vec<String> = Record::default().sensitivity.iter().map(f64::to_string).collect();
+                format!(" --set \"record.sensitivity=[{}]\"", factors.join(", "))
+            }
+            false => String::new(),
         };
         to_stdout(&format!("to go on from: voidwalk run {scene} --set replicates=30{studies}\n"));
     }

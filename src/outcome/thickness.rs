@@ -8,6 +8,16 @@ impl Outcome {
     pub fn with_thickness(&self) -> Option<String> {
         sentence(&self.thickness, self.verdict, self.points_are())
     }
+
+    /// Whether a row has as many times the base particles of the scene itself as it is thick.
+    pub fn has_its_base(&self, row: &OfThickness) -> bool {
+        own(&self.thickness).is_none_or(|own| row.has_its_base(own))
+    }
+}
+
+/// The row of the scene itself.
+fn own(rows: &[OfThickness]) -> Option<&OfThickness> {
+    rows.iter().find(|row| row.factor == 1.0)
 }
 
 /// What the rows say beside a verdict, in a sentence: whether it stays, and how much erodes; `None` without
@@ -17,7 +27,7 @@ fn sentence(rows: &[OfThickness], verdict: Verdict, points: Option<&str>) -> Opt
     if others.is_empty() {
         return None;
     }
-    let own = rows.iter().find(|row| row.factor == 1.0)?;
+    let own = own(rows)?;
     let stays = others.iter().all(|row| row.verdict == verdict);
     let of_row = |row: &&OfThickness| {
         let eroded: Vec<String> = row.runs.iter().map(|s| percent(s, row.stopped_when_clear)).collect();

@@ -146,8 +146,7 @@ fn below(outcome: &Outcome, stopped: bool) -> Markup {
 /// Filters of other thicknesses, collapsed.
 pub(super) fn thickness(outcome: &Outcome) -> Markup {
     let scale_free = outcome.inputs.scale_free;
-    let own = outcome.thickness.iter().find(|row| row.factor == 1.0);
-    let is_held = move |row: &OfThickness| own.is_some_and(|own| !row.has_its_base(own));
+    let is_held = |row: &OfThickness| !outcome.has_its_base(row);
     let mut table = Table::of(&outcome.thickness)
         .number("Times the thickness", |row| format!("×{}", trimmed(row.factor)))
         .number("Layers of voids", |row| whole(row.layers))

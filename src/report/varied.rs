@@ -89,9 +89,8 @@ pub(super) fn thickness(folder: &RunFolder) -> Option<Drawn> {
     let rows: Vec<Varied> = rows.collect();
     let behind = behind(&folder.outcome, &rows);
     let figure = varied(&folder.walks(), rows, titles)?;
-    let all = &folder.outcome.thickness;
-    let own = all.iter().find(|row| row.factor == 1.0);
-    let offered = match all.iter().all(|row| own.is_none_or(|own| row.has_its_base(own))) {
+    let outcome = &folder.outcome;
+    let offered = match outcome.thickness.iter().all(|row| outcome.has_its_base(row)) {
         true => "By Eq. (2) a thicker filter is offered as many times the base.",
         false => HELD,
     };
