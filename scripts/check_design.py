@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Boundaries of `voidwalk design` beside fine scans: 40 seeded cases on small lattices, each scanned by a plain loop of `voidwalk run`.
 
-    scripts/check_design.py [--out target/check-design] [--binary target/release/voidwalk] [--cases 40] [--first 1] [--threads N]
+    scripts/check_design.py [--out target/check-design] [--binary target/release/voidwalk] [--cases 40] [--first 1] [--threads N] [--engine auto]
+    scripts/check_design.py --usual --cases 3 --out target/check-usual    # on lattices as large as design's own
     scripts/check_design.py --again    # with the scans that are kept: only the searches, by another search of the same walks
 
 A case is a shipped constriction curve, a Cu of the base, a lattice of 8 to 11 voids across and 8 to 16 layers, and a seed, all drawn by
 Python's random.Random(CASE). It is searched twice: with the bracket that design has by default, and with one that is drawn. Then every
 ratio D15F/D85B from 0.75 times the least of the boundaries, in steps of 0.5 % that have nothing to do with those of the search, is walked by
-`voidwalk run` on the same networks, up to 1.05 times the largest. The boundary of a network by the scan is the smallest ratio from which
+`voidwalk run` on the same networks, with the engine of design (or what --engine says), up to 1.15 times the largest. The boundary of a network by the scan is the smallest ratio from which
 the first run (no erosion), or both (continuing), erode 7.5 % of the mass: halfway down to the ratio below. Where what erodes scatters from
 ratio to ratio, larger ones hold again: the ratio from which all erode is found too.
 
@@ -35,13 +36,15 @@ NETWORKS = 5
 BOUNDARIES = ["no_erosion", "continuing"]
 
 
-def drawn(number):
+def drawn(args, number):
     draw = random.Random(number)
     across = draw.randint(8, 11)
     settings = {
         "filter.curve": draw.choice(CURVES), "base.cu": round(draw.uniform(1.2, 4), 2), "network.nx": across, "network.ny": across,
         "network.nz": draw.randint(8, 16), "seed": draw.randint(1, 10**6), "replicates": NETWORKS, "record.sensitivity": "[]", "record.thickness": "[]",
     }
+    if args.usual:
+        settings |= {"network.nx": 40, "network.ny": 40, "network.nz": 60}
     # Times the least boundary and the largest; and where the scan begins, within a step.
     return settings, (draw.uniform(0.4, 0.7), draw.uniform(1.3, 3)), draw.random()
 
@@ -75,7 +78,7 @@ def scan(args, settings, low, high, offset):
         folder = args.out / "run"
         shutil.rmtree(folder, ignore_errors=True)
         # One ratio says how coarse the base is: the built-in scene's d85_at_dc goes.
-        call(args, "run", args.scene, *sets({**settings, "base.d15f_over_d85b": f"{ratio:.6f}"}), "--out", folder)
+        call(args, "run", args.scene, *sets({**settings, "engine": args.engine, "base.d15f_over_d85b": f"{ratio:.6f}"}), "--out", folder)
         replicates = json.loads((folder / "outcome.json").read_text())["replicates"]
         walked.append((ratio, [[run["eroded_mass_fraction"] for run in of["runs"]] for of in replicates]))
         ratio *= math.exp(STEP)
@@ -93,12 +96,12 @@ def scan(args, settings, low, high, offset):
 
 
 def one(args, number):
-    settings, around, offset = drawn(number)
+    settings, around, offset = drawn(args, number)
     plain = design(args, settings, None)
     values = [of[name] for of in plain["networks"] for name in BOUNDARIES if of[name]]
     bracket = [max(0.1, around[0] * min(values)), around[1] * max(values)]
     other = design(args, settings, bracket)
-    found, ratios = scan(args, settings, 0.75 * min(values), 1.05 * max(values), offset)
+    found, ratios = scan(args, settings, 0.75 * min(values), 1.15 * max(values), offset)
     return {"case": number, "settings": settings, "bracket": bracket, "design": plain, "in_bracket": other, "scan": found, "ratios": ratios}
 
 
@@ -159,6 +162,8 @@ def main():
     parser.add_argument("--cases", type=int, default=40, help="number of the last case")
     parser.add_argument("--first", type=int, default=1, help="number of the first case")
     parser.add_argument("--threads", type=int)
+    parser.add_argument("--engine", default="expected", help="of the scans: expected, as design walks, or auto, as run does")
+    parser.add_argument("--usual", action="store_true", help="on the usual lattice of 40 x 40 x 60 voids")
     parser.add_argument("--again", action="store_true", help="search again beside the scans that are kept")
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How coarse may a filter be, by four models, beside tests: lattice or the packing's own voids, by area or by water.
 
-    scripts/four_way.py --binary target/release/voidwalk --work FOLDER --out results/four-way-2026-11-22 --minutes 120
+    scripts/four_way.py --binary target/release/voidwalk --work FOLDER --out results/four-way-2026-11-23 --minutes 120
 
 Packs each filter with several seeds into FOLDER (once), walks the cells of PLAN in their order until the time is over, and writes
 OUT.csv (every walk), OUT.svg and OUT.md. What is in OUT.csv is not walked again, so that a study that was stopped goes on; with
@@ -9,7 +9,7 @@ OUT.csv (every walk), OUT.svg and OUT.md. What is in OUT.csv is not walked again
 
 A replicate's boundary is the smallest D15F/D85B at which its first run (no erosion turns to some) or its second (some turns to
 continuing) loses 7.5 % of the mass: bracketed on a ladder of 6 %, halved once, linear in between, with two rungs below walked so
-that erosion that comes and goes is seen.
+that erosion that comes and goes is seen. Particles that can block nothing are moved as their expectation (engine expected).
 """
 
 import argparse
@@ -143,7 +143,7 @@ class Study:
         packing = self.packing(name, replicate).resolve()
         measured = json.loads((packing / "constrictions.json").read_text())
         cu = FILTERS[name][0]
-        lines = ["replicates = 1", f"seed = {replicate}", "[filter]", f"cu = {cu}"]
+        lines = ["replicates = 1", f"seed = {replicate}", 'engine = "expected"', "[filter]", f"cu = {cu}"]
         if model.startswith("lattice"):
             lines += ["d0_mm = 1", f'curve = "{packing / "constrictions.csv"}"']
             lines += [f"grains_per_void = {measured['grains_per_void']}"]

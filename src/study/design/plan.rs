@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::outcome::stopping::StopRule;
 use crate::run::error::RunError;
 use crate::scene::{Base, Density, Extent, NetworkSource, Scene, keep_soils, quoted};
+use crate::walk::Engine;
 
 use super::options::{DesignOptions, Thickness};
 
@@ -133,6 +134,10 @@ fn one(
         scene.network.set_layers(crate::scene::USUAL_LAYERS);
     }
     scene.walk.runs = 2;
+    if scene.walk.engine == Engine::Auto {
+        // A boundary is where the expectation crosses 7.5 %: without the scatter of the passive particles.
+        scene.walk.engine = Engine::Expected;
+    }
     scene.record.sensitivity.clear();
     let mut of_filter = scene.clone();
     of_filter.base = Base {

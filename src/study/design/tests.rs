@@ -115,7 +115,9 @@ fn three_boundaries_are_those_of_scans_by_hand() {
         for step in 0..80 {
             let ratio = 0.7 * boundary.median * libm::pow(1.01, f64::from(step));
             let of_ratio = format!("base.d15f_over_d85b={ratio}");
-            let scene = Scene::built_in(&settings(&[cu, &of_ratio, "record.sensitivity=[]"])).unwrap();
+            // With the engine of a design.
+            let of_scene = [cu, &of_ratio, "record.sensitivity=[]", "engine=expected"];
+            let scene = Scene::built_in(&settings(&of_scene)).unwrap();
             let outcome = walk_case(&Case::new(scene).unwrap(), &Callbacks::default()).unwrap();
             for (network, replicate) in outcome.replicates.iter().enumerate() {
                 let erodes = replicate.runs[..=run].iter().all(|of| of.eroded_mass_fraction >= 0.075);

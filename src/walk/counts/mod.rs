@@ -34,6 +34,7 @@ use super::{Isa, State, Supply};
 use crate::network::{END, Network};
 use crate::stream::{Key, Purpose};
 use binomial::Draws;
+use expected::ExpectedFlow;
 use flow::Flow;
 use shares::Shares;
 use sizes::PassiveSizes;
@@ -50,8 +51,7 @@ pub struct PassiveWalk<'a> {
 
 enum Mover {
     Counts(Flow),
-    /// Buffer for the expectation after the step.
-    Expected(Vec<f64>),
+    Expected(ExpectedFlow),
 }
 
 /// Voids that lead to an end or to a void without open exits: passive particles elsewhere are trapped.
@@ -66,14 +66,19 @@ struct Trap {
 impl<'a> PassiveWalk<'a> {
     /// Prepares to move the passive particles of `state`; `None` where there are none but one by one.
     pub fn new(network: &Network, supply: &'a Supply, state: &State) -> Option<Self> {
-        let mover = match &state.passive {
+        let shares = || Shares::new(network, &state.blocked);
+        let (shares, mover) = match &state.passive {
             Passive::OneByOne => return None,
-            Passive::Counts(moving) => Mover::Counts(Flow::new(network, moving)),
-            Passive::Expected(_) => Mover::Expected(vec![0.0; network.voids()]),
+            Passive::Counts(moving) => (shares(), Mover::Counts(Flow::new(network, moving))),
+            Passive::Expected(expected) => {
+                let shares = shares();
+                let flow = ExpectedFlow::new(network, &shares, expected);
+                (shares, Mover::Expected(flow))
+            }
         };
         Some(Self {
             sizes: PassiveSizes::new(supply.sampler(), supply.passive_words(), &state.classes),
-            shares: Shares::new(network, &state.blocked),
+            shares,
             mover,
             trap: None,
             thresholds: Vec::new(),
@@ -82,8 +87,9 @@ impl<'a> PassiveWalk<'a> {
 
     /// Uses the instructions of `isa`, to the same bits.
     pub fn set_isa(&mut self, isa: Isa) {
-        if let Mover::Counts(flow) = &mut self.mover {
-            flow.set_isa(isa);
+        match &mut self.mover {
+            Mover::Counts(flow) => flow.set_isa(isa),
+            Mover::Expected(flow) => flow.set_isa(isa),
         }
     }
 
@@ -118,8 +124,8 @@ impl<'a> PassiveWalk<'a> {
                 tally.particle_moves = tally.particle_moves.saturating_add(moved.moves);
                 self.count(moved.eroded, &moved.stranded, state);
             }
-            (Mover::Expected(next), Passive::Expected(expected)) => {
-                expected.step(network, &self.shares, next);
+            (Mover::Expected(flow), Passive::Expected(expected)) => {
+                flow.step(network, &self.shares, expected);
                 self.count_expected(None, state);
             }
             _ => unreachable!("the mover was made for this state"),
@@ -153,8 +159,10 @@ impl<'a> PassiveWalk<'a> {
 
     /// Adds the rounded expectation to the tally; `trapped` as in [`Expected::count`].
     fn count_expected(&self, trapped: Option<f64>, state: &mut State) {
-        let Passive::Expected(expected) = &mut state.passive else { return };
-        let [before, now] = expected.count(trapped, &mut state.retained_in_voids);
+        let (Mover::Expected(flow), Passive::Expected(expected)) = (&self.mover, &mut state.passive) else {
+            return;
+        };
+        let [before, now] = expected.count(flow.holding(), trapped, &mut state.retained_in_voids);
         let [retained, retained_now] = [before, now].map(|counted| counted.at_rest - counted.eroded);
         let tally = &mut state.tally;
         tally.particle_moves = tally.particle_moves.saturating_add(now.moves - before.moves);
@@ -173,6 +181,9 @@ impl<'a> PassiveWalk<'a> {
     /// The flow has been solved again: every exit may weigh something else.
     pub fn renew(&mut self, network: &Network, state: &State) {
         self.shares = Shares::new(network, &state.blocked);
+        if let (Mover::Expected(flow), Passive::Expected(expected)) = (&mut self.mover, &state.passive) {
+            *flow = ExpectedFlow::new(network, &self.shares, expected);
+        }
         self.trap = None;
     }
 
@@ -180,6 +191,9 @@ impl<'a> PassiveWalk<'a> {
     pub fn refresh(&mut self, network: &Network, state: &State, voids: impl Iterator<Item = u32>) {
         for void in voids {
             self.shares.set(network, &state.blocked, void, &mut self.thresholds);
+            if let Mover::Expected(flow) = &mut self.mover {
+                flow.set(network, &self.shares, void);
+            }
         }
     }
 

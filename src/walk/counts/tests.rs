@@ -158,13 +158,15 @@ fn both_engines_follow_one_history() {
     let mut expected = Expected::new(network.voids());
     let mut shares = Shares::new(&network, &BitVec::<usize>::repeat(false, network.constrictions()));
     let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
-    let mut next = vec![0.0; network.voids()];
+    let mut flow = ExpectedFlow::new(&network, &shares, &expected);
     for (t, n) in differences(&inserted).into_iter().enumerate() {
         expected.insert(&network, n);
-        expected.step(&network, &shares, &mut next);
+        flow.step(&network, &shares, &mut expected);
         for b in walked.history.iter().filter(|b| b.increment == t as u64 + 1) {
             blocked.set(b.constriction as usize, true);
-            shares.set(&network, &blocked, upstream[b.constriction as usize], &mut Vec::new());
+            let void = upstream[b.constriction as usize];
+            shares.set(&network, &blocked, void, &mut Vec::new());
+            flow.set(&network, &shares, void);
         }
     }
     let total: f64 = flowed.eroded.iter().sum();

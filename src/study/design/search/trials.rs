@@ -13,8 +13,26 @@ pub(super) const STOP: i64 = 16;
 /// First step away from a hint.
 const NEAR: i64 = 4;
 
-/// Steps below the smallest ratio that erodes, at which a run is tried besides: to 10 % below.
-const BELOW: [i64; 8] = [2, 3, 4, 6, 8, 11, 15, 20];
+/// Start nodes of the usual lattice, 40 x 40.
+const USUAL_ACROSS: f64 = 1600.0;
+
+/// How far below the smallest ratio that erodes a run is tried besides on that lattice: at every step, and then
+/// ever more seldom.
+const USUAL_REACH: [f64; 2] = [4.0, 21.0];
+
+/// The most of either on a small one: 26 %.
+const FARTHEST: f64 = 60.0;
+
+/// Steps below the smallest ratio that erodes, at which a run is tried besides, on a network of so many start
+/// nodes. What erodes scatters with one over their root, and a walk takes as long as there are of them.
+pub(super) fn tried_below(across: u64) -> Vec<i64> {
+    let spread = (USUAL_ACROSS / across.max(1) as f64).sqrt();
+    let every = (USUAL_REACH[0] * spread * spread).min(FARTHEST) as i64;
+    let far = (USUAL_REACH[1] * spread).clamp(USUAL_REACH[1], FARTHEST) as i64;
+    let farther = |&step: &i64| Some((step * 7 / 5).max(step + 2));
+    let seldom = std::iter::successors(farther(&every), farther).take_while(|step| *step <= far);
+    (2..=every).chain(seldom).collect()
+}
 
 /// What a trial of one ratio comes to.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +64,8 @@ pub(super) struct Search<'a> {
     pub(super) walker: &'a mut dyn Walker,
     /// The first stop and the last.
     pub(super) stops: [i64; 2],
+    /// Steps below the smallest ratio that erodes, at which a run is tried besides.
+    pub(super) below: Vec<i64>,
     pub(super) first: BTreeMap<i64, Trial>,
     pub(super) second: BTreeMap<i64, Trial>,
 }
@@ -135,7 +155,11 @@ impl Search<'_> {
     ) -> Result<i64, RunError> {
         let (mut least, lowest) = (boundary, self.stops[0]);
         'again: loop {
-            for step in BELOW.map(|below| least - below).into_iter().filter(|step| *step >= lowest) {
+            for at in 0..self.below.len() {
+                let step = least - self.below[at];
+                if step < lowest {
+                    break;
+                }
                 match trial(self, step)? {
                     Trial::Eroded(eroded) if !eroded.below_threshold => {
                         least = step;

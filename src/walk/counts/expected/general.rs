@@ -1,0 +1,59 @@
+//! The step of the expectation on any network: void by void, each into those that its exits lead to.
+
+use super::{Expected, NOTHING, Shares, retain, share};
+use crate::network::Network;
+
+/// By constriction: the share of what has not taken an earlier exit of its void that takes this one.
+pub(super) struct GeneralFlow(Vec<f64>);
+
+impl GeneralFlow {
+    pub fn new(shares: &Shares) -> Self {
+        Self(shares.probability().iter().map(|&p| share(p)).collect())
+    }
+
+    /// The shares of one void are others now.
+    pub fn set(&mut self, network: &Network, shares: &Shares, void: u32) {
+        let exits = network.exits(void);
+        let news = &shares.probability()[exits.clone()];
+        self.0[exits].iter_mut().zip(news).for_each(|(old, &p)| *old = share(p));
+    }
+
+    /// Moves what is expected in each void into `next`, which holds nothing yet, and takes it from there.
+    pub fn step(
+        &mut self,
+        network: &Network,
+        shares: &Shares,
+        expected: &mut Expected,
+        (next, holding): (&mut [f64], &mut Vec<u32>),
+    ) {
+        let Expected { moving, retained, sums, .. } = expected;
+        let targets = network.targets();
+        let (mut moves, mut eroded) = (sums.moves, sums.eroded);
+        for (void, n) in moving.iter_mut().enumerate() {
+            let mut n = std::mem::take(n);
+            if n < NOTHING {
+                continue;
+            }
+            if !shares.leads_on(void) {
+                match shares.waits(void) {
+                    true => next[void] += n,
+                    false => retain(void, n, retained, holding),
+                }
+                continue;
+            }
+            moves += n;
+            let exits = network.exits(void as u32);
+            // Behind an exit that takes all nothing is left for those after it.
+            for (share, &target) in self.0[exits.clone()].iter().zip(&targets[exits]) {
+                let taken = n * share;
+                n -= taken;
+                // END is beyond every void.
+                match next.get_mut(target as usize) {
+                    Some(there) => *there += taken,
+                    None => eroded += taken,
+                }
+            }
+        }
+        (sums.moves, sums.eroded) = (moves, eroded);
+    }
+}
