@@ -201,7 +201,13 @@ fn small_networks_are_tried_at_more_ratios() {
     assert_eq!(tried_below(100), (2..=60).collect::<Vec<_>>());
     for across in 1..5000 {
         let steps = tried_below(across);
-        assert!(steps.is_sorted_by(|a, b| a < b) && steps[0] == 2 && steps.len() >= 8, "{across}");
+        assert!(
+            steps.is_sorted_by(|a, b| a < b)
+                && steps[0] == 2
+                && steps.len() >= 8
+                && *steps.last().unwrap() <= 60,
+            "{across}"
+        );
         assert!(steps.len() >= tried_below(across + 1).len());
     }
     // A dip of one step, 20 % below, is seen on a small network alone.

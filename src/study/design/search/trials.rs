@@ -26,9 +26,9 @@ const FARTHEST: f64 = 60.0;
 /// Steps below the smallest ratio that erodes, at which a run is tried besides, on a network of so many start
 /// nodes. What erodes scatters with one over their root, and a walk takes as long as there are of them.
 pub(super) fn tried_below(across: u64) -> Vec<i64> {
-    let spread = (USUAL_ACROSS / across.max(1) as f64).sqrt();
+    let spread = (USUAL_ACROSS / across.max(1) as f64).sqrt().max(1.0);
     let every = (USUAL_REACH[0] * spread * spread).min(FARTHEST) as i64;
-    let far = (USUAL_REACH[1] * spread).clamp(USUAL_REACH[1], FARTHEST) as i64;
+    let far = (USUAL_REACH[1] * spread).min(FARTHEST) as i64;
     let farther = |&step: &i64| Some((step * 7 / 5).max(step + 2));
     let seldom = std::iter::successors(farther(&every), farther).take_while(|step| *step <= far);
     (2..=every).chain(seldom).collect()
