@@ -38,7 +38,8 @@ FOUR = ["Cu 1.5 loose", "Cu 3 loose", "Cu 1.5 dense", "Cu 3 dense"]
 # Voids across a lattice, each way.
 ACROSS = 20
 KEY = ["filter", "model", "base_cu", "layers", "mass_ratio", "replicate", "ratio"]
-FIELDS = KEY + ["eroded_1", "eroded_2", "k_over_k0_1", "k_over_k0_2", "voids", "thickness_mm", "cpu_seconds"]
+ENGINE = "expected"
+FIELDS = KEY + ["engine", "eroded_1", "eroded_2", "k_over_k0_1", "k_over_k0_2", "voids", "thickness_mm", "cpu_seconds"]
 
 
 def plan():
@@ -111,6 +112,8 @@ class Study:
         self.known = {tuple(row[name] for name in KEY): row for row in self.rows}
         self.file = path.open("a", newline="")
         self.writer = csv.DictWriter(self.file, FIELDS)
+        if self.rows and self.rows[0].get("engine") != ENGINE:
+            sys.exit(f"{path}: was not walked with engine {ENGINE}: give another --out")
         if not self.rows:
             self.writer.writeheader()
             self.file.flush()
@@ -143,7 +146,7 @@ class Study:
         packing = self.packing(name, replicate).resolve()
         measured = json.loads((packing / "constrictions.json").read_text())
         cu = FILTERS[name][0]
-        lines = ["replicates = 1", f"seed = {replicate}", 'engine = "expected"', "[filter]", f"cu = {cu}"]
+        lines = ["replicates = 1", f"seed = {replicate}", f'engine = "{ENGINE}"', "[filter]", f"cu = {cu}"]
         if model.startswith("lattice"):
             lines += ["d0_mm = 1", f'curve = "{packing / "constrictions.csv"}"']
             lines += [f"grains_per_void = {measured['grains_per_void']}"]
@@ -171,7 +174,7 @@ class Study:
             runs, network = outcome["replicates"][0]["runs"], outcome.get("network", {})
             row = dict(zip(KEY, key)) | {f"eroded_{run['run']}": f"{run['eroded_mass_fraction']:.6f}" for run in runs}
             row |= {f"k_over_k0_{run['run']}": f"{run['k_over_k0']:.4f}" for run in runs if run.get("k_over_k0") is not None}
-            row |= dict(voids=network.get("voids", ACROSS * ACROSS * cell[3]), cpu_seconds=f"{seconds:.2f}")
+            row |= dict(engine=ENGINE, voids=network.get("voids", ACROSS * ACROSS * cell[3]), cpu_seconds=f"{seconds:.2f}")
             if "thickness_mm" in network:
                 row |= dict(thickness_mm=f"{network['thickness_mm']:.4f}")
             self.writer.writerow(row)

@@ -27,8 +27,8 @@ struct Rates {
 
 /// Of a walk whose occupied voids are counted.
 const WALK: Rates = Rates { moved_s: 2.05e-9, inserted_s: 6.5e-8, void_s: 1.65e-8, looked_at_s: 8e-9 };
-/// With engine `expected` the counts of a void take so many times as long: on a cubic lattice, whose rows move
-/// at once, and on other networks.
+/// With engine `expected` the counts of a void take so many times as long: on a cubic lattice, whose rows
+/// move at once, and on other networks.
 const EXPECTED: [f64; 2] = [0.06, 0.55];
 /// Of a walk of which only the number of voids is known, empty ones included. A study of precision plans by
 /// these: another number changes what it walks.

@@ -22,7 +22,7 @@ section! {
         /// How passive particles, which can block nothing, are walked: "counts" keeps exact counts of them
         /// per void; "particles" walks every one by itself; "expected" keeps their expectation only; "auto"
         /// is counts, but particles where fewer than 6.5 passive ones are inserted on a start node in an
-        /// increment.
+        /// increment, and expected in `voidwalk design`.
         pub engine: Engine = Engine::Auto, set, words(&Engine::ALL.map(Engine::name));
         /// 1, or 2: fresh base on the constrictions that the first run left blocked.
         pub runs: u64 = 2, set, whole(1..=2);

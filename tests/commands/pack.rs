@@ -161,7 +161,10 @@ fn a_stopped_packing_does_not_become_that_of_another_gradation() {
     for (from, to) in [("cu = 1.5", "cu = 1.2"), ("cu = 1.5", "d0_mm = 2.0\ncu = 1.5")] {
         let other = FILTER.replace("grains = 600", "grains = 3000").replace(from, to);
         fs::write(at.join("other.toml"), other).unwrap();
-        refused(&call(&at, &["pack", "other.toml", "--out", "out"]), "is of another scene");
+        refused(
+            &call(&at, &["pack", "other.toml", "--out", "out"]),
+            "is of another scene, or of another version",
+        );
     }
 }
 

@@ -6,6 +6,7 @@ use super::band::Band;
 use super::products::Fit;
 use super::spread;
 use crate::outcome::record::{AppliedRule, Confidence};
+use crate::walk::Engine;
 
 /// Steps of the scale of ratios on which boundaries are found: half a percent, in ln(D15F/D85B).
 pub const BETWEEN_STEPS: f64 = 0.005;
@@ -46,6 +47,10 @@ pub struct Design {
     pub replicates: u64,
     /// The user's seed.
     pub seed: u64,
+    /// Engine that walked; `expected` moves the base particles that can block nothing as their expectation.
+    /// Empty in files of earlier versions.
+    #[serde(default)]
+    pub engine: String,
     /// D15F/D85B between which boundaries were searched.
     pub bracket: [f64; 2],
     /// Steps of the search, as a part of D15F/D85B.
@@ -214,6 +219,11 @@ pub struct WalkRow {
 }
 
 impl Design {
+    /// Whether the base particles that can block nothing moved as their expectation.
+    pub fn moves_expectation(&self) -> bool {
+        self.engine == Engine::Expected.name()
+    }
+
     /// The band of a row, or of the one that it is an end of.
     pub fn band_of<'a>(&'a self, row: &'a DesignRow) -> Option<&'a Band> {
         let of = row.end_of.as_ref().unwrap_or(&row.density);

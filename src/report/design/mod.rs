@@ -240,6 +240,11 @@ fn boundaries(design: &Design) -> Markup {
             "No erosion: less than " (threshold(design.threshold)) " of the mass of the base erodes in the \
              first run. Continuing: at least as much in the second run, too. Between the two lies some \
              erosion. Thickness matters most: thicker filters hold more."
+            @if design.moves_expectation() {
+                " Base particles that can block nothing move as their expectation. A run with another engine \
+                 has their scatter besides: on a small lattice it may erode " (threshold(design.threshold))
+                " below a boundary."
+            }
         }
     }
 }
@@ -364,6 +369,7 @@ fn made(design: &Design, walks: &[WalkRow]) -> Markup {
             (fact("Filter", &design.filter))
             (fact("Cu of the filter", design.filter_cu.map_or_else(|| "not known".to_owned(), trimmed)))
             (fact("Grains per void, Eq. (2)", grains.map_or_else(|| "not given".to_owned(), trimmed)))
+            @if !design.engine.is_empty() { (fact("Engine", &design.engine)) }
             (fact("Networks, seed", format!("{}, {}", whole(design.replicates), design.seed)))
             (fact("Searched", format!(
                 "D15F/D85B {low} to {high}, outwards to steps of 8 %, in steps of {} %; {} ratios walked \
@@ -421,6 +427,7 @@ mod tests {
             threshold: 0.075,
             replicates: 3,
             seed: 1,
+            engine: "expected".into(),
             bracket: [0.5, 100.0],
             step: 0.005,
             confidence,

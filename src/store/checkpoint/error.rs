@@ -46,7 +46,7 @@ pub enum CheckpointError {
         file: PathBuf,
     },
     /// The scene, or the plan of the packing, is another one.
-    #[error("{}: is of another scene", file.display())]
+    #[error("{}: is of another scene, or of another version of voidwalk", file.display())]
     OtherScene {
         /// The file.
         file: PathBuf,

@@ -261,7 +261,7 @@ fn searched(
     let done = Mutex::new(done);
     let one = |(row, network): (usize, u64), hint: [Option<f64>; 2]| {
         let of = &rows[row];
-        let start = Start { ratio: of.start(), hint, across: of.case.counts[2] };
+        let start = Start { ratio: of.start(), hint, across: of.across() };
         let found = of.search(network, (bracket, start), callbacks)?;
         let words = |ratio: Option<f64>| ratio.map_or("beyond the search".into(), |r| format!("{r:.3}"));
         let text = format!(

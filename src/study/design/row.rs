@@ -6,17 +6,17 @@ use bitvec::vec::BitVec;
 
 use super::options::Thickness;
 use super::plan::Wanted;
-use super::search::{Found, Start, Trial, Walker, search};
+use super::search::{Found, Start, Trial, USUAL_ACROSS, Walker, search};
 use crate::case::{Case, CaseError, OtherCurve, ResourceLimits, StatedBase, replicate_seed};
 use crate::gradation::Gradation;
-use crate::network::{Network, Passage};
+use crate::network::{ExitRule, Network, Passage};
 use crate::outcome::Eroded;
 use crate::outcome::design::Beyond;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::callbacks::Callbacks;
 use crate::run::erosion::eroded;
 use crate::run::error::RunError;
-use crate::scene::Amount;
+use crate::scene::{Amount, NetworkSource};
 
 /// Ratio at which a first guess takes the layers of a thickness in mm.
 const USUAL_RATIO: f64 = 5.0;
@@ -151,6 +151,16 @@ impl Row {
     pub fn start(&self) -> f64 {
         let layers = self.layers(USUAL_RATIO).unwrap_or(self.case.counts[3]).max(1);
         self.d15f() / Passage::new(&self.case.curve).coarsest_through(layers, 1.0 - THRESHOLD)
+    }
+
+    /// Start nodes, by which the search knows how many ratios to try: more where walks take little. As
+    /// many as the usual lattice has where water flows, or of another network than a lattice.
+    pub fn across(&self) -> u64 {
+        let is_lattice = matches!(self.case.scene.network.source(), NetworkSource::Cubic(_));
+        match is_lattice && self.case.scene.exit_rule() == ExitRule::Area {
+            true => self.case.counts[2],
+            false => USUAL_ACROSS,
+        }
     }
 
     /// Searches the boundaries of network `number`, counted from 1.

@@ -65,6 +65,7 @@ pub(super) fn design(
         threshold: THRESHOLD,
         replicates: first.case.scene.walk.replicates,
         seed: first.case.scene.walk.seed,
+        engine: first.case.scene.walk.engine.name().into(),
         bracket: options.bracket,
         step: BETWEEN_STEPS,
         confidence,

@@ -109,7 +109,7 @@ fn three_boundaries_are_those_of_scans_by_hand() {
     let folder = tempfile::tempdir().unwrap();
     for (cu, run) in [("base.cu=1.2", 0), ("base.cu=1.5", 0), ("base.cu=1.5", 1)] {
         let name = format!("{cu}-{run}");
-        let wide = ["network.nx=16", "network.ny=16", "replicates=3", cu];
+        let wide = ["network.nx=16", "network.ny=16", "network.nz=10", "replicates=3", cu];
         let row: DesignRow = found(&tiny(&folder.path().join(name), &wide)).boundaries.remove(0);
         let boundary = if run == 0 { row.no_erosion } else { row.continuing }.unwrap();
         let mut by_hand: Vec<Option<f64>> = vec![None; 3];
@@ -117,8 +117,7 @@ fn three_boundaries_are_those_of_scans_by_hand() {
             let ratio = 0.7 * boundary.median * libm::pow(1.005, f64::from(step));
             let of_ratio = format!("base.d15f_over_d85b={ratio}");
             // With the engine of a design.
-            let of_scene =
-                [&wide[..], &["network.nz=10", &of_ratio, "record.sensitivity=[]", "engine=expected"]];
+            let of_scene = [&wide[..], &[&of_ratio, "record.sensitivity=[]", "engine=expected"]];
             let scene =
                 Scene::built_in(&of_scene.concat().iter().map(ToString::to_string).collect::<Vec<_>>())
                     .unwrap();
@@ -142,6 +141,24 @@ fn three_boundaries_are_those_of_scans_by_hand() {
             assert!(allowed.contains(&off), "{cu} run {run}: {found} {by_hand:?}");
         }
     }
+}
+
+/// Bits of the walk itself, and those of another engine.
+#[test]
+fn a_design_moves_the_expectation_of_what_blocks_nothing_unless_another_engine_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |engine: &[&str]| {
+        let out = folder.path().join(engine.concat());
+        let design = found(&tiny(&out, &[&["base.cu=2.5"], engine].concat()));
+        (design.engine, std::fs::read(out.join("design.csv")).unwrap())
+    };
+    let unsaid = of(&[]);
+    assert_eq!(unsaid.0, "expected");
+    assert_eq!(unsaid, of(&["engine=expected"]));
+    assert_eq!(unsaid, of(&["engine=auto"]));
+    let counted = of(&["engine=counts"]);
+    assert_eq!(counted.0, "counts");
+    assert_ne!(unsaid.1, counted.1);
 }
 
 #[test]

@@ -11,8 +11,9 @@
 //!
 //! A walk scatters: on small networks of broad bases single ratios up to 8.7 % below this boundary were found
 //! to erode. So single steps down to 10 % below are tried besides, in either run, closer ones more often, and
-//! again below each that erodes. On smaller networks than 40 x 40 what erodes scatters more, and a walk takes
-//! less: there every step is tried, farther down the fewer start nodes there are, to 26 % below at the most.
+//! again below each that erodes. On lattices of less than 40 x 40 voids across what erodes scatters more,
+//! and a walk by area takes less: there more steps are tried, and farther down, on ten across every one to
+//! 26 % below.
 //!
 //! Networks of one filter and base lie close together: with the boundaries of the first of them as a hint,
 //! the search of another steps away from there, 2 % and then ever more, until it has one that holds and one
@@ -33,6 +34,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::outcome::design::{BETWEEN_STEPS, Beyond};
 use crate::run::error::RunError;
+pub(super) use trials::USUAL_ACROSS;
 use trials::{STOP, Search, between, ratio_at, tried_below};
 pub(super) use trials::{Trial, Walker};
 
@@ -80,7 +82,7 @@ pub(super) struct Start {
     pub ratio: f64,
     /// Both boundaries of another network, where it has them.
     pub hint: [Option<f64>; 2],
-    /// Start nodes of the network.
+    /// Start nodes of a lattice that is walked by area; of another network, as many as the usual lattice has.
     pub across: u64,
 }
 

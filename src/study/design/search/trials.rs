@@ -14,24 +14,25 @@ pub(super) const STOP: i64 = 16;
 const NEAR: i64 = 4;
 
 /// Start nodes of the usual lattice, 40 x 40.
-const USUAL_ACROSS: f64 = 1600.0;
+pub(in crate::study::design) const USUAL_ACROSS: u64 = 1600;
 
-/// How far below the smallest ratio that erodes a run is tried besides on that lattice: at every step, and then
-/// ever more seldom.
+/// How far below the smallest ratio that erodes a run is tried besides on that lattice: at every step, and
+/// then ever more seldom.
 const USUAL_REACH: [f64; 2] = [4.0, 21.0];
 
 /// The most of either on a small one: 26 %.
 const FARTHEST: f64 = 60.0;
 
-/// Steps below the smallest ratio that erodes, at which a run is tried besides, on a network of so many start
-/// nodes. What erodes scatters with one over their root, and a walk takes as long as there are of them.
+/// Steps below the smallest ratio that erodes, at which a run is tried besides, on a lattice of so many
+/// start nodes. What erodes scatters with one over their root, and a walk takes as long as there are of them.
+/// The first is known after halving, but not below a single ratio that erodes.
 pub(super) fn tried_below(across: u64) -> Vec<i64> {
-    let spread = (USUAL_ACROSS / across.max(1) as f64).sqrt().max(1.0);
+    let spread = (USUAL_ACROSS as f64 / across.max(1) as f64).sqrt().max(1.0);
     let every = (USUAL_REACH[0] * spread * spread).min(FARTHEST) as i64;
     let far = (USUAL_REACH[1] * spread).min(FARTHEST) as i64;
     let farther = |&step: &i64| Some((step * 7 / 5).max(step + 2));
     let seldom = std::iter::successors(farther(&every), farther).take_while(|step| *step <= far);
-    (2..=every).chain(seldom).collect()
+    (1..=every).chain(seldom).collect()
 }
 
 /// What a trial of one ratio comes to.

@@ -1,7 +1,8 @@
 //! The step of the expectation on any network: void by void, each into those that its exits lead to.
 
-use super::{Expected, NOTHING, Shares, retain, share};
+use super::numbers::{Expected, NOTHING, retain, share};
 use crate::network::Network;
+use crate::walk::counts::shares::Shares;
 
 /// By constriction: the share of what has not taken an earlier exit of its void that takes this one.
 pub(super) struct GeneralFlow(Vec<f64>);

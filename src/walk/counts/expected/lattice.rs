@@ -1,8 +1,9 @@
-//! The step of the expectation on the cubic lattice: layer by layer, each void from the three that lead there,
-//! so that whole rows are moved at once.
+//! The step of the expectation on the cubic lattice: layer by layer, each void from the three that lead
+//! there, so that whole rows are moved at once.
 
-use super::{Expected, NOTHING, Shares, retain, share};
+use super::numbers::{Expected, NOTHING, retain, share};
 use crate::walk::Isa;
+use crate::walk::counts::shares::Shares;
 
 /// Columns in which moves are summed: part of the definition of their sum, whatever the instructions.
 const LANES: usize = 8;
@@ -152,7 +153,8 @@ fn leave(here: &[f64], [first, second]: [&[f64]; 2], [x, y]: [&mut [f64]; 2]) {
 }
 
 /// Adds up what arrives in a row: from above, from the row before, and from the void before, the last void of
-/// the row before the first. In the order of the voids that it comes from, as on any network.
+/// the row before the first. In the order of the voids that it comes from, as on any
+/// network, but for a single row.
 #[inline(always)]
 fn arrive(row: &mut [f64], above: &[f64], (x, y): (&[f64], &[f64]), is_first: bool) {
     let sum = |above: f64, x: f64, y: f64| if is_first { above + x + y } else { above + y + x };

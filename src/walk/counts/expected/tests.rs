@@ -9,8 +9,8 @@ fn lattice(shape: [u32; 3]) -> Network {
     Network::cubic_from_diameters(shape, diameter, 1.0).unwrap()
 }
 
-/// Walks while ever more constrictions close, by one of the two steps: what is expected after every increment,
-/// and the voids that retain something.
+/// Walks while ever more constrictions close, by one of the two steps: what is expected after every
+/// increment, and the voids that retain something.
 fn walked(network: &Network, is_general: bool, isa: Isa) -> Vec<(Expected, Vec<u32>)> {
     let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
     let mut shares = Shares::new(network, &blocked);
@@ -67,7 +67,7 @@ fn both_steps_move_the_same() {
     }
 }
 
-/// Where rows have one void's width, or there is one row, the order of three numbers may differ.
+/// Of a lattice with a single row along y the order in which three numbers are added may differ.
 #[test]
 fn one_row_moves_the_same_to_rounding() {
     for shape in [[6, 1, 4], [1, 1, 5]] {
