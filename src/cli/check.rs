@@ -84,7 +84,7 @@ fn words(check: &Check) -> String {
     line("base particles", format!("{} a run{capped}", count(check.n_base)));
     let one_by_one = match check.one_by_one {
         all if all == check.n_base => "all".into(),
-        some => format!("at most about {}; the others are passive and kept as counts", count(some)),
+        some => format!("at most about {}; the others are passive: their numbers are followed", count(some)),
     };
     line("  one by one", one_by_one);
     let [voids, constrictions, starts] =
