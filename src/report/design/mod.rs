@@ -242,8 +242,8 @@ fn boundaries(design: &Design) -> Markup {
              erosion. Thickness matters most: thicker filters hold more."
             @if design.moves_expectation() {
                 " Base particles that can block nothing move as their expectation. A run with another engine \
-                 has their scatter besides: on a small lattice it may erode " (threshold(design.threshold))
-                " below a boundary."
+                 draws other random numbers: on a small lattice it may lose " (threshold(design.threshold))
+                " of the base at a smaller D15F than the boundary."
             }
         }
     }
