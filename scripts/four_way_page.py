@@ -42,7 +42,7 @@ def write_page(out, plan, found, refused, rows, version, come_and_go):
             "D15F/D85B up to which a model's filter holds its base: **no erosion** while less than 7.5 % of the base's mass is lost in the first run, **some**",
             "erosion while the second loses less than 7.5 %, continuing beyond. A replicate is a packing of its own with a seed of its own. Where a cell has more",
             "than one, its number is the median, with the smallest and the largest in brackets; one replicate has no interval, and says nothing of scatter.",
-            f"`{version}`, {platform.machine()}; {len(rows)} walks, {cpu / 60:.1f} minutes of processor time (one thread, on a machine shared with",
+            f"`{version}`, {platform.machine()}; {len(rows)} walks, {cpu / 60:.1f} minutes of processor time (one or two threads, on a machine shared with",
             f"other work); made by `scripts/four_way.py`, every walk in `{pathlib.Path(out).name}.csv`. Figure: `{pathlib.Path(out).name}.svg`.\n",
             f"**{len(done)} of the {len(plan)} cells of the plan were run**, those named below were not. Models with a boundary here: "
             f"{'; '.join(sorted({cell[1] for cell in shown}))}.\n",
@@ -125,7 +125,7 @@ def explained(found, shown):
         lines += [f"- An arch of three is a bound on arches only: a particle is retained as if at most {ARCH} times as large ({counted(len(arches), 'cell')})."]
     firsts = [value for cell in usual for value in boundaries(cell, found)[0]]
     if firsts and max(firsts) < TESTED[0]:
-        lines += [f"- Filters in tests hold at {TESTED[0]} to {TESTED[1]:g}, above every boundary here. Grains that are no spheres, arches of several particles, deposition, and a base that"
+        lines += [f"- Filters in tests hold at {TESTED[0]} to {TESTED[1]:g}, above every boundary here but those of an arch. Grains that are no spheres, arches of several particles, deposition, and a base that"
                   " is carried as a mass and not one particle after another could hold more; they are in none of these walks, cannot be told from each other by this study, and none is put in to meet a table."]
     return lines
 
