@@ -9,7 +9,6 @@ use super::pilot::{WorkByVoid, pilot};
 use super::replicates::first_replicates;
 use super::studies::likely_replicates;
 use crate::case::{Case, PackingPlan};
-use crate::network::ExitRule;
 use crate::scene::NetworkSource;
 use crate::walk::Engine;
 
@@ -27,7 +26,7 @@ struct Rates {
 
 /// Of a walk whose occupied voids are counted.
 const WALK: Rates = Rates { moved_s: 2.05e-9, inserted_s: 6.5e-8, void_s: 1.65e-8, looked_at_s: 8e-9 };
-/// With engine `expected` the counts of a void take so many times as long: on a cubic lattice, whose rows
+/// With engine `expected` the counts of a void take so many times as long: on a lattice by area, whose rows
 /// move at once, and on other networks.
 const EXPECTED: [f64; 2] = [0.06, 0.55];
 /// Of a walk of which only the number of voids is known, empty ones included. A study of precision plans by
@@ -161,12 +160,17 @@ impl Case {
 
     /// How many times as long as on a cubic lattice by engine `counts` the counts of a void take.
     fn slower(&self) -> f64 {
-        let (of_network, expected) = match self.scene.network.source() {
-            NetworkSource::Cubic(_) if self.scene.exit_rule() == ExitRule::Area => (1.0, EXPECTED[0]),
-            NetworkSource::Cubic(_) => (1.0, EXPECTED[1]),
-            _ => (OTHER_NETWORK, EXPECTED[1]),
+        let of_network = match self.scene.network.source() {
+            NetworkSource::Cubic(_) => 1.0,
+            _ => OTHER_NETWORK,
         };
-        of_network * if self.scene.walk.engine == Engine::Expected { expected } else { 1.0 }
+        let [of_rows, of_voids] = EXPECTED;
+        let of_engine = match self.scene.walk.engine {
+            Engine::Expected if self.scene.is_lattice_by_area() => of_rows,
+            Engine::Expected => of_voids,
+            _ => 1.0,
+        };
+        of_network * of_engine
     }
 
     /// Moves of a particle that is walked by itself, on average: until a finer constriction stops it, with

@@ -10,14 +10,12 @@ use super::other_walks::OtherWalks;
 use super::replicates::{ReplicateResult, stopping, summarise};
 use super::studies::Studies;
 use crate::case::{Case, INPUT_NAMES, replicate_seed};
-use crate::network::ExitRule;
 use crate::outcome::record::{
     CurveRange, Manifest, Outcome, PanBounds, PanReading, RunSummary, Statistic, Stopping, Verdict, VoidRow,
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
 use crate::outcome::walk_doubts::{Walked, is_clogged, walk_doubts};
 use crate::outcome::{Recorded, by_void, confidence, infiltration, leaves_out, rules, verdict};
-use crate::scene::NetworkSource;
 use crate::store::{Folder, StoreError};
 
 /// The outcome of a case that has been walked; with what was walked besides, and its studies, none so far
@@ -87,12 +85,10 @@ pub fn outcome(
         network: case.network_summary(walked.first().and_then(|w| w.replicate.runs.first()?.k0_mm2)),
         ratios: case.ratios(),
         rules,
-        infiltration: match case.scene.network.source() {
-            NetworkSource::Cubic(_) if case.scene.exit_rule() == ExitRule::Area => {
-                Some(infiltration(&case.curve, &case.base, case.counts[3]))
-            }
-            _ => None,
-        },
+        infiltration: case
+            .scene
+            .is_lattice_by_area()
+            .then(|| infiltration(&case.curve, &case.base, case.counts[3])),
         curve_range: other.range.clone(),
         sensitivity: studies.sensitivity,
         thickness: studies.thickness,

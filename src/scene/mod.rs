@@ -343,6 +343,11 @@ impl Scene {
         })
     }
 
+    /// Whether particles walk the directed cubic lattice, and choose among its exits by area.
+    pub fn is_lattice_by_area(&self) -> bool {
+        matches!(self.network.source(), NetworkSource::Cubic(_)) && self.exit_rule() == ExitRule::Area
+    }
+
     /// Gives the settings that follow from others their values, so that the scene says all that it means.
     fn fill_in(&mut self) {
         self.filter.fill_in();

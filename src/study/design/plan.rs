@@ -135,7 +135,7 @@ fn one(
     }
     scene.walk.runs = 2;
     if scene.walk.engine == Engine::Auto {
-        // A boundary is where the expectation crosses 7.5 %: without the scatter of the passive particles.
+        // Rows that move at once take less time, and a boundary is where the expectation crosses 7.5 %.
         scene.walk.engine = Engine::Expected;
     }
     scene.record.sensitivity.clear();

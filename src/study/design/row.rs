@@ -9,14 +9,14 @@ use super::plan::Wanted;
 use super::search::{Found, Start, Trial, USUAL_ACROSS, Walker, search};
 use crate::case::{Case, CaseError, OtherCurve, ResourceLimits, StatedBase, replicate_seed};
 use crate::gradation::Gradation;
-use crate::network::{ExitRule, Network, Passage};
+use crate::network::{Network, Passage};
 use crate::outcome::Eroded;
 use crate::outcome::design::Beyond;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::callbacks::Callbacks;
 use crate::run::erosion::eroded;
 use crate::run::error::RunError;
-use crate::scene::{Amount, NetworkSource};
+use crate::scene::Amount;
 
 /// Ratio at which a first guess takes the layers of a thickness in mm.
 const USUAL_RATIO: f64 = 5.0;
@@ -156,11 +156,7 @@ impl Row {
     /// Start nodes, by which the search knows how many ratios to try: more where walks take little. As
     /// many as the usual lattice has where water flows, or of another network than a lattice.
     pub fn across(&self) -> u64 {
-        let is_lattice = matches!(self.case.scene.network.source(), NetworkSource::Cubic(_));
-        match is_lattice && self.case.scene.exit_rule() == ExitRule::Area {
-            true => self.case.counts[2],
-            false => USUAL_ACROSS,
-        }
+        if self.case.scene.is_lattice_by_area() { self.case.counts[2] } else { USUAL_ACROSS }
     }
 
     /// Searches the boundaries of network `number`, counted from 1.

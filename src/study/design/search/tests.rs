@@ -40,7 +40,7 @@ fn formula<F: Fn(f64) -> f64, G: Fn(f64) -> f64>(first: F, second: G) -> Formula
 }
 
 fn from(ratio: f64) -> Start {
-    Start { ratio, hint: [None; 2], across: 1600 }
+    Start { ratio, hint: [None; 2], across: USUAL_ACROSS }
 }
 
 #[test]
@@ -50,7 +50,7 @@ fn a_hint_changes_no_boundary_and_saves_walks() {
     let wanted = search(&mut plain, [0.5, 100.0], from(5.67)).unwrap();
     for hint in [[4.4, 7.3], [4.3, 7.5], [4.5, 7.1], [3.0, 12.0], [9.0, 5.0], [0.2, 300.0]] {
         let mut hinted = line();
-        let start = Start { ratio: 5.67, hint: hint.map(Some), across: 1600 };
+        let start = Start { ratio: 5.67, hint: hint.map(Some), across: USUAL_ACROSS };
         let found = search(&mut hinted, [0.5, 100.0], start).unwrap();
         assert_eq!((found.no_erosion, found.continuing), (wanted.no_erosion, wanted.continuing), "{hint:?}");
         let near = (hint[0] / 4.4 - 1.0).abs() < 0.03;
@@ -58,7 +58,7 @@ fn a_hint_changes_no_boundary_and_saves_walks() {
     }
     // Below a hint that is the upper one of two crossings the lower one is found.
     let dip = |s: f64| 0.075 + 0.02 * (s - 3.0) * (s - 4.0) * (s - 4.4);
-    let start = Start { ratio: 7.0, hint: [Some(4.4), None], across: 1600 };
+    let start = Start { ratio: 7.0, hint: [Some(4.4), None], across: USUAL_ACROSS };
     let found = search(&mut formula(dip, |_| 1.0), [0.5, 100.0], start).unwrap();
     assert!(found.is_not_monotone && (found.no_erosion.unwrap() / 3.0 - 1.0).abs() < 0.005, "{found:?}");
 }
@@ -197,7 +197,7 @@ fn lone_particles_of_one_size_have_the_boundary_of_the_closed_form() {
 
 #[test]
 fn small_networks_are_tried_at_more_ratios() {
-    assert_eq!(tried_below(1600), [1, 2, 3, 4, 6, 8, 11, 15, 21]);
+    assert_eq!(tried_below(USUAL_ACROSS), [1, 2, 3, 4, 6, 8, 11, 15, 21]);
     assert_eq!(tried_below(100), (1..=60).collect::<Vec<_>>());
     for across in 1..5000 {
         let steps = tried_below(across);
@@ -213,5 +213,5 @@ fn small_networks_are_tried_at_more_ratios() {
         let start = Start { across, ..from(4.4) };
         search(&mut formula(first, |_| 1.0), [0.5, 100.0], start).unwrap().no_erosion.unwrap()
     };
-    assert!(lowest(100) < 3.6 && lowest(1600) > 4.38, "{} {}", lowest(100), lowest(1600));
+    assert!(lowest(100) < 3.6 && lowest(USUAL_ACROSS) > 4.38, "{} {}", lowest(100), lowest(USUAL_ACROSS));
 }

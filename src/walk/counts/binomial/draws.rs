@@ -64,7 +64,8 @@ pub(super) fn rarer(p: u64) -> u64 {
     p.min(p.wrapping_neg())
 }
 
+/// A share of 2^64 as a number: of what is certain, 1.
 #[inline(always)]
-pub(super) fn as_unit(p: u64) -> f64 {
+pub(in crate::walk::counts) fn as_unit(p: u64) -> f64 {
     p as f64 * TWO_TO_MINUS_64
 }

@@ -26,8 +26,8 @@ mod saddle;
 mod trials;
 
 use crate::stream::{LANES, unit};
-pub(super) use draws::{CERTAIN, Draws};
-use draws::{as_unit, rarer, turned};
+pub(super) use draws::{CERTAIN, Draws, as_unit};
+use draws::{rarer, turned};
 #[cfg(target_arch = "x86_64")]
 pub(super) use few::{Avx2, Avx512};
 pub(super) use few::{FewTrials, Portable};

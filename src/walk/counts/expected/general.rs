@@ -1,7 +1,8 @@
 //! The step of the expectation on any network: void by void, each into those that its exits lead to.
 
-use super::numbers::{Expected, NOTHING, retain, share};
+use super::numbers::{Expected, NOTHING, retain};
 use crate::network::Network;
+use crate::walk::counts::binomial::as_unit;
 use crate::walk::counts::shares::Shares;
 
 /// By constriction: the share of what has not taken an earlier exit of its void that takes this one.
@@ -9,14 +10,14 @@ pub(super) struct GeneralFlow(Vec<f64>);
 
 impl GeneralFlow {
     pub fn new(shares: &Shares) -> Self {
-        Self(shares.probability().iter().map(|&p| share(p)).collect())
+        Self(shares.probability().iter().map(|&p| as_unit(p)).collect())
     }
 
     /// The shares of one void are others now.
     pub fn set(&mut self, network: &Network, shares: &Shares, void: u32) {
         let exits = network.exits(void);
         let news = &shares.probability()[exits.clone()];
-        self.0[exits].iter_mut().zip(news).for_each(|(old, &p)| *old = share(p));
+        self.0[exits].iter_mut().zip(news).for_each(|(old, &p)| *old = as_unit(p));
     }
 
     /// Moves what is expected in each void into `next`, which holds nothing yet, and takes it from there.

@@ -1,8 +1,9 @@
 //! The step of the expectation on the cubic lattice: layer by layer, each void from the three that lead
 //! there, so that whole rows are moved at once.
 
-use super::numbers::{Expected, NOTHING, retain, share};
+use super::numbers::{Expected, NOTHING, retain};
 use crate::walk::Isa;
+use crate::walk::counts::binomial::as_unit;
 use crate::walk::counts::shares::Shares;
 
 /// Columns in which moves are summed: part of the definition of their sum, whatever the instructions.
@@ -29,7 +30,7 @@ impl LatticeFlow {
         let across = [shape[0] as usize, shape[1] as usize];
         let row = || vec![0.0; across[0]];
         let voids = shares.probability().len() / 3;
-        let of = |exit: usize| shares.probability()[exit..].iter().step_by(3).map(|&p| share(p)).collect();
+        let of = |exit: usize| shares.probability()[exit..].iter().step_by(3).map(|&p| as_unit(p)).collect();
         Self {
             across,
             shares: [of(0), of(1)],
@@ -48,7 +49,7 @@ impl LatticeFlow {
             self.dead_ends.insert(place, void);
         }
         for (exit, of_exit) in self.shares.iter_mut().enumerate() {
-            of_exit[void as usize] = share(shares.probability()[3 * void as usize + exit]);
+            of_exit[void as usize] = as_unit(shares.probability()[3 * void as usize + exit]);
         }
     }
 
@@ -153,8 +154,8 @@ fn leave(here: &[f64], [first, second]: [&[f64]; 2], [x, y]: [&mut [f64]; 2]) {
 }
 
 /// Adds up what arrives in a row: from above, from the row before, and from the void before, the last void of
-/// the row before the first. In the order of the voids that it comes from, as on any
-/// network, but for a single row.
+/// the row before the first. In the order of the voids that it comes from, as on any network,
+/// but for a single row.
 #[inline(always)]
 fn arrive(row: &mut [f64], above: &[f64], (x, y): (&[f64], &[f64]), is_first: bool) {
     let sum = |above: f64, x: f64, y: f64| if is_first { above + x + y } else { above + y + x };

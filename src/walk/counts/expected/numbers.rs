@@ -5,8 +5,6 @@ use crate::network::Network;
 /// Below this many particles a void counts as empty.
 pub(super) const NOTHING: f64 = 1e-30;
 
-const TWO_TO_MINUS_64: f64 = 1.0 / 18_446_744_073_709_551_616.0;
-
 /// Expected numbers of passive particles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expected {
@@ -108,9 +106,4 @@ pub(super) fn retain(void: usize, n: f64, retained: &mut [f64], holding: &mut Ve
         holding.push(void as u32);
     }
     retained[void] += n;
-}
-
-/// A share of 2^64 as a number: of an exit that is certain, 1.
-pub(super) fn share(probability: u64) -> f64 {
-    probability as f64 * TWO_TO_MINUS_64
 }
