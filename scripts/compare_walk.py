@@ -14,7 +14,7 @@ CURVE = "src/data/filters/shire2016-cu1.5-loose.csv"
 PYTHON = "target/venv-compare/bin/python"
 SEED = 1
 #: Repeats by scene; the slow languages are timed once in each.
-REPEATS = 3
+REPEATS = 5
 
 
 def values(command):

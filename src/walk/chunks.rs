@@ -2,9 +2,7 @@
 //! which.
 
 use std::cell::RefCell;
-use std::ops::Range;
-
-use rayon::prelude::*;
+use std::iter;
 
 use super::merge::Events;
 use super::{CHUNK, Particles};
@@ -19,7 +17,7 @@ pub(super) struct ChunkColumns<'a> {
     pub events: &'a mut Events,
 }
 
-/// Particles to work on above which several threads are faster than one.
+/// Particles to move above which several threads are faster than one.
 const WORTH_THREADS: u64 = 4 * CHUNK as u64;
 
 thread_local! {
@@ -28,46 +26,84 @@ thread_local! {
     static SIZES: RefCell<Vec<f32>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Does `work` on the chunks of `range`, which are `effort` particles to work on. `single_size`: that of all
-/// base particles, where they have one.
+/// Does `work` on all chunks, which is as much as to move `effort` particles once. `single_size`: that of all
+/// base particles, where they have one. Threads begin with the chunks from `receiving` on, which take longest
+/// where particles are inserted: the others fill the time that is left.
 pub(super) fn for_each(
     particles: &mut Particles,
     single_size: Option<f32>,
     events: &mut [Events],
-    range: Range<usize>,
+    receiving: usize,
     effort: u64,
     work: impl Fn(ChunkColumns) + Sync,
 ) {
-    let spread = rayon::current_num_threads() > 1 && effort > WORTH_THREADS;
     let one_size = single_size.filter(|_| particles.has_one_size());
-    let (first, entries) = (range.start, range.start * CHUNK..range.end * CHUNK);
     let Particles { void, diameter, live } = particles;
-    let (void, live, events) = (&mut void[entries.clone()], &mut live[range.clone()], &mut events[range]);
-    let place = |chunk: usize| (first + chunk) as u64;
-    if let Some(size) = one_size {
-        let work = |(chunk, ((void, live), events)): (usize, ((&mut [u32], &mut u32), &mut Events))| {
-            SIZES.with_borrow_mut(|diameter| {
-                diameter.clear();
-                diameter.resize(CHUNK, size);
-                work(ChunkColumns { chunk: place(chunk), void, diameter, live, events });
-            });
-        };
-        match spread {
-            true => void.par_chunks_mut(CHUNK).zip(live).zip(events).enumerate().for_each(work),
-            false => void.chunks_mut(CHUNK).zip(live).zip(events).enumerate().for_each(work),
-        }
+    let all = Neighbours { first: 0, void, diameter, live, events, one_size };
+    if rayon::current_num_threads() > 1 && effort > WORTH_THREADS {
+        let (before, receiving) = all.split_at(receiving);
+        rayon::join(|| receiving.spread(&work), || before.spread(&work));
     } else {
-        type Columns<'a> = (((&'a mut [u32], &'a mut [f32]), &'a mut u32), &'a mut Events);
-        let work = |(chunk, (((void, diameter), live), events)): (usize, Columns)| {
-            work(ChunkColumns { chunk: place(chunk), void, diameter, live, events });
+        all.in_order(&work);
+    }
+}
+
+/// The columns of chunks that are neighbours.
+struct Neighbours<'a> {
+    /// The first of them.
+    first: usize,
+    void: &'a mut [u32],
+    /// Of no use where all base particles have one size.
+    diameter: &'a mut [f32],
+    live: &'a mut [u32],
+    events: &'a mut [Events],
+    one_size: Option<f32>,
+}
+
+impl Neighbours<'_> {
+    /// Those before chunk `chunk` of them, and the others.
+    fn split_at(self, chunk: usize) -> (Self, Self) {
+        let Self { first, void, diameter, live, events, one_size } = self;
+        let (chunk, entry) = (chunk.min(live.len()), chunk * CHUNK);
+        let (void, void_after) = void.split_at_mut(entry.min(void.len()));
+        let (diameter, diameter_after) = diameter.split_at_mut(entry.min(diameter.len()));
+        let (live, live_after) = live.split_at_mut(chunk);
+        let (events, events_after) = events.split_at_mut(chunk);
+        let before = Self { first, void, diameter, live, events, one_size };
+        let after = Self {
+            first: first + chunk,
+            void: void_after,
+            diameter: diameter_after,
+            live: live_after,
+            events: events_after,
+            one_size,
         };
-        let diameter = &mut diameter[entries];
-        if spread {
-            let columns = void.par_chunks_mut(CHUNK).zip(diameter.par_chunks_mut(CHUNK));
-            columns.zip(live).zip(events).enumerate().for_each(work);
-        } else {
-            let columns = void.chunks_mut(CHUNK).zip(diameter.chunks_mut(CHUNK));
-            columns.zip(live).zip(events).enumerate().for_each(work);
+        (before, after)
+    }
+
+    /// Over threads, which halve what is left until it is one chunk.
+    fn spread(self, work: &(impl Fn(ChunkColumns) + Sync)) {
+        let chunks = self.live.len();
+        if chunks <= 1 {
+            return self.in_order(work);
+        }
+        let (front, back) = self.split_at(chunks / 2);
+        rayon::join(|| front.spread(work), || back.spread(work));
+    }
+
+    fn in_order(self, work: &impl Fn(ChunkColumns)) {
+        let Self { first, void, diameter, live, events, one_size } = self;
+        let sizes = diameter.chunks_mut(CHUNK).chain(iter::repeat_with(|| &mut [][..]));
+        let columns = void.chunks_mut(CHUNK).zip(sizes).zip(live).zip(events);
+        for (chunk, (((void, diameter), live), events)) in (first as u64..).zip(columns) {
+            match one_size {
+                None => work(ChunkColumns { chunk, void, diameter, live, events }),
+                Some(size) => SIZES.with_borrow_mut(|diameter| {
+                    diameter.clear();
+                    diameter.resize(CHUNK, size);
+                    work(ChunkColumns { chunk, void, diameter, live, events });
+                }),
+            }
         }
     }
 }

@@ -204,8 +204,7 @@ impl<'a> Walk<'a> {
     pub fn increment(&mut self, state: &mut State) -> Result<(), WalkError> {
         state.increment += 1;
         self.direct(state).map_err(|source| WalkError::Flow { increment: state.increment, source })?;
-        self.insert(state);
-        self.step(state);
+        self.insert_and_step(state);
         self.merge(state);
         self.tally(state)
     }
@@ -228,18 +227,12 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
-    /// This increment's share of the base starts, each particle on a start node.
-    fn insert(&mut self, state: &mut State) {
-        insert::insert(&self.network, self.supply, self.table.isa(), state, &mut self.events);
-        if let Some(passive) = &mut self.passive {
-            passive.insert(&self.network, self.supply, state);
-        }
-    }
-
-    /// Every moving particle attempts one move, on the open set at the start of the increment.
-    fn step(&mut self, state: &mut State) {
+    /// This increment's share of the base starts, each particle on a start node, and every moving particle
+    /// attempts one move, on the open set at the start of the increment.
+    fn insert_and_step(&mut self, state: &mut State) {
         kernel::step(&self.network, &self.table, self.supply, state, &mut self.events);
         if let Some(passive) = &mut self.passive {
+            passive.insert(&self.network, self.supply, state);
             passive.step(&self.network, state);
         }
     }

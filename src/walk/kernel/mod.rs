@@ -1,4 +1,4 @@
-//! The step: every moving particle of a chunk attempts one move.
+//! The step: every moving particle of a chunk attempts one move, those inserted in this increment included.
 //!
 //! A kernel is a pure function of the network, the exits open at the start of the increment, the chunk and
 //! its stream; it writes to its own chunk and events only.
@@ -15,20 +15,23 @@ mod tests;
 use super::Isa;
 use super::chunks::{self, ChunkColumns};
 use super::exits::{Form, OpenExits};
+use super::insert::Insertion;
 use super::merge::Events;
 use super::{ExitTable, State, Supply};
 use crate::network::Network;
 use crate::stream::{Key, Purpose};
 use lattice::LatticeChunk;
 
-/// Moves the particles of all chunks, in parallel where that pays; what happened is in `events`.
+/// Inserts this increment's particles and moves those of all chunks, in parallel where that pays; what
+/// happened is in `events`.
 pub(super) fn step(
     network: &Network,
     table: &ExitTable,
     supply: &Supply,
     state: &mut State,
-    events: &mut [Events],
+    events: &mut Vec<Events>,
 ) {
+    events.resize_with(state.particles.live.len(), Events::default);
     let key = Key {
         seed: state.seed,
         purpose: Purpose::Step,
@@ -36,12 +39,14 @@ pub(super) fn step(
         increment: state.increment,
         chunk: 0,
     };
+    let insertion = Insertion::new(network, supply, table.isa(), state);
     let exits = OpenExits { network, table, blocked: &state.blocked, passive_limit: state.passive_limit };
     let classes = &state.classes;
-    let inserted = supply.inserted(state.increment) - supply.inserted(state.increment - 1);
-    let all = 0..events.len();
-    let attempts = state.tally.moving + inserted + EMPTY_CHUNK * events.len() as u64;
-    chunks::for_each(&mut state.particles, supply.single_size(), events, all, attempts, |columns| {
+    let moving: u64 = state.particles.live.iter().map(|&live| u64::from(live)).sum();
+    let effort = moving + INSERTED * insertion.share() + EMPTY_CHUNK * events.len() as u64;
+    let (size, receiving) = (supply.single_size(), insertion.first_chunk());
+    chunks::for_each(&mut state.particles, size, events, receiving, effort, |mut columns| {
+        insertion.append(&mut columns);
         let ChunkColumns { chunk, void, diameter, live, events } = columns;
         let moving = *live as usize;
         if moving == 0 {
@@ -58,6 +63,9 @@ pub(super) fn step(
 
 /// Attempted moves that take as long as a chunk with hardly any.
 const EMPTY_CHUNK: u64 = 16;
+
+/// Attempted moves that take as long as inserting a particle and moving it once.
+const INSERTED: u64 = 8;
 
 /// Moves the particles of one chunk; those that still move are brought together at the front, in order,
 /// and counted.
