@@ -3,7 +3,7 @@
 use super::{CaseError, Files, Input, cut};
 use crate::gradation::Gradation;
 use crate::outcome::packing::PackedPart;
-use crate::packing::Settings as Compression;
+use crate::packing::{self, Settings as Compression};
 use crate::scene::{FilterGradation, PackingSpec, Scene, SceneError};
 
 /// A cell is made this many times as wide as the largest grain, where the user does not say how many grains
@@ -25,6 +25,8 @@ const SAME_PERCENT: f64 = 1e-2;
 
 /// Part of the definition of a packing: another number gives other grains from the same recipe.
 const PROTOCOL: u32 = 2;
+/// The same of gradations so wide that their most crowded grains are moved as heavier ones.
+const WIDE_PROTOCOL: u32 = 3;
 
 /// What is to be packed.
 #[derive(Clone, Debug)]
@@ -149,7 +151,9 @@ impl PackingPlan {
 
     /// The same of a gradation with these points, compressed likewise.
     pub(super) fn fingerprint_of(&self, points: &[(f64, f64)]) -> String {
-        let mut text = format!("{PROTOCOL} {points:?} {:?}", self.compression);
+        let is_wide = matches!(points, [(least, _), .., (most, _)] if packing::is_wide(*most, *least));
+        let protocol = if is_wide { WIDE_PROTOCOL } else { PROTOCOL };
+        let mut text = format!("{protocol} {points:?} {:?}", self.compression);
         if self.aspect != 1.0 {
             text += &format!(" {:?} times as tall", self.aspect);
         }

@@ -3,7 +3,7 @@
 use super::compression::Compression;
 use super::draw::{draw, random_start};
 use super::grains::{Cell, Packing};
-use super::limits::critical_step;
+use super::limits::{critical_step, stability};
 use super::motion::LONGEST_MOVE;
 use super::observed::Energy;
 use super::settings::{Contact, PackingError, Settings};
@@ -255,6 +255,60 @@ fn the_critical_step_is_stable_and_not_far_from_the_limit() {
     let mut c = head_on(&elastic(Contact::Linear(k)), 0.01, 1e-4);
     free(&mut c, 2);
     assert!((c.critical_step() / limit - 1.0).abs() < 1e-12);
+}
+
+/// A small grain pressed into a large one, from rest: its first velocity says what mass it was moved with, its
+/// own or that of which the contact's critical step is 1.5 times that before there are contacts.
+#[test]
+fn crowded_grains_of_wide_packings_are_moved_as_heavier_ones() {
+    let first_velocity = |ratio: f64, step: Option<f64>| {
+        let settings = Settings { step, clip_tension: true, ..elastic(Contact::Hertz) };
+        let overlap = 0.03;
+        let (edge, apart) = (4.0 * ratio, 0.5 * (ratio + 1.0) - overlap);
+        let grains =
+            [[0.5 * edge, 0.5 * edge, 0.5 * edge, ratio], [0.5 * edge + apart, 0.5 * edge, 0.5 * edge, 1.0]];
+        let mut c = Compression::new(&packing(edge, &grains), &settings).unwrap();
+        let (law, reduced) = (c.law, 0.5 * ratio / (ratio + 1.0));
+        let stiffness = law.stiffness * (reduced * overlap).sqrt();
+        let small = c.rank.iter().position(|&r| r == 1).unwrap();
+        let (own, loose) = (c.velocity[small][3], critical_step(&c.position, &c.velocity, &settings).0);
+        let heavier = 0.25 * stability(&law) * stiffness * (1.5 * loose) * (1.5 * loose);
+        assert!(heavier > 1.2 * own, "{heavier} {own}");
+        let step = c.step;
+        free(&mut c, 1);
+        assert_eq!(c.velocity[small][3], own);
+        let mass = 2.0 / 3.0 * stiffness * overlap * step / c.velocity[small][0];
+        (mass / own, heavier / own)
+    };
+    for (ratio, step, is_heavier) in
+        [(19.9, None, false), (20.0, None, true), (36.0, None, true), (36.0, Some(1e-4), false)]
+    {
+        let (mass, heavier) = first_velocity(ratio, step);
+        let expected = if is_heavier { heavier } else { 1.0 };
+        assert!((mass / expected - 1.0).abs() < 1e-9, "{ratio}: {mass}, expected {expected}");
+    }
+}
+
+/// The step of a wide packing does not follow its most crowded grains, and a hold is counted in the steps that
+/// their own masses would have taken.
+#[test]
+fn the_step_of_wide_packings_does_not_follow_the_most_crowded_grains() {
+    let settings = Settings { grains: 806, squeeze_rate: 0.03, ..Settings::default() };
+    let sizes: Vec<f64> = (0..806).map(|i| if i < 6 { 20.0 } else { 1.0 }).collect();
+    let mut c = Compression::new(&random_start(&sizes, &settings).unwrap(), &settings).unwrap();
+    let loose = critical_step(&c.position, &c.velocity, &settings).0;
+    let (mut held, mut closest): (f64, f64) = (0.0, 0.0);
+    for _ in 0..6000 {
+        let before = (c.hold.saved, c.hold.since);
+        c.advance(1).unwrap();
+        assert!(c.critical_step() > 1.499 * loose);
+        closest = closest.max(c.step / c.critical_step());
+        if c.hold.since == before.1 {
+            assert!(c.hold.saved >= before.0);
+            held = held.max(c.hold.saved - before.0);
+        }
+    }
+    assert!(closest < 1.0 && held > 0.2, "{closest} {held}");
 }
 
 #[test]

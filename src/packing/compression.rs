@@ -14,10 +14,18 @@
 //! A grain of diameter `D` weighs `pi/6 D^(3 - mass_exponent)`. With the true masses (0) the smallest grains
 //! set the time step and the largest take `Dmax/Dmin` times as many steps to move as the smallest. Where the
 //! packing rests no mass matters.
+//!
+//! Where the largest grain is 20 times as wide as the smallest or more, a few small grains between large ones
+//! have so stiff contacts that the step of all would follow them. There a grain is moved with a mass of at
+//! least `s K t^2 / 4`, and the moment of inertia of that mass: `K` is the sum of its contacts' stiffness at
+//! that moment, `s` the factor of the critical step `2 / sqrt(s K / m)`, and `t` 1.5 times the critical step
+//! before there are contacts. The damping of contacts keeps the true mass. A fixed step makes no grain heavier.
+//! A stage then ends after as much time as with the true masses: a hold is counted in the steps that those
+//! would have taken.
 
 use super::contact::{Grains, Law, Now, Work, pass};
 use super::grains::{Cell, Packing};
-use super::limits::{critical_step, damped_part, law, mass, stability};
+use super::limits::{critical_step, damped_part, is_wide, law, least_mass_by_stiffness, mass, stability};
 use super::motion::{ChunkInStep, LONGEST_MOVE, StepRule, Sums, advance, split};
 use super::neighbours::{Aspect, GrainChunk, Reach, chunk_bounds};
 use super::observed::HoldState;
@@ -104,9 +112,9 @@ pub struct Compression {
     pub(super) stage: Stage,
     /// Mean contact pressure in the last step, by target.
     pub(super) pressure: f64,
-    /// Largest sum of contact stiffness by mass over the grains, in the last step.
+    /// Largest sum of contact stiffness by the mass that the grain was moved with, in the last step.
     pub(super) stiffest: f64,
-    /// Sum of mass times squared velocity, in the last step.
+    /// Sum of the mass that grains were moved with times squared velocity, in the last step.
     pub(super) twice_kinetic: f64,
     /// Sum of the squared unbalanced forces, in the last step.
     pub(super) unbalanced: f64,
@@ -125,6 +133,8 @@ pub struct Compression {
     pub(super) moved: f64,
     /// The critical step before there are contacts.
     loose_step: f64,
+    /// Sizes differ so much that the most crowded grains are moved as heavier ones.
+    is_wide: bool,
     /// Chunk of each grain.
     chunk_of: Vec<u16>,
     work: Vec<Work>,
@@ -220,6 +230,9 @@ impl Compression {
     ) -> Self {
         let n = position.len();
         let (critical, _) = critical_step(&position, &velocity, settings);
+        let [smallest, largest] = position
+            .iter()
+            .fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], p| [low.min(p[3]), high.max(p[3])]);
         let mut chunk_of = vec![0; n];
         let bounds = chunk_bounds(n);
         for (c, &(first, last)) in bounds.iter().enumerate() {
@@ -260,6 +273,7 @@ impl Compression {
             chunks: Vec::new(),
             moved: f64::INFINITY,
             loose_step: critical,
+            is_wide: is_wide(largest, smallest),
             chunk_of,
             work: vec![Work::new(bounds.len()); bounds.len()],
             force: vec![[0.0; 4]; n],
@@ -306,7 +320,18 @@ impl Compression {
 
     /// The largest stable time step for the contacts of the last step.
     pub fn critical_step(&self) -> f64 {
-        if self.stiffest > 0.0 { 2.0 / (stability(&self.law) * self.stiffest).sqrt() } else { f64::INFINITY }
+        self.critical(self.stiffest)
+    }
+
+    /// The critical step of grains of which the stiffest contacts, by mass, sum up to `stiffest`.
+    fn critical(&self, stiffest: f64) -> f64 {
+        if stiffest > 0.0 { 2.0 / (stability(&self.law) * stiffest).sqrt() } else { f64::INFINITY }
+    }
+
+    /// The step that follows their critical one.
+    fn followed(&self, stiffest: f64) -> f64 {
+        let part = self.settings.step_fraction.min(damped_part(&self.law));
+        part * self.critical(stiffest).min(2.0 * self.loose_step)
     }
 
     /// One step, without servo: the strain rate is what it is.
@@ -376,6 +401,7 @@ impl Compression {
             local: self.settings.local_damping,
             fastest: LONGEST_MOVE / step,
             rotate: self.law.friction > 0.0,
+            least_mass: self.least_mass_by_stiffness(),
         };
         let work = &self.work;
         let picked = &self.picked;
@@ -410,6 +436,7 @@ impl Compression {
         for part in &parts {
             total.moved = total.moved.max(part.sums.moved);
             total.stiffest = total.stiffest.max(part.sums.stiffest);
+            total.stiffest_of_own = total.stiffest_of_own.max(part.sums.stiffest_of_own);
             total.twice_kinetic += part.sums.twice_kinetic;
             total.unbalanced += part.sums.unbalanced;
         }
@@ -417,6 +444,18 @@ impl Compression {
         self.stiffest = total.stiffest;
         self.twice_kinetic = total.twice_kinetic;
         self.unbalanced = total.unbalanced;
+        if rule.least_mass > 0.0 {
+            self.hold.saved += (step / self.followed(total.stiffest_of_own) - 1.0).max(0.0);
+        }
+    }
+
+    /// Least mass of a grain in a step by the sum of its contacts' stiffness; 0 where grains keep theirs.
+    fn least_mass_by_stiffness(&self) -> f64 {
+        if self.is_wide && self.settings.step.is_none() {
+            least_mass_by_stiffness(&self.law, self.loose_step)
+        } else {
+            0.0
+        }
     }
 
     /// Keeps the step below the critical one: follows it, or refuses a fixed step that it has fallen to.
@@ -428,8 +467,7 @@ impl Compression {
             }
             Some(_) => Ok(()),
             None => {
-                let part = self.settings.step_fraction.min(damped_part(&self.law));
-                let goal = part * critical.min(2.0 * self.loose_step);
+                let goal = self.followed(self.stiffest);
                 self.step = if goal < self.step { goal } else { goal.min(1.02 * self.step) };
                 Ok(())
             }

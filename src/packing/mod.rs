@@ -57,6 +57,7 @@ pub use export::vtp_points;
 pub use fields::ImportError;
 pub use grains::{Cell, Packing};
 pub use import::{CellOption, PACKING_FILE_LIMIT_BYTES, ReadOptions};
+pub(crate) use limits::is_wide;
 pub use neighbours::Reach;
 pub use observed::Measure;
 pub use protocol::{CompressionProgress, PackReport, compress};

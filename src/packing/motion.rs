@@ -29,6 +29,8 @@ pub(super) struct StepRule {
     pub local: f64,
     pub fastest: f64,
     pub rotate: bool,
+    /// Least mass of a grain by the sum of its contacts' stiffness.
+    pub least_mass: f64,
 }
 
 /// What the grains of a chunk add up to.
@@ -36,6 +38,8 @@ pub(super) struct StepRule {
 pub(super) struct Sums {
     pub moved: f64,
     pub stiffest: f64,
+    /// As `stiffest`, of the grains' own masses.
+    pub stiffest_of_own: f64,
     pub twice_kinetic: f64,
     pub unbalanced: f64,
 }
@@ -63,12 +67,10 @@ pub(super) fn advance(part: &mut ChunkInStep<'_>, work: &[Work], rule: &StepRule
             collect(part.torque, part.first, &outbox.grain, &outbox.torque);
         }
     }
-    match (rule.rotate, rule.local > 0.0) {
-        (true, true) => part.sums = kick::<true, true>(part, rule),
-        (true, false) => part.sums = kick::<true, false>(part, rule),
-        (false, true) => part.sums = kick::<false, true>(part, rule),
-        (false, false) => part.sums = kick::<false, false>(part, rule),
-    }
+    part.sums = match rule.least_mass > 0.0 {
+        true => kick_by::<true>(part, rule),
+        false => kick_by::<false>(part, rule),
+    };
 }
 
 #[inline(always)]
@@ -86,14 +88,28 @@ fn damped(load: f64, velocity: f64, local: f64) -> f64 {
     load - local * load.abs() * along
 }
 
+#[inline(always)]
+fn kick_by<const HEAVIER: bool>(part: &mut ChunkInStep<'_>, rule: &StepRule) -> Sums {
+    match (rule.rotate, rule.local > 0.0) {
+        (true, true) => kick::<HEAVIER, true, true>(part, rule),
+        (true, false) => kick::<HEAVIER, true, false>(part, rule),
+        (false, true) => kick::<HEAVIER, false, true>(part, rule),
+        (false, false) => kick::<HEAVIER, false, false>(part, rule),
+    }
+}
+
 /// Kick and drift. The fourth entries go along, so that a row is one vector: they are set or added nothing.
 #[inline(always)]
-fn kick<const ROTATE: bool, const LOCAL: bool>(part: &mut ChunkInStep<'_>, rule: &StepRule) -> Sums {
+fn kick<const HEAVIER: bool, const ROTATE: bool, const LOCAL: bool>(
+    part: &mut ChunkInStep<'_>,
+    rule: &StepRule,
+) -> Sums {
     let mut sums = Sums::default();
     let columns = part.position.iter_mut().zip(part.velocity.iter_mut()).zip(part.spin.iter_mut());
     let loads = part.force.iter().zip(part.torque.iter()).zip(part.picked);
     for (((p, v), w), ((f, t), picked)) in columns.zip(loads) {
-        let mass = v[3];
+        let least = if HEAVIER { rule.least_mass * f[3] } else { 0.0 };
+        let mass = if least > v[3] { least } else { v[3] };
         let per_mass = 1.0 / mass;
         let kick = rule.step * per_mass * rule.kick;
         let load = |f: f64, v: f64| if LOCAL { damped(f, v, rule.local) } else { f };
@@ -105,7 +121,7 @@ fn kick<const ROTATE: bool, const LOCAL: bool>(part: &mut ChunkInStep<'_>, rule:
             u = u.map(|u| u * cut);
             square = rule.fastest * rule.fastest;
         }
-        *v = [u[0], u[1], u[2], mass];
+        *v = [u[0], u[1], u[2], v[3]];
         *p = std::array::from_fn(|a| p[a] + u[a] * rule.per_cell);
         let d: [f64; 4] = std::array::from_fn(|a| (p[a] - picked[a]) * (p[a] - picked[a]));
         let far = d[0] + d[1] + d[2];
@@ -116,6 +132,10 @@ fn kick<const ROTATE: bool, const LOCAL: bool>(part: &mut ChunkInStep<'_>, rule:
         sums.moved = if far > sums.moved { far } else { sums.moved };
         let stiff = f[3] * per_mass;
         sums.stiffest = if stiff > sums.stiffest { stiff } else { sums.stiffest };
+        if HEAVIER {
+            let stiff = f[3] / v[3];
+            sums.stiffest_of_own = if stiff > sums.stiffest_of_own { stiff } else { sums.stiffest_of_own };
+        }
         sums.twice_kinetic += square * mass;
         sums.unbalanced += f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
     }

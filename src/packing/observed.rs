@@ -29,12 +29,20 @@ pub(super) struct Energy {
     pub elastic: f64,
 }
 
+fn is_none(saved: &f64) -> bool {
+    *saved == 0.0
+}
+
 /// What the protocol remembers between its checks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HoldState {
     /// Step since which everything has held.
     pub since: u64,
+    /// How many more steps of this time the grains' own masses would have taken, where some are moved as
+    /// heavier ones.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub saved: f64,
     /// Mean coordination number then.
     pub coordination: f64,
     /// Void ratio then.

@@ -147,7 +147,7 @@ impl Compression {
 
     fn enter(&mut self, stage: Stage) {
         self.stage = stage;
-        self.hold.since = self.steps;
+        (self.hold.since, self.hold.saved) = (self.steps, 0.0);
     }
 
     /// Pressure, unbalanced force, coordination number and void ratio have held for long enough, and the
@@ -160,11 +160,12 @@ impl Compression {
             && (coordination - self.hold.coordination).abs() < COORDINATION
             && (void_ratio - self.hold.void_ratio).abs() < VOID_RATIO;
         if !holds {
-            self.hold.since = self.steps;
+            (self.hold.since, self.hold.saved) = (self.steps, 0.0);
             self.hold.coordination = coordination;
             self.hold.void_ratio = void_ratio;
         }
-        self.steps - self.hold.since >= self.settings.hold_steps && {
+        let held = (self.steps - self.hold.since) as f64 + self.hold.saved;
+        held >= self.settings.hold_steps as f64 && {
             let energy = self.energy();
             energy.kinetic < KINETIC * energy.elastic
         }

@@ -9,6 +9,7 @@ use super::pilot::{WorkByVoid, pilot};
 use super::replicates::first_replicates;
 use super::studies::likely_replicates;
 use crate::case::{Case, PackingPlan};
+use crate::packing::is_wide;
 use crate::scene::NetworkSource;
 use crate::walk::Engine;
 
@@ -68,6 +69,9 @@ const GRAINS_POWER: f64 = 0.3;
 const STEPS: (f64, f64, f64) = (12_000.0, 1.1, 40_000.0);
 /// Steps that packings without friction took at the least (38,700 to 52,500).
 const DENSE_STEPS: f64 = 45_000.0;
+/// Part of these steps that packings took whose sizes differ so much that some grains are moved as heavier
+/// ones.
+const WIDE_STEPS: f64 = 0.55;
 /// Seconds to measure the constrictions around a grain, and to write it.
 const MEASURED_GRAIN_S: f64 = 5e-5;
 /// Seconds to compress a grain of a small packing of a precision study, with friction and without.
@@ -270,6 +274,11 @@ impl PackingPlan {
         let (at_1_5, power, most) = STEPS;
         let steps = (at_1_5 * libm::pow(cu / 1.5, power)).min(most);
         let steps = if self.compression.friction == 0.0 { steps.max(DENSE_STEPS) } else { steps };
+        let is_wide = is_wide(self.gradation.largest_mm(), self.gradation.smallest_mm());
+        let steps = if is_wide { WIDE_STEPS * steps } else { steps };
+        // Another friction, and it settles again.
+        let gives_way = self.compression.friction > self.compression.final_friction;
+        let steps = if gives_way { 2.0 * steps } else { steps };
         100 * (steps / 100.0).round() as u64
     }
 

@@ -11,6 +11,12 @@ fn started(cu: f64, settings: &Settings) -> Compression {
     Compression::new(&start, settings).unwrap()
 }
 
+/// Grains of two sizes, the larger ones 20 times as wide: small ones between them are moved as heavier ones.
+fn started_wide(settings: &Settings) -> Compression {
+    let sizes: Vec<f64> = (0..settings.grains).map(|i| if i < 6 { 20.0 } else { 1.0 }).collect();
+    Compression::new(&random_start(&sizes, settings).unwrap(), settings).unwrap()
+}
+
 fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(work)
 }
@@ -19,8 +25,13 @@ fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
 #[test]
 fn a_resumed_compression_gives_the_same_bits_with_any_threads() {
     let settings = Settings { grains: 4200, friction: 0.3, squeeze_rate: 0.03, ..Settings::default() };
+    same_bits(&settings, |settings| started(2.0, settings));
+    same_bits(&settings, started_wide);
+}
+
+fn same_bits(settings: &Settings, started: impl Fn(&Settings) -> Compression + Sync) {
     let whole = with_threads(1, || {
-        let mut c = started(2.0, &settings);
+        let mut c = started(settings);
         c.advance(4000).unwrap();
         assert_eq!(c.stage(), Stage::Compress);
         assert!(c.coordination() > 0.5);
@@ -28,11 +39,11 @@ fn a_resumed_compression_gives_the_same_bits_with_any_threads() {
     });
     for threads in [1, 2, 3] {
         let bytes = with_threads(threads, || {
-            let mut c = started(2.0, &settings);
+            let mut c = started(settings);
             c.advance(1).unwrap();
             let mut bytes = c.to_bytes();
             for steps in [1236, 1641, 1122] {
-                let mut c = Compression::from_bytes(&settings, &bytes).unwrap();
+                let mut c = Compression::from_bytes(settings, &bytes).unwrap();
                 assert_eq!(c.to_bytes(), bytes);
                 c.advance(steps).unwrap();
                 bytes = c.to_bytes();
