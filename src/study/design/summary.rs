@@ -203,15 +203,25 @@ fn judged_at(&Asked { row, of, .. }: &Asked, ratio: f64) -> Result<Said, RunErro
     let greatest = of.no_erosion.as_ref().map_or(ratio, |of| of.high.unwrap_or(of.median).max(ratio));
     let empty = of.band.as_ref().filter(|band| band.is_empty).map(|band| band.said.clone());
     let unknown = of.no_erosion_note.clone().filter(|_| of.no_erosion.is_none());
-    let mut why: Vec<String> = [row.thicker_in_words(greatest), empty, of.band_note.clone(), unknown]
-        .into_iter()
-        .flatten()
-        .collect();
+    let why = [row.thicker_in_words(greatest), by_chance(of), empty, of.band_note.clone(), unknown];
+    let mut why: Vec<String> = why.into_iter().flatten().collect();
     if !why.is_empty() {
         confidence = confidence.max(Confidence::Outside);
     }
     why.extend(reasons);
     Ok((confidence, why, warnings))
+}
+
+/// That erosion hangs on few particles, where most networks hold a larger ratio than one at which they erode.
+fn by_chance(of: &DesignRow) -> Option<String> {
+    let (seen, all) = (of.not_monotone, of.networks.len() as u64);
+    (2 * seen > all).then(|| {
+        format!(
+            "on {seen} of {all} networks a larger D15F/D85B was seen to hold than one that erodes: there a few \
+             particles decide, and with other random numbers a filter may erode below the boundary. A larger \
+             network is steadier"
+        )
+    })
 }
 
 /// How far it can be relied on that a product fits, the worst of all rows: each at the greatest D15F that

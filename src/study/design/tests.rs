@@ -76,6 +76,22 @@ fn a_base_twice_as_large_takes_a_filter_twice_as_large_to_the_bit() {
 }
 
 #[test]
+fn a_boundary_on_which_few_particles_decide_is_a_doubt() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |cu: &str, across: u64| {
+        let [nx, ny] = ["nx", "ny"].map(|axis| format!("network.{axis}={across}"));
+        found(&tiny(&folder.path().join(cu), &[cu, &nx, &ny, "replicates=5", "network.nz=12"]))
+    };
+    for (cu, across, in_doubt) in [("base.cu=3", 10, true), ("base.cu=1.5", 40, false)] {
+        let design = of(cu, across);
+        let row = &design.boundaries[0];
+        let is_doubt = |said: &String| said.contains("a few particles decide");
+        assert_eq!(design.reasons.iter().any(is_doubt), 2 * row.not_monotone > 5, "{row:?}");
+        assert_eq!(design.confidence == Confidence::Outside, in_doubt, "{:?}", design.reasons);
+    }
+}
+
+#[test]
 fn boundaries_hang_neither_on_a_wide_bracket_nor_on_threads() {
     let folder = tempfile::tempdir().unwrap();
     let of = |name: &str, bracket: [f64; 2], threads: usize| {
