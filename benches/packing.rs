@@ -51,7 +51,8 @@ fn main() {
             _ => panic!("{key} is not a setting"),
         }
     }
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().expect("the first pool");
+    // As the program does: a step that is asked for from outside the pool waits for it to wake.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
     let gradation = Gradation::linear_from_d0(1.0, cu).expect("cu above 1");
     let start = random_start(&draw(&gradation, settings.grains, settings.seed), &settings).expect("a start");
     if let Some(path) = start_file {
@@ -59,11 +60,13 @@ fn main() {
     }
     let mut compression = Compression::new(&start, &settings).expect("a compression");
     let clock = Instant::now();
-    let outcome = compression.run(|p| {
-        if watch {
-            eprintln!("{p:?}");
-        }
-        true
+    let outcome = pool.install(|| {
+        compression.run(|p| {
+            if watch {
+                eprintln!("{p:?}");
+            }
+            true
+        })
     });
     let seconds = clock.elapsed().as_secs_f64();
     let m = compression.measure();
