@@ -311,6 +311,28 @@ fn the_step_of_wide_packings_does_not_follow_the_most_crowded_grains() {
     assert!(closest < 1.0 && held > 0.2, "{closest} {held}");
 }
 
+/// As an earlier version left it, which moved every grain with its own mass.
+#[test]
+fn the_state_of_a_wide_packing_of_an_earlier_version_is_refused() {
+    for (ratio, is_refused) in [(19.0, false), (20.0, true)] {
+        let settings = Settings { grains: 2, ..Settings::default() };
+        let edge = 3.0 * ratio;
+        let grains = [[0.2 * edge, 0.2 * edge, 0.2 * edge, ratio], [0.8 * edge, 0.8 * edge, 0.8 * edge, 1.0]];
+        let bytes = Compression::new(&packing(edge, &grains), &settings).unwrap().to_bytes();
+        let said = b"\"makes_heavier\":true,";
+        let at = bytes.windows(said.len()).position(|window| window == said);
+        assert_eq!(at.is_some(), is_refused);
+        assert!(Compression::from_bytes(&settings, &bytes).is_ok());
+        let Some(at) = at else { continue };
+        let mut earlier = [&bytes[..at], &bytes[at + said.len()..bytes.len() - 8]].concat();
+        let length = u64::from_le_bytes(earlier[16..24].try_into().unwrap()) - said.len() as u64;
+        earlier[16..24].copy_from_slice(&length.to_le_bytes());
+        earlier.extend(xxhash_rust::xxh3::xxh3_64(&earlier).to_le_bytes());
+        let refused = Compression::from_bytes(&settings, &earlier).unwrap_err();
+        assert_eq!(refused.to_string(), "stored state: an earlier version moved its grains otherwise");
+    }
+}
+
 #[test]
 fn one_grain_touches_nothing() {
     let settings = Settings::default();

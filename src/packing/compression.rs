@@ -19,13 +19,14 @@
 //! have so stiff contacts that the step of all would follow them. There a grain is moved with a mass of at
 //! least `s K t^2 / 4`, and the moment of inertia of that mass: `K` is the sum of its contacts' stiffness at
 //! that moment, `s` the factor of the critical step `2 / sqrt(s K / m)`, and `t` 1.5 times the critical step
-//! before there are contacts. The damping of contacts keeps the true mass. A fixed step makes no grain heavier.
+//! before there are contacts. The damping of contacts and the energies keep the true mass, so that the restitution
+//! of such a grain is another. A fixed step makes no grain heavier.
 //! A stage then ends after as much time as with the true masses: a hold is counted in the steps that those
 //! would have taken.
 
 use super::contact::{Grains, Law, Now, Work, pass};
 use super::grains::{Cell, Packing};
-use super::limits::{critical_step, damped_part, is_wide, law, least_mass_by_stiffness, mass, stability};
+use super::limits::{critical_step, damped_part, heavier_mass_by_stiffness, is_wide, law, mass, stability};
 use super::motion::{ChunkInStep, LONGEST_MOVE, StepRule, Sums, advance, split};
 use super::neighbours::{Aspect, GrainChunk, Reach, chunk_bounds};
 use super::observed::HoldState;
@@ -401,7 +402,10 @@ impl Compression {
             local: self.settings.local_damping,
             fastest: LONGEST_MOVE / step,
             rotate: self.law.friction > 0.0,
-            least_mass: self.least_mass_by_stiffness(),
+            least_mass: match self.makes_heavier() {
+                true => heavier_mass_by_stiffness(&self.law, self.loose_step),
+                false => 0.0,
+            },
         };
         let work = &self.work;
         let picked = &self.picked;
@@ -449,13 +453,9 @@ impl Compression {
         }
     }
 
-    /// Least mass of a grain in a step by the sum of its contacts' stiffness; 0 where grains keep theirs.
-    fn least_mass_by_stiffness(&self) -> f64 {
-        if self.is_wide && self.settings.step.is_none() {
-            least_mass_by_stiffness(&self.law, self.loose_step)
-        } else {
-            0.0
-        }
+    /// Whether crowded grains are moved as heavier ones.
+    pub(super) fn makes_heavier(&self) -> bool {
+        self.is_wide && self.settings.step.is_none()
     }
 
     /// Keeps the step below the critical one: follows it, or refuses a fixed step that it has fallen to.

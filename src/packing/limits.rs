@@ -104,12 +104,12 @@ const HEAVIER_STEP: f64 = 1.5;
 /// Whether sizes differ so much that the step of a compression would follow a few small grains pressed between
 /// large ones, so that such grains are moved as heavier ones.
 pub fn is_wide(largest: f64, smallest: f64) -> bool {
-    largest >= WIDE * smallest
+    largest / smallest >= WIDE
 }
 
 /// Least mass of a grain in a step by the sum of its contacts' stiffness, so that its critical step is
 /// [`HEAVIER_STEP`] times `loose_step`, that before there are contacts.
-pub(super) fn least_mass_by_stiffness(law: &Law, loose_step: f64) -> f64 {
+pub(super) fn heavier_mass_by_stiffness(law: &Law, loose_step: f64) -> f64 {
     let step = HEAVIER_STEP * loose_step;
     0.25 * stability(law) * step * step
 }

@@ -23,7 +23,7 @@ impl Compression {
         }
     }
 
-    /// Energies, with the velocities of the last half step.
+    /// Energies, with the grains' own masses and the velocities of the last half step.
     pub(super) fn energy(&self) -> Energy {
         let mut kinetic = 0.0;
         for ((p, v), w) in self.position.iter().zip(&self.velocity).zip(&self.spin) {

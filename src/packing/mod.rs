@@ -16,15 +16,16 @@
 //! they were `hold_steps` ago; and kinetic below 1 % of elastic energy at the end.
 //!
 //! The paper's criterion is the coordination number alone, held for 20,000 of its shorter steps. It also
-//! holds while a packing still creeps, so the void ratio has to hold too. Where small grains are moved as heavier
-//! ones (wide gradations, see [`Compression`]), a hold is as many steps as their own masses would take for the
-//! same time. No packing stops creeping
+//! holds while a packing still creeps, so the void ratio has to hold too. No packing stops creeping
 //! altogether: without friction it goes on by ever rarer avalanches, and a wide grading with high friction by
 //! sliding, both about as the logarithm of time (void ratio 0.003 lower for Cu 1.5, and 0.002 for Cu 3, both
 //! without friction, when the unbalanced force has to fall to 2 %, which takes two to three times the steps).
 //! So some rate has to count as rest; this one is a quarter of the 0.002 that is wanted of the void ratio,
 //! per hold. Grains that touch nothing make the kinetic energy fall slowly and the void ratio not at all, so
 //! that limit is wide; what was reached is reported ([`PackReport`]).
+//!
+//! Where crowded grains are moved as heavier ones (the largest grain 20 times as wide as the smallest or more),
+//! steps are longer, and a hold is as many steps as the grains' own masses would take for the same time.
 
 #[cfg(test)]
 mod checks;

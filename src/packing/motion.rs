@@ -29,7 +29,7 @@ pub(super) struct StepRule {
     pub local: f64,
     pub fastest: f64,
     pub rotate: bool,
-    /// Least mass of a grain by the sum of its contacts' stiffness.
+    /// Least mass of a grain by the sum of its contacts' stiffness; 0 where grains keep theirs.
     pub least_mass: f64,
 }
 

@@ -29,7 +29,7 @@ pub(super) struct Energy {
     pub elastic: f64,
 }
 
-fn is_none(saved: &f64) -> bool {
+fn is_zero(saved: &f64) -> bool {
     *saved == 0.0
 }
 
@@ -41,7 +41,7 @@ pub struct HoldState {
     pub since: u64,
     /// How many more steps of this time the grains' own masses would have taken, where some are moved as
     /// heavier ones.
-    #[serde(default, skip_serializing_if = "is_none")]
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub saved: f64,
     /// Mean coordination number then.
     pub coordination: f64,

@@ -70,7 +70,8 @@ section! {
         pub mass_exponent: f64 = 1.0, off, only("0 to 2", |v| (0.0..=2.0).contains(v));
         /// Time step as part of the critical one; a low restitution lowers it further.
         pub step_fraction: f64 = 0.7, off, only("more than 0, less than 1", |v| *v > 0.0 && *v < 1.0);
-        /// Held steps that end a stage.
+        /// Held steps that end a stage, as many as the grains' own masses would take where some are moved as
+        /// heavier ones.
         pub hold_steps: u64 = 4000, off, whole(1..=u64::from(u32::MAX));
         /// Give up after this many steps.
         pub max_steps: u64 = 2_000_000, off, whole(1..=u64::from(u32::MAX));

@@ -30,6 +30,9 @@ struct Record {
     aspect: f64,
     strain_rate: f64,
     friction: f64,
+    /// Whether crowded grains are moved as heavier ones; earlier versions moved none so.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    makes_heavier: bool,
     listed_at: u64,
     listed_cell: f64,
     reach: Reach,
@@ -101,6 +104,7 @@ impl Compression {
             aspect: self.aspect.height(),
             strain_rate: self.strain_rate,
             friction: self.law.friction,
+            makes_heavier: self.makes_heavier(),
             listed_at: self.listed_at,
             listed_cell: self.listed_cell,
             reach: self.reach,
@@ -160,6 +164,9 @@ impl Compression {
         }
         let cell = (record.cell, Aspect::new(record.aspect));
         let mut this = Self::blank(settings, position, velocity, record.unit_mm, origin, cell);
+        if record.makes_heavier != this.makes_heavier() {
+            return Err(PackingError::State("an earlier version moved its grains otherwise"));
+        }
         this.rank = bytemuck::pod_collect_to_vec(rank);
         (this.spin, this.listed, this.picked) = (row(), row(), row());
         let memory: Vec<[f64; 4]> = bytemuck::pod_collect_to_vec(&rest[160 * n..]);

@@ -9,7 +9,6 @@ use super::pilot::{WorkByVoid, pilot};
 use super::replicates::first_replicates;
 use super::studies::likely_replicates;
 use crate::case::{Case, PackingPlan};
-use crate::packing::is_wide;
 use crate::scene::NetworkSource;
 use crate::walk::Engine;
 
@@ -65,12 +64,12 @@ const GRAINS: f64 = 9_000.0;
 const GRAINS_POWER: f64 = 0.3;
 /// Steps that packings with friction took at Cu 1.5 (11,200 to 14,100), the power of Cu with which they grow
 /// (15,300 to 19,400 at Cu 2, 22,400 to 33,100 at Cu 3), and the number at which they stay (30,500 to 43,300
-/// from Cu 4 to Cu 6).
+/// from Cu 4 to Cu 6, with the grains' own masses).
 const STEPS: (f64, f64, f64) = (12_000.0, 1.1, 40_000.0);
 /// Steps that packings without friction took at the least (38,700 to 52,500).
 const DENSE_STEPS: f64 = 45_000.0;
-/// Part of these steps that packings took whose sizes differ so much that some grains are moved as heavier
-/// ones.
+/// Part of those steps that packings take whose sizes differ so much that crowded grains are moved as heavier
+/// ones (Cu 6: 17,800 to 22,500 of 30,900 to 51,100; without friction 20,200 to 36,300 of 30,400 to 50,300).
 const WIDE_STEPS: f64 = 0.55;
 /// Seconds to measure the constrictions around a grain, and to write it.
 const MEASURED_GRAIN_S: f64 = 5e-5;
@@ -274,8 +273,7 @@ impl PackingPlan {
         let (at_1_5, power, most) = STEPS;
         let steps = (at_1_5 * libm::pow(cu / 1.5, power)).min(most);
         let steps = if self.compression.friction == 0.0 { steps.max(DENSE_STEPS) } else { steps };
-        let is_wide = is_wide(self.gradation.largest_mm(), self.gradation.smallest_mm());
-        let steps = if is_wide { WIDE_STEPS * steps } else { steps };
+        let steps = if self.is_wide() { WIDE_STEPS * steps } else { steps };
         // Another friction, and it settles again.
         let gives_way = self.compression.friction > self.compression.final_friction;
         let steps = if gives_way { 2.0 * steps } else { steps };

@@ -412,6 +412,7 @@ mod tests {
                 holds_to: None,
                 continuing: None,
                 continuing_note: None,
+                unsteady: None,
                 not_monotone: 0,
                 networks: Vec::new(),
                 band: None,

@@ -20,6 +20,7 @@ mod options;
 mod plan;
 mod row;
 mod search;
+mod steadiness;
 mod summary;
 #[cfg(test)]
 mod tests;

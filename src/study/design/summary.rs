@@ -4,6 +4,7 @@ use super::judged::{Judged, Said};
 use super::kept::Done;
 use super::options::{DesignOptions, Thickness};
 use super::row::Row;
+use super::steadiness;
 use crate::outcome::design::band::Band;
 use crate::outcome::design::products::fits;
 use crate::outcome::design::{
@@ -30,7 +31,7 @@ pub(super) fn design(
     let mut boundaries = Vec::new();
     for (index, row) in rows.iter().enumerate() {
         let of_row: Vec<&Done> = done.iter().filter(|done| done.row == index).collect();
-        boundaries.push(of(row, &of_row)?);
+        boundaries.push(of(row, &of_row, options.bracket)?);
     }
     let held: Vec<Option<f64>> = rows.iter().map(|row| held_over_range(row, rows, &boundaries)).collect();
     // An end of a range is no filter that anybody offers: it is judged with the row that it is an end of.
@@ -40,8 +41,7 @@ pub(super) fn design(
         let held = held[at].filter(|_| note.is_none());
         (boundaries[at].band, boundaries[at].band_note) = (band(&rows[at], held)?, note);
     }
-    let each: Vec<Asked> =
-        asked().map(|at| Asked { row: &rows[at], of: &boundaries[at], held: held[at] }).collect();
+    let each: Vec<Asked> = asked().map(|at| asked_for(at, rows, &boundaries, held[at])).collect();
     let (confidence, reasons, warnings) = all_judged(&each, &boundaries)?;
     let known = asked().filter_map(|at| Some((at, held[at]?)));
     // Rules are shown of the coarsest filter that is said to hold: there they fail first.
@@ -87,6 +87,14 @@ struct Asked<'a> {
     row: &'a Row,
     of: &'a DesignRow,
     held: Option<f64>,
+    /// What the walks of a curve of that range say against its boundary.
+    unsteady: Option<String>,
+}
+
+fn asked_for<'a>(at: usize, rows: &'a [Row], boundaries: &'a [DesignRow], held: Option<f64>) -> Asked<'a> {
+    let row = &rows[at];
+    let said = range(row, rows, boundaries).find_map(|of| Some(named(row, of, of.unsteady.clone()?)));
+    Asked { row, of: &boundaries[at], held, unsteady: said }
 }
 
 /// The row itself, and those of the ends of its range.
@@ -122,12 +130,8 @@ fn band(row: &Row, held: Option<f64>) -> Result<Option<Band>, RunError> {
 /// or where they hold every one, and the end of the search is no limit.
 fn no_band(row: &Row, rows: &[Row], boundaries: &[DesignRow]) -> Option<String> {
     let eroding = range(row, rows, boundaries).find(|of| of.band_note.is_some());
-    let named = |of: &DesignRow, note: String| match of.density == row.wanted.density {
-        true => note,
-        false => format!("{}: {note}", of.density),
-    };
     if let Some((of, note)) = eroding.and_then(|of| Some((of, of.band_note.clone()?))) {
-        return Some(named(of, note));
+        return Some(named(row, of, note));
     }
     let least = range(row, rows, boundaries).filter_map(|of| Some((of, of.held()?)));
     let (of, ratio) = least.min_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -143,8 +147,13 @@ fn no_band(row: &Row, rows: &[Row], boundaries: &[DesignRow]) -> Option<String> 
                 of.networks.len()
             ),
         };
-        named(of, note)
+        named(row, of, note)
     })
+}
+
+/// What is said of a curve of a row's range, with its name where it is not the row's own.
+fn named(row: &Row, of: &DesignRow, note: String) -> String {
+    if of.density == row.wanted.density { note } else { format!("{}: {note}", of.density) }
 }
 
 /// How far the answers of all rows can be relied on: as far as the worst of them. Why no further, and what
@@ -186,7 +195,7 @@ fn all_judged(
 }
 
 fn judged(asked: &Asked) -> Result<Said, RunError> {
-    let Asked { row, of, held } = *asked;
+    let &Asked { row, of, held, .. } = asked;
     if let Some(ratio) = held {
         return judged_at(asked, ratio);
     }
@@ -197,31 +206,19 @@ fn judged(asked: &Asked) -> Result<Said, RunError> {
 }
 
 /// How far it can be relied on that a filter with this ratio holds.
-fn judged_at(&Asked { row, of, .. }: &Asked, ratio: f64) -> Result<Said, RunError> {
+fn judged_at(Asked { row, of, unsteady, .. }: &Asked, ratio: f64) -> Result<Said, RunError> {
     let judged = Judged::new(row, ratio)?;
     let (mut confidence, reasons, warnings) = judged.confidence(row, &judged.rules());
     let greatest = of.no_erosion.as_ref().map_or(ratio, |of| of.high.unwrap_or(of.median).max(ratio));
     let empty = of.band.as_ref().filter(|band| band.is_empty).map(|band| band.said.clone());
     let unknown = of.no_erosion_note.clone().filter(|_| of.no_erosion.is_none());
-    let why = [row.thicker_in_words(greatest), by_chance(of), empty, of.band_note.clone(), unknown];
+    let why = [row.thicker_in_words(greatest), unsteady.clone(), empty, of.band_note.clone(), unknown];
     let mut why: Vec<String> = why.into_iter().flatten().collect();
     if !why.is_empty() {
         confidence = confidence.max(Confidence::Outside);
     }
     why.extend(reasons);
     Ok((confidence, why, warnings))
-}
-
-/// That erosion hangs on few particles, where most networks hold a larger ratio than one at which they erode.
-fn by_chance(of: &DesignRow) -> Option<String> {
-    let (seen, all) = (of.not_monotone, of.networks.len() as u64);
-    (2 * seen > all).then(|| {
-        format!(
-            "on {seen} of {all} networks a larger D15F/D85B was seen to hold than one that erodes: there a few \
-             particles decide, and with other random numbers a filter may erode below the boundary. A larger \
-             network is steadier"
-        )
-    })
 }
 
 /// How far it can be relied on that a product fits, the worst of all rows: each at the greatest D15F that
@@ -289,7 +286,7 @@ fn base(row: &Row, name: &str) -> BaseStated {
 }
 
 /// One row of the record, but for its band.
-fn of(row: &Row, done: &[&Done]) -> Result<DesignRow, RunError> {
+fn of(row: &Row, done: &[&Done], bracket: [f64; 2]) -> Result<DesignRow, RunError> {
     let networks = |value: fn(&Done) -> Option<f64>, beyond: fn(&Done) -> Option<Beyond>| {
         let one = |done: &&Done| value(done).ok_or(beyond(done).unwrap_or(Beyond::Above));
         done.iter().map(one).collect::<Vec<_>>()
@@ -346,6 +343,7 @@ fn of(row: &Row, done: &[&Done]) -> Result<DesignRow, RunError> {
         let notes: Vec<String> = notes.into_iter().flatten().collect();
         (!notes.is_empty()).then(|| notes.join("; "))
     };
+    let unsteady = no_erosion.as_ref().and_then(|of| steadiness::doubt(done, of.median, bracket[1]));
     Ok(DesignRow {
         density: row.wanted.density.clone(),
         thickness: row.wanted.thickness.to_string(),
@@ -360,6 +358,7 @@ fn of(row: &Row, done: &[&Done]) -> Result<DesignRow, RunError> {
         holds_to,
         continuing,
         continuing_note: joined([of_second, second_thicker]),
+        unsteady,
         not_monotone: done.iter().filter(|done| done.found.is_not_monotone).count() as u64,
         networks: done
             .iter()

@@ -45,6 +45,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
 use crate::outcome::precision::Precision;
+use crate::packing::is_wide;
 use crate::run::callbacks::Callbacks;
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, claim, clear};
@@ -101,7 +102,11 @@ pub fn run(scene: Scene, options: &PrecisionOptions, callbacks: &Callbacks) -> R
     let is_wanted = |tier: &Tier| options.tiers.is_empty() || options.tiers.contains(tier);
     let tiers: Vec<Tier> = Tier::ALL.into_iter().filter(is_wanted).collect();
     let (kind, name) = (FolderKind::Precision, FolderKind::Precision.record());
-    let work = format!("{} {tiers:?} {:?}", case.fingerprint(), options.budget);
+    let mut work = format!("{} {tiers:?} {:?}", case.fingerprint(), options.budget);
+    if is_wide(case.filter.largest_mm(), case.filter.smallest_mm()) {
+        // Earlier versions packed such filters otherwise.
+        work += " heavier grains";
+    }
     let mark = Unfinished { kind: kind.name().into(), work, ..Unfinished::default() };
     let kept = Kept::new(&KEPT, &folder, &mark.work);
     let whole = || {
