@@ -257,8 +257,8 @@ fn the_critical_step_is_stable_and_not_far_from_the_limit() {
     assert!((c.critical_step() / limit - 1.0).abs() < 1e-12);
 }
 
-/// A small grain pressed into a large one, from rest: its first velocity says what mass it was moved with, its
-/// own or that of which the contact's critical step is 1.5 times that before there are contacts.
+/// A small grain pressed into a large one, from rest: its first velocity says what mass it was moved with,
+/// its own or that of which the contact's critical step is 1.5 times that before there are contacts.
 #[test]
 fn crowded_grains_of_wide_packings_are_moved_as_heavier_ones() {
     let first_velocity = |ratio: f64, step: Option<f64>| {
@@ -289,8 +289,8 @@ fn crowded_grains_of_wide_packings_are_moved_as_heavier_ones() {
     }
 }
 
-/// The step of a wide packing does not follow its most crowded grains, and a hold is counted in the steps that
-/// their own masses would have taken.
+/// The step of a wide packing does not follow its most crowded grains, and a hold is counted in the steps
+/// that their own masses would have taken.
 #[test]
 fn the_step_of_wide_packings_does_not_follow_the_most_crowded_grains() {
     let settings = Settings { grains: 806, squeeze_rate: 0.03, ..Settings::default() };

@@ -19,10 +19,9 @@
 //! have so stiff contacts that the step of all would follow them. There a grain is moved with a mass of at
 //! least `s K t^2 / 4`, and the moment of inertia of that mass: `K` is the sum of its contacts' stiffness at
 //! that moment, `s` the factor of the critical step `2 / sqrt(s K / m)`, and `t` 1.5 times the critical step
-//! before there are contacts. The damping of contacts and the energies keep the true mass, so that the restitution
-//! of such a grain is another. A fixed step makes no grain heavier.
-//! A stage then ends after as much time as with the true masses: a hold is counted in the steps that those
-//! would have taken.
+//! before there are contacts. The damping of contacts and the energies keep the true mass, so that the
+//! restitution of such a grain is another. A fixed step makes no grain heavier. A stage then ends after as
+//! much time as with the true masses: a hold is counted in the steps that those would have taken.
 
 use super::contact::{Grains, Law, Now, Work, pass};
 use super::grains::{Cell, Packing};

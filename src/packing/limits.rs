@@ -101,8 +101,8 @@ const WIDE: f64 = 20.0;
 /// Critical step of a heavier grain, by the critical step before there are contacts.
 const HEAVIER_STEP: f64 = 1.5;
 
-/// Whether sizes differ so much that the step of a compression would follow a few small grains pressed between
-/// large ones, so that such grains are moved as heavier ones.
+/// Whether sizes differ so much that the step of a compression would follow a few small grains pressed
+/// between large ones, so that such grains are moved as heavier ones.
 pub fn is_wide(largest: f64, smallest: f64) -> bool {
     largest / smallest >= WIDE
 }

@@ -24,8 +24,8 @@
 //! per hold. Grains that touch nothing make the kinetic energy fall slowly and the void ratio not at all, so
 //! that limit is wide; what was reached is reported ([`PackReport`]).
 //!
-//! Where crowded grains are moved as heavier ones (the largest grain 20 times as wide as the smallest or more),
-//! steps are longer, and a hold is as many steps as the grains' own masses would take for the same time.
+//! Where crowded grains are moved as heavier ones (the largest grain 20 times as wide as the smallest or
+//! more), steps are longer, and a hold is as many steps as the grains' own masses would take for the same time.
 
 #[cfg(test)]
 mod checks;

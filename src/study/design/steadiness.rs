@@ -15,15 +15,16 @@ pub(super) fn doubt(done: &[&Done], median: f64, end: f64) -> Option<String> {
     let unsteady = eroding.iter().filter(|of| comes_and_goes(&of.found.walks)).count();
     if unsteady > 0 && 2 * unsteady >= eroding.len() {
         return Some(format!(
-            "on {unsteady} of {} networks that erode a larger D15F/D85B was seen to hold: there a few particles \
-             decide, and with other random numbers the boundary may lie lower. A larger network is steadier",
+            "on {unsteady} of {} networks that erode a larger D15F/D85B was seen to hold: there a few \
+             particles decide, and with other random numbers the boundary may lie lower. A larger network is \
+             steadier",
             eroding.len()
         ));
     }
     (end < SEEN_TO * median).then(|| {
         format!(
-            "the search ends at D15F/D85B {end:.2}, too near above the boundary to see whether a few particles \
-             decide there: a higher end of --bracket shows it"
+            "the search ends at D15F/D85B {end:.2}, too near above the boundary to see whether a few \
+             particles decide there: a higher end of --bracket shows it"
         )
     })
 }
