@@ -25,7 +25,8 @@
 //! that limit is wide; what was reached is reported ([`PackReport`]).
 //!
 //! Where crowded grains are moved as heavier ones (the largest grain 20 times as wide as the smallest or
-//! more), steps are longer, and a hold is as many steps as the grains' own masses would take for the same time.
+//! more), steps are longer, and a hold is as many steps as the grains' own masses would take for the same
+//! time.
 
 #[cfg(test)]
 mod checks;
