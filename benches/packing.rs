@@ -58,7 +58,8 @@ fn main() {
     if let Some(path) = start_file {
         std::fs::write(path, table(&start)).expect("a writable file");
     }
-    let mut compression = Compression::new(&start, &settings).expect("a compression");
+    let mut compression =
+        Compression::new(&start, &settings).expect("a compression").of_gradation(&gradation);
     let clock = Instant::now();
     let outcome = pool.install(|| {
         compression.run(|p| {

@@ -313,23 +313,37 @@ fn the_step_of_wide_packings_does_not_follow_the_most_crowded_grains() {
 
 /// As an earlier version left it, which moved every grain with its own mass.
 #[test]
-fn the_state_of_a_wide_packing_of_an_earlier_version_is_refused() {
-    for (ratio, is_refused) in [(19.0, false), (20.0, true)] {
+fn a_wide_packing_that_an_earlier_version_began_goes_on_as_it_would_have() {
+    for (ratio, is_wide) in [(19.0, false), (20.0, true)] {
         let settings = Settings { grains: 2, ..Settings::default() };
         let edge = 3.0 * ratio;
         let grains = [[0.2 * edge, 0.2 * edge, 0.2 * edge, ratio], [0.8 * edge, 0.8 * edge, 0.8 * edge, 1.0]];
         let bytes = Compression::new(&packing(edge, &grains), &settings).unwrap().to_bytes();
         let said = b"\"makes_heavier\":true,";
         let at = bytes.windows(said.len()).position(|window| window == said);
-        assert_eq!(at.is_some(), is_refused);
-        assert!(Compression::from_bytes(&settings, &bytes).is_ok());
+        assert_eq!(at.is_some(), is_wide);
+        assert_eq!(Compression::from_bytes(&settings, &bytes).unwrap().makes_heavier(), is_wide);
         let Some(at) = at else { continue };
         let mut earlier = [&bytes[..at], &bytes[at + said.len()..bytes.len() - 8]].concat();
         let length = u64::from_le_bytes(earlier[16..24].try_into().unwrap()) - said.len() as u64;
         earlier[16..24].copy_from_slice(&length.to_le_bytes());
         earlier.extend(xxhash_rust::xxh3::xxh3_64(&earlier).to_le_bytes());
-        let refused = Compression::from_bytes(&settings, &earlier).unwrap_err();
-        assert_eq!(refused.to_string(), "stored state: an earlier version moved its grains otherwise");
+        assert!(!Compression::from_bytes(&settings, &earlier).unwrap().makes_heavier());
+    }
+}
+
+/// The grains of a wide gradation, though none of its extremes was drawn.
+#[test]
+fn one_gradation_has_one_protocol() {
+    for (cu, is_wide) in [(4.4, false), (4.6, true)] {
+        let filter = Gradation::linear_from_d0(1.0, cu).unwrap();
+        let settings = Settings { grains: 3000, ..Settings::default() };
+        let start = random_start(&draw(&filter, 3000, 1), &settings).unwrap();
+        let c = Compression::new(&start, &settings).unwrap();
+        assert!(!c.makes_heavier(), "the grains themselves differ less");
+        let c = c.of_gradation(&filter);
+        assert_eq!(c.makes_heavier(), is_wide);
+        assert_eq!(Compression::from_bytes(&settings, &c.to_bytes()).unwrap().makes_heavier(), is_wide);
     }
 }
 

@@ -19,17 +19,20 @@
 //! have so stiff contacts that the step of all would follow them. There a grain is moved with a mass of at
 //! least `s K t^2 / 4`, and the moment of inertia of that mass: `K` is the sum of its contacts' stiffness at
 //! that moment, `s` the factor of the critical step `2 / sqrt(s K / m)`, and `t` 1.5 times the critical step
-//! before there are contacts. The damping of contacts and the energies keep the true mass, so that the
+//! before there are contacts. The damping of contacts and the energies keep its own mass, so that the
 //! restitution of such a grain is another. A fixed step makes no grain heavier. A stage then ends after as
-//! much time as with the true masses: a hold is counted in the steps that those would have taken.
+//! much time as with the own masses: a hold is counted in the steps that those would have taken.
 
 use super::contact::{Grains, Law, Now, Work, pass};
 use super::grains::{Cell, Packing};
-use super::limits::{critical_step, damped_part, heavier_mass_by_stiffness, is_wide, law, mass, stability};
+use super::limits::{
+    WIDE, critical_step, damped_part, heavier_mass_by_stiffness, is_wide, law, mass, stability,
+};
 use super::motion::{ChunkInStep, LONGEST_MOVE, StepRule, Sums, advance, split};
 use super::neighbours::{Aspect, GrainChunk, Reach, chunk_bounds};
 use super::observed::HoldState;
 use super::settings::{PackingError, Settings};
+use crate::gradation::Gradation;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -134,7 +137,7 @@ pub struct Compression {
     /// The critical step before there are contacts.
     loose_step: f64,
     /// Sizes differ so much that the most crowded grains are moved as heavier ones.
-    is_wide: bool,
+    pub(super) is_wide: bool,
     /// Chunk of each grain.
     chunk_of: Vec<u16>,
     work: Vec<Work>,
@@ -273,7 +276,7 @@ impl Compression {
             chunks: Vec::new(),
             moved: f64::INFINITY,
             loose_step: critical,
-            is_wide: is_wide(largest, smallest),
+            is_wide: largest / smallest >= WIDE,
             chunk_of,
             work: vec![Work::new(bounds.len()); bounds.len()],
             force: vec![[0.0; 4]; n],
@@ -455,6 +458,13 @@ impl Compression {
     /// Whether crowded grains are moved as heavier ones.
     pub(super) fn makes_heavier(&self) -> bool {
         self.is_wide && self.settings.step.is_none()
+    }
+
+    /// This compression, with crowded grains moved as heavier ones where the gradation that its grains were
+    /// drawn from is wide: of few grains the extremes may be missing, and one gradation has one protocol.
+    pub fn of_gradation(mut self, gradation: &Gradation) -> Self {
+        self.is_wide = is_wide(gradation);
+        self
     }
 
     /// Keeps the step below the critical one: follows it, or refuses a fixed step that it has fallen to.

@@ -2,6 +2,7 @@
 
 use super::contact::Law;
 use super::settings::{Contact, Settings};
+use crate::gradation::Gradation;
 use std::f64::consts::PI;
 
 /// Mass of a grain in reduced units.
@@ -96,15 +97,15 @@ pub(super) fn critical_step(
 }
 
 /// Largest by smallest grain from which the most crowded grains are moved as heavier ones.
-const WIDE: f64 = 20.0;
+pub(super) const WIDE: f64 = 20.0;
 
 /// Critical step of a heavier grain, by the critical step before there are contacts.
 const HEAVIER_STEP: f64 = 1.5;
 
 /// Whether sizes differ so much that the step of a compression would follow a few small grains pressed
 /// between large ones, so that such grains are moved as heavier ones.
-pub fn is_wide(largest: f64, smallest: f64) -> bool {
-    largest / smallest >= WIDE
+pub fn is_wide(gradation: &Gradation) -> bool {
+    gradation.largest_mm() / gradation.smallest_mm() >= WIDE
 }
 
 /// Least mass of a grain in a step by the sum of its contacts' stiffness, so that its critical step is

@@ -86,7 +86,7 @@ pub fn compress(
 ) -> Result<(Packing, PackReport), PackingError> {
     settings.check()?;
     let start = random_start(&draw(gradation, settings.grains, settings.seed), settings)?;
-    let mut compression = Compression::new(&start, settings)?;
+    let mut compression = Compression::new(&start, settings)?.of_gradation(gradation);
     let report = compression.run(progress)?;
     Ok((compression.packing(), report))
 }

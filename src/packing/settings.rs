@@ -71,7 +71,7 @@ section! {
         /// Time step as part of the critical one; a low restitution lowers it further.
         pub step_fraction: f64 = 0.7, off, only("more than 0, less than 1", |v| *v > 0.0 && *v < 1.0);
         /// Held steps that end a stage, as many as the grains' own masses would take where some are moved as
-        /// heavier ones.
+        /// heavier ones (gradations of a size ratio of 20 or more).
         pub hold_steps: u64 = 4000, off, whole(1..=u64::from(u32::MAX));
         /// Give up after this many steps.
         pub max_steps: u64 = 2_000_000, off, whole(1..=u64::from(u32::MAX));

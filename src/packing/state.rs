@@ -164,9 +164,7 @@ impl Compression {
         }
         let cell = (record.cell, Aspect::new(record.aspect));
         let mut this = Self::blank(settings, position, velocity, record.unit_mm, origin, cell);
-        if record.makes_heavier != this.makes_heavier() {
-            return Err(PackingError::State("an earlier version moved its grains otherwise"));
-        }
+        this.is_wide = record.makes_heavier;
         this.rank = bytemuck::pod_collect_to_vec(rank);
         (this.spin, this.listed, this.picked) = (row(), row(), row());
         let memory: Vec<[f64; 4]> = bytemuck::pod_collect_to_vec(&rest[160 * n..]);

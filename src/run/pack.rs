@@ -208,7 +208,7 @@ fn compress(
         None => {
             let sizes = draw(&plan.gradation, settings.grains, settings.seed);
             let start = tall_start(&sizes, plan.aspect, settings)?;
-            (Compression::new(&start, settings)?, 0.0, 0)
+            (Compression::new(&start, settings)?.of_gradation(&plan.gradation), 0.0, 0)
         }
     };
     let begun = Instant::now();

@@ -745,15 +745,15 @@ fn check_says_what_packing_and_walks_take() {
     let args = ["check", scene.to_str().unwrap(), "--packings", packings.to_str().unwrap()];
     let words = String::from_utf8(voidwalk(&args).stdout).unwrap();
     let line = |name: &str| words.lines().find(|line| line.starts_with(name)).unwrap().to_owned();
-    assert!(line("time to pack").contains("some 12 000 steps"), "{words}");
+    assert!(line("time to pack").contains("some 21 600 steps"), "{words}");
     assert!(line("time to walk").contains("of one core"), "{words}");
     let output = voidwalk(&[&args[..], &["--json"]].concat());
     let json: Value = serde_json::from_slice(&output.stdout).unwrap();
     let packing = &json["packing"];
-    assert_eq!((&packing["steps"], &packing["is_made"]), (&12_000.into(), &false.into()));
+    assert_eq!((&packing["steps"], &packing["is_made"]), (&21_600.into(), &false.into()));
     let seconds = packing["core_seconds"].as_f64().unwrap();
     let grains = packing["grains"].as_f64().unwrap();
-    let expected = grains * (12_000.0 * 7.5e-8 * (grains / 9_000.0).powf(0.3) + 5e-5);
+    let expected = grains * (21_600.0 * 7.5e-8 * (grains / 9_000.0).powf(0.3) + 5e-5);
     assert!((seconds / expected - 1.0).abs() < 1e-9, "{seconds} for {expected}");
     assert!(json["core_seconds"].as_f64().unwrap() > 0.0);
 }

@@ -18,7 +18,7 @@ const PLAN: &str = "title = \"twelve\"\nseed = 5\n[set]\nreplicates = 2\n\
     \"`touch hacked` & >hacked\" = { \"filter.curve\" = \"shire2016-cu1.5-dense\" }\n";
 
 /// One case that takes a while.
-const LONG: &str = "[[case]]\nname = \"long\"\n[case.set]\nreplicates = 8\nnetwork = { nx = 24, ny = 24, nz = 40 }\n\
+const LONG: &str = "[[case]]\nname = \"long\"\n[case.set]\nreplicates = 24\nnetwork = { nx = 24, ny = 24, nz = 40 }\n\
     record = { sensitivity = [], series_every = 0, size_curves = [] }\n";
 
 struct Place {

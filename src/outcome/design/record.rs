@@ -122,8 +122,7 @@ pub struct DesignRow {
     /// Why there is none, or what else is to be said of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub continuing_note: Option<String>,
-    /// Why the walks themselves put the boundary of no erosion in doubt: a few particles decide, or the
-    /// search ended too near above it to see that.
+    /// Why the walks themselves put the boundary of no erosion in doubt: a few particles decide.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unsteady: Option<String>,
     /// Networks on which a larger ratio was seen to hold than one that erodes, in either run: their smallest

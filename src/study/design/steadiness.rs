@@ -1,30 +1,20 @@
-//! What the walks of a row say against its no-erosion boundary: that a few particles decide, or that the
-//! search ended too near for that to be seen.
+//! What the walks of a row say against its no-erosion boundary: that a few particles decide.
 
 use crate::outcome::verdict::THRESHOLD;
 
 use super::kept::Done;
 
-/// Up to this many times a boundary has to be searched for erosion that comes and goes to be seen.
-const SEEN_TO: f64 = 1.3;
-
-/// Why the boundary of these networks, whose median is `median`, is in doubt; `end` is the largest ratio of
-/// the search.
-pub(super) fn doubt(done: &[&Done], median: f64, end: f64) -> Option<String> {
+/// Why the no-erosion boundary of these networks is in doubt: half of those that erode, or more, hold a ratio
+/// above one at which they do.
+pub(super) fn doubt(done: &[&Done]) -> Option<String> {
     let eroding: Vec<&&Done> = done.iter().filter(|of| of.found.no_erosion.is_some()).collect();
     let unsteady = eroding.iter().filter(|of| comes_and_goes(&of.found.walks)).count();
-    if unsteady > 0 && 2 * unsteady >= eroding.len() {
-        return Some(format!(
-            "on {unsteady} of {} networks that erode a larger D15F/D85B was seen to hold: there a few \
-             particles decide, and with other random numbers the boundary may lie lower. A larger network is \
-             steadier",
-            eroding.len()
-        ));
-    }
-    (end < SEEN_TO * median).then(|| {
+    (unsteady > 0 && 2 * unsteady >= eroding.len()).then(|| {
         format!(
-            "the search ends at D15F/D85B {end:.2}, too near above the boundary to see whether a few \
-             particles decide there: a higher end of --bracket shows it"
+            "of {} networks that erode, {unsteady} were seen to hold in the first run at a larger D15F/D85B \
+             than one at which they erode: a few particles decide there, and with other random numbers a \
+             filter may erode at a smaller D15F/D85B than is said here. A wider network is steadier",
+            eroding.len()
         )
     })
 }
@@ -50,9 +40,9 @@ mod tests {
         Done { row: 0, network: 1, found }
     }
 
-    fn said(networks: &[&[f64]], median: f64, end: f64) -> String {
+    fn said(networks: &[&[f64]]) -> String {
         let done: Vec<Done> = networks.iter().map(|first| network(first)).collect();
-        doubt(&done.iter().collect::<Vec<_>>(), median, end).unwrap_or_default()
+        doubt(&done.iter().collect::<Vec<_>>()).unwrap_or_default()
     }
 
     const STEADY: &[f64] = &[1.0, 5.0, 8.0, 20.0];
@@ -61,17 +51,11 @@ mod tests {
 
     #[test]
     fn half_of_the_networks_that_erode_are_enough() {
-        assert_eq!(said(&[STEADY, STEADY, UNSTEADY], 3.0, 100.0), "");
-        assert!(said(&[STEADY, UNSTEADY], 3.0, 100.0).starts_with("on 1 of 2 networks that erode"));
-        assert!(said(&[STEADY, UNSTEADY, HOLDING], 3.0, 100.0).starts_with("on 1 of 2 networks that erode"));
-        assert!(said(&[UNSTEADY], 3.0, 100.0).starts_with("on 1 of 1 networks"));
-        assert_eq!(said(&[STEADY], 3.0, 100.0), "");
-    }
-
-    #[test]
-    fn a_search_that_ends_at_the_boundary_sees_nothing_above_it() {
-        assert!(said(&[STEADY, STEADY], 3.0, 3.8).starts_with("the search ends at D15F/D85B 3.80"));
-        assert_eq!(said(&[STEADY, STEADY], 3.0, 4.0), "");
+        assert_eq!(said(&[STEADY, STEADY, UNSTEADY]), "");
+        assert!(said(&[STEADY, UNSTEADY]).starts_with("of 2 networks that erode, 1 were"));
+        assert!(said(&[STEADY, UNSTEADY, HOLDING]).starts_with("of 2 networks that erode, 1 were"));
+        assert!(said(&[UNSTEADY]).starts_with("of 1 networks that erode, 1 were"));
+        assert_eq!(said(&[STEADY]), "");
     }
 
     #[test]
@@ -81,6 +65,6 @@ mod tests {
             walk.2 = Some(eroded);
         }
         second.found.is_not_monotone = true;
-        assert_eq!(doubt(&[&second], 3.0, 100.0), None);
+        assert_eq!(doubt(&[&second]), None);
     }
 }

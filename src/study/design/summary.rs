@@ -31,7 +31,7 @@ pub(super) fn design(
     let mut boundaries = Vec::new();
     for (index, row) in rows.iter().enumerate() {
         let of_row: Vec<&Done> = done.iter().filter(|done| done.row == index).collect();
-        boundaries.push(of(row, &of_row, options.bracket)?);
+        boundaries.push(of(row, &of_row)?);
     }
     let held: Vec<Option<f64>> = rows.iter().map(|row| held_over_range(row, rows, &boundaries)).collect();
     // An end of a range is no filter that anybody offers: it is judged with the row that it is an end of.
@@ -87,14 +87,16 @@ struct Asked<'a> {
     row: &'a Row,
     of: &'a DesignRow,
     held: Option<f64>,
-    /// What the walks of a curve of that range say against its boundary.
+    /// What the walks of the curve of that range that holds least say against its boundary.
     unsteady: Option<String>,
 }
 
 fn asked_for<'a>(at: usize, rows: &'a [Row], boundaries: &'a [DesignRow], held: Option<f64>) -> Asked<'a> {
     let row = &rows[at];
-    let said = range(row, rows, boundaries).find_map(|of| Some(named(row, of, of.unsteady.clone()?)));
-    Asked { row, of: &boundaries[at], held, unsteady: said }
+    let held_by = |of: &DesignRow| of.held().unwrap_or(0.0);
+    let least = range(row, rows, boundaries).min_by(|a, b| held_by(a).total_cmp(&held_by(b)));
+    let unsteady = least.and_then(|of| Some(named(row, of, of.unsteady.clone()?)));
+    Asked { row, of: &boundaries[at], held, unsteady }
 }
 
 /// The row itself, and those of the ends of its range.
@@ -187,8 +189,8 @@ fn all_judged(
     let not_monotone: u64 = boundaries.iter().map(|of| of.not_monotone).sum();
     if not_monotone > 0 {
         warnings.push(format!(
-            "on {not_monotone} of the networks some larger ratio was seen to hold: there the smallest ratio \
-             that was seen to erode counts"
+            "on {not_monotone} of the networks some larger ratio was seen to hold in the first run or the \
+             second: there the smallest ratio that was seen to erode counts"
         ));
     }
     Ok((worst, said(|(_, reasons, _)| reasons), warnings))
@@ -286,7 +288,7 @@ fn base(row: &Row, name: &str) -> BaseStated {
 }
 
 /// One row of the record, but for its band.
-fn of(row: &Row, done: &[&Done], bracket: [f64; 2]) -> Result<DesignRow, RunError> {
+fn of(row: &Row, done: &[&Done]) -> Result<DesignRow, RunError> {
     let networks = |value: fn(&Done) -> Option<f64>, beyond: fn(&Done) -> Option<Beyond>| {
         let one = |done: &&Done| value(done).ok_or(beyond(done).unwrap_or(Beyond::Above));
         done.iter().map(one).collect::<Vec<_>>()
@@ -343,7 +345,7 @@ fn of(row: &Row, done: &[&Done], bracket: [f64; 2]) -> Result<DesignRow, RunErro
         let notes: Vec<String> = notes.into_iter().flatten().collect();
         (!notes.is_empty()).then(|| notes.join("; "))
     };
-    let unsteady = no_erosion.as_ref().and_then(|of| steadiness::doubt(done, of.median, bracket[1]));
+    let unsteady = no_erosion.as_ref().and_then(|_| steadiness::doubt(done));
     Ok(DesignRow {
         density: row.wanted.density.clone(),
         thickness: row.wanted.thickness.to_string(),

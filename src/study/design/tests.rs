@@ -85,7 +85,7 @@ fn a_boundary_on_which_few_particles_decide_is_a_doubt() {
     for (cu, across, in_doubt) in [("base.cu=3", 10, true), ("base.cu=1.5", 40, false)] {
         let design = of(cu, across);
         let is_doubt =
-            |said: &String| said.contains("networks that erode a larger D15F/D85B was seen to hold");
+            |said: &String| said.contains("were seen to hold in the first run at a larger D15F/D85B");
         assert_eq!(design.reasons.iter().any(is_doubt), in_doubt, "{:?}", design.reasons);
         assert_eq!(design.confidence == Confidence::Outside, in_doubt, "{:?}", design.reasons);
     }

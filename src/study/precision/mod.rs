@@ -103,7 +103,7 @@ pub fn run(scene: Scene, options: &PrecisionOptions, callbacks: &Callbacks) -> R
     let tiers: Vec<Tier> = Tier::ALL.into_iter().filter(is_wanted).collect();
     let (kind, name) = (FolderKind::Precision, FolderKind::Precision.record());
     let mut work = format!("{} {tiers:?} {:?}", case.fingerprint(), options.budget);
-    if is_wide(case.filter.largest_mm(), case.filter.smallest_mm()) {
+    if is_wide(&case.filter) {
         // Earlier versions packed such filters otherwise.
         work += " heavier grains";
     }

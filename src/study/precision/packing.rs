@@ -132,7 +132,7 @@ fn width_by_largest(gradation: &Gradation, grains: usize) -> f64 {
 
 fn made(gradation: &Gradation, settings: &Settings) -> Result<Made, RunError> {
     let start = random_start(&draw(gradation, settings.grains, settings.seed), settings)?;
-    let mut compression = Compression::new(&start, settings)?;
+    let mut compression = Compression::new(&start, settings)?.of_gradation(gradation);
     let (outcome, core_seconds) = timed(|| compression.run(|_| true));
     let settled = match outcome {
         Ok(_) => true,
