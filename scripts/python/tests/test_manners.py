@@ -105,7 +105,7 @@ def test_other_threads_run_while_a_walk_walks(small: Dict[str, Any]) -> None:
     thread = threading.Thread(target=tick)
     thread.start()
     begun = time.perf_counter()
-    vw.walk(lattice(), vw.Gradation.linear(1.5, 0.2, 85), n_base=1_000_000, replicates=2, engine="particles", threads=1)
+    vw.walk(lattice(), vw.Gradation.linear(1.5, 0.2, 85), n_base=6_000_000, replicates=2, engine="particles", threads=1)
     ended = time.perf_counter()
     done.set()
     thread.join()
