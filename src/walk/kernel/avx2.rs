@@ -50,21 +50,27 @@ fn predict<const CLASSED: bool>(chunk: &mut LatticeChunk, begin: usize, draws: &
     let (low, high) = (_mm_set_epi64x(0x0706_0706_0504_0504, 0x0302_0302_0100_0100), 0x0808_0808_0808_0808);
     let twice = _mm256_set_m128i(_mm_add_epi8(low, _mm_set1_epi64x(high)), low);
     let zero = _mm256_setzero_si256();
+    let (void, diameter) = (chunk.void.as_mut_ptr(), chunk.diameter.as_mut_ptr());
     let mut greatest = zero;
+    for group in 0..BLOCK / WIDTH {
+        // SAFETY: eight entries are within the column, as asserted.
+        let from = unsafe { _mm256_loadu_si256(void.add(begin + WIDTH * group).cast()) };
+        greatest = _mm256_max_epu32(greatest, from);
+    }
+    let inside = _mm256_cmpeq_epi32(_mm256_min_epu32(greatest, last), greatest);
+    assert!(_mm256_movemask_epi8(inside) == -1, "a void that the network does not have");
     let mut rare = 0;
     for (group, draw) in draws.as_chunks::<2>().0.iter().enumerate() {
-        let at = begin + WIDTH * group;
-        // SAFETY: eight entries from `at` on are within both columns, as asserted.
-        let (from, d) = unsafe {
+        let (at, place) = (begin + WIDTH * group, kept + WIDTH * group);
+        // SAFETY: eight entries from `at` on are within both columns, as asserted, and the voids within the
+        // table.
+        let (from, d, word) = unsafe {
             (
-                _mm256_loadu_si256(chunk.void.as_ptr().add(at).cast()),
-                _mm256_loadu_si256(chunk.diameter.as_ptr().add(at).cast()),
+                _mm256_loadu_si256(void.add(at).cast()),
+                _mm256_loadu_si256(diameter.add(at).cast()),
+                look_up(words, void.add(at)),
             )
         };
-        greatest = _mm256_max_epu32(greatest, from);
-        let within = _mm256_min_epu32(from, last);
-        // SAFETY: `within` is less than the table's length.
-        let word = unsafe { look_up(words, within) };
         // SAFETY: two words are sixteen bytes.
         let draw = unsafe { _mm_loadu_si128(draw.as_ptr().cast()) };
         let draw = _mm256_or_si256(_mm256_shuffle_epi8(_mm256_broadcastsi128_si256(draw), twice), below);
@@ -93,34 +99,31 @@ fn predict<const CLASSED: bool>(chunk: &mut LatticeChunk, begin: usize, draws: &
         let coarse = _mm256_cmpgt_epi32(d, passes);
         let long_way = _mm256_or_si256(_mm256_or_si256(out, closed), _mm256_or_si256(tie, coarse));
         let long_way = _mm256_castsi256_ps(long_way);
-        rare |= u64::from(_mm256_movemask_ps(long_way) as u32) << (WIDTH * group);
+        rare = (rare | u64::from(_mm256_movemask_ps(long_way) as u32)).rotate_right(WIDTH as u32);
         let to = _mm256_blendv_ps(_mm256_castsi256_ps(to), _mm256_castsi256_ps(from), long_way);
-        let place = kept + WIDTH * group;
         // SAFETY: `place <= at`, so eight entries from there on are within both columns; those up to
         // `at + 8` have been read.
         unsafe {
-            _mm256_storeu_ps(chunk.void.as_mut_ptr().add(place).cast(), to);
-            _mm256_storeu_si256(chunk.diameter.as_mut_ptr().add(place).cast(), d);
+            _mm256_storeu_ps(void.add(place).cast(), to);
+            _mm256_storeu_si256(diameter.add(place).cast(), d);
         }
     }
-    let inside = _mm256_cmpeq_epi32(_mm256_min_epu32(greatest, last), greatest);
-    assert!(_mm256_movemask_epi8(inside) == -1, "a void that the network does not have");
     rare
 }
 
-/// Words of the table: eight loads, which take less time than a gather.
+/// Words of the table for eight voids: eight loads, which take less time than a gather.
+///
+/// The voids, too, are loaded one by one: to take them out of a vector register takes longer. A compiler that
+/// sees that they are in one would.
 ///
 /// # Safety
-/// Each of `voids` is less than the table's length.
+/// There are eight entries at `voids`, each less than the table's length.
 #[inline]
 #[target_feature(enable = "avx2")]
-pub(super) unsafe fn look_up(table: &[u32], voids: __m256i) -> __m256i {
-    let mut at = [0u32; WIDTH];
-    // SAFETY: eight entries.
-    unsafe { _mm256_storeu_si256(at.as_mut_ptr().cast(), voids) };
+pub(super) unsafe fn look_up(table: &[u32], voids: *const u32) -> __m256i {
     // SAFETY: as asked for.
-    let [a, b, c, d, e, f, g, h] = at.map(|void| unsafe { *table.get_unchecked(void as usize) } as i32);
-    _mm256_setr_epi32(a, b, c, d, e, f, g, h)
+    let word = |j: usize| unsafe { *table.get_unchecked(voids.add(j).read_volatile() as usize) as i32 };
+    _mm256_setr_epi32(word(0), word(1), word(2), word(3), word(4), word(5), word(6), word(7))
 }
 
 /// By mask of the lanes that are gone: the lanes that stay, in order, then any.
