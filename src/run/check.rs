@@ -38,7 +38,7 @@ pub struct Check {
     pub bytes_allowed: u64,
     /// Memory in words.
     pub memory: String,
-    /// Seconds of one core for the walks, the packing apart.
+    /// Seconds of one core of this machine for the walks, the packing apart.
     pub core_seconds: f64,
     /// Whether the particles are in files, mapped into memory.
     pub particles_on_disk: bool,
@@ -121,7 +121,7 @@ pub fn check(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError> 
             .unwrap_or(0),
         bytes_allowed: case.memory,
         memory: case.memory_in_words(threads),
-        core_seconds: case.core_seconds(),
+        core_seconds: case.core_seconds_here(),
         particles_on_disk: case.placement != Placement::Memory,
         ratios: case.ratios(),
         packing,

@@ -97,36 +97,56 @@ const SOLVED_EVERY: f64 = 10.0;
 const SOLVE_S: f64 = 6.5e-7;
 
 impl Case {
-    /// Seconds that one thread of a machine of today takes for the whole case, its packing apart: a rough
-    /// guess. What a rule that adds replicates may ask for besides is not foreseen.
+    /// Seconds that one thread of a machine of 2024 takes for the whole case, its packing apart: a rough
+    /// guess, the same wherever it is asked for. What a rule that adds replicates may ask for besides is not
+    /// foreseen.
     pub fn core_seconds(&self) -> f64 {
+        self.foreseen().seconds
+    }
+
+    /// The same for this machine, whose pace the pilot walks of the case tell.
+    pub fn core_seconds_here(&self) -> f64 {
+        let Foreseen { seconds, besides, pilots, .. } = self.foreseen();
+        (seconds - besides) * pilots.pace() + besides
+    }
+
+    fn foreseen(&self) -> Foreseen {
         let packed = if self.packed.is_some() { PACKED_FILES_S } else { 0.0 };
-        self.readings().map(Case::reading_seconds).sum::<f64>() + FILES_S + packed
+        let readings = self.readings().map(Case::reading_foreseen);
+        readings.fold(Foreseen { seconds: FILES_S + packed, ..Foreseen::default() }, |all, reading| {
+            all.and(1.0, &reading)
+        })
     }
 
     /// The same for one reading of its base, its files apart.
-    fn reading_seconds(&self) -> f64 {
+    fn reading_foreseen(&self) -> Foreseen {
         let (factors, thicknesses) = (self.sensitivity_factors(), self.thickness_factors());
-        let most_s = PILOT_S / (1 + factors.len() + thicknesses.len()) as f64;
+        let ends = self.curve_ends();
+        let most_s = PILOT_S / (1 + factors.len() + thicknesses.len() + ends.len()) as f64;
         let own = self.of_replicate(self.n_base, most_s);
         let of_base = |f: f64| self.of_replicate((self.n_base as f64 * f) as u64, most_s);
-        let of_thickness = |factor: f64| match self.copies {
-            None => self.of_thickness(factor).ok().map(|other| other.of_replicate(other.n_base, most_s)),
-            // As many times the base on as many times the copies.
-            Some(_) => Some(Foreseen { seconds: own.seconds * factor * factor.max(1.0), eroded: None }),
-        };
+        let of_thickness =
+            |factor: f64| match self.copies {
+                None => self.of_thickness(factor).ok().map(|other| other.of_replicate(other.n_base, most_s)),
+                // As many times the base on as many times the copies.
+                Some(_) => Some(Foreseen::default().and(
+                    factor * factor.max(1.0),
+                    &Foreseen { pilots: Pilots::default(), eroded: None, ..own },
+                )),
+            };
         let points = factors.into_iter().map(of_base);
         let points = points.chain(thicknesses.into_iter().filter_map(of_thickness));
-        let studies: f64 = points
-            .map(|point| {
-                // What is not walked by a pilot is taken to erode as the case does.
-                let own = own.eroded.as_deref();
-                let eroded = own.map(|own| (own, point.eroded.as_deref().unwrap_or(own)));
-                likely_replicates(self, eroded) as f64 * point.seconds
-            })
-            .sum();
-        let replicates = first_replicates(self) * (1 + self.curve_ends().len()) as u64;
-        replicates as f64 * own.seconds + studies
+        let studies = points.map(|point| {
+            // What is not walked by a pilot is taken to erode as the case does.
+            let own = own.eroded.as_deref();
+            let eroded = own.map(|own| (own, point.eroded.as_deref().unwrap_or(own)));
+            (likely_replicates(self, eroded), point)
+        });
+        let replicates = first_replicates(self);
+        let of_end = |curve| self.with_curve(curve).of_replicate(self.n_base, most_s);
+        let ends = ends.into_iter().map(|end| (replicates, of_end(end.curve)));
+        let first = Foreseen::default().and(replicates as f64, &own);
+        studies.chain(ends).fold(first, |all, (replicates, point)| all.and(replicates as f64, &point))
     }
 
     /// All runs of a replicate with so many base particles, its network included: by a pilot walk, else by a
@@ -137,17 +157,18 @@ impl Case {
         let [voids, constrictions, ..] = self.counts.map(|n| n as f64);
         let besides = runs * guess.solved + (voids + constrictions) * NETWORK_S;
         match pilot(self, n_base, runs * guess.seconds, most_s) {
-            Some(work) => Foreseen { seconds: self.walked(&work) + besides, eroded: Some(work.eroded) },
-            None => Foreseen { seconds: runs * guess.seconds + besides, eroded: None },
+            Some(work) => {
+                // A pilot walks on a lattice by area, whatever the case's own network is.
+                let said = work.of_voids(1.0, self.of_engine(true));
+                Foreseen {
+                    seconds: work.of_voids(voids, self.slower()) + besides,
+                    besides,
+                    pilots: Pilots { took: work.seconds, said },
+                    eroded: Some(work.eroded),
+                }
+            }
+            None => Foreseen { seconds: runs * guess.seconds + besides, besides, ..Foreseen::default() },
         }
-    }
-
-    /// Seconds of all runs of a replicate that do so much work for each void.
-    fn walked(&self, work: &WorkByVoid) -> f64 {
-        let voids = self.counts[0] as f64;
-        let counted = |of_void: f64| voids * of_void * self.slower();
-        let [occupied, looked_at] = [work.occupied, work.looked_at].map(counted);
-        WALK.seconds(occupied, looked_at, voids * work.one_by_one, voids * work.moves)
     }
 
     /// Seconds of one run that meets a clean network all the way.
@@ -171,13 +192,17 @@ impl Case {
             NetworkSource::Cubic(_) => 1.0,
             _ => OTHER_NETWORK,
         };
+        of_network * self.of_engine(self.scene.is_lattice_by_area())
+    }
+
+    /// The same of the case's own engine, on a lattice by area or on another network.
+    fn of_engine(&self, is_lattice_by_area: bool) -> f64 {
         let [of_rows, of_voids] = EXPECTED;
-        let of_engine = match self.scene.walk.engine {
-            Engine::Expected if self.scene.is_lattice_by_area() => of_rows,
+        match self.scene.walk.engine {
+            Engine::Expected if is_lattice_by_area => of_rows,
             Engine::Expected => of_voids,
             _ => 1.0,
-        };
-        of_network * of_engine
+        }
     }
 
     /// Moves of a particle that is walked by itself, on average: until a finer constriction stops it, with
@@ -216,11 +241,52 @@ impl Rates {
     }
 }
 
-/// What is foreseen of a replicate.
+impl WorkByVoid {
+    /// Seconds that so much work takes on so many voids, whose counts take so many times as long as on a
+    /// lattice by engine `counts`.
+    fn of_voids(&self, voids: f64, slower: f64) -> f64 {
+        let [occupied, looked_at] = [self.occupied, self.looked_at].map(|each| voids * each * slower);
+        WALK.seconds(occupied, looked_at, voids * self.one_by_one, voids * self.moves)
+    }
+}
+
+/// What is foreseen of walks.
+#[derive(Default)]
 struct Foreseen {
     seconds: f64,
+    /// Those of them in which nothing is walked: networks are built, and the flow is solved.
+    besides: f64,
+    /// The pilot walks by which it was.
+    pilots: Pilots,
     /// Eroded mass fraction by run, where a pilot walk says.
     eroded: Option<Vec<f64>>,
+}
+
+impl Foreseen {
+    /// This, and so many times `other`, whose pilot walks were walked once.
+    fn and(self, times: f64, other: &Self) -> Self {
+        let Pilots { took, said } = self.pilots;
+        Self {
+            seconds: self.seconds + times * other.seconds,
+            besides: self.besides + times * other.besides,
+            pilots: Pilots { took: took + other.pilots.took, said: said + other.pilots.said },
+            eroded: self.eroded,
+        }
+    }
+}
+
+/// Seconds of pilot walks: what they took here, and what the rates of this module say.
+#[derive(Clone, Copy, Default)]
+struct Pilots {
+    took: f64,
+    said: f64,
+}
+
+impl Pilots {
+    /// How many times as long as by the rates things take here; 1 without pilots.
+    fn pace(self) -> f64 {
+        if self.said > 0.0 { self.took / self.said } else { 1.0 }
+    }
 }
 
 /// Seconds of a run, those in which the flow is solved apart.

@@ -11,8 +11,10 @@ use bitvec::vec::BitVec;
 use crate::case::{Case, replicate_seed};
 use crate::network::Network;
 use crate::outcome::Eroded;
+use crate::store::platform::thread_seconds;
 use crate::walk::{Passive, SizeClasses, State, Walk, WalkControl};
 
+use super::machine::on_threads;
 use super::replicates::plan;
 
 /// Work of all runs of one replicate, for each void of its network.
@@ -28,6 +30,8 @@ pub(super) struct WorkByVoid {
     pub one_by_one: f64,
     /// Eroded mass fraction of each run: a slim lattice erodes about as much.
     pub eroded: Vec<f64>,
+    /// Processor time that it took here (s).
+    pub seconds: f64,
 }
 
 /// Greatest width of the slim lattice: voids along x and y.
@@ -49,13 +53,20 @@ pub(super) fn pilot(case: &Case, n_base: u64, whole_s: f64, most_s: f64) -> Opti
     if u64::from(width).pow(2) >= start_nodes {
         return None;
     }
+    // On one thread, whose time is that of no other work.
+    on_threads(Some(1), || Ok(walked(case, n_base, width, depth))).ok()?
+}
+
+/// The same, for a lattice so many voids wide and deep.
+fn walked(case: &Case, n_base: u64, width: u32, depth: u32) -> Option<WorkByVoid> {
     let seed = replicate_seed(case.scene.walk.seed, 1);
     let network = Network::cubic([width, width, depth], &case.curve, case.unit_mm, seed).ok()?;
-    let share = network.voids() as f64 / voids as f64;
+    let share = network.voids() as f64 / case.counts[0] as f64;
     let n_base = ((n_base as f64 * share).round() as u64).max(1);
     let across = width as usize * width as usize;
     let mut work = WorkByVoid::default();
     let mut blocked = BitVec::repeat(false, network.constrictions());
+    let begun = thread_seconds();
     for run in 1..=case.scene.walk.runs {
         let plan = plan(case, &network, &blocked, n_base);
         let supply = plan.supply(case.sampler.clone(), n_base, case.increments(), seed, run);
@@ -84,6 +95,7 @@ pub(super) fn pilot(case: &Case, n_base: u64, whole_s: f64, most_s: f64) -> Opti
         moves: work.moves / each,
         one_by_one: work.one_by_one / each,
         eroded: work.eroded,
+        seconds: (thread_seconds() - begun) / each,
     })
 }
 
