@@ -114,9 +114,9 @@ struct Prediction {
 }
 
 impl Prediction {
-    /// Predicts where the part of the block of particles from `begin` on goes, and writes it, and their diameters,
-    /// from `kept` on. Where the prediction may be wrong there is a bit, and the void that the particle is
-    /// in.
+    /// Predicts where the part of a block of particles from `begin` on goes, and writes it, and their
+    /// diameters, from `kept` on. Where the prediction may be wrong there is a bit, and the void that the
+    /// particle is in.
     ///
     /// Passes of arithmetic alone over halves of words and whole words: they compile to vector code.
     #[inline]
