@@ -203,6 +203,7 @@ impl Lanes {
     /// A call, so that the generators stay in memory: a machine has no registers for all of them beside what
     /// the caller does, and would move their words to and fro.
     #[inline(never)]
+    #[cfg(target_arch = "x86_64")]
     pub fn next_two_blocks(&mut self) -> [[u64; LANES]; 2] {
         let mut out = [[0; LANES]; 2];
         let [s0, s1, s2, s3] = self.state.each_mut().map(|row| row.as_chunks_mut::<2>().0);
@@ -214,6 +215,12 @@ impl Lanes {
             [s0[pair], s1[pair], s2[pair], s3[pair]] = state;
         }
         out
+    }
+
+    /// The same twice, one after the other.
+    #[cfg(not(target_arch = "x86_64"))]
+    pub fn next_two_blocks(&mut self) -> [[u64; LANES]; 2] {
+        [self.next_block(), self.next_block()]
     }
 
     /// What completes the draws of this stream to 64 bits.
@@ -258,25 +265,6 @@ fn next_of_registers(state: &mut [[u64; 2]; 4]) -> [u64; 2] {
     let s3 = _mm_or_si128(_mm_slli_epi64::<45>(s3), _mm_srli_epi64::<19>(s3));
     *state = [s0, s1, s2, s3].map(bytemuck::cast);
     bytemuck::cast(out)
-}
-
-/// Next word of two generators; their state by word and generator.
-#[cfg(not(target_arch = "x86_64"))]
-#[inline(always)]
-fn next_of_pair(state: &mut [[u64; 2]; 4]) -> [u64; 2] {
-    let [s0, s1, s2, s3] = state;
-    let mut out = [0; 2];
-    for l in 0..2 {
-        out[l] = s0[l].wrapping_add(s3[l]).rotate_left(23).wrapping_add(s0[l]);
-        let t = s1[l] << 17;
-        s2[l] ^= s0[l];
-        s3[l] ^= s1[l];
-        s1[l] ^= s2[l];
-        s0[l] ^= s3[l];
-        s2[l] ^= t;
-        s3[l] = s3[l].rotate_left(45);
-    }
-    out
 }
 
 /// Sixteen-bit draw `j` of a block, `j < DRAWS_PER_BLOCK`.

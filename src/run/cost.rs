@@ -2,8 +2,9 @@
 //!
 //! It is asked before any work, to tell a user minutes from hours and a cluster what to give, and after a
 //! first run, whose counted work says what more of them will take. Its figures are those of one thread of a
-//! processor of 2024 that is shared with other work; `results/check-*.md` and `results/slurm-*.md` hold
-//! estimates against measured times (`scripts/check_times.py`).
+//! processor of 2024 that is shared with other work; only [`Case::core_seconds_here`] asks how fast the machine
+//! is on which it runs. `results/check-*.md` and `results/slurm-*.md` hold estimates against measured times
+//! (`scripts/check_times.py`).
 
 use super::pilot::{WorkByVoid, pilot};
 use super::replicates::first_replicates;
@@ -125,15 +126,15 @@ impl Case {
         let most_s = PILOT_S / (1 + factors.len() + thicknesses.len() + ends.len()) as f64;
         let own = self.of_replicate(self.n_base, most_s);
         let of_base = |f: f64| self.of_replicate((self.n_base as f64 * f) as u64, most_s);
-        let of_thickness =
-            |factor: f64| match self.copies {
-                None => self.of_thickness(factor).ok().map(|other| other.of_replicate(other.n_base, most_s)),
-                // As many times the base on as many times the copies.
-                Some(_) => Some(Foreseen::default().and(
-                    factor * factor.max(1.0),
-                    &Foreseen { pilots: Pilots::default(), eroded: None, ..own },
-                )),
-            };
+        let of_thickness = |factor: f64| match self.copies {
+            None => self.of_thickness(factor).ok().map(|other| other.of_replicate(other.n_base, most_s)),
+            // As many times the base on as many times the copies; no pilot walks it.
+            Some(_) => {
+                let times = factor * factor.max(1.0);
+                let (seconds, besides) = (times * own.seconds, times * own.besides);
+                Some(Foreseen { seconds, besides, ..Foreseen::default() })
+            }
+        };
         let points = factors.into_iter().map(of_base);
         let points = points.chain(thicknesses.into_iter().filter_map(of_thickness));
         let studies = points.map(|point| {

@@ -17,8 +17,8 @@ const PLAN: &str = "title = \"twelve\"\nseed = 5\n[set]\nreplicates = 2\n\
     [[factor]]\nname = \"f; touch $(echo hacked)\"\n[factor.levels]\n\"-x *\" = { \"filter.curve\" = \"shire2016-cu1.5-loose\" }\n\
     \"`touch hacked` & >hacked\" = { \"filter.curve\" = \"shire2016-cu1.5-dense\" }\n";
 
-/// One case that takes ten seconds on a fast machine: three times as long as its test needs to stop it three times.
-const LONG: &str = "[[case]]\nname = \"long\"\n[case.set]\nreplicates = 80\nnetwork = { nx = 24, ny = 24, nz = 40 }\n\
+/// Two replicates that take seconds each: a task can be stopped in them three times on a fast machine, too.
+const LONG: &str = "[[case]]\nname = \"long\"\n[case.set]\nreplicates = 2\nnetwork = { nx = 48, ny = 48, nz = 200 }\n\
     record = { sensitivity = [], series_every = 0, size_curves = [] }\n";
 
 struct Place {

@@ -74,7 +74,6 @@ pub(super) struct LatticeChunk<'a> {
 pub(super) fn step<const CLASSED: bool>(mut chunk: LatticeChunk) -> usize {
     let mut lanes = chunk.lanes.clone();
     let count = chunk.void.len();
-    let mut guess = Prediction::default();
     let mut kept = 0;
     for begin in (0..count - count % BLOCK).step_by(BLOCK) {
         chunk.fetch_ahead(begin, BLOCK);
@@ -82,7 +81,7 @@ pub(super) fn step<const CLASSED: bool>(mut chunk: LatticeChunk) -> usize {
         let mut rare = 0;
         for (part, draws) in draws.as_chunks().0.iter().enumerate() {
             let done = part * PART;
-            rare |= guess.predict::<CLASSED>(&mut chunk, begin + done, draws, kept + done) << done;
+            rare |= predict::<CLASSED>(&mut chunk, begin + done, draws, kept + done) << done;
         }
         let gone = chunk.settle::<CLASSED>(begin, &draws, rare, kept);
         kept = chunk.close_up(kept, gone);
@@ -90,7 +89,8 @@ pub(super) fn step<const CLASSED: bool>(mut chunk: LatticeChunk) -> usize {
     chunk.step_rest::<CLASSED>(|| lanes.next_block(), kept)
 }
 
-/// Particles whose ways are predicted at once.
+/// Particles whose ways are predicted at once: with 8 the compiler makes no vector code of it, and of 32 the
+/// registers do not hold the passes.
 const PART: usize = 16;
 
 /// A bit for each of them.
@@ -104,66 +104,50 @@ static BITS: [u32; PART] = {
     bits
 };
 
-/// Where the particles of a part of a block go.
-#[derive(Default)]
-struct Prediction {
-    /// Words of the table for the voids that they are in.
-    word: [u32; PART],
-    /// Voids that they are in then.
-    to: [u32; PART],
-}
-
-impl Prediction {
-    /// Predicts where the part of a block of particles from `begin` on goes, and writes it, and their
-    /// diameters, from `kept` on. Where the prediction may be wrong there is a bit, and the void that the
-    /// particle is in.
-    ///
-    /// Passes of arithmetic alone over halves of words and whole words: they compile to vector code.
-    #[inline]
-    fn predict<const CLASSED: bool>(
-        &mut self,
-        chunk: &mut LatticeChunk,
-        begin: usize,
-        draws: &[u64; PART / 4],
-        kept: usize,
-    ) -> u64 {
-        let Self { word, to } = self;
-        let (table, words) = (chunk.table, chunk.table.words::<CLASSED>());
-        let (from, d): (&[u32; PART], &[f32; PART]) =
-            (chunk.void[begin..].first_chunk().unwrap(), chunk.diameter[begin..].first_chunk().unwrap());
-        for (word, &from) in word.iter_mut().zip(from) {
-            *word = words[from as usize];
-        }
-        let draws: [u16; PART] = bytemuck::cast(draws.map(u64::to_le));
-        let (nx, plane) = (table.moves[4], table.moves[15]);
-        let last_layer = (words.len() as u32 - plane) as i32;
-        let less = if CLASSED { 5 } else { 0 };
-        let mut rare = 0;
-        for j in 0..PART {
-            let draw = u32::from(u16::from_le(draws[j]));
-            let (top_first, top_second) = ((draw >> 2) as i32, (draw >> less) as i32);
-            let (first, second) = ((word[j] >> 2 & 0x3fff) as i32, (word[j] >> (16 + less)) as i32);
-            let (wraps_x, wraps_y) = (0u32.wrapping_sub(word[j] & 1), 0u32.wrapping_sub(word[j] >> 1 & 1));
-            let (before_first, before_second) = (ones(top_first < first), ones(top_second < second));
-            let sideways = 1u32.wrapping_sub(wraps_x & nx);
-            let across = nx.wrapping_sub(wraps_y & plane);
-            let by = before_first & sideways | !before_first & across;
-            let by = before_second & by | !before_second & plane;
-            let class = if CLASSED { (word[j] & CLASS) << CLASS_UP } else { 0 };
-            let wrong = ones(top_first == first)
-                | ones(top_second == second)
-                | before_first & !before_second
-                | ones(d[j].to_bits() as i32 > (table.finest + class) as i32)
-                | !before_second & ones(from[j] as i32 >= last_layer);
-            rare |= wrong & BITS[j];
-            to[j] = from[j].wrapping_add(by & !wrong);
-        }
-        chunk.void[kept..kept + PART].copy_from_slice(to);
-        if kept < begin {
-            chunk.diameter.copy_within(begin..begin + PART, kept);
-        }
-        u64::from(rare)
+/// Predicts where the part of a block of particles from `begin` on goes, and writes it, and their diameters,
+/// from `kept` on. Where the prediction may be wrong there is a bit, and the void that the particle is in.
+///
+/// Passes of arithmetic alone over halves of words and whole words: they compile to vector code.
+#[inline]
+fn predict<const CLASSED: bool>(
+    chunk: &mut LatticeChunk,
+    begin: usize,
+    draws: &[u64; PART / 4],
+    kept: usize,
+) -> u64 {
+    let (table, words) = (chunk.table, chunk.table.words::<CLASSED>());
+    let (from, d): (&[u32; PART], &[f32; PART]) =
+        (chunk.void[begin..].first_chunk().unwrap(), chunk.diameter[begin..].first_chunk().unwrap());
+    let word = from.map(|from| words[from as usize]);
+    let draws: [u16; PART] = bytemuck::cast(draws.map(u64::to_le));
+    let (nx, plane) = (table.moves[4], table.moves[15]);
+    let last_layer = (words.len() as u32 - plane) as i32;
+    let less = if CLASSED { 5 } else { 0 };
+    let (mut rare, mut to) = (0, [0; PART]);
+    for j in 0..PART {
+        let draw = u32::from(u16::from_le(draws[j]));
+        let (top_first, top_second) = ((draw >> 2) as i32, (draw >> less) as i32);
+        let (first, second) = ((word[j] >> 2 & 0x3fff) as i32, (word[j] >> (16 + less)) as i32);
+        let (wraps_x, wraps_y) = (0u32.wrapping_sub(word[j] & 1), 0u32.wrapping_sub(word[j] >> 1 & 1));
+        let (before_first, before_second) = (ones(top_first < first), ones(top_second < second));
+        let sideways = 1u32.wrapping_sub(wraps_x & nx);
+        let across = nx.wrapping_sub(wraps_y & plane);
+        let by = before_first & sideways | !before_first & across;
+        let by = before_second & by | !before_second & plane;
+        let class = if CLASSED { (word[j] & CLASS) << CLASS_UP } else { 0 };
+        let wrong = ones(top_first == first)
+            | ones(top_second == second)
+            | before_first & !before_second
+            | ones(d[j].to_bits() as i32 > (table.finest + class) as i32)
+            | !before_second & ones(from[j] as i32 >= last_layer);
+        rare |= wrong & BITS[j];
+        to[j] = from[j].wrapping_add(by & !wrong);
     }
+    chunk.void[kept..kept + PART].copy_from_slice(&to);
+    if kept < begin {
+        chunk.diameter.copy_within(begin..begin + PART, kept);
+    }
+    u64::from(rare)
 }
 
 /// All bits where `yes`, else none: conditions as arithmetic.
