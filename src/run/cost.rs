@@ -2,9 +2,9 @@
 //!
 //! It is asked before any work, to tell a user minutes from hours and a cluster what to give, and after a
 //! first run, whose counted work says what more of them will take. Its figures are those of one thread of a
-//! processor of 2024 that is shared with other work; only [`Case::core_seconds_here`] asks how fast the machine
-//! is on which it runs. `results/check-*.md` and `results/slurm-*.md` hold estimates against measured times
-//! (`scripts/check_times.py`).
+//! processor of 2024 that is shared with other work; only [`Case::core_seconds_here`] asks how fast the
+//! machine is on which it runs. `results/check-*.md` and `results/slurm-*.md` hold estimates against measured
+//! times (`scripts/check_times.py`).
 
 use super::pilot::{WorkByVoid, pilot};
 use super::replicates::first_replicates;
