@@ -75,7 +75,7 @@ pub struct PackingCheck {
 impl PackingCheck {
     fn new(plan: &PackingPlan, folder: PathBuf, is_made: bool) -> Self {
         let grains = plan.compression.grains as u64;
-        Self { grains, folder, is_made, steps: plan.usual_steps(), core_seconds: plan.core_seconds() }
+        Self { grains, folder, is_made, steps: plan.usual_steps(), core_seconds: plan.core_seconds_here() }
     }
 }
 

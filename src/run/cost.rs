@@ -6,7 +6,7 @@
 //! machine is on which it runs. `results/check-*.md` and `results/slurm-*.md` hold estimates against measured
 //! times (`scripts/check_times.py`).
 
-use super::pilot::{WorkByVoid, pilot};
+use super::pilot::{WorkByVoid, pilot, small_packing_seconds};
 use super::replicates::first_replicates;
 use super::studies::likely_replicates;
 use crate::case::{Case, PackingPlan};
@@ -64,6 +64,11 @@ const GRAIN_STEP_S: f64 = 7.5e-8;
 const GRAINS: f64 = 9_000.0;
 /// See `GRAIN_STEP_S`.
 const GRAINS_POWER: f64 = 0.3;
+/// Power of Cu with which the seconds of a grain and step grow: the wider the gradation, the more of its grains
+/// touch nothing.
+const WIDTH_POWER: f64 = -0.4;
+/// Seconds of the small packing that tells a machine's pace, where a grain and step take `GRAIN_STEP_S`.
+const SMALL_PACKING_S: f64 = 0.105;
 /// Steps that packings with friction took at Cu 1.5 (11,200 to 14,100), the power of Cu with which they grow
 /// (15,300 to 19,400 at Cu 2, 22,400 to 33,100 at Cu 3), and the number at which they stay (30,500 to 43,300
 /// from Cu 4 to Cu 6, with the grains' own masses).
@@ -329,18 +334,31 @@ impl CountedWork {
 }
 
 impl PackingPlan {
-    /// Seconds that one thread takes for the packing: a rough guess.
+    /// Seconds that one thread of a machine of 2024 takes for the packing: a rough guess, the same wherever it
+    /// is asked for.
     pub fn core_seconds(&self) -> f64 {
         // Stiffer grains move in shorter steps.
         let stiffness = libm::sqrt((self.compression.stiffness_ratio / 0.1).max(0.1));
         let grains = self.compression.grains as f64;
-        let step_s = GRAIN_STEP_S * libm::pow(grains / GRAINS, GRAINS_POWER);
+        let wider = libm::pow(self.line_cu() / 1.5, WIDTH_POWER);
+        let step_s = GRAIN_STEP_S * wider * libm::pow(grains / GRAINS, GRAINS_POWER);
         grains * (self.usual_steps() as f64 * stiffness * step_s + MEASURED_GRAIN_S)
     }
 
-    /// Steps that packings of this friction and width of gradation took: that of a straight line of this Cu.
+    /// The same for this machine, whose pace a small packing tells.
+    pub fn core_seconds_here(&self) -> f64 {
+        let pace = small_packing_seconds().map_or(1.0, |seconds| seconds / SMALL_PACKING_S);
+        self.core_seconds() * pace
+    }
+
+    /// Cu of the straight line between the same largest and smallest diameters.
+    fn line_cu(&self) -> f64 {
+        libm::sqrt(self.gradation.largest_mm() / self.gradation.smallest_mm())
+    }
+
+    /// Steps that packings of this friction and width of gradation took.
     pub fn usual_steps(&self) -> u64 {
-        let cu = libm::sqrt(self.gradation.largest_mm() / self.gradation.smallest_mm());
+        let cu = self.line_cu();
         let (at_1_5, power, most) = STEPS;
         let steps = (at_1_5 * libm::pow(cu / 1.5, power)).min(most);
         let steps = if self.compression.friction == 0.0 { steps.max(DENSE_STEPS) } else { steps };

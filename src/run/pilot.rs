@@ -9,8 +9,10 @@ use std::ops::Range;
 use bitvec::vec::BitVec;
 
 use crate::case::{Case, replicate_seed};
+use crate::gradation::Gradation;
 use crate::network::Network;
 use crate::outcome::Eroded;
+use crate::packing::{Settings, compress};
 use crate::store::platform::thread_seconds;
 use crate::walk::{Passive, SizeClasses, State, Walk, WalkControl};
 
@@ -97,6 +99,17 @@ fn walked(case: &Case, n_base: u64, width: u32, depth: u32) -> Option<WorkByVoid
         eroded: work.eroded,
         seconds: (thread_seconds() - begun) / each,
     })
+}
+
+/// Processor time that a small packing takes here, on one thread (s): the same grains and steps everywhere.
+pub(super) fn small_packing_seconds() -> Option<f64> {
+    let gradation = Gradation::linear_from_d0(1.0, 1.5).ok()?;
+    let settings = Settings { grains: 200, stiffness_ratio: 0.01, ..Settings::default() };
+    let packed = || {
+        let begun = thread_seconds();
+        compress(&gradation, &settings, |_| true).map(|_| thread_seconds() - begun)
+    };
+    on_threads(Some(1), || Ok(packed())).ok()?.ok()
 }
 
 /// How many of these voids hold counts.
