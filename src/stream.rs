@@ -198,14 +198,14 @@ impl Lanes {
         out
     }
 
-    /// The same twice, one after the other.
+    /// The same `N` times, one after the other.
     ///
     /// A call, so that the generators stay in memory: a machine has no registers for all of them beside what
     /// the caller does, and would move their words to and fro.
     #[inline(never)]
     #[cfg(target_arch = "x86_64")]
-    pub fn next_two_blocks(&mut self) -> [[u64; LANES]; 2] {
-        let mut out = [[0; LANES]; 2];
+    pub fn next_blocks<const N: usize>(&mut self) -> [[u64; LANES]; N] {
+        let mut out = [[0; LANES]; N];
         let [s0, s1, s2, s3] = self.state.each_mut().map(|row| row.as_chunks_mut::<2>().0);
         for pair in 0..LANES / 2 {
             let mut state = [s0[pair], s1[pair], s2[pair], s3[pair]];
@@ -217,10 +217,10 @@ impl Lanes {
         out
     }
 
-    /// The same twice, one after the other.
+    /// The same `N` times, one after the other.
     #[cfg(not(target_arch = "x86_64"))]
-    pub fn next_two_blocks(&mut self) -> [[u64; LANES]; 2] {
-        [self.next_block(), self.next_block()]
+    pub fn next_blocks<const N: usize>(&mut self) -> [[u64; LANES]; N] {
+        std::array::from_fn(|_| self.next_block())
     }
 
     /// What completes the draws of this stream to 64 bits.
@@ -323,10 +323,11 @@ mod tests {
     }
 
     #[test]
-    fn two_blocks_are_one_after_the_other() {
+    fn blocks_at_once_are_one_after_the_other() {
         let (mut at_once, mut each) = (key(2, 5).lanes(), key(2, 5).lanes());
         for _ in 0..100 {
-            assert_eq!(at_once.next_two_blocks(), [each.next_block(), each.next_block()]);
+            assert_eq!(at_once.next_blocks::<2>(), [each.next_block(), each.next_block()]);
+            assert_eq!(at_once.next_blocks::<1>(), [each.next_block()]);
             assert_eq!(at_once.state, each.state);
         }
     }

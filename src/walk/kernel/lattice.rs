@@ -77,7 +77,7 @@ pub(super) fn step<const CLASSED: bool>(mut chunk: LatticeChunk) -> usize {
     let mut kept = 0;
     for begin in (0..count - count % BLOCK).step_by(BLOCK) {
         chunk.fetch_ahead(begin, BLOCK);
-        let draws: Draws = bytemuck::cast(lanes.next_two_blocks());
+        let draws: Draws = bytemuck::cast(lanes.next_blocks::<2>());
         let mut rare = 0;
         for (part, draws) in draws.as_chunks().0.iter().enumerate() {
             let done = part * PART;

@@ -48,7 +48,7 @@ impl Draws {
     /// A fresh block; words left of the current one stay for [`Draws::word`].
     #[inline(always)]
     pub(super) fn block(&mut self) -> [u64; LANES] {
-        self.lanes.next_block()
+        self.lanes.next_blocks::<1>()[0]
     }
 }
 
