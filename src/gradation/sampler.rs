@@ -158,7 +158,7 @@ impl SizeSampler {
     ///
     /// # Panics
     /// If the slices differ in length.
-    #[inline]
+    #[inline(always)]
     pub fn fill(&self, words: &[u64], out: &mut [f32]) {
         assert_eq!(words.len(), out.len(), "one diameter per word");
         if let [segment] = self.segments[..] {

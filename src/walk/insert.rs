@@ -102,7 +102,7 @@ fn draw(
     mut of: impl FnMut([u64; 2]) -> (u32, u64),
 ) {
     for (void, size_words) in void.chunks_mut(LANES / 2).zip(size_words.chunks_mut(LANES / 2)) {
-        let words = lanes.next_block();
+        let [words] = lanes.next_blocks();
         for ((void, size_word), pair) in void.iter_mut().zip(size_words).zip(words.chunks_exact(2)) {
             (*void, *size_word) = of([pair[0], pair[1]]);
         }

@@ -74,15 +74,24 @@ impl Events {
 
     fn sum_sizes(&mut self, classes: &SizeClasses) {
         let new = || [SizeCounts::new(classes), SizeCounts::new(classes)];
+        let any_retained = self.retained_count() > 0;
         let [eroded, retained] = self.sizes.get_or_insert_with(new);
-        eroded.clear();
-        retained.clear();
-        self.eroded.iter().for_each(|&d| eroded.add(classes, d));
-        self.stopped.iter().chain(&self.stranded).for_each(|&(_, d)| retained.add(classes, d));
+        if self.eroded_count > 0 {
+            eroded.clear();
+            self.eroded.iter().for_each(|&d| eroded.add(classes, d));
+        }
+        if any_retained {
+            retained.clear();
+            self.stopped.iter().chain(&self.stranded).for_each(|&(_, d)| retained.add(classes, d));
+        }
     }
 
     fn is_quiet(&self) -> bool {
-        self.eroded_count == 0 && self.stopped.is_empty() && self.stranded.is_empty()
+        self.eroded_count == 0 && self.retained_count() == 0
+    }
+
+    fn retained_count(&self) -> usize {
+        self.stopped.len() + self.stranded.len()
     }
 }
 
@@ -112,8 +121,12 @@ pub(super) fn merge(
             tally.eroded_mass += events.eroded_mass;
             tally.largest_eroded = tally.largest_eroded.max(events.largest);
             if let Some([eroded, retained]) = &events.sizes {
-                state.eroded_sizes.merge(eroded);
-                state.retained_sizes.merge(retained);
+                if events.eroded_count > 0 {
+                    state.eroded_sizes.merge(eroded);
+                }
+                if events.retained_count() > 0 {
+                    state.retained_sizes.merge(retained);
+                }
             }
             for &(constriction, diameter) in &events.stopped {
                 let void = upstream[constriction as usize] as usize;

@@ -66,6 +66,7 @@ impl SizeCounts {
         Self { number: vec![0; classes.upper.len()], mass: vec![0.0; classes.upper.len()] }
     }
 
+    #[inline]
     pub(super) fn add(&mut self, classes: &SizeClasses, diameter: f32) {
         let class = classes.of(diameter);
         self.number[class] += 1;

@@ -149,7 +149,7 @@ impl Supply {
     ///
     /// # Panics
     /// If the slices differ in length.
-    #[inline]
+    #[inline(always)]
     pub fn fill(&self, words: &mut [u64], out: &mut [f32]) {
         if self.first_word != 0 {
             words.iter_mut().for_each(|word| *word = self.word(*word));

@@ -11,6 +11,8 @@
 //! threshold, unless the two are equal in the bits that the word has. Every kernel reads the words with
 //! classes or those without, whichever suit the chunk ([`reads_classes`]): both lead to the same bits.
 
+use std::ops::Range;
+
 use crate::stream::{DRAWS_PER_BLOCK, LANES, Lanes, draw16};
 use crate::walk::exits::{self, CLASS, CLASS_SHIFT, Lattice, OpenExits};
 use crate::walk::merge::Events;
@@ -31,12 +33,33 @@ pub(super) const PAST_FIRST: u32 = 4;
 pub(super) const PAST_SECOND: u32 = 8;
 
 /// Particles between one that moves and the one whose columns are asked for then.
-#[cfg(target_arch = "x86_64")]
 const AHEAD: usize = 512;
 
 /// Entries of a column that come from memory together.
 #[cfg(target_arch = "x86_64")]
 const LINE: usize = 16;
+
+/// Asks for the first particles of a chunk, before anything is read of it.
+pub(super) fn fetch_first(void: &[u32], diameter: &[f32]) {
+    fetch(void, diameter, 0..AHEAD);
+}
+
+/// Asks for a range of particles, of this chunk or those that lie behind it: beside the words of the table, read
+/// in no order, the machine does not do so by itself in time.
+#[inline(always)]
+fn fetch(void: &[u32], diameter: &[f32], range: Range<usize>) {
+    #[cfg(target_arch = "x86_64")]
+    for at in range.step_by(LINE) {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // SAFETY: nothing is read, whatever the address.
+        unsafe {
+            _mm_prefetch::<_MM_HINT_T0>(void.as_ptr().wrapping_add(at).cast());
+            _mm_prefetch::<_MM_HINT_T0>(diameter.as_ptr().wrapping_add(at).cast());
+        }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (void, diameter, range);
+}
 
 /// First particles of a chunk, which stand for all of it.
 const SAMPLE: usize = 256;
@@ -161,21 +184,10 @@ fn ones(yes: bool) -> u32 {
 }
 
 impl LatticeChunk<'_> {
-    /// Asks for the columns some way behind the `count` particles from `begin` on, of this chunk or the next:
-    /// beside the words of the table, read in no order, the machine does not do so by itself in time.
+    /// Asks for the columns some way behind the `count` particles from `begin` on.
     #[inline(always)]
     pub fn fetch_ahead(&self, begin: usize, count: usize) {
-        #[cfg(target_arch = "x86_64")]
-        for at in (begin + AHEAD..begin + AHEAD + count).step_by(LINE) {
-            use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-            // SAFETY: nothing is read, whatever the address.
-            unsafe {
-                _mm_prefetch::<_MM_HINT_T0>(self.void.as_ptr().wrapping_add(at).cast());
-                _mm_prefetch::<_MM_HINT_T0>(self.diameter.as_ptr().wrapping_add(at).cast());
-            }
-        }
-        #[cfg(not(target_arch = "x86_64"))]
-        let _ = (begin, count);
+        fetch(self.void, self.diameter, begin + AHEAD..begin + AHEAD + count);
     }
 
     /// Takes the particles of the block from `begin` on that have a bit in `rare` the long way; all were

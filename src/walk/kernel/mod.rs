@@ -78,6 +78,7 @@ fn step_chunk(
 ) -> usize {
     match exits.table.form() {
         Form::Lattice(table) => {
+            lattice::fetch_first(void, diameter);
             let isa = exits.table.isa();
             let classed = lattice::reads_classes(diameter, exits.passive_limit);
             let chunk = LatticeChunk { exits, table, lanes: key.lanes(), void, diameter, events };
