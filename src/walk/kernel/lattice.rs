@@ -33,7 +33,7 @@ pub(super) const PAST_FIRST: u32 = 4;
 pub(super) const PAST_SECOND: u32 = 8;
 
 /// Particles between one that moves and the one whose columns are asked for then.
-const AHEAD: usize = 512;
+const AHEAD: usize = 256;
 
 /// Entries of a column that come from memory together.
 #[cfg(target_arch = "x86_64")]
