@@ -17,6 +17,7 @@ import csv
 import json
 import math
 import pathlib
+import platform
 import resource
 import subprocess
 import sys
@@ -24,9 +25,10 @@ import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from four_way_page import EXPECTED, FILTERS, version_of_page, write_page  # noqa: E402
+from four_way_beside import EXPECTED  # noqa: E402
+from four_way_cells import FILTERS, THRESHOLD, d50_by_number  # noqa: E402
+from four_way_page import version_of_page, write_page  # noqa: E402
 
-THRESHOLD = 0.075
 RUNG, TOP = 1.06, 47  # D15F/D85B from 1 to 15.5
 MODELS = {
     "lattice, area": [],
@@ -218,14 +220,6 @@ class Study:
         for model, ratio in EXPECTED:
             self.walk(("Cu 1.5 loose", model, 1.5, 60, 0.05, 1), 1, ratio)
 
-    def come_and_go(self):
-        """Replicates that hold at a larger ratio than one at which they do not, in either run."""
-        walked = {}
-        for key, row in self.known.items():
-            walked.setdefault(key[:-1], []).append((float(key[-1]), float(row["eroded_1"]), float(row["eroded_2"])))
-        goes = lambda column: any(a < THRESHOLD <= b for b, a in zip(column, column[1:]))
-        return sum(any(goes([point[run] for point in sorted(points)]) for run in (1, 2)) for points in walked.values())
-
     def cell(self, cell):
         """Both boundaries of every replicate."""
         found = self.found.setdefault(cell, [])
@@ -245,26 +239,19 @@ class Study:
         return self.found[near][0] if near and near[1] == cell[1] else alone
 
 
-def d50_by_number(cu):
-    """D50 by number of a linear gradation from 1 mm: the thickness of a layer of the lattice."""
-    largest = cu * cu
-    return ((1.0 + largest**-3) / 2.0) ** (-1.0 / 3.0)
-
-
 def main():
     options = arguments()
     study = Study(options)
     refused = {}
     # Beside what was expected, after the first cells.
     walks = [*plan()[:7], None, *plan()[7:]]
-    for cell in walks:
+    for cell in walks if options.minutes > 0 else []:
         try:
             if cell is None:
                 study.beside_the_prototype()
                 continue
             study.cell(cell)
-            done = study.found[cell]
-            print("==", *cell, done, flush=True)
+            print("==", *cell, study.found[cell], flush=True)
         except TimeIsOver:
             # Cells that are known wholly need no walk.
             continue
@@ -274,7 +261,8 @@ def main():
     version = version_of_page(options.out) if options.minutes <= 0 else None
     if version is None:
         version = subprocess.run([options.binary, "--version"], capture_output=True, text=True).stdout.strip()
-    write_page(options.out, plan(), study.found, refused, list(study.known.values()), version, study.come_and_go())
+        version = f"`{version}`, {platform.machine()}"
+    write_page(options.out, plan(), list(study.known.values()), refused, version)
 
 
 if __name__ == "__main__":

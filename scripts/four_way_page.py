@@ -1,222 +1,307 @@
-"""The page and the figure of scripts/four_way.py, from its cells and their boundaries."""
+"""The page of scripts/four_way.py: every number in it is worked out from the csv, and a sentence that does not hold of it is left out."""
 
 import math
 import pathlib
-import platform
 import re
-import time
 
-USUAL_MASS_RATIO, ARCH = 0.05, 2.155
-# Foster & Fell: frontier of no erosion of a base with less than 15 % fines (tests); Sherard et al.: design.
-TESTED, DESIGN, CONTINUING_D95 = (6.8, 10.0), (4.0, 5.0), 9.0
-# Largest particle that passes, by D15F: Kenney et al. (1985) by Cu of the filter; Sherard et al. (1984), suspensions.
-LARGEST_PASSING = [("Kenney et al. 1985, filter Cu 1.2", 0.167), ("Kenney et al. 1985, filter Cu 3", 0.182),
-                   ("Kenney et al. 1985, filter Cu 6", 0.146), ("Sherard et al. 1984, suspensions", 0.11)]
-# Eroded in the first run by a prototype (shared/frontier.md): filter Cu 1.5 loose, base Cu 1.5, 60 layers.
-EXPECTED = {("lattice, area", 5.5): 60, ("lattice, area", 4.4): 8, ("lattice, flux", 5.5): 93,
-            ("lattice, flux", 4.4): 50, ("graph, flux", 5.5): 78, ("graph, flux", 4.4): 28}
-# Cu, friction and number of grains of the six filters of the paper's Table 2, fewer grains than there (59,183 at Cu 6).
-FILTERS = {
-    "Cu 1.5 loose": (1.5, 0.3, 3000),
-    "Cu 1.5 dense": (1.5, 0.0, 3000),
-    "Cu 3 loose": (3.0, 0.3, 6000),
-    "Cu 3 dense": (3.0, 0.0, 6000),
-    "Cu 1.2 dense": (1.2, 0.0, 3000),
-    "Cu 6 loose": (6.0, 0.7, 8000),
-}
+from four_way_beside import ARCHED, PRACTICE, SUSPENDED, beside_practice, expected, kenney
+from four_way_cells import ARCH, BY_NAME, FILTERS, MODELS, SHOWN, THRESHOLD, USUAL_MASS_RATIO, cells_of, come_and_go
+from four_way_cells import alike, cannot_be_told, pairs
+from four_way_figure import figure
+from four_way_words import bullet, counted, down, factors, listed, paragraph, span, value
+
+# Grains of the paper's packings (Table 2), by Cu of the filter.
+TABLE_2 = {1.2: 8262, 1.5: 9313, 3.0: 22600, 6.0: 59183}
 
 
 def version_of_page(out):
-    """The version that walked, as the page names it; None where there is none."""
+    """The version that walked and its machine, as the page names them; None where there is no page."""
     page = pathlib.Path(f"{out}.md")
-    named = re.search(r"`(voidwalk [^`]*)`", page.read_text()) if page.exists() else None
-    return named and named.group(1)
+    named = re.search(r"`voidwalk [^`]*`, \w+", page.read_text()) if page.exists() else None
+    return named and named.group()
 
 
-def write_page(out, plan, found, refused, rows, version, come_and_go):
-    done = [cell for cell in plan if len(found.get(cell, [])) == cell[5]]
-    part = [cell for cell in plan if 0 < len(found.get(cell, [])) < cell[5]]
-    shown = sorted((cell for cell in plan if found.get(cell)), key=order)
-    cpu = sum(float(row["cpu_seconds"]) for row in rows)
-    text = [f"# How coarse may the filter be: models beside tests ({time.strftime('%Y-%m-%d')})\n", *practice_first(found, shown), "",
-            "D15F/D85B up to which a model's filter holds its base: **no erosion** while less than 7.5 % of the base's mass is lost in the first run, **some**",
-            "erosion while the second loses less than 7.5 %, continuing beyond. A replicate is a packing of its own with a seed of its own. Where a cell has more",
-            "than one, its number is the median, with the smallest and the largest in brackets; one replicate has no interval, and says nothing of scatter.",
-            f"`{version}`, {platform.machine()}; {len(rows)} walks, {cpu / 60:.1f} minutes of processor time (one or two threads, on a machine shared with",
-            f"other work); made by `scripts/four_way.py`, every walk in `{pathlib.Path(out).name}.csv`. Figure: `{pathlib.Path(out).name}.svg`.\n",
-            f"**{len(done)} of the {len(plan)} cells of the plan were run**, those named below were not. Models with a boundary here: "
-            f"{'; '.join(sorted({cell[1] for cell in shown}))}.\n",
-            "| filter | Cu of the base | model | layers | no erosion up to | some erosion up to | replicates |", "|---|---|---|---|---|---|---|"]
-    for cell in shown:
-        name, model, base, layers, mass_ratio, _ = cell
-        first, second = (interval(values) for values in boundaries(cell, found))
-        text.append(f"| {name} | {base:g} | {model}{note(mass_ratio)} | {layers} | {first} | {second} | {len(found[cell])} |")
-    walked = sorted({cell[0] for cell in shown})
-    text += ["", "`> x`: the largest ratio walked holds; `< x`: the smallest loses more. Layers are as thick as D50F by number; the voids of a packing reach as",
-             "far in mm, rounded up to whole copies of the cell. Lattices are 20 x 20 voids wide with the packing's measured constrictions and its own grains",
-             f"per void; grains of the packings: {', '.join(f'{name} {FILTERS[name][2]:,}' for name in walked)}.", "",
-             "| tests and practice, base with less than 15 % fines | D15F/D85B |", "|---|---|",
-             f"| Foster & Fell (2001), frontier of no erosion in tests | {TESTED[0]} to {TESTED[1]:g} |",
-             f"| Sherard et al. (1984), design: conservative, not excessively | {DESIGN[0]:g} to {DESIGN[1]:g} |"]
-    text += [f"| Foster & Fell, continuing erosion from D15F = 9 D95B, linear base of Cu {cu:g} | {CONTINUING_D95 * cu**0.2:.1f} |"
-             for cu in sorted({cell[2] for cell in shown})]
-    text += [f"| largest particle that passes: {name}, {share:g} D15F | {1 / share:.1f} (of that particle) |" for name, share in LARGEST_PASSING]
-    text += ["", *explained(found, shown), ""] + expected(rows) + moved(found, shown)
-    text += ["", f"**Erosion that comes and goes**: {come_and_go} of {sum(len(found[c]) for c in shown)} replicates walked a larger ratio that holds above one that does",
-             "not, in either run; the smallest that does not is the boundary then. That is no proof that there is none: each replicate was walked at a few",
-             "rungs of 6 %, close together only at its boundary, and such a ladder would hardly see erosion that comes and goes between two of them.", "", "## Not run", ""]
-    text += [f"{len(done)} of {len(plan)} cells of the plan are whole, {len(part)} in part. Not run, or not to the end:", ""]
-    text += [f"- {name}, base Cu {base:g}, {model}, {layers} layers{note(mass)}" + (f": {refused[cell]}" if (cell := (name, model, base, layers, mass, n)) in refused else "")
-             for name, model, base, layers, mass, n in plan if (name, model, base, layers, mass, n) not in done]
-    pathlib.Path(f"{out}.md").write_text("\n".join(text) + "\n")
-    pathlib.Path(f"{out}.svg").write_text(figure([cell for cell in shown if cell[2] == 1.5], found))
+def write_page(out, plan, rows, refused, version):
+    cells = cells_of(plan, rows)
+    shown = [cell for cell in cells if cell.walks]
+    usual = [cell for cell in shown if cell.whole and not cell.arches]
+    name = pathlib.Path(out).name
+    date = re.search(r"\d{4}-\d\d-\d\d", name)
+    text = [f"# How coarse may the filter be: models beside practice and tests{f' ({date.group()})' if date else ''}", ""]
+    text += [paragraph(words) for words in (practice_first(shown), sealed(rows), explained(shown, usual)) if words]
+    text += [f"![Boundaries of models beside practice and tests]({name}.svg)\n"]
+    text += [*how_to_read(shown), *beside_practice(shown, usual), *expected(rows, usual), *table(shown), *time_taken(name, rows, version, shown)]
+    text += not_run(cells, refused)
+    pathlib.Path(f"{out}.md").write_text("\n".join(text).rstrip("\n") + "\n")
+    pathlib.Path(f"{out}.svg").write_text(figure(shown, PRACTICE, kenney))
 
 
-def boundaries(cell, found):
-    """First and second boundaries of the replicates, by the size that particles are retained at."""
-    factor = 1.0 if cell[4] == USUAL_MASS_RATIO else ARCH
-    return [[factor * pair[run] for pair in found[cell]] for run in (0, 1)]
+def practice_first(shown):
+    found = [cell for cell in shown if cell.s_ne < math.inf]
+    above = sum(cell.s_ne > PRACTICE["design"] for cell in found)
+    marked = [cell for cell in shown if cell.second_first]
+    words = ("**Practice goes first. These are boundaries of models, not limits to design by.** A ratio that a model holds is not allowed by it: "
+             f"filter rules decide, and {above} of the {len(found)} boundaries of no erosion below lie above {PRACTICE['design']:g}, the limit of "
+             "design. The models have no cohesion, no particle shapes and no forces on particles.")
+    if marked:
+        passed = [walk for cell in shown for walks in cell.walks.values() for walk in walks if walk.lost[0] < THRESHOLD <= walk.lost[1]]
+        worst = max(passed, key=lambda walk: walk.lost[1], default=None)
+        words += (f" In {len(marked)} cells fresh base on the clogged filter (the second run) is lost at a smaller ratio than the base of the first "
+                  "run; erosion is said to begin there, at the smaller of the two.")
+        if worst:
+            words += (f" The program's verdict, which asks the first run first, reads \"no erosion\" in the {counted(len(passed), 'walk')} between: "
+                      f"at worst the first run lost {100 * worst.lost[0]:.1f} % and the second {100 * worst.lost[1]:.1f} %.")
+    return words
 
 
-def counted(number, what="replicate"):
-    return f"{number} {what}{'' if number == 1 else 's'}"
+def sealed(rows):
+    """What holds with flow is mostly sealed."""
+    flow = [row for row in rows if row["k_over_k0_1"]]
+    lost = lambda row, run: float(row[f"eroded_{run}"])
+    holds = [row for row in flow if lost(row, 1) < THRESHOLD]
+    closed = [row for row in holds if float(row["k_over_k0_1"]) == 0.0]
+    some = [row for row in flow if lost(row, 1) >= THRESHOLD > lost(row, 2)]
+    closed_later = [row for row in some if float(row["k_over_k0_2"]) == 0.0]
+    if not closed:
+        return ""
+    often = "mostly" if 2 * len(closed) > len(holds) else "often"
+    words = (f"**With flow, \"holds\" {often} means \"sealed\", and a sealed filter does not drain.** k/k0 is the filter's permeability at the end "
+             f"of a run over that of the clean filter. Of {len(holds)} walks with flow whose first run loses less than 7.5 %, {len(closed)} end it "
+             "with k/k0 = 0.0000: no water passes any more, and base that can no longer enter counts as held.")
+    if closed_later:
+        which = "All" if len(closed_later) == len(some) else f"{len(closed_later)} of"
+        words += (f" {which} {counted(len(some), 'walk')} of \"some erosion\" end the second run with k/k0 = 0.0000, after the first lost up to "
+                  f"{100 * max(lost(row, 1) for row in closed_later):.0f} %.")
+    return words + " A blocked constriction carries no water in these models; what water that is held back does to the base is not in them."
 
 
-def practice_first(found, shown):
-    above = sum(median(boundaries(cell, found)[0]) > DESIGN[0] for cell in shown)
-    return ["**Practice goes first. These are boundaries of models, not limits to design by.** A ratio that a model holds is not allowed by it: rules of retention for",
-            f"filters decide, and {above} of the {len(shown)} boundaries of no erosion below lie above {DESIGN[0]:g}, the careful end of design by Sherard et al. (1984). The models have no",
-            "cohesion, no shapes and no forces on particles."]
-
-
-def said(cell, found):
-    """The boundary of no erosion of a cell, and from how many replicates."""
-    return f"{interval(boundaries(cell, found)[0])} ({counted(len(found[cell]))})"
-
-
-def explained(found, shown):
-    """What the cells that were walked say of sieving, density, water and arches, each only where it was walked."""
-    where = lambda cell: f"{cell[0]}, base Cu {cell[2]:g}, {cell[3]} layers"
-    usual = [cell for cell in shown if cell[4] == USUAL_MASS_RATIO]
-    beside = lambda cell, **other: next((c for c in usual if c[:5] == (other.get("name", cell[0]), other.get("model", cell[1]), *cell[2:5])), None)
-    lines = ["**What these cells say, and what not.**", ""]
-    area = [cell for cell in usual if cell[1] == "lattice, area"]
+def explained(shown, usual):
+    """The one paragraph: what spheres, sieving and flow explain, and what not; each sentence where its cells were walked."""
+    design, uniform, tested = PRACTICE["design"], PRACTICE["uniform"], PRACTICE["tested"]
+    several = sum(len(cell.walks) > 1 for cell in usual)
+    says = ["**What spheres, sieving and flow explain, and what not.** (Factors are of cells that have one replicate"
+            + (f", but for {several}.)" if several else ".)")]
+    area = [cell.s_ne for cell in usual if cell.model == "lattice, area"]
     if area:
-        medians = [median(boundaries(cell, found)[0]) for cell in area]
-        within = sum(DESIGN[0] <= value <= DESIGN[1] for value in medians)
-        lines += [f"- Sieving alone, on the paper's lattice by area ({counted(len(area), 'cell')}, {counted(sum(len(found[c]) for c in area))}): no erosion up to {interval([min(medians)])} to {interval([max(medians)])};"
-                  f" {within} lie within Sherard's {DESIGN[0]:g} to {DESIGN[1]:g}. That is no proof of the model: water, arches and shapes are left out of it."]
-    for cell in usual:
-        if "dense" in cell[0] and (loose := beside(cell, name=cell[0].replace("dense", "loose"))):
-            lines += [f"- Density, {where(cell)}, {cell[1]}: {said(cell, found)}; loose {said(loose, found)}."
-                      + (" One dense packing: whether a dense filter holds coarser ratios in general is not shown." if len(found[cell]) == 1 else "")]
-    for cell in usual:
-        if cell[1] == "graph, flux" and (lattice := beside(cell, model="lattice, area")):
-            lines += [f"- Water in the packing's own voids, {where(cell)}: {said(cell, found)}, where the lattice by area has {said(lattice, found)}."
-                      f" {counted(len(found[cell]), 'packing')} of {FILTERS[cell[0]][2]:,} grains; and the network is another, too, so that it is not the water's effect alone."
-                      " Why was not measured here."]
-    for cell in usual:
-        first, second = map(median, boundaries(cell, found))
-        if second < first:
-            lines += [f"- {where(cell)}, {cell[1]}: the second run fails earlier ({interval([second])}) than the first ({interval([first])};"
-                      f" {counted(len(found[cell]))}): between the two the first loses less than 7.5 % and the second more. Both are interpolated between walks some 3 % apart."]
-    arches = [cell for cell in shown if cell[4] != USUAL_MASS_RATIO]
+        below, above = sum(value < design for value in area), sum(value > uniform for value in area)
+        says.append(f"Sieving of spheres alone (lattice, area; {len(area)} cells) puts the beginning of erosion at D15F/D85B {span(area)}: {below} "
+                    f"below {design:g}, {len(area) - below - above} from {design:g} to {uniform:g}, the limits of Terzaghi and of Sherard et al., "
+                    f"and {above} above.")
+    dense = pairs(usual, lambda c: "dense" in c.name, name=lambda c: c.name.replace("dense", "loose"))
+    if dense:
+        found = [cell.s_ne / twin.s_ne for cell, twin in dense]
+        unsure = sum(cannot_be_told(cell, twin) for cell, twin in dense)
+        says.append(f"Dense filters hold coarser ratios than loose ones in {sum(value > 1 for value in found)} of {len(dense)} pairs (s_NE x "
+                    f"{factors(found)}"
+                    + (f"; {unsure} of them within a flat range of the loss, see below)." if unsure else ")."))
+    thick = pairs(usual, lambda c: c.layers == 600, layers=60)
+    if thick:
+        says.append(f"600 layers for 60, with ten times the base, change s_NE x {factors([c.s_ne / t.s_ne for c, t in thick])} ({len(thick)} pairs).")
+    flow = pairs(usual, lambda c: c.model == "lattice, flux", model="lattice, area")
+    if flow:
+        begins = {base: factors([c.s_ne / t.s_ne for c, t in flow if c.base == base]) for base in sorted({c.base for c, _ in flow})}
+        by_base = listed(f"{found} for base Cu {base:g}" for base, found in begins.items())
+        continues = [c.s_ce / t.s_ce for c, t in flow]
+        says.append(f"Water, on the same lattice ({len(flow)} pairs of flow and area), changes s_NE x {by_base}, and s_CE x {factors(continues)}"
+                    + (": with flow, erosion continues from smaller ratios in every pair." if max(continues) < 1 else "."))
+    network = pairs(usual, lambda c: c.model == "graph, flux", model="lattice, flux")
+    if network:
+        says.append("The packing's own voids in place of the lattice, with flow in both, change s_NE x "
+                    f"{factors([c.s_ne / t.s_ne for c, t in network])} ({len(network)} pairs).")
+    if usual and max(cell.s_ne for cell in usual) < tested[0]:
+        says.append(f"None of the {len(usual)} bracketed cells without arches comes to the {tested[0]:g} to {tested[1]:g} of tests.")
+    says.append("Grains that are no spheres, arches, deposition, forces, cohesion, and a base that is carried as a mass are in none of them; they "
+                "could make a filter hold more or less, and this study cannot tell them apart. None is put in to meet a table.")
+    narrow = [0.154701 / cu**0.3 for cu, _, _ in FILTERS.values() if cu < 2]
+    if min(narrow) > SUSPENDED:
+        says.append(f"Uniform sand filters stopped particles in suspension of about {SUSPENDED:g} D15F (Sherard et al. 1984); three touching grains "
+                    f"of the uniform filters here leave {span(narrow, '{:.3f}'.format)} D15F at least, so that sieving by spheres alone cannot do "
+                    "that.")
+    arches = [(cell, twin) for cell in shown if cell.arches and cell.whole and (twin := alike(usual, cell))]
     if arches:
-        lines += [f"- An arch of three is a bound on arches only: a particle is retained as if at most {ARCH} times as large ({counted(len(arches), 'cell')})."]
-    firsts = [value for cell in usual for value in boundaries(cell, found)[0]]
-    if firsts and max(firsts) < TESTED[0]:
-        lines += [f"- Filters in tests hold at {TESTED[0]} to {TESTED[1]:g}, above every boundary here but those of an arch. Grains that are no spheres, arches of several particles, deposition, and a base that"
-                  " is carried as a mass and not one particle after another could hold more; they are in none of these walks, cannot be told from each other by this study, and none is put in to meet a table."]
-    return lines
+        bands = "; ".join(f"{SHOWN[cell.model]}: s_NE {down(twin.s_ne)} to {down(cell.s_ne)}" for cell, twin in arches)
+        says.append(f"Arches enter as a bound only: particles retained as if beta times as large, beta 1 to {ARCH} (an arch of three), with both "
+                    f"ends walked, give a band ({bands}).")
+        beyond = [SHOWN[cell.model] for cell, _ in arches if cell.s_ne > PRACTICE["continuing_d95"] * cell.base**0.2]
+        if beyond:
+            says.append(f"Its upper end for {listed(beyond)} lies beyond 9 D95B, where Foster & Fell put continuing erosion: no prediction.")
+    return " ".join(says)
 
 
-def note(mass_ratio):
-    """What is said of cells with a base that stands for one retained as if larger."""
-    return "" if mass_ratio == USUAL_MASS_RATIO else f", retained as if {ARCH} times as large"
-
-
-def order(cell):
-    name, model, base, layers, mass_ratio, _ = cell
-    return base, name, mass_ratio, layers, model
-
-
-def interval(values):
-    show = lambda v: "> 15.5" if v == math.inf else "< 1" if v == 0 else f"{v:.2f}"
-    ranked = sorted(values)
-    if len(ranked) == 1:
-        return show(ranked[0])
-    return f"{show(median(ranked))} ({show(ranked[0])} to {show(ranked[-1])})"
-
-
-def median(values):
-    ranked = sorted(values)
-    middle = len(ranked) // 2
-    return ranked[middle] if len(ranked) % 2 else 0.5 * (ranked[middle - 1] + ranked[middle])
-
-
-def expected(rows):
-    """The erosion that a prototype had beside that of these walks."""
-    lines = ["**Beside \"What to expect\"** (a prototype; filter Cu 1.5 loose, base Cu 1.5, 60 layers, mass eroded in the first run):", "",
-             "| model | D15F/D85B | expected | here |", "|---|---|---|---|"]
-    for (model, ratio), percent in EXPECTED.items():
-        here = [100 * float(row["eroded_1"]) for row in rows if row["filter"] == "Cu 1.5 loose" and row["model"] == model and row["base_cu"] == "1.5"
-                and row["layers"] == "60" and float(row["mass_ratio"]) == USUAL_MASS_RATIO and abs(float(row["ratio"]) - ratio) < 1e-6]
-        lines.append(f"| {model} | {ratio:g} | {percent} % | {', '.join(f'{v:.1f} %' for v in here) or 'not run'} |")
+def how_to_read(shown):
+    several, layers = [cell for cell in shown if len(cell.walks) > 1], sorted({cell.layers for cell in shown})
+    flat = [cell for cell in shown if cell.flat((0, 1)) or cell.flat((1,))]
+    lines = ["## How to read it", "",
+             bullet("First run: base is washed onto the clean filter. Second run: as much fresh base onto the filter that the first clogged."),
+             bullet("**s_NE**: D15F/D85B at which erosion begins, the smallest at which either run loses 7.5 % of the base's mass. **s_CE**: at "
+                    "which it continues, the smallest at which the second run does. \"Some erosion\" lies between."),
+             bullet("Lattice: a regular network, 20 x 20 voids wide, with the constrictions measured in the packing. Graph: the packing's own voids "
+                    "and constrictions. Area: a particle takes an exit in proportion to its area (on the graph, among those down the pressure). "
+                    "Flow: in proportion to the water, which is solved for as the filter clogs."),
+             bullet(f"{len(shown) - len(several)} of the {len(shown)} cells have one replicate (one packing, one seed): **no interval, and nothing "
+                    "is known of their scatter**. They have one decimal, rounded down, and beside it the two walked ratios between which the "
+                    "boundary lies."
+                    + (f" {counted(len(several), 'cell')} with more: the median, and the smallest and largest in the notes." if several else ""))]
+    if flat:
+        lines.append(bullet("Flat: the loss stays within one percentage point of 7.5 % over a range of ratios wider than 0.3 "
+                            f"({counted(len(flat), 'cell')}). The notes name the range; the boundary is known no better."))
+    thickest = max(layers, default=60)
+    lines.append(bullet(f"**The base's mass is {100 * USUAL_MASS_RATIO:g} % of the filter's, so it grows with the thickness**: 7.5 % of it is "
+                        f"{7.5 * USUAL_MASS_RATIO:.3f} % of the filter's mass, and at {thickest:,} layers {thickest / 60:g} times the mass lost at "
+                        "60. How much of the rise of s_NE with thickness is due to that was not measured. **Practice gives thickness no credit.**"))
+    lines.append(bullet("mm: the thickness of a filter whose finest grain (D0F) is 1 mm; it scales with the grain. D15F is then "
+                        + listed(f"{cu**0.3:.2f} mm (Cu {cu:g})" for cu in sorted({FILTERS[cell.name][0] for cell in shown})) + "."))
+    lines += unlike(shown)
+    grains = {FILTERS[name][0]: FILTERS[name][2] for name in BY_NAME}
+    if any(grains[cu] < TABLE_2[cu] for cu in grains):
+        least = min(grains, key=lambda cu: grains[cu] / TABLE_2[cu])
+        lines.append(bullet("The packings are smaller than those of the paper's Table 2: "
+                            + listed(f"{grains[cu]:,} grains for {TABLE_2[cu]:,} (Cu {cu:g})" for cu in sorted(grains))
+                            + f". The fewest for their number are at Cu {least:g}. What that changes was not measured."))
+    if any(cell.arches for cell in shown):
+        lines.append(bullet(f"Arches: {ARCHED}. The particles are as many, so that the base's mass is beta cubed times as large."))
+    goes, replicates = come_and_go(shown)
+    lines.append(bullet(f"Erosion that comes and goes: in {goes} of {replicates} replicates a larger walked ratio holds above one that does not. "
+                        "That is no proof that it does not occur: each was walked at a few ratios some 6 % apart, and close together only at its "
+                        "boundaries."))
     return lines + [""]
 
 
-def moved(found, shown):
-    """How thickness moves the boundary of no erosion, in words."""
-    lines = []
-    for name in sorted({cell[0] for cell in shown}):
-        for model in sorted({cell[1] for cell in shown if cell[0] == name}):
-            by_layers = {cell[3]: cell for cell in shown if cell[:3] == (name, model, 1.5) and cell[4] == USUAL_MASS_RATIO}
-            if len(by_layers) > 1:
-                steps = ", ".join(f"{layers} layers up to {said(cell, found)}" for layers, cell in sorted(by_layers.items()))
-                lines.append(f"- {name}, {model}: no erosion at {steps}.")
-    return (["**Thickness**, base Cu 1.5:", ""] + lines) if lines else []
+def unlike(shown):
+    """Thickness in layers is not like for like, and thick graphs repeat one packing."""
+    graphs = [cell for cell in shown if cell.model == "graph, flux" and not cell.arches]
+    apart, lines = {}, []
+    for cell in graphs:
+        twin = alike(shown, cell, model="lattice, flux") or alike(shown, cell, model="lattice, area")
+        if twin and abs(cell.mm / twin.mm - 1) > 0.15:
+            apart[cell.name, cell.layers] = f"{cell.mm:.1f} and {twin.mm:.1f} mm for {cell.name}, {cell.layers} layers"
+    if apart:
+        lines.append(bullet("Thickness in layers is not like for like. A packing is repeated whole, so that a graph is thicker than its lattice: "
+                            f"{listed(apart.values())}."))
+    thick = [(cell, twin) for cell in graphs if cell.layers > 60 and (twin := alike(shown, cell, layers=60))]
+    if thick:
+        times = span([cell.voids / twin.voids for cell, twin in thick], "{:.3g}".format)
+        lines.append(bullet(f"Graphs of {listed(f'{n:,}' for n in sorted({c.layers for c, _ in thick}))} layers repeat one packing along the flow: "
+                            f"they are the voids of the 60 layers {times} times over, not a larger sample."))
+    return lines
 
 
-def figure(cells, found):
-    """Each cell as a bar: green up to the first boundary, amber to the second, red beyond, with its replicates; tests as bands behind."""
-    left, right, row, top = 330, 1010, 22, 74
-    low, high = 0.0, 15.0
-    x = lambda ratio: left + (min(max(ratio, low), high) - low) / (high - low) * (right - left)
-    groups = list(dict.fromkeys(cell[0] for cell in cells))
-    height = top + row * len(cells) + 30 * len(groups) + 70
-    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1040 {height}" font-family="sans-serif" font-size="12">',
-             f'<rect width="1040" height="{height}" fill="white"/>',
-             '<text x="20" y="26" font-size="16">How coarse may the filter be? Boundaries of models, not limits to design by; base Cu 1.5</text>',
-             '<pattern id="earlier" width="2" height="2" patternUnits="userSpaceOnUse"><rect width="2" height="2" fill="#c9665f"/><rect width="1" height="2" fill="black"/></pattern>']
-    bottom = height - 58
-    for name, (a, b), colour, y in [("design rules (Sherard)", DESIGN, "#dfe6f2", 46), ("tests of sands hold up to here (Foster &amp; Fell)", TESTED, "#e7e0ef", 62)]:
-        parts.append(f'<rect x="{x(a):.1f}" y="{top - 6}" width="{x(b) - x(a):.1f}" height="{bottom - top + 6}" fill="{colour}"/>')
-        parts.append(f'<text x="{(x(a) + x(b)) / 2:.1f}" y="{y}" text-anchor="middle">{name}</text>')
-    y = top
-    for group in groups:
-        parts.append(f'<text x="20" y="{y + 18}" font-weight="bold">Filter {group}</text>')
-        y += 28
-        for cell in (cell for cell in cells if cell[0] == group):
-            arches = "" if cell[4] == USUAL_MASS_RATIO else ", arches of three"
-            runs = [[min(value, high) for value in values] for values in boundaries(cell, found)]
-            first, second = map(median, runs)
-            parts.append(f'<text x="{left - 8}" y="{y + 12}" text-anchor="end">{cell[1]}, {cell[3]} layers{arches}</text>')
-            # Where the second run fails earlier than the first, the part between the two is striped.
-            between = "#e0b040" if first <= second else "url(#earlier)"
-            for a, b, colour in [(low, min(first, second), "#5aa469"), (min(first, second), max(first, second), between), (max(first, second), high, "#c9665f")]:
-                parts.append(f'<rect x="{x(a):.1f}" y="{y + 2}" width="{x(b) - x(a):.1f}" height="12" fill="{colour}"/>')
-            words = counted(len(found[cell]))
-            if second < first:
-                words = f"second run fails earlier ({second:.2f}) than the first ({first:.2f}); {words}"
-            parts.append(f'<text x="{right - 6}" y="{y + 12}" text-anchor="end" font-size="11">{words}</text>')
-            if len(found[cell]) > 1:
-                a, b = x(min(runs[0])), x(max(runs[0]))
-                parts.append(f'<path d="M{a:.1f} {y + 8}H{b:.1f}M{a:.1f} {y + 4}v8M{b:.1f} {y + 4}v8" stroke="black" fill="none"/>')
-            y += row
-    for tick in range(math.ceil(low), math.floor(high) + 1):
-        parts.append(f'<line x1="{x(tick):.1f}" y1="{top - 6}" x2="{x(tick):.1f}" y2="{bottom}" stroke="#0002"/>')
-        parts.append(f'<text x="{x(tick):.1f}" y="{bottom + 16}" text-anchor="middle">{tick}</text>')
-    parts.append(f'<text x="{(left + right) / 2}" y="{bottom + 34}" text-anchor="middle">D15F / D85B: green no erosion, amber some, red continuing</text>')
-    stripes = "; black stripes: the second run fails before the first" if any("url(#earlier)" in part for part in parts) else ""
-    parts.append(f'<text x="520" y="{bottom + 50}" text-anchor="middle">black mark: range over replicates; one replicate has no interval{stripes}</text>')
-    return "\n".join(parts + ["</svg>\n"])
+def table(shown):
+    lines = ["## Every cell", "",
+             paragraph("Walked: the largest ratio that holds, and the next, which does not. k/k0: at these two (one number: the same at both), at "
+                       "the end of the run that fails there (for s_CE the second). 0 is sealed. More replicates than one: the widest of each. Empty: "
+                       "by area on the lattice no flow is solved."),
+             "| filter | base Cu | model | layers | mm | s_NE | walked | k/k0 | s_CE | walked | k/k0 | notes |",
+             "|" + "---|" * 12]
+    for cell in shown:
+        model = SHOWN[cell.model] + (", arches" if cell.arches else "")
+        mm = f"{cell.mm:.1f}" if cell.mm < 1000 else f"{cell.mm:,.0f}"
+        boundaries = [part for found, middle in [(cell.begins, cell.s_ne), (cell.continues, cell.s_ce)]
+                      for part in (value(found, middle), walked(found), permeability(found))]
+        lines.append(f"| {cell.name} | {cell.base:g} | {model} | {cell.layers:,} | {mm} | {' | '.join(boundaries)} | {notes(cell)} |")
+    return lines + [""]
+
+
+def walked(found):
+    below = min((b.below.ratio for b in found if b.below), default=None)
+    above = max((b.above.ratio for b in found if b.above), default=None)
+    return ", ".join("none" if ratio is None else f"{ratio:.2f}" for ratio in (below, above))
+
+
+def permeability(found):
+    values = [walk.k[b.run] for b in found for walk in (b.below, b.above) if walk and walk.k[b.run] is not None]
+    return ", ".join(dict.fromkeys("0" if k == 0 else f"{k:.3f}" for k in values))
+
+
+def notes(cell):
+    words = []
+    if not cell.whole:
+        largest = max((walks[-1] for walks in cell.walks.values()), key=lambda walk: walk.ratio)
+        words.append(f"not bracketed: at {largest.ratio:.2f} the runs lose {100 * largest.lost[0]:.1f} and {100 * largest.lost[1]:.1f} %")
+    if cell.second_first:
+        later = f"the first at {down(cell.run1)}" if down(cell.run1) != down(cell.s_ne) else "by less than 0.1"
+        words.append(f"second run first, {later}")
+    if len(cell.walks) > 1 and cell.whole:
+        each = lambda found: " to ".join(f"{end(boundary.value for boundary in found):.2f}" for end in (min, max))
+        words.append(f"{len(cell.walks)} replicates: s_NE {each(cell.begins)}, s_CE {each(cell.continues)}")
+    for what, runs in [("s_NE", (0, 1)), ("s_CE", (1,))]:
+        if flat := cell.flat(runs):
+            low = f"{cell.smallest():.1f} or less" if flat[0] == 0 else f"{flat[0]:.1f}"
+            words.append(f"flat: {what} {low} to {flat[1]:.1f}")
+    return "; ".join(words)
+
+
+def time_taken(name, rows, version, shown):
+    walks = lambda cells: [walk for cell in cells for replicate in cell.walks.values() for walk in replicate]
+    minutes = lambda cells: sum(walk.seconds for walk in walks(cells)) / 60
+    groups = {}
+    for cell in shown:
+        groups.setdefault((cell.model, cell.layers), []).append(cell)
+    costly = sorted(groups.items(), key=lambda group: -minutes(group[1]))[:4]
+    each = "; ".join(f"{SHOWN[model]}, {layers:,} layers: {minutes(cells):.1f} in {counted(len(walks(cells)), 'walk')}"
+                     for (model, layers), cells in costly)
+    return ["## Time", "", paragraph(f"{version}; {len(rows)} walks, every one in `{name}.csv`; made by `scripts/four_way.py`. They took "
+                                     f"{minutes(shown):.1f} minutes of processor time, of which {each}. The time that passed was not recorded. The "
+                                     "packings, and walks that were given up, left no row and are not in it.")]
+
+
+def not_run(cells, refused):
+    """What of the plan has no boundary, and what the plan leaves out of the full product."""
+    lines = ["## Not run", ""]
+    for cell in (cell for cell in cells if not cell.whole):
+        walks = [walk for replicate in cell.walks.values() for walk in replicate]
+        reason = f"; {refused[cell.planned]}" if cell.planned in refused else ""
+        if walks:
+            each = listed(f"{w.ratio:.2f} ({100 * w.lost[0]:.1f} and {100 * w.lost[1]:.1f} % lost)" for w in walks)
+            minutes = [walk.seconds / 60 for walk in walks]
+            lines.append(bullet(f"{cell.where()}: s_NE {value(cell.begins, cell.s_ne)} and s_CE {value(cell.continues, cell.s_ce)}, **not "
+                                f"bracketed**. Walked at {each}; a walk takes {span(minutes, '{:.0f}'.format)} minutes of processor time, "
+                                f"{sum(minutes):.1f} in all{reason}."))
+        else:
+            lines.append(bullet(f"{cell.where()}: not walked{reason}."))
+    lines += [""] if len(lines) > 2 else []
+    return lines + left_out([cell for cell in cells if not cell.arches], [cell for cell in cells if cell.arches])
+
+
+def left_out(planned, arches):
+    """What the plan leaves out of filters x models x thicknesses x bases."""
+    names, models = ([known for known in order if any(known in (cell.name, cell.model) for cell in planned)] for order in (BY_NAME, MODELS))
+    bases, layers = sorted({cell.base for cell in planned}), sorted({cell.layers for cell in planned})
+    ran, arched = [cell for cell in planned if cell.whole], [cell for cell in arches if cell.whole]
+    product = len(names) * len(models) * len(layers) * len(bases)
+    lines = [paragraph(f"The plan is a selection. {len(names)} filters x {len(models)} models x {len(layers)} thicknesses x {len(bases)} bases are "
+                       f"{product} cells, of which {len(planned)} were planned and {len(ran)} have both boundaries: **{product - len(ran)} have "
+                       f"not**. As many again would be those with arches, of which {len(arches)} were planned and {len(arched)} have both. Cells "
+                       f"with both boundaries, of {len(names) * len(bases)} (filters x bases) in each place:"),
+             f"| model | {' | '.join(f'{n:,} layers' for n in layers)} |", "|---|" + "---|" * len(layers)]
+    of = lambda model, n: str(sum((cell.model, cell.layers) == (model, n) for cell in ran))
+    lines += [f"| {SHOWN[model]} | {' | '.join(of(model, n) for n in layers)} |" for model in models] + [""]
+    few = lambda cells: 0 < len(cells) <= 2
+    by_model = [(SHOWN[model], [cell for cell in ran if cell.model == model]) for model in models]
+    for what, cells in by_model + [(f"{n:,} layers", [cell for cell in ran if cell.layers == n]) for n in layers]:
+        if few(cells):
+            lines.append(bullet(f"{what}: only {'; '.join(cell.where() for cell in cells)}."))
+    for kind, values, part in [("Base Cu", bases, lambda c: c.base), ("Filter", names, lambda c: c.name)]:
+        for reached, some in grouped(values, lambda one: tuple(sorted({c.layers for c in ran if part(c) == one}))):
+            if len(reached) < len(layers):
+                which = listed(f"{one:g}" if kind == "Base Cu" else one for one in some)
+                lines.append(bullet(f"{kind} {which}: {listed(f'{n:,}' for n in reached) or 'no'} layers only."))
+    lacks = lambda name, model: tuple(b for b in bases if not any((c.name, c.model, c.base) == (name, model, b) for c in ran))
+    many = [model for model in models if not few([c for c in ran if c.model == model])]
+    for missing, some in grouped([(name, model) for name in names for model in many], lambda pair: lacks(*pair)):
+        if missing:
+            for on, by in grouped(list(dict.fromkeys(name for name, _ in some)), lambda name: tuple(model for one, model in some if one == name)):
+                without, bare = listed((SHOWN[model] for model in on), "nor"), listed((f"{base:g}" for base in missing), "or")
+                lines.append(bullet(f"Filter {listed(by)} with base Cu {bare}: not by {without}."))
+    if arches:
+        lines.append(bullet(f"Arches: only {'; '.join(cell.where() for cell in arches)}; nothing between beta 1 and {ARCH}."))
+    single = sum(cell.asked == 1 for cell in planned + arches)
+    return lines + [bullet(f"Replicates: {single} of the {len(planned + arches)} cells of the plan were given one.")]
+
+
+def grouped(values, key):
+    """The values under each key, in the order in which they come."""
+    found = {}
+    for one in values:
+        found.setdefault(key(one), []).append(one)
+    return list(found.items())
