@@ -30,6 +30,11 @@ ROWS = [
     ("cu1.5-loose", 3, 10, 800_000),
     ("cu1.5-loose", 3, 10, 1_100_000),
     ("cu1.5-loose", 3, 10, 1_400_000),
+    # Just below and above the number from which `auto` counts.
+    ("cu1.5-loose", 3, 10, 1_020_000),
+    ("cu1.5-loose", 3, 10, 1_060_000),
+    ("cu1.5-loose", 1.5, 15, 1_520_000),
+    ("cu1.5-loose", 1.5, 15, 1_570_000),
 ]
 ENGINES = ["particles", "counts", "auto"]
 
