@@ -80,7 +80,7 @@ def main():
             particles, counts, auto = (min(seconds) for seconds in zip(*turns))
             lost = max(statistics.median(turn[2] / turn[other] for turn in turns) for other in (0, 1))
             curve, uniformity, constriction, fewer = row
-            name = f"{curve}, {uniformity}, Dc{constriction}" + (f", `base.n_base` {fewer / 1e6:.1f}e6" if fewer else "")
+            name = f"{curve}, {uniformity}, Dc{constriction}" + (f", `base.n_base` {fewer / 1e6:g}e6" if fewer else "")
             print(f"| {instructions} | {name} | {particles:.2f} | {counts:.2f} | {auto:.2f} "
                   f"| {lost:.2f} |", flush=True)
 

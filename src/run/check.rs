@@ -68,14 +68,15 @@ pub struct PackingCheck {
     pub is_made: bool,
     /// Steps that it takes.
     pub steps: u64,
-    /// Seconds of one core that it takes.
+    /// Seconds of one core of this machine that it takes; where it is made, of one of 2024.
     pub core_seconds: f64,
 }
 
 impl PackingCheck {
     fn new(plan: &PackingPlan, folder: PathBuf, is_made: bool) -> Self {
         let grains = plan.compression.grains as u64;
-        Self { grains, folder, is_made, steps: plan.usual_steps(), core_seconds: plan.core_seconds_here() }
+        let core_seconds = if is_made { plan.core_seconds() } else { plan.core_seconds_here() };
+        Self { grains, folder, is_made, steps: plan.usual_steps(), core_seconds }
     }
 }
 

@@ -2,8 +2,8 @@
 //!
 //! It is asked before any work, to tell a user minutes from hours and a cluster what to give, and after a
 //! first run, whose counted work says what more of them will take. Its figures are those of one thread of a
-//! processor of 2024 that is shared with other work; only [`Case::core_seconds_here`] asks how fast the
-//! machine is on which it runs. `results/check-*.md` and `results/slurm-*.md` hold estimates against measured
+//! processor of 2024 that is shared with other work; only what ends in `_here` asks how fast the machine is
+//! on which it runs. `results/check-*.md` and `results/slurm-*.md` hold estimates against measured
 //! times (`scripts/check_times.py`).
 
 use super::pilot::{WorkByVoid, pilot, small_packing_seconds};
@@ -64,9 +64,11 @@ const GRAIN_STEP_S: f64 = 7.5e-8;
 const GRAINS: f64 = 9_000.0;
 /// See `GRAIN_STEP_S`.
 const GRAINS_POWER: f64 = 0.3;
-/// Power of Cu with which the seconds of a grain and step grow: the wider the gradation, the more of its grains
-/// touch nothing.
+/// Power of Cu with which the seconds of a grain and step grow: the wider the gradation, the more of its
+/// grains touch nothing.
 const WIDTH_POWER: f64 = -0.4;
+/// Seconds from which on a measured time tells a pace: clocks of threads may tick in steps of 0.016 s.
+const LEAST_TIMED_S: f64 = 0.03;
 /// Seconds of the small packing that tells a machine's pace, where a grain and step take `GRAIN_STEP_S`.
 const SMALL_PACKING_S: f64 = 0.105;
 /// Steps that packings with friction took at Cu 1.5 (11,200 to 14,100), the power of Cu with which they grow
@@ -117,11 +119,10 @@ impl Case {
     }
 
     fn foreseen(&self) -> Foreseen {
-        let packed = if self.packed.is_some() { PACKED_FILES_S } else { 0.0 };
+        let files = FILES_S + if self.packed.is_some() { PACKED_FILES_S } else { 0.0 };
         let readings = self.readings().map(Case::reading_foreseen);
-        readings.fold(Foreseen { seconds: FILES_S + packed, ..Foreseen::default() }, |all, reading| {
-            all.and(1.0, &reading)
-        })
+        let begun = Foreseen { seconds: files, besides: files, ..Foreseen::default() };
+        readings.fold(begun, |all, reading| all.and(1.0, &reading))
     }
 
     /// The same for one reading of its base, its files apart.
@@ -165,11 +166,11 @@ impl Case {
         match pilot(self, n_base, runs * guess.seconds, most_s) {
             Some(work) => {
                 // A pilot walks on a lattice by area, whatever the case's own network is.
-                let said = work.of_voids(1.0, self.of_engine(true));
+                let said = work.of_voids(work.voids, self.of_engine(true));
                 Foreseen {
                     seconds: work.of_voids(voids, self.slower()) + besides,
                     besides,
-                    pilots: Pilots { took: work.seconds, said },
+                    pilots: Pilots { took: work.took, said },
                     eroded: Some(work.eroded),
                 }
             }
@@ -260,7 +261,7 @@ impl WorkByVoid {
 #[derive(Default)]
 struct Foreseen {
     seconds: f64,
-    /// Those of them in which nothing is walked: networks are built, and the flow is solved.
+    /// Those of them in which nothing is walked: networks are built, the flow is solved, files are written.
     besides: f64,
     /// The pilot walks by which it was.
     pilots: Pilots,
@@ -281,6 +282,11 @@ impl Foreseen {
     }
 }
 
+/// How many times as long as was said something took; 1 where a clock cannot tell.
+fn pace(took: f64, said: f64) -> f64 {
+    if took >= LEAST_TIMED_S && said > 0.0 { took / said } else { 1.0 }
+}
+
 /// Seconds of pilot walks: what they took here, and what the rates of this module say.
 #[derive(Clone, Copy, Default)]
 struct Pilots {
@@ -289,9 +295,9 @@ struct Pilots {
 }
 
 impl Pilots {
-    /// How many times as long as by the rates things take here; 1 without pilots.
+    /// How many times as long as by the rates things take here.
     fn pace(self) -> f64 {
-        if self.said > 0.0 { self.took / self.said } else { 1.0 }
+        pace(self.took, self.said)
     }
 }
 
@@ -334,8 +340,8 @@ impl CountedWork {
 }
 
 impl PackingPlan {
-    /// Seconds that one thread of a machine of 2024 takes for the packing: a rough guess, the same wherever it
-    /// is asked for.
+    /// Seconds that one thread of a machine of 2024 takes for the packing: a rough guess, the same wherever
+    /// it is asked for.
     pub fn core_seconds(&self) -> f64 {
         // Stiffer grains move in shorter steps.
         let stiffness = libm::sqrt((self.compression.stiffness_ratio / 0.1).max(0.1));
@@ -347,8 +353,7 @@ impl PackingPlan {
 
     /// The same for this machine, whose pace a small packing tells.
     pub fn core_seconds_here(&self) -> f64 {
-        let pace = small_packing_seconds().map_or(1.0, |seconds| seconds / SMALL_PACKING_S);
-        self.core_seconds() * pace
+        self.core_seconds() * pace(small_packing_seconds(), SMALL_PACKING_S)
     }
 
     /// Cu of the straight line between the same largest and smallest diameters.
@@ -405,5 +410,22 @@ pub fn duration(seconds: f64) -> String {
         s if s < 90.0 => format!("{:.0} s", s.ceil()),
         s if s < 5400.0 => format!("{:.0} min", s / 60.0),
         s => format!("{:.1} h", s / 3600.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_clock_that_cannot_tell_changes_nothing() {
+        assert_eq!([pace(0.0, 0.1), pace(0.016, 0.001), pace(0.5, 0.0)], [1.0; 3]);
+        assert_eq!(pace(0.2, 0.1), 2.0);
+    }
+
+    #[test]
+    fn a_duration_has_the_unit_that_one_would_say() {
+        let said = [0.2, 89.0, 90.0, 5399.0, 5400.0].map(duration);
+        assert_eq!(said, ["1 s", "89 s", "2 min", "90 min", "1.5 h"]);
     }
 }

@@ -100,7 +100,7 @@ pub fn pack(
 /// A plan that is refused for its few grains, with the time that grains enough would take.
 pub(super) fn with_time(error: CaseError) -> RunError {
     let CaseError::NarrowCell { would_do, .. } = &error else { return error.into() };
-    let time = duration(would_do.core_seconds());
+    let time = duration(would_do.core_seconds_here());
     RunError::Refused(format!(
         "{error}, in about {time} of one core or more; or packing.coarsest = 90, say, packs the finer 90 % \
          of the mass alone; or filter.estimate, in place of the density, guesses without a packing, and the \

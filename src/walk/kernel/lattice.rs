@@ -44,8 +44,8 @@ pub(super) fn fetch_first(void: &[u32], diameter: &[f32]) {
     fetch(void, diameter, 0..AHEAD);
 }
 
-/// Asks for a range of particles, of this chunk or those that lie behind it: beside the words of the table, read
-/// in no order, the machine does not do so by itself in time.
+/// Asks for a range of particles, of this chunk or those that lie behind it: beside the words of the table,
+/// read in no order, the machine does not do so by itself in time.
 #[inline(always)]
 fn fetch(void: &[u32], diameter: &[f32], range: Range<usize>) {
     #[cfg(target_arch = "x86_64")]
