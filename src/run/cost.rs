@@ -12,6 +12,7 @@ use super::studies::likely_replicates;
 use crate::case::{Case, PackingPlan};
 use crate::packing::is_wide;
 use crate::scene::NetworkSource;
+use crate::store::platform::THREAD_SECONDS_STEP;
 use crate::walk::Engine;
 
 /// Seconds that parts of a walk take on a cubic lattice.
@@ -67,8 +68,10 @@ const GRAINS_POWER: f64 = 0.3;
 /// Power of Cu with which the seconds of a grain and step grow: the wider the gradation, the more of its
 /// grains touch nothing.
 const WIDTH_POWER: f64 = -0.4;
-/// Seconds from which on a measured time tells a pace: clocks of threads may tick in steps of 0.016 s.
-const LEAST_TIMED_S: f64 = 0.03;
+/// Seconds from which on a measured time tells a pace ...
+const LEAST_TIMED_S: f64 = 0.002;
+/// ... and steps of the clock.
+const LEAST_STEPS: f64 = 6.0;
 /// Seconds of the small packing that tells a machine's pace, where a grain and step take `GRAIN_STEP_S`.
 const SMALL_PACKING_S: f64 = 0.105;
 /// Steps that packings with friction took at Cu 1.5 (11,200 to 14,100), the power of Cu with which they grow
@@ -284,7 +287,8 @@ impl Foreseen {
 
 /// How many times as long as was said something took; 1 where a clock cannot tell.
 fn pace(took: f64, said: f64) -> f64 {
-    if took >= LEAST_TIMED_S && said > 0.0 { took / said } else { 1.0 }
+    let least = LEAST_TIMED_S.max(LEAST_STEPS * THREAD_SECONDS_STEP);
+    if took >= least && said > 0.0 { took / said } else { 1.0 }
 }
 
 /// Seconds of pilot walks: what they took here, and what the rates of this module say.
@@ -419,7 +423,8 @@ mod tests {
 
     #[test]
     fn a_clock_that_cannot_tell_changes_nothing() {
-        assert_eq!([pace(0.0, 0.1), pace(0.016, 0.001), pace(0.5, 0.0)], [1.0; 3]);
+        assert_eq!([pace(0.0, 0.1), pace(0.001, 0.0001), pace(0.5, 0.0)], [1.0; 3]);
+        // On any system with a clock.
         assert_eq!(pace(0.2, 0.1), 2.0);
     }
 

@@ -58,6 +58,9 @@ pub fn host_name() -> String {
     "unknown".to_owned()
 }
 
+/// Steps in which the processor time of a thread may go on (s): it does not.
+pub const THREAD_SECONDS_STEP: f64 = f64::INFINITY;
+
 /// Not known: no time passes.
 pub fn thread_seconds() -> f64 {
     0.0

@@ -60,6 +60,9 @@ pub fn host_name() -> String {
     rustix::system::uname().nodename().to_string_lossy().into_owned()
 }
 
+/// Steps in which the processor time of a thread may go on (s).
+pub const THREAD_SECONDS_STEP: f64 = 1e-6;
+
 /// Processor time of this thread (s).
 pub fn thread_seconds() -> f64 {
     seconds(ClockId::ThreadCPUTime)

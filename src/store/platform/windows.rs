@@ -129,6 +129,9 @@ pub fn host_name() -> String {
     std::env::var("COMPUTERNAME").unwrap_or_else(|_| "unknown".to_owned())
 }
 
+/// Steps in which the processor time of a thread may go on (s): those of the system's own clock.
+pub const THREAD_SECONDS_STEP: f64 = 0.016;
+
 /// Processor time of this thread (s).
 pub fn thread_seconds() -> f64 {
     // SAFETY: the handle stands for this thread, and the system writes into the four places that it gets.
