@@ -118,7 +118,7 @@ impl Case {
     /// The same for this machine, whose pace the pilot walks of the case tell.
     pub fn core_seconds_here(&self) -> f64 {
         let Foreseen { seconds, besides, pilots, .. } = self.foreseen();
-        (seconds - besides) * pilots.pace() + besides
+        (seconds - besides) * pace(pilots.took, pilots.said) + besides
     }
 
     fn foreseen(&self) -> Foreseen {
@@ -298,13 +298,6 @@ struct Pilots {
     said: f64,
 }
 
-impl Pilots {
-    /// How many times as long as by the rates things take here.
-    fn pace(self) -> f64 {
-        pace(self.took, self.said)
-    }
-}
-
 /// Seconds of a run, those in which the flow is solved apart.
 struct Guess {
     seconds: f64,
@@ -420,12 +413,28 @@ pub fn duration(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Scene;
+    use crate::run::prepare::Draft;
 
     #[test]
     fn a_clock_that_cannot_tell_changes_nothing() {
         assert_eq!([pace(0.0, 0.1), pace(0.001, 0.0001), pace(0.5, 0.0)], [1.0; 3]);
         // On any system with a clock.
         assert_eq!(pace(0.2, 0.1), 2.0);
+    }
+
+    /// The packing of a Cu 1.5 filter with friction 0.7, by the model written out.
+    #[test]
+    fn a_packing_takes_what_the_model_says_and_here_as_many_times_that_as_the_machine_is_slower() {
+        let text = b"[filter]\ncu = 1.5\nfriction = 0.7\n[base]\ncu = 1.5\nd85_at_dc = 5\n";
+        let (draft, _) = Draft::new(Scene::parse(text, "s.toml", &[]).unwrap()).unwrap();
+        let plan = draft.packing.unwrap();
+        let (seconds, grains) = (plan.core_seconds(), plan.compression.grains as f64);
+        let expected = grains * (21_600.0 * 7.5e-8 * (grains / 9_000.0).powf(0.3) + 5e-5);
+        assert!((seconds / expected - 1.0).abs() < 1e-9, "{seconds} for {expected}");
+        let pace = plan.core_seconds_here() / seconds;
+        assert_eq!(pace, plan.core_seconds_here() / plan.core_seconds(), "one pace for a process");
+        assert!(pace > 0.0);
     }
 
     #[test]

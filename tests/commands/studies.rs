@@ -105,9 +105,8 @@ fn studies_that_are_interrupted_end_as_if_they_were_not() {
             }
             Event::RunDone if studied.load(Ordering::Relaxed) > 0 => {
                 // Threads say so side by side: whoever is late takes nothing back.
-                if studied.fetch_add(1, Ordering::Relaxed) >= 2 * start {
-                    stop.store(true, Ordering::Relaxed);
-                }
+                let enough = studied.fetch_add(1, Ordering::Relaxed) >= 2 * start;
+                stop.fetch_or(enough, Ordering::Relaxed);
             }
             _ => {}
         }
