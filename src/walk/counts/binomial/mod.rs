@@ -66,24 +66,23 @@ pub(super) fn fill(draws: &mut Draws, n: &[u64], p: &[u64], k: &mut [u64]) {
     assert!(n.len() == k.len() && p.len() == k.len());
     let eights = n.chunks_exact(LANES).zip(p.chunks_exact(LANES)).zip(k.chunks_exact_mut(LANES));
     for ((n, p), k) in eights {
-        fill_eight(draws, LANES, n.try_into().unwrap(), p.try_into().unwrap(), k.try_into().unwrap());
+        k.copy_from_slice(&eight(draws, LANES, n.try_into().unwrap(), p.try_into().unwrap()));
     }
     let done = k.len() / LANES * LANES;
     let left = k.len() - done;
     if left > 0 {
-        let (mut last_n, mut last_p, mut last_k) = ([0; LANES], [0; LANES], [0; LANES]);
+        let (mut last_n, mut last_p) = ([0; LANES], [0; LANES]);
         last_n[..left].copy_from_slice(&n[done..]);
         last_p[..left].copy_from_slice(&p[done..]);
-        fill_eight(draws, left, &last_n, &last_p, &mut last_k);
-        k[done..].copy_from_slice(&last_k[..left]);
+        k[done..].copy_from_slice(&eight(draws, left, last_n, last_p)[..left]);
     }
 }
 
-/// The first `used` of eight draws.
+/// Eight draws, of which the first `used` are.
 #[inline(always)]
-fn fill_eight(draws: &mut Draws, used: usize, n: &[u64; LANES], p: &[u64; LANES], k: &mut [u64; LANES]) {
+fn eight(draws: &mut Draws, used: usize, n: [u64; LANES], p: [u64; LANES]) -> [u64; LANES] {
     let words = draws.block();
-    let mut open = quantile::draw_eight(draws.normal, n, p, &words, k);
+    let (mut k, mut open) = quantile::draw_eight(draws.normal, n, p, words);
     open &= (1 << used) - 1;
     while open != 0 {
         let l = open.trailing_zeros() as usize;
@@ -93,6 +92,7 @@ fn fill_eight(draws: &mut Draws, used: usize, n: &[u64; LANES], p: &[u64; LANES]
         };
         open &= open - 1;
     }
+    k
 }
 
 /// A draw that is neither by trials nor by quantiles.

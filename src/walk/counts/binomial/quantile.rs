@@ -40,21 +40,23 @@ pub(super) fn draw(normal: &Normal, n: u64, p: u64, word: u64) -> u64 {
 }
 
 /// Eight draws, and a bit for each that is not one: `F` has to decide on it, or it cannot be drawn here.
+///
+/// Everything is taken and returned by value: between columns that might overlap, the compiler would make
+/// one draw after another.
 #[inline(always)]
 pub(super) fn draw_eight(
     normal: &Normal,
-    n: &[u64; LANES],
-    p: &[u64; LANES],
-    words: &[u64; LANES],
-    k: &mut [u64; LANES],
-) -> u32 {
-    let mut open = [0u64; LANES];
+    n: [u64; LANES],
+    p: [u64; LANES],
+    words: [u64; LANES],
+) -> ([u64; LANES], u32) {
+    let (mut k, mut open) = ([0; LANES], [0u64; LANES]);
     for l in 0..LANES {
         let (rare, sure) = propose(normal, n[l], p[l], words[l]);
         k[l] = turned(n[l], p[l], rare);
         open[l] = u64::from(!(sure & (n[l] <= MOST_TRIALS) & (p[l] != CERTAIN))) << l;
     }
-    open.iter().fold(0, |all, one| all | one) as u32
+    (k, open.iter().fold(0, |all, one| all | one) as u32)
 }
 
 /// The tail that a word stands for, between 0 and 1/2, and whether it is the upper one.
