@@ -15,7 +15,7 @@ use rayon::prelude::*;
 #[cfg(target_arch = "x86_64")]
 use super::binomial::{Avx2, Avx512};
 use super::binomial::{CERTAIN, Draws, FEW, FewTrials, Portable, fill, one};
-use super::shares::Shares;
+use super::shares::{Shares, Way};
 use super::sizes::fraction;
 use crate::network::{END, Network};
 use crate::stream::{Key, below};
@@ -259,51 +259,73 @@ impl Worker {
     unsafe fn step<F: FewTrials>(&mut self, block: Block) {
         let Block { network, shares, key, counts, voids } = block;
         let Self { next, moved, batch, .. } = self;
-        let targets = network.targets();
-        let outside = next.len() - 1;
+        let (targets, outside) = (network.targets(), next.len() - 1);
         // END is beyond every void.
         let mut arrive =
             |constriction: usize, n: u64| next[(targets[constriction] as usize).min(outside)] += n;
-        let mut waiting = Vec::new();
-        batch.rows = 0;
         let mut draws = Draws::new(key);
         // SAFETY: as promised.
         let mut few = unsafe { F::begin(&draws) };
-        for (void, &n) in voids.clone().zip(&counts[voids]) {
-            if n == 0 {
-                continue;
-            }
-            if !shares.leads_on(void) {
-                if shares.waits(void) {
+        let (first, mut many, mut waiting) = (voids.start, [0; BLOCK / 64], Vec::new());
+        for (word, counts) in counts[voids].chunks(64).enumerate() {
+            let [occupied, crowded] = occupied_and_crowded(counts);
+            let [shut, of_three] = shares.shut_and_of_three(first / 64 + word);
+            for void in bits(occupied & shut).map(|bit| first + 64 * word + bit) {
+                let n = counts[void % 64];
+                if matches!(shares.way(void), Way::Wait) {
                     moved.waiting += n;
                     // The particles of this void alone may be there yet.
                     waiting.push((void, n));
                 } else {
                     moved.stranded.push((void as u32, n));
                 }
-                continue;
             }
-            moved.moves += n;
-            let exits = network.exits(void as u32);
-            if n <= FEW && exits.len() == 3 {
-                let (first, second, thresholds) = shares.of_three(exits.start);
-                let [mut to_first, mut to_second] = few.below_both(&mut draws, n, thresholds);
-                to_first = if first == CERTAIN { n } else { to_first };
-                to_second = if first == CERTAIN || second == CERTAIN { n } else { to_second };
-                arrive(exits.start, to_first);
-                arrive(exits.start + 1, to_second - to_first);
-                arrive(exits.start + 2, n - to_second);
-                continue;
+            for void in bits(occupied & !shut & of_three & !crowded).map(|bit| first + 64 * word + bit) {
+                let (n, way, exit) = (counts[void % 64], shares.way(void), network.exits(void as u32).start);
+                let thresholds = || shares.thresholds_of_three(exit);
+                let [mut to_first, mut to_second] =
+                    few.below_both(&mut draws, n, shares.tops(void), thresholds);
+                to_first = if matches!(way, Way::First) { n } else { to_first };
+                to_second = if matches!(way, Way::First | Way::Second) { n } else { to_second };
+                arrive(exit, to_first);
+                arrive(exit + 1, to_second - to_first);
+                arrive(exit + 2, n - to_second);
+                moved.moves += n;
             }
-            let row = batch.rows;
-            batch.rows = batch.face(row, exits.start, n, shares, &mut arrive);
+            many[word] = occupied & !shut & (crowded | !of_three);
         }
         few.end(&mut draws);
+        batch.rows = 0;
+        for (word, many) in many.into_iter().enumerate() {
+            for void in bits(many).map(|bit| first + 64 * word + bit) {
+                let exit = network.exits(void as u32).start;
+                batch.rows = batch.face(batch.rows, exit, counts[void], shares, &mut arrive);
+                moved.moves += counts[void];
+            }
+        }
         while batch.rows > 0 {
             batch.round(&mut draws, shares, &mut arrive);
         }
         waiting.iter().for_each(|&(void, n)| next[void] += n);
     }
+}
+
+/// A bit for each of up to 64 voids: whether it holds particles, and whether it holds more than a few. With
+/// bits to go through, what the next void holds needs no guess.
+#[inline(always)]
+fn occupied_and_crowded(counts: &[u64]) -> [u64; 2] {
+    let of = |(i, &n): (usize, &u64)| [u64::from(n > 0) << i, u64::from(n > FEW) << i];
+    counts.iter().enumerate().map(of).fold([0; 2], |all, one| [all[0] | one[0], all[1] | one[1]])
+}
+
+/// The places of the ones in a word, from the lowest on.
+#[inline(always)]
+fn bits(mut word: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let place = (word != 0).then(|| word.trailing_zeros() as usize);
+        word &= word.wrapping_sub(1);
+        place
+    })
 }
 
 impl SplitBatch {

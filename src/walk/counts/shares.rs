@@ -6,14 +6,37 @@ use super::binomial::CERTAIN;
 use crate::network::Network;
 use crate::walk::exits;
 
-/// By constriction: the probability that a particle which has not taken an earlier exit of its void takes
-/// this one, as a 64-bit fraction. The last open exit is certain; closed ones have none.
+/// Which way the passive particles of a void go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(u8)]
+pub(super) enum Way {
+    /// No exit is open, and they rest.
+    None,
+    /// No exit is open until the flow is solved again.
+    Wait,
+    /// Of three exits, the first two may be taken or left.
+    Three,
+    /// Of three exits, the first is the only open one.
+    First,
+    /// Of three exits, the second is the last open one.
+    Second,
+    /// There are more or fewer than three exits.
+    Other,
+}
+
+/// How the passive particles of every void are split over its exits.
 pub(super) struct Shares {
+    /// By constriction: the probability that a particle which has not taken an earlier exit of its void takes
+    /// this one, as a 64-bit fraction. The last open exit is certain; closed ones have none.
     probability: Vec<u64>,
-    /// By void: whether it has an open exit.
-    leads_on: Vec<bool>,
-    /// By void: whether its particles wait for one.
-    waits: Vec<bool>,
+    /// By void.
+    way: Vec<Way>,
+    /// A bit for each void without an open exit.
+    shut: Vec<u64>,
+    /// A bit for each void that has three exits.
+    of_three: Vec<u64>,
+    /// By void of three exits: the upper sixteen bits of its thresholds.
+    tops: Vec<[u16; 2]>,
 }
 
 impl Shares {
@@ -21,8 +44,10 @@ impl Shares {
     pub fn new(network: &Network, blocked: &BitSlice) -> Self {
         let mut shares = Self {
             probability: vec![0; network.constrictions()],
-            leads_on: vec![false; network.voids()],
-            waits: vec![false; network.voids()],
+            way: vec![Way::None; network.voids()],
+            shut: vec![0; network.voids().div_ceil(64)],
+            of_three: vec![0; network.voids().div_ceil(64)],
+            tops: vec![[0; 2]; network.voids()],
         };
         let mut thresholds = Vec::new();
         for void in 0..network.voids() as u32 {
@@ -38,10 +63,8 @@ impl Shares {
     pub fn set(&mut self, network: &Network, blocked: &BitSlice, void: u32, thresholds: &mut Vec<u64>) {
         let exits = network.exits(void);
         let last = exits::thresholds(network, blocked, void, thresholds);
-        self.leads_on[void as usize] = last.is_some();
-        self.waits[void as usize] = last.is_none() && exits::waits(network, void);
         let mut before = 0u64;
-        for (e, probability) in self.probability[exits].iter_mut().enumerate() {
+        for (e, probability) in self.probability[exits.clone()].iter_mut().enumerate() {
             *probability = match last {
                 Some(last) if e == last => CERTAIN,
                 Some(last) if e < last => {
@@ -52,6 +75,20 @@ impl Shares {
             };
             before = thresholds[e];
         }
+        self.way[void as usize] = match last {
+            None if exits::waits(network, void) => Way::Wait,
+            None => Way::None,
+            Some(_) if exits.len() != 3 => Way::Other,
+            Some(0) => Way::First,
+            Some(1) => Way::Second,
+            Some(_) => Way::Three,
+        };
+        let (word, bit) = (void as usize / 64, 1 << (void % 64));
+        self.shut[word] = self.shut[word] & !bit | if last.is_none() { bit } else { 0 };
+        if exits.len() == 3 {
+            self.of_three[word] |= bit;
+            self.tops[void as usize] = self.thresholds_of_three(exits.start).map(|t| (t >> 48) as u16);
+        }
     }
 
     /// Probability of each constriction.
@@ -59,27 +96,45 @@ impl Shares {
         &self.probability
     }
 
-    /// Probabilities of the first two of three exits, and the same two as thresholds for one 64-bit draw: it
-    /// picks the first exit below the first threshold, else the second below the second, else the third. They
-    /// do not hold beyond an exit that is certain.
+    /// Of the first two of three exits, as thresholds for one 64-bit draw: it picks the first exit below the
+    /// first threshold, else the second below the second, else the third. They do not hold beyond an exit that
+    /// is certain.
     #[inline(always)]
-    pub fn of_three(&self, exit: usize) -> (u64, u64, [u64; 2]) {
+    pub fn thresholds_of_three(&self, exit: usize) -> [u64; 2] {
         let (first, second) = (self.probability[exit], self.probability[exit + 1]);
         let of_rest = second - ((u128::from(second) * u128::from(first)) >> 64) as u64;
         // The sum is a probability and stays below 1, except beside an exit that is certain: what it wraps to
         // there is the threshold that does not hold.
-        (first, second, [first, first.wrapping_add(of_rest)])
+        [first, first.wrapping_add(of_rest)]
+    }
+
+    /// Which way the particles of a void go.
+    #[inline(always)]
+    pub fn way(&self, void: usize) -> Way {
+        self.way[void]
+    }
+
+    /// The upper sixteen bits of the thresholds of a void that has three exits.
+    #[inline(always)]
+    pub fn tops(&self, void: usize) -> [u16; 2] {
+        self.tops[void]
+    }
+
+    /// A bit for each of the 64 voids of `word`: whether it has no open exit, and whether it has three exits.
+    #[inline(always)]
+    pub fn shut_and_of_three(&self, word: usize) -> [u64; 2] {
+        [self.shut[word], self.of_three[word]]
     }
 
     /// Whether the particles of a void without open exits stay there until the flow is solved again.
     pub fn waits(&self, void: usize) -> bool {
-        self.waits[void]
+        self.way[void] == Way::Wait
     }
 
     /// Whether a void has an open exit.
     #[inline]
     pub fn leads_on(&self, void: usize) -> bool {
-        self.leads_on[void]
+        !matches!(self.way[void], Way::None | Way::Wait)
     }
 }
 
@@ -117,9 +172,12 @@ mod tests {
         for d in all().flat_map(|x| all().flat_map(move |y| all().map(move |z| [x, y, z]))) {
             let network = Network::cubic_from_diameters([1, 1, 1], d.to_vec(), 1.0).unwrap();
             let blocked: BitVec = BitVec::repeat(false, 3);
-            let (first, second, [to_first, to_second]) = Shares::new(&network, &blocked).of_three(0);
-            assert_eq!(to_first, first);
-            if first != CERTAIN && second != CERTAIN {
+            let shares = Shares::new(&network, &blocked);
+            let [to_first, to_second] = shares.thresholds_of_three(0);
+            assert_eq!(to_first, shares.probability[0]);
+            assert_eq!(shares.way[0] == Way::First, shares.probability[0] == CERTAIN, "{d:?}");
+            assert_eq!(shares.way[0] == Way::Second, shares.probability[1] == CERTAIN, "{d:?}");
+            if shares.way[0] == Way::Three {
                 assert!(to_second >= to_first, "{d:?}");
             }
         }

@@ -15,8 +15,15 @@ pub(in crate::walk::counts) trait FewTrials {
     /// The machine has the instructions that this is made with.
     unsafe fn begin(draws: &Draws) -> Self;
 
-    /// How many of `n` uniform 64-bit words are below each of two thresholds.
-    fn below_both(&mut self, draws: &mut Draws, n: u64, thresholds: [u64; 2]) -> [u64; 2];
+    /// How many of `n` uniform 64-bit words are below each of two thresholds, of which `tops` are the upper
+    /// sixteen bits; the whole is asked for where they do not decide.
+    fn below_both(
+        &mut self,
+        draws: &mut Draws,
+        n: u64,
+        tops: [u16; 2],
+        thresholds: impl Fn() -> [u64; 2],
+    ) -> [u64; 2];
 
     /// Puts the generators back, for whatever else draws from the stream.
     fn end(self, draws: &mut Draws);
@@ -32,8 +39,14 @@ impl FewTrials for Portable {
     }
 
     #[inline(always)]
-    fn below_both(&mut self, draws: &mut Draws, n: u64, thresholds: [u64; 2]) -> [u64; 2] {
-        below_both(draws, n, thresholds)
+    fn below_both(
+        &mut self,
+        draws: &mut Draws,
+        n: u64,
+        _: [u16; 2],
+        thresholds: impl Fn() -> [u64; 2],
+    ) -> [u64; 2] {
+        below_both(draws, n, thresholds())
     }
 
     #[inline(always)]
@@ -68,7 +81,7 @@ mod x86 {
         ///
         /// # Safety
         /// The machine has the instructions that this is made with.
-        unsafe fn block(&mut self, counted: u64, thresholds: [u64; 2]) -> Counted;
+        unsafe fn block(&mut self, counted: u64, tops: [u16; 2]) -> Counted;
 
         /// Writes the generators where `draws` has them.
         fn store(&self, draws: &mut Draws);
@@ -80,16 +93,17 @@ mod x86 {
         vectors: &mut V,
         draws: &mut Draws,
         n: u64,
-        thresholds: [u64; 2],
+        tops: [u16; 2],
+        thresholds: impl Fn() -> [u64; 2],
     ) -> [u64; 2] {
         let (mut below, mut left) = ([0, 0], n);
         while left > 0 {
             let counted = left.min(DRAWS_PER_BLOCK as u64);
             // SAFETY: whoever began has promised the instructions.
-            let (less, block) = unsafe { vectors.block(counted, thresholds) };
+            let (less, block) = unsafe { vectors.block(counted, tops) };
             if let Some(block) = block {
                 vectors.store(draws);
-                complete(draws, &block[..counted as usize], thresholds, &mut below);
+                complete(draws, &block[..counted as usize], thresholds(), &mut below);
                 // SAFETY: as above.
                 *vectors = unsafe { V::begin(draws) };
             }
@@ -107,8 +121,14 @@ mod x86 {
         }
 
         #[inline(always)]
-        fn below_both(&mut self, draws: &mut Draws, n: u64, thresholds: [u64; 2]) -> [u64; 2] {
-            below_both(self, draws, n, thresholds)
+        fn below_both(
+            &mut self,
+            draws: &mut Draws,
+            n: u64,
+            tops: [u16; 2],
+            thresholds: impl Fn() -> [u64; 2],
+        ) -> [u64; 2] {
+            below_both(self, draws, n, tops, thresholds)
         }
 
         #[inline(always)]
@@ -119,9 +139,9 @@ mod x86 {
 
     impl InRegisters for Avx512 {
         #[inline(always)]
-        unsafe fn block(&mut self, counted: u64, thresholds: [u64; 2]) -> Counted {
+        unsafe fn block(&mut self, counted: u64, tops: [u16; 2]) -> Counted {
             // SAFETY: as the caller promises.
-            unsafe { block_avx512(&mut self.0, counted, thresholds) }
+            unsafe { block_avx512(&mut self.0, counted, tops) }
         }
 
         #[inline(always)]
@@ -137,14 +157,14 @@ mod x86 {
     /// one is equal to the top of a threshold.
     #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
     #[inline]
-    fn block_avx512(state: &mut [__m512i; 4], counted: u64, thresholds: [u64; 2]) -> Counted {
+    fn block_avx512(state: &mut [__m512i; 4], counted: u64, tops: [u16; 2]) -> Counted {
         let [s0, s1, s2, s3] = *state;
         let block = _mm512_add_epi64(_mm512_rol_epi64::<23>(_mm512_add_epi64(s0, s3)), s0);
         let (t, s2, s3) = (_mm512_slli_epi64::<17>(s1), _mm512_xor_si512(s2, s0), _mm512_xor_si512(s3, s1));
         let (s1, s0) = (_mm512_xor_si512(s1, s2), _mm512_xor_si512(s0, s3));
         *state = [s0, s1, _mm512_xor_si512(s2, t), _mm512_rol_epi64::<45>(s3)];
         let mask = ((1u64 << counted) - 1) as u32;
-        let [first, second] = thresholds.map(|t| _mm512_set1_epi16((t >> 48) as i16));
+        let [first, second] = tops.map(|top| _mm512_set1_epi16(top as i16));
         let less = [
             _mm512_mask_cmplt_epu16_mask(mask, block, first).count_ones(),
             _mm512_mask_cmplt_epu16_mask(mask, block, second).count_ones(),
@@ -171,8 +191,14 @@ mod x86 {
         }
 
         #[inline(always)]
-        fn below_both(&mut self, draws: &mut Draws, n: u64, thresholds: [u64; 2]) -> [u64; 2] {
-            below_both(self, draws, n, thresholds)
+        fn below_both(
+            &mut self,
+            draws: &mut Draws,
+            n: u64,
+            tops: [u16; 2],
+            thresholds: impl Fn() -> [u64; 2],
+        ) -> [u64; 2] {
+            below_both(self, draws, n, tops, thresholds)
         }
 
         #[inline(always)]
@@ -183,9 +209,9 @@ mod x86 {
 
     impl InRegisters for Avx2 {
         #[inline(always)]
-        unsafe fn block(&mut self, counted: u64, thresholds: [u64; 2]) -> Counted {
+        unsafe fn block(&mut self, counted: u64, tops: [u16; 2]) -> Counted {
             // SAFETY: as the caller promises.
-            unsafe { block_avx2(&mut self.0, counted, thresholds) }
+            unsafe { block_avx2(&mut self.0, counted, tops) }
         }
 
         #[inline(always)]
@@ -199,25 +225,33 @@ mod x86 {
         }
     }
 
+    /// By number of draws that count: a bit for each, where packing two halves puts it (eight of the lower half
+    /// of the draws, eight of the upper one, then the others of each).
+    const COUNTED: [u32; DRAWS_PER_BLOCK + 1] = {
+        let (mut masks, mut n) = ([0; DRAWS_PER_BLOCK + 1], 0);
+        while n <= DRAWS_PER_BLOCK {
+            let first = ((1u64 << n) - 1) as u32;
+            masks[n] = first & 0xff00_00ff | first >> 8 & 0xff00 | first << 8 & 0xff_0000;
+            n += 1;
+        }
+        masks
+    };
+
     /// [`block_avx512`] in two halves.
     #[target_feature(enable = "avx2,popcnt")]
     #[inline]
-    fn block_avx2(state: &mut [[__m256i; 4]; 2], counted: u64, thresholds: [u64; 2]) -> Counted {
+    fn block_avx2(state: &mut [[__m256i; 4]; 2], counted: u64, tops: [u16; 2]) -> Counted {
         // What is unsigned is compared as signed, less 2^15.
         let sign = _mm256_set1_epi16(i16::MIN);
-        let tops = thresholds.map(|t| _mm256_set1_epi16(((t >> 48) as u16 ^ 0x8000) as i16));
-        // Two bits for each draw that counts.
-        let mask = ((1u128 << (2 * counted)) - 1) as u64;
-        let (mut less, mut same, mut blocks) = ([0; 2], 0, [sign; 2]);
-        for (half, block) in blocks.iter_mut().enumerate() {
-            *block = next_avx2(&mut state[half]);
-            let mask = (mask >> (32 * half)) as u32;
-            let signed = _mm256_xor_si256(*block, sign);
-            for (less, top) in less.iter_mut().zip(tops) {
-                let below = _mm256_movemask_epi8(_mm256_cmpgt_epi16(top, signed)) as u32;
-                *less += (below & mask).count_ones() / 2;
-                same |= _mm256_movemask_epi8(_mm256_cmpeq_epi16(top, signed)) as u32 & mask;
-            }
+        let counts = COUNTED[counted as usize];
+        let blocks = [next_avx2(&mut state[0]), next_avx2(&mut state[1])];
+        let [low, high] = [_mm256_xor_si256(blocks[0], sign), _mm256_xor_si256(blocks[1], sign)];
+        let (mut less, mut same) = ([0; 2], 0);
+        for (less, top) in less.iter_mut().zip(tops) {
+            let top = _mm256_set1_epi16((top ^ 0x8000) as i16);
+            let below = packed(_mm256_cmpgt_epi16(top, low), _mm256_cmpgt_epi16(top, high));
+            *less = (below & counts).count_ones();
+            same |= packed(_mm256_cmpeq_epi16(top, low), _mm256_cmpeq_epi16(top, high)) & counts;
         }
         let block = (same != 0).then(|| {
             let mut sixteens = [0; DRAWS_PER_BLOCK];
@@ -228,6 +262,13 @@ mod x86 {
             sixteens
         });
         (less, block)
+    }
+
+    /// A bit for each sixteen of two halves that is not zero, eight of one and of the other in turn.
+    #[target_feature(enable = "avx2,popcnt")]
+    #[inline]
+    fn packed(low: __m256i, high: __m256i) -> u32 {
+        _mm256_movemask_epi8(_mm256_packs_epi16(low, high)) as u32
     }
 
     /// The next word of four generators.

@@ -3,8 +3,7 @@
 use super::rejection::QUICK_U;
 use super::saddle::ln_probability;
 use super::*;
-use crate::stream::Key;
-use crate::stream::Purpose;
+use crate::stream::{Key, Purpose};
 
 fn draws(chunk: u64) -> Draws {
     Draws::new(Key { seed: 2024, purpose: Purpose::Passive, run: 9, increment: 1, chunk })
@@ -272,7 +271,9 @@ fn few_trials_are_the_same_with_any_instructions() {
             // Every number of trials, and thresholds of which every seventh pair shares its top sixteen bits.
             let (n, first) = (void % (FEW + 1), words.word());
             let second = if void % 7 == 0 { first | 0xffff } else { words.word() };
-            all.extend(few.below_both(&mut draws, n, [first.min(second), first.max(second)]));
+            let thresholds = [first.min(second), first.max(second)];
+            let tops = thresholds.map(|t| (t >> 48) as u16);
+            all.extend(few.below_both(&mut draws, n, tops, || thresholds));
         }
         few.end(&mut draws);
         all.extend((0..100).map(|_| draws.word()));
