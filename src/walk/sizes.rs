@@ -4,10 +4,13 @@
 #[derive(Clone, Debug, PartialEq)]
 pub struct SizeClasses {
     upper: Vec<f32>,
-    /// Class of the smallest diameter of each bucket; a bucket is the top bits of an f32.
-    guide: Vec<u32>,
+    /// Class of the smallest diameter of each bucket, and the bound above which the next class begins; a bucket
+    /// is the top bits of an f32.
+    guide: Vec<(u32, f32)>,
     /// Bucket of the first entry of `guide`.
     first_bucket: u32,
+    /// Whether a bucket holds more than one bound, which is seldom.
+    crowded: bool,
 }
 
 /// Bits of an f32 below those of its bucket: 32 buckets in a factor of two.
@@ -26,9 +29,13 @@ impl SizeClasses {
         let class = |diameter: f32| upper.partition_point(|&bound| bound < diameter);
         let first_bucket = bucket(upper[0]);
         let after_first = first_bucket + 1..=bucket(largest);
-        let starts = after_first.map(|bucket| class(f32::from_bits(bucket << BELOW_BUCKET)) as u32);
-        let guide = std::iter::once(0).chain(starts).collect();
-        Self { upper, guide, first_bucket }
+        let starts = after_first.map(|bucket| class(f32::from_bits(bucket << BELOW_BUCKET)));
+        // Sizes above the last bound count in the last class.
+        let bound = |class: usize| if class + 1 < upper.len() { upper[class] } else { f32::INFINITY };
+        let entry = |class: usize| (class as u32, bound(class));
+        let guide: Vec<(u32, f32)> = std::iter::once(0).chain(starts).map(entry).collect();
+        let crowded = upper.windows(2).any(|bounds| bucket(bounds[0]) == bucket(bounds[1]));
+        Self { upper, guide, first_bucket, crowded }
     }
 
     /// Upper bound of each class.
@@ -40,12 +47,13 @@ impl SizeClasses {
     #[inline]
     pub fn of(&self, diameter: f32) -> usize {
         let bucket = (diameter.to_bits() >> BELOW_BUCKET).saturating_sub(self.first_bucket) as usize;
-        let mut class = self.guide[bucket.min(self.guide.len() - 1)] as usize;
-        let last = self.upper.len() - 1;
-        // A bucket seldom holds more than one bound.
-        class += usize::from(class < last && self.upper[class] < diameter);
-        while class < last && self.upper[class] < diameter {
-            class += 1;
+        let (class, bound) = self.guide[bucket.min(self.guide.len() - 1)];
+        let mut class = class as usize + usize::from(bound < diameter);
+        if self.crowded {
+            let last = self.upper.len() - 1;
+            while class < last && self.upper[class] < diameter {
+                class += 1;
+            }
         }
         class
     }
