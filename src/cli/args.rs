@@ -6,7 +6,8 @@ use std::time::Duration;
 use clap::{Args, Parser, Subcommand};
 
 use super::values::{
-    assignment, bracket, decide, density, facets, millimetres, seed, target_error, threads, time,
+    assignment, bracket, decide, density, facets, lattice_size, millimetres, seed, target_error, threads,
+    time,
 };
 use crate::campaign::CasePart;
 use crate::constrictions::{DEFAULT_MERGE_OVERLAP, Facets};
@@ -481,10 +482,11 @@ pub struct ConstrictionsArgs {
 /// Which lattices, and how many.
 #[derive(Debug, Args)]
 pub struct PercolationArgs {
-    /// Voids along each side, one lattice size after another
-    #[arg(long, value_name = "L,L,...", value_delimiter = ',', default_values_t = [10, 20, 40, 80, 160],
-          value_parser = clap::value_parser!(u32).range(1..))]
-    pub sizes: Vec<u32>,
+    /// Voids along each side, one lattice size after another; of a lattice that is no cube along x, y and z,
+    /// as 40x40x60
+    #[arg(long, value_name = "L,L,...", value_delimiter = ',', default_value = "10,20,40,80,160",
+          value_parser = lattice_size, allow_hyphen_values = true)]
+    pub sizes: Vec<[u32; 3]>,
     /// Realisations of each size
     #[arg(long, value_name = "N", default_value_t = 100,
           value_parser = clap::value_parser!(u64).range(1..=1_000_000))]

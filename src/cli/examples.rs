@@ -110,7 +110,7 @@ const EXAMPLES: [(&str, [Example; 2]); 19] = [
         "percolation",
         [
             ["voidwalk percolation", "lattices of 10 to 160 voids along a side"],
-            ["voidwalk percolation --sizes 10,20 --realisations 50", "two small ones"],
+            ["voidwalk percolation --sizes 10,20,40x40x60", "two small ones, and the lattice of the paper"],
         ],
     ),
     (

@@ -10,7 +10,7 @@ use crate::study::percolation::{self, PercolationOptions};
 /// Finds the thresholds and writes them into a folder.
 pub fn percolation(args: &PercolationArgs) -> Result<(), RunError> {
     let options = PercolationOptions {
-        sizes: args.sizes.clone(),
+        shapes: args.sizes.clone(),
         realisations: args.realisations,
         seed: args.seed,
         out: args.out.clone(),
@@ -26,13 +26,13 @@ pub fn percolation(args: &PercolationArgs) -> Result<(), RunError> {
 }
 
 fn words(study: &PercolationStudy) -> String {
-    let mut text = String::from("  size   mean      95 % interval        sd\n");
+    let mut text = String::from("    size   mean      95 % interval        sd\n");
     let digits = |value: Option<f64>| value.map_or("-".to_string(), |v| format!("{v:.5}"));
-    for size in &study.sizes {
-        let threshold = &size.threshold;
+    let cubes = study.sizes.iter().map(|of| (of.size.to_string(), &of.threshold));
+    let boxes = study.boxes.iter().map(|of| (of.shape.map(|n| n.to_string()).join("x"), &of.threshold));
+    for (size, threshold) in cubes.chain(boxes) {
         text += &format!(
-            "{:>6}   {}   {} to {}   {}\n",
-            size.size,
+            "{size:>8}   {}   {} to {}   {}\n",
             digits(Some(threshold.mean)),
             digits(threshold.low),
             digits(threshold.high),

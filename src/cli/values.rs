@@ -42,6 +42,17 @@ pub(super) fn facets(text: &str) -> Result<Facets, String> {
     }
 }
 
+/// The size of a lattice: voids along each side, or along x, y and z.
+pub(super) fn lattice_size(text: &str) -> Result<[u32; 3], String> {
+    let length = |text: &str| text.trim().parse().ok().filter(|&voids| voids > 0);
+    let lengths: Option<Vec<u32>> = text.split('x').map(length).collect();
+    match lengths.as_deref() {
+        Some(&[size]) => Ok([size; 3]),
+        Some(&[nx, ny, nz]) => Ok([nx, ny, nz]),
+        _ => Err("write a whole number of voids above 0, or three as 40x40x60".into()),
+    }
+}
+
 /// A seed.
 pub(super) fn seed(text: &str) -> Result<u64, String> {
     text.trim().parse().map_err(|_| format!("write a whole number from 0 to {}", u64::MAX))

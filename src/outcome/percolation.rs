@@ -42,6 +42,9 @@ pub struct PercolationStudy {
     pub realisations: u64,
     /// One per size, ascending.
     pub sizes: Vec<SizeThreshold>,
+    /// One per lattice that is no cube, in order of its lengths; no relation is fitted to these.
+    #[serde(default)]
+    pub boxes: Vec<BoxThreshold>,
     /// The relation of one length; `None` with fewer than two sizes or realisations.
     pub one_length: Option<OneLength>,
     /// The relation of many starts; `None` with fewer than four sizes, or where no threshold fits.
@@ -62,6 +65,17 @@ pub struct SizeThreshold {
     /// Share of constrictions that is open at the threshold.
     pub threshold: Statistic,
     /// Standard error of the standard deviation, for normal thresholds: sd / sqrt(2 (n - 1)).
+    pub sd_error: Option<f64>,
+}
+
+/// The thresholds of a lattice that is no cube.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BoxThreshold {
+    /// Voids along x and y, and layers.
+    pub shape: [u32; 3],
+    /// Share of constrictions that is open at the threshold.
+    pub threshold: Statistic,
+    /// Standard error of the standard deviation, as that of a size.
     pub sd_error: Option<f64>,
 }
 
@@ -100,30 +114,48 @@ pub struct ManyStarts {
 }
 
 impl PercolationStudy {
-    /// Puts the thresholds of each size together: `(size, one threshold per realisation)`, sizes ascending.
-    pub fn new(seed: u64, thresholds: &[(u64, Vec<f64>)], seconds: f64) -> Self {
-        let sizes: Vec<SizeThreshold> = thresholds.iter().map(|(size, all)| of_size(*size, all)).collect();
-        let points: Vec<Point> = sizes.iter().filter_map(|s| Point::of(s, thresholds)).collect();
+    /// Puts the thresholds of each lattice together: `(voids along x and y, and layers; one threshold per
+    /// realisation)`, cubes by ascending size.
+    pub fn new(seed: u64, thresholds: &[([u32; 3], Vec<f64>)], seconds: f64) -> Self {
+        let (cubes, boxes): (Vec<_>, Vec<_>) = thresholds.iter().partition(|(shape, _)| is_cube(*shape));
+        let of_size = |(shape, all): &&([u32; 3], Vec<f64>)| {
+            let (threshold, sd_error) = of_lattice(all);
+            SizeThreshold { size: u64::from(shape[0]), threshold, sd_error }
+        };
+        let of_box = |(shape, all): &&([u32; 3], Vec<f64>)| {
+            let (threshold, sd_error) = of_lattice(all);
+            BoxThreshold { shape: *shape, threshold, sd_error }
+        };
+        let sizes: Vec<SizeThreshold> = cubes.iter().map(of_size).collect();
+        let realisations = thresholds.first().map_or(0, |(_, all)| all.len() as u64);
+        let points: Vec<Point> = sizes.iter().filter_map(|s| Point::of(s, realisations)).collect();
         let enough = points.len() >= 2;
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
             seed,
-            realisations: thresholds.first().map_or(0, |(_, all)| all.len() as u64),
+            realisations,
             one_length: enough.then(|| one_length(&points)),
             many_starts: if points.len() >= 4 { many_starts(&points) } else { None },
             sd_exponent: enough
                 .then(|| log_log_slope(&points.iter().map(|p| (p.size, p.sd)).collect::<Vec<_>>())),
             sizes,
+            boxes: boxes.iter().map(of_box).collect(),
             infinite_lattice: INFINITE_LATTICE,
             seconds,
         }
     }
 }
 
-fn of_size(size: u64, all: &[f64]) -> SizeThreshold {
+/// Whether a lattice is as wide as it is long.
+pub fn is_cube(shape: [u32; 3]) -> bool {
+    shape == [shape[0]; 3]
+}
+
+/// The threshold over the realisations, and the standard error of its standard deviation.
+fn of_lattice(all: &[f64]) -> (Statistic, Option<f64>) {
     let threshold = Statistic::of_fraction(all);
     let sd_error = threshold.sd.map(|sd| sd / (2.0 * (all.len() as f64 - 1.0)).sqrt());
-    SizeThreshold { size, threshold, sd_error }
+    (threshold, sd_error)
 }
 
 /// What a fit reads of a size.
@@ -137,10 +169,10 @@ struct Point {
 
 impl Point {
     /// `None` without scatter, which leaves no weight.
-    fn of(size: &SizeThreshold, thresholds: &[(u64, Vec<f64>)]) -> Option<Self> {
-        let count = thresholds.iter().find(|(s, _)| *s == size.size)?.1.len() as f64;
+    fn of(size: &SizeThreshold, realisations: u64) -> Option<Self> {
         let sd = size.threshold.sd.filter(|sd| *sd > 0.0)?;
-        Some(Self { size: size.size as f64, mean: size.threshold.mean, sd, error: sd / count.sqrt() })
+        let error = sd / (realisations as f64).sqrt();
+        Some(Self { size: size.size as f64, mean: size.threshold.mean, sd, error })
     }
 }
 
@@ -199,10 +231,10 @@ mod tests {
     use super::*;
 
     /// Thresholds with these means, all with one small standard deviation.
-    fn around(mean: impl Fn(f64) -> f64) -> Vec<(u64, Vec<f64>)> {
-        let of = |size: u64| {
-            let (mean, off) = (mean(size as f64), 0.01 / size as f64);
-            (size, vec![mean - off, mean, mean + off])
+    fn around(mean: impl Fn(f64) -> f64) -> Vec<([u32; 3], Vec<f64>)> {
+        let of = |size: u32| {
+            let (mean, off) = (mean(f64::from(size)), 0.01 / f64::from(size));
+            ([size; 3], vec![mean - off, mean, mean + off])
         };
         [10, 20, 40, 80, 160].map(of).to_vec()
     }
@@ -240,13 +272,26 @@ mod tests {
         assert!(fit.threshold_low < 0.382 && fit.threshold_high > 0.382 && fit.degrees == 2);
     }
 
+    /// A box has thresholds of its own, and moves no relation.
+    #[test]
+    fn a_box_is_told_beside_the_sizes() {
+        let cubes = around(|size| 0.38 - 0.3 * libm::pow(size, -1.0 / NU_PARALLEL));
+        let with_box = [cubes.clone(), vec![([40, 40, 60], vec![0.3, 0.4, 0.5])]].concat();
+        let (alone, beside) =
+            (PercolationStudy::new(1, &cubes, 0.0), PercolationStudy::new(1, &with_box, 0.0));
+        assert_eq!((&alone.sizes, alone.one_length), (&beside.sizes, beside.one_length));
+        assert_eq!((beside.boxes.len(), beside.boxes[0].shape), (1, [40, 40, 60]));
+        assert!((beside.boxes[0].threshold.mean - 0.4).abs() < 1e-12);
+        assert!((beside.boxes[0].sd_error.unwrap() - 0.05).abs() < 1e-12, "0.1 / sqrt(2 (3 - 1))");
+    }
+
     #[test]
     fn what_cannot_be_fitted_is_not() {
         let all = around(|size| 0.38 - 1.0 / size);
         let one = PercolationStudy::new(1, &all[..1], 0.0);
         assert!(one.one_length.is_none() && one.many_starts.is_none() && one.sizes[0].sd_error.is_some());
         assert!(PercolationStudy::new(1, &all[..3], 0.0).many_starts.is_none());
-        let single = PercolationStudy::new(1, &[(10, vec![0.3]), (20, vec![0.34])], 0.0);
+        let single = PercolationStudy::new(1, &[([10; 3], vec![0.3]), ([20; 3], vec![0.34])], 0.0);
         assert!(single.one_length.is_none() && single.sizes[0].threshold.sd.is_none());
     }
 }

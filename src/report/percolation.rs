@@ -12,6 +12,7 @@ use super::shell::{Drawn, figures, whole_page};
 use super::table::Table;
 use super::written::{Written, write_page};
 use crate::outcome::percolation::{NU_PARALLEL, PercolationStudy, Z};
+use crate::outcome::record::Statistic;
 
 /// Writes `report.html` and its figures into the folder of a percolation study, from `percolation.json`
 /// there.
@@ -20,19 +21,23 @@ use crate::outcome::percolation::{NU_PARALLEL, PercolationStudy, Z};
 /// What the folder says.
 pub fn write_percolation(folder: &Path) -> Result<Written, ReportError> {
     let study: &PercolationStudy = &json(&folder.join("percolation.json"))?;
-    let drawn = [percolation_spread(study), threshold(study)];
+    // Without a cube there is no size to draw anything against.
+    let drawn = match study.sizes.is_empty() {
+        true => Vec::new(),
+        false => vec![percolation_spread(study), threshold(study)],
+    };
     let title = "Percolation threshold of the directed cubic lattice";
     let header = html! { h1 { (title) } };
     let main = html! {
         p {
-            "Constrictions of an L × L × L lattice, periodic sideways, opened one by one at random until a \
-             path leads from "
+            "Constrictions of an L × L × L lattice (or one of three lengths), periodic sideways, opened one \
+             by one at random until a path leads from "
             "the start layer out of the last: the share that is then open. " (whole(study.realisations))
             " realisations of each size, seed " (study.seed) ", each threshold exact."
         }
         (sizes(study))
         (fits(study))
-        (figures(&drawn))
+        @if !drawn.is_empty() { (figures(&drawn)) }
     };
     let footer = html! { p.small { "voidwalk " (study.version) ", " (duration(study.seconds)) "." } };
     write_page(folder, &drawn, &whole_page(title, &header, &main, &footer))
@@ -40,14 +45,18 @@ pub fn write_percolation(folder: &Path) -> Result<Written, ReportError> {
 
 fn sizes(study: &PercolationStudy) -> Markup {
     let digits = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.5}"));
-    Table::of(&study.sizes)
-        .number("L", |row| row.size)
-        .number("Mean threshold", |row| digits(Some(row.threshold.mean)))
-        .number("95 % interval of the mean", |row| {
-            format!("{} to {}", digits(row.threshold.low), digits(row.threshold.high))
-        })
-        .number("Standard deviation", |row| digits(row.threshold.sd))
-        .number("its standard error", |row| digits(row.sd_error))
+    let cubes = study.sizes.iter().map(|of| (of.size.to_string(), &of.threshold, of.sd_error));
+    let boxes = study
+        .boxes
+        .iter()
+        .map(|of| (of.shape.map(|voids| voids.to_string()).join(" × "), &of.threshold, of.sd_error));
+    let rows: Vec<(String, &Statistic, Option<f64>)> = cubes.chain(boxes).collect();
+    Table::of(&rows)
+        .number("L", |row| row.0.clone())
+        .number("Mean threshold", |row| digits(Some(row.1.mean)))
+        .number("95 % interval of the mean", |row| format!("{} to {}", digits(row.1.low), digits(row.1.high)))
+        .number("Standard deviation", |row| digits(row.1.sd))
+        .number("its standard error", |row| digits(row.2))
         .render()
 }
 

@@ -7,7 +7,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use crate::network::{Network, NetworkError, percolation_threshold};
-use crate::outcome::percolation::PercolationStudy;
+use crate::outcome::percolation::{PercolationStudy, is_cube};
 use crate::run::callbacks::Callbacks;
 use crate::run::error::RunError;
 use crate::run::folder::{FolderKind, claim, clear};
@@ -18,8 +18,8 @@ use crate::run::unfinished::Unfinished;
 /// What a percolation study is asked for, and where it goes.
 #[derive(Clone, Debug)]
 pub struct PercolationOptions {
-    /// Voids along each side, one lattice size after another.
-    pub sizes: Vec<u32>,
+    /// Voids along x and y, and layers, of one lattice after another.
+    pub shapes: Vec<[u32; 3]>,
     /// Realisations of each size.
     pub realisations: u64,
     /// Seed; the same seed gives the same bits.
@@ -35,7 +35,7 @@ pub struct PercolationOptions {
 impl Default for PercolationOptions {
     fn default() -> Self {
         Self {
-            sizes: vec![10, 20, 40, 80, 160],
+            shapes: [10, 20, 40, 80, 160].map(|size| [size; 3]).to_vec(),
             realisations: 100,
             seed: 1,
             out: "voidwalk-percolation".into(),
@@ -51,7 +51,7 @@ impl Default for PercolationOptions {
 /// Sizes that no lattice can have and a folder that cannot be claimed are refused before any work; what the
 /// folder says.
 pub fn run(options: &PercolationOptions, callbacks: &Callbacks) -> Result<PercolationStudy, RunError> {
-    let plan = PercolationPlan::new(options.sizes.clone(), options.realisations, options.seed);
+    let plan = PercolationPlan::new(options.shapes.clone(), options.realisations, options.seed);
     let plan = plan.map_err(RunError::refused)?;
     let folder = claim(&options.out, FolderKind::Percolation, options.overwrite)?;
     let (kind, name) = (FolderKind::Percolation, FolderKind::Percolation.record());
@@ -74,31 +74,31 @@ pub fn run(options: &PercolationOptions, callbacks: &Callbacks) -> Result<Percol
 pub struct PercolationRun {
     /// What `percolation.json` holds.
     pub study: PercolationStudy,
-    /// Size, and the threshold of each of its realisations in order.
-    pub thresholds: Vec<(u64, Vec<f64>)>,
+    /// Voids along x and y, and layers; and the threshold of each realisation in order.
+    pub thresholds: Vec<([u32; 3], Vec<f64>)>,
 }
 
 /// What a study is asked for, checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PercolationPlan {
-    /// Voids along each side, ascending, each once.
-    sizes: Vec<u32>,
+    /// Voids along x and y, and layers: cubes first, ascending, each lattice once.
+    shapes: Vec<[u32; 3]>,
     realisations: u64,
     seed: u64,
 }
 
 impl PercolationPlan {
-    /// `realisations` lattices of each of these sizes.
+    /// `realisations` lattices of each of these shapes.
     ///
     /// # Errors
-    /// A size of 0, or one with more constrictions than 32 bits can number.
-    pub fn new(mut sizes: Vec<u32>, realisations: u64, seed: u64) -> Result<Self, NetworkError> {
-        sizes.sort_unstable();
-        sizes.dedup();
-        for &size in &sizes {
-            Network::lattice_constrictions([size; 3])?;
+    /// A length of 0, or more constrictions than 32 bits can number.
+    pub fn new(mut shapes: Vec<[u32; 3]>, realisations: u64, seed: u64) -> Result<Self, NetworkError> {
+        shapes.sort_unstable_by_key(|&shape| (!is_cube(shape), shape));
+        shapes.dedup();
+        for &shape in &shapes {
+            Network::lattice_constrictions(shape)?;
         }
-        Ok(Self { sizes, realisations, seed })
+        Ok(Self { shapes, realisations, seed })
     }
 
     /// Finds every threshold, realisations side by side; the same bits for any number of threads.
@@ -108,11 +108,11 @@ impl PercolationPlan {
     pub fn run(&self) -> Result<PercolationRun, NetworkError> {
         let begun = Instant::now();
         let mut thresholds = Vec::new();
-        for &size in &self.sizes {
-            let one = |realisation| percolation_threshold([size; 3], self.seed, realisation);
+        for &shape in &self.shapes {
+            let one = |realisation| percolation_threshold(shape, self.seed, realisation);
             let all: Result<Vec<f64>, NetworkError> =
                 (1..=self.realisations).into_par_iter().map(one).collect();
-            thresholds.push((u64::from(size), all?));
+            thresholds.push((shape, all?));
         }
         let study = PercolationStudy::new(self.seed, &thresholds, begun.elapsed().as_secs_f64());
         Ok(PercolationRun { study, thresholds })
@@ -120,10 +120,13 @@ impl PercolationPlan {
 }
 
 impl PercolationRun {
-    /// One row a realisation: `size,realisation,threshold`.
+    /// One row a realisation: `size,realisation,threshold`; the size of a lattice that is no cube is written
+    /// as 40x40x60.
     pub fn csv(&self) -> String {
         let mut text = String::from("size,realisation,threshold\n");
-        for (size, all) in &self.thresholds {
+        for (shape, all) in &self.thresholds {
+            let [nx, ny, nz] = shape;
+            let size = if is_cube(*shape) { nx.to_string() } else { format!("{nx}x{ny}x{nz}") };
             for (index, threshold) in all.iter().enumerate() {
                 // Writing to a string cannot fail.
                 let _ = writeln!(text, "{size},{},{threshold}", index + 1);
@@ -139,7 +142,7 @@ mod tests {
 
     #[test]
     fn threads_change_no_bit() {
-        let plan = PercolationPlan::new(vec![12, 6, 6], 20, 3).unwrap();
+        let plan = PercolationPlan::new(vec![[4, 5, 6], [12; 3], [6; 3], [6; 3]], 20, 3).unwrap();
         let on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| plan.run()).unwrap().csv()
@@ -147,12 +150,13 @@ mod tests {
         let one = on(1);
         assert_eq!(one, on(3));
         assert!(one.starts_with("size,realisation,threshold\n6,1,"));
-        assert_eq!(one.lines().count(), 41);
+        assert!(one.contains("\n12,20,") && one.contains("\n4x5x6,1,"), "{one}");
+        assert_eq!(one.lines().count(), 61);
     }
 
     #[test]
     fn impossible_sizes_are_refused_before_any_work() {
-        assert!(PercolationPlan::new(vec![10, 0], 1, 1).is_err());
-        assert!(PercolationPlan::new(vec![2000], 1, 1).is_err());
+        assert!(PercolationPlan::new(vec![[10, 10, 0]], 1, 1).is_err());
+        assert!(PercolationPlan::new(vec![[2000; 3]], 1, 1).is_err());
     }
 }

@@ -4,13 +4,13 @@
 #[derive(Clone, Debug, PartialEq)]
 pub struct SizeClasses {
     upper: Vec<f32>,
-    /// Class of the smallest diameter of each bucket, and the bound above which the next class begins; a bucket
-    /// is the top bits of an f32.
+    /// Class of the smallest diameter of each bucket, and the bound above which the next class begins; a
+    /// bucket is the top bits of an f32.
     guide: Vec<(u32, f32)>,
     /// Bucket of the first entry of `guide`.
     first_bucket: u32,
-    /// Whether a bucket holds more than one bound, which is seldom.
-    crowded: bool,
+    /// Whether a bucket holds more than one bound, as 64 classes have it of sizes in a ratio of less than 7.
+    several_bounds: bool,
 }
 
 /// Bits of an f32 below those of its bucket: 32 buckets in a factor of two.
@@ -34,8 +34,8 @@ impl SizeClasses {
         let bound = |class: usize| if class + 1 < upper.len() { upper[class] } else { f32::INFINITY };
         let entry = |class: usize| (class as u32, bound(class));
         let guide: Vec<(u32, f32)> = std::iter::once(0).chain(starts).map(entry).collect();
-        let crowded = upper.windows(2).any(|bounds| bucket(bounds[0]) == bucket(bounds[1]));
-        Self { upper, guide, first_bucket, crowded }
+        let several_bounds = upper.windows(2).any(|bounds| bucket(bounds[0]) == bucket(bounds[1]));
+        Self { upper, guide, first_bucket, several_bounds }
     }
 
     /// Upper bound of each class.
@@ -49,7 +49,7 @@ impl SizeClasses {
         let bucket = (diameter.to_bits() >> BELOW_BUCKET).saturating_sub(self.first_bucket) as usize;
         let (class, bound) = self.guide[bucket.min(self.guide.len() - 1)];
         let mut class = class as usize + usize::from(bound < diameter);
-        if self.crowded {
+        if self.several_bounds {
             let last = self.upper.len() - 1;
             while class < last && self.upper[class] < diameter {
                 class += 1;
@@ -124,6 +124,7 @@ mod tests {
             (1.0, 8.0, 3),
             (0.016, 0.33, 64),
             (1e-20, 1e20, 64),
+            (0.2, 0.45, 64),
             (1.0, 1.01, 500),
             (2.0, 2.0, 1),
             (1e-3, 1.0, 1),

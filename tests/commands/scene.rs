@@ -559,7 +559,7 @@ fn a_percolation_study_fills_a_folder() {
         voidwalk(&[
             "percolation",
             "--sizes",
-            "4,6,8,12",
+            "4,6,5x5x9,8,12",
             "--realisations",
             "50",
             "--threads",
@@ -576,6 +576,10 @@ fn a_percolation_study_fills_a_folder() {
         serde_json::from_str(&fs::read_to_string(out.join("percolation.json")).unwrap()).unwrap();
     let mean = |i: usize| study["sizes"][i]["threshold"]["mean"].as_f64().unwrap();
     assert!((0.25..0.35).contains(&mean(0)) && mean(3) > mean(0) && mean(3) < 0.38222);
+    assert_eq!(study["boxes"][0]["shape"], serde_json::json!([5, 5, 9]));
+    assert!(
+        words.contains("5x5x9") && fs::read_to_string(out.join("report.html")).unwrap().contains("5 × 5 × 9")
+    );
     for file in ["report.html", "figures/percolation-sd.svg", "figures/percolation-threshold.svg"] {
         assert!(!fs::read_to_string(out.join(file)).unwrap().contains("NaN"), "{file}");
     }
@@ -588,7 +592,9 @@ fn a_percolation_study_fills_a_folder() {
     let none = root.path().join("none");
     let too_large = ["percolation", "--sizes", "10,2000", "--out", none.to_str().unwrap()];
     refused(&voidwalk(&too_large), &["2000 x 2000 x 2000"]);
-    assert_eq!(voidwalk(&["percolation", "--sizes", "0"]).status.code(), Some(2));
+    for wrong in ["0", "4x4", "4x0x4", "4x4x4x4", "-4", "4,,5"] {
+        refused(&voidwalk(&["percolation", "--sizes", wrong]), &["--sizes", "40x40x60"]);
+    }
     assert!(!none.exists());
 }
 

@@ -2,7 +2,7 @@
 
 use bitvec::vec::BitVec;
 use voidwalk::gradation::{Gradation, SizeSampler};
-use voidwalk::network::Network;
+use voidwalk::network::{ExitRule, Network};
 use voidwalk::walk::{Engine, Isa, Passive, RunPlan, SizeClasses, State, Supply, Tally, Walk, WalkControl};
 
 fn sampler(d0: f64, cu: f64) -> SizeSampler {
@@ -199,22 +199,34 @@ fn threads_change_no_bit() {
     }
 }
 
-/// A whole run with each instruction set that this machine has.
+/// A whole run with each instruction set that this machine has: where every void has three exits, where voids have two,
+/// three or four, and by flow, where they have six and particles wait for it to be solved again.
 #[test]
 fn instructions_change_no_bit() {
-    let (network, base) = blocking_scene();
-    let plan = RunPlan::new(Engine::Counts, &network, &base, &open(&network), 600_000);
-    let supply = plan.supply(base.clone(), 30_000_000, 50, 12, 1);
-    let with = |isa: Isa| {
-        let classes = SizeClasses::logarithmic(base.smallest(), base.largest(), 20);
-        let mut state = State::new(&network, &supply, classes, open(&network), 12, 1);
-        let mut walk = Walk::new(&network, &supply, &state).with_isa(isa);
-        walk.run(&mut state, &mut |_| WalkControl::Continue).unwrap();
-        state
-    };
-    let portable = with(Isa::Portable);
-    assert!(portable.tally.eroded > 100_000);
-    Isa::ALL.into_iter().filter(|isa| isa.is_available()).for_each(|isa| assert_same(&portable, &with(isa)));
+    let ((three, coarse), fine) = (blocking_scene(), sampler(0.15, 3.0));
+    let mut rows: String = (0..50).map(|void| format!("start,{void},\n")).collect();
+    for (void, exit) in (0..700).flat_map(|void| (0..2 + void % 3).map(move |exit| (void, exit))) {
+        let to = void + 40 + 7 * exit;
+        let to = if to < 700 { to.to_string() } else { "end".to_owned() };
+        rows += &format!("{void},{to},{}\n", scattered(4 * void + exit));
+    }
+    let by_flow = three.undirected_lattice(ExitRule::Flux, 0.1, 4.0).unwrap();
+    for (network, base) in [(three, coarse), (graph(&rows), fine.clone()), (by_flow, fine)] {
+        let plan = RunPlan::new(Engine::Counts, &network, &base, &open(&network), 600_000);
+        let supply = plan.supply(base.clone(), 30_000_000, 50, 12, 1);
+        let with = |isa: Isa| {
+            let classes = SizeClasses::logarithmic(base.smallest(), base.largest(), 20);
+            let mut state = State::new(&network, &supply, classes, open(&network), 12, 1);
+            let mut walk = Walk::new(&network, &supply, &state).with_isa(isa);
+            walk.run(&mut state, &mut |_| WalkControl::Continue).unwrap();
+            state
+        };
+        let portable = with(Isa::Portable);
+        let Tally { eroded, blocked, .. } = portable.tally;
+        assert!(eroded > 100_000 && blocked > 100, "{eroded} {blocked}");
+        let available = Isa::ALL.into_iter().filter(|isa| isa.is_available());
+        available.for_each(|isa| assert_same(&portable, &with(isa)));
+    }
 }
 
 /// The state alone is enough to go on from.

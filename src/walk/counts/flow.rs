@@ -272,7 +272,7 @@ impl Worker {
             let [shut, of_three] = shares.shut_and_of_three(first / 64 + word);
             for void in bits(occupied & shut).map(|bit| first + 64 * word + bit) {
                 let n = counts[void % 64];
-                if matches!(shares.way(void), Way::Wait) {
+                if shares.waits(void) {
                     moved.waiting += n;
                     // The particles of this void alone may be there yet.
                     waiting.push((void, n));

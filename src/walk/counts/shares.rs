@@ -8,13 +8,12 @@ use crate::walk::exits;
 
 /// Which way the passive particles of a void go.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(u8)]
 pub(super) enum Way {
     /// No exit is open, and they rest.
     None,
     /// No exit is open until the flow is solved again.
     Wait,
-    /// Of three exits, the first two may be taken or left.
+    /// Of three exits, the third is the last open one.
     Three,
     /// Of three exits, the first is the only open one.
     First,
@@ -35,7 +34,7 @@ pub(super) struct Shares {
     shut: Vec<u64>,
     /// A bit for each void that has three exits.
     of_three: Vec<u64>,
-    /// By void of three exits: the upper sixteen bits of its thresholds.
+    /// By void: the upper sixteen bits of its thresholds, 0 where it has not three exits.
     tops: Vec<[u16; 2]>,
 }
 
@@ -96,9 +95,9 @@ impl Shares {
         &self.probability
     }
 
-    /// Of the first two of three exits, as thresholds for one 64-bit draw: it picks the first exit below the
-    /// first threshold, else the second below the second, else the third. They do not hold beyond an exit that
-    /// is certain.
+    /// Thresholds for the first two of three exits, for one 64-bit draw: it picks the first exit below the
+    /// first threshold, else the second below the second, else the third. They do not hold beyond an exit
+    /// that is certain.
     #[inline(always)]
     pub fn thresholds_of_three(&self, exit: usize) -> [u64; 2] {
         let (first, second) = (self.probability[exit], self.probability[exit + 1]);
@@ -175,12 +174,41 @@ mod tests {
             let shares = Shares::new(&network, &blocked);
             let [to_first, to_second] = shares.thresholds_of_three(0);
             assert_eq!(to_first, shares.probability[0]);
+            assert_eq!(shares.tops(0), [to_first, to_second].map(|t| (t >> 48) as u16));
             assert_eq!(shares.way[0] == Way::First, shares.probability[0] == CERTAIN, "{d:?}");
             assert_eq!(shares.way[0] == Way::Second, shares.probability[1] == CERTAIN, "{d:?}");
             if shares.way[0] == Way::Three {
                 assert!(to_second >= to_first, "{d:?}");
             }
         }
+    }
+
+    /// A void whose exits close and open again is what it was; its neighbours in the word of bits stay so.
+    #[test]
+    fn a_void_is_shut_and_opened_again() {
+        let diameters = (0..3 * 70).map(|c| 1.0 + 0.01 * c as f32).collect();
+        let network = Network::cubic_from_diameters([7, 5, 2], diameters, 1.0).unwrap();
+        let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
+        let open = Shares::new(&network, &blocked);
+        assert_eq!(open.shut_and_of_three(0), [0, u64::MAX]);
+        assert_eq!(open.shut_and_of_three(1), [0, 0b11_1111]);
+        let (mut shares, mut thresholds) = (Shares::new(&network, &blocked), Vec::new());
+        for (close, way, shut) in
+            [([2], Way::Second, 0), ([1], Way::First, 0), ([0], Way::None, 0b1_0000), ([0], Way::First, 0)]
+        {
+            for exit in close {
+                let is_closed = blocked[3 * 68 + exit];
+                blocked.set(3 * 68 + exit, !is_closed);
+            }
+            shares.set(&network, &blocked, 68, &mut thresholds);
+            assert_eq!((shares.way(68), shares.shut_and_of_three(1)), (way, [shut, 0b11_1111]));
+            let tops = shares.thresholds_of_three(3 * 68).map(|t| (t >> 48) as u16);
+            assert_eq!((shares.tops(68), shares.tops(67)), (tops, open.tops(67)));
+        }
+        blocked.set(3 * 68 + 1, false);
+        blocked.set(3 * 68 + 2, false);
+        shares.set(&network, &blocked, 68, &mut thresholds);
+        assert_eq!((shares.way(68), shares.tops(68)), (Way::Three, open.tops(68)));
     }
 
     /// An exit with 1e24 times the area leaves the others possible.

@@ -43,9 +43,10 @@ impl FewTrials for Portable {
         &mut self,
         draws: &mut Draws,
         n: u64,
-        _: [u16; 2],
+        tops: [u16; 2],
         thresholds: impl Fn() -> [u64; 2],
     ) -> [u64; 2] {
+        debug_assert_eq!(tops, thresholds().map(|t| (t >> 48) as u16));
         below_both(draws, n, thresholds())
     }
 
@@ -225,9 +226,9 @@ mod x86 {
         }
     }
 
-    /// By number of draws that count: a bit for each, where packing two halves puts it (eight of the lower half
-    /// of the draws, eight of the upper one, then the others of each).
-    const COUNTED: [u32; DRAWS_PER_BLOCK + 1] = {
+    /// By number of draws that count: a bit for each, where packing two halves puts it (eight of the lower
+    /// half of the draws, eight of the upper one, then the others of each).
+    const MASKS: [u32; DRAWS_PER_BLOCK + 1] = {
         let (mut masks, mut n) = ([0; DRAWS_PER_BLOCK + 1], 0);
         while n <= DRAWS_PER_BLOCK {
             let first = ((1u64 << n) - 1) as u32;
@@ -243,7 +244,7 @@ mod x86 {
     fn block_avx2(state: &mut [[__m256i; 4]; 2], counted: u64, tops: [u16; 2]) -> Counted {
         // What is unsigned is compared as signed, less 2^15.
         let sign = _mm256_set1_epi16(i16::MIN);
-        let counts = COUNTED[counted as usize];
+        let counts = MASKS[counted as usize];
         let blocks = [next_avx2(&mut state[0]), next_avx2(&mut state[1])];
         let [low, high] = [_mm256_xor_si256(blocks[0], sign), _mm256_xor_si256(blocks[1], sign)];
         let (mut less, mut same) = ([0; 2], 0);
@@ -264,7 +265,7 @@ mod x86 {
         (less, block)
     }
 
-    /// A bit for each sixteen of two halves that is not zero, eight of one and of the other in turn.
+    /// A bit for each sixteen of two halves that is negative, eight of one and of the other in turn.
     #[target_feature(enable = "avx2,popcnt")]
     #[inline]
     fn packed(low: __m256i, high: __m256i) -> u32 {

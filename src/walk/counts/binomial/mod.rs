@@ -78,7 +78,7 @@ pub(super) fn fill(draws: &mut Draws, n: &[u64], p: &[u64], k: &mut [u64]) {
     }
 }
 
-/// Eight draws, of which the first `used` are.
+/// Eight draws, of which the first `used` count.
 #[inline(always)]
 fn eight(draws: &mut Draws, used: usize, n: [u64; LANES], p: [u64; LANES]) -> [u64; LANES] {
     let words = draws.block();

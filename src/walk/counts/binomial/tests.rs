@@ -3,7 +3,7 @@
 use super::rejection::QUICK_U;
 use super::saddle::ln_probability;
 use super::*;
-use crate::stream::{Key, Purpose};
+use crate::stream::{DRAWS_PER_BLOCK, Key, Purpose, draw16};
 
 fn draws(chunk: u64) -> Draws {
     Draws::new(Key { seed: 2024, purpose: Purpose::Passive, run: 9, increment: 1, chunk })
@@ -277,6 +277,19 @@ fn few_trials_are_the_same_with_any_instructions() {
         }
         few.end(&mut draws);
         all.extend((0..100).map(|_| draws.word()));
+        // A tie at each place of a block, the first and the last among them: counted, and just not.
+        for place in 0..DRAWS_PER_BLOCK {
+            for n in [place, place + 1, DRAWS_PER_BLOCK] {
+                let mut draws = self::draws(4400);
+                let top = draw16(&self::draws(4400).block(), place);
+                let tie = u64::from(top) << 48 | 1 << 40;
+                // SAFETY: as promised.
+                let mut few = unsafe { F::begin(&draws) };
+                all.extend(few.below_both(&mut draws, n as u64, [top; 2], || [tie, tie | 1 << 47]));
+                few.end(&mut draws);
+                all.push(draws.word());
+            }
+        }
         all
     }
     // SAFETY: it has what every machine has.
@@ -291,8 +304,9 @@ fn few_trials_are_the_same_with_any_instructions() {
         ];
         assert!(found.iter().flatten().all(|found| *found == wanted));
     }
-    // Some 20,000 x 32 draws, each equal to either threshold's top with 2^-15.
-    assert_eq!(wanted.len(), 40_100);
+    // Some 20,000 x 32 draws, each equal to either threshold's top with 2^-15. Two numbers a void, 100 words
+    // after them, three numbers for each tie.
+    assert_eq!(wanted.len(), 40_100 + 3 * 3 * DRAWS_PER_BLOCK);
 }
 
 /// Draws are part of what a seed means: these may not change unnoticed.
