@@ -140,18 +140,30 @@ def serve(binary, folder, out):
     raise SystemExit(f"does not begin: {log.read_text()}")
 
 
-def complaints(browser):
-    """What the pages have logged, but for answers that say what is wrong with the input."""
-    found = []
+# What a page logs whose program has just ended: whoever was about to be answered is cut off, later callers find nobody.
+GONE = ["ERR_CONNECTION_REFUSED", "ERR_CONNECTION_RESET", "ERR_EMPTY_RESPONSE"]
+
+
+def complaints(browser, ended=False):
+    """What the pages have logged, but for answers that say what is wrong with the input and, if the program has `ended`, for that."""
+    found, expected = [], ["status of 4"] + (GONE if ended else [])
     for event in browser.events:
         said = event.get("params", {})
         if event.get("method") == "Runtime.exceptionThrown":
             found.append(str(said["exceptionDetails"]))
         if event.get("method") == "Log.entryAdded" and said["entry"]["level"] == "error":
             text = said["entry"]["text"]
-            if "status of 4" not in text and "ERR_CONNECTION_REFUSED" not in text:
+            if not any(known in text for known in expected):
                 found.append(text)
     return found
+
+
+def quiet(browser, ended=False):
+    """Refuses complaints; what was logged is then forgotten."""
+    found = complaints(browser, ended)
+    if found:
+        raise SystemExit("\n".join(found))
+    browser.events = []
 
 
 def main(binary, pictures):
@@ -167,9 +179,7 @@ def main(binary, pictures):
             if process.poll() is None:
                 process.kill()
                 process.wait()
-        found = complaints(browser)
-        if found:
-            raise SystemExit("\n".join(found))
+        quiet(browser, ended=True)
     print(f"the page of serve: no complaint; pictures in {pictures}")
 
 
@@ -307,6 +317,7 @@ def look(browser, url, pictures, workbook, root, process, binary):
     if not report.run("document.body.innerText.includes('The band')"):
         raise SystemExit("the page of the design is not there")
 
+    quiet(browser)
     process.send_signal(signal.SIGTERM)
     code = process.wait(timeout=30)
     if code not in (0, 3):

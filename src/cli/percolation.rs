@@ -26,13 +26,13 @@ pub fn percolation(args: &PercolationArgs) -> Result<(), RunError> {
 }
 
 fn words(study: &PercolationStudy) -> String {
-    let mut text = String::from("    size   mean      95 % interval        sd\n");
+    let mut text = String::from("      size   mean      95 % interval        sd\n");
     let digits = |value: Option<f64>| value.map_or("-".to_string(), |v| format!("{v:.5}"));
     let cubes = study.sizes.iter().map(|of| (of.size.to_string(), &of.threshold));
     let boxes = study.boxes.iter().map(|of| (of.shape.map(|n| n.to_string()).join("x"), &of.threshold));
     for (size, threshold) in cubes.chain(boxes) {
         text += &format!(
-            "{size:>8}   {}   {} to {}   {}\n",
+            "{size:>10}   {}   {} to {}   {}\n",
             digits(Some(threshold.mean)),
             digits(threshold.low),
             digits(threshold.high),

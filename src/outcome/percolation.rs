@@ -43,7 +43,7 @@ pub struct PercolationStudy {
     /// One per size, ascending.
     pub sizes: Vec<SizeThreshold>,
     /// One per lattice that is no cube, in order of its lengths; no relation is fitted to these.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub boxes: Vec<BoxThreshold>,
     /// The relation of one length; `None` with fewer than two sizes or realisations.
     pub one_length: Option<OneLength>,
@@ -146,7 +146,7 @@ impl PercolationStudy {
     }
 }
 
-/// Whether a lattice is as wide as it is long.
+/// Whether a lattice has one length along x, y and z.
 pub fn is_cube(shape: [u32; 3]) -> bool {
     shape == [shape[0]; 3]
 }
@@ -279,10 +279,14 @@ mod tests {
         let with_box = [cubes.clone(), vec![([40, 40, 60], vec![0.3, 0.4, 0.5])]].concat();
         let (alone, beside) =
             (PercolationStudy::new(1, &cubes, 0.0), PercolationStudy::new(1, &with_box, 0.0));
-        assert_eq!((&alone.sizes, alone.one_length), (&beside.sizes, beside.one_length));
+        let fitted = |study: &PercolationStudy| (study.one_length, study.many_starts, study.sd_exponent);
+        assert_eq!((&alone.sizes, fitted(&alone)), (&beside.sizes, fitted(&beside)));
         assert_eq!((beside.boxes.len(), beside.boxes[0].shape), (1, [40, 40, 60]));
         assert!((beside.boxes[0].threshold.mean - 0.4).abs() < 1e-12);
         assert!((beside.boxes[0].sd_error.unwrap() - 0.05).abs() < 1e-12, "0.1 / sqrt(2 (3 - 1))");
+        // A file of before, and one of cubes alone, say nothing of boxes.
+        let text = serde_json::to_string(&alone).unwrap();
+        assert!(!text.contains("boxes") && serde_json::from_str::<PercolationStudy>(&text).unwrap() == alone);
     }
 
     #[test]

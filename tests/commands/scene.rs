@@ -589,6 +589,12 @@ fn a_percolation_study_fills_a_folder() {
     assert!(on("3", &other).status.success());
     let csv = |folder: &Path| fs::read_to_string(folder.join("percolation.csv")).unwrap();
     assert_eq!(csv(&out), csv(&other));
+    // Boxes alone leave nothing to draw against size.
+    let boxes = root.path().join("boxes");
+    let alone = ["percolation", "--sizes", "4x4x6", "--realisations", "5", "--out", boxes.to_str().unwrap()];
+    assert!(voidwalk(&alone).status.success());
+    assert!(fs::read_to_string(boxes.join("report.html")).unwrap().contains("4 × 4 × 6"));
+    assert!(!boxes.join("figures/percolation-sd.svg").exists());
     let none = root.path().join("none");
     let too_large = ["percolation", "--sizes", "10,2000", "--out", none.to_str().unwrap()];
     refused(&voidwalk(&too_large), &["2000 x 2000 x 2000"]);
