@@ -28,9 +28,7 @@ pub fn percolation(args: &PercolationArgs) -> Result<(), RunError> {
 fn words(study: &PercolationStudy) -> String {
     let mut text = String::from("      size   mean      95 % interval        sd\n");
     let digits = |value: Option<f64>| value.map_or("-".to_string(), |v| format!("{v:.5}"));
-    let cubes = study.sizes.iter().map(|of| (of.size.to_string(), &of.threshold));
-    let boxes = study.boxes.iter().map(|of| (of.shape.map(|n| n.to_string()).join("x"), &of.threshold));
-    for (size, threshold) in cubes.chain(boxes) {
+    for (size, threshold, _) in study.lattices() {
         text += &format!(
             "{size:>10}   {}   {} to {}   {}\n",
             digits(Some(threshold.mean)),

@@ -144,6 +144,18 @@ impl PercolationStudy {
             seconds,
         }
     }
+
+    /// Every lattice, cubes first: its name, its threshold, and the standard error of the standard deviation.
+    pub fn lattices(&self) -> impl Iterator<Item = (String, &Statistic, Option<f64>)> {
+        let cubes = self.sizes.iter().map(|of| (of.size.to_string(), &of.threshold, of.sd_error));
+        cubes.chain(self.boxes.iter().map(|of| (lattice_name(of.shape), &of.threshold, of.sd_error)))
+    }
+}
+
+/// What a lattice is called by its lengths: 40, or 40x40x60.
+pub fn lattice_name(shape: [u32; 3]) -> String {
+    let lengths = if is_cube(shape) { &shape[..1] } else { &shape };
+    lengths.iter().map(u32::to_string).collect::<Vec<_>>().join("x")
 }
 
 /// Whether a lattice has one length along x, y and z.

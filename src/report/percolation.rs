@@ -45,14 +45,9 @@ pub fn write_percolation(folder: &Path) -> Result<Written, ReportError> {
 
 fn sizes(study: &PercolationStudy) -> Markup {
     let digits = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.5}"));
-    let cubes = study.sizes.iter().map(|of| (of.size.to_string(), &of.threshold, of.sd_error));
-    let boxes = study
-        .boxes
-        .iter()
-        .map(|of| (of.shape.map(|voids| voids.to_string()).join(" × "), &of.threshold, of.sd_error));
-    let rows: Vec<(String, &Statistic, Option<f64>)> = cubes.chain(boxes).collect();
+    let rows: Vec<(String, &Statistic, Option<f64>)> = study.lattices().collect();
     Table::of(&rows)
-        .number("L", |row| row.0.clone())
+        .number("L", |row| row.0.replace('x', " × "))
         .number("Mean threshold", |row| digits(Some(row.1.mean)))
         .number("95 % interval of the mean", |row| format!("{} to {}", digits(row.1.low), digits(row.1.high)))
         .number("Standard deviation", |row| digits(row.1.sd))

@@ -7,7 +7,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use crate::network::{Network, NetworkError, percolation_threshold};
-use crate::outcome::percolation::{PercolationStudy, is_cube};
+use crate::outcome::percolation::{PercolationStudy, is_cube, lattice_name};
 use crate::run::callbacks::Callbacks;
 use crate::run::error::RunError;
 use crate::run::folder::{FolderKind, claim, clear};
@@ -125,8 +125,7 @@ impl PercolationRun {
     pub fn csv(&self) -> String {
         let mut text = String::from("size,realisation,threshold\n");
         for (shape, all) in &self.thresholds {
-            let [nx, ny, nz] = shape;
-            let size = if is_cube(*shape) { nx.to_string() } else { format!("{nx}x{ny}x{nz}") };
+            let size = lattice_name(*shape);
             for (index, threshold) in all.iter().enumerate() {
                 // Writing to a string cannot fail.
                 let _ = writeln!(text, "{size},{},{threshold}", index + 1);

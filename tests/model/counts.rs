@@ -200,7 +200,7 @@ fn threads_change_no_bit() {
 }
 
 /// A whole run with each instruction set that this machine has: where every void has three exits, where voids have two,
-/// three or four, and by flow, where they have six and particles wait for it to be solved again.
+/// three or four, and by flow, where they have six.
 #[test]
 fn instructions_change_no_bit() {
     let ((three, coarse), fine) = (blocking_scene(), sampler(0.15, 3.0));

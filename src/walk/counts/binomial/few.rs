@@ -74,10 +74,16 @@ mod x86 {
 
     /// How many draws of a block are below each threshold, and the block where one is equal to the top of a
     /// threshold.
-    type Counted = ([u32; 2], Option<[u16; DRAWS_PER_BLOCK]>);
+    pub(in crate::walk::counts) type Counted = ([u32; 2], Option<[u16; DRAWS_PER_BLOCK]>);
 
     /// Generators in vector registers.
-    trait InRegisters: FewTrials {
+    pub(in crate::walk::counts) trait InRegisters: Sized {
+        /// Takes them from where `draws` has them.
+        ///
+        /// # Safety
+        /// The machine has the instructions that this is made with.
+        unsafe fn load(draws: &Draws) -> Self;
+
         /// The first `counted` draws of the next block.
         ///
         /// # Safety
@@ -88,39 +94,15 @@ mod x86 {
         fn store(&self, draws: &mut Draws);
     }
 
-    /// Block by block; a block with a draw that equals the top of a threshold is completed with more bits.
-    #[inline(always)]
-    fn below_both<V: InRegisters>(
-        vectors: &mut V,
-        draws: &mut Draws,
-        n: u64,
-        tops: [u16; 2],
-        thresholds: impl Fn() -> [u64; 2],
-    ) -> [u64; 2] {
-        let (mut below, mut left) = ([0, 0], n);
-        while left > 0 {
-            let counted = left.min(DRAWS_PER_BLOCK as u64);
-            // SAFETY: whoever began has promised the instructions.
-            let (less, block) = unsafe { vectors.block(counted, tops) };
-            if let Some(block) = block {
-                vectors.store(draws);
-                complete(draws, &block[..counted as usize], thresholds(), &mut below);
-                // SAFETY: as above.
-                *vectors = unsafe { V::begin(draws) };
-            }
-            below = [below[0] + u64::from(less[0]), below[1] + u64::from(less[1])];
-            left -= counted;
-        }
-        below
-    }
-
-    impl FewTrials for Avx512 {
+    impl<V: InRegisters> FewTrials for V {
         #[inline(always)]
         unsafe fn begin(draws: &Draws) -> Self {
-            // SAFETY: each state word has eight lanes; the machine has AVX-512.
-            Self(draws.state().map(|row| unsafe { _mm512_loadu_si512(row.as_ptr().cast()) }))
+            // SAFETY: as the caller promises.
+            unsafe { V::load(draws) }
         }
 
+        /// Block by block; a block with a draw that equals the top of a threshold is completed with more
+        /// bits.
         #[inline(always)]
         fn below_both(
             &mut self,
@@ -129,7 +111,21 @@ mod x86 {
             tops: [u16; 2],
             thresholds: impl Fn() -> [u64; 2],
         ) -> [u64; 2] {
-            below_both(self, draws, n, tops, thresholds)
+            let (mut below, mut left) = ([0, 0], n);
+            while left > 0 {
+                let counted = left.min(DRAWS_PER_BLOCK as u64);
+                // SAFETY: whoever began has promised the instructions.
+                let (less, block) = unsafe { self.block(counted, tops) };
+                if let Some(block) = block {
+                    self.store(draws);
+                    complete(draws, &block[..counted as usize], thresholds(), &mut below);
+                    // SAFETY: as above.
+                    *self = unsafe { V::load(draws) };
+                }
+                below = [below[0] + u64::from(less[0]), below[1] + u64::from(less[1])];
+                left -= counted;
+            }
+            below
         }
 
         #[inline(always)]
@@ -139,6 +135,12 @@ mod x86 {
     }
 
     impl InRegisters for Avx512 {
+        #[inline(always)]
+        unsafe fn load(draws: &Draws) -> Self {
+            // SAFETY: each state word has eight lanes; the machine has AVX-512.
+            Self(draws.state().map(|row| unsafe { _mm512_loadu_si512(row.as_ptr().cast()) }))
+        }
+
         #[inline(always)]
         unsafe fn block(&mut self, counted: u64, tops: [u16; 2]) -> Counted {
             // SAFETY: as the caller promises.
@@ -181,9 +183,9 @@ mod x86 {
         (less, block)
     }
 
-    impl FewTrials for Avx2 {
+    impl InRegisters for Avx2 {
         #[inline(always)]
-        unsafe fn begin(draws: &Draws) -> Self {
+        unsafe fn load(draws: &Draws) -> Self {
             let half = |half: usize| {
                 // SAFETY: four lanes from `4 half` on are within the eight; the machine has AVX2.
                 draws.state().map(|row| unsafe { _mm256_loadu_si256(row[4 * half..][..4].as_ptr().cast()) })
@@ -191,24 +193,6 @@ mod x86 {
             Self([half(0), half(1)])
         }
 
-        #[inline(always)]
-        fn below_both(
-            &mut self,
-            draws: &mut Draws,
-            n: u64,
-            tops: [u16; 2],
-            thresholds: impl Fn() -> [u64; 2],
-        ) -> [u64; 2] {
-            below_both(self, draws, n, tops, thresholds)
-        }
-
-        #[inline(always)]
-        fn end(self, draws: &mut Draws) {
-            self.store(draws);
-        }
-    }
-
-    impl InRegisters for Avx2 {
         #[inline(always)]
         unsafe fn block(&mut self, counted: u64, tops: [u16; 2]) -> Counted {
             // SAFETY: as the caller promises.
