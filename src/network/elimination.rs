@@ -9,80 +9,75 @@
 //! so that they are spread evenly and always the same.
 //!
 //! Dead ends go first, from their ends on: they are many where a filter has clogged, and taken away exactly.
-//! The others follow by number of neighbours, and among equals scattered, so that few of them meet.
+//! The others follow by number of neighbours, and among equals in turns that are scattered over the network,
+//! so that few of them meet; within a turn by row, so that memory is read in order.
+
+/// A conductance between two rows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Link {
+    pub one: u32,
+    pub other: u32,
+    pub conductance: f64,
+}
 
 /// An approximate factor of a system of conductances: the preconditioner of its conjugate gradients.
 pub(super) struct Factor {
     /// Row of the system by place in the order of elimination.
     row: Vec<u32>,
-    begin: Vec<u32>,
-    /// By place: places of the neighbours at its elimination, and parts of its pressure that they make up.
-    /// Single precision is enough of what is approximate.
-    neighbour: Vec<(u32, f32)>,
-    /// Reciprocal of the sum of its conductances then.
+    /// What places make up of one another, in the order of elimination.
+    parts: Vec<Part>,
+    /// By place: reciprocal of the sum of its conductances at its elimination.
     pivot: Vec<f64>,
 }
 
-/// A conductance to a later place, in the list of those of one place.
+/// The part of the pressure of one place that the pressure of a later one makes up. Single precision is
+/// enough of what is approximate.
 #[derive(Clone, Copy)]
-struct Link {
-    to: u32,
-    /// The next of its list.
-    next: u32,
-    conductance: f64,
+struct Part {
+    of: u32,
+    by: u32,
+    part: f32,
 }
-
-/// No link, or no place yet.
-const NONE: u32 = u32::MAX;
 
 /// 2^64 over the golden ratio, and 2^32 over it.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 const GOLDEN_32: u32 = 0x9e37_79b9;
 
-/// What is left of the system while rows are eliminated, all by place.
-struct Rest {
-    /// Each stands with the one of its two rows that is eliminated first.
-    links: Vec<Link>,
-    first: Vec<u32>,
-    /// Conductance to pressures that are known.
-    ground: Vec<f64>,
-}
+/// Turns, as a power of two.
+const TURNS: u32 = 6;
+
+/// Neighbours that are sorted at once, without a branch.
+const AT_ONCE: usize = 8;
 
 impl Factor {
-    /// Of the system whose row `i` conducts `ground[i]` to known pressures and `conductance[k]` to row
-    /// `row[k]`, for `k` in `begin[i] .. begin[i + 1]`.
-    pub(super) fn new(ground: &[f64], begin: &[u32], row: &[u32], conductance: &[f64]) -> Self {
+    /// Of the system whose row `i` conducts `ground[i]` to known pressures, and whose rows are joined by
+    /// `links`.
+    pub(super) fn new(ground: &[f64], links: &[Link]) -> Self {
         let rows = ground.len();
-        let order = order(begin, row);
-        let mut rest = Rest::new(&order, ground, begin, row, conductance);
-        let mut factor = Self {
-            row: order,
-            begin: Vec::with_capacity(rows + 1),
-            neighbour: Vec::with_capacity(row.len()),
-            pivot: Vec::with_capacity(rows),
-        };
-        factor.begin.push(0);
-        let (mut meeting, mut at) = (Vec::new(), vec![NONE; rows]);
+        let order = order(rows, links);
+        let mut rest = Rest::new(&order, ground, links);
+        let mut factor =
+            Self { row: order, parts: Vec::with_capacity(2 * links.len()), pivot: Vec::with_capacity(rows) };
+        let (mut meeting, mut at) = (Meeting::default(), vec![0; rows]);
         let mut choices = 0u64;
-        for place in 0..rows {
-            rest.neighbours(place, &mut meeting, &mut at);
-            let ground = rest.ground[place];
-            let all: f64 = meeting.iter().map(|(g, _)| g).sum();
+        for place in 0..rows as u32 {
+            let ground = rest.take(place, &mut meeting, &mut at);
+            meeting.sort();
+            let all = meeting.sums.last().copied().unwrap_or(0.0);
             // Of nothing, and of so little that its inverse is no number, nothing is known.
             let pivot = Some(1.0 / (ground + all)).filter(|inverse| inverse.is_finite()).unwrap_or(0.0);
-            for &(g, to) in &meeting {
-                factor.neighbour.push((to, (g * pivot) as f32));
-                rest.ground[to as usize] += g * ground * pivot;
+            for &(to, g) in &meeting.sorted {
+                factor.parts.push(Part { of: place, by: to, part: (g * pivot) as f32 });
+                rest.head[to as usize].ground += g * ground * pivot;
             }
-            let mut left = all;
-            for i in 1..meeting.len() {
-                let (g, one) = meeting[i - 1];
-                left -= g;
+            for i in 1..meeting.sorted.len() {
+                let (one, g) = meeting.sorted[i - 1];
+                let before = meeting.sums[i - 1];
+                let left = all - before;
                 choices += 1;
                 let part = (choices.wrapping_mul(GOLDEN) >> 11) as f64 / (1u64 << 53) as f64;
-                rest.join(one, chosen(&meeting[i..], part * left), g * left * pivot);
+                rest.join(one, meeting.chosen(i, before + part * left), g * left * pivot);
             }
-            factor.begin.push(factor.neighbour.len() as u32);
             factor.pivot.push(pivot);
         }
         factor
@@ -91,108 +86,235 @@ impl Factor {
     /// Solves the factor, once down and once up; `scratch` has the length of both.
     pub(super) fn solve(&self, residual: &[f64], scratch: &mut [f64], out: &mut [f64]) {
         scratch.iter_mut().zip(&self.row).for_each(|(value, &row)| *value = residual[row as usize]);
-        let neighbours = |place: usize| {
-            let of = self.begin[place] as usize..self.begin[place + 1] as usize;
-            &self.neighbour[of]
-        };
-        for place in 0..self.row.len() {
-            let value = scratch[place];
-            for &(to, part) in neighbours(place) {
-                scratch[to as usize] += f64::from(part) * value;
-            }
-            scratch[place] = self.pivot[place] * value;
+        // Part by part: loops over those of each place would end where no processor expects it.
+        for &Part { of, by, part } in &self.parts {
+            scratch[by as usize] += f64::from(part) * scratch[of as usize];
         }
-        for place in (0..self.row.len()).rev() {
-            let known: f64 =
-                neighbours(place).iter().map(|&(to, part)| f64::from(part) * scratch[to as usize]).sum();
-            scratch[place] += known;
-            out[self.row[place] as usize] = scratch[place];
+        scratch.iter_mut().zip(&self.pivot).for_each(|(value, pivot)| *value *= pivot);
+        for &Part { of, by, part } in self.parts.iter().rev() {
+            scratch[of as usize] += f64::from(part) * scratch[by as usize];
         }
+        scratch.iter().zip(&self.row).for_each(|(value, &row)| out[row as usize] = *value);
     }
 }
 
 /// Rows in the order of elimination.
-fn order(begin: &[u32], row: &[u32]) -> Vec<u32> {
-    let rows = begin.len() as u32 - 1;
-    let of = |i: u32| &row[begin[i as usize] as usize..begin[i as usize + 1] as usize];
-    let mut count: Vec<u32> = (0..rows).map(|i| of(i).len() as u32).collect();
-    let mut is_done = vec![false; rows as usize];
-    let mut order = Vec::with_capacity(rows as usize);
-    let mut ends: Vec<u32> = (0..rows).filter(|&i| count[i as usize] <= 1).collect();
+fn order(rows: usize, links: &[Link]) -> Vec<u32> {
+    // Of each row how many links are left, and their other rows by exclusive or: of one, the row itself.
+    let mut left = vec![(0u32, 0u32); rows];
+    for &Link { one, other, .. } in links {
+        for (row, met) in [(one, other), (other, one)] {
+            let (count, rows) = &mut left[row as usize];
+            *count += 1;
+            *rows ^= met;
+        }
+    }
+    let mut is_done = vec![false; rows];
+    let mut order = Vec::with_capacity(rows);
+    let mut ends: Vec<u32> = (0..rows as u32).filter(|&i| left[i as usize].0 <= 1).collect();
     while let Some(end) = ends.pop() {
         if std::mem::replace(&mut is_done[end as usize], true) {
             continue;
         }
         order.push(end);
-        for &next in of(end).iter().filter(|&&next| !is_done[next as usize]) {
-            count[next as usize] -= 1;
-            if count[next as usize] == 1 {
+        let (count, next) = left[end as usize];
+        if count == 1 {
+            let (count, rows) = &mut left[next as usize];
+            *count -= 1;
+            *rows ^= end;
+            if *count == 1 {
                 ends.push(next);
             }
         }
     }
-    let dead_ends = order.len();
-    order.extend((0..rows).filter(|&i| !is_done[i as usize]));
-    order[dead_ends..].sort_unstable_by_key(|&i| (count[i as usize], i.wrapping_mul(GOLDEN_32)));
+    let turn = |i: u32| i.wrapping_mul(GOLDEN_32) >> (32 - TURNS);
+    let key =
+        |i: u32| u64::from(left[i as usize].0) << (32 + TURNS) | u64::from(turn(i)) << 32 | u64::from(i);
+    let mut others: Vec<u64> = (0..rows as u32).filter(|&i| !is_done[i as usize]).map(key).collect();
+    others.sort_unstable();
+    order.extend(others.iter().map(|&key| key as u32));
     order
 }
 
-/// The first row at which the conductances so far exceed `share`, or the last.
-fn chosen(meeting: &[(f64, u32)], mut share: f64) -> u32 {
-    for &(g, to) in meeting {
-        if share < g {
-            return to;
+/// The places that are left and meet one that is eliminated.
+#[derive(Default)]
+struct Meeting {
+    /// Each once, with its conductance, as they were found.
+    found: Vec<(u32, f64)>,
+    /// In rising order of conductance, but for those that differ by a millionth.
+    sorted: Vec<(u32, f64)>,
+    /// Sums of the conductances until then.
+    sums: Vec<f64>,
+    keys: Vec<u64>,
+}
+
+impl Meeting {
+    /// Adds a conductance to a place; `at` is scratch.
+    fn add(&mut self, to: u32, conductance: f64, at: &mut [u32]) {
+        let at = &mut at[to as usize];
+        match self.found.get_mut(*at as usize) {
+            Some((other, sum)) if *other == to => *sum += conductance,
+            _ => {
+                *at = self.found.len() as u32;
+                self.found.push((to, conductance));
+            }
         }
-        share -= g;
     }
-    meeting[meeting.len() - 1].1
+
+    /// Puts them in order.
+    fn sort(&mut self) {
+        // Bits of floats that are not negative rise as they do.
+        let key = |(i, (_, g)): (usize, &(u32, f64))| g.to_bits() >> 32 << 32 | i as u64;
+        self.keys.clear();
+        self.keys.extend(self.found.iter().enumerate().map(key));
+        if self.keys.len() <= AT_ONCE {
+            let mut few = [u64::MAX; AT_ONCE];
+            few[..self.keys.len()].copy_from_slice(&self.keys);
+            sort_at_once(&mut few);
+            let count = self.keys.len();
+            self.keys.copy_from_slice(&few[..count]);
+        } else {
+            self.keys.sort_unstable();
+        }
+        self.sorted.clear();
+        self.sums.clear();
+        let mut sum = 0.0;
+        for &key in &self.keys {
+            let (to, g) = self.found[key as u32 as usize];
+            sum += g;
+            self.sorted.push((to, g));
+            self.sums.push(sum);
+        }
+    }
+
+    /// The place from the `first` on at which the sum so far exceeds `share`, or the last.
+    fn chosen(&self, first: usize, share: f64) -> u32 {
+        let passed = match self.sums.len() {
+            // Counted without a branch where they are few.
+            few if few <= 2 * AT_ONCE => self.sums.iter().map(|&sum| usize::from(sum <= share)).sum(),
+            _ => self.sums.partition_point(|&sum| sum <= share),
+        };
+        self.sorted[passed.clamp(first, self.sorted.len() - 1)].0
+    }
+}
+
+/// Sorts by nineteen exchanges (Knuth 1998, section 5.3.4).
+fn sort_at_once(keys: &mut [u64; AT_ONCE]) {
+    const EXCHANGES: [(usize, usize); 19] = [
+        (0, 2),
+        (1, 3),
+        (4, 6),
+        (5, 7),
+        (0, 4),
+        (1, 5),
+        (2, 6),
+        (3, 7),
+        (0, 1),
+        (2, 3),
+        (4, 5),
+        (6, 7),
+        (2, 4),
+        (3, 5),
+        (1, 4),
+        (3, 6),
+        (1, 2),
+        (3, 4),
+        (5, 6),
+    ];
+    for (a, b) in EXCHANGES {
+        (keys[a], keys[b]) = (keys[a].min(keys[b]), keys[a].max(keys[b]));
+    }
+}
+
+/// No handful.
+const NONE: u32 = u32::MAX;
+
+/// Links that stand together.
+const HANDFUL: usize = 4;
+
+/// Links of one place: the last that it was given, and where those before them are. A cache line.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+struct Head {
+    conductance: [f64; HANDFUL],
+    to: [u32; HANDFUL],
+    /// Conductance to pressures that are known.
+    ground: f64,
+    count: u32,
+    before: u32,
+}
+
+/// Links of one place that stand before others.
+#[derive(Clone, Copy)]
+struct Handful {
+    conductance: [f64; HANDFUL],
+    to: [u32; HANDFUL],
+    before: u32,
+}
+
+/// What is left of the system while rows are eliminated, by place: a link stands with the one of its two
+/// places that is eliminated first.
+struct Rest {
+    head: Vec<Head>,
+    handfuls: Vec<Handful>,
+    /// The first handful of those that are free again.
+    free: u32,
 }
 
 impl Rest {
-    fn new(order: &[u32], ground: &[f64], begin: &[u32], row: &[u32], conductance: &[f64]) -> Self {
-        let mut place_of = vec![NONE; order.len()];
-        order.iter().zip(0..).for_each(|(&row, place)| place_of[row as usize] = place);
-        let mut rest = Self {
-            links: Vec::with_capacity(row.len()),
-            first: vec![NONE; order.len()],
-            ground: order.iter().map(|&row| ground[row as usize]).collect(),
+    fn new(order: &[u32], ground: &[f64], links: &[Link]) -> Self {
+        let mut place_of = vec![0; order.len()];
+        order.iter().zip(0u32..).for_each(|(&row, place)| place_of[row as usize] = place);
+        let head = |&row: &u32| Head {
+            conductance: [0.0; HANDFUL],
+            to: [0; HANDFUL],
+            ground: ground[row as usize],
+            count: 0,
+            before: NONE,
         };
-        for (place, &i) in (0u32..).zip(order) {
-            for k in begin[i as usize] as usize..begin[i as usize + 1] as usize {
-                let to = place_of[row[k] as usize];
-                if to > place {
-                    rest.join(place, to, conductance[k]);
-                }
-            }
+        let mut rest = Self { head: order.iter().map(head).collect(), handfuls: Vec::new(), free: NONE };
+        for &Link { one, other, conductance } in links {
+            rest.join(place_of[one as usize], place_of[other as usize], conductance);
         }
         rest
     }
 
     /// Adds a conductance between two places, beside those that there are.
+    #[inline]
     fn join(&mut self, one: u32, other: u32, conductance: f64) {
         let (from, to) = (one.min(other), one.max(other));
-        let link = u32::try_from(self.links.len()).expect("fewer links than a factor has bits for");
-        let next = std::mem::replace(&mut self.first[from as usize], link);
-        self.links.push(Link { to, next, conductance });
+        let head = &mut self.head[from as usize];
+        if head.count as usize == HANDFUL {
+            let full = Handful { conductance: head.conductance, to: head.to, before: head.before };
+            head.count = 0;
+            head.before = if self.free == NONE {
+                self.handfuls.push(full);
+                u32::try_from(self.handfuls.len() - 1).expect("fewer links than a factor has bits for")
+            } else {
+                let at = self.free;
+                self.free = std::mem::replace(&mut self.handfuls[at as usize], full).before;
+                at
+            };
+        }
+        let at = head.count as usize;
+        (head.to[at], head.conductance[at]) = (to, conductance);
+        head.count += 1;
     }
 
-    /// The places that are left and meet this one, each once, in rising order of conductance; `at` is
-    /// scratch.
-    fn neighbours(&self, place: usize, meeting: &mut Vec<(f64, u32)>, at: &mut [u32]) {
-        meeting.clear();
-        let mut next = self.first[place];
+    /// Takes away a place: the places that it meets, each once, and its conductance to known pressures. `at`
+    /// is scratch.
+    fn take(&mut self, place: u32, meeting: &mut Meeting, at: &mut [u32]) -> f64 {
+        meeting.found.clear();
+        let Head { conductance, to, ground, count, before } = self.head[place as usize];
+        (0..count as usize).for_each(|i| meeting.add(to[i], conductance[i], at));
+        let mut next = before;
         while next != NONE {
-            let Link { to, next: after, conductance } = self.links[next as usize];
-            next = after;
-            match meeting.get_mut(at[to as usize] as usize) {
-                Some((sum, other)) if *other == to => *sum += conductance,
-                _ => {
-                    at[to as usize] = meeting.len() as u32;
-                    meeting.push((conductance, to));
-                }
-            }
+            let handful = &mut self.handfuls[next as usize];
+            (0..HANDFUL).for_each(|i| meeting.add(handful.to[i], handful.conductance[i], at));
+            let after = std::mem::replace(&mut handful.before, self.free);
+            self.free = std::mem::replace(&mut next, after);
         }
-        meeting.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        ground
     }
 }
 
@@ -205,24 +327,18 @@ mod tests {
     fn a_tree_is_solved_exactly() {
         let links = [(0, 1, 2.0), (0, 2, 0.5), (0, 3, 1.0), (1, 4, 3.0), (2, 5, 0.25), (3, 6, 8.0)];
         let ground = [0.0, 0.0, 0.0, 0.0, 1.5, 0.0, 0.0];
-        let mut meeting = vec![Vec::new(); 7];
-        for (a, b, g) in links {
-            meeting[a as usize].push((b as u32, g));
-            meeting[b as usize].push((a as u32, g));
-        }
-        let mut begin = vec![0];
-        let (mut row, mut conductance) = (Vec::new(), Vec::new());
-        for of in &meeting {
-            row.extend(of.iter().map(|(to, _)| to));
-            conductance.extend(of.iter().map(|(_, g)| g));
-            begin.push(row.len() as u32);
-        }
-        let factor = Factor::new(&ground, &begin, &row, &conductance);
+        let links = links.map(|(one, other, conductance)| Link { one, other, conductance });
+        let factor = Factor::new(&ground, &links);
         let right: Vec<f64> = (1..8).map(f64::from).collect();
         let mut x = vec![0.0; 7];
         factor.solve(&right, &mut [0.0; 7], &mut x);
         for i in 0..7 {
-            let out: f64 = meeting[i].iter().map(|&(j, g)| g * (x[i] - x[j as usize])).sum();
+            let other = |link: &&Link| match [link.one as usize, link.other as usize] {
+                [one, other] if one == i => Some((link.conductance, other)),
+                [one, other] if other == i => Some((link.conductance, one)),
+                _ => None,
+            };
+            let out: f64 = links.iter().filter_map(|l| other(&l)).map(|(g, j)| g * (x[i] - x[j])).sum();
             assert!((ground[i] * x[i] + out - right[i]).abs() < 1e-5, "{x:?}");
         }
     }
@@ -237,12 +353,12 @@ mod tests {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (state >> 11) as f64 / (1u64 << 53) as f64
         };
-        let mut meeting = vec![Vec::new(); N * N * N];
+        let mut links = Vec::new();
         let mut ground = vec![0.0; N * N * N];
-        for i in 0..N * N * N {
+        for (i, ground) in ground.iter_mut().enumerate() {
             let [x, y, z] = [i % N, i / N % N, i / (N * N)];
             if z == 0 || z == N - 1 {
-                ground[i] = 1.0;
+                *ground = 1.0;
             }
             let ahead = [
                 (x + 1 < N).then_some(i + 1),
@@ -252,18 +368,11 @@ mod tests {
             for j in ahead.into_iter().flatten() {
                 let g = libm::pow(10.0, 6.0 * draw() - 3.0);
                 if draw() > 0.3 {
-                    meeting[i].push((j as u32, g));
-                    meeting[j].push((i as u32, g));
+                    links.push(Link { one: i as u32, other: j as u32, conductance: g });
                 }
             }
         }
-        let (mut begin, mut row, mut conductance) = (vec![0], Vec::new(), Vec::new());
-        for of in &meeting {
-            row.extend(of.iter().map(|(to, _)| to));
-            conductance.extend(of.iter().map(|(_, g)| g));
-            begin.push(row.len() as u32);
-        }
-        let factor = Factor::new(&ground, &begin, &row, &conductance);
+        let factor = Factor::new(&ground, &links);
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let mut residual: Vec<f64> = (0..ground.len()).map(|i| if i < N * N { 1.0 } else { 0.0 }).collect();
         let (first, mut scratch) = (dot(&residual, &residual).sqrt(), vec![0.0; ground.len()]);
@@ -274,11 +383,12 @@ mod tests {
             let now = dot(&residual, &solved);
             let kept = if rounds == 0 { 0.0 } else { now / before };
             direction.iter_mut().zip(&solved).for_each(|(d, s)| *d = s + kept * *d);
-            let times = |i: usize| {
-                let flow = |&(j, g): &(u32, f64)| g * (direction[i] - direction[j as usize]);
-                ground[i] * direction[i] + meeting[i].iter().map(flow).sum::<f64>()
-            };
-            let product: Vec<f64> = (0..ground.len()).map(times).collect();
+            let mut product: Vec<f64> = ground.iter().zip(&direction).map(|(g, d)| g * d).collect();
+            for &Link { one, other, conductance } in &links {
+                let (one, other) = (one as usize, other as usize);
+                let flow = conductance * (direction[one] - direction[other]);
+                (product[one], product[other]) = (product[one] + flow, product[other] - flow);
+            }
             let step = now / dot(&direction, &product);
             residual.iter_mut().zip(&product).for_each(|(r, p)| *r -= step * p);
             (before, rounds) = (now, rounds + 1);
@@ -286,10 +396,24 @@ mod tests {
         }
     }
 
+    /// As many as are sorted at once, and more; doubles count once.
     #[test]
-    fn a_larger_share_chooses_a_later_row() {
-        let meeting = [(1.0, 7), (2.0, 8), (3.0, 9)];
-        let of = |share| chosen(&meeting, share);
-        assert_eq!([of(0.0), of(0.9), of(1.0), of(2.9), of(3.0), of(5.9), of(6.1)], [7, 7, 8, 8, 9, 9, 9]);
+    fn neighbours_are_sorted_and_chosen_by_their_share() {
+        for many in [1, 3, 8, 9, 16, 17, 40] {
+            let (mut meeting, mut at) = (Meeting::default(), vec![0; many]);
+            // 7 has no common factor with these numbers.
+            let order: Vec<u32> = (0..many as u32).map(|i| i * 7 % many as u32).collect();
+            order.iter().for_each(|&to| meeting.add(to, 0.25 * f64::from(to + 1), &mut at));
+            order.iter().for_each(|&to| meeting.add(to, 0.75 * f64::from(to + 1), &mut at));
+            meeting.sort();
+            assert!(meeting.sorted.iter().map(|&(to, _)| to).eq(0..many as u32), "{:?}", meeting.sorted);
+            let all = many * (many + 1) / 2;
+            assert_eq!(meeting.sums.last(), Some(&(all as f64)));
+            for share in 0..=all {
+                let by_sums = (0..many).position(|i| (i + 1) * (i + 2) / 2 > share).unwrap_or(many - 1);
+                assert_eq!(meeting.chosen(0, share as f64) as usize, by_sums, "{share} of {all}");
+                assert_eq!(meeting.chosen(many - 1, share as f64) as usize, many - 1);
+            }
+        }
     }
 }

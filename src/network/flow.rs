@@ -8,7 +8,9 @@
 
 use bitvec::slice::BitSlice;
 
-use super::system::{CONVERGED, NotConverged, Sides, System};
+use super::system::{CONVERGED, NotConverged, System};
+use super::together::Together;
+use super::twins::NO_TWIN;
 use super::{END, Network};
 
 /// A flux below this part of what an inlet passes on average is none: pressures are no more exact.
@@ -61,6 +63,7 @@ pub struct Permeability {
 
 /// The flow through an undirected network, solved again and again as constrictions close.
 pub struct Flow {
+    passages: Vec<Passage>,
     /// Void that each exit leads to: END is one more void, without pressure.
     other: Vec<u32>,
     /// Pressure by void, and behind the filter.
@@ -71,11 +74,43 @@ pub struct Flow {
     accuracy: f64,
 }
 
+/// A constriction as water sees it.
+struct Passage {
+    /// The void that it is an exit of.
+    one: u32,
+    /// The void beyond: the reservoir is one, and so is what lies behind the filter.
+    other: u32,
+    /// The exit.
+    exit: u32,
+    /// The same as an exit of the void beyond, or the exit itself where it is none.
+    twin: u32,
+    /// Conductance while it is open.
+    conductance: f64,
+}
+
 impl Flow {
     /// Before anything is known.
     pub fn new(network: &Network) -> Self {
         let outside = network.voids() as u32;
-        let other = network.targets().iter().map(|&to| if to == END { outside } else { to }).collect();
+        let other: Vec<u32> =
+            network.targets().iter().map(|&to| if to == END { outside } else { to }).collect();
+        let mut passages = Vec::with_capacity(network.constrictions() / 2);
+        let twins = network.undirected.as_ref().map(|undirected| &undirected.twin);
+        for one in 0..outside {
+            for c in network.exits(one) {
+                let (exit, twin) = (c as u32, twins.map_or(NO_TWIN, |twin| twin[c]));
+                if twin < exit {
+                    continue;
+                }
+                passages.push(Passage {
+                    one,
+                    other: other[c],
+                    exit,
+                    twin: if twin == NO_TWIN { exit } else { twin },
+                    conductance: if network.diameter[c] == 0.0 { 0.0 } else { network.conductance(c) },
+                });
+            }
+        }
         let mut pressure = vec![0.0; network.voids() + 1];
         if let Some(reservoir) = network.reservoir() {
             // Falls evenly from layer to layer.
@@ -85,7 +120,7 @@ impl Flow {
             }
             pressure[reservoir as usize] = 1.0;
         }
-        Self { other, pressure, open: vec![0.0; network.constrictions()], accuracy: CONVERGED }
+        Self { passages, other, pressure, open: vec![0.0; network.constrictions()], accuracy: CONVERGED }
     }
 
     /// Pressure by void (1 in the reservoir), and 0 behind the filter.
@@ -106,25 +141,24 @@ impl Flow {
     pub fn solve(&mut self, network: &Network, blocked: &BitSlice) -> Result<Permeability, FlowError> {
         let undirected = network.undirected.as_ref();
         let rho = undirected.map_or(0.0, |u| u.rho);
-        for (c, open) in self.open.iter_mut().enumerate() {
-            *open = match (network.diameter[c] == 0.0, blocked[c]) {
-                (true, _) => 0.0,
-                (false, false) => network.conductance(c),
-                (false, true) => rho * network.conductance(c),
-            };
+        for passage in &self.passages {
+            let whole = passage.conductance;
+            let open = if blocked[passage.exit as usize] { rho * whole } else { whole };
+            self.open[passage.exit as usize] = open;
+            self.open[passage.twin as usize] = open;
         }
         let Some(reservoir) = network.reservoir() else {
             return Ok(Permeability { conductance: 0.0, k_mm2: None });
         };
         // Water flows where it comes in and gets out; elsewhere it stands under the pressure of the one side.
-        let joined = self.joined(network, reservoir);
-        let inside = joined.inside();
-        for (void, pressure) in self.pressure.iter_mut().enumerate().take(network.voids()) {
-            if !inside[void] && void != reservoir as usize {
-                *pressure = f64::from(u8::from(joined.to_reservoir[void]));
+        let meets = self.meets(network, reservoir);
+        for (pressure, meets) in self.pressure.iter_mut().zip(&meets) {
+            if *meets != (Meets { reservoir: true, end: true }) {
+                *pressure = f64::from(u8::from(meets.reservoir));
             }
         }
-        let system = self.system(network, &inside, reservoir);
+        self.pressure[reservoir as usize] = 1.0;
+        let system = self.system(&meets, reservoir);
         let residual = system.solve(&mut self.pressure, network.layers())?;
         // What is asked for, but where rounding allows no more.
         self.accuracy = if residual <= 2.0 * CONVERGED { CONVERGED } else { residual };
@@ -138,23 +172,28 @@ impl Flow {
     }
 
     /// The equations of the voids that water flows through.
-    fn system(&self, network: &Network, inside: &[bool], reservoir: u32) -> System {
-        let outside = network.voids() as u32;
-        System::of_voids(inside, |void, neighbours| {
-            let mut sides = Sides::default();
-            for c in network.exits(void).filter(|&c| self.open[c] > 0.0) {
-                let (to, g) = (self.other[c], self.open[c]);
-                if to == reservoir {
-                    sides.inflow += g;
-                    sides.ground += g;
-                } else if to == outside {
-                    sides.ground += g;
-                } else {
-                    neighbours.push((to, g));
-                }
+    fn system(&self, meets: &[Meets], reservoir: u32) -> System {
+        let mut system = System::of_voids(meets.iter().map(|meets| meets.reservoir && meets.end));
+        let outside = meets.len() as u32;
+        for passage in self.open_passages().filter(|passage| {
+            let Meets { reservoir, end } = meets[passage.one as usize];
+            reservoir && end
+        }) {
+            let open = self.open[passage.exit as usize];
+            if passage.other == reservoir {
+                system.hold(passage.one, open, 1.0);
+            } else if passage.other == outside {
+                system.hold(passage.one, open, 0.0);
+            } else {
+                system.join(passage.one, passage.other, open);
             }
-            sides
-        })
+        }
+        system
+    }
+
+    /// Those that water can pass, from the void that is not the reservoir.
+    fn open_passages(&self) -> impl Iterator<Item = &Passage> {
+        self.passages.iter().filter(|passage| self.open[passage.exit as usize] > 0.0)
     }
 
     /// Whether the flow that was solved last tells where water goes. Where it does not, every flux counts as
@@ -166,7 +205,7 @@ impl Flow {
     pub fn resolved(&self, network: &Network) -> Result<(), FlowError> {
         let Some(reservoir) = network.reservoir() else { return Ok(()) };
         let inlets = network.exits(reservoir);
-        let leads_through = self.joined(network, reservoir).inside().contains(&true);
+        let leads_through = self.meets(network, reservoir).contains(&Meets { reservoir: true, end: true });
         let mean = inlets.clone().map(|c| self.flux(reservoir, c)).sum::<f64>() / inlets.len().max(1) as f64;
         let part = mean / self.residual_of(inlets);
         if leads_through && part.is_nan() | (part < RESOLVED) {
@@ -182,9 +221,8 @@ impl Flow {
 
     /// Flow times viscosity out behind the filter.
     fn outflow(&self, network: &Network) -> f64 {
-        let of =
-            |void: u32| network.exits(void).filter(|&c| network.targets()[c] == END).map(move |c| (void, c));
-        (0..network.voids() as u32).flat_map(of).map(|(void, c)| self.flux(void, c)).sum()
+        let outlets = self.passages.iter().filter(|passage| passage.other as usize == network.voids());
+        outlets.map(|passage| self.flux(passage.one, passage.exit as usize)).sum()
     }
 
     /// Gives each exit of the network its weight by the flow that was solved last.
@@ -195,60 +233,43 @@ impl Flow {
         let through: f64 = inlets.clone().map(|c| self.flux(reservoir, c)).sum();
         // Nor is one that the residual may stand for.
         let least = (NO_FLUX * through / inlets.len().max(1) as f64).max(self.residual_of(inlets));
-        let mut weight = std::mem::take(&mut network.undirected.as_mut().expect("it has a reservoir").weight);
-        for void in 0..network.voids() as u32 {
-            for c in network.exits(void) {
-                let area = f64::from(network.diameter[c]) * f64::from(network.diameter[c]);
-                weight[c] = if blocked[c] { 0.0 } else { rule.weight(area, self.flux(void, c), least) };
-            }
-        }
-        network.undirected.as_mut().expect("it has a reservoir").weight = weight;
-    }
-
-    /// Which voids hang together with the reservoir and which with the end, neither by way of the other.
-    fn joined(&self, network: &Network, reservoir: u32) -> Joined {
-        let (voids, outside) = (network.voids(), network.voids() as u32);
-        let mut joined = Joined { to_reservoir: vec![false; voids], to_end: vec![false; voids] };
-        let mut seen = vec![false; voids];
-        let mut together: Vec<u32> = Vec::new();
-        for first in (0..outside).filter(|&void| void != reservoir) {
-            if std::mem::replace(&mut seen[first as usize], true) {
+        let Network { diameter, undirected, .. } = network;
+        let weight = &mut undirected.as_mut().expect("it has a reservoir").weight;
+        for passage in &self.passages {
+            let (exit, twin) = (passage.exit as usize, passage.twin as usize);
+            if blocked[exit] {
+                (weight[exit], weight[twin]) = (0.0, 0.0);
                 continue;
             }
-            together.clear();
-            together.push(first);
-            let (mut meets_reservoir, mut meets_end, mut looked_at) = (false, false, 0);
-            while let Some(&void) = together.get(looked_at) {
-                looked_at += 1;
-                for c in network.exits(void).filter(|&c| self.open[c] > 0.0) {
-                    let to = self.other[c];
-                    if to == reservoir {
-                        meets_reservoir = true;
-                    } else if to == outside {
-                        meets_end = true;
-                    } else if !std::mem::replace(&mut seen[to as usize], true) {
-                        together.push(to);
-                    }
-                }
-            }
-            for &void in &together {
-                joined.to_reservoir[void as usize] = meets_reservoir;
-                joined.to_end[void as usize] = meets_end;
-            }
+            let [one, other] = [passage.one, passage.other].map(|void| self.pressure[void as usize]);
+            let flux = self.open[exit] * (one - other);
+            let area = f64::from(diameter[exit]) * f64::from(diameter[exit]);
+            weight[twin] = rule.weight(area, -flux, least);
+            weight[exit] = rule.weight(area, flux, least);
         }
-        joined
+    }
+
+    /// What each void hangs together with, by way of other voids.
+    fn meets(&self, network: &Network, reservoir: u32) -> Vec<Meets> {
+        let (voids, outside) = (network.voids(), network.voids() as u32);
+        let is_inner = |passage: &&Passage| passage.other != reservoir && passage.other != outside;
+        let mut together = Together::of(voids);
+        for passage in self.open_passages().filter(is_inner) {
+            together.join(passage.one, passage.other);
+        }
+        let mut of_root = vec![Meets::default(); voids];
+        for passage in self.open_passages().filter(|passage| !is_inner(passage)) {
+            let meets = &mut of_root[together.root(passage.one) as usize];
+            meets.reservoir |= passage.other == reservoir;
+            meets.end |= passage.other == outside;
+        }
+        (0..outside).map(|void| of_root[together.root(void) as usize]).collect()
     }
 }
 
-/// Voids that hang together with the two sides of the filter.
-struct Joined {
-    to_reservoir: Vec<bool>,
-    to_end: Vec<bool>,
-}
-
-impl Joined {
-    /// Voids that hang together with both: water flows through them.
-    fn inside(&self) -> Vec<bool> {
-        self.to_reservoir.iter().zip(&self.to_end).map(|(one, other)| *one && *other).collect()
-    }
+/// What a void hangs together with: the two sides of the filter, neither by way of the other.
+#[derive(Clone, Copy, Default, PartialEq)]
+struct Meets {
+    reservoir: bool,
+    end: bool,
 }

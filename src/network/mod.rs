@@ -27,6 +27,7 @@ mod permeability;
 mod reach;
 mod stratified;
 mod system;
+mod together;
 mod twins;
 mod undirected;
 

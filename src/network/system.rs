@@ -1,13 +1,11 @@
 //! The equations of pressures in a network of conductances, and their solution by conjugate gradients.
 //!
-//! Sums run over fixed blocks in a fixed order, so that a solution is the same to the bit on any number of
+//! On one thread, and sums run in a fixed order, so that a solution is the same to the bit on any number of
 //! threads and with any instructions.
 
 use std::ops::Range;
 
-use rayon::prelude::*;
-
-use super::elimination::Factor;
+use super::elimination::{Factor, Link};
 
 /// The residual is below this part of what flows in.
 pub(super) const CONVERGED: f64 = 1e-10;
@@ -18,10 +16,7 @@ const BEST_OF_ROUNDING: f64 = 1e-6;
 /// Rounds after which a system that has not converged is given up, for each layer and a hundred besides.
 const ROUNDS: usize = 100;
 
-/// Entries whose sum is made at once: fixed, so that threads change nothing.
-const BLOCK: usize = 1 << 12;
-
-/// Sums that are made side by side in a block: fixed likewise.
+/// Sums that are made side by side: fixed, so that instructions change nothing.
 const SIDE_BY_SIDE: usize = 8;
 
 /// Conductances so far apart that numbers do not tell.
@@ -33,93 +28,79 @@ pub(super) struct NotConverged {
     pub residual: f64,
 }
 
-/// What is to be known of a void for its equation.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Sides {
-    /// Conductance to pressures that are known.
-    pub ground: f64,
-    /// Flow in from where pressure is known.
-    pub inflow: f64,
-}
-
-/// The equations of the voids inside, as columns: row `i` has neighbours `begin[i] .. begin[i + 1]`.
+/// The equations of the voids inside: a row for each.
 pub(super) struct System {
     /// Void by row.
     void: Vec<u32>,
-    begin: Vec<u32>,
-    row: Vec<u32>,
-    conductance: Vec<f64>,
-    diagonal: Vec<f64>,
+    /// Row by void, or [`NONE`].
+    row_of: Vec<u32>,
+    /// Conductances between rows.
+    links: Vec<Link>,
     /// Conductance to pressures that are known.
     ground: Vec<f64>,
     /// Flow in from where pressure is known.
     inflow: Vec<f64>,
 }
 
+/// No row.
+const NONE: u32 = u32::MAX;
+
 impl System {
-    /// The equations of the voids `inside`; `of` gives the sides of a void and its neighbours with their
-    /// conductances, of which those that are not inside have pressure 0.
-    pub(super) fn of_voids(inside: &[bool], of: impl Fn(u32, &mut Vec<(u32, f64)>) -> Sides) -> Self {
-        const NONE: u32 = u32::MAX;
-        let void: Vec<u32> = (0u32..).zip(inside).filter(|(_, inside)| **inside).map(|(v, _)| v).collect();
-        let mut row_of = vec![NONE; inside.len()];
-        void.iter().zip(0..).for_each(|(&v, row)| row_of[v as usize] = row);
-        let rows = void.len();
-        let mut system = Self {
-            begin: Vec::with_capacity(rows + 1),
-            row: Vec::new(),
-            conductance: Vec::new(),
-            diagonal: Vec::with_capacity(rows),
-            ground: Vec::with_capacity(rows),
-            inflow: Vec::with_capacity(rows),
-            void,
+    /// The voids `inside`, joined with nothing yet.
+    pub(super) fn of_voids(inside: impl Iterator<Item = bool>) -> Self {
+        let mut void = Vec::new();
+        let row = |(v, is_inside): (u32, bool)| {
+            is_inside.then(|| void.push(v)).map_or(NONE, |()| void.len() as u32 - 1)
         };
-        system.begin.push(0);
-        let mut neighbours = Vec::new();
-        for &v in &system.void {
-            neighbours.clear();
-            let Sides { mut ground, inflow } = of(v, &mut neighbours);
-            let begin = system.row.len();
-            let mut inner = 0.0;
-            for &(to, g) in &neighbours {
-                let to = row_of[to as usize];
-                if to == NONE {
-                    ground += g;
-                    continue;
-                }
-                inner += g;
-                match system.row[begin..].iter().position(|&other| other == to) {
-                    Some(at) => system.conductance[begin + at] += g,
-                    None => {
-                        system.row.push(to);
-                        system.conductance.push(g);
-                    }
-                }
-            }
-            system.begin.push(system.row.len() as u32);
-            system.diagonal.push(ground + inner);
-            system.ground.push(ground);
-            system.inflow.push(inflow);
+        let row_of: Vec<u32> = (0u32..).zip(inside).map(row).collect();
+        let rows = void.len();
+        Self { void, row_of, links: Vec::new(), ground: vec![0.0; rows], inflow: vec![0.0; rows] }
+    }
+
+    /// Joins two voids. One that is not inside has pressure 0, and between two of these nothing is asked.
+    pub(super) fn join(&mut self, one: u32, other: u32, conductance: f64) {
+        match [one, other].map(|void| self.row_of[void as usize]) {
+            [NONE, NONE] => {}
+            [row, NONE] | [NONE, row] => self.ground[row as usize] += conductance,
+            [one, other] => self.links.push(Link { one, other, conductance }),
         }
-        system.normalise();
-        system
+    }
+
+    /// Joins a void that is inside with a known pressure.
+    pub(super) fn hold(&mut self, void: u32, conductance: f64, pressure: f64) {
+        let row = self.row_of[void as usize] as usize;
+        self.ground[row] += conductance;
+        self.inflow[row] += conductance * pressure;
+    }
+
+    /// Lets so much flow into a void, if it is inside.
+    pub(super) fn feed(&mut self, void: u32, inflow: f64) {
+        if let Some(sum) = self.inflow.get_mut(self.row_of[void as usize] as usize) {
+            *sum += inflow;
+        }
     }
 
     /// Divides both sides by a power of two, which changes no digit of a solution, so that squares of very
     /// large and very small conductances are numbers still.
     fn normalise(&mut self) {
-        let largest = self.diagonal.iter().fold(0.0, |a: f64, &b| a.max(b));
+        let mut diagonal = self.ground.clone();
+        for link in &self.links {
+            diagonal[link.one as usize] += link.conductance;
+            diagonal[link.other as usize] += link.conductance;
+        }
+        let largest = diagonal.iter().fold(0.0, |a: f64, &b| a.max(b));
         if largest > 0.0 && largest.is_finite() {
             let unit = libm::scalbn(1.0, -libm::ilogb(largest).max(-1000));
-            let sides = self.diagonal.iter_mut().chain(&mut self.ground).chain(&mut self.inflow);
-            sides.chain(&mut self.conductance).for_each(|side| *side *= unit);
+            let sides = self.ground.iter_mut().chain(&mut self.inflow);
+            sides.chain(self.links.iter_mut().map(|link| &mut link.conductance)).for_each(|g| *g *= unit);
         }
     }
 
     /// Conjugate gradients from the pressures that there are, and again from where they end while what they
     /// carry along as the residual has left the true one.
     /// Gives the residual over the inflow.
-    pub(super) fn solve(&self, pressure: &mut [f64], layers: usize) -> Result<f64, NotConverged> {
+    pub(super) fn solve(mut self, pressure: &mut [f64], layers: usize) -> Result<f64, NotConverged> {
+        self.normalise();
         let scale = dot(&self.inflow, &self.inflow).sqrt();
         if self.void.is_empty() || scale == 0.0 {
             return Ok(0.0);
@@ -127,9 +108,8 @@ impl System {
         if !scale.is_finite() {
             return Err(NotConverged { rounds: 0, residual: f64::INFINITY });
         }
-        let factor = Factor::new(&self.ground, &self.begin, &self.row, &self.conductance);
         let mut x: Vec<f64> = self.void.iter().map(|&v| pressure[v as usize]).collect();
-        let (mut rounds, mut before) = (0, f64::INFINITY);
+        let (mut factor, mut rounds, mut before) = (None, 0, f64::INFINITY);
         loop {
             let mut residual = self.residual(&x);
             let size = dot(&residual, &residual).sqrt();
@@ -144,7 +124,8 @@ impl System {
                 return Err(NotConverged { rounds, residual: size / scale });
             }
             before = size;
-            rounds = self.descend(&factor, &mut x, &mut residual, scale, rounds..ROUNDS * (layers + 100))?;
+            let factor = factor.get_or_insert_with(|| Factor::new(&self.ground, &self.links));
+            rounds = self.descend(factor, &mut x, &mut residual, scale, rounds..ROUNDS * (layers + 100))?;
         }
     }
 
@@ -181,48 +162,30 @@ impl System {
             factor.solve(residual, &mut scratch, &mut solved);
             let now = dot(residual, &solved);
             let keep = if round == allowed.start { 0.0 } else { now / before };
-            direction.par_chunks_mut(BLOCK).zip(solved.par_chunks(BLOCK)).for_each(|(d, s)| {
-                d.iter_mut().zip(s).for_each(|(d, s)| *d = s + keep * *d);
-            });
+            direction.iter_mut().zip(&solved).for_each(|(d, s)| *d = s + keep * *d);
             before = now;
             self.times(&direction, &mut product);
             let step = now / dot(&direction, &product);
-            let blocks = x.par_chunks_mut(BLOCK).zip(residual.par_chunks_mut(BLOCK));
-            blocks.zip(direction.par_chunks(BLOCK).zip(product.par_chunks(BLOCK))).for_each(
-                |((x, r), (d, p))| {
-                    x.iter_mut().zip(d).for_each(|(x, d)| *x += step * d);
-                    r.iter_mut().zip(p).for_each(|(r, p)| *r -= step * p);
-                },
-            );
+            x.iter_mut().zip(&direction).for_each(|(x, d)| *x += step * d);
+            residual.iter_mut().zip(&product).for_each(|(r, p)| *r -= step * p);
         }
         unreachable!("rounds are counted up to the most")
     }
 
-    /// The matrix times a column.
+    /// The matrix times a column. Link by link: loops over those of each row would end where no processor
+    /// expects it.
     fn times(&self, x: &[f64], out: &mut [f64]) {
-        out.par_chunks_mut(BLOCK).enumerate().for_each(|(block, out)| {
-            for (k, out) in out.iter_mut().enumerate() {
-                let i = block * BLOCK + k;
-                let of = self.begin[i] as usize..self.begin[i + 1] as usize;
-                let others: f64 = self.row[of.clone()]
-                    .iter()
-                    .zip(&self.conductance[of])
-                    .map(|(&j, g)| g * x[j as usize])
-                    .sum();
-                *out = self.diagonal[i] * x[i] - others;
-            }
-        });
+        out.iter_mut().zip(self.ground.iter().zip(x)).for_each(|(out, (ground, x))| *out = ground * x);
+        for &Link { one, other, conductance } in &self.links {
+            let flow = conductance * (x[one as usize] - x[other as usize]);
+            out[one as usize] += flow;
+            out[other as usize] -= flow;
+        }
     }
 }
 
-/// Sum of products, block by block.
+/// Sum of products.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let blocks = a.par_chunks(BLOCK).zip(b.par_chunks(BLOCK));
-    let parts: Vec<f64> = blocks.map(|(a, b)| dot_of_block(a, b)).collect();
-    parts.iter().sum()
-}
-
-fn dot_of_block(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; SIDE_BY_SIDE];
     for (a, b) in a.chunks(SIDE_BY_SIDE).zip(b.chunks(SIDE_BY_SIDE)) {
         sums.iter_mut().zip(a.iter().zip(b)).for_each(|(sum, (a, b))| *sum += a * b);

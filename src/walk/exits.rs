@@ -13,17 +13,24 @@ pub(super) fn thresholds(
     void: u32,
     thresholds: &mut Vec<u64>,
 ) -> Option<usize> {
+    // Without branches: which exits are open cannot be foreseen.
     let exits = network.exits(void);
-    let weight = |c: usize| if blocked[c] { 0.0 } else { network.exit_weight(c) };
-    let total: f64 = exits.clone().map(weight).sum();
+    let first = exits.start;
+    let (mut total, mut last) = (0.0, usize::MAX);
+    thresholds.resize(exits.len(), 0);
+    for (threshold, c) in thresholds.iter_mut().zip(exits) {
+        let weight = network.exit_weight(c) * f64::from(u8::from(!blocked[c]));
+        total += weight;
+        last = if weight > 0.0 { c - first } else { last };
+        *threshold = weight.to_bits();
+    }
     let mut sum = 0.0;
-    thresholds.clear();
-    thresholds.extend(exits.clone().map(|c| {
-        sum += weight(c);
+    for threshold in thresholds {
+        sum += f64::from_bits(*threshold);
         // A float beyond the range of the integer becomes the largest integer.
-        (sum / total * TWO_TO_64) as u64
-    }));
-    exits.clone().rev().find(|&c| weight(c) > 0.0).map(|c| c - exits.start)
+        *threshold = (sum / total * TWO_TO_64) as u64;
+    }
+    (last != usize::MAX).then_some(last)
 }
 
 const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
@@ -172,14 +179,11 @@ impl ExitTable {
             }),
         };
         let mut table = Self { form, isa: Isa::chosen(), upstream: network.upstream() };
-        let mut scratch = Vec::new();
-        for void in 0..network.voids() as u32 {
-            table.set(network, blocked, void, &mut scratch);
-        }
+        table.refresh(network, blocked, 0..network.voids() as u32);
         table
     }
 
-    /// Renews voids of which exits have just closed.
+    /// Renews voids of which exits have just closed, or lead elsewhere.
     pub(super) fn refresh(
         &mut self,
         network: &Network,

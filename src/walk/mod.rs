@@ -216,9 +216,7 @@ impl<'a> Walk<'a> {
         }
         let Some(directions) = &mut self.directions else { return Ok(()) };
         if directions.renew(self.network.to_mut(), state)? {
-            let isa = self.table.isa();
-            self.table = ExitTable::new(&self.network, &state.blocked);
-            self.table.set_isa(isa);
+            self.table.refresh(&self.network, &state.blocked, 0..self.network.voids() as u32);
             if let Some(passive) = &mut self.passive {
                 passive.renew(&self.network, state);
             }

@@ -298,7 +298,7 @@ impl Worker {
         batch.rows = 0;
         for (word, many) in many.into_iter().enumerate() {
             for void in bits(many).map(|bit| first + 64 * word + bit) {
-                let exit = network.exits(void as u32).start;
+                let exit = shares.open_from(network.exits(void as u32).start);
                 batch.rows = batch.face(batch.rows, exit, counts[void], shares, &mut arrive);
                 moved.moves += counts[void];
             }
@@ -333,20 +333,17 @@ impl SplitBatch {
         Self { rows: 0, exit: [0; BLOCK], count: [0; BLOCK], probability: [0; BLOCK], taken: [0; BLOCK] }
     }
 
-    /// `n` particles face the exits of a void from `exit` on: they are through where the next open one is the
-    /// last, else they are row `row`. Returns the row after them.
+    /// `n` particles face the open exit `exit` of a void: they are through where it is the last, else they
+    /// are row `row`. Returns the row after them.
     #[inline(always)]
     fn face(
         &mut self,
         row: usize,
-        mut exit: usize,
+        exit: usize,
         n: u64,
         shares: &Shares,
         arrive: &mut impl FnMut(usize, u64),
     ) -> usize {
-        while shares.probability()[exit] == 0 {
-            exit += 1;
-        }
         let probability = shares.probability()[exit];
         if probability == CERTAIN {
             arrive(exit, n);
@@ -367,7 +364,7 @@ impl SplitBatch {
             arrive(exit, taken);
             let left = self.count[row] - taken;
             if left > 0 {
-                self.rows = self.face(self.rows, exit + 1, left, shares, arrive);
+                self.rows = self.face(self.rows, shares.open_after(exit), left, shares, arrive);
             }
         }
     }

@@ -180,7 +180,7 @@ impl<'a> PassiveWalk<'a> {
 
     /// The flow has been solved again: every exit may weigh something else.
     pub fn renew(&mut self, network: &Network, state: &State) {
-        self.shares = Shares::new(network, &state.blocked);
+        self.shares.renew(network, &state.blocked);
         if let (Mover::Expected(flow), Passive::Expected(expected)) = (&mut self.mover, &state.passive) {
             *flow = ExpectedFlow::new(network, &self.shares, expected);
         }

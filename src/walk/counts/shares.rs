@@ -28,6 +28,8 @@ pub(super) struct Shares {
     /// By constriction: the probability that a particle which has not taken an earlier exit of its void takes
     /// this one, as a 64-bit fraction. The last open exit is certain; closed ones have none.
     probability: Vec<u64>,
+    /// By constriction: how many exits on the next open one of its void is; no open one is passed over.
+    on: Vec<u8>,
     /// By void.
     way: Vec<Way>,
     /// A bit for each void without an open exit.
@@ -43,16 +45,22 @@ impl Shares {
     pub fn new(network: &Network, blocked: &BitSlice) -> Self {
         let mut shares = Self {
             probability: vec![0; network.constrictions()],
+            on: vec![1; network.constrictions()],
             way: vec![Way::None; network.voids()],
             shut: vec![0; network.voids().div_ceil(64)],
             of_three: vec![0; network.voids().div_ceil(64)],
             tops: vec![[0; 2]; network.voids()],
         };
+        shares.renew(network, blocked);
+        shares
+    }
+
+    /// Renews the shares of all voids, where exits weigh something else.
+    pub fn renew(&mut self, network: &Network, blocked: &BitSlice) {
         let mut thresholds = Vec::new();
         for void in 0..network.voids() as u32 {
-            shares.set(network, blocked, void, &mut thresholds);
+            self.set(network, blocked, void, &mut thresholds);
         }
-        shares
     }
 
     /// Renews the shares of one void.
@@ -66,13 +74,20 @@ impl Shares {
         for (e, probability) in self.probability[exits.clone()].iter_mut().enumerate() {
             *probability = match last {
                 Some(last) if e == last => CERTAIN,
-                Some(last) if e < last => {
+                Some(last) if e < last && thresholds[e] > before => {
                     let (width, rest) = (thresholds[e] - before, (1u128 << 64) - u128::from(before));
                     (((u128::from(width) << 64) / rest) as u64).min(CERTAIN - 1)
                 }
                 _ => 0,
             };
             before = thresholds[e];
+        }
+        let mut on = 1u8;
+        for (probability, to_next) in
+            self.probability[exits.clone()].iter().zip(&mut self.on[exits.clone()]).rev()
+        {
+            *to_next = on;
+            on = if *probability == 0 { on.saturating_add(1) } else { 1 };
         }
         self.way[void as usize] = match last {
             None if exits::waits(network, void) => Way::Wait,
@@ -93,6 +108,21 @@ impl Shares {
     /// Probability of each constriction.
     pub fn probability(&self) -> &[u64] {
         &self.probability
+    }
+
+    /// The first open exit of a void from `exit` on; there is one.
+    #[inline(always)]
+    pub fn open_from(&self, mut exit: usize) -> usize {
+        while self.probability[exit] == 0 {
+            exit += usize::from(self.on[exit]);
+        }
+        exit
+    }
+
+    /// The next open exit of its void after one that is open, and not certain.
+    #[inline(always)]
+    pub fn open_after(&self, exit: usize) -> usize {
+        self.open_from(exit + usize::from(self.on[exit]))
     }
 
     /// Thresholds for the first two of three exits, for one 64-bit draw: it picks the first exit below the
@@ -140,6 +170,7 @@ impl Shares {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::network::{ExitRule, Link, LinkEnd, LinkedVoids};
     use bitvec::vec::BitVec;
 
     fn of(diameters: [f32; 3], closed: [bool; 3]) -> (Vec<u64>, bool) {
@@ -179,6 +210,46 @@ mod tests {
             assert_eq!(shares.way[0] == Way::Second, shares.probability[1] == CERTAIN, "{d:?}");
             if shares.way[0] == Way::Three {
                 assert!(to_second >= to_first, "{d:?}");
+            }
+        }
+    }
+
+    /// More exits in a row are closed than one step can pass over, at either end and between open ones.
+    #[test]
+    fn the_next_open_exit_is_found_beyond_any_number_of_closed_ones() {
+        let open = [0, 1, 256, 257, 600, 1111];
+        for open in [&open[..], &open[2..], &open[4..5]] {
+            let links: Vec<Link> = (0..1200)
+                .map(|_| Link {
+                    from: LinkEnd::Void(0),
+                    to: LinkEnd::Outside,
+                    diameter: 1.0,
+                    conductance: 1.0,
+                    rise: 1.0,
+                })
+                .chain([Link {
+                    from: LinkEnd::Outside,
+                    to: LinkEnd::Void(0),
+                    diameter: 1.0,
+                    conductance: 1.0,
+                    rise: 1.0,
+                }])
+                .collect();
+            let voids = LinkedVoids {
+                layer: vec![0],
+                unit_mm: 1.0,
+                rule: ExitRule::Height,
+                ..LinkedVoids::default()
+            };
+            let network = Network::linked(voids, &links).unwrap();
+            let is_open = |c: usize| open.contains(&c) || c >= 1200;
+            let blocked: BitVec = (0..network.constrictions()).map(|c| !is_open(c)).collect();
+            let shares = Shares::new(&network, &blocked);
+            let mut exit = shares.open_from(0);
+            for (i, &is) in open.iter().enumerate() {
+                assert_eq!(exit, is);
+                assert_eq!(shares.probability()[exit] == CERTAIN, i + 1 == open.len());
+                exit = if i + 1 < open.len() { shares.open_after(exit) } else { exit };
             }
         }
     }

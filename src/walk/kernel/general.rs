@@ -17,15 +17,24 @@ pub(super) fn step(
     let mut lanes = key.lanes();
     let extension = lanes.extension();
     let mut kept = 0;
+    let mut chosen = [Chosen::None; DRAWS_PER_BLOCK];
     for begin in (0..void.len()).step_by(DRAWS_PER_BLOCK) {
         let block = lanes.next_block();
-        for j in begin..void.len().min(begin + DRAWS_PER_BLOCK) {
-            let (from, d) = (void[j], diameter[j]);
+        let particles = begin..void.len().min(begin + DRAWS_PER_BLOCK);
+        // All of a block choose before any moves: what one reads far away does not wait for another's move.
+        for (chosen, j) in chosen.iter_mut().zip(particles.clone()) {
+            let from = void[j];
             let draw = draw16(&block, j - begin);
             let few = &table.few[from as usize];
             let quick = if few.is_few { few.chosen(draw) } else { None };
-            let exit = match quick.map_or_else(|| any(network, table, from, draw, j, extension), Chosen::Exit)
-            {
+            *chosen = match quick {
+                Some(exit) => Chosen::Exit(exit as u32),
+                None => any(network, table, from, draw, j, extension),
+            };
+        }
+        for (chosen, j) in chosen.iter().zip(particles) {
+            let (from, d) = (void[j], diameter[j]);
+            let exit = match *chosen {
                 Chosen::Exit(exit) => exit,
                 Chosen::None => {
                     events.stranded.push((from, d));
@@ -38,9 +47,9 @@ pub(super) fn step(
                     continue;
                 }
             };
-            let (target, width) = table.beyond[exit];
+            let (target, width) = table.beyond[exit as usize];
             if d > width {
-                events.stopped.push((exit as u32, d));
+                events.stopped.push((exit, d));
                 continue;
             }
             match target {
@@ -57,9 +66,10 @@ pub(super) fn step(
 }
 
 /// Where a particle goes.
+#[derive(Clone, Copy)]
 enum Chosen {
     /// Through this exit, where it fits.
-    Exit(usize),
+    Exit(u32),
     /// No exit is open.
     None,
     /// No exit is open until the flow is solved again.
@@ -85,7 +95,7 @@ fn any(
     }
     let exits = network.exits(from);
     let chosen = choose(&table.threshold[exits.clone()], draw, index, extension);
-    Chosen::Exit(chosen.map_or(last_open as usize, |e| exits.start + e))
+    Chosen::Exit(chosen.map_or(last_open, |e| (exits.start + e) as u32))
 }
 
 /// The first exit whose threshold exceeds the draw; sixteen bits decide unless they are equal.

@@ -1,0 +1,49 @@
+//! What hangs together.
+
+/// Voids in groups, each known by its smallest member.
+pub(super) struct Together {
+    /// A void of the same group that is no larger: the smallest points at itself.
+    towards: Vec<u32>,
+}
+
+impl Together {
+    /// So many voids, each by itself.
+    pub(super) fn of(voids: usize) -> Self {
+        Self { towards: (0..voids as u32).collect() }
+    }
+
+    /// The smallest void that hangs together with this one.
+    pub(super) fn root(&mut self, mut void: u32) -> u32 {
+        loop {
+            let next = self.towards[void as usize];
+            if next == void {
+                return void;
+            }
+            // Half as far the next time.
+            let after = self.towards[next as usize];
+            self.towards[void as usize] = after;
+            void = after;
+        }
+    }
+
+    /// Joins the groups of two voids.
+    pub(super) fn join(&mut self, one: u32, other: u32) {
+        let (one, other) = (self.root(one), self.root(other));
+        self.towards[one.max(other) as usize] = one.min(other);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_joined_has_one_root() {
+        let mut together = Together::of(9);
+        for (one, other) in [(8, 3), (3, 5), (5, 8), (2, 7), (7, 4), (6, 4)] {
+            together.join(one, other);
+        }
+        let roots: Vec<u32> = (0..9).map(|void| together.root(void)).collect();
+        assert_eq!(roots, [0, 1, 2, 3, 2, 3, 2, 2, 3]);
+    }
+}
