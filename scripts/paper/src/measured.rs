@@ -56,6 +56,10 @@ pub struct Of {
     pub case: String,
     pub class: String,
     pub run: usize,
+    /// How many runs are counted together.
+    pub runs: usize,
+    /// What a spread is to keep within.
+    pub within: f64,
     pub connectivity: u64,
     pub at: String,
     pub to: String,

@@ -12,8 +12,8 @@ use voidwalk::store::write_whole;
 
 use crate::figures;
 use crate::measured::Measured;
-use crate::statements::{self, Judged, Judgement};
-use crate::study::{Case, Study};
+use crate::statements::{self, Judged, Judgement, Standing};
+use crate::study::{Case, Study, VARIANTS};
 
 /// A figure or table of the paper: its key in the statements, its heading, what is drawn for it.
 type Section = (&'static str, &'static str, fn(&Study) -> Vec<Drawn>);
@@ -60,9 +60,11 @@ pub fn write(folder: &Path) -> Result<Written, ReportError> {
 
 fn page(study: &Study, judged: &[Judged], sections: &[(&Section, Vec<Drawn>)]) -> String {
     let title = "The paper’s numbers, and ours";
-    let count =
-        |wanted: fn(Judgement) -> bool| judged.iter().filter(|judged| wanted(judged.ours().1)).count();
+    let count = |wanted: fn(Judgement) -> bool| judged.iter().filter(|j| j.counts_as(wanted)).count();
     let (agree, differ) = (count(|j| j == Judgement::Agrees), count(|j| matches!(j, Judgement::Differs(_))));
+    let (counted, of) =
+        (count(|_| true), |standing| judged.iter().filter(|j| j.standing() == standing).count());
+    let (set, fitted, readings) = (of(Standing::Set), of(Standing::Fitted), of(Standing::Reading));
     let header = html! {
         h1 { (title) }
         p.names { "Shire and O’Sullivan, " cite { "A network model to assess base-filter combinations" } }
@@ -71,18 +73,24 @@ fn page(study: &Study, judged: &[Judged], sections: &[(&Section, Vec<Drawn>)]) -
         div.first {
             section {
                 p.lead {
-                    "Of " (judged.len()) " statements, " b { (agree) " agree" } ", "
+                    "Of " (counted) " statements, " b { (agree) " agree" } ", "
                     b { (differ) " differ" } ", and "
-                    b { (judged.len() - agree - differ) } " inconclusive."
+                    b { (counted - agree - differ) } " inconclusive."
+                }
+                p {
+                    (judged.len() - counted) " more are shown and not counted: " (set) " that the plans set, \
+                     so that they agree or differ by construction; " (fitted) " that our rule for merging \
+                     voids was fitted to; " (readings) " other readings of statements that are counted."
                 }
                 p {
                     "A statement agrees when our value lies within what the paper states and its tolerance, \
                      or when our 95 % interval covers the stated value; inconclusive when nothing was \
                      walked or when the interval lies on both sides of what decides; it differs otherwise. \
                      No judgement is typed in, and nothing is tuned to the paper case by case. Where a \
-                     number differs, the same is measured in campaigns that change one thing each: grains \
-                     per void, cap, constriction curves, overlap rule."
+                     number differs, the same is measured in campaigns that change what their names say: \
+                     grains per void, cap, constriction curves, overlap rule."
                 }
+                (thickness(study))
             }
             aside.leaves {
                 h2 { "What the model leaves out" }
@@ -109,8 +117,9 @@ fn page(study: &Study, judged: &[Judged], sections: &[(&Section, Vec<Drawn>)]) -
         h2 { "Every combination" }
         p.small {
             "Percent of the base eroded in the first and the second run, and the class: N no, S some, \
-             C continuing erosion, ? undecided. ● marks the combinations without Dc15: the paper walked 66 \
-             of the 78 and does not say which, so that is a guess."
+             C continuing erosion, ? undecided. These are all that the paper’s list of filters and bases \
+             gives. It says that there were 66, which is the list without any one of the six sizes Dc5 to \
+             Dc75; it does not say which, so none is left out here."
         }
         (combinations(study))
         (provenance(study))
@@ -119,9 +128,33 @@ fn page(study: &Study, judged: &[Judged], sections: &[(&Section, Vec<Drawn>)]) -
     whole_page(title, &header, &main, &footer)
 }
 
-/// The statements that differ, each in a line.
+/// How thick the filters of the campaign are: the paper counts layers and gives no length.
+fn thickness(study: &Study) -> Markup {
+    let mut all: Vec<(u64, String)> = Vec::new();
+    for case in study.cases(VARIANTS[0].name) {
+        let (network, filter) = (&case.outcome.inputs.network, &case.outcome.inputs.filter);
+        let over = network.thickness_mm.map(|mm| significant(mm / filter.d0_mm)).unwrap_or_default();
+        let of = filter.cu.map(|cu| ((100.0 * cu).round() / 100.0).to_string()).unwrap_or_default();
+        let one = (network.layers, format!("{over} D0F with Cu {of}"));
+        if !all.contains(&one) {
+            all.push(one);
+        }
+    }
+    let sizes: Vec<&str> = all.iter().map(|(_, size)| size.as_str()).collect();
+    html! { @if let Some((layers, _)) = all.first() {
+        p {
+            "Every filter is " (layers) " layers of voids thick. With voids as far apart as the median grain \
+             by number is wide, that is " (clean(&sizes.join(", "))) "; the paper gives no length. A thicker \
+             filter erodes less at the same D15F/D85B: every boundary here is that of this thickness."
+        }
+    } }
+}
+
+/// The statements that differ, each in a line; not those that a setting or a second reading makes differ.
 fn what_differs(judged: &[Judged]) -> Markup {
-    let differ: Vec<_> = judged.iter().filter(|j| matches!(j.ours().1, Judgement::Differs(_))).collect();
+    let says = |j: &&Judged| matches!(j.standing(), Standing::Counted | Standing::Fitted);
+    let differ: Vec<_> =
+        judged.iter().filter(says).filter(|j| matches!(j.ours().1, Judgement::Differs(_))).collect();
     html! {
         @if !differ.is_empty() {
             h2 { "What differs, and in which campaign it does not" }
@@ -144,7 +177,8 @@ fn ours(judged: &Judged, measured: &Measured) -> String {
 }
 
 fn statements_of(judged: &[Judged], key: &str) -> Markup {
-    let class = |judgement| match judgement {
+    let class = |judged: &Judged| match judged.ours().1 {
+        _ if judged.standing() != Standing::Counted => "small",
         Judgement::Agrees => "keeps",
         Judgement::Differs(_) => "breaks",
         Judgement::Inconclusive => "small",
@@ -154,6 +188,7 @@ fn statements_of(judged: &[Judged], key: &str) -> Markup {
             thead { tr { th { "What" } th { "Paper" } th { "Ours (95 % interval)" } th { "Judgement" } } }
             tbody { @for judged in judged.iter().filter(|judged| judged.statement.shown == key) {
                 @let (measured, judgement) = judged.ours();
+                @let beside = judged.beside();
                 tr {
                     td { (judged.statement.says) br; span.small { (judged.statement.place) } }
                     td { (judged.statement.states) br; span.small { (judged.statement.why) } }
@@ -161,10 +196,11 @@ fn statements_of(judged: &[Judged], key: &str) -> Markup {
                         @if let Some(measured) = measured {
                             (ours(judged, measured)) br; span.small { (measured.words) }
                         } @else { "–" }
+                        @for (title, value) in beside { br; span.small { (title) ": " (value) } }
                     }
                     td { @match judgement {
                         Judgement::Differs(_) => { (judged.sentence()) },
-                        _ => span class=(class(judgement)) { (judged.sentence()) },
+                        _ => span class=(class(judged)) { (judged.sentence()) },
                     } }
                 }
             } }
@@ -175,9 +211,12 @@ fn statements_of(judged: &[Judged], key: &str) -> Markup {
 fn matrix(study: &Study, judged: &[Judged]) -> Markup {
     let variants: Vec<_> = study.variants().collect();
     let cell = |judged: &Judged, name: &str| {
-        let found = judged.variants.iter().find(|(variant, ..)| variant.name == name);
-        let Some((_, Some(measured), judgement)) = found else { return String::new() };
-        let sign = match judgement {
+        let found = judged.variants.iter().find(|ours| ours.variant.name == name);
+        let Some((ours, measured)) = found.and_then(|ours| Some((ours, ours.measured.as_ref()?))) else {
+            return String::new();
+        };
+        let sign = match ours.judgement {
+            _ if ours.standing == Standing::Set => "",
             Judgement::Agrees => "",
             Judgement::Differs(_) => " ✗",
             Judgement::Inconclusive => " ?",
@@ -191,7 +230,7 @@ fn matrix(study: &Study, judged: &[Judged]) -> Markup {
                 @for variant in &variants { th.n { (variant.title) } }
             } }
             tbody { @for judged in judged { tr {
-                th { (judged.statement.id) }
+                th { (judged.statement.id) @if judged.standing() != Standing::Counted { " (not counted)" } }
                 td { (judged.statement.states) }
                 @for variant in &variants { td.n { (cell(judged, variant.name)) } }
             } } }
@@ -217,7 +256,7 @@ fn combinations(study: &Study) -> Markup {
     html! {
         div.scroll { table.replicates {
             thead { tr {
-                th { "filter" } th.n { "base Cu" } th { "D85B" } th { "66" }
+                th { "filter" } th.n { "base Cu" } th { "D85B" }
                 th.n { "D15F/D85B" } th.n { "D15F/D95B" } th.n { "N_base" }
                 @for variant in &variants { th.n { (variant.title) } }
             } }
@@ -225,7 +264,6 @@ fn combinations(study: &Study) -> Markup {
                 td { (clean(case.level("filter"))) }
                 td.n { (clean(case.level("cu_b"))) }
                 td { (clean(case.level("d85b"))) }
-                td { @if case.in_the_66() { "●" } }
                 td.n { (significant(case.d85_ratio())) }
                 td.n { (significant(case.d95_ratio())) }
                 td.n { (whole(case.line.n_base)) }

@@ -3,8 +3,8 @@
 use serde::Deserialize;
 
 use crate::measured::{Measured, Of};
-use crate::measures::measure;
-use crate::study::{Study, VARIANTS, Variant};
+use crate::measures::{Over, measure};
+use crate::study::{Curves, Study, VARIANTS, Variant};
 use voidwalk::report::numbers::{significant, whole};
 
 const STATEMENTS: &str = include_str!("../data/statements.toml");
@@ -32,10 +32,54 @@ pub struct Statement {
     at_least: Option<f64>,
     /// Where the tolerance comes from.
     pub why: String,
+    /// Whether it counts.
+    #[serde(default)]
+    standing: Standing,
     /// Name of the measure that gives ours.
     pub measure: String,
     #[serde(default)]
     of: Of,
+}
+
+/// Whether a comparison says anything of the model, and so counts as agreement or disagreement.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Standing {
+    /// It does.
+    #[default]
+    Counted,
+    /// Ours is what the plan sets, so that it agrees or differs by construction.
+    Set,
+    /// Ours follows from a number of our own that was fitted to this one.
+    Fitted,
+    /// Ours is read off a curve of the authors' own.
+    Theirs,
+    /// Another reading of a statement that is counted already.
+    Reading,
+}
+
+impl Standing {
+    /// For programs.
+    fn name(self) -> &'static str {
+        match self {
+            Standing::Counted => "counted",
+            Standing::Set => "by construction",
+            Standing::Fitted => "fitted",
+            Standing::Theirs => "theirs",
+            Standing::Reading => "reading",
+        }
+    }
+
+    /// Why it does not count.
+    fn reason(self) -> Option<&'static str> {
+        match self {
+            Standing::Counted => None,
+            Standing::Set => Some("the plan sets it"),
+            Standing::Fitted => Some("fitted: our overlap for merging voids was chosen by Table 2"),
+            Standing::Theirs => Some("the curve is the authors’ own"),
+            Standing::Reading => Some("another reading of a statement that is counted already"),
+        }
+    }
 }
 
 /// How ours compares.
@@ -56,6 +100,16 @@ impl Statement {
         let low = around.map(|(value, tolerance)| value - tolerance).or(self.at_least);
         let high = around.map(|(value, tolerance)| value + tolerance).or(self.at_most);
         (low.unwrap_or(f64::NEG_INFINITY), high.unwrap_or(f64::INFINITY))
+    }
+
+    /// Whether it counts in a variant: what is read off a published curve is the authors' own, and no number
+    /// of ours was fitted where voids are merged as the paper states.
+    fn standing_with(&self, over: Over, variant: &Variant) -> Standing {
+        match (self.standing, over, variant.curves) {
+            (Standing::Counted | Standing::Fitted, Over::Curves, Curves::Published) => Standing::Theirs,
+            (Standing::Fitted, _, Curves::AsStated) => Standing::Counted,
+            (standing, ..) => standing,
+        }
     }
 
     /// The rule: agrees when our value lies within what is stated, or our 95 % interval covers the stated
@@ -103,12 +157,36 @@ impl Statement {
     }
 }
 
+/// What a variant has in place of a number of the paper.
+pub struct Ours {
+    pub variant: &'static Variant,
+    /// `None` where the measure says nothing about the variant.
+    pub measured: Option<Measured>,
+    pub judgement: Judgement,
+    pub standing: Standing,
+}
+
+impl Ours {
+    /// Judgement and standing in a word or two, for programs.
+    fn words(&self) -> String {
+        let judgement = match self.judgement {
+            Judgement::Agrees => "agrees",
+            Judgement::Differs(_) => "differs",
+            Judgement::Inconclusive => "inconclusive",
+        };
+        match self.standing {
+            Standing::Counted => judgement.into(),
+            Standing::Set => self.standing.name().into(),
+            other => format!("{}: {judgement}", other.name()),
+        }
+    }
+}
+
 /// A statement with ours, for every variant that was walked.
 pub struct Judged {
     pub statement: Statement,
-    /// Ours and its judgement, the variant that the page is about first; `None` where a measure says nothing
-    /// about a variant.
-    pub variants: Vec<(&'static Variant, Option<Measured>, Judgement)>,
+    /// The variant that the page is about first.
+    pub variants: Vec<Ours>,
 }
 
 impl Judged {
@@ -116,34 +194,61 @@ impl Judged {
     pub fn ours(&self) -> (Option<&Measured>, Judgement) {
         self.variants
             .first()
-            .map_or((None, Judgement::Inconclusive), |(_, ours, judgement)| (ours.as_ref(), *judgement))
+            .map_or((None, Judgement::Inconclusive), |ours| (ours.measured.as_ref(), ours.judgement))
+    }
+
+    /// Whether it counts, in the variant that the page is about.
+    pub fn standing(&self) -> Standing {
+        self.variants.first().map_or(Standing::Counted, |ours| ours.standing)
+    }
+
+    /// Whether it counts as this kind of judgement.
+    pub fn counts_as(&self, wanted: fn(Judgement) -> bool) -> bool {
+        self.standing() == Standing::Counted && wanted(self.ours().1)
     }
 
     /// A sentence of judgement, with the experiments that explain a difference.
     pub fn sentence(&self) -> String {
-        match self.ours() {
+        let judgement = match self.ours() {
             (_, Judgement::Agrees) => "agrees".into(),
             (None, _) => "inconclusive: not walked".into(),
-            (Some(_), Judgement::Inconclusive) => "inconclusive: the replicates leave both possible".into(),
+            (Some(_), Judgement::Inconclusive) => "inconclusive: what was walked leaves both possible".into(),
             (Some(ours), Judgement::Differs(by)) => {
                 format!("differs {}{}", self.statement.difference(ours.value, by), self.explained())
             }
+        };
+        match (self.standing().reason(), self.standing(), self.ours()) {
+            (None, ..) => judgement,
+            // That a setting is as in the paper is no agreement, nor is it explained by another setting.
+            (Some(reason), Standing::Set, (Some(ours), Judgement::Differs(by))) => {
+                format!("not counted: {reason}; differs {}", self.statement.difference(ours.value, by))
+            }
+            (Some(reason), Standing::Set, _) => format!("not counted: {reason}"),
+            (Some(reason), ..) => format!("{judgement}. Not counted: {reason}"),
         }
+    }
+
+    /// What the other variants have beside a number that does not count: their title and value.
+    pub fn beside(&self) -> Vec<(&'static str, String)> {
+        let others = self.variants.iter().skip(1).filter(|_| self.standing() == Standing::Fitted);
+        let value =
+            |ours: &Ours| Some((ours.variant.title, self.statement.show(ours.measured.as_ref()?.value)));
+        others.filter_map(value).collect()
     }
 
     fn explained(&self) -> String {
         let titles = |wanted: fn(&Judgement) -> bool| -> Vec<&str> {
             let others = self.variants.iter().skip(1);
             others
-                .filter(|(_, ours, j)| ours.is_some() && wanted(j))
-                .map(|(variant, ..)| variant.title)
+                .filter(|ours| ours.measured.is_some() && wanted(&ours.judgement))
+                .map(|ours| ours.variant.title)
                 .collect()
         };
         let agree = titles(|judgement| *judgement == Judgement::Agrees);
         let tried = titles(|_| true);
         match (agree.is_empty(), tried.is_empty()) {
             (false, _) => format!("; agrees with {}", agree.join("; with ")),
-            (true, false) => format!("; so with {}", tried.join(", ")),
+            (true, false) => format!("; so with {}", tried.join("; with ")),
             (true, true) => String::new(),
         }
     }
@@ -167,12 +272,12 @@ pub fn judged(study: &Study) -> Vec<Judged> {
     let one = |statement: Statement| {
         let found = measure(&statement.measure);
         let variants = VARIANTS.iter().filter_map(|variant| {
-            let (_, measure) = found.filter(|(over, _)| over.takes(variant.name))?;
-            let ours = measure(study, variant.name, &statement.of);
+            let (over, measure) = found.filter(|(over, _)| over.takes(variant))?;
+            let measured = measure(study, variant.name, &statement.of);
             // A variant that says nothing about it is left out, but never the first.
-            (ours.is_some() || variant.name == VARIANTS[0].name).then(|| {
-                let judgement = statement.judge(ours.as_ref());
-                (variant, ours, judgement)
+            (measured.is_some() || variant.name == VARIANTS[0].name).then(|| {
+                let judgement = statement.judge(measured.as_ref());
+                Ours { variant, measured, judgement, standing: statement.standing_with(over, variant) }
             })
         });
         let variants = variants.collect();
@@ -181,7 +286,8 @@ pub fn judged(study: &Study) -> Vec<Judged> {
     statements().into_iter().map(one).collect()
 }
 
-/// The statements as a CSV table, one line a statement and variant.
+/// The statements as a CSV table, one line a statement and variant. `judgement` is agrees, differs or
+/// inconclusive where it counts, and begins otherwise with the reason why it does not.
 pub fn table(all: &[Judged]) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let header = [
@@ -206,23 +312,23 @@ pub fn table(all: &[Judged]) -> String {
     for judged in all {
         let s = &judged.statement;
         let (from, to) = s.allowed();
-        for (variant, ours, judgement) in &judged.variants {
-            let (word, by) = match judgement {
-                Judgement::Agrees => ("agrees", None),
-                Judgement::Differs(by) => ("differs", Some(*by)),
-                Judgement::Inconclusive => ("inconclusive", None),
+        for found in &judged.variants {
+            let ours = found.measured.as_ref();
+            let by = match found.judgement {
+                Judgement::Differs(by) => Some(by),
+                _ => None,
             };
-            let interval = ours.as_ref().and_then(|ours| ours.interval);
+            let interval = ours.and_then(|ours| ours.interval);
             let mut row: Vec<String> =
                 [&s.id, &s.shown, &s.place, &s.says, &s.states].map(String::clone).to_vec();
-            row.extend([number(from), number(to), s.why.clone(), variant.name.to_string()]);
+            row.extend([number(from), number(to), s.why.clone(), found.variant.name.to_string()]);
             row.extend(
-                [ours.as_ref().map(|o| o.value), interval.map(|i| i.0), interval.map(|i| i.1)]
+                [ours.map(|o| o.value), interval.map(|i| i.0), interval.map(|i| i.1)]
                     .map(|v| v.map_or(String::new(), number)),
             );
             row.extend([
-                ours.as_ref().map_or(String::new(), |o| o.words.clone()),
-                word.into(),
+                ours.map_or(String::new(), |o| o.words.clone()),
+                found.words(),
                 by.map_or(String::new(), number),
             ]);
             rows.push(row);
@@ -257,6 +363,51 @@ mod tests {
         for (name, ..) in crate::measures::MEASURES {
             assert!(used.contains(name), "no statement uses `{name}`");
         }
+    }
+
+    /// A statement judged for the first variant, whatever was measured.
+    fn judged_with(id: &str, value: f64) -> Judged {
+        let statement = statements().into_iter().find(|s| s.id == id).unwrap();
+        let (variant, measured) = (&VARIANTS[0], Some(Measured::exact(value)));
+        let judgement = statement.judge(measured.as_ref());
+        let (over, _) = measure(&statement.measure).unwrap();
+        let standing = statement.standing_with(over, variant);
+        Judged { statement, variants: vec![Ours { variant, measured, judgement, standing }] }
+    }
+
+    #[test]
+    fn what_is_set_fitted_or_read_twice_does_not_count() {
+        let said = |id: &str, value| {
+            let judged = judged_with(id, value);
+            (judged.counts_as(|_| true), judged.variants[0].words(), judged.sentence())
+        };
+        let (counts, words, sentence) = said("voids", 96000.0);
+        assert_eq!((counts, words.as_str()), (false, "by construction"));
+        assert_eq!(sentence, "not counted: the plan sets it");
+        let (counts, words, sentence) = said("combinations", 78.0);
+        assert_eq!((counts, words.as_str()), (false, "by construction"));
+        assert_eq!(sentence, "not counted: the plan sets it; differs by +12");
+        let (counts, words, sentence) = said("csd-cu1.5-loose", 1.6);
+        assert_eq!((counts, words.as_str()), (false, "fitted: agrees"));
+        assert!(sentence.starts_with("agrees. Not counted: fitted"), "{sentence}");
+        let (counts, words, _) = said("per-void-cubic-both", 20.0);
+        assert_eq!((counts, words.as_str()), (false, "reading: differs"));
+        let (counts, words, sentence) = said("per-void-cubic", 96.0);
+        assert_eq!((counts, words.as_str(), sentence.as_str()), (true, "agrees", "agrees"));
+    }
+
+    #[test]
+    fn whose_a_curve_is_decides_whether_its_numbers_count() {
+        let with = |id: &str, name: &str| {
+            let s = statements().into_iter().find(|s| s.id == id).unwrap();
+            let (over, _) = measure(&s.measure).unwrap();
+            s.standing_with(over, crate::study::variant_of(name).unwrap())
+        };
+        assert_eq!(with("csd-cu1.5-loose", "paper"), Standing::Fitted);
+        assert_eq!(with("csd-cu1.5-loose", "paper-hull"), Standing::Theirs);
+        assert_eq!(with("csd-cu1.5-loose", "overlap-0.5"), Standing::Counted);
+        assert_eq!(with("finer-cu1.5", "paper-hull"), Standing::Theirs);
+        assert_eq!(with("43", "paper-hull"), Standing::Counted);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use voidwalk::outcome::ledger::LedgerLine;
+use voidwalk::outcome::packing::Summary;
 use voidwalk::outcome::percolation::PercolationStudy;
 use voidwalk::outcome::record::{FilterRecord, Outcome, RunSummary, SeriesRow, SizeRow, Statistic};
 use voidwalk::report::ReportError;
@@ -14,24 +15,54 @@ pub struct Variant {
     pub name: &'static str,
     /// What a reader calls it.
     pub title: &'static str,
+    /// Its constriction curves.
+    pub curves: Curves,
     /// The variant that has the cases which this one does not walk again because nothing changes for them.
     over: Option<&'static str>,
 }
 
-const fn variant(name: &'static str, title: &'static str, over: Option<&'static str>) -> Variant {
-    Variant { name, title, over }
+/// Where constriction curves come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Curves {
+    /// Our own packings, voids merged at the overlap that was fitted to the paper's Table 2.
+    Own,
+    /// The authors' own.
+    Published,
+    /// Our own packing, voids merged at the overlap that the paper states.
+    AsStated,
+}
+
+const fn variant(
+    name: &'static str,
+    title: &'static str,
+    curves: Curves,
+    over: Option<&'static str>,
+) -> Variant {
+    Variant { name, title, curves, over }
 }
 
 /// The first is the one that the page is about; each other one changes what its title says, and nothing else.
-pub const VARIANTS: [Variant; 7] = [
-    variant("paper", "own curves, grains per void as packed", None),
-    variant("paper-2.5", "2.5 grains per void", None),
-    variant("paper-capped", "cap 2e8", Some("paper")),
-    variant("paper-2.5-capped", "2.5 grains, cap 2e8", Some("paper-2.5")),
-    variant("paper-published", "published curves", None),
-    variant("paper-published-2.5", "published curves, 2.5 grains", None),
-    variant("overlap-0.5", "voids merged at 0.5", None),
+pub const VARIANTS: [Variant; 9] = [
+    variant("paper", "own curves, grains per void as packed", Curves::Own, None),
+    variant(
+        "paper-hull",
+        "published curves (convex hulls at 50 %), grains per void of that rule",
+        Curves::Published,
+        None,
+    ),
+    variant("paper-inverse", "voids per grain in place of grains per void, cap 2e8", Curves::Own, None),
+    variant("paper-2.5", "2.5 grains per void", Curves::Own, None),
+    variant("paper-capped", "cap 2e8", Curves::Own, Some("paper")),
+    variant("paper-2.5-capped", "2.5 grains, cap 2e8", Curves::Own, Some("paper-2.5")),
+    variant("paper-published", "published curves, grains per void of our own rule", Curves::Published, None),
+    variant("paper-published-2.5", "published curves, 2.5 grains", Curves::Published, None),
+    variant("overlap-0.5", "voids merged at an overlap of 50 %, all facets", Curves::AsStated, None),
 ];
+
+/// The variant of this name.
+pub fn variant_of(name: &str) -> Option<&'static Variant> {
+    VARIANTS.iter().find(|variant| variant.name == name)
+}
 
 /// Plans beside those of [`VARIANTS`].
 const OTHERS: [&str; 4] = ["kenney", "table3", "one-size", "progress"];
@@ -59,6 +90,8 @@ pub struct Study {
     pub series: Vec<(&'static str, Vec<SeriesRow>)>,
     /// Size curves of what the case of Fig. 18 retains.
     pub retained: Vec<SizeRow>,
+    /// Voids and constrictions of packed grains, by the curves that their overlap gives.
+    pub packed: Vec<(Curves, Summary)>,
 }
 
 /// Cases of Fig. 13 in the plan `progress`.
@@ -75,7 +108,8 @@ impl Study {
         }
         let path = folder.join("percolation/percolation.json");
         let percolation = if path.is_file() { Some(json(&path)?) } else { None };
-        let mut study = Self { campaigns, percolation, series: Vec::new(), retained: Vec::new() };
+        let packed = packed(folder)?;
+        let mut study = Self { campaigns, percolation, series: Vec::new(), retained: Vec::new(), packed };
         let place =
             |name| study.named("progress", name).map(|c| folder.join("progress").join(&c.line.folder));
         let mut series = Vec::new();
@@ -110,7 +144,7 @@ impl Study {
     pub fn cases(&self, plan: &str) -> Vec<&Case> {
         let own = |name: &str| self.campaigns.iter().find(|walked| walked.name == name).map(|w| &w.cases);
         let Some(cases) = own(plan) else { return Vec::new() };
-        let below = VARIANTS.iter().find(|variant| variant.name == plan).and_then(|variant| variant.over);
+        let below = variant_of(plan).and_then(|variant| variant.over);
         let mut all: Vec<&Case> = below.and_then(own).into_iter().flatten().collect();
         for case in cases {
             match all.iter().position(|other| other.line.case == case.line.case) {
@@ -152,6 +186,18 @@ fn bare<T>(rows: Vec<(u64, T)>) -> Vec<T> {
     rows.into_iter().map(|(_, row)| row).collect()
 }
 
+/// The grains of the loose filter with Cu 1.5 that `overlap-0.5` packs, by both overlaps; what is not there
+/// is left out.
+fn packed(folder: &Path) -> Result<Vec<(Curves, Summary)>, ReportError> {
+    let by_plan = std::fs::read_dir(folder.join("packings")).into_iter().flatten().flatten();
+    let by_plan = by_plan.map(|entry| (Curves::AsStated, entry.path()));
+    let by_our_overlap = (Curves::Own, folder.join("constrictions"));
+    let mut places: Vec<_> = by_plan.chain([by_our_overlap]).collect();
+    places.iter_mut().for_each(|(_, place)| place.push("constrictions.json"));
+    places.retain(|(_, place)| place.is_file());
+    places.into_iter().map(|(curves, place)| Ok((curves, json(&place)?))).collect()
+}
+
 fn cases(place: &Path) -> Result<Vec<Case>, ReportError> {
     let ledger: Vec<LedgerLine> = lines(&place.join("ledger.jsonl"))?;
     let one = |line: LedgerLine| {
@@ -170,6 +216,9 @@ fn cases(place: &Path) -> Result<Vec<Case>, ReportError> {
     ledger.into_iter().map(one).collect()
 }
 
+/// From this share of the base's largest size on, an eroded particle counts as its largest.
+const ITS_LARGEST: f64 = 0.99;
+
 impl Case {
     /// Level of a factor; empty where the case has none.
     pub fn level(&self, factor: &str) -> &str {
@@ -179,11 +228,6 @@ impl Case {
     /// Whether the filter is a loose one.
     pub fn is_loose(&self) -> bool {
         self.level("filter").ends_with("loose")
-    }
-
-    /// A guess: the paper walked 66 of the 78 combinations, and there are 66 without Dc15.
-    pub fn in_the_66(&self) -> bool {
-        self.level("d85b") != "dc15"
     }
 
     /// Statistics of run 1 or 2.
@@ -210,6 +254,15 @@ impl Case {
     pub fn largest_over_d0f(&self, run: usize) -> Option<Statistic> {
         let filter = &self.outcome.inputs.filter;
         self.largest(run).map(|largest| times(&largest, filter.d15_mm / filter.d0_mm))
+    }
+
+    /// Whether the largest particle eroded in run 1 or 2 is the base's own largest: then something larger
+    /// might have eroded too, and the filter says no more than that.
+    pub fn erodes_its_largest(&self, run: usize) -> bool {
+        let inputs = &self.outcome.inputs;
+        let is_own =
+            |largest: Statistic| largest.mean * inputs.filter.d15_mm >= ITS_LARGEST * inputs.base.d100_mm;
+        self.largest(run).is_some_and(is_own)
     }
 
     /// D15F / D85B.

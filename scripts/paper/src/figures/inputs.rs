@@ -88,28 +88,38 @@ fn kenney(
     test: f64,
 ) -> Vec<Drawn> {
     let cases: Vec<_> = study.cases("kenney").into_iter().filter(|c| c.level("filter") == filter).collect();
-    let group = |points: Vec<(f64, Statistic)>| {
-        let (label, colour, shape) = ("voidwalk".to_string(), BLUE, Shape::Circle);
-        vec![Group { label, colour, shape, hollow: false, joined: true, points }]
+    let group = |label: &str, hollow: bool, points: Vec<(f64, Statistic)>| {
+        let (label, colour, shape) = (label.to_string(), BLUE, Shape::Circle);
+        Group { label, colour, shape, hollow, joined: true, points }
     };
     let plot = |(name, title), y, percent| Plot {
         name,
         title,
-        caption: "Base with Cu 1.2; it ends at 1.2 D50B, so nothing larger can erode.".into(),
+        caption: "Base with Cu 1.2; it ends at 1.2 D50B, and where that erodes, the filter says no more."
+            .into(),
         x: "D50B / D0F (–)",
         y,
         percent,
         reach: (0.1, 0.4),
     };
-    let largest = cases.iter().filter_map(|case| Some((case.d50b_over_d0f()?, case.largest_over_d0f(1)?)));
+    let largest = |own: bool| {
+        let cases = cases.iter().filter(move |case| case.erodes_its_largest(1) == own);
+        cases.filter_map(|case| Some((case.d50b_over_d0f()?, case.largest_over_d0f(1)?))).collect()
+    };
+    let by_filter = group("voidwalk", false, largest(false));
+    let by_base = group("voidwalk, the base’s own largest", true, largest(true));
     let eroded = cases.iter().filter_map(|case| Some((case.d50b_over_d0f()?, case.eroded(1)?)));
     let mut rules = vec![across(Across::Y, test, &format!("{test}: tests of Kenney et al."))];
     if model != test {
         rules.push(across(Across::Y, model, &format!("{model}: the paper’s model")));
     }
     let drawn = [
-        scatter(plot(names[0], "Largest eroded / D0F (–)", false), rules, group(largest.collect())),
-        scatter(plot(names[1], "Base eroded, by mass (%)", true), Vec::new(), group(eroded.collect())),
+        scatter(plot(names[0], "Largest eroded / D0F (–)", false), rules, vec![by_filter, by_base]),
+        scatter(
+            plot(names[1], "Base eroded, by mass (%)", true),
+            Vec::new(),
+            vec![group("voidwalk", false, eroded.collect())],
+        ),
     ];
     drawn.into_iter().flatten().collect()
 }

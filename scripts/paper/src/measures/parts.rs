@@ -2,9 +2,9 @@
 //! progress.
 
 use crate::measured::{Measured, Of};
-use crate::study::{Case, Study, size_at, times};
+use crate::study::{Case, Curves, Study, size_at, times, variant_of};
 use voidwalk::outcome::by_connectivity::of_replicates;
-use voidwalk::outcome::record::{ByConnectivity, FilterRecord, SizeRow, Statistic};
+use voidwalk::outcome::record::{ByConnectivity, FilterRecord, Replicate, SizeRow, Statistic};
 
 /// A filter of a plan; those that only Kenney's tests need are in the plan of that name.
 fn filter<'a>(study: &'a Study, plan: &str, name: &str) -> Option<&'a FilterRecord> {
@@ -14,7 +14,7 @@ fn filter<'a>(study: &'a Study, plan: &str, name: &str) -> Option<&'a FilterReco
 
 pub fn void_ratio(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
     // The published curves come with the paper's own void ratios.
-    (plan != "paper-published").then_some(())?;
+    variant_of(plan).filter(|variant| variant.curves != Curves::Published)?;
     filter(study, plan, &of.filter)?.void_ratio.map(Measured::exact)
 }
 
@@ -63,6 +63,14 @@ pub fn csd_over_d15f(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
     )
 }
 
+/// Constrictions of a void of a packing: each is counted by both of its voids.
+pub fn mean_connectivity(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
+    let curves = variant_of(plan)?.curves;
+    let (_, found) = study.packed.iter().find(|(by, _)| *by == curves)?;
+    let words = format!("{} grains, voids merged at an overlap of {}", found.grains, found.merge_overlap);
+    Some(Measured::exact(found.mean_connectivity).saying(words))
+}
+
 /// Fall of the standard deviation of the threshold per void of side from 40 to 80, over that from 10 to 40.
 pub fn spread_slows(study: &Study, _: &str, _: &Of) -> Option<Measured> {
     let percolation = study.percolation.as_ref()?;
@@ -84,12 +92,22 @@ fn kenney<'a>(study: &'a Study, filter: &str) -> Vec<&'a Case> {
     study.cases("kenney").into_iter().filter(|case| case.level("filter") == filter).collect()
 }
 
-/// Largest eroded particle over D0F: the largest of the means of all base sizes.
+/// Largest eroded particle over D0F: the largest of the means of all bases whose own largest does not erode.
+/// Where there is no such base, what erodes is only known to be at least so large.
 pub fn kenney_largest(study: &Study, _: &str, of: &Of) -> Option<Measured> {
     let all =
         kenney(study, &of.filter).into_iter().filter_map(|case| Some((case.largest_over_d0f(1)?, case)));
-    let (largest, case) = all.max_by(|a, b| a.0.mean.total_cmp(&b.0.mean))?;
-    Some(Measured::of(&largest).saying(format!("at D50B/D0F {}", case.level("d50b_over_d0f"))))
+    let (own, others): (Vec<_>, Vec<_>) = all.partition(|(_, case)| case.erodes_its_largest(1));
+    let open = others.is_empty();
+    let counted = if open { &own } else { &others };
+    let (largest, case) = counted.iter().max_by(|a, b| a.0.mean.total_cmp(&b.0.mean))?;
+    let at = format!("at D50B/D0F {}", case.level("d50b_over_d0f"));
+    let words = match (open, own.len()) {
+        (true, _) => format!("{at}: at least so large, as every base that erodes erodes its own largest"),
+        (false, 0) => at,
+        (false, n) => format!("{at}; left out, as they erode their own largest: {n} finer bases"),
+    };
+    Some(Measured { open, ..Measured::of(largest).saying(words) })
 }
 
 fn kenney_at<'a>(study: &'a Study, of: &Of, at: &str) -> Option<&'a Case> {
@@ -114,6 +132,7 @@ fn modified<'a>(study: &'a Study, plan: &str) -> Option<&'a Case> {
     match plan {
         "paper" => study.case("table3", &TABLE_3),
         "paper-2.5" => study.named("table3", "table3-2.5"),
+        "paper-inverse" => study.named("table3", "table3-inverse"),
         _ => None,
     }
 }
@@ -142,17 +161,20 @@ pub fn table3_per_void(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
     Some(Measured::exact(rows.iter().find(|row| row.connectivity == of.connectivity)?.retained_per_void))
 }
 
-fn per_void(case: &Case) -> Statistic {
-    let first = case.outcome.replicates.iter().filter_map(|replicate| replicate.runs.first());
-    Statistic::of(&first.map(|run| run.retained_per_void).collect::<Vec<_>>())
+/// Particles retained per void in the first `runs` runs together; what the first retains is gone before the
+/// second.
+fn per_void(case: &Case, runs: usize) -> Statistic {
+    let both =
+        |replicate: &Replicate| replicate.runs.iter().take(runs).map(|run| run.retained_per_void).sum();
+    Statistic::of(&case.outcome.replicates.iter().map(both).collect::<Vec<f64>>())
 }
 
-pub fn table3_all(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
-    Some(Measured::of(&per_void(modified(study, plan)?)))
+pub fn table3_all(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
+    Some(Measured::of(&per_void(modified(study, plan)?, of.runs)))
 }
 
-pub fn cubic_per_void(study: &Study, plan: &str, _: &Of) -> Option<Measured> {
-    Some(Measured::of(&per_void(study.case(plan, &TABLE_3)?)))
+pub fn cubic_per_void(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
+    Some(Measured::of(&per_void(study.case(plan, &TABLE_3)?, of.runs)))
 }
 
 pub fn table3_over_cubic(study: &Study, plan: &str, of: &Of) -> Option<Measured> {
