@@ -7,7 +7,8 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 out="${1:-target/paper}"
-plans="paper kenney table3 progress one-size paper-2.5 paper-capped paper-2.5-capped paper-published paper-published-2.5 overlap-0.5"
+plans="paper paper-hull paper-inverse kenney table3 progress one-size paper-2.5 paper-capped paper-2.5-capped paper-published"
+plans="$plans paper-published-2.5 overlap-0.5"
 cargo build --release --workspace --bins --quiet
 voidwalk=target/release/voidwalk
 mkdir -p "$out"
@@ -19,6 +20,10 @@ if [ -z "${PAGE_ONLY:-}" ]; then
     if [ ! -f "$out/percolation/percolation.json" ]; then
         # the paper's sizes and 100 realisations of each
         "$voidwalk" percolation --sizes 10,20,30,40,50,60,70,80 --realisations 100 --seed 1 --out "$out/percolation" >/dev/null
+    fi
+    if [ ! -f "$out/constrictions/constrictions.json" ]; then
+        # the grains that overlap-0.5 packed, with voids merged at our own overlap
+        "$voidwalk" constrictions "$out"/packings/cu1.5-*/grains.csv --out "$out/constrictions" >/dev/null
     fi
 fi
 target/release/voidwalk-paper "$out"
