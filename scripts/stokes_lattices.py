@@ -309,9 +309,11 @@ def permeability(kernel, lattice, fraction, cells, shift, tolerance):
     viscosity = min(2.0, 0.25 / fraction)  # sets the pace to the steady state, not the result
     flow = kernel.flow_new(ctypes.byref(array))
     steps, mean, change = 0, 0.0, math.inf
-    while change > tolerance:
+    while not change <= tolerance:
         before, mean = mean, kernel.flow_run(flow, CHECK_EVERY, viscosity, MAGIC) / block
         steps += CHECK_EVERY
+        if not math.isfinite(mean):
+            raise SystemExit(f"no steady flow on {cells} cells per edge: the velocity is {mean}")
         change = abs(mean - before) / abs(mean)
     kernel.flow_free(flow)
     return viscosity * mean / diameter**2, steps

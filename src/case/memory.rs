@@ -18,9 +18,9 @@ const EVENT_BYTES: u64 = 16 << 10;
 const COUNTS_A_WORKER: (u64, u64) = (8, 32 << 10);
 
 /// Bytes for a constriction where water flows: two exits of 28 in the network and in its copy, 12 of the
-/// flow, 12 of the system and 32 of tables each; and while the flow is solved links and entries of a factor
-/// in room that grows, and what reading a file leaves (measured: 500 in all, 1.2 million throats of a file).
-const FLOW_BYTES: u64 = 2 * (2 * 28 + 12 + 12 + 32) + 300;
+/// flow and 32 of tables each; 24 of the flow; and while the flow is solved links and entries of a factor in
+/// room that grows, and what reading a file leaves (measured: 523 in all, a million throats of a file).
+const FLOW_BYTES: u64 = 2 * (2 * 28 + 12 + 32) + 24 + 300;
 
 /// What `record.voids` keeps, while it is written (bytes): for a void that holds particles at a moment its
 /// row in two copies, in room that grows, and its line (measured: up to 184); for a void its place, row and

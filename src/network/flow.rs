@@ -244,6 +244,7 @@ impl Flow {
             let [one, other] = [passage.one, passage.other].map(|void| self.pressure[void as usize]);
             let flux = self.open[exit] * (one - other);
             let area = f64::from(diameter[exit]) * f64::from(diameter[exit]);
+            // The exit's own last: an outlet is its own twin.
             weight[twin] = rule.weight(area, -flux, least);
             weight[exit] = rule.weight(area, flux, least);
         }

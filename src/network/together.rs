@@ -1,6 +1,7 @@
 //! What hangs together.
 
-/// Voids in groups, each known by its smallest member.
+/// Voids in groups, each known by its smallest member. Ways are halved as they are gone, which keeps them
+/// short without a count of members (a logarithm on average).
 pub(super) struct Together {
     /// A void of the same group that is no larger: the smallest points at itself.
     towards: Vec<u32>,

@@ -13,7 +13,7 @@ pub(super) fn thresholds(
     void: u32,
     thresholds: &mut Vec<u64>,
 ) -> Option<usize> {
-    // Without branches: which exits are open cannot be foreseen.
+    // Without branches: which exits are open cannot be foreseen. Weights are finite.
     let exits = network.exits(void);
     let first = exits.start;
     let (mut total, mut last) = (0.0, usize::MAX);
