@@ -18,8 +18,8 @@ if [ -z "${PAGE_ONLY:-}" ]; then
         "$voidwalk" campaign "scripts/campaigns/$plan.toml" --out "$out/$plan" --packings "$out/packings" >/dev/null
     done
     if [ ! -f "$out/percolation/percolation.json" ]; then
-        # the paper's sizes and 100 realisations of each
-        "$voidwalk" percolation --sizes 10,20,30,40,50,60,70,80 --realisations 100 --seed 1 --out "$out/percolation" >/dev/null
+        # the paper's sizes, the lattice that it walks, and 100 realisations of each
+        "$voidwalk" percolation --sizes 10,20,30,40,40x40x60,50,60,70,80 --realisations 100 --seed 1 --out "$out/percolation" >/dev/null
     fi
     if [ ! -f "$out/constrictions/constrictions.json" ]; then
         # the grains that overlap-0.5 packed, with voids merged at our own overlap

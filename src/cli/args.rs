@@ -506,6 +506,9 @@ pub struct PercolationArgs {
     /// Print percolation.json
     #[arg(long)]
     pub json: bool,
+    /// No summary
+    #[arg(long, short)]
+    pub quiet: bool,
 }
 
 /// Which scene, and how long.

@@ -18,9 +18,10 @@ pub fn percolation(args: &PercolationArgs) -> Result<(), RunError> {
         threads: args.threads,
     };
     let study = percolation::run(&options, &unfollowed())?;
-    match args.json {
-        true => to_stdout(&json(&study)?),
-        false => to_stdout(&format!("{}{}\n", words(&study), shown(&args.out.join("report.html")))),
+    if args.json {
+        to_stdout(&json(&study)?);
+    } else if !args.quiet {
+        to_stdout(&format!("{}{}\n", words(&study), shown(&args.out.join("report.html"))));
     }
     Ok(())
 }

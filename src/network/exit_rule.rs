@@ -40,11 +40,12 @@ impl ExitRule {
     /// How an exit of this area (the square of its diameter) weighs, through which `flux` flows out, or in
     /// where it is negative; fluxes up to `least` are none.
     pub(super) fn weight(self, area: f64, flux: f64, least: f64) -> f64 {
+        // Which way water flows cannot be foreseen: chosen without a branch.
+        let along = |weight: f64| if flux > least { weight } else { 0.0 };
         match self {
             Self::Area | Self::Height => area,
-            Self::Flux if flux > least => flux,
-            Self::AreaAlongFlow if flux > least => area,
-            Self::Flux | Self::AreaAlongFlow => 0.0,
+            Self::Flux => along(flux),
+            Self::AreaAlongFlow => along(area),
         }
     }
 }

@@ -7,6 +7,7 @@
 //! number of threads.
 
 use bitvec::slice::BitSlice;
+use bitvec::vec::BitVec;
 
 use super::system::{CONVERGED, NotConverged, System};
 use super::together::Together;
@@ -70,6 +71,8 @@ pub struct Flow {
     pressure: Vec<f64>,
     /// Conductance by exit, as it is now.
     open: Vec<f64>,
+    /// Exits that were blocked when the flow was solved last.
+    blocked: BitVec,
     /// Residual that the last solution may have, over the inflow.
     accuracy: f64,
 }
@@ -82,10 +85,6 @@ struct Passage {
     other: u32,
     /// The exit.
     exit: u32,
-    /// The same as an exit of the void beyond, or the exit itself where it is none.
-    twin: u32,
-    /// Conductance while it is open.
-    conductance: f64,
 }
 
 impl Flow {
@@ -99,18 +98,13 @@ impl Flow {
         for one in 0..outside {
             for c in network.exits(one) {
                 let (exit, twin) = (c as u32, twins.map_or(NO_TWIN, |twin| twin[c]));
-                if twin < exit {
-                    continue;
+                if twin >= exit {
+                    passages.push(Passage { one, other: other[c], exit });
                 }
-                passages.push(Passage {
-                    one,
-                    other: other[c],
-                    exit,
-                    twin: if twin == NO_TWIN { exit } else { twin },
-                    conductance: if network.diameter[c] == 0.0 { 0.0 } else { network.conductance(c) },
-                });
             }
         }
+        let open = (0..network.constrictions()).map(|c| whole(network, c)).collect();
+        let blocked = BitVec::repeat(false, network.constrictions());
         let mut pressure = vec![0.0; network.voids() + 1];
         if let Some(reservoir) = network.reservoir() {
             // Falls evenly from layer to layer.
@@ -120,7 +114,7 @@ impl Flow {
             }
             pressure[reservoir as usize] = 1.0;
         }
-        Self { passages, other, pressure, open: vec![0.0; network.constrictions()], accuracy: CONVERGED }
+        Self { passages, other, pressure, open, blocked, accuracy: CONVERGED }
     }
 
     /// Pressure by void (1 in the reservoir), and 0 behind the filter.
@@ -133,7 +127,8 @@ impl Flow {
         self.open[exit] * (self.pressure[void as usize] - self.pressure[self.other[exit] as usize])
     }
 
-    /// Solves for the constrictions that `blocked` leaves open. A conductance below 1e-10 of the inlets' is
+    /// Solves for the constrictions that `blocked` leaves open: a bit for each exit, the same for both of one
+    /// constriction. A conductance below 1e-10 of the inlets' is
     /// 0, and so is one that what comes out does not bear out: pressures are no more exact.
     ///
     /// # Errors
@@ -141,12 +136,11 @@ impl Flow {
     pub fn solve(&mut self, network: &Network, blocked: &BitSlice) -> Result<Permeability, FlowError> {
         let undirected = network.undirected.as_ref();
         let rho = undirected.map_or(0.0, |u| u.rho);
-        for passage in &self.passages {
-            let whole = passage.conductance;
-            let open = if blocked[passage.exit as usize] { rho * whole } else { whole };
-            self.open[passage.exit as usize] = open;
-            self.open[passage.twin as usize] = open;
+        self.blocked ^= blocked;
+        for c in self.blocked.iter_ones() {
+            self.open[c] = if blocked[c] { rho * whole(network, c) } else { whole(network, c) };
         }
+        self.blocked.copy_from_bitslice(blocked);
         let Some(reservoir) = network.reservoir() else {
             return Ok(Permeability { conductance: 0.0, k_mm2: None });
         };
@@ -173,7 +167,8 @@ impl Flow {
 
     /// The equations of the voids that water flows through.
     fn system(&self, meets: &[Meets], reservoir: u32) -> System {
-        let mut system = System::of_voids(meets.iter().map(|meets| meets.reservoir && meets.end));
+        let mut system =
+            System::of_voids(meets.iter().map(|meets| meets.reservoir && meets.end), self.passages.len());
         let outside = meets.len() as u32;
         for passage in self.open_passages().filter(|passage| {
             let Meets { reservoir, end } = meets[passage.one as usize];
@@ -233,20 +228,14 @@ impl Flow {
         let through: f64 = inlets.clone().map(|c| self.flux(reservoir, c)).sum();
         // Nor is one that the residual may stand for.
         let least = (NO_FLUX * through / inlets.len().max(1) as f64).max(self.residual_of(inlets));
-        let Network { diameter, undirected, .. } = network;
+        let Network { exit_begin, diameter, undirected, .. } = network;
         let weight = &mut undirected.as_mut().expect("it has a reservoir").weight;
-        for passage in &self.passages {
-            let (exit, twin) = (passage.exit as usize, passage.twin as usize);
-            if blocked[exit] {
-                (weight[exit], weight[twin]) = (0.0, 0.0);
-                continue;
+        for (void, exits) in (0u32..).zip(exit_begin.windows(2)) {
+            for exit in exits[0] as usize..exits[1] as usize {
+                let area = f64::from(diameter[exit]) * f64::from(diameter[exit]);
+                let towards = rule.weight(area, self.flux(void, exit), least);
+                weight[exit] = f64::from(u8::from(!blocked[exit])) * towards;
             }
-            let [one, other] = [passage.one, passage.other].map(|void| self.pressure[void as usize]);
-            let flux = self.open[exit] * (one - other);
-            let area = f64::from(diameter[exit]) * f64::from(diameter[exit]);
-            // The exit's own last: an outlet is its own twin.
-            weight[twin] = rule.weight(area, -flux, least);
-            weight[exit] = rule.weight(area, flux, least);
         }
     }
 
@@ -266,6 +255,11 @@ impl Flow {
         }
         (0..outside).map(|void| of_root[together.root(void) as usize]).collect()
     }
+}
+
+/// Conductance of an exit while it is open.
+fn whole(network: &Network, exit: usize) -> f64 {
+    if network.diameter[exit] == 0.0 { 0.0 } else { network.conductance(exit) }
 }
 
 /// What a void hangs together with: the two sides of the filter, neither by way of the other.

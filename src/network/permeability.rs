@@ -18,7 +18,8 @@ pub fn permeability_mm2(graph: &VoidGraph, axis: usize) -> Result<f64, FlowError
     // Pressures are known but for a constant: one void of each part that hangs together is at 0.
     let mut together = Together::of(voids);
     links().for_each(|c| together.join(graph.from[c], graph.to[c]));
-    let mut system = System::of_voids((0..voids as u32).map(|void| together.root(void) != void));
+    let inside = (0..voids as u32).map(|void| together.root(void) != void);
+    let mut system = System::of_voids(inside, graph.from.len());
     for c in links() {
         let (a, b, g) = (graph.from[c], graph.to[c], graph.conductance_mm3[c]);
         let flow = g * f64::from(graph.shift[c][axis]);

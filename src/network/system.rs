@@ -46,15 +46,21 @@ pub(super) struct System {
 const NONE: u32 = u32::MAX;
 
 impl System {
-    /// The voids `inside`, joined with nothing yet.
-    pub(super) fn of_voids(inside: impl Iterator<Item = bool>) -> Self {
+    /// The voids `inside`, joined with nothing yet; with room for so many links.
+    pub(super) fn of_voids(inside: impl Iterator<Item = bool>, links: usize) -> Self {
         let mut void = Vec::new();
         let row = |(v, is_inside): (u32, bool)| {
             is_inside.then(|| void.push(v)).map_or(NONE, |()| void.len() as u32 - 1)
         };
         let row_of: Vec<u32> = (0u32..).zip(inside).map(row).collect();
         let rows = void.len();
-        Self { void, row_of, links: Vec::new(), ground: vec![0.0; rows], inflow: vec![0.0; rows] }
+        Self {
+            void,
+            row_of,
+            links: Vec::with_capacity(links),
+            ground: vec![0.0; rows],
+            inflow: vec![0.0; rows],
+        }
     }
 
     /// Joins two voids. One that is not inside has pressure 0, and between two of these nothing is asked; nor
@@ -205,7 +211,7 @@ mod tests {
     fn nothing_flows_from_a_void_to_itself() {
         const VOIDS: u32 = 500;
         let of = |loops: bool| {
-            let mut system = System::of_voids((0..VOIDS).map(|_| true));
+            let mut system = System::of_voids((0..VOIDS).map(|_| true), 0);
             system.hold(0, 1.0, 1.0);
             system.hold(VOIDS - 1, 2.0, 0.0);
             for void in 0..VOIDS - 1 {

@@ -29,6 +29,9 @@ impl Together {
 
     /// Joins the groups of two voids.
     pub(super) fn join(&mut self, one: u32, other: u32) {
+        if self.towards[one as usize] == self.towards[other as usize] {
+            return;
+        }
         let (one, other) = (self.root(one), self.root(other));
         self.towards[one.max(other) as usize] = one.min(other);
     }

@@ -5,6 +5,31 @@ use bitvec::slice::BitSlice;
 use super::Isa;
 use crate::network::Network;
 
+/// The exits of one void, as draws see them.
+#[derive(Clone, Copy)]
+pub(super) struct VoidExits<'a> {
+    /// The void.
+    pub void: u32,
+    /// Their thresholds on the 64-bit scale.
+    pub thresholds: &'a [u64],
+    /// Position of the last open one, or `None` where every exit is closed.
+    pub last_open: Option<usize>,
+}
+
+/// Looks at the exits of voids one after another: those that `blocked` leaves open.
+pub(super) fn of_each(
+    network: &Network,
+    blocked: &BitSlice,
+    voids: impl IntoIterator<Item = u32>,
+    mut look: impl FnMut(VoidExits),
+) {
+    let mut scratch = Vec::new();
+    for void in voids {
+        let last_open = thresholds(network, blocked, void, &mut scratch);
+        look(VoidExits { void, thresholds: &scratch, last_open });
+    }
+}
+
 /// Thresholds of the exits of one void on the 64-bit scale, written into `thresholds`; the position
 /// of the last open exit, or `None` where every exit is closed.
 pub(super) fn thresholds(
@@ -115,22 +140,19 @@ impl FewExits {
     /// Of a void whose exits from `begin` on have these thresholds, which rise where an exit is open; `last`
     /// is the position of its last open one.
     fn new(begin: u32, thresholds: &[u64], last: usize) -> Self {
-        let mut few = Self { begin, ..Self::NONE };
-        let mut before = 0;
-        let mut open = 0;
-        for (position, &threshold) in thresholds[..=last].iter().enumerate() {
-            if threshold == before && position != last {
-                continue;
-            }
-            let (Ok(place), true) = (u8::try_from(position), open < FEW_EXITS) else { return few };
-            few.position[open] = place;
-            if position != last {
-                few.top[open] = (threshold >> 48) as u16;
-            }
-            (before, open) = (threshold, open + 1);
+        // Which exits are open cannot be foreseen: one that is not leaves its place to the next.
+        let (mut top, mut position) = ([u16::MAX; FEW_EXITS + 1], [0; FEW_EXITS + 1]);
+        let (mut before, mut open) = (0, 0);
+        for (place, &threshold) in thresholds[..last].iter().enumerate() {
+            (top[open], position[open]) = ((threshold >> 48) as u16, place as u8);
+            open = (open + usize::from(threshold != before)).min(FEW_EXITS);
+            before = threshold;
         }
-        few.is_few = true;
-        few
+        (top[open], position[open]) = (u16::MAX, last as u8);
+        let is_few = open < FEW_EXITS && last <= usize::from(u8::MAX);
+        let few = Self { begin, is_few, ..Self::NONE };
+        let (Some(top), Some(position)) = (top.first_chunk(), position.first_chunk()) else { return few };
+        Self { top: *top, position: *position, ..few }
     }
 
     /// The exit that a draw picks by its top sixteen bits, unless they do not decide.
@@ -179,36 +201,25 @@ impl ExitTable {
             }),
         };
         let mut table = Self { form, isa: Isa::chosen(), upstream: network.upstream() };
-        table.refresh(network, blocked, 0..network.voids() as u32);
+        let voids = 0..network.voids() as u32;
+        of_each(network, blocked, voids, |exits| table.set(network, blocked, exits));
         table
     }
 
-    /// Renews voids of which exits have just closed, or lead elsewhere.
-    pub(super) fn refresh(
-        &mut self,
-        network: &Network,
-        blocked: &BitSlice,
-        voids: impl Iterator<Item = u32>,
-    ) {
-        let mut scratch = Vec::new();
-        for void in voids {
-            self.set(network, blocked, void, &mut scratch);
-        }
-    }
-
-    fn set(&mut self, network: &Network, blocked: &BitSlice, void: u32, scratch: &mut Vec<u64>) {
-        let last_open = thresholds(network, blocked, void, scratch);
+    /// Renews a void of which an exit has just closed, or leads elsewhere.
+    pub(super) fn set(&mut self, network: &Network, blocked: &BitSlice, of_void: VoidExits) {
+        let VoidExits { void, thresholds, last_open } = of_void;
         match &mut self.form {
             Form::Lattice(lattice) => {
                 let open = network.exits(void).filter(|&c| !blocked[c] && network.exit_weight(c) > 0.0);
                 let finest = open.map(|c| network.diameters()[c]).fold(f32::INFINITY, f32::min);
-                lattice.set(void, scratch, last_open, finest);
+                lattice.set(void, thresholds, last_open, finest);
             }
             Form::General(general) => {
                 let exits = network.exits(void);
-                general.threshold[exits.clone()].copy_from_slice(scratch);
+                general.threshold[exits.clone()].copy_from_slice(thresholds);
                 general.few[void as usize] = match last_open {
-                    Some(last) => FewExits::new(exits.start as u32, scratch, last),
+                    Some(last) => FewExits::new(exits.start as u32, thresholds, last),
                     None => FewExits::NONE,
                 };
                 general.last_open[void as usize] = match last_open {

@@ -216,9 +216,9 @@ impl<'a> Walk<'a> {
         }
         let Some(directions) = &mut self.directions else { return Ok(()) };
         if directions.renew(self.network.to_mut(), state)? {
-            self.table.refresh(&self.network, &state.blocked, 0..self.network.voids() as u32);
+            self.set(state, 0..self.network.voids() as u32);
             if let Some(passive) = &mut self.passive {
-                passive.renew(&self.network, state);
+                passive.forget_trap();
             }
             (self.trap, self.all_caught) = (trapped::Search::new(&self.network), false);
         }
@@ -238,13 +238,20 @@ impl<'a> Walk<'a> {
     /// What happened is added to the state, and the constrictions that were blocked close.
     fn merge(&mut self, state: &mut State) {
         let closed = merge::merge(&self.network, &mut self.events, self.table.upstream(), state);
-        let upstream = self.table.upstream();
         let both = closed.iter().flat_map(|&c| [Some(c as usize), self.network.twin(c as usize)]);
-        let voids: Vec<u32> = both.flatten().map(|c| upstream[c]).collect();
-        self.table.refresh(&self.network, &state.blocked, voids.iter().copied());
-        if let Some(passive) = &mut self.passive {
-            passive.refresh(&self.network, state, voids.into_iter());
-        }
+        let voids: Vec<u32> = both.flatten().map(|c| self.table.upstream()[c]).collect();
+        self.set(state, voids);
+    }
+
+    /// Renews voids of which exits have just closed, or lead elsewhere.
+    fn set(&mut self, state: &State, voids: impl IntoIterator<Item = u32>) {
+        let Self { network, table, passive, .. } = self;
+        exits::of_each(network, &state.blocked, voids, |of_void| {
+            table.set(network, &state.blocked, of_void);
+            if let Some(passive) = passive {
+                passive.set(network, of_void);
+            }
+        });
     }
 
     /// Whether the run has ended, and whether every particle inserted is somewhere.

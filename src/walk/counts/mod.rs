@@ -30,6 +30,7 @@ pub use expected::{Counted, Expected, ExpectedSums};
 pub use passive::Passive;
 pub(super) use sizes::coarse_share;
 
+use super::exits::VoidExits;
 use super::{Isa, State, Supply};
 use crate::network::{END, Network};
 use crate::stream::{Key, Purpose};
@@ -45,8 +46,6 @@ pub struct PassiveWalk<'a> {
     shares: Shares,
     mover: Mover,
     trap: Option<Trap>,
-    /// Buffer for thresholds.
-    thresholds: Vec<u64>,
 }
 
 enum Mover {
@@ -81,7 +80,6 @@ impl<'a> PassiveWalk<'a> {
             shares,
             mover,
             trap: None,
-            thresholds: Vec::new(),
         })
     }
 
@@ -178,23 +176,17 @@ impl<'a> PassiveWalk<'a> {
         tally.largest_eroded = tally.largest_eroded.max(largest);
     }
 
-    /// The flow has been solved again: every exit may weigh something else.
-    pub fn renew(&mut self, network: &Network, state: &State) {
-        self.shares.renew(network, &state.blocked);
-        if let (Mover::Expected(flow), Passive::Expected(expected)) = (&mut self.mover, &state.passive) {
-            *flow = ExpectedFlow::new(network, &self.shares, expected);
+    /// Renews a void of which exits have closed, or lead elsewhere.
+    pub fn set(&mut self, network: &Network, of_void: VoidExits) {
+        self.shares.set(network, of_void);
+        if let Mover::Expected(flow) = &mut self.mover {
+            flow.set(network, &self.shares, of_void.void);
         }
-        self.trap = None;
     }
 
-    /// Constrictions of these voids have closed.
-    pub fn refresh(&mut self, network: &Network, state: &State, voids: impl Iterator<Item = u32>) {
-        for void in voids {
-            self.shares.set(network, &state.blocked, void, &mut self.thresholds);
-            if let Mover::Expected(flow) = &mut self.mover {
-                flow.set(network, &self.shares, void);
-            }
-        }
+    /// Exits lead elsewhere: who is trapped is not known any more.
+    pub fn forget_trap(&mut self) {
+        self.trap = None;
     }
 
     /// Whether every moving passive particle is trapped; to be asked when everything is inserted and nothing

@@ -4,7 +4,7 @@ use bitvec::slice::BitSlice;
 
 use super::binomial::CERTAIN;
 use crate::network::Network;
-use crate::walk::exits;
+use crate::walk::exits::{self, VoidExits};
 
 /// Which way the passive particles of a void go.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,32 +51,27 @@ impl Shares {
             of_three: vec![0; network.voids().div_ceil(64)],
             tops: vec![[0; 2]; network.voids()],
         };
-        shares.renew(network, blocked);
+        exits::of_each(network, blocked, 0..network.voids() as u32, |exits| shares.set(network, exits));
         shares
-    }
-
-    /// Renews the shares of all voids, where exits weigh something else.
-    pub fn renew(&mut self, network: &Network, blocked: &BitSlice) {
-        let mut thresholds = Vec::new();
-        for void in 0..network.voids() as u32 {
-            self.set(network, blocked, void, &mut thresholds);
-        }
     }
 
     /// Renews the shares of one void.
     ///
     /// They follow from the thresholds of the walk one by one, so that both engines give an exit the same
     /// probability to 2^-64.
-    pub fn set(&mut self, network: &Network, blocked: &BitSlice, void: u32, thresholds: &mut Vec<u64>) {
+    pub fn set(&mut self, network: &Network, of_void: VoidExits) {
+        let VoidExits { void, thresholds, last_open: last } = of_void;
         let exits = network.exits(void);
-        let last = exits::thresholds(network, blocked, void, thresholds);
         let mut before = 0u64;
         for (e, probability) in self.probability[exits.clone()].iter_mut().enumerate() {
             *probability = match last {
                 Some(last) if e == last => CERTAIN,
                 Some(last) if e < last && thresholds[e] > before => {
-                    let (width, rest) = (thresholds[e] - before, (1u128 << 64) - u128::from(before));
-                    (((u128::from(width) << 64) / rest) as u64).min(CERTAIN - 1)
+                    let (width, rest) = (thresholds[e] - before, before.wrapping_neg());
+                    // All of 2^64 for the first that is open.
+                    let of_rest =
+                        if rest == 0 { width } else { ((u128::from(width) << 64) / u128::from(rest)) as u64 };
+                    of_rest.min(CERTAIN - 1)
                 }
                 _ => 0,
             };
@@ -263,7 +258,7 @@ mod tests {
         let open = Shares::new(&network, &blocked);
         assert_eq!(open.shut_and_of_three(0), [0, u64::MAX]);
         assert_eq!(open.shut_and_of_three(1), [0, 0b11_1111]);
-        let (mut shares, mut thresholds) = (Shares::new(&network, &blocked), Vec::new());
+        let mut shares = Shares::new(&network, &blocked);
         for (close, way, shut) in
             [([2], Way::Second, 0), ([1], Way::First, 0), ([0], Way::None, 0b1_0000), ([0], Way::First, 0)]
         {
@@ -271,14 +266,14 @@ mod tests {
                 let is_closed = blocked[3 * 68 + exit];
                 blocked.set(3 * 68 + exit, !is_closed);
             }
-            shares.set(&network, &blocked, 68, &mut thresholds);
+            exits::of_each(&network, &blocked, [68], |exits| shares.set(&network, exits));
             assert_eq!((shares.way(68), shares.shut_and_of_three(1)), (way, [shut, 0b11_1111]));
             let tops = shares.thresholds_of_three(3 * 68).map(|t| (t >> 48) as u16);
             assert_eq!((shares.tops(68), shares.tops(67)), (tops, open.tops(67)));
         }
         blocked.set(3 * 68 + 1, false);
         blocked.set(3 * 68 + 2, false);
-        shares.set(&network, &blocked, 68, &mut thresholds);
+        exits::of_each(&network, &blocked, [68], |exits| shares.set(&network, exits));
         assert_eq!((shares.way(68), shares.tops(68)), (Way::Three, open.tops(68)));
     }
 

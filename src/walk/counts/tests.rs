@@ -4,7 +4,7 @@ use bitvec::vec::BitVec;
 
 use super::*;
 use crate::gradation::{Gradation, SizeSampler};
-use crate::walk::{Blocking, SizeClasses, Walk, WalkControl};
+use crate::walk::{Blocking, SizeClasses, Walk, WalkControl, exits};
 
 /// What is expected of passive particles on a given history.
 struct Flowed {
@@ -146,7 +146,8 @@ fn both_engines_follow_one_history() {
         }
         let closing = walked.history.iter().filter(|b| b.increment == t).map(|b| b.constriction);
         closing.clone().for_each(|c| state.blocked.set(c as usize, true));
-        passive.refresh(&network, &state, closing.map(|c| upstream[c as usize]));
+        let voids = closing.map(|c| upstream[c as usize]);
+        exits::of_each(&network, &state.blocked, voids, |exits| passive.set(&network, exits));
     }
     let flowed = expectation(&network, &walked.history, &differences(&inserted), increments);
     judge(&differences(&eroded), &moving, &flowed);
@@ -165,7 +166,7 @@ fn both_engines_follow_one_history() {
         for b in walked.history.iter().filter(|b| b.increment == t as u64 + 1) {
             blocked.set(b.constriction as usize, true);
             let void = upstream[b.constriction as usize];
-            shares.set(&network, &blocked, void, &mut Vec::new());
+            exits::of_each(&network, &blocked, [void], |exits| shares.set(&network, exits));
             flow.set(&network, &shares, void);
         }
     }

@@ -108,10 +108,52 @@ fn choose(thresholds: &[u64], draw: u16, index: usize, extension: Extension) -> 
     if thresholds.len() <= LOOKED_AT {
         return thresholds.iter().position(|&threshold| is_above(threshold));
     }
-    // Thresholds rise. A reservoir has thousands.
-    let first = thresholds.partition_point(|&threshold| !is_above(threshold));
-    (first < thresholds.len()).then_some(first)
+    // Thresholds rise. A reservoir has thousands: by sixteen bits there is nothing to foresee on the way.
+    let passed = thresholds.partition_point(|&threshold| threshold < u64::from(draw) << 48);
+    let rest = &thresholds[passed..];
+    let first = match rest.first() {
+        Some(&threshold) if !is_above(threshold) => rest.partition_point(|&threshold| !is_above(threshold)),
+        _ => 0,
+    };
+    (first < rest.len()).then_some(passed + first)
 }
 
 /// Up to so many exits are looked at one after another.
 const LOOKED_AT: usize = 16;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stream::Purpose;
+
+    /// Of thousands of exits, many of which share their upper bits or are closed: as by looking at each.
+    #[test]
+    fn an_exit_of_thousands_is_found_as_by_looking_at_each() {
+        let key = Key { seed: 3, purpose: Purpose::Step, run: 1, increment: 1, chunk: 0 };
+        let extension = key.lanes().extension();
+        let mut word = 9u64;
+        let mut next = || {
+            word = word.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            word
+        };
+        let mut ties = 0;
+        for exits in [17, 100, 3000] {
+            let mut thresholds: Vec<u64> = (0..exits).map(|_| next()).collect();
+            for first in (0..exits - 5).step_by(10) {
+                // As closed exits have them, and such as differ below.
+                thresholds[first + 1] = thresholds[first];
+                thresholds[first + 2] = thresholds[first] ^ 1 << 47;
+                thresholds[first + 3] = thresholds[first] ^ 0xff << 40;
+            }
+            thresholds.sort_unstable();
+            for draw in 0..=u16::MAX {
+                let index = usize::from(draw) + exits;
+                let whole = extension.complete(draw, index as u64);
+                let by_each = thresholds.iter().position(|&threshold| whole < threshold);
+                ties += usize::from(thresholds.iter().any(|&threshold| (threshold >> 48) as u16 == draw));
+                assert_eq!(choose(&thresholds, draw, index, extension), by_each, "{exits} {draw}");
+            }
+        }
+        assert!(ties > 1000, "{ties}");
+    }
+}

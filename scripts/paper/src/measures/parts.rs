@@ -76,9 +76,13 @@ pub fn spread_slows(study: &Study, _: &str, _: &Of) -> Option<Measured> {
     let percolation = study.percolation.as_ref()?;
     let sd = |size| percolation.sizes.iter().find(|s| s.size == size).and_then(|s| s.threshold.sd);
     let (ten, forty, eighty) = (sd(10)?, sd(40)?, sd(80)?);
-    let words = percolation.sd_exponent.map_or(String::new(), |slope| {
+    let mut words = percolation.sd_exponent.map_or(String::new(), |slope| {
         format!("it falls as L to the {slope:.2} throughout, without a bend at 40")
     });
+    for of_box in &percolation.boxes {
+        let ([nx, ny, nz], mean) = (of_box.shape, of_box.threshold.mean);
+        words += &format!("; {nx} x {ny} x {nz} voids percolate with {:.1} % open", 100.0 * mean);
+    }
     Some(Measured::exact(((forty - eighty) / 40.0) / ((ten - forty) / 30.0)).saying(words))
 }
 

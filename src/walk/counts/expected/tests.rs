@@ -1,6 +1,7 @@
 use bitvec::vec::BitVec;
 
 use super::*;
+use crate::walk::exits;
 
 /// A lattice whose constrictions all differ.
 fn lattice(shape: [u32; 3]) -> Network {
@@ -35,7 +36,7 @@ fn walked(network: &Network, is_general: bool, isa: Isa) -> Vec<(Expected, Vec<u
         for c in (increment as usize..network.constrictions()).step_by(29) {
             blocked.set(c, true);
             let void = (c / 3) as u32;
-            shares.set(network, &blocked, void, &mut Vec::new());
+            exits::of_each(network, &blocked, [void], |exits| shares.set(network, exits));
             flow.set(network, &shares, void);
         }
     }
