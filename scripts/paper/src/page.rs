@@ -65,6 +65,7 @@ fn page(study: &Study, judged: &[Judged], sections: &[(&Section, Vec<Drawn>)]) -
     let (counted, of) =
         (count(|_| true), |standing| judged.iter().filter(|j| j.standing() == standing).count());
     let (set, fitted, readings) = (of(Standing::Set), of(Standing::Fitted), of(Standing::Reading));
+    let always = of(Standing::Always);
     let header = html! {
         h1 { (title) }
         p.names { "Shire and O’Sullivan, " cite { "A network model to assess base-filter combinations" } }
@@ -79,7 +80,8 @@ fn page(study: &Study, judged: &[Judged], sections: &[(&Section, Vec<Drawn>)]) -
                 }
                 p {
                     (judged.len() - counted) " more are shown and not counted: " (set) " that the plans set, \
-                     so that they agree or differ by construction; " (fitted) " that our rule for merging \
+                     so that they agree or differ by construction; " (always) " that is kept whatever \
+                     the model; " (fitted) " that our rule for merging \
                      voids was fitted to; " (readings) " other readings of statements that are counted."
                 }
                 p {

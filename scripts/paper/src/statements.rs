@@ -50,6 +50,8 @@ pub enum Standing {
     Counted,
     /// Ours is what the plan sets, so that it agrees or differs by construction.
     Set,
+    /// Ours could hardly be otherwise, whatever the model: it is so vague.
+    Always,
     /// Ours follows from a number of our own that was fitted to this one.
     Fitted,
     /// Ours is read off a curve of the authors' own.
@@ -64,6 +66,7 @@ impl Standing {
         match self {
             Standing::Counted => "counted",
             Standing::Set => "by construction",
+            Standing::Always => "always",
             Standing::Fitted => "fitted",
             Standing::Theirs => "theirs",
             Standing::Reading => "reading",
@@ -75,6 +78,7 @@ impl Standing {
         match self {
             Standing::Counted => None,
             Standing::Set => Some("the plan sets it"),
+            Standing::Always => Some("a spread that falls as any power of the length agrees"),
             Standing::Fitted => Some("fitted: our overlap for merging voids was chosen by Table 2"),
             Standing::Theirs => Some("the curve is the authors’ own"),
             Standing::Reading => Some("another reading of a statement that is counted already"),
@@ -384,6 +388,9 @@ mod tests {
         let (counts, words, sentence) = said("voids", 96000.0);
         assert_eq!((counts, words.as_str()), (false, "by construction"));
         assert_eq!(sentence, "not counted: the plan sets it");
+        let (counts, words, sentence) = said("percolation", 0.13);
+        assert_eq!((counts, words.as_str()), (false, "always: agrees"));
+        assert!(sentence.starts_with("agrees. Not counted: a spread"), "{sentence}");
         let (counts, words, sentence) = said("combinations", 78.0);
         assert_eq!((counts, words.as_str()), (false, "by construction"));
         assert_eq!(sentence, "not counted: the plan sets it; differs by +12");
