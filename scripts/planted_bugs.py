@@ -21,7 +21,7 @@ ENVIRONMENT = dict(os.environ, CARGO_TARGET_DIR=str(ROOT / "target" / "planted-b
 BUGS = {
     "biased-exit": (
         "the first exit of every void is 1 % too likely",
-        [("src/walk/exits.rs", "sum += weight(c);", "sum += weight(c) * if c == exits.start { 1.01 } else { 1.0 };")],
+        [("src/walk/exits.rs", "f64::from(u8::from(!blocked[c]));", "f64::from(u8::from(!blocked[c])) * if c == first { 1.01 } else { 1.0 };")],
         [
             ("model", "exact_answers::passive_particles_take_three_moves_a_layer"),
             ("model", "walk_against_reference::kernel_and_reference_agree_particle_by_particle"),
@@ -40,13 +40,9 @@ BUGS = {
     "tie": (
         "a particle as coarse as the constriction is stopped (`<` for `<=`)",
         [
+            ("src/walk/exits.rs", "network.finest_open(|c| blocked[c]).to_bits();", "network.finest_open(|c| blocked[c]).to_bits() - 1;"),
             ("src/walk/kernel/lattice.rs", "limit && d > self.exits", "limit && d >= self.exits"),
             ("src/walk/kernel/lattice.rs", "if d > self.exits.passive_limit", "if d >= self.exits.passive_limit"),
-            ("src/walk/kernel/lattice.rs", "(d > limit)", "(d >= limit)"),
-            ("src/walk/kernel/avx512.rs", "_mm512_cmp_ps_mask::<_CMP_GT_OQ>", "_mm512_cmp_ps_mask::<_CMP_GE_OQ>"),
-            ("src/walk/kernel/avx512.rs", "_mm512_mask_cmp_ps_mask::<_CMP_GT_OQ>", "_mm512_mask_cmp_ps_mask::<_CMP_GE_OQ>"),
-            ("src/walk/kernel/avx2.rs", "(d, _mm256_set1_ps(chunk.exits.passive_limit)", "(_mm256_set1_ps(-1.0), _mm256_set1_ps(-2.0)"),
-            ("src/walk/kernel/avx2.rs", "_mm256_cmp_ps::<_CMP_GT_OQ>(d, width)", "_mm256_cmp_ps::<_CMP_GE_OQ>(d, width)"),
         ],
         [("model", "exact_answers::a_particle_as_coarse_as_the_constriction_passes")],
     ),

@@ -122,6 +122,7 @@ RUNS = {
     "sensitivity": ["record.sensitivity=[0.5, 2]", "record.sensitivity_replicates=2"],
     "water on the lattice": ["walk.exit=flux", "base.cu=2"],
     "water on the lattice, counts": ["walk.exit=flux", "engine=counts", *MANY],
+    "water on the lattice, expected": ["walk.exit=flux", "engine=expected", *MANY],
     "area along the water": ["walk.exit=area-along-flow", "base.cu=2"],
     "water on the packing's own voids": ["filter.density=loose", *FEW_GRAINS, "network.kind=graph", "walk.exit=flux", "base.mass_ratio=0.02"],
     "studies that stop": ["replicates=8", "record.sensitivity=[0.5, 2]"],

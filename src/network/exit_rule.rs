@@ -41,11 +41,11 @@ impl ExitRule {
     /// where it is negative; fluxes up to `least` are none.
     pub(super) fn weight(self, area: f64, flux: f64, least: f64) -> f64 {
         // Which way water flows cannot be foreseen: chosen without a branch.
-        let along = |weight: f64| if flux > least { weight } else { 0.0 };
         match self {
             Self::Area | Self::Height => area,
-            Self::Flux => along(flux),
-            Self::AreaAlongFlow => along(area),
+            Self::Flux if flux > least => flux,
+            Self::Flux => 0.0,
+            Self::AreaAlongFlow => area * f64::from(u8::from(flux > least)),
         }
     }
 }

@@ -88,7 +88,7 @@ struct Passage {
 }
 
 impl Flow {
-    /// Before anything is known.
+    /// Of a clean network, before it is solved: until then pressures are a guess.
     pub fn new(network: &Network) -> Self {
         let outside = network.voids() as u32;
         let other: Vec<u32> =
@@ -220,8 +220,9 @@ impl Flow {
         outlets.map(|passage| self.flux(passage.one, passage.exit as usize)).sum()
     }
 
-    /// Gives each exit of the network its weight by the flow that was solved last.
-    pub fn direct(&self, network: &mut Network, blocked: &BitSlice) {
+    /// Gives each exit of the network its weight by the flow that was solved last; what was blocked then has
+    /// none.
+    pub fn direct(&self, network: &mut Network) {
         let Some(reservoir) = network.reservoir() else { return };
         let rule = network.exit_rule();
         let inlets = network.exits(reservoir);
@@ -234,7 +235,7 @@ impl Flow {
             for exit in exits[0] as usize..exits[1] as usize {
                 let area = f64::from(diameter[exit]) * f64::from(diameter[exit]);
                 let towards = rule.weight(area, self.flux(void, exit), least);
-                weight[exit] = f64::from(u8::from(!blocked[exit])) * towards;
+                weight[exit] = f64::from(u8::from(!self.blocked[exit])) * towards;
             }
         }
     }
@@ -267,4 +268,38 @@ fn whole(network: &Network, exit: usize) -> f64 {
 struct Meets {
     reservoir: bool,
     end: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::ExitRule;
+
+    /// Whatever closed and opened again before: conductances are those of what is blocked now.
+    #[test]
+    fn conductances_follow_what_is_blocked() {
+        let diameters = (0..3 * 4 * 3 * 5).map(|c| if c % 17 == 0 { 0.0 } else { 1.0 + 0.01 * c as f32 });
+        let lattice = Network::cubic_from_diameters([4, 3, 5], diameters.collect(), 1.0).unwrap();
+        let network = lattice.undirected_lattice(ExitRule::Flux, 0.1, 4.0).unwrap();
+        let blocked = |every: &[usize]| {
+            let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
+            for c in every.iter().flat_map(|&step| (0..network.constrictions()).step_by(step)) {
+                network.set_blocked(&mut blocked, c, true);
+            }
+            blocked
+        };
+        let mut flow = Flow::new(&network);
+        for every in [&[][..], &[5], &[5, 7], &[5], &[3], &[]] {
+            let blocked = blocked(every);
+            flow.solve(&network, &blocked).unwrap();
+            for c in 0..network.constrictions() {
+                let rho = if blocked[c] { 0.1 } else { 1.0 };
+                let whole = if network.diameters()[c] == 0.0 { 0.0 } else { network.conductance(c) };
+                assert_eq!(flow.open[c], rho * whole, "{every:?} {c}");
+            }
+            let mut afresh = Flow::new(&network);
+            let all = [&mut flow, &mut afresh].map(|f| f.solve(&network, &blocked).unwrap().conductance);
+            assert!((all[0] / all[1] - 1.0).abs() < 1e-9, "{all:?}");
+        }
+    }
 }

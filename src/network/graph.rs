@@ -187,7 +187,7 @@ mod tests {
         let found = flow.solve(&network, &open).unwrap();
         let k = permeability_mm2(&graph, 2).unwrap();
         assert!((found.k_mm2.unwrap() / k - 1.0).abs() < 1e-9);
-        flow.direct(&mut network, &open);
+        flow.direct(&mut network);
         for void in 0..network.filter_voids() as u32 {
             let out: Vec<usize> = network.exits(void).filter(|&c| network.exit_weight(c) > 0.0).collect();
             let [only] = out[..] else { panic!("{out:?}") };

@@ -56,8 +56,7 @@ impl Directions {
         };
         state.history.iter().for_each(|blocking| set(&mut blocked, blocking, false));
         directions.solve(network, &blocked, 0, 0)?;
-        // What was blocked when the flow was solved last: exits blocked since still lead on once it is again.
-        let mut at_solve = blocked.clone();
+        // Exits blocked since the flow was solved last lead on once it is solved again.
         let mut history = state.history.iter().peekable();
         let mut so_far = 0;
         for increment in 1..=state.increment {
@@ -67,10 +66,9 @@ impl Directions {
             }
             if directions.is_due(network, increment, so_far) {
                 directions.solve(network, &blocked, increment - 1, so_far)?;
-                at_solve.copy_from_bitslice(&blocked);
             }
         }
-        directions.flow.direct(network, &at_solve);
+        directions.flow.direct(network);
         Ok(directions)
     }
 
@@ -89,7 +87,7 @@ impl Directions {
             return Ok(false);
         }
         self.solve(network, &state.blocked, state.increment - 1, blocked)?;
-        self.flow.direct(network, &state.blocked);
+        self.flow.direct(network);
         Ok(true)
     }
 
@@ -99,7 +97,7 @@ impl Directions {
         if blocked > self.blocked_then {
             self.solve(network, &state.blocked, state.increment, blocked)?;
         }
-        self.flow.direct(network, &state.blocked);
+        self.flow.direct(network);
         Ok(self.record)
     }
 

@@ -1,4 +1,4 @@
-//! Which exit a draw picks: thresholds by void, refreshed only where an exit closes.
+//! Which exit a draw picks: thresholds by void, renewed where an exit closes or water turns.
 
 use bitvec::slice::BitSlice;
 
@@ -10,13 +10,16 @@ use crate::network::Network;
 pub(super) struct VoidExits<'a> {
     /// The void.
     pub void: u32,
-    /// Their thresholds on the 64-bit scale.
+    /// Threshold of each exit on the 64-bit scale.
     pub thresholds: &'a [u64],
-    /// Position of the last open one, or `None` where every exit is closed.
+    /// Position of the last open exit, or `None` where every exit is closed.
     pub last_open: Option<usize>,
+    /// Every exit is closed, and particles wait: water left the void when the flow was solved last, by exits
+    /// that have been blocked since.
+    pub waits: bool,
 }
 
-/// Looks at the exits of voids one after another: those that `blocked` leaves open.
+/// Looks at the exits of one void after another, with those closed that `blocked` says.
 pub(super) fn of_each(
     network: &Network,
     blocked: &BitSlice,
@@ -26,7 +29,8 @@ pub(super) fn of_each(
     let mut scratch = Vec::new();
     for void in voids {
         let last_open = thresholds(network, blocked, void, &mut scratch);
-        look(VoidExits { void, thresholds: &scratch, last_open });
+        let waits = last_open.is_none() && waits(network, void);
+        look(VoidExits { void, thresholds: &scratch, last_open, waits });
     }
 }
 
@@ -150,9 +154,12 @@ impl FewExits {
         }
         (top[open], position[open]) = (u16::MAX, last as u8);
         let is_few = open < FEW_EXITS && last <= usize::from(u8::MAX);
-        let few = Self { begin, is_few, ..Self::NONE };
-        let (Some(top), Some(position)) = (top.first_chunk(), position.first_chunk()) else { return few };
-        Self { top: *top, position: *position, ..few }
+        Self {
+            top: std::array::from_fn(|i| top[i]),
+            position: std::array::from_fn(|i| position[i]),
+            begin,
+            is_few,
+        }
     }
 
     /// The exit that a draw picks by its top sixteen bits, unless they do not decide.
@@ -171,9 +178,8 @@ pub(super) const NONE: u32 = u32::MAX;
 /// again.
 pub(super) const WAIT: u32 = u32::MAX - 1;
 
-/// Whether particles in a void without open exits wait: water left it when the flow was solved last, by exits
-/// that have been blocked since.
-pub(super) fn waits(network: &Network, void: u32) -> bool {
+/// Whether water left a void when the flow was solved last.
+fn waits(network: &Network, void: u32) -> bool {
     network.exit_rule().needs_flow() && network.exits(void).any(|c| network.exit_weight(c) > 0.0)
 }
 
@@ -208,7 +214,7 @@ impl ExitTable {
 
     /// Renews a void of which an exit has just closed, or leads elsewhere.
     pub(super) fn set(&mut self, network: &Network, blocked: &BitSlice, of_void: VoidExits) {
-        let VoidExits { void, thresholds, last_open } = of_void;
+        let VoidExits { void, thresholds, last_open, waits } = of_void;
         match &mut self.form {
             Form::Lattice(lattice) => {
                 let open = network.exits(void).filter(|&c| !blocked[c] && network.exit_weight(c) > 0.0);
@@ -224,7 +230,7 @@ impl ExitTable {
                 };
                 general.last_open[void as usize] = match last_open {
                     Some(e) => (exits.start + e) as u32,
-                    None if waits(network, void) => WAIT,
+                    None if waits => WAIT,
                     None => NONE,
                 };
             }
@@ -372,6 +378,20 @@ mod tests {
                     ),
                 }
             }
+        }
+    }
+
+    /// Exits that stand too far from the first for a byte are not few; in reach of one they are.
+    #[test]
+    fn exits_beyond_a_byte_are_not_few() {
+        for (last, is_few) in [(255, true), (256, false), (299, false)] {
+            let thresholds: Vec<u64> = (0..300).map(|e| if e < last { 1 << 62 } else { u64::MAX }).collect();
+            let few = FewExits::new(7, &thresholds, last);
+            assert_eq!(
+                (few.is_few, few.chosen(1 << 15).filter(|_| is_few)),
+                (is_few, is_few.then_some(7 + last))
+            );
+            assert_eq!(few.chosen(1), Some(7));
         }
     }
 

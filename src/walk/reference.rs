@@ -135,7 +135,7 @@ impl<'a> Reference<'a> {
         }
         self.flow = Some(if self.increment == 1 || (since > 0 && due) {
             flow.solve(network, &blocked).expect("small networks are solved");
-            flow.direct(network, &blocked);
+            flow.direct(network);
             (flow, self.increment - 1, self.history.len())
         } else {
             (flow, solved_at, blocked_then)

@@ -47,7 +47,9 @@ fn a_walk_with_flow_goes_on_while_particles_wait() {
     let root = tempfile::tempdir().unwrap();
     let network = network(4).undirected_lattice(ExitRule::Flux, 0.0, 4.0).unwrap();
     let open: BitVec = BitVec::repeat(false, network.constrictions());
-    for (engine, cu, n) in [(Engine::Particles, 1.2, 3_000), (Engine::Counts, 2.0, 150_000)] {
+    for (engine, cu, n) in
+        [(Engine::Particles, 1.2, 3_000), (Engine::Counts, 2.0, 150_000), (Engine::Expected, 2.0, 150_000)]
+    {
         let gradation = Gradation::linear_from_dx(85.0, 0.33, cu).unwrap();
         let sampler = SizeSampler::new(&gradation, 1.0).unwrap();
         let supply = RunPlan::new(engine, &network, &sampler, &open, n / 50).supply(sampler, n, 50, 3, 1);
@@ -84,7 +86,8 @@ fn a_walk_goes_on_from_every_increment_with_every_engine_on_any_threads() {
         (Engine::Counts, network(4)),
         (Engine::Expected, network(4)),
         (Engine::Particles, flowing.clone()),
-        (Engine::Counts, flowing),
+        (Engine::Counts, flowing.clone()),
+        (Engine::Expected, flowing),
     ] {
         let seed = 11;
         let open: BitVec = BitVec::repeat(false, network.constrictions());

@@ -290,7 +290,7 @@ fn flow(network: Network, conductances: f64) {
     let residual = part * conductances * network.voids() as f64;
     assert!((inflow - outflow).abs() <= 1e-6 * inflow.abs() + residual, "{inflow} in, {outflow} out");
     let mut network = network;
-    flow.direct(&mut network, &open);
+    flow.direct(&mut network);
     assert!((0..network.constrictions()).all(|exit| network.exit_weight(exit) >= 0.0));
 }
 

@@ -64,7 +64,7 @@ impl Network {
         let open = self.nothing_blocked();
         let mut flow = Flow::new(&inner);
         flow.solve(&inner, &open).map_err(failed)?;
-        flow.direct(&mut inner, &open);
+        flow.direct(&mut inner);
         Ok((inner, Some(flow)))
     }
 

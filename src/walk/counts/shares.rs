@@ -60,7 +60,7 @@ impl Shares {
     /// They follow from the thresholds of the walk one by one, so that both engines give an exit the same
     /// probability to 2^-64.
     pub fn set(&mut self, network: &Network, of_void: VoidExits) {
-        let VoidExits { void, thresholds, last_open: last } = of_void;
+        let VoidExits { void, thresholds, last_open: last, waits } = of_void;
         let exits = network.exits(void);
         let mut before = 0u64;
         for (e, probability) in self.probability[exits.clone()].iter_mut().enumerate() {
@@ -68,7 +68,7 @@ impl Shares {
                 Some(last) if e == last => CERTAIN,
                 Some(last) if e < last && thresholds[e] > before => {
                     let (width, rest) = (thresholds[e] - before, before.wrapping_neg());
-                    // All of 2^64 for the first that is open.
+                    // Nothing is taken before the first that is open: all of 2^64 is left.
                     let of_rest =
                         if rest == 0 { width } else { ((u128::from(width) << 64) / u128::from(rest)) as u64 };
                     of_rest.min(CERTAIN - 1)
@@ -85,7 +85,7 @@ impl Shares {
             on = if *probability == 0 { on.saturating_add(1) } else { 1 };
         }
         self.way[void as usize] = match last {
-            None if exits::waits(network, void) => Way::Wait,
+            None if waits => Way::Wait,
             None => Way::None,
             Some(_) if exits.len() != 3 => Way::Other,
             Some(0) => Way::First,

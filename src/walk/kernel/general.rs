@@ -108,7 +108,8 @@ fn choose(thresholds: &[u64], draw: u16, index: usize, extension: Extension) -> 
     if thresholds.len() <= LOOKED_AT {
         return thresholds.iter().position(|&threshold| is_above(threshold));
     }
-    // Thresholds rise. A reservoir has thousands: by sixteen bits there is nothing to foresee on the way.
+    // Thresholds rise. A reservoir has thousands: whole numbers are compared without a branch, and all bits
+    // of the draw are asked for in a tie alone.
     let passed = thresholds.partition_point(|&threshold| threshold < u64::from(draw) << 48);
     let rest = &thresholds[passed..];
     let first = match rest.first() {

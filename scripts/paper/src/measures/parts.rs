@@ -81,7 +81,10 @@ pub fn spread_slows(study: &Study, _: &str, _: &Of) -> Option<Measured> {
     });
     for of_box in &percolation.boxes {
         let ([nx, ny, nz], mean) = (of_box.shape, of_box.threshold.mean);
-        words += &format!("; {nx} x {ny} x {nz} voids percolate with {:.1} % open", 100.0 * mean);
+        words += &format!(
+            "; {nx} × {ny} × {nz} voids percolate with {:.1} % of their constrictions open",
+            100.0 * mean
+        );
     }
     Some(Measured::exact(((forty - eighty) / 40.0) / ((ten - forty) / 30.0)).saying(words))
 }
