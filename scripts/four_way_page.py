@@ -15,9 +15,10 @@ TABLE_2 = {1.2: 8262, 1.5: 9313, 3.0: 22600, 6.0: 59183}
 
 
 def version_of_page(out):
-    """The version that walked and its machine, as the page names them; None where there is no page."""
+    """The versions that walked and their machine, as the page names them; None where there is no page."""
     page = pathlib.Path(f"{out}.md")
-    named = re.search(r"`voidwalk [^`]*`, \w+", page.read_text()) if page.exists() else None
+    words = " ".join(page.read_text().split()) if page.exists() else ""
+    named = re.search(r"`voidwalk [^;]*(?=; \d+ walks, )", words)
     return named and named.group()
 
 
