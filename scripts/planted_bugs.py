@@ -42,6 +42,7 @@ BUGS = {
         [
             ("src/walk/exits.rs", "network.finest_open(|c| blocked[c]).to_bits();", "network.finest_open(|c| blocked[c]).to_bits() - 1;"),
             ("src/walk/kernel/lattice.rs", "limit && d > self.exits", "limit && d >= self.exits"),
+            ("src/walk/kernel/avx512.rs", "_mm512_mask_cmpgt_epi32_mask(able, d, width)", "_mm512_mask_cmpge_epi32_mask(able, d, width)"),
             ("src/walk/kernel/lattice.rs", "if d > self.exits.passive_limit", "if d >= self.exits.passive_limit"),
         ],
         [("model", "exact_answers::a_particle_as_coarse_as_the_constriction_passes")],
@@ -102,7 +103,7 @@ def plant(edits):
 def main():
     wanted = sys.argv[1:] or list(BUGS)
     shutil.rmtree(COPY, ignore_errors=True)
-    for part in ["src", "tests", "benches", "results/readme", "scripts/paper"]:
+    for part in ["src", "tests", "benches", "results/readme", "scripts/paper", "scripts/python"]:
         if (ROOT / part).exists():
             shutil.copytree(ROOT / part, COPY / part)
     for file in ["Cargo.toml", "Cargo.lock", "build.rs", "rustfmt.toml", "README.md"]:

@@ -74,11 +74,7 @@ impl Case {
 
     /// How many of all 2^64 words draw a particle no coarser than the finest constriction.
     fn passive_words(&self) -> u128 {
-        let finest = match &self.fixed_network {
-            Some(network) => network.finest_open(|_| false),
-            None => (self.curve.smallest() / self.unit_mm) as f32,
-        };
-        self.sampler.word_limit(finest)
+        self.sampler.word_limit(self.finest)
     }
 
     /// Bytes of the columns of a walk of `n_base` particles.

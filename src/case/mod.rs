@@ -149,6 +149,8 @@ pub struct Case {
     pub unit_mm: f64,
     /// The network, where all replicates walk the same: from a file, or the voids of a packing.
     pub fixed_network: Option<Network>,
+    /// Finest constriction, in units of `unit_mm`.
+    finest: f32,
     /// Copies of a packing whose voids are the network, and their thickness together (mm).
     pub copies: Option<(u32, f64)>,
     /// What was measured on the packing whose voids are the network.
@@ -320,6 +322,10 @@ impl Case {
                 return Err(scene.clash(problem).into());
             }
         }
+        let finest = match &fixed_network {
+            Some(network) => network.finest_open(|_| false),
+            None => (curve.smallest() / unit_mm) as f32,
+        };
         let mut case = Self {
             packed,
             filter,
@@ -337,6 +343,7 @@ impl Case {
             mass_ratio: walked.mass_ratio,
             unit_mm,
             fixed_network,
+            finest,
             copies,
             graph,
             counts,

@@ -15,31 +15,30 @@
 
 use std::ops::Range;
 
-/// A conductance between two rows.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Link {
-    pub one: u32,
-    pub other: u32,
-    pub conductance: f64,
-}
+use super::rest::{Link, Meeting, Rest};
 
 /// An approximate factor of a system of conductances: the preconditioner of its conjugate gradients.
 pub(super) struct Factor {
     /// Row of the system by place in the order of elimination.
     row: Vec<u32>,
     /// What places make up of one another, in the order of elimination.
-    parts: Vec<Part>,
+    parts: Vec<Parts>,
     /// By place: reciprocal of the sum of its conductances at its elimination.
     pivot: Vec<f64>,
+    /// Choices of neighbours that it took.
+    choices: u64,
 }
 
-/// The part of the pressure of one place that the pressure of a later one makes up. Single precision is
-/// enough of what is approximate.
-#[derive(Clone, Copy)]
-struct Part {
+/// Parts that stand together: those of a place are filled up with parts of 0, so that what goes through them
+/// has no loop that ends where no processor expects it.
+const TOGETHER: usize = 4;
+
+/// Parts of the pressure of one place that the pressures of later ones make up. Single precision is enough of
+/// what is approximate.
+struct Parts {
     of: u32,
-    by: u32,
-    part: f32,
+    by: [u32; TOGETHER],
+    part: [f32; TOGETHER],
 }
 
 /// 2^64 over the golden ratio, and 2^32 over it.
@@ -49,8 +48,8 @@ const GOLDEN_32: u32 = 0x9e37_79b9;
 /// Turns, as a power of two.
 const TURNS: u32 = 6;
 
-/// Neighbours that are sorted at once, without a branch.
-const AT_ONCE: usize = 8;
+/// Sums among which one is found by counting, without a branch.
+const COUNTED: usize = 16;
 
 impl Factor {
     /// Of the system whose row `i` conducts `ground[i]` to known pressures, and whose rows are joined by
@@ -59,50 +58,122 @@ impl Factor {
         let rows = ground.len();
         let order = order(rows, links);
         let mut rest = Rest::new(&order, ground, links);
-        let mut factor =
-            Self { row: order, parts: Vec::with_capacity(2 * links.len()), pivot: Vec::with_capacity(rows) };
+        let mut factor = Self::of_none(order, 2 * links.len());
         factor.eliminate(&mut rest, 0..rows as u32);
         factor
     }
 
+    /// Before anything is eliminated, with room for about so many parts.
+    fn of_none(row: Vec<u32>, parts: usize) -> Self {
+        let (parts, pivot) =
+            (Vec::with_capacity(row.len() + parts / TOGETHER), Vec::with_capacity(row.len()));
+        Self { row, parts, pivot, choices: 0 }
+    }
+
     /// Takes these places, one after another, from what is left of the system.
     fn eliminate(&mut self, rest: &mut Rest, places: Range<u32>) {
-        let (mut meeting, mut at) = (Meeting::default(), vec![0; rest.head.len()]);
-        let mut choices = 0u64;
+        let mut meeting = Meeting::of(self.row.len());
         for place in places {
-            let ground = rest.take(place, &mut meeting, &mut at);
-            meeting.sort();
-            let all = meeting.sums.last().copied().unwrap_or(0.0);
-            // Of nothing, and of so little that its inverse is no number, nothing is known.
-            let pivot = Some(1.0 / (ground + all)).filter(|inverse| inverse.is_finite()).unwrap_or(0.0);
-            for &(to, g) in &meeting.sorted {
-                self.parts.push(Part { of: place, by: to, part: (g * pivot) as f32 });
-                rest.head[to as usize].ground += g * ground * pivot;
+            let ground = rest.take(place, &mut meeting);
+            let found = &mut meeting.found[..];
+            // Most have few: loops over a number that is known have no end that no processor expects.
+            macro_rules! of_number {
+                ($($few:literal)*) => {
+                    match found.len() {
+                        $($few => self.take_few::<$few>(rest, place, ground, found),)*
+                        _ => self.take_many(rest, place, ground, found),
+                    }
+                };
             }
-            for i in 1..meeting.sorted.len() {
-                let (one, g) = meeting.sorted[i - 1];
-                let before = meeting.sums[i - 1];
-                let left = all - before;
-                choices += 1;
-                let part = (choices.wrapping_mul(GOLDEN) >> 11) as f64 / (1u64 << 53) as f64;
-                rest.join(one, meeting.chosen(i, before + part * left), g * left * pivot);
+            of_number!(1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16);
+        }
+    }
+
+    /// Takes a place with so many neighbours.
+    #[inline(always)]
+    fn take_few<const N: usize>(&mut self, rest: &mut Rest, place: u32, ground: f64, found: &[(u32, f64)]) {
+        let found: &[(u32, f64); N] = found.try_into().expect("so many were found");
+        self.give_way(rest, place, ground, &sorted(found), &mut [0.0; N]);
+    }
+
+    /// Takes a place with any number of neighbours.
+    #[inline(never)]
+    fn take_many(&mut self, rest: &mut Rest, place: u32, ground: f64, found: &mut [(u32, f64)]) {
+        found.sort_by_key(|&(_, conductance)| rising(conductance));
+        self.give_way(rest, place, ground, found, &mut vec![0.0; found.len()]);
+    }
+
+    /// Joins the neighbours of a place, which are sorted, by a tree instead of it; `sums` has their number.
+    #[inline(always)]
+    fn give_way(&mut self, rest: &mut Rest, place: u32, ground: f64, met: &[(u32, f64)], sums: &mut [f64]) {
+        let mut all = 0.0;
+        for (sum, &(_, conductance)) in sums.iter_mut().zip(met) {
+            all += conductance;
+            *sum = all;
+        }
+        // Of nothing, and of so little that its inverse is no number, nothing is known.
+        let pivot = Some(1.0 / (ground + all)).filter(|inverse| inverse.is_finite()).unwrap_or(0.0);
+        self.pivot.push(pivot);
+        for some in met.chunks(TOGETHER) {
+            let mut parts = Parts { of: place, by: [some[0].0; TOGETHER], part: [0.0; TOGETHER] };
+            for (i, &(to, conductance)) in some.iter().enumerate() {
+                (parts.by[i], parts.part[i]) = (to, (conductance * pivot) as f32);
             }
-            self.pivot.push(pivot);
+            self.parts.push(parts);
+        }
+        if ground > 0.0 {
+            met.iter().for_each(|&(to, conductance)| rest.hold(to, conductance * ground * pivot));
+        }
+        for i in 1..met.len() {
+            let (one, conductance) = met[i - 1];
+            let left = all - sums[i - 1];
+            self.choices += 1;
+            let share = (self.choices.wrapping_mul(GOLDEN) >> 11) as f64 / (1u64 << 53) as f64;
+            let chosen = beyond(sums, sums[i - 1] + share * left).clamp(i, met.len() - 1);
+            rest.join(one, met[chosen].0, conductance * left * pivot);
         }
     }
 
     /// Solves the factor, once down and once up; `scratch` has the length of both.
     pub(super) fn solve(&self, residual: &[f64], scratch: &mut [f64], out: &mut [f64]) {
         scratch.iter_mut().zip(&self.row).for_each(|(value, &row)| *value = residual[row as usize]);
-        // Part by part: loops over those of each place would end where no processor expects it.
-        for &Part { of, by, part } in &self.parts {
-            scratch[by as usize] += f64::from(part) * scratch[of as usize];
+        for Parts { of, by, part } in &self.parts {
+            let value = scratch[*of as usize];
+            by.iter().zip(part).for_each(|(&by, &part)| scratch[by as usize] += f64::from(part) * value);
         }
         scratch.iter_mut().zip(&self.pivot).for_each(|(value, pivot)| *value *= pivot);
-        for &Part { of, by, part } in self.parts.iter().rev() {
-            scratch[of as usize] += f64::from(part) * scratch[by as usize];
+        for Parts { of, by, part } in self.parts.iter().rev() {
+            let [a, b, c, d] = std::array::from_fn(|i| f64::from(part[i]) * scratch[by[i] as usize]);
+            scratch[*of as usize] += (a + b) + (c + d);
         }
         scratch.iter().zip(&self.row).for_each(|(value, &row)| out[row as usize] = *value);
+    }
+}
+
+/// What rises as conductances do, but for those that differ by a millionth.
+fn rising(conductance: f64) -> u64 {
+    // Bits of floats that are not negative rise as they do.
+    conductance.to_bits() >> 32
+}
+
+/// Neighbours in rising order of conductance; those that differ by a millionth as they were found.
+#[inline(always)]
+fn sorted<const N: usize>(found: &[(u32, f64); N]) -> [(u32, f64); N] {
+    // Compared as floats, for which all processors have fast instructions: no two are the same.
+    let key: [f64; N] = std::array::from_fn(|i| f64::from_bits(rising(found[i].1) << 32 | i as u64));
+    let mut sorted = [(0, 0.0); N];
+    for i in 0..N {
+        sorted[key.iter().map(|&key_of| usize::from(key_of < key[i])).sum::<usize>()] = found[i];
+    }
+    sorted
+}
+
+/// How many of these rising sums do not exceed a share.
+#[inline(always)]
+fn beyond(sums: &[f64], share: f64) -> usize {
+    match sums.len() {
+        ..=COUNTED => sums.iter().map(|&sum| usize::from(sum <= share)).sum(),
+        _ => sums.partition_point(|&sum| sum <= share),
     }
 }
 
@@ -142,188 +213,6 @@ fn order(rows: usize, links: &[Link]) -> Vec<u32> {
     others.sort_unstable();
     order.extend(others.iter().map(|&key| key as u32));
     order
-}
-
-/// The places that are left and meet one that is eliminated.
-#[derive(Default)]
-struct Meeting {
-    /// Each once, with its conductance, as they were found.
-    found: Vec<(u32, f64)>,
-    /// In rising order of conductance, but for those that differ by a millionth.
-    sorted: Vec<(u32, f64)>,
-    /// Sums of the conductances until then.
-    sums: Vec<f64>,
-    keys: Vec<u64>,
-}
-
-impl Meeting {
-    /// Adds a conductance to a place; `at` is scratch.
-    fn add(&mut self, to: u32, conductance: f64, at: &mut [u32]) {
-        let at = &mut at[to as usize];
-        match self.found.get_mut(*at as usize) {
-            Some((other, sum)) if *other == to => *sum += conductance,
-            _ => {
-                *at = self.found.len() as u32;
-                self.found.push((to, conductance));
-            }
-        }
-    }
-
-    /// Puts them in order.
-    fn sort(&mut self) {
-        // Bits of floats that are not negative rise as they do.
-        let key = |(i, (_, g)): (usize, &(u32, f64))| g.to_bits() >> 32 << 32 | i as u64;
-        self.keys.clear();
-        self.keys.extend(self.found.iter().enumerate().map(key));
-        if self.keys.len() <= AT_ONCE {
-            let mut few = [u64::MAX; AT_ONCE];
-            few[..self.keys.len()].copy_from_slice(&self.keys);
-            sort_at_once(&mut few);
-            let count = self.keys.len();
-            self.keys.copy_from_slice(&few[..count]);
-        } else {
-            self.keys.sort_unstable();
-        }
-        self.sorted.clear();
-        self.sums.clear();
-        let mut sum = 0.0;
-        for &key in &self.keys {
-            let (to, g) = self.found[key as u32 as usize];
-            sum += g;
-            self.sorted.push((to, g));
-            self.sums.push(sum);
-        }
-    }
-
-    /// The place from the `first` on at which the sum so far exceeds `share`, or the last.
-    fn chosen(&self, first: usize, share: f64) -> u32 {
-        let passed = match self.sums.len() {
-            // Counted without a branch where they are few.
-            few if few <= 2 * AT_ONCE => self.sums.iter().map(|&sum| usize::from(sum <= share)).sum(),
-            _ => self.sums.partition_point(|&sum| sum <= share),
-        };
-        self.sorted[passed.clamp(first, self.sorted.len() - 1)].0
-    }
-}
-
-/// Sorts by nineteen exchanges (Knuth 1998, section 5.3.4).
-fn sort_at_once(keys: &mut [u64; AT_ONCE]) {
-    const EXCHANGES: [(usize, usize); 19] = [
-        (0, 2),
-        (1, 3),
-        (4, 6),
-        (5, 7),
-        (0, 4),
-        (1, 5),
-        (2, 6),
-        (3, 7),
-        (0, 1),
-        (2, 3),
-        (4, 5),
-        (6, 7),
-        (2, 4),
-        (3, 5),
-        (1, 4),
-        (3, 6),
-        (1, 2),
-        (3, 4),
-        (5, 6),
-    ];
-    for (a, b) in EXCHANGES {
-        (keys[a], keys[b]) = (keys[a].min(keys[b]), keys[a].max(keys[b]));
-    }
-}
-
-/// No handful.
-const NONE: u32 = u32::MAX;
-
-/// Links that stand together.
-const HANDFUL: usize = 4;
-
-/// Links of one place: the last that it was given, and where those before them are. A cache line.
-#[derive(Clone, Copy)]
-#[repr(align(64))]
-struct Head {
-    conductance: [f64; HANDFUL],
-    to: [u32; HANDFUL],
-    /// Conductance to pressures that are known.
-    ground: f64,
-    count: u32,
-    before: u32,
-}
-
-/// Links of one place that stand before others.
-#[derive(Clone, Copy)]
-struct Handful {
-    conductance: [f64; HANDFUL],
-    to: [u32; HANDFUL],
-    before: u32,
-}
-
-/// What is left of the system while rows are eliminated, by place: a link stands with the one of its two
-/// places that is eliminated first.
-struct Rest {
-    head: Vec<Head>,
-    handfuls: Vec<Handful>,
-    /// The first handful of those that are free again.
-    free: u32,
-}
-
-impl Rest {
-    fn new(order: &[u32], ground: &[f64], links: &[Link]) -> Self {
-        let mut place_of = vec![0; order.len()];
-        order.iter().zip(0u32..).for_each(|(&row, place)| place_of[row as usize] = place);
-        let head = |&row: &u32| Head {
-            conductance: [0.0; HANDFUL],
-            to: [0; HANDFUL],
-            ground: ground[row as usize],
-            count: 0,
-            before: NONE,
-        };
-        let mut rest = Self { head: order.iter().map(head).collect(), handfuls: Vec::new(), free: NONE };
-        for &Link { one, other, conductance } in links {
-            rest.join(place_of[one as usize], place_of[other as usize], conductance);
-        }
-        rest
-    }
-
-    /// Adds a conductance between two places, beside those that there are.
-    #[inline]
-    fn join(&mut self, one: u32, other: u32, conductance: f64) {
-        let (from, to) = (one.min(other), one.max(other));
-        let head = &mut self.head[from as usize];
-        if head.count as usize == HANDFUL {
-            let full = Handful { conductance: head.conductance, to: head.to, before: head.before };
-            head.count = 0;
-            head.before = if self.free == NONE {
-                self.handfuls.push(full);
-                u32::try_from(self.handfuls.len() - 1).expect("fewer links than a factor has bits for")
-            } else {
-                let at = self.free;
-                self.free = std::mem::replace(&mut self.handfuls[at as usize], full).before;
-                at
-            };
-        }
-        let at = head.count as usize;
-        (head.to[at], head.conductance[at]) = (to, conductance);
-        head.count += 1;
-    }
-
-    /// Takes away a place: the places that it meets, each once, and its conductance to known pressures. `at`
-    /// is scratch.
-    fn take(&mut self, place: u32, meeting: &mut Meeting, at: &mut [u32]) -> f64 {
-        meeting.found.clear();
-        let Head { conductance, to, ground, count, before } = self.head[place as usize];
-        (0..count as usize).for_each(|i| meeting.add(to[i], conductance[i], at));
-        let mut next = before;
-        while next != NONE {
-            let handful = &mut self.handfuls[next as usize];
-            (0..HANDFUL).for_each(|i| meeting.add(handful.to[i], handful.conductance[i], at));
-            let after = std::mem::replace(&mut handful.before, self.free);
-            self.free = std::mem::replace(&mut next, after);
-        }
-        ground
-    }
 }
 
 #[cfg(test)]
@@ -407,16 +296,6 @@ mod tests {
         }
     }
 
-    /// All of noughts and ones, and so all (Knuth 1998, section 5.3.4, theorem Z).
-    #[test]
-    fn eight_are_sorted_at_once() {
-        for bits in 0..1u64 << AT_ONCE {
-            let mut keys = std::array::from_fn(|i| bits >> i & 1);
-            sort_at_once(&mut keys);
-            assert!(keys.is_sorted(), "{bits:b}");
-        }
-    }
-
     /// What joins the four neighbours of an eliminated row conducts on average, over choices, what the star
     /// did; what is taken leaves its room to what comes.
     #[test]
@@ -432,14 +311,15 @@ mod tests {
         // Middles first, so that the others are left with the trees.
         let order: Vec<u32> =
             (0..STARS).map(|s| 5 * s).chain((0..5 * STARS).filter(|i| i % 5 > 0)).map(|i| i as u32).collect();
-        let mut factor = Factor { row: order, parts: Vec::new(), pivot: Vec::new() };
+        let mut factor = Factor::of_none(order, 0);
         let mut rest = Rest::new(&factor.row, &vec![0.0; 5 * STARS], &links);
         factor.eliminate(&mut rest, 0..STARS as u32);
         let mut sum = [[0.0; 4]; 4];
         let arm = |place: u32| (factor.row[place as usize] % 5 - 1) as usize;
+        let mut meeting = Meeting::of(5 * STARS);
         for from in STARS as u32..5 * STARS as u32 {
-            let head = rest.head[from as usize];
-            for (&to, &conductance) in head.to.iter().zip(&head.conductance).take(head.count as usize) {
+            rest.take(from, &mut meeting);
+            for &(to, conductance) in &meeting.found {
                 sum[arm(from)][arm(to)] += conductance / STARS as f64;
             }
         }
@@ -451,41 +331,77 @@ mod tests {
         }
     }
 
-    /// Thousands of links come and go in the room of the first.
+    /// Each of so few, and then more, by shares on both sides of every sum.
     #[test]
-    fn room_of_links_is_used_again() {
-        let links: Vec<Link> =
-            (1..200).map(|other| Link { one: 0, other, conductance: f64::from(other) }).collect();
-        let order: Vec<u32> = (0..200).collect();
-        let mut rest = Rest::new(&order, &[0.0; 200], &links);
-        let (mut meeting, mut at) = (Meeting::default(), vec![0; 200]);
-        let room = rest.handfuls.len();
-        for _ in 0..20 {
-            rest.take(0, &mut meeting, &mut at);
-            assert_eq!(meeting.found.iter().map(|&(to, _)| to).sum::<u32>(), 199 * 100);
-            (rest.head[0].count, rest.head[0].before) = (0, NONE);
-            links.iter().for_each(|link| rest.join(link.one, link.other, link.conductance));
-            assert_eq!(rest.handfuls.len(), room);
+    fn the_first_sum_beyond_a_share_is_found() {
+        for many in [1, 3, COUNTED, COUNTED + 1, 40] {
+            let sums: Vec<f64> = (1..=many).map(|i| (i * (i + 1) / 2) as f64).collect();
+            for share in 0..=many * (many + 1) / 2 {
+                let passed = sums.iter().take_while(|&&sum| sum <= share as f64).count();
+                assert_eq!(beyond(&sums, share as f64), passed, "{share} of {many}");
+            }
         }
     }
 
-    /// As many as are sorted at once, and more; doubles count once.
+    /// In all their orders; the second and third differ by less than a millionth and stay as they were found.
     #[test]
-    fn neighbours_are_sorted_and_chosen_by_their_share() {
-        for many in [1, 3, 8, 9, 16, 17, 40] {
-            let (mut meeting, mut at) = (Meeting::default(), vec![0; many]);
-            // 7 has no common factor with these numbers.
-            let order: Vec<u32> = (0..many as u32).map(|i| i * 7 % many as u32).collect();
-            order.iter().for_each(|&to| meeting.add(to, 0.25 * f64::from(to + 1), &mut at));
-            order.iter().for_each(|&to| meeting.add(to, 0.75 * f64::from(to + 1), &mut at));
-            meeting.sort();
-            assert!(meeting.sorted.iter().map(|&(to, _)| to).eq(0..many as u32), "{:?}", meeting.sorted);
-            let all = many * (many + 1) / 2;
-            assert_eq!(meeting.sums.last(), Some(&(all as f64)));
-            for share in 0..=all {
-                let by_sums = (0..many).position(|i| (i + 1) * (i + 2) / 2 > share).unwrap_or(many - 1);
-                assert_eq!(meeting.chosen(0, share as f64) as usize, by_sums, "{share} of {all}");
-                assert_eq!(meeting.chosen(many - 1, share as f64) as usize, many - 1);
+    fn neighbours_are_sorted() {
+        const CONDUCTANCES: [f64; 5] = [1e-300, 0.25, 0.25 * (1.0 + 1e-9), 0.75, 1.0];
+        let mut found: [(u32, f64); 5] = std::array::from_fn(|i| (i as u32, CONDUCTANCES[i]));
+        // Every order by exchanges (Heap 1963).
+        let (mut turns, mut at, mut orders) = ([0; 5], 0, 0);
+        loop {
+            let by_hand = {
+                let mut all = found.to_vec();
+                all.sort_by_key(|&(_, conductance)| rising(conductance));
+                all
+            };
+            assert_eq!(sorted(&found), by_hand[..], "{found:?}");
+            assert_eq!([0, 3, 4].map(|i| sorted(&found)[i].0), [0, 3, 4]);
+            orders += 1;
+            while at < 5 && turns[at] == at {
+                (turns[at], at) = (0, at + 1);
+            }
+            if at == 5 {
+                break;
+            }
+            found.swap(if at % 2 == 0 { 0 } else { turns[at] }, at);
+            (turns[at], at) = (turns[at] + 1, 0);
+        }
+        assert_eq!(orders, 120);
+    }
+
+    /// However many neighbours: numbers that the loops know beforehand, and more.
+    #[test]
+    fn a_row_gives_way_whatever_it_meets() {
+        for many in 0..40 {
+            let links: Vec<Link> = (1..=many)
+                .map(|other| Link { one: 0, other, conductance: f64::from(1 + other * 7 % many) })
+                .collect();
+            let order: Vec<u32> = (0..=many).collect();
+            let mut factor = Factor::of_none(order, 0);
+            let mut rest = Rest::new(&factor.row, &vec![1.0; many as usize + 1], &links);
+            factor.eliminate(&mut rest, 0..1);
+            let all: f64 = links.iter().map(|link| link.conductance).sum();
+            assert!((factor.pivot[0] * (1.0 + all) - 1.0).abs() < 1e-14);
+            // A tree, of what the star conducted to each, and what leads on through the star's ground.
+            let (mut meeting, mut links_of_tree, mut ground) = (Meeting::of(many as usize + 1), 0, 0.0);
+            for place in 1..=many {
+                ground += rest.take(place, &mut meeting) - 1.0;
+                links_of_tree += meeting.found.len() as u32;
+            }
+            assert_eq!(links_of_tree, many.saturating_sub(1), "{many}");
+            assert!((ground - all / (1.0 + all)).abs() < 1e-12, "{many}: {ground}");
+            let mut up: Vec<f64> = vec![0.0; many as usize + 1];
+            factor.pivot.resize(many as usize + 1, 1.0);
+            up[0] = 1.0 + all;
+            let right = up.clone();
+            factor.solve(&right, &mut vec![0.0; many as usize + 1], &mut up);
+            for link in &links {
+                assert!(
+                    (up[link.other as usize] - link.conductance).abs() < 1e-5 * link.conductance,
+                    "{up:?}"
+                );
             }
         }
     }

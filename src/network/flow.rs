@@ -85,6 +85,8 @@ struct Passage {
     other: u32,
     /// The exit.
     exit: u32,
+    /// The same constriction as an exit of the void beyond, or [`NO_TWIN`].
+    twin: u32,
 }
 
 impl Flow {
@@ -99,7 +101,7 @@ impl Flow {
             for c in network.exits(one) {
                 let (exit, twin) = (c as u32, twins.map_or(NO_TWIN, |twin| twin[c]));
                 if twin >= exit {
-                    passages.push(Passage { one, other: other[c], exit });
+                    passages.push(Passage { one, other: other[c], exit, twin });
                 }
             }
         }
@@ -229,13 +231,15 @@ impl Flow {
         let through: f64 = inlets.clone().map(|c| self.flux(reservoir, c)).sum();
         // Nor is one that the residual may stand for.
         let least = (NO_FLUX * through / inlets.len().max(1) as f64).max(self.residual_of(inlets));
-        let Network { exit_begin, diameter, undirected, .. } = network;
+        let Network { diameter, undirected, .. } = network;
         let weight = &mut undirected.as_mut().expect("it has a reservoir").weight;
-        for (void, exits) in (0u32..).zip(exit_begin.windows(2)) {
-            for exit in exits[0] as usize..exits[1] as usize {
-                let area = f64::from(diameter[exit]) * f64::from(diameter[exit]);
-                let towards = rule.weight(area, self.flux(void, exit), least);
-                weight[exit] = f64::from(u8::from(!self.blocked[exit])) * towards;
+        for &Passage { one, exit, twin, .. } in &self.passages {
+            let exit = exit as usize;
+            let area = f64::from(diameter[exit]) * f64::from(diameter[exit]);
+            let (flux, is_open) = (self.flux(one, exit), f64::from(u8::from(!self.blocked[exit])));
+            weight[exit] = is_open * rule.weight(area, flux, least);
+            if let Some(weight) = weight.get_mut(twin as usize) {
+                *weight = is_open * rule.weight(area, -flux, least);
             }
         }
     }

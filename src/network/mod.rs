@@ -25,6 +25,7 @@ mod passage;
 mod percolation;
 mod permeability;
 mod reach;
+mod rest;
 mod stratified;
 mod system;
 mod together;

@@ -5,7 +5,8 @@
 
 use std::ops::Range;
 
-use super::elimination::{Factor, Link};
+use super::elimination::Factor;
+use super::rest::Link;
 
 /// The residual is below this part of what flows in.
 pub(super) const CONVERGED: f64 = 1e-10;
