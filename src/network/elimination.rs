@@ -58,15 +58,15 @@ impl Factor {
         let rows = ground.len();
         let order = order(rows, links);
         let mut rest = Rest::new(&order, ground, links);
-        let mut factor = Self::of_none(order, 2 * links.len());
+        let mut factor = Self::of_none(order, rows + links.len());
         factor.eliminate(&mut rest, 0..rows as u32);
         factor
     }
 
-    /// Before anything is eliminated, with room for about so many parts.
+    /// Before anything is eliminated; with room, which takes no memory before it is used, for so many groups
+    /// of parts.
     fn of_none(row: Vec<u32>, parts: usize) -> Self {
-        let (parts, pivot) =
-            (Vec::with_capacity(row.len() + parts / TOGETHER), Vec::with_capacity(row.len()));
+        let (parts, pivot) = (Vec::with_capacity(parts), Vec::with_capacity(row.len()));
         Self { row, parts, pivot, choices: 0 }
     }
 
