@@ -29,7 +29,7 @@ pub fn permeability_mm2(graph: &VoidGraph, axis: usize) -> Result<f64, FlowError
     }
     let mut pressure = vec![0.0; voids];
     let layers = libm::cbrt(voids as f64) as usize;
-    system.solve(&mut pressure, layers)?;
+    system.solve(&mut pressure, layers, &mut None)?;
     let through: f64 = (0..graph.from.len())
         .map(|c| {
             let by = f64::from(graph.shift[c][axis]);

@@ -17,6 +17,10 @@ const BEST_OF_ROUNDING: f64 = 1e-6;
 /// Rounds after which a system that has not converged is given up, for each layer and a hundred besides.
 const ROUNDS: usize = 100;
 
+/// Rounds after which a factor of another system is given up: more than twice those of one's own, and what
+/// making that takes twice or three times.
+const ROUNDS_OF_ANOTHER: usize = 60;
+
 /// Sums that are made side by side: fixed, so that instructions change nothing.
 const SIDE_BY_SIDE: usize = 8;
 
@@ -106,9 +110,16 @@ impl System {
     }
 
     /// Conjugate gradients from the pressures that there are, and again from where they end while what they
-    /// carry along as the residual has left the true one.
+    /// carry along as the residual has left the true one. `factor` is one of a system with the same rows that
+    /// is nearly this one; where there is none, or where it takes too many rounds, one of this system is made
+    /// and left there.
     /// Gives the residual over the inflow.
-    pub(super) fn solve(mut self, pressure: &mut [f64], layers: usize) -> Result<f64, NotConverged> {
+    pub(super) fn solve(
+        mut self,
+        pressure: &mut [f64],
+        layers: usize,
+        factor: &mut Option<Factor>,
+    ) -> Result<f64, NotConverged> {
         self.normalise();
         let scale = dot(&self.inflow, &self.inflow).sqrt();
         if self.void.is_empty() || scale == 0.0 {
@@ -117,8 +128,25 @@ impl System {
         if !scale.is_finite() {
             return Err(NotConverged { rounds: 0, residual: f64::INFINITY });
         }
+        if factor.is_some()
+            && let Ok(residual) = self.solve_within(pressure, scale, factor, ROUNDS_OF_ANOTHER)
+        {
+            return Ok(residual);
+        }
+        *factor = None;
+        self.solve_within(pressure, scale, factor, ROUNDS * (layers + 100))
+    }
+
+    /// The same in at most so many rounds; pressures stay where they do not suffice.
+    fn solve_within(
+        &self,
+        pressure: &mut [f64],
+        scale: f64,
+        factor: &mut Option<Factor>,
+        most: usize,
+    ) -> Result<f64, NotConverged> {
         let mut x: Vec<f64> = self.void.iter().map(|&v| pressure[v as usize]).collect();
-        let (mut factor, mut rounds, mut before) = (None, 0, f64::INFINITY);
+        let (mut rounds, mut before) = (0, f64::INFINITY);
         loop {
             let mut residual = self.residual(&x);
             let size = dot(&residual, &residual).sqrt();
@@ -134,7 +162,7 @@ impl System {
             }
             before = size;
             let factor = factor.get_or_insert_with(|| Factor::new(&self.ground, &self.links));
-            rounds = self.descend(factor, &mut x, &mut residual, scale, rounds..ROUNDS * (layers + 100))?;
+            rounds = self.descend(factor, &mut x, &mut residual, scale, rounds..most)?;
         }
     }
 
@@ -222,10 +250,45 @@ mod tests {
                 }
             }
             let mut pressure = vec![0.0; VOIDS as usize];
-            system.solve(&mut pressure, VOIDS as usize).unwrap();
+            system.solve(&mut pressure, VOIDS as usize, &mut None).unwrap();
             pressure
         };
         assert_eq!(of(true), of(false));
         assert!(of(true).is_sorted_by(|above, below| above > below));
+    }
+
+    /// A factor of a network that conducts elsewhere does not do: it makes way for one that does.
+    #[test]
+    fn a_factor_that_does_not_serve_is_replaced() {
+        const SIDE: u32 = 40;
+        let of = |wide: u32, factor: &mut Option<Factor>| {
+            let mut system = System::of_voids((0..SIDE * SIDE).map(|_| true), 0);
+            for v in 0..SIDE * SIDE {
+                let [x, y] = [v % SIDE, v / SIDE];
+                let conductance = |turn: u32| if (v + turn) % 3 == wide { 1e4 } else { 1.0 };
+                if x + 1 < SIDE {
+                    system.join(v, v + 1, conductance(0));
+                }
+                if y + 1 < SIDE {
+                    system.join(v, v + SIDE, conductance(1));
+                } else {
+                    system.hold(v, 1.0, 0.0);
+                }
+                if y == 0 {
+                    system.hold(v, 1.0, 1.0);
+                }
+            }
+            let mut pressure = vec![0.5; (SIDE * SIDE) as usize];
+            let residual = system.solve(&mut pressure, SIDE as usize, factor).unwrap();
+            assert!(residual < 2.0 * CONVERGED, "{residual}");
+            pressure
+        };
+        let (mut factor, mut other) = (None, None);
+        let pressure = of(0, &mut factor);
+        of(1, &mut other);
+        // To the bit, since it begins anew where it began, and with the factor that it would have made.
+        assert_eq!(of(0, &mut other), pressure);
+        // One that does serve stays, and gives the same again.
+        assert_eq!(of(0, &mut factor), pressure);
     }
 }
