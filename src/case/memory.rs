@@ -18,8 +18,8 @@ const EVENT_BYTES: u64 = 16 << 10;
 const COUNTS_A_WORKER: (u64, u64) = (8, 32 << 10);
 
 /// Bytes for a constriction where water flows: two exits of 28 in the network and in its copy, 12 of the
-/// flow and 32 of tables each; 24 of the flow; and while the flow is solved links and entries of a factor in
-/// room that grows, and what reading a file leaves (measured: 523 in all, a million throats of a file).
+/// flow and 32 of tables each; 24 of the flow; and links, a factor, and what reading a file leaves (measured:
+/// at most 523 in all, a million throats of a file).
 const FLOW_BYTES: u64 = 2 * (2 * 28 + 12 + 32) + 24 + 300;
 
 /// What `record.voids` keeps, while it is written (bytes): for a void that holds particles at a moment its
@@ -74,7 +74,8 @@ impl Case {
 
     /// How many of all 2^64 words draw a particle no coarser than the finest constriction.
     fn passive_words(&self) -> u128 {
-        self.sampler.word_limit(self.finest)
+        let finest = self.finest_of_fixed.unwrap_or_else(|| (self.curve.smallest() / self.unit_mm) as f32);
+        self.sampler.word_limit(finest)
     }
 
     /// Bytes of the columns of a walk of `n_base` particles.
@@ -298,6 +299,15 @@ mod tests {
         let small = ["network.nx=80", "network.ny=80", "network.nz=100", "record.sensitivity=[]"];
         let all: Vec<String> = small.iter().chain(set).map(ToString::to_string).collect();
         Case::new(Scene::built_in(&all).unwrap()).unwrap()
+    }
+
+    /// As at the ends of a guessed curve's range.
+    #[test]
+    fn another_curve_has_another_finest_constriction() {
+        let coarse = case(&["base.n_base=1e9"]);
+        let fine = coarse.with_curve(coarse.curve.scaled(0.5).unwrap());
+        let [one_by_one, of_fine] = [&coarse, &fine].map(|case| case.one_by_one(case.n_base));
+        assert!(of_fine > one_by_one + 1_000_000, "{of_fine} for {one_by_one}");
     }
 
     #[test]

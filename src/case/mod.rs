@@ -149,8 +149,8 @@ pub struct Case {
     pub unit_mm: f64,
     /// The network, where all replicates walk the same: from a file, or the voids of a packing.
     pub fixed_network: Option<Network>,
-    /// Finest constriction, in units of `unit_mm`.
-    finest: f32,
+    /// Its finest constriction, in units of `unit_mm`.
+    finest_of_fixed: Option<f32>,
     /// Copies of a packing whose voids are the network, and their thickness together (mm).
     pub copies: Option<(u32, f64)>,
     /// What was measured on the packing whose voids are the network.
@@ -322,10 +322,6 @@ impl Case {
                 return Err(scene.clash(problem).into());
             }
         }
-        let finest = match &fixed_network {
-            Some(network) => network.finest_open(|_| false),
-            None => (curve.smallest() / unit_mm) as f32,
-        };
         let mut case = Self {
             packed,
             filter,
@@ -342,8 +338,8 @@ impl Case {
             grains_per_void,
             mass_ratio: walked.mass_ratio,
             unit_mm,
+            finest_of_fixed: fixed_network.as_ref().map(|network| network.finest_open(|_| false)),
             fixed_network,
-            finest,
             copies,
             graph,
             counts,

@@ -9,6 +9,9 @@ use crate::scene::{About, CurveSource, Scene};
 /// Part of the fingerprint of every case: raised whenever the program gives other results for the same scene.
 const PROTOCOL: u32 = 2;
 
+/// The same of cases in which water flows.
+const WATER_PROTOCOL: u32 = 3;
+
 impl Case {
     /// The scene with what its files and its filter's packing say of it, and with its files' names in a run
     /// folder: run again from there, it gives the same bits.
@@ -47,7 +50,8 @@ impl Case {
     pub fn fingerprint(&self) -> String {
         // Nothing follows from what is only said of it.
         let scene = Scene { about: About::default(), ..self.resolved() };
-        let mut text = format!("{PROTOCOL}\n{}", scene.to_toml()).into_bytes();
+        let protocol = if scene.exit_rule().needs_flow() { WATER_PROTOCOL } else { PROTOCOL };
+        let mut text = format!("{protocol}\n{}", scene.to_toml()).into_bytes();
         text.extend_from_slice(self.shipped.map_or("", |shipped| shipped.curve_csv).as_bytes());
         for input in self.inputs.iter().filter(|input| input.setting != "filter.density") {
             text.extend_from_slice(input.setting.as_bytes());

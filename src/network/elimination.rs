@@ -48,7 +48,7 @@ const GOLDEN_32: u32 = 0x9e37_79b9;
 /// Turns, as a power of two.
 const TURNS: u32 = 6;
 
-/// Sums among which one is found by counting, without a branch.
+/// At most so many sums are counted, without a branch: those of stars whose number of arms is known.
 const COUNTED: usize = 16;
 
 impl Factor {
@@ -63,8 +63,7 @@ impl Factor {
         factor
     }
 
-    /// Before anything is eliminated; with room, which takes no memory before it is used, for so many groups
-    /// of parts.
+    /// Before anything is eliminated; with room for so many groups of parts.
     fn of_none(row: Vec<u32>, parts: usize) -> Self {
         let (parts, pivot) = (Vec::with_capacity(parts), Vec::with_capacity(row.len()));
         Self { row, parts, pivot, choices: 0 }
@@ -129,7 +128,7 @@ impl Factor {
             let left = all - sums[i - 1];
             self.choices += 1;
             let share = (self.choices.wrapping_mul(GOLDEN) >> 11) as f64 / (1u64 << 53) as f64;
-            let chosen = beyond(sums, sums[i - 1] + share * left).clamp(i, met.len() - 1);
+            let chosen = passed(sums, sums[i - 1] + share * left).clamp(i, met.len() - 1);
             rest.join(one, met[chosen].0, conductance * left * pivot);
         }
     }
@@ -170,7 +169,7 @@ fn sorted<const N: usize>(found: &[(u32, f64); N]) -> [(u32, f64); N] {
 
 /// How many of these rising sums do not exceed a share.
 #[inline(always)]
-fn beyond(sums: &[f64], share: f64) -> usize {
+fn passed(sums: &[f64], share: f64) -> usize {
     match sums.len() {
         ..=COUNTED => sums.iter().map(|&sum| usize::from(sum <= share)).sum(),
         _ => sums.partition_point(|&sum| sum <= share),
@@ -337,8 +336,8 @@ mod tests {
         for many in [1, 3, COUNTED, COUNTED + 1, 40] {
             let sums: Vec<f64> = (1..=many).map(|i| (i * (i + 1) / 2) as f64).collect();
             for share in 0..=many * (many + 1) / 2 {
-                let passed = sums.iter().take_while(|&&sum| sum <= share as f64).count();
-                assert_eq!(beyond(&sums, share as f64), passed, "{share} of {many}");
+                let by_hand = sums.iter().take_while(|&&sum| sum <= share as f64).count();
+                assert_eq!(passed(&sums, share as f64), by_hand, "{share} of {many}");
             }
         }
     }

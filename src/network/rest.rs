@@ -8,7 +8,7 @@ pub(super) struct Link {
     pub conductance: f64,
 }
 
-/// Places that meet one, each once.
+/// Places that meet one, each once. Serves every place once.
 pub(super) struct Meeting {
     /// With their conductances, in the order in which they were found.
     pub found: Vec<(u32, f64)>,
@@ -41,7 +41,7 @@ const NONE: u32 = u32::MAX;
 const HANDFUL: usize = 6;
 
 /// Links of one place: the last that it was given, and where those before them are. A cache line; single
-/// precision is enough of what is approximate, and one that it cannot tell from 0 carries nothing.
+/// precision is enough of what is approximate, and what it cannot tell from 0 is the least that it can.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 struct Head {
@@ -107,7 +107,7 @@ impl Rest {
             };
         }
         let at = head.count as usize;
-        (head.to[at], head.conductance[at]) = (to, conductance as f32);
+        (head.to[at], head.conductance[at]) = (to, (conductance as f32).max(f32::MIN_POSITIVE));
         head.count += 1;
     }
 

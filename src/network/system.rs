@@ -17,9 +17,8 @@ const BEST_OF_ROUNDING: f64 = 1e-6;
 /// Rounds after which a system that has not converged is given up, for each layer and a hundred besides.
 const ROUNDS: usize = 100;
 
-/// Rounds after which a factor of another system is given up: more than twice those of one's own, and what
-/// making that takes twice or three times.
-const ROUNDS_OF_ANOTHER: usize = 60;
+/// The most rounds with a factor of another system: so many, and so many times those of its own system.
+const ROUNDS_OF_ANOTHER: [usize; 2] = [60, 3];
 
 /// Sums that are made side by side: fixed, so that instructions change nothing.
 const SIDE_BY_SIDE: usize = 8;
@@ -31,6 +30,15 @@ pub(super) struct NotConverged {
     pub rounds: usize,
     /// Residual over inflow.
     pub residual: f64,
+}
+
+/// A factor that serves one system after another of the same rows.
+pub(super) struct Kept {
+    factor: Factor,
+    /// Rounds that the system took that it is of.
+    rounds: usize,
+    /// Exits that have closed since.
+    pub closed: usize,
 }
 
 /// The equations of the voids inside: a row for each.
@@ -110,15 +118,14 @@ impl System {
     }
 
     /// Conjugate gradients from the pressures that there are, and again from where they end while what they
-    /// carry along as the residual has left the true one. `factor` is one of a system with the same rows that
-    /// is nearly this one; where there is none, or where it takes too many rounds, one of this system is made
-    /// and left there.
+    /// carry along as the residual has left the true one. What is kept is a factor of nearly this system;
+    /// where there is none, or it takes too many rounds, one of this system is made and left there.
     /// Gives the residual over the inflow.
     pub(super) fn solve(
         mut self,
         pressure: &mut [f64],
         layers: usize,
-        factor: &mut Option<Factor>,
+        kept: &mut Option<Kept>,
     ) -> Result<f64, NotConverged> {
         self.normalise();
         let scale = dot(&self.inflow, &self.inflow).sqrt();
@@ -128,23 +135,31 @@ impl System {
         if !scale.is_finite() {
             return Err(NotConverged { rounds: 0, residual: f64::INFINITY });
         }
-        if factor.is_some()
-            && let Ok(residual) = self.solve_within(pressure, scale, factor, ROUNDS_OF_ANOTHER)
-        {
-            return Ok(residual);
+        if let Some(Kept { factor, rounds, closed }) = kept.take() {
+            let [least, times] = ROUNDS_OF_ANOTHER;
+            let mut other = Some(factor);
+            if let Ok((residual, _)) =
+                self.solve_within(pressure, scale, &mut other, least.max(times * rounds))
+            {
+                *kept = other.map(|factor| Kept { factor, rounds, closed });
+                return Ok(residual);
+            }
         }
-        *factor = None;
-        self.solve_within(pressure, scale, factor, ROUNDS * (layers + 100))
+        let mut factor = None;
+        let most = ROUNDS * (layers + 100);
+        let (residual, rounds) = self.solve_within(pressure, scale, &mut factor, most)?;
+        *kept = factor.map(|factor| Kept { factor, rounds, closed: 0 });
+        Ok(residual)
     }
 
-    /// The same in at most so many rounds; pressures stay where they do not suffice.
+    /// The same in at most so many rounds: residual and rounds; pressures stay where they do not suffice.
     fn solve_within(
         &self,
         pressure: &mut [f64],
         scale: f64,
         factor: &mut Option<Factor>,
         most: usize,
-    ) -> Result<f64, NotConverged> {
+    ) -> Result<(f64, usize), NotConverged> {
         let mut x: Vec<f64> = self.void.iter().map(|&v| pressure[v as usize]).collect();
         let (mut rounds, mut before) = (0, f64::INFINITY);
         loop {
@@ -155,7 +170,7 @@ impl System {
             let is_stuck = size > 0.5 * before && size <= BEST_OF_ROUNDING * scale;
             if is_close || is_stuck {
                 self.void.iter().zip(&x).for_each(|(&v, &p)| pressure[v as usize] = p);
-                return Ok(size / scale);
+                return Ok((size / scale, rounds));
             }
             if size > 0.5 * before {
                 return Err(NotConverged { rounds, residual: size / scale });
@@ -261,7 +276,7 @@ mod tests {
     #[test]
     fn a_factor_that_does_not_serve_is_replaced() {
         const SIDE: u32 = 40;
-        let of = |wide: u32, factor: &mut Option<Factor>| {
+        let of = |wide: u32, kept: &mut Option<Kept>| {
             let mut system = System::of_voids((0..SIDE * SIDE).map(|_| true), 0);
             for v in 0..SIDE * SIDE {
                 let [x, y] = [v % SIDE, v / SIDE];
@@ -279,16 +294,36 @@ mod tests {
                 }
             }
             let mut pressure = vec![0.5; (SIDE * SIDE) as usize];
-            let residual = system.solve(&mut pressure, SIDE as usize, factor).unwrap();
+            let residual = system.solve(&mut pressure, SIDE as usize, kept).unwrap();
             assert!(residual < 2.0 * CONVERGED, "{residual}");
             pressure
         };
-        let (mut factor, mut other) = (None, None);
-        let pressure = of(0, &mut factor);
+        let (mut own, mut other) = (None, None);
+        let pressure = of(0, &mut own);
         of(1, &mut other);
+        for kept in [&mut own, &mut other] {
+            kept.as_mut().unwrap().closed = 7;
+        }
         // To the bit, since it begins anew where it began, and with the factor that it would have made.
         assert_eq!(of(0, &mut other), pressure);
-        // One that does serve stays, and gives the same again.
-        assert_eq!(of(0, &mut factor), pressure);
+        assert_eq!(other.unwrap().closed, 0);
+        assert_eq!(of(0, &mut own), pressure);
+        assert_eq!(own.unwrap().closed, 7, "one that serves stays");
+    }
+
+    /// Links that single precision rounds to 0 beside one dead end that conducts enormously: what they hold
+    /// is solved all the same.
+    #[test]
+    fn conductances_that_single_precision_does_not_tell_apart_are_solved() {
+        const VOIDS: u32 = 300;
+        let mut system = System::of_voids((0..=VOIDS).map(|_| true), 0);
+        system.hold(0, 1.0, 1.0);
+        system.hold(VOIDS - 1, 2.0, 0.0);
+        (0..VOIDS - 1).for_each(|void| system.join(void, void + 1, 1.0 + f64::from(void % 7)));
+        system.join(VOIDS / 2, VOIDS, 1e50);
+        let mut pressure = vec![0.0; VOIDS as usize + 1];
+        system.solve(&mut pressure, VOIDS as usize, &mut None).unwrap();
+        assert!(pressure[..VOIDS as usize].is_sorted_by(|above, below| above > below));
+        assert!((pressure[VOIDS as usize] - pressure[VOIDS as usize / 2]).abs() < 1e-6);
     }
 }
