@@ -412,4 +412,35 @@ mod tests {
             assert!((kept - anew).abs() < 1e-8, "void {v}: {kept} for {anew}");
         }
     }
+
+    /// Each exit weighs by what flows out of it, and nothing where water flows in, or where it is blocked,
+    /// though it leaks.
+    #[test]
+    fn exits_weigh_by_what_leaves_through_them() {
+        let diameters = (0..3 * 6 * 6 * 6).map(|c| 1.0 + (c * 7919 % 100) as f32 / 100.0);
+        let lattice = Network::cubic_from_diameters([6, 6, 6], diameters.collect(), 1.0).unwrap();
+        for rule in [ExitRule::Flux, ExitRule::AreaAlongFlow] {
+            let mut network = lattice.undirected_lattice(rule, 0.1, 4.0).unwrap();
+            let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
+            (0..network.constrictions()).step_by(5).for_each(|c| network.set_blocked(&mut blocked, c, true));
+            let mut flow = Flow::new(&network);
+            flow.solve(&network, &blocked).unwrap();
+            flow.direct(&mut network);
+            let mut seen = [0; 3];
+            for void in 0..network.voids() as u32 {
+                for c in network.exits(void) {
+                    let (flux, area) = (flow.flux(void, c), f64::from(network.diameters()[c]).powi(2));
+                    let out = if rule == ExitRule::Flux { flux } else { area };
+                    let (kind, expected) = match (blocked[c], flux > 0.0) {
+                        (true, _) => (0, 0.0),
+                        (false, false) => (1, 0.0),
+                        (false, true) => (2, out),
+                    };
+                    seen[kind] += 1;
+                    assert_eq!(network.exit_weight(c), expected, "{void} {c}: flux {flux}");
+                }
+            }
+            assert!(seen.iter().all(|&count| count > 100), "{seen:?}");
+        }
+    }
 }
