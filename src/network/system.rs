@@ -17,7 +17,8 @@ const BEST_OF_ROUNDING: f64 = 1e-6;
 /// Rounds after which a system that has not converged is given up, for each layer and a hundred besides.
 const ROUNDS: usize = 100;
 
-/// The most rounds with a factor of another system: so many, and so many times those of its own system.
+/// The most rounds with a factor of another system: so many, or so many times those that its own system took,
+/// whichever is more.
 const ROUNDS_OF_ANOTHER: [usize; 2] = [60, 3];
 
 /// Sums that are made side by side: fixed, so that instructions change nothing.
