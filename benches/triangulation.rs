@@ -2,7 +2,7 @@
 //!
 //! `cargo bench --bench triangulation -- [PACKING ...] [--grains FILE] [--tetrahedra FILE]`: packings from
 //! files (CSV or LAMMPS dump), or else 10,000 grains at random. Goal: within twice CGAL's time for the
-//! same packing with its images, which `scripts/compare_triangulation.sh` measures beside it. For that
+//! same packing with its images, which `scripts/peers/compare_triangulation.sh` measures beside it. For that
 //! comparison `--grains` writes the last packing, wrapped into its cell, as CSV, and `--tetrahedra` its
 //! tetrahedra, a line each.
 

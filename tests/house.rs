@@ -3,6 +3,9 @@
 //! The tests read the source as text: rooms and files by `use` lines and paths, without the code of tests. They would miss an
 //! arrow that only a macro writes.
 
+#[path = "house/folders.rs"]
+mod folders;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};

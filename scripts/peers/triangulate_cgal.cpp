@@ -1,4 +1,4 @@
-// Regular triangulation of a periodic packing by CGAL, for scripts/compare_triangulation.sh.
+// Regular triangulation of a periodic packing by CGAL, for scripts/peers/compare_triangulation.sh.
 //
 // triangulate_cgal PACKING.csv MARGIN REPEATS OUT: the grains and their images within MARGIN of the
 // largest grain around the cell are triangulated; the shortest time of REPEATS is printed; one

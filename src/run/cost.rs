@@ -4,7 +4,7 @@
 //! first run, whose counted work says what more of them will take. Its figures are those of one thread of a
 //! processor of 2024 that is shared with other work; only what ends in `_here` asks how fast the machine is
 //! on which it runs. `results/check-*.md` and `results/slurm-*.md` hold estimates against measured
-//! times (`scripts/check_times.py`).
+//! times (`scripts/checks/check_times.py`).
 
 use super::pilot::{WorkByVoid, pilot, small_packing_seconds};
 use super::replicates::first_replicates;

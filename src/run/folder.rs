@@ -293,7 +293,7 @@ pub(super) fn clear_but_scene(folder: &Folder) -> Result<(), StoreError> {
 fn clear_results(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
     let files: Vec<&str> = kind.files().iter().copied().filter(|name| *name != "scene.toml").collect();
     folder.remove_all(&files)?;
-    // The pictures were made of the drawings by others, as `scripts/figures_to_png.sh`.
+    // The pictures were made of the drawings by others, as `scripts/browser/figures_to_png.sh`.
     let both = |name: &&str| ["svg", "png"].map(|ending| format!("{name}.{ending}"));
     let figures: Vec<String> = kind.figures().iter().flat_map(both).collect();
     folder.remove_all_in("figures", &figures)?;

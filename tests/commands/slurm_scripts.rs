@@ -1,5 +1,5 @@
 //! `voidwalk campaign --slurm` and `--collect` without Slurm: the scripts are run by hand, with Slurm's commands played by
-//! small scripts that note how they were called. `scripts/test_slurm.sh` does the same on a real one.
+//! small scripts that note how they were called. `scripts/checks/test_slurm.sh` does the same on a real one.
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt;

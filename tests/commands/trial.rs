@@ -1,11 +1,11 @@
-//! `scripts/trial.py` on a few pairs of soils.
+//! `scripts/checks/trial.py` on a few pairs of soils.
 
 use std::path::Path;
 use std::process::Command;
 
 #[test]
 fn the_trial_finds_no_green_page_where_a_rule_of_practice_is_not_met() {
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/trial.py");
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/checks/trial.py");
     let output = Command::new("python3")
         .arg(script)
         .args(["--small", "--binary", env!("CARGO_BIN_EXE_voidwalk")])

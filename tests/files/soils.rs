@@ -1,4 +1,4 @@
-//! Every file of `tests/soils` is understood or refused as the `.txt` beside it says; `scripts/make_soils.py`
+//! Every file of `tests/soils` is understood or refused as the `.txt` beside it says; `scripts/checks/make_soils.py`
 //! writes them.
 
 use std::path::{Path, PathBuf};

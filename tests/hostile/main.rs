@@ -1,5 +1,5 @@
 //! Hostile bytes for every reader: the functions that the fuzz targets call, on files that were changed at random and on bytes
-//! made of the words that each reader knows. `scripts/fuzz.sh` goes on for as long as you like.
+//! made of the words that each reader knows. `scripts/checks/fuzz.sh` goes on for as long as you like.
 
 use std::fs;
 use std::path::Path;

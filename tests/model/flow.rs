@@ -64,7 +64,7 @@ fn resistors_add_up() {
 }
 
 /// A unit of conductance changes no digit, however large or small: squares of such numbers are none. What the
-/// unit is worked out from are even powers of two; `scripts/same_bits.py` holds the digits of packings.
+/// unit is worked out from are even powers of two; `scripts/checks/same_bits.py` holds the digits of packings.
 #[test]
 fn the_unit_of_conductance_is_free() {
     use LinkEnd::Void;

@@ -165,7 +165,7 @@ fn strongly_damped_packings_come_to_rest() {
 }
 
 /// Over two decades of stiffness the overlaps follow Hertz's law (stiffness to the power of -2/3) and void ratio hardly changes. 600 grains
-/// scatter by 0.006 in void ratio, so this would miss a drift below 0.02; `scripts/study_packing.py` measures it.
+/// scatter by 0.006 in void ratio, so this would miss a drift below 0.02; `scripts/studies/study_packing.py` measures it.
 #[test]
 fn stiffness_sets_the_overlaps_and_hardly_the_void_ratio() {
     let filter = Gradation::linear_from_d0(1.0, 1.5).unwrap();
@@ -182,7 +182,7 @@ fn stiffness_sets_the_overlaps_and_hardly_the_void_ratio() {
 }
 
 /// Half the rate of squeeze and servo, mean of two seeds: far coarser than the 0.002 that is wanted, as 1,000 grains scatter by 0.004;
-/// `scripts/study_packing.py` measures it.
+/// `scripts/studies/study_packing.py` measures it.
 #[test]
 fn half_the_rate_gives_the_same_void_ratio() {
     let filter = Gradation::linear_from_d0(1.0, 1.5).unwrap();

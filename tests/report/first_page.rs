@@ -130,7 +130,7 @@ fn headings_are_plain_words() {
     }
 }
 
-/// The rest is looked at in a browser: `scripts/look_at_report.sh REPORT.html OUT.pdf`.
+/// The rest is looked at in a browser: `scripts/browser/look_at_report.sh REPORT.html OUT.pdf`.
 #[test]
 fn print_opens_what_is_collapsed_and_keeps_heads_of_tables() {
     let page = made(&Plan::usual()).0;

@@ -1,6 +1,6 @@
 //! `voidwalk-paper FOLDER`: the page of the paper's reproduction. Each of its figures with our result, and
 //! every number that it states in its text beside ours, judged by one rule, from the folder alone that
-//! `scripts/paper.sh` fills.
+//! `scripts/paper/paper.sh` fills.
 //!
 //! The modules stand in the order in which a number goes from our results to the page; each uses only those
 //! before it:
@@ -34,7 +34,7 @@ use voidwalk::report::figures::visible;
 #[derive(Parser)]
 #[command(version)]
 struct Arguments {
-    /// The folder that scripts/paper.sh filled
+    /// The folder that scripts/paper/paper.sh filled
     folder: PathBuf,
 }
 
@@ -43,7 +43,7 @@ fn main() -> ExitCode {
     // The plan that the page is about; any other may be missing.
     if !folder.join("paper/ledger.jsonl").is_file() {
         let shown = folder.display();
-        let problem = "holds no paper/ledger.jsonl; name a folder that scripts/paper.sh filled";
+        let problem = "holds no paper/ledger.jsonl; name a folder that scripts/paper/paper.sh filled";
         return ended(2, &format!("refused: {shown}: {problem}"));
     }
     match page::write(&folder) {

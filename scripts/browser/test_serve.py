@@ -1,0 +1,334 @@
+"""Drives Chromium for test_serve.sh. Python's standard library only."""
+
+import base64
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+from browser import Browser
+
+BASE = "size_mm,percent\n0.08,0\n0.15,40\n0.2,70\n0.3,100\n"
+FINE = "size_mm,percent\n0.5,0\n0.7,30\n1.0,70\n1.5,100\n"
+COARSE = "size_mm,percent\n1.0,0\n1.5,30\n2.0,70\n3.0,100\n"
+SMALL = "network.nx=8\nnetwork.ny=8\nnetwork.nz=10\nrecord.sensitivity=[]"
+
+# Every wait is so many times as long: for a debug build, or a machine that has other things to do.
+PATIENCE = float(os.environ.get("PATIENCE", "1"))
+
+# A run that does not end while it is looked at.
+LONG = "network.nx=12\nnetwork.ny=12\nnetwork.nz=20\nreplicates=2000\nrecord.sensitivity=[]"
+
+WIDE = "document.documentElement.scrollWidth > document.documentElement.clientWidth"
+
+
+# Words whose contrast with what lies behind them is below 4.5, as WCAG 2 asks at level AA; buttons that cannot be pressed and drawings apart.
+FAINT = """(() => {
+  const parts = (text) => { const [r, g, b, a = 1] = text.match(/[\\d.]+/g).map(Number); return { rgb: [r, g, b], a }; };
+  const light = (rgb) => rgb.map((c) => c / 255).map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4))
+    .reduce((sum, c, i) => sum + c * [0.2126, 0.7152, 0.0722][i], 0);
+  const behind = (at) => {
+    for (; at; at = at.parentElement) {
+      const found = parts(getComputedStyle(at).backgroundColor);
+      if (found.a === 1) return found.rgb;
+    }
+    return matchMedia("(prefers-color-scheme: dark)").matches ? [18, 18, 18] : [255, 255, 255];
+  };
+  const found = [];
+  for (const at of document.querySelectorAll("body *")) {
+    const says = [...at.childNodes].some((node) => node.nodeType === 3 && node.textContent.trim());
+    if (!says || at.closest("svg, :disabled, script, noscript, [hidden]") || !at.getClientRects().length) continue;
+    const [a, b] = [parts(getComputedStyle(at).color).rgb, behind(at)].map(light);
+    const contrast = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+    if (contrast < 4.5) found.push(`${at.textContent.trim().slice(0, 40)}: ${contrast.toFixed(2)}`);
+  }
+  return found;
+})()"""
+
+
+class Tab:
+    """The page in a tab."""
+
+    def __init__(self, browser, url, pictures, width=1280, height=900):
+        self.browser, self.url, self.pictures, self.width, self.height = browser, url, pictures, width, height
+        self.tab = browser.open(url, width, height)
+
+    def run(self, script):
+        answer = self.browser.ask("Runtime.evaluate", self.tab, expression=script, awaitPromise=True, returnByValue=True)
+        if "exceptionDetails" in answer:
+            raise SystemExit(f"{script}: {answer['exceptionDetails']}")
+        return answer["result"].get("value")
+
+    def until(self, script, seconds=30):
+        end = time.monotonic() + PATIENCE * seconds
+        while time.monotonic() < end:
+            if self.run(f"Boolean({script})"):
+                return
+            time.sleep(0.1)
+        self.picture("not-reached")
+        raise SystemExit(f"not reached within {seconds} s: {script}\n{self.run('document.body.innerText')}")
+
+    def again(self):
+        self.browser.show(self.tab, "about:blank", self.width, self.height)
+        self.browser.show(self.tab, self.url, self.width, self.height)
+
+    def reload(self):
+        self.browser.events = [event for event in self.browser.events if event.get("method") != "Page.loadEventFired"]
+        self.browser.ask("Page.reload", self.tab)
+        self.browser.wait("Page.loadEventFired")
+
+    def paste(self, role, text):
+        box = f'document.querySelector(\'.sheet[data-role="{role}"]\')'
+        self.run(f"{box}.querySelector('details').open = true; {box}.querySelector('textarea').value = {json.dumps(text)};"
+                 f"{box}.querySelector('.paste').click()")
+
+    def drop(self, role, name, content):
+        data = base64.b64encode(content).decode()
+        self.run(f"""(() => {{
+          const bytes = Uint8Array.from(atob({json.dumps(data)}), c => c.charCodeAt(0));
+          const moved = new DataTransfer();
+          moved.items.add(new File([bytes], {json.dumps(name)}));
+          document.querySelector('.sheet[data-role="{role}"]').dispatchEvent(
+            new DragEvent('drop', {{ dataTransfer: moved, bubbles: true, cancelable: true }}));
+        }})()""")
+
+    def settings(self, text):
+        self.run(f"document.querySelector('#free').value = {json.dumps(text)}")
+
+    def click(self, selector):
+        self.run(f"document.querySelector({json.dumps(selector)}).click()")
+
+    def job(self, at, state, seconds=30):
+        self.until(f"document.querySelectorAll('.job')[{at}]?.dataset.state === {json.dumps(state)}", seconds)
+
+    def picture(self, name):
+        time.sleep(0.15)
+        if self.run(WIDE):
+            raise SystemExit(f"{name}: the page is wider than its window")
+        picture = self.browser.ask("Page.captureScreenshot", self.tab, captureBeyondViewport=True)["data"]
+        (self.pictures / f"{name}.png").write_bytes(base64.b64decode(picture))
+
+    def readable(self, name):
+        """Nothing is faint, in the light and in the dark; a picture of the latter."""
+        for scheme in ("light", "dark"):
+            self.browser.ask("Emulation.setEmulatedMedia", self.tab, features=[{"name": "prefers-color-scheme", "value": scheme}])
+            faint = self.run(FAINT)
+            if faint:
+                raise SystemExit(f"{name}: faint in the {scheme}: {faint}")
+            if scheme == "dark":
+                self.picture(f"{name}-in-the-dark")
+        self.browser.ask("Emulation.setEmulatedMedia", self.tab, features=[])
+
+    def printed(self, name):
+        page = self.browser.ask("Page.printToPDF", self.tab, printBackground=True, paperWidth=8.27, paperHeight=11.69)["data"]
+        (self.pictures / f"{name}.pdf").write_bytes(base64.b64decode(page))
+
+
+def serve(binary, folder, out):
+    """The program, and the address that it prints."""
+    log = folder / "log.txt"
+    process = subprocess.Popen([binary, "serve", "--out", out], cwd=folder, stdout=log.open("w"), stderr=subprocess.STDOUT)
+    for _ in range(100):
+        lines = [line for line in log.read_text().splitlines() if line.startswith("open ")]
+        if lines:
+            return process, lines[0].removeprefix("open ")
+        time.sleep(0.05)
+    raise SystemExit(f"does not begin: {log.read_text()}")
+
+
+# What a page logs whose program has just ended: whoever was about to be answered is cut off, later callers find nobody.
+GONE = ["ERR_CONNECTION_REFUSED", "ERR_CONNECTION_RESET", "ERR_EMPTY_RESPONSE"]
+
+
+def complaints(browser, ended=False):
+    """What the pages have logged, but for answers that say what is wrong with the input and, if the program has `ended`, for that."""
+    found, expected = [], ["status of 4"] + (GONE if ended else [])
+    for event in browser.events:
+        said = event.get("params", {})
+        if event.get("method") == "Runtime.exceptionThrown":
+            found.append(str(said["exceptionDetails"]))
+        if event.get("method") == "Log.entryAdded" and said["entry"]["level"] == "error":
+            text = said["entry"]["text"]
+            if not any(known in text for known in expected):
+                found.append(text)
+    return found
+
+
+def quiet(browser, ended=False):
+    """Refuses complaints; what was logged is then forgotten."""
+    found = complaints(browser, ended)
+    if found:
+        raise SystemExit("\n".join(found))
+    browser.events = []
+
+
+def main(binary, pictures):
+    binary, pictures = str(pathlib.Path(binary).resolve()), pathlib.Path(pictures)
+    pictures.mkdir(parents=True, exist_ok=True)
+    workbook = pathlib.Path("tests/soils/sheets.xlsx").read_bytes()
+    with tempfile.TemporaryDirectory() as root, tempfile.TemporaryDirectory() as profile, Browser(profile) as browser:
+        root = pathlib.Path(root)
+        process, url = serve(binary, root, "served")
+        try:
+            look(browser, url, pictures, workbook, root, process, binary)
+        finally:
+            if process.poll() is None:
+                process.kill()
+                process.wait()
+        quiet(browser, ended=True)
+    print(f"the page of serve: no complaint; pictures in {pictures}")
+
+
+def look(browser, url, pictures, workbook, root, process, binary):
+    tab = Tab(browser, url, pictures)
+    tab.until("document.querySelector('#version').textContent")
+    tab.picture("01-empty")
+
+    # Wrong input says what is wrong, as the command line does, and leaves nothing behind.
+    tab.paste("base", "size_mm,percent\n0.1,10\n0.2,x\n")
+    tab.until("document.querySelector('.sheet[data-role=base] .problem').textContent.includes('base.csv')")
+    tab.picture("02-wrong-input")
+    tab.readable("02-wrong-input")
+    said = tab.run("document.querySelector('.sheet[data-role=base] .problem').textContent")
+    (root / "base.csv").write_text("size_mm,percent\n0.1,10\n0.2,x\n")
+    told = subprocess.run([binary, "soil", "base.csv"], cwd=root, capture_output=True, text=True).stderr
+    if told.strip() != f"refused: {said}":
+        raise SystemExit(f"not the words of the command line: {said!r}, {told!r}")
+
+    tab.paste("base", BASE)
+    tab.drop("filter", "../<b>fine\u202e.csv", FINE.encode())
+    tab.until("document.querySelectorAll('#rules tr').length > 10 && document.querySelector('#curves svg')")
+    tab.picture("03-curves-and-rules")
+    tab.readable("03-curves-and-rules")
+    read = "document.querySelector('#read').textContent"
+    tab.run("""(() => {
+      const [svg, path] = [document.querySelector('#curves svg'), document.querySelector('#curves .curve-1 path')];
+      const place = path.getPointAtLength(0).matrixTransform(svg.getScreenCTM());
+      svg.dispatchEvent(new PointerEvent('pointermove', { clientX: place.x, clientY: place.y, bubbles: true }));
+    })()""")
+    pointed = tab.run(read)
+    keys = []
+    for key in ["ArrowRight", "ArrowDown"]:
+        tab.run(f"document.querySelector('#curves').dispatchEvent(new KeyboardEvent('keydown', {{ key: '{key}' }}))")
+        keys.append(tab.run(read))
+    if not (all("Size (mm)" in said for said in [pointed, *keys]) and pointed.startswith("base: ") and keys[0].startswith("base: ")
+            and keys[1].startswith("filter: ") and pointed != keys[0]):
+        raise SystemExit(f"the curves do not say their values: {pointed!r}, {keys}")
+    if tab.run("document.querySelector('.sheet[data-role=filter] select').selectedOptions[0].text") != "bfine.csv":
+        raise SystemExit("the hostile name is not harmless")
+    tab.drop("more", "site.xlsx", workbook)
+    tab.until("document.querySelectorAll('#more li').length === 1")
+    tab.picture("04-a-workbook")
+    tab.click("#more button")
+
+    tab.settings("base.uc=3")
+    tab.click("#judge")
+    tab.until("document.querySelector('#form-problem').textContent.includes('did you mean `base.cu`')")
+    tab.run("document.querySelector('#form details').open = true")
+    tab.picture("05-wrong-setting")
+    tab.run("document.querySelector('#form details').open = false")
+
+    tab.settings(LONG)
+    tab.click("#check")
+    tab.until("document.querySelector('#checked').innerText.includes('base particles')")
+    tab.picture("06-what-it-would-do")
+    tab.click("#judge")
+    tab.until("document.querySelector('.job .so-far')", 60)
+    tab.picture("07-so-far")
+    tab.until("/^So far/.test(document.querySelector('.job .so-far').textContent)", 60)
+    tab.picture("08-more-so-far")
+
+    # A page that is loaded again, and another tab, find the job and the sheets.
+    tab.reload()
+    tab.until("document.querySelector('.job .so-far') && document.querySelector('.sheet[data-role=base] select').value === '1'")
+    tab.until("document.querySelectorAll('#rules tr').length > 10")
+    other = Tab(browser, url, pictures, 390, 800)
+    other.until("document.querySelector('.job .so-far') && document.querySelectorAll('#rules tr').length > 10")
+    if other.run("document.documentElement.scrollHeight") > 12_000:
+        raise SystemExit("on a telephone the page is longer than anybody reads")
+    other.picture("09-another-tab-on-a-telephone")
+    tab.run("document.querySelectorAll('.job button')[0].click()")
+    tab.job(0, "stopped")
+    other.job(0, "stopped")
+    tab.picture("10-stopped")
+    tab.until("[...document.querySelectorAll('.job button')].some(button => button.textContent === 'Continue')")
+    tab.run("[...document.querySelectorAll('.job button')].find(button => button.textContent === 'Continue').click()")
+    tab.job(0, "running")
+
+    # Another one waits for it.
+    tab.settings(SMALL)
+    tab.click("#quick")
+    tab.until("document.querySelector('#seed, [data-key=seed]')")
+    tab.click("#judge")
+    tab.until("document.querySelectorAll('.job').length === 2")
+    tab.job(0, "waiting")
+    tab.picture("11-waits")
+    tab.until("document.querySelectorAll('.job')[1].querySelector('button')?.textContent === 'Stop'")
+    tab.run("document.querySelectorAll('.job')[1].querySelector('button').click()")
+    tab.job(0, "done", 60)
+    tab.picture("12-done")
+    tab.readable("12-done")
+    tab.printed("12-done")
+    page = tab.run("document.querySelectorAll('.job')[0].querySelector('.actions a').href")
+    report = Tab(browser, page, pictures)
+    if not report.run("document.querySelector('.verdict .word')?.textContent"):
+        raise SystemExit("the page of the run is not there")
+    report.picture("13-its-page")
+
+    tab.drop("more", "coarse.csv", COARSE.encode())
+    tab.until("document.querySelectorAll('#more li').length === 1")
+    tab.click("#compare")
+    tab.until("document.querySelectorAll('.job').length === 3")
+    tab.job(0, "done", 60)
+    tab.picture("14-compared")
+    tab.readable("14-compared")
+    page = tab.run("document.querySelectorAll('.job')[0].querySelector('.actions a').href")
+    report.browser.show(report.tab, page, 1280, 900)
+    if report.run("document.querySelectorAll('.cases a').length") != 2:
+        raise SystemExit("the comparison links no page of its cases")
+    report.picture("15-its-page")
+    size = tab.run("fetch(document.querySelectorAll('.job')[0].querySelectorAll('.actions a')[1].href).then(a => a.blob()).then(b => b.size)")
+    if size < 20_000:
+        raise SystemExit(f"the folder to take away has {size} bytes")
+
+    # How coarse: a mistake in the words of the command line; then the boundaries, and the design's own page.
+    tab.run("document.querySelector('#shape').value = 'shire2016-cu1.5-loose';"
+            "document.querySelector('#shape').dispatchEvent(new Event('change'))")
+    tab.run("document.querySelector('#design-density').value = 'loose'")
+    tab.click("#design")
+    tab.until("document.querySelector('#design-problem').textContent.includes('keep one')")
+    tab.run("document.querySelector('#design-density').value = ''; document.querySelector('[data-design=replicates]').value = '3';"
+            "document.querySelector('#design-free').value = 'network.nx=5\\nnetwork.ny=5'; document.querySelector('#design-thickness').value = '8layers,4mm'")
+    tab.click("#design")
+    tab.until("document.querySelectorAll('.job').length === 4")
+    tab.job(0, "done", 120)
+    tab.picture("16-how-coarse")
+    tab.readable("16-how-coarse")
+    if tab.run("document.querySelectorAll('.job')[0].querySelectorAll('.boundaries tbody tr').length") != 2:
+        raise SystemExit("not a row a thickness")
+    other.until("document.querySelectorAll('.job').length === 4 && document.querySelector('.boundaries')")
+    other.picture("17-how-coarse-on-a-telephone")
+    page = tab.run("document.querySelectorAll('.job')[0].querySelector('.actions a').href")
+    report.browser.show(report.tab, page, 1280, 900)
+    if not report.run("document.body.innerText.includes('The band')"):
+        raise SystemExit("the page of the design is not there")
+
+    quiet(browser)
+    process.send_signal(signal.SIGTERM)
+    code = process.wait(timeout=30)
+    if code not in (0, 3):
+        raise SystemExit(f"ended with {code}")
+    tab.until("!document.querySelector('#gone').hidden", 15)
+    tab.picture("18-the-program-has-ended")
+    left = sorted(entry.name for entry in (root / "served").iterdir() if not entry.name.startswith("."))
+    if left != ["compare-3", "design-4", "run-1", "run-2", "serve.json", "sheets"]:
+        raise SystemExit(f"left behind: {left}")
+
+
+if __name__ == "__main__":
+    os.chdir(pathlib.Path(__file__).resolve().parents[2])
+    main(*sys.argv[1:])

@@ -1,0 +1,336 @@
+#!/usr/bin/env python3
+"""Writes the files of tests/soils: sieve tables as laboratories write them, and what must be made of each.
+
+    pip install openpyxl odfpy && scripts/checks/make_soils.py
+
+Beside each file stands a .txt. A file that is taken has a line for each soil, `NAME | size percent, size percent, ...` (mm, percent
+finer), and `note:` lines, of which each must be in a note of the first soil. A file that is refused has `refused:` lines, of which each
+must be in the message. The files are committed; the script is run again only to change them.
+"""
+
+import datetime
+import io
+import pathlib
+import struct
+import sys
+import zipfile
+
+HERE = pathlib.Path(__file__).resolve().parents[2] / "tests" / "soils"
+BASE = [(0.075, 2), (0.15, 10), (0.3, 30), (1.18, 60), (4.75, 98), (9.5, 100)]
+
+
+def points(rows):
+    return ", ".join(f"{size:g} {percent:g}" for size, percent in sorted(rows))
+
+
+def put(name, content, soils=None, notes=(), refused=()):
+    """A file with its expectation; soils: {name: rows} or rows of one soil without a name."""
+    content = content.encode() if isinstance(content, str) else content
+    (HERE / name).write_bytes(content)
+    expect(name, soils, notes, refused)
+
+
+def expect(name, soils, notes=(), refused=()):
+    soils = soils if isinstance(soils, dict) else {"": soils} if soils else {}
+    lines = [f"{soil} | {points(rows)}" for soil, rows in soils.items()]
+    lines += [f"note: {note}" for note in notes] + [f"refused: {part}" for part in refused]
+    (HERE / (name + ".txt")).write_text("\n".join(lines) + "\n")
+
+
+def table(rows, separator=",", comma=False, percent="", header="opening_mm,percent_finer", end="\n"):
+    def number(value):
+        return f"{value:g}".replace(".", ",") if comma else f"{value:g}"
+
+    lines = [header.replace(",", separator)] if header else []
+    lines += [f"{number(size)}{separator}{number(share)}{percent}" for size, share in rows]
+    return end.join(lines) + end
+
+
+def texts():
+    down = sorted(BASE, reverse=True)
+    # As today.
+    put("plain.csv", table(down), BASE)
+    put("ascending.csv", table(BASE), BASE)
+    put("no_header.csv", table(down, header=""), BASE)
+    put("bom.csv", b"\xef\xbb\xbf" + table(down).encode(), BASE)
+    put("crlf.csv", table(down, end="\r\n"), BASE)
+    put("semicolon_comma.csv", table(down, ";", True), BASE)
+    put("tab.csv", table(down, "\t"), BASE)
+    put("quoted_decimals.csv", "size,passing\n" + "".join(f'"{s:g}","{p:g}"\n'.replace(".", ",") for s, p in down), BASE)
+    put("nbsp.csv", "size;passing\n" + "".join(f"{s:g}\u00a0;\u00a0{p:g}\n" for s, p in down), BASE)
+    put("blank_lines.csv", table(down).replace("\n", "\n\n"), BASE)
+    put("trailing_columns.csv", table(down).replace("\n", ",,\n"), BASE)
+    put("comments.csv", "# lab 7\n" + table(down) + "# end\n", BASE)
+    put("several_100.csv", table([(75, 100), (19, 100)] + down), BASE)
+    put("swapped.csv", "percent_finer,opening_mm\n" + "".join(f"{p:g},{s:g}\n" for s, p in down), BASE)
+    # Encodings.
+    put("utf16le.csv", b"\xff\xfe" + table(down, "\t").encode("utf-16-le"), BASE, ["UTF-16LE"])
+    put("utf16be.csv", b"\xfe\xff" + table(down, ";", True).encode("utf-16-be"), BASE, ["UTF-16BE"])
+    put("utf16_no_mark.csv", table(down).encode("utf-16-le"), BASE, ["UTF-16LE"])
+    put("cp1252.csv", table(down, ";", True, header="Sieböffnung (mm);Durchgang (%)").encode("cp1252"), BASE, ["Windows-1252"])
+    put("old_mac.csv", table(down, end="\r"), BASE)
+    put("sep_line.csv", "sep=;\r\n" + table(down, ";", True, end="\r\n"), BASE)
+    # Percents.
+    put("percent_sign.csv", table(down, percent="%"), BASE)
+    put("percent_sign_comma.csv", table(down, ";", True, percent=" %"), BASE)
+    put("percent_0_decimals.csv", "size;passing\n9,5;100,0 %\n4,75;98,0 %\n0,075;2,0 %\n", [(9.5, 100), (4.75, 98), (0.075, 2)])
+    put("fractions.csv", "size_mm,fraction finer\n" + "".join(f"{s:g},{p / 100:g}\n" for s, p in down), BASE, ["fractions"])
+    put("fractions_no_header.csv", "".join(f"{s:g},{p / 100:g}\n" for s, p in down), BASE, ["fractions"])
+    put("fractions_as_percent.csv", "opening_mm,percent_finer\n" + "".join(f"{s:g},{p / 100:g}\n" for s, p in down),
+        refused=["line 2, percent_finer", "look like fractions"])
+    put("fractions_short.csv", "size_mm,passing\n4,0.97\n2,0.5\n1,0.1\n", refused=["line 2, percent_finer: \"0.97\"", "look like fractions"])
+    # US sieves, inches, units.
+    c33 = [(9.5, 100), (4.75, 97), (2.36, 85), (1.18, 65), (0.6, 40), (0.3, 18), (0.15, 5), (0.075, 1)]
+    put("us_names.csv", 'Sieve,Percent passing\n"3/8""",100\nNo. 4,97\nNo. 8,85\nNo. 16,65\nNo. 30,40\nNo. 50,18\nNo. 100,5\nNo. 200,1\n',
+        c33, ["ASTM E11"])
+    put("us_unquoted.csv", 'Sieve,Percent passing\n3/8",100\n#4,97\n#8,85\n#16,65\n#30,40\n#50,18\n#100,5\n#200,1\n', c33, ["ASTM E11"])
+    gravel = [(75, 100), (37.5, 90), (19, 60), (9.5, 30), (4.75, 5)]
+    put("inches.csv", 'Sieve;% passing\n3";100\n1 1/2";90\n3/4";60\n3/8";30\nNo. 4;5\n', gravel, ["ASTM E11"])
+    put("inches_bare.csv", 'Opening (in),% passing\n3,100\n1.5,90\n0.75,60\n0.375,30\n0.187,5\n',
+        gravel[:-1] + [(0.187 * 25.4, 5)], ["ASTM E11"])
+    put("inches_mixed.csv", 'Sieve,% passing\n1 1/2,100\n1,80\n3/4,60\n3/8,30\n', [(37.5, 100), (25, 80), (19, 60), (9.5, 30)], ["as inches"])
+    put("inches_or_mm.csv", 'Sieve,% passing\n1 1/2",100\n1,80\n', refused=["line 3, opening_mm: \"1\"", "its unit"])
+    put("cell_units.csv", "Size,Passing\n9.5 mm,100\n4.75 mm,97\n600 um,40\n75 µm,1\n", [(9.5, 100), (4.75, 97), (0.6, 40), (0.075, 1)])
+    put("micrometres.csv", "Opening (µm),Passing %\n2000,100\n600,40\n75,1\n", [(2, 100), (0.6, 40), (0.075, 1)], ["micrometres"])
+    put("micrometres_as_mm.csv", "opening_mm,passing\n4750,100\n600,40\n75,1\n", [(4750, 100), (600, 40), (75, 1)], ["is the column in micrometres"])
+    put("phi.csv", "phi,percent finer\n-2,100\n-1,80\n0,60\n1,40\n3,2\n", [(4, 100), (2, 80), (1, 60), (0.5, 40), (0.125, 2)], ["phi"])
+    put("sieve_numbers.csv", "Sieve No.,% passing\n4,100\n10,80\n40,30\n200,3\n", [(4.75, 100), (2, 80), (0.425, 30), (0.075, 3)], ["ASTM E11"])
+    put("date.csv", "Sieve,% passing\n04-Mar,100\n03-Aug,40\nNo. 4,5\n", refused=["line 2, opening_mm: \"04-Mar\"", "a date"])
+    # The pan, what is retained.
+    put("pan.csv", table(down) + "Pan,0\n", BASE, ["pan"])
+    put("pan_zero.csv", table(down) + "0,0\n", BASE, ["pan"])
+    put("pan_above_0.csv", table(down) + "Pan,2.1\n", refused=["line 8, percent_finer: \"2.1\"", "pan"])
+    put("pan_0_mm.csv", "Sieve,% passing\n4 mm,100\n1 mm,20\n0 mm,2\n", refused=["line 4, percent_finer: \"2\"", "pan"])
+    put("below.csv", "Opening (µm),% finer\n2000,100\n600,40\n<75,1\n", [(2, 100), (0.6, 40), (0.075, 1)])
+    soil = [(4, 100), (2, 80), (1, 50), (0.5, 10)]
+    put("mass_retained.csv", "Sieve (mm),Mass retained (g)\n4,0\n2,100\n1,150\n0.5,200\nPan,50\n", soil, ["masses retained"])
+    put("mass_total.csv", "Sieve (mm),Mass retained (g)\n4,0\n2,200\n1,150\n0.5,100\nTotal,500\n", [(4, 100), (2, 60), (1, 30), (0.5, 10)], ["masses retained"])
+    put("mass_no_pan.csv", "Sieve (mm),Mass retained (g)\n4,0\n2,100\n1,150\n0.5,200\n", refused=["line 5, percent_finer", "pan"])
+    put("percent_retained.csv", "Sieve (mm),% retained\n4,0\n2,20\n1,30\n0.5,40\nPan,10\n", soil, ["percents retained"])
+    put("cumulative_retained.csv", "Sieve (mm),Cumulative % retained\n4,0\n2,20\n1,50\n0.5,90\n", soil, ["cumulative percents retained"])
+    put("retained_unclear.csv", "Sieve (mm),% retained\n4,0\n2,10\n1,20\n0.5,40\n", refused=["cumulative", "individual"])
+    put("retained_wrong_sum.csv", "Sieve (mm),% retained\n4,0\n2,20\n1,30\n0.5,10\nPan,10\n", refused=["sum to 70"])
+    # Titles, other columns.
+    put("titles.csv", "Project: Dam, north abutment\nDate,22.11.2026\nSample no.,12\nDepth,3.5\n\nOpening (mm),% passing\n"
+        + table(down, header=""), BASE)
+    put("titles_comma_semicolon.csv", "Damm, Nordseite\nProbe, 12\n" + table(down, ";", True, header="Siebgröße in mm;Durchgang in %"), BASE)
+    put("units_row.csv", "Sieve,Passing\nmm,%\n" + table(down, header=""), BASE)
+    put("three_columns.csv", 'Sieve,Opening (mm),% passing\n"3/8""",9.5,100\nNo. 4,4.75,97\nNo. 200,0.075,1\nPan,,0\n',
+        [(9.5, 100), (4.75, 97), (0.075, 1)], ["pan"])
+    put("three_no_header.csv", "No. 4,4.75,100\nNo. 40,0.425,30\nNo. 200,0.075,1\n", [(4.75, 100), (0.425, 30), (0.075, 1)])
+    put("all_columns.csv", "Sieve mm,Mass retained g,% retained,Cum. % retained,% passing\n4,0,0,0,100\n2,100,20,20,80\n1,150,30,50,50\n0.5,200,40,90,10\nPan,50,10,100,\n", soil)
+    put("blank_cell.csv", "mm,passing\n9.5,100\n4.75,\n2,-\n1,50\n0.5,10\n", [(9.5, 100), (1, 50), (0.5, 10)], ["line 3 has no percent"])
+    put("hydrometer.csv", "Sieve (mm),% finer\n2,100\n0.425,70\n0.075,35\nHydrometer\nSieve (mm),% finer\n0.032,21\n0.002,6\n",
+        [(2, 100), (0.425, 70), (0.075, 35), (0.032, 21), (0.002, 6)], ["line 5 taken as a remark"])
+    put("footer.csv", table(down) + "Tested by,J. Smith\n", BASE, ["remark"])
+    put("several.csv", "Sieve (mm),Filter A,Base 1\n9.5,100,100\n4.75,60,100\n2,10,\n0.075,0,40\n",
+        {"Filter A": [(9.5, 100), (4.75, 60), (2, 10), (0.075, 0)], "Base 1": [(9.5, 100), (4.75, 100), (0.075, 40)]})
+    # Refused, as it should be.
+    put("not_monotone.csv", table([(4, 100), (2, 40), (1, 50)]), refused=["line 4, percent_finer", "line 3"])
+    put("twice.csv", table([(4, 100), (2, 40), (2, 30)]), refused=["line 4, opening_mm", "line 3"])
+    put("top_97.csv", table([(4, 97), (2, 40), (1, 5)]), refused=["line 2, percent_finer", "100 at the coarsest"])
+    put("empty.csv", "", refused=["no row of numbers"])
+    put("only_header.csv", "opening_mm,percent_finer\n", refused=["no row of numbers"])
+    put("one_row.csv", "opening_mm,percent_finer\n4,100\n", refused=["at least two openings"])
+    put("comma_in_comma.csv", "opening_mm,percent_finer\n4,100\n0,5,20\n", refused=["line 3", "decimal commas"])
+    put("thousands.csv", "opening;finer\n1,000;20.5\n2,000;100.0\n", refused=["thousands"])
+    put("old_excel.csv", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600), refused=["old kind (.xls)"])
+    put("pdf.csv", b"%PDF-1.7\n...", refused=["PDF"])
+    put("zeros.csv", b"4,100\n2,\x0050\n", refused=["line 2", "0x00"])
+    put("by_number.csv", "opening_mm,percent finer by number\n4,100\n2,50\n", refused=["line 1, header", "by mass"])
+    put("metres.csv", "opening (m),passing\n0.004,100\n0.002,50\n", refused=["line 1, header", "openings in mm"])
+
+
+AGS = """"GROUP","PROJ"
+"HEADING","PROJ_ID"
+"DATA","P1"
+
+"GROUP","GRAT"
+"HEADING","LOCA_ID","SAMP_TOP","SPEC_DPTH","GRAT_SIZE","GRAT_PERP","GRAT_TYPE"
+"UNIT","","m","m","%s","%%",""
+"TYPE","ID","2DP","2DP","3SF","0DP","PA"
+"DATA","BH1","1.50","1.50","0.063","12","HD"
+"DATA","BH1","1.50","1.50","0.02","5","HD"
+"DATA","BH1","1.50","1.50","2","100","WS"
+"DATA","BH1","1.50","1.50","0.425","60","WS"
+"DATA","BH1","1.50","1.50","0.063","12","WS"
+"DATA","BH2","3.00","3.00","20","100","WS"
+"DATA","BH2","3.00","3.00","2","%s","WS"
+"DATA","BH2","3.00","3.00","0.063","1","WS"
+"""
+
+
+def ags():
+    bh1 = [(0.02, 5), (0.063, 12), (0.425, 60), (2, 100)]
+    put("gradings.ags", AGS % ("mm", "30"), {"BH1 1.50 1.50": bh1, "BH2 3.00 3.00": [(0.063, 1), (2, 30), (20, 100)]})
+    put("gradings_bad.ags", AGS % ("mm", "x"), refused=["line 15, percent_finer: \"x\""])
+    put("gradings_unit.ags", AGS % ("furlong", "30"), refused=["line 7", "GRAT_SIZE"])
+    grag = ('"GROUP","GRAG"\n"HEADING","LOCA_ID","SAMP_TOP","GRAG_UC","GRAG_GRAV","GRAG_SAND","GRAG_FINE"\n'
+            '"UNIT","","m","","%","%","%"\n"DATA","BH1","1.50","6.8","0","88","12"\n\n')
+    both = AGS % ("mm", "30")
+    put("gradings_summary.ags", '"GROUP","PROJ"\n"HEADING","PROJ_ID"\n"DATA","P1"\n\n' + grag,
+        refused=["line 8", "GRAG", "a group GRAT with a row for each opening"])
+    put("gradings_both.ags", both.replace('"GROUP","GRAT"', grag + '"GROUP","GRAT"'),
+        {"BH1 1.50 1.50": bh1, "BH2 3.00 3.00": [(0.063, 1), (2, 30), (20, 100)]}, notes=["GRAG, which sums"])
+    put("no_gradings.ags", '"GROUP","PROJ"\n"HEADING","PROJ_ID"\n"DATA","P1"\n', refused=["GRAT"])
+
+
+def xlsx(name, sheets, change=None, **expected):
+    """A workbook of sheets: {name: rows}; `change` may work on the workbook before it is saved."""
+    import openpyxl
+
+    book = openpyxl.Workbook()
+    book.remove(book.active)
+    for title, rows in sheets.items():
+        sheet = book.create_sheet(title)
+        for row in rows:
+            sheet.append(row)
+    if change:
+        change(book)
+    out = io.BytesIO()
+    book.save(out)
+    put(name, out.getvalue(), **expected)
+
+
+def ods(name, sheets, percents=False, **expected):
+    from odf.opendocument import OpenDocumentSpreadsheet
+    from odf.table import Table, TableCell, TableRow
+    from odf.text import P
+
+    book = OpenDocumentSpreadsheet()
+    for title, rows in sheets.items():
+        sheet = Table(name=title)
+        for row in rows:
+            line = TableRow()
+            for value in row:
+                if isinstance(value, str):
+                    cell = TableCell(valuetype="string")
+                else:
+                    cell = TableCell(valuetype="percentage" if percents and value is row[1] else "float", value=value)
+                cell.addElement(P(text=str(value)))
+                line.addElement(cell)
+            sheet.addElement(line)
+        # As spreadsheets do: empty rows to the end.
+        sheet.addElement(TableRow(numberrowsrepeated=1048000))
+        book.spreadsheet.addElement(sheet)
+    out = io.BytesIO()
+    book.write(out)
+    put(name, out.getvalue(), **expected)
+
+
+def workbooks():
+    sand = [(0.075, 1), (0.6, 40), (4.75, 97), (9.5, 100)]
+    till = [(0.002, 6), (0.075, 35), (4.75, 90), (19, 100)]
+
+    def rows(soil, heading=("Opening (mm)", "% passing")):
+        return [list(heading)] + [list(point) for point in sorted(soil, reverse=True)]
+
+    titles = [["Project", "Dam, north"], ["Date", datetime.date(2026, 11, 22)], [], ["Depth (m)", 3.5]]
+    xlsx("one.xlsx", {"Sheet1": titles + rows(sand)}, soils=sand)
+    xlsx("sheets.xlsx", {"Cover": [["Soils of the dam"]], "Filter A": rows(sand), "Base 1": rows(till)},
+         soils={"Filter A": sand, "Base 1": till}, notes=["\"Cover\""])
+
+    def merge(book):
+        book.active.merge_cells("B1:C1")
+
+    both = [[size] + [dict(soil).get(size) for soil in (sand, till)] for size in (19, 9.5, 4.75, 0.6, 0.075, 0.002)]
+    xlsx("columns.xlsx", {"Soils": [["Sieve (mm)", "Percent passing", None], [None, "Filter A", "Base 1"]] + both}, merge,
+         soils={"Soils/Filter A": sand, "Soils/Base 1": till})
+
+    def percents(book):
+        for row in book.active.iter_rows(min_row=2, min_col=2):
+            row[0].number_format = "0.0%"
+
+    parts = [(size, percent / 100) for size, percent in sand]
+    xlsx("percent_cells.xlsx", {"A": rows(parts)}, percents, soils=sand)
+    xlsx("fractions.xlsx", {"A": rows(parts)}, soils=sand, notes=["fractions"])
+    names = [["Sieve", "mm", "% passing"], ['3/8"', 9.5, 100], ["No. 4", 4.75, 97], ["No. 30", 0.6, 40], ["No. 200", 0.075, 1], ["Pan", None, 0]]
+    xlsx("names.xlsx", {"A": names}, soils=sand, notes=["pan"])
+    xlsx("only_names.xlsx", {"A": [[row[0], row[2]] for row in names]}, soils=sand, notes=["ASTM E11"])
+    xlsx("masses.xlsx", {"A": [["Sieve mm", "Mass retained, g"], [9.5, 0], [4.75, 15], [0.6, 285], [0.075, 195], ["Pan", 5], ["Total", 500]]},
+         soils=sand, notes=["masses retained"])
+    xlsx("decimal_text.xlsx", {"A": [["Siebgröße, mm", "Durchgang"], ["9,5", "100 %"], ["4,75 mm", "97 %"], ["0,6", "40 %"], ["0,075", "1 %"]]}, soils=sand)
+    xlsx("hydrometer.xlsx", {"A": rows(till[1:]) + [["Hydrometer"], [0.002, 6]]}, soils=till)
+    xlsx("formula.xlsx", {"A": rows(sand)[:-1] + [[0.075, "=100-99"]]}, refused=["sheet \"A\", cell B5", "formula"])
+    xlsx("date.xlsx", {"A": [["Sieve", "% passing"], [datetime.date(2026, 3, 8), 100], ["No. 4", 60], ["No. 10", 10]]},
+         refused=["sheet \"A\", cell A2", "a date"])
+    xlsx("bad_value.xlsx", {"A": titles + rows(sand[1:]) + [[0.3, "sixty"], [0.1, 2]]}, refused=["sheet \"A\", cell B9", "sixty"])
+    xlsx("not_monotone.xlsx", {"A": rows([(4, 100), (2, 30), (1, 40)])}, refused=["sheet \"A\", cell B4", "row 3"])
+    xlsx("empty.xlsx", {"A": []}, refused=["no row of numbers"])
+    ods("one.ods", {"Filter": [["Project X"]] + rows(sand)}, soils={"Filter": sand})
+    ods("two.ods", {"Filter": rows(sand), "Base": rows(till)}, soils={"Filter": sand, "Base": till})
+    ods("percents.ods", {"A": rows(parts[1:])}, percents=True, soils=sand[1:])
+    ods("twice.ods", {"A": rows(sand) + [[0.075, 1]]}, refused=["sheet \"A\", cell A6", "every size once"])
+    hostile((HERE / "one.xlsx").read_bytes())
+
+
+def repacked(book, changes, deflate=zipfile.ZIP_DEFLATED):
+    """The zip with parts replaced or added."""
+    out = io.BytesIO()
+    with zipfile.ZipFile(io.BytesIO(book)) as old, zipfile.ZipFile(out, "w", deflate, compresslevel=9) as new:
+        for name in old.namelist():
+            if name not in changes:
+                new.writestr(name, old.read(name))
+        for name, content in changes.items():
+            new.writestr(name, content)
+    return out.getvalue()
+
+
+def hostile(book):
+    """Workbooks that would take gigabytes, or run something."""
+    sheet = "xl/worksheets/sheet1.xml"
+    put("macros.xlsx", repacked(book, {"xl/vbaProject.bin": b"x"}), refused=["macros"])
+    put("bomb.xlsx", repacked(book, {"xl/media/image1.png": bytes(80 << 20)}), refused=["too large", "unpacked"])
+    huge = repacked(book, {sheet: b"<worksheet><sheetData>" + b" " * (30 << 20)})
+    put("large_sheet.xlsx", huge, refused=["too large", "sheet1.xml"])
+    # The directory says a gigabyte; and says less than there is.
+    put("gigabyte.xlsx", resized(huge, sheet, 1 << 30), refused=["too large", "unpacked"])
+    put("understated.xlsx", resized(huge, sheet, 100), refused=["workbook cannot be read"])
+    many = "".join(f'<row r="{r}"><c r="ZZZ{r}"><v>1</v></c></row>' for r in range(1, 1000))
+    put("far_column.xlsx", repacked(book, {sheet: f"<worksheet><sheetData>{many}</sheetData></worksheet>"}), refused=["too large"])
+    far = '<row r="1"><c r="A1"><v>1</v></c></row><row r="1048576"><c r="A1048576"><v>1</v></c></row>'
+    put("far_row.xlsx", repacked(book, {sheet: f"<worksheet><sheetData>{far}</sheetData></worksheet>"}), refused=["too large"])
+    # Texts that several cells share, as Excel writes them; a count that is not to be believed.
+    strings = ('<sst uniqueCount="1000000000000000000"><si><t>Opening (mm)</t></si><si><r><t xml:space="preserve">% </t></r><r>'
+               '<t>passing</t></r><rPh><t>x</t></rPh></si><si><t>3/8&quot; &amp; No. 4</t></si></sst>')
+    cells = ('<worksheet><sheetData><row r="1"><c r="A1" t="s"><v>0</v></c><c r="B1" t="s"><v>1</v></c></row><row><c><v>4</v></c><c>'
+             '<f>50+50</f><v>100</v></c></row><row r="3"><c r="A3"><v>2.0000000000000004</v></c><c r="B3"><v>%s</v></c></row></sheetData>'
+             "</worksheet>")
+    put("shared.xlsx", repacked(book, {"xl/sharedStrings.xml": strings, sheet: cells % 50}), {"Sheet1": [(4, 100), (2, 50)]})
+    broken = cells.replace("<v>1</v>", "<v>7</v>") % 50
+    put("strings.xlsx", repacked(book, {"xl/sharedStrings.xml": strings, sheet: broken}), refused=["a text that is not there"])
+    put("broken_xml.xlsx", repacked(book, {sheet: "<worksheet><sheetData><row></c>"}), refused=["XML is broken"])
+    put("cut.xlsx", book[: len(book) // 2], refused=["its zip cannot be read"])
+    put("zip.xlsx", repacked(b"PK\x05\x06" + bytes(18), {"a.txt": "a"}), refused=["no workbook"])
+    one = (HERE / "one.ods").read_bytes()
+    cell = '<table:table-cell office:value-type="float" office:value="1" table:number-columns-repeated="%d"/>'
+    content = ('<office:document-content><table:table table:name="A"><table:table-row table:number-rows-repeated="%d">'
+               + cell + "</table:table-row></table:table></office:document-content>")
+    put("repeated.ods", repacked(one, {"content.xml": content % (1000, 10**12)}), refused=["too large"])
+    put("repeated_rows.ods", repacked(one, {"content.xml": content % (10**12, 4)}), refused=["too large"])
+    put("repeated_both.ods", repacked(one, {"content.xml": content % (1000, 900)}), refused=["too large"])
+
+
+def resized(book, name, size):
+    """The zip with another unpacked size of a part in its directory."""
+    data, at = bytearray(book), 0
+    while (at := data.find(b"PK\x01\x02", at)) >= 0:
+        length = struct.unpack_from("<H", data, at + 28)[0]
+        if data[at + 46 : at + 46 + length].decode() == name:
+            struct.pack_into("<I", data, at + 24, size)
+        at += 4
+    return bytes(data)
+
+
+def main():
+    HERE.mkdir(exist_ok=True)
+    for old in HERE.iterdir():
+        old.unlink()
+    texts()
+    ags()
+    workbooks()
+    print(len(list(HERE.iterdir())) // 2, "files", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,525 @@
+#!/usr/bin/env python3
+"""The stability report: every stiff or extreme case with what must happen, what happened, and the time that it took.
+
+    scripts/checks/stability.py [FOLDER]
+
+Builds the program and its tests, runs every case, and writes README.md and cases.csv into FOLDER (default results/stability).
+A case is a call of the program, whose results are looked at here, or a named test. Exit code 1 where one went otherwise.
+"""
+import csv
+import datetime
+import itertools
+import json
+import math
+import os
+import pathlib
+import platform
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+VOIDWALK = ROOT / "target" / "release" / "voidwalk"
+LATTICE = ["network.nx=10", "network.ny=10", "network.nz=15", "replicates=3", "record.sensitivity=[]"]
+CASES = []
+
+
+def case(table, what, must):
+    """Registers a case; the function returns what happened, and raises AssertionError where it is wrong."""
+
+    def register(function):
+        CASES.append((table, what, must, function))
+        return function
+
+    return register
+
+
+def by_tests(table, what, must, *tests):
+    """A case that named tests of the suite decide: (target, name)."""
+    CASES.append((table, what, must, lambda _: passed(tests)))
+
+
+def passed(tests):
+    for target, name in tests:
+        done = subprocess.run([TESTS[target], "--exact", name], capture_output=True, text=True, cwd=ROOT)
+        assert "1 passed" in done.stdout, f"{target}: {name}: {done.stdout[-300:]}"
+    return "as it must: " + ", ".join(f"`{name.split('::')[-1]}`" for _, name in tests)
+
+
+def call(folder, command, *sets, code=0, args=()):
+    """Calls the program; its outcome for a run, else what it says."""
+    out = folder / "out"
+    words = [str(VOIDWALK), command, *args]
+    if command == "run":
+        words += ["--out", str(out), "--quiet"]
+    words += itertools.chain.from_iterable(("--set", s) for s in sets)
+    done = subprocess.run(words, capture_output=True, text=True, cwd=folder)
+    assert done.returncode == code, f"exit code {done.returncode}: {done.stderr.strip()[-300:]}"
+    if code == 2:
+        assert not out.exists(), "something was written"
+        return done.stderr.strip()
+    return json.loads((out / "outcome.json").read_text()) if command == "run" else done.stdout
+
+
+def first(outcome, run=0):
+    return outcome["replicates"][0]["runs"][run]
+
+
+def write(folder, name, text):
+    (folder / name).write_bytes(text if isinstance(text, bytes) else text.encode())
+    return name
+
+
+def network(folder, rows, start=(0,)):
+    lines = ["from,to,diameter_mm", *(f"start,{void}," for void in start), *rows]
+    return "network.file=" + write(folder, "network.csv", "\n".join(lines) + "\n")
+
+
+def refusals(folder, cases):
+    """Scenes that are refused: settings, and a word that the message must have. The slowest of them, in s."""
+    slowest = 0.0
+    for sets, word in cases:
+        begun = time.time()
+        message = call(folder, "run", *sets, code=2)
+        slowest = max(slowest, time.time() - begun)
+        assert word in message, f"{sets}: {message} lacks {word}"
+    assert slowest < 1.0, f"{slowest} s"
+    return f"{len(cases)} refused, the slowest in {slowest * 1000:.0f} ms"
+
+
+# Walk
+
+@case("Walk", "every base particle passive", "100 % eroded, nothing blocked, 3 moves a layer, the report says that no walk was needed")
+def _(folder):
+    outcome = call(folder, "run", "base.single_mm=0.01", "base.n_base=1e6", "engine=counts", "replicates=1",
+                   "record.sensitivity=[]", "network.nx=40", "network.ny=40", "network.nz=60")
+    run = first(outcome)
+    moves = run["particle_moves"] / 1e6
+    assert run["eroded"] + run["trapped"] == 10**6 and run["blocked"] == 0 and abs(moves - 180) < 0.5
+    assert any("nothing can be blocked" in s for s in outcome["left_out"])
+    return f"{100 * run['eroded_number_fraction']:.1f} % eroded, {run['trapped']} trapped, {moves:.2f} moves a particle (180), 0 blocked"
+
+
+by_tests("Walk", "moves of passive particles", "mean 3 nz, variance 6 nz on a wide lattice; the linear solve on narrow ones",
+         ("model", "exact_answers::passive_particles_take_three_moves_a_layer"), ("model", "exact_answers::narrow_lattices_take_longer"),
+         ("model", "counts::moves_of_passive_particles_have_their_exact_moments"))
+
+
+@case("Walk", "every base particle coarser than every constriction, large supply",
+      "0 eroded, exactly 3 nx ny blocked, nothing moves one attempt after the last insertion")
+def _(folder):
+    run = first(call(folder, "run", *LATTICE, "base.single_mm=5", "base.n_base=1e5"))
+    assert (run["eroded"], run["blocked"]) == (0, 300) and run["increments"] <= 101
+    return f"0 eroded, {run['blocked']} of 3 x 10 x 10 blocked, ended after increment {run['increments']} of 100 that insert"
+
+
+by_tests("Walk", "one size, large supply", "the blocked set is the breadth-first answer, whatever the seed",
+         ("model", "exact_answers::one_size_blocks_what_a_breadth_first_search_finds"))
+by_tests("Walk", "d equal to D", "passes, in every engine and kernel",
+         ("model", "exact_answers::a_particle_as_coarse_as_the_constriction_passes"),
+         ("model", "walk_against_reference::kernel_and_reference_agree_particle_by_particle"))
+
+
+@case("Walk", "1 x 1 x 1, only z passable for this particle", "eroded with probability Az / (Ax + Ay + Az)")
+def _(folder):
+    sizes = write(folder, "curve.csv", "percent_smaller,diameter_mm\n0,0.3\n100,0.3\n")
+    by_test = passed([("model", "exact_answers::one_void_is_left_with_the_share_of_its_area")])
+    # One particle at a time: the first that stops would close its exit for the next.
+    outcome = call(folder, "run", network(folder, ["0,0,0.3", "0,0,0.4", "0,end,0.7"]), f"filter.curve={sizes}",
+                   "filter.cu=1.5", "base.single_mm=0.5", "base.n_base=1", "inject_share=1", "replicates=4000", "runs=1",
+                   "record.sensitivity=[]", "record.series_every=0")
+    eroded = sum(r["runs"][0]["eroded"] for r in outcome["replicates"])
+    share = 0.49 / (0.09 + 0.16 + 0.49)
+    z = (eroded - 4000 * share) / math.sqrt(4000 * share * (1 - share))
+    assert abs(z) < 4
+    return f"{eroded} of 4000 single particles eroded, {4000 * share:.0f} expected (z = {z:.2f}); {by_test}"
+
+
+by_tests("Walk", "1 x 1 x 1, z blocked, x or y open", "trapped: counted, the run ends",
+         ("model", "exact_answers::a_particle_that_circles_for_ever_is_trapped_and_ends_the_run"),
+         ("model", "counts::passive_particles_are_trapped_like_any_other"))
+
+
+@case("Walk", "one exit with 1e12 times the area of the others", "the others about 1e-12; once it is blocked the others keep their exact ratio")
+def _(folder):
+    by_test = passed([("lib", "walk::counts::shares::tests::a_giant_is_not_certain"),
+                      ("model", "walk_against_reference::kernel_and_reference_agree_particle_by_particle")])
+    rows = ["0,1,1e6", "0,2,1", "0,3,2", "1,end,5e5", "2,end,9", "3,end,9"]
+    curve = write(folder, "curve.csv", "percent_smaller,diameter_mm\n0,1\n100,2\n")
+    outcome = call(folder, "run", network(folder, rows), f"filter.curve={curve}", "filter.cu=1.5", "base.single_mm=0.5",
+                   "base.n_base=1e9", "replicates=1", "runs=1", "engine=counts", "record.sensitivity=[]")
+    run = first(outcome)
+    assert run["eroded"] == 10**9
+    return f"1e9 particles leave by counts; {by_test}"
+
+
+by_tests("Walk", "diameters from 1e-6 to 1e6 of each other", "no overflow, underflow or NaN; scaling by 2^k gives the same bits",
+         ("model", "exact_answers::scaling_by_two_changes_no_bit"), ("model", "gradation::a_factor_of_two_on_every_length_changes_no_bit"))
+
+
+@case("Walk", "size ratio of 1e12 between constrictions, and of the base", "finite results, everything accounted for, in every engine")
+def _(folder):
+    curve = write(folder, "curve.csv", "percent_smaller,diameter_mm\n0,1e-6\n50,1\n100,1e6\n")
+    said = []
+    for engine in ["particles", "counts", "expected"]:
+        at = folder / engine
+        at.mkdir()
+        write(at, "curve.csv", (folder / curve).read_text())
+        run = first(call(at, "run", *LATTICE, "filter.curve=curve.csv", "filter.cu=1.5", "base.single_mm=1e-3",
+                         "base.n_base=200000", f"engine={engine}"))
+        parts = ["eroded", "retained_in_constrictions", "retained_in_voids", "trapped"]
+        assert sum(run[p] for p in parts) == run["inserted"] == 200000
+        assert all(math.isfinite(v) for v in run.values() if isinstance(v, float))
+        said.append(f"{engine} {100 * run['eroded_mass_fraction']:.2f} % eroded")
+    return ", ".join(said)
+
+
+@case("Walk", "constriction of size 0; three of them on a void", "closed from the start, counted apart from blocked ones")
+def _(folder):
+    curve = write(folder, "curve.csv", "percent_smaller,diameter_mm\n0,1\n100,2\n")
+    outcome = call(folder, "run", network(folder, ["0,1,1", "0,2,1", "1,end,0", "1,2,0", "1,1,0", "2,end,1"]), f"filter.curve={curve}",
+                   "filter.cu=1.5", "base.single_mm=0.5", "base.n_base=100000", "replicates=1", "record.sensitivity=[]")
+    run = first(outcome)
+    assert run["blocked"] == 0 and run["retained_in_voids"] > 49000 and run["eroded"] > 49000
+    return f"0 blocked, {run['retained_in_voids']} stay in the void with three closed exits, {run['eroded']} leave by the other way"
+
+
+by_tests("Walk", "everything blocked from the start; second run on a fully blocked network",
+         "0 eroded, all retained on the start nodes, verdict printed",
+         ("model", "exact_answers::closed_and_blocked_networks_retain_everything_where_it_starts"), ("model", "counts::nothing_leaves_closed_voids"))
+
+
+@case("Walk", "N_base = 0, 1, 99, 100, 101", "refused for 0, else exactly N inserted")
+def _(folder):
+    refused = refusals(folder, [(["base.n_base=0"], "base.n_base")])
+    for n in [1, 99, 100, 101]:
+        at = folder / str(n)
+        at.mkdir()
+        assert first(call(at, "run", *LATTICE, f"base.n_base={n}"))["inserted"] == n
+    return f"{refused}; 1, 99, 100 and 101 inserted"
+
+
+@case("Walk", "N_base = 1e12; nx = 1e9", "one by one: refused with the bytes needed and available; by count: 1e12 runs")
+def _(folder):
+    message = call(folder, "run", "base.n_base=1e12", "engine=particles", code=2)
+    assert "available" in message and "1000000000000" in message
+    wide = call(folder, "run", "network.nx=1e9", code=2)
+    run = first(call(folder, "run", *LATTICE, "base.single_mm=0.02", "base.n_base=1e12", "engine=counts", "runs=1"))
+    assert run["inserted"] == 10**12
+    return f"refused: \u201c{message.split(': ', 1)[-1][:110]}...\u201d, \u201c{wide.split(': ', 1)[-1][:80]}\u201d; by count {run['eroded']:.0f} eroded"
+
+
+by_tests("Walk", "1e6 layers of 1 x 1; 1 layer of 1000 x 1000; 2 x 2 x 2", "run, and match the linear solve",
+         ("model", "exact_answers::very_long_and_very_wide_networks_run"), ("model", "exact_answers::narrow_lattices_take_longer"),
+         ("model", "exact_answers::the_first_particle_passes_a_given_network_as_the_linear_solve_says"))
+
+
+@case("Walk", "curve of one point; repeated sizes; vertical step; plateau", "one size; merged; allowed; allowed")
+def _(folder):
+    curves = {
+        "one point": "100,0.2",
+        "repeated sizes": "0,0.1\n20,0.2\n40,0.2\n100,0.3",
+        "vertical step": "0,0.1\n50,0.2\n50,0.3\n100,0.4",
+        "plateau": "0,0.1\n40,0.2\n60,0.2\n100,0.3",
+    }
+    said = []
+    for name, rows in curves.items():
+        at = folder / name.replace(" ", "-")
+        at.mkdir()
+        write(at, "curve.csv", f"percent_smaller,diameter_mm\n{rows}\n")
+        words = [str(VOIDWALK), "run", "--out", "out", "--quiet"]
+        for s in [*LATTICE, "filter.curve=curve.csv", "filter.cu=1.5", "base.single_mm=0.15", "base.n_base=1000"]:
+            words += ["--set", s]
+        done = subprocess.run(words, capture_output=True, text=True, cwd=at)
+        assert done.returncode in (0, 2), done.stderr
+        said.append(f"{name}: {'walked' if done.returncode == 0 else 'refused: ' + done.stderr.strip().split(': ', 1)[-1][:120]}")
+        assert done.returncode == 0 or name == "vertical step", said[-1]
+    return "; ".join(said)
+
+
+by_tests("Walk", "eroded exactly 7.5 %", "not \u201cless than 7.5 %\u201d; one size: decided on integers",
+         ("lib", "outcome::verdict::tests::exactly_seven_and_a_half_percent_is_not_less"),
+         ("lib", "outcome::verdict::tests::an_interval_that_straddles_decides_nothing"))
+
+
+@case("Walk", "sieve table with nan, inf, 1e400, negative, zero, unsorted, above 100 %, falling, coarsest not 100, comma decimals, BOM, CRLF, "
+      "descending, empty, header only", "the unusual read right, the bad refused with file, line, field and value")
+def _(folder):
+    good = {
+        "BOM": b"\xef\xbb\xbfopening_mm,percent_finer\n0.1,10\n1,100\n",
+        "CRLF": b"opening_mm,percent_finer\r\n0.1,10\r\n1,100\r\n",
+        "descending": b"opening_mm,percent_finer\n1,100\n0.1,10\n",
+        "comma decimals": b"opening_mm;percent_finer\n0,1;10\n1;100\n",
+    }
+    rows = {"nan": "nan,10\n1,100", "inf": "0.1,inf\n1,100", "1e400": "0.1,10\n1e400,100", "negative": "-0.1,10\n1,100",
+            "zero": "0,10\n1,100", "unsorted": "0.1,10\n2,50\n1,100", "above 100": "0.1,10\n1,101", "falls": "0.1,50\n0.2,10\n1,100",
+            "not 100": "0.1,10\n1,99", "empty": "", "header only": None}
+    tails = ["base.d0_mm=0.05"]
+    seen = set()
+    for name, bytes_ in good.items():
+        at = folder / name.replace(" ", "-")
+        at.mkdir()
+        write(at, "base.csv", bytes_)
+        seen.add(json.dumps(first(call(at, "run", *LATTICE, "base.sieve=base.csv", *tails, "base.n_base=5000"))["eroded_mass_fraction"]))
+    assert len(seen) == 1, seen
+    slowest = 0.0
+    for name, body in rows.items():
+        text = "" if name == "empty" else "opening_mm,percent_finer\n" + (body + "\n" if body else "")
+        write(folder, "bad.csv", text)
+        begun = time.time()
+        message = call(folder, "run", *LATTICE, "base.sieve=bad.csv", *tails, code=2)
+        slowest = max(slowest, time.time() - begun)
+        assert "bad.csv" in message, message
+    assert slowest < 1
+    return (f"{len(good)} unusual tables give one and the same answer, {len(rows)} bad ones refused (slowest {slowest * 1000:.0f} ms); "
+            + passed([("files", "bad_tables::bad_sieve_tables_are_refused"), ("files", "bad_tables::bad_curves_are_refused")]))
+
+
+@case("Walk", "unknown key, wrong unit, missing file, folder instead of file", "refused, nearest valid key named")
+def _(folder):
+    (folder / "folder").mkdir()
+    return refusals(folder, [
+        (["base.uc=3"], "did you mean `base.cu`"), (["base.d85_m=3"], "did you mean `base.d85_mm`"),
+        (["filter.curve=none.csv"], "none.csv"), (["base.sieve=folder"], "folder"), (["network.nx=-1"], "network.nx"),
+        (["base.cu=nan"], "base.cu"), (["inject_share=0.3"], "inject_share"),
+    ])
+
+
+# Packing
+
+CHECKS = "packing::checks::"
+by_tests("Packing", "two equal spheres head-on, linear spring", "contact time pi sqrt(m*/k), error falls four times per halved step, momentum to 1e-14",
+         ("lib", CHECKS + "linear_head_on_is_exact_to_second_order"))
+by_tests("Packing", "restitution 0.1 to 0.99", "the damped spring's, converging with the step", ("lib", CHECKS + "restitution_is_kept_at_every_speed"))
+by_tests("Packing", "Hertz contact", "t_c within 1 %", ("lib", CHECKS + "hertz_contact_time"))
+by_tests("Packing", "time step at or above the critical one", "refused with both numbers; the automatic step stays below",
+         ("lib", CHECKS + "the_step_is_refused_with_both_numbers"), ("lib", CHECKS + "the_automatic_step_stays_below_the_critical_one"),
+         ("lib", CHECKS + "the_critical_step_is_stable_and_not_far_from_the_limit"))
+
+
+def pack(folder, name, gradation, *sets):
+    """Packs; the record and the seconds, or what it said where it could not."""
+    at = folder / name
+    at.mkdir()
+    write(at, "filter.toml", f"[filter]\n{gradation}\n")
+    words = [str(VOIDWALK), "pack", "filter.toml", "--out", "out", "--quiet"]
+    for s in sets:
+        words += ["--set", s]
+    begun = time.time()
+    done = subprocess.run(words, capture_output=True, text=True, cwd=at, timeout=1500)
+    seconds = time.time() - begun
+    record = json.loads((at / "out/packing.json").read_text()) if done.returncode == 0 else None
+    return record, seconds, done.stderr.strip().splitlines()[-1:] or [""]
+
+
+def final(record):
+    """The state of a packing after its last friction."""
+    state = record["after"] if record.get("after") else record["before"]
+    return state
+
+
+def table_of(rows):
+    return "; ".join(rows)
+
+
+@case("Packing", "stiffness over six decades, Cu 1.5, 600 grains, friction 0 (ratio 1 is the paper's 27 GPa)",
+      "settles, and the void ratio moves little down to the default; refused where overlaps mean nothing")
+def _(folder):
+    rows, ratios = [], {}
+    for ratio in ["1", "0.1", "0.01", "0.001", "0.0001", "0.00001", "0.000001"]:
+        record, seconds, said = pack(folder, ratio, "d0_mm = 1\ncu = 1.5\nfriction = 0.0", "packing.grains=600", f"packing.stiffness_ratio={ratio}")
+        if record is None:
+            assert "would overlap" in said[0], said
+            rows.append(f"{ratio}: refused, grains would overlap too much ({seconds:.1f} s)")
+        else:
+            ratios[ratio] = final(record)["void_ratio"]
+            rows.append(f"{ratio}: e {final(record)['void_ratio']:.4f}, {seconds:.0f} s")
+    assert abs(ratios["1"] - ratios["0.1"]) < 0.01, ratios
+    return table_of(rows)
+
+
+@case("Packing", "friction 0 to 1, Cu 1.5, 600 grains", "the void ratio rises with friction, and hardly above 0.5; friction 0 has no torque and a coordination near 6")
+def _(folder):
+    rows, last = [], 0.0
+    for friction in ["0.0", "0.1", "0.3", "0.5", "0.7", "1.0"]:
+        record, seconds, said = pack(folder, friction, f"d0_mm = 1\ncu = 1.5\nfriction = {friction}", "packing.grains=600",
+                                     f"packing.final_friction={friction}")
+        assert record, said
+        e = final(record)["void_ratio"]
+        rows.append(f"{friction}: e {e:.4f}, {seconds:.0f} s")
+        assert e > last - 0.02, rows
+        last = e
+    return table_of(rows) + "; " + passed([("model", "packing::friction_sets_the_density_and_none_makes_no_torque")])
+
+
+by_tests("Packing", "half the compression rate", "the void ratio hardly moves (study: results/packing-2026-11-21.md)",
+         ("model", "packing::half_the_rate_gives_the_same_void_ratio"))
+by_tests("Packing", "size ratios 10, 36, 100 with friction", "no energy from nowhere; a small grain between large ones is expelled",
+         ("lib", CHECKS + "friction_makes_no_energy_at_any_size_ratio"), ("lib", CHECKS + "a_small_grain_between_large_ones_is_expelled"),
+         ("model", "packing::a_wide_grading_gives_way_to_lower_friction"))
+
+
+@case("Packing", "a whole packing with size ratio 100", "settles, or says why not; neighbour search and triangulation hold")
+def _(folder):
+    at = folder / "sieve"
+    at.mkdir()
+    # A gap: a thousandth of the mass is a hundred times finer, about a thousand fines a coarse grain.
+    table = write(folder, "gap.csv", "opening_mm,percent_finer\n0.1,0\n0.11,0.1\n9,0.1\n10,100\n")
+    record, seconds, said = pack(folder, "gap", f"sieve = \"../{table}\"\nfriction = 0.0", "packing.grains=12000", "packing.max_steps=60000")
+    if record is None:
+        return f"not settled in {seconds:.0f} s: {said[0][:200]}"
+    return f"e {final(record)['void_ratio']:.4f} in {seconds:.0f} s"
+
+
+by_tests("Packing", "one grain; coincident centres; overlapping start", "no contact with itself; refused with the ids; relaxed at a capped speed",
+         ("lib", CHECKS + "one_grain_touches_nothing"), ("lib", CHECKS + "coincident_centres_are_named"),
+         ("lib", CHECKS + "an_overlapping_start_relaxes_at_a_capped_speed"), ("model", "packing::a_cell_too_narrow_for_its_largest_grain_is_refused"))
+by_tests("Packing", "undamped gas, 1e6 steps", "energy drift at most 1e-5, momentum 1e-12", ("lib", CHECKS + "undamped_gas_keeps_energy_and_momentum"))
+by_tests("Packing", "resumed compression", "same bits, tangential history included",
+         ("model", "packing::a_resumed_compression_gives_the_same_bits_with_any_threads"))
+
+# Triangulation
+
+TRIANGLES = "constrictions::triangulation::tests::"
+LATTICES = "constrictions::lattice_tests::"
+by_tests("Triangulation", "three touching grains, r = (1,1,1), (1,1,10), (1,10,10), (1,1e6,1e6)", "the known radii",
+         ("lib", "constrictions::tangent::tests::known_discs"), ("lib", "constrictions::tangent::tests::touching_circles_obey_descartes"))
+
+
+@case("Triangulation", "simple cubic, FCC, HCP, BCC: exact, scaled by 1e-6 and 1e6, jittered by 1e-16, 1e-12, 1e-6",
+      "0.414214, 0.154701, 0.154701, 0.224745 D; 3, 8, 8, 12 a grain")
+def _(folder):
+    r3, r6 = math.sqrt(3), math.sqrt(6)
+    fcc = [(0, 0, 0), (0.5, 0.5, 0), (0.5, 0, 0.5), (0, 0.5, 0.5)]
+    hcp = [(0, 0, 0), (0.5, 0.5, 0), (0.5, 1 / 6, 0.5), (0, 2 / 3, 0.5)]
+    kinds = {
+        "SC": ([(0, 0, 0)], (1, 1, 1), (4, 5, 6), 0.414214, 3),
+        "FCC": (fcc, (math.sqrt(2),) * 3, (3, 4, 3), 0.154701, 8),
+        "HCP": (hcp, (1, r3, 2 * r6 / 3), (4, 3, 3), 0.154701, 8),
+        "BCC": ([(0, 0, 0), (0.5, 0.5, 0.5)], (2 / r3,) * 3, (3, 4, 3), 0.224745, 12),
+    }
+    count = 0
+    for (name, (basis, lengths, repeat, size, per_grain)), scale, jitter in itertools.product(
+            kinds.items(), [1.0, 1e-6, 1e6], [0.0, 1e-16, 1e-12, 1e-6]):
+        grains, draw = [], 12345
+        for cell in itertools.product(*(range(n) for n in repeat)):
+            for point in basis:
+                centre = []
+                for axis in range(3):
+                    draw = (draw * 6364136223846793005 + 1442695040888963407) % 2**64
+                    shift = jitter * (draw / 2**63 - 1)
+                    centre.append(((cell[axis] + point[axis]) * lengths[axis] + shift) * scale)
+                grains.append(centre)
+        edges = ", ".join(repr(n * length * scale) for n, length in zip(repeat, lengths))
+        rows = "\n".join(",".join(map(repr, [*centre, scale])) for centre in grains)
+        at = folder / f"{name}-{scale}-{jitter}"
+        at.mkdir()
+        write(at, "grains.csv", f"# cell_mm = {edges}\nx_mm,y_mm,z_mm,diameter_mm\n{rows}\n")
+        done = subprocess.run([str(VOIDWALK), "constrictions", "grains.csv", "--out", "out"], capture_output=True, text=True, cwd=at)
+        assert done.returncode == 0, f"{name}, {scale}, {jitter}: {done.stderr}"
+        found = json.loads((at / "out/constrictions.json").read_text())
+        dc = found["dc_mm"]
+        ends = [dc["0"] / scale, dc["100"] / scale]
+        tolerance = 1e-5 + 10 * jitter
+        assert all(abs(end - size) < tolerance for end in ends), f"{name}, {scale}, {jitter}: {ends}"
+        assert found["constrictions"] == per_grain * len(grains), f"{name}, {scale}, {jitter}: {found['constrictions']} of {len(grains)}"
+        count += 1
+    return f"{count} packings, all as they must; " + passed(
+        [("lib", LATTICES + "lattices_have_their_sizes_and_counts"), ("lib", LATTICES + "jittered_lattices_keep_them"),
+         ("lib", LATTICES + "rotated_lattices_keep_their_sizes")])
+
+
+by_tests("Triangulation", "periodic identities", "V - E + F - T = 0, F = 2T, volumes sum to the cell, every facet shared by two",
+         ("lib", TRIANGLES + "random_periodic_packings_are_sane"), ("lib", TRIANGLES + "a_broken_triangulation_is_noticed"),
+         ("lib", TRIANGLES + "the_torus_agrees_with_images"))
+by_tests("Triangulation", "grains hidden inside others, duplicates", "named", ("lib", TRIANGLES + "hidden_grains_and_duplicates_are_named"))
+by_tests("Triangulation", "coplanar, fewer than four grains, cell narrower than two of the largest", "refused",
+         ("lib", TRIANGLES + "what_has_no_triangulation_is_refused"))
+by_tests("Triangulation", "random small sets against brute force in exact arithmetic", "no mismatch in 10,000",
+         ("lib", TRIANGLES + "small_sets_agree_with_brute_force"))
+
+# Machine: what is small enough for here; kills, faults and fuzzing at length have their own report.
+
+by_tests("Machine", "kill at any instant, also during a resume", "final results identical to the unbroken run",
+         ("commands", "checkpoints::a_run_goes_on_after_stops_and_kills_with_the_same_bits"),
+         ("commands", "pack::a_packing_goes_on_after_stops_and_kills_with_the_same_bits"),
+         ("commands", "campaign::a_campaign_that_is_killed_again_and_again_gives_the_same_ledger"))
+by_tests("Machine", "checkpoint cut, flipped, newer, of another program or scene", "refused, or the older slot taken and said",
+         ("files", "torn_checkpoints::no_corruption_goes_unnoticed"),
+         ("commands", "checkpoints::a_corrupt_checkpoint_is_passed_over_or_refused_and_never_lost"))
+by_tests("Machine", "disk full at the start or in between; read-only disk", "clear error, last checkpoint intact, no SIGBUS; refused",
+         ("commands", "full_disk::a_run_on_a_full_disk_ends_with_an_error_and_goes_on_when_there_is_room"),
+         ("commands", "full_disk::a_folder_on_a_disk_that_is_read_only_is_refused"))
+by_tests("Machine", "checkpoint of this version, and of an older one", "continued to the same answer; refused with a sentence that says so",
+         ("files", "golden::saved_walks_are_continued_to_the_same_answer"), ("files", "golden::checkpoints_of_earlier_versions_are_refused_by_name"))
+by_tests("Machine", "symlinked folder, hostile names", "refused; inert", ("commands", "hostile_names::no_link_leads_out_of_a_folder"),
+         ("commands", "hostile_names::an_error_of_any_reader_says_the_name_and_leaves_the_terminal_alone"))
+
+
+@case("Machine", "every n-th write, sync, rename or allocation fails (EIO, ENOSPC, EINTR); power cuts (the fixed part; all of them: results/robustness-*.md)",
+      "clear error, last checkpoint intact, the same results after going on")
+def _(_):
+    done = subprocess.run([TESTS["faults"]], capture_output=True, text=True, cwd=ROOT)
+    assert done.returncode == 0, done.stderr[-300:]
+    return "; ".join(line.strip() for line in (done.stdout + done.stderr).splitlines() if "other results" in line)
+
+
+by_tests("Machine", "another thread count on resume", "same bits", ("commands", "checkpoints::a_walk_goes_on_from_every_increment_with_every_engine_on_any_threads"))
+by_tests("Machine", "two processes on one folder; folders that are not ours; closed stdout", "the second leaves and names the first; left alone; no panic",
+         ("lib", "store::folder::tests::a_second_writer_is_told_who_holds_the_folder"), ("lib", "store::folder::tests::what_is_not_ours_is_left_alone"),
+         ("commands", "scene::a_closed_pipe_is_no_panic"))
+
+
+def build():
+    """Builds program and tests; the test programs by target."""
+    subprocess.run(["cargo", "build", "--release", "--quiet"], cwd=ROOT, check=True)
+    words = ["cargo", "test", "--release", "--no-run", "--message-format=json", "--quiet"]
+    lines = subprocess.run(words, cwd=ROOT, check=True, capture_output=True, text=True).stdout.splitlines()
+    found = {}
+    for line in lines:
+        message = json.loads(line)
+        if message.get("executable") and message["profile"]["test"]:
+            kind = "lib" if "lib" in message["target"]["kind"] else message["target"]["name"]
+            found[kind] = message["executable"]
+    return found
+
+
+def machine():
+    models = [line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")]
+    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True).stdout.strip()
+    load = os.getloadavg()[0]
+    return f"{len(models)} cores, {models[0]}, {platform.system()} {platform.release()}; commit {commit}; load {load:.1f} at the start"
+
+
+def main():
+    folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "results" / "stability"
+    global TESTS
+    TESTS = build()
+    about, begun, rows = machine(), time.time(), []
+    for number, (table, what, must, function) in enumerate(CASES, 1):
+        started = time.time()
+        with tempfile.TemporaryDirectory() as scratch:
+            try:
+                happened, right = function(pathlib.Path(scratch)), True
+            except AssertionError as error:
+                happened, right = f"OTHERWISE: {error}", False
+        rows.append((table, what, must, happened, right, time.time() - started))
+        print(f"{number} of {len(CASES)}, {rows[-1][-1]:.1f} s: {what}: {'as it must' if right else happened}", file=sys.stderr, flush=True)
+    folder.mkdir(parents=True, exist_ok=True)
+    with open(folder / "cases.csv", "w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(["table", "case", "must_happen", "happened", "as_it_must", "seconds"])
+        writer.writerows([*row[:5], f"{row[5]:.2f}"] for row in rows)
+    wrong = [row for row in rows if not row[4]]
+    lines = [f"# Stability report, {datetime.date.today()}", "",
+             f"Made by `scripts/checks/stability.py` in {time.time() - begun:.0f} s. {about}. Seeds: 1, or those of the named tests.", "",
+             f"{len(rows)} cases, {len(rows) - len(wrong)} as they must." + (" **Otherwise: " + "; ".join(r[1] for r in wrong) + "**" if wrong else "")]
+    for table in dict.fromkeys(row[0] for row in rows):
+        lines += ["", f"## {table}", "", "| case | must happen | happened | s |", "|---|---|---|---|"]
+        lines += [f"| {what} | {must} | {happened.replace('|', '/')} | {seconds:.1f} |" for t, what, must, happened, _, seconds in rows if t == table]
+    (folder / "README.md").write_text("\n".join(lines) + "\n")
+    sys.exit(1 if wrong else 0)
+
+
+main()

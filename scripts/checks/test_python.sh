@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# The Python package as a user gets it: installed by pip into an environment of its own, then its tests, the examples, those in its
+# docstrings, and its types. OpenPNM, pandas and xarray come in too; with ALL=1 also PoreSpy, which takes a minute more.
+# With --environment it only fetches what the tests need; other arguments are pytest's.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+python=${PYTHON:-python3}
+environment=target/python
+[ -x $environment/bin/python ] || "$python" -m venv $environment
+packages=("maturin>=1.9,<2" numpy pytest pytest-timeout pytest-xdist mypy pandas xarray scipy tqdm openpnm matplotlib)
+[ -z "${ALL:-}" ] || packages+=(porespy)
+$environment/bin/pip install --quiet --disable-pip-version-check "${packages[@]}"
+[ "${1:-}" != --environment ] || exit 0
+
+step() { printf '%4d s  %s\n' "$SECONDS" "$1"; }
+
+# The whole workspace and the very features of the command line: the library is the one that `cargo test --release --workspace`
+# compiled, and only the module is compiled for Python.
+step "program and module"
+cargo build --release --workspace --bins
+step "pip install"
+PATH=$PWD/$environment/bin:$PATH MATURIN_PEP517_ARGS="--features voidwalk/default" $environment/bin/pip install --quiet \
+    --disable-pip-version-check --no-build-isolation --force-reinstall --no-deps .
+
+# From elsewhere, so that what is tested is what was installed. A test that walks for long has the other worker beside it.
+here=$PWD
+export VOIDWALK_PROGRAM=$here/target/release/voidwalk
+cd target
+step "tests"
+python/bin/python -m pytest -c "$here/pyproject.toml" --rootdir "$here" -p no:cacheprovider --timeout 300 -n 2 --dist worksteal \
+    "$here/scripts/python/tests" "$@"
+step "examples in docstrings"
+python/bin/python -m pytest -c "$here/pyproject.toml" -p no:cacheprovider --pyargs voidwalk
+step "killed, cut and without room"
+../scripts/checks/supervise.py --kills 16 --binary "$VOIDWALK_PROGRAM" --python python/bin/python --commands python-run python-campaign
+step "done"

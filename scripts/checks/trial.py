@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+"""The first hour of a dam engineer, again: common filters against common bases, each walked, in one table.
+
+    scripts/checks/trial.py --binary target/release/voidwalk [--out results/trial-DATE.md] [--pack] [--small]
+
+Writes the sieve sheets, walks every pair with a constriction curve that is guessed from the gradation (`filter.estimate`; with `--pack`
+each filter is packed by `filter.density` instead, which takes minutes to hours), and prints for each: the verdict, its confidence, the
+colour of the headline on the page, the rules of practice that apply and are not met, and the processor time. Where the base's finest part
+was walked with both readings, their verdicts stand beside the common one.
+
+Exit code 1 where a page is green although a rule of practice that applies is not met, or where a run fails; a pair that is refused is
+listed with the reason. `--small` walks a few pairs on small networks, as the tests do. Python 3's standard library only.
+"""
+
+import argparse
+import datetime
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+# Percent finer by opening (mm).
+FILTERS = {
+    "ASTM C33 sand, mid-band": [(9.5, 100), (4.75, 97.5), (2.36, 90), (1.18, 67.5), (0.6, 42.5), (0.3, 20), (0.15, 6), (0.075, 0)],
+    "gravel, D15 6.3 mm": [(20, 100), (10, 45), (6.3, 15), (5, 0)],
+    "gravel, D15 1.1 mm": [(4, 100), (2, 45), (1.1, 15), (0.9, 0)],
+    "gap-graded, 40 % below 0.5 mm": [(20, 100), (10, 70), (5, 40), (0.5, 40), (0.25, 15), (0.1, 0)],
+    "broad, Cu 27": [(31.5, 100), (16, 80), (8, 60), (4, 46), (2, 34), (1, 24), (0.5, 15), (0.3, 10), (0.15, 3), (0.1, 0)],
+}
+BASES = {
+    "till, sieves to 0.075 mm": [(19, 100), (4.75, 92), (2, 82), (0.425, 60), (0.15, 45), (0.075, 36)],
+    "till, with hydrometer": [(19, 100), (4.75, 92), (2, 82), (0.425, 60), (0.15, 45), (0.075, 36), (0.02, 20), (0.005, 9), (0.002, 3), (0.001, 0)],
+    "silty sand": [(2, 100), (0.425, 85), (0.15, 45), (0.075, 20), (0.02, 8), (0.005, 2), (0.002, 0)],
+    "clean uniform sand": [(0.425, 100), (0.25, 60), (0.15, 15), (0.1, 0)],
+}
+SMALL = [(0, 0), (0, 3), (1, 0), (2, 3)]
+
+# The colour of a headline, by the class of its box (src/report/page.css).
+COLOURS = {"none": "green", "doubted": "amber", "some": "orange", "continuing": "red", "undecided": "grey"}
+
+
+def slug(name):
+    return re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")
+
+
+def scene(filter_name, base_name, options):
+    how = 'density = "loose"' if options.pack else "estimate = 0.5\ngrains_per_void = 0.6"
+    size = "[network]\nnx = 10\nny = 10\nnz = 12\n" if options.small else ""
+    replicates = "replicates = 3\n" if options.small else ""
+    return (
+        f'{replicates}[filter]\nsieve = "{slug(filter_name)}.csv"\n{how}\n[base]\nsieve = "{slug(base_name)}.csv"\n'
+        f"{size}[record]\nsensitivity = []\n"
+    )
+
+
+def trial(folder, filter_name, base_name, options):
+    """The row of a pair, and what is wrong with it."""
+    name = f"{slug(filter_name)}-on-{slug(base_name)}"
+    (folder / f"{name}.toml").write_text(scene(filter_name, base_name, options))
+    words = [str(options.binary), "run", f"{name}.toml", "--out", name, "--threads", "1", "-q"]
+    with open(folder / f"{name}.err", "w") as err:
+        child = subprocess.Popen(words, cwd=folder, stdout=subprocess.DEVNULL, stderr=err)
+        _, status, usage = os.wait4(child.pid, 0)
+    code, seconds = os.waitstatus_to_exitcode(status), usage.ru_utime + usage.ru_stime
+    if code:
+        lines = (folder / f"{name}.err").read_text().strip().split("\n")
+        row = [filter_name, base_name, lines[-1].replace("|", "/"), "", "", "", f"{seconds:.1f}"]
+        return row, [] if code == 2 else [f"{name}: exit code {code}"]
+    outcome = json.loads((folder / name / "outcome.json").read_text())
+    page = (folder / name / "report.html").read_text()
+    box = re.search(r'<section class="verdict ([a-z]+)', page)
+    colour = COLOURS.get(box.group(1), box.group(1)) if box else "none found"
+    failed = [rule["id"] for rule in outcome["rules"] if rule["applies"] and rule["met"] is False and rule["role"] != "walk"]
+    wrong = [f"{name}: no headline"] if not box else []
+    if colour == "green" and failed:
+        wrong.append(f"{name}: green, although {', '.join(failed)} is not met")
+    verdict = outcome["verdict"]
+    if outcome.get("pan_bounds"):
+        verdict += f" ({' / '.join(reading['verdict'] for reading in outcome['pan_bounds']['readings'])})"
+    runs = [f"{100 * run['eroded_mass_fraction']['mean']:.2f}" for run in outcome["summary"]]
+    row = [filter_name, base_name, verdict, ", ".join(runs), f"{outcome['confidence']}; {colour}", ", ".join(failed), f"{seconds:.1f}"]
+    return row, wrong
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--binary", type=pathlib.Path, required=True)
+    parser.add_argument("--out", type=pathlib.Path, help="also write the table into this file")
+    parser.add_argument("--keep", type=pathlib.Path, help="keep sheets, scenes and runs in this folder, which is to be new")
+    parser.add_argument("--pack", action="store_true", help="pack each filter instead of guessing its constrictions")
+    parser.add_argument("--small", action="store_true", help="a few pairs on small networks")
+    options = parser.parse_args()
+    options.binary = options.binary.resolve()
+    filters, bases = list(FILTERS), list(BASES)
+    pairs = [(filters[f], bases[b]) for f, b in SMALL] if options.small else [(f, b) for f in filters for b in bases]
+    out = [
+        f"# Common filters against common bases, {datetime.date.today()}",
+        "",
+        f"    scripts/checks/trial.py --binary {pathlib.Path('target/release/voidwalk')}{' --pack' * options.pack}{' --small' * options.small}",
+        "",
+        "Base eroded: mean percent of the base's mass in the first run and in the second. Verdicts in brackets: with the base's finest part",
+        "finer than every constriction, and with all of it of the finest sieve's size. Time: processor time of one thread.",
+        "",
+        "| filter | base | verdict | base eroded (%) | confidence; headline | rules that apply and are not met | s |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    print("\n".join(out), flush=True)
+    wrong = []
+    with tempfile.TemporaryDirectory() as folder:
+        if options.keep:
+            options.keep.mkdir(parents=True)
+        folder = (options.keep or pathlib.Path(folder)).resolve()
+        for name, rows in (FILTERS | BASES).items():
+            text = "opening_mm,percent_finer\n" + "".join(f"{d},{p}\n" for d, p in rows)
+            (folder / f"{slug(name)}.csv").write_text(text)
+        for pair in pairs:
+            row, problems = trial(folder, *pair, options)
+            wrong += problems
+            out.append(f"| {' | '.join(row)} |")
+            print(out[-1], flush=True)
+    ends = ["", *(f"WRONG: {problem}" for problem in wrong)] if wrong else ["", "No page is green where a rule of practice that applies is not met."]
+    print("\n".join(ends))
+    if options.out:
+        options.out.write_text("\n".join(out + ends) + "\n")
+    sys.exit(1 if wrong else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,62 @@
+#!/usr/bin/env bash
+# Regenerates every figure and number of the paper's reproduction:
+#     scripts/paper/paper.sh [FOLDER]
+# Walks the plans of scripts/campaigns into FOLDER (default target/paper; what is done there is not walked again), writes
+# FOLDER/report.html, figures/*.svg and statements.csv, and copies what lasts to results/paper.
+# PAGE_ONLY=1 walks nothing and takes what FOLDER holds; NO_COPY=1 leaves results/paper alone.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+out="${1:-target/paper}"
+plans="paper paper-hull paper-inverse kenney table3 progress one-size paper-2.5 paper-capped paper-2.5-capped paper-published"
+plans="$plans paper-published-2.5 overlap-0.5"
+cargo build --release --workspace --bins --quiet
+voidwalk=target/release/voidwalk
+mkdir -p "$out"
+if [ -z "${PAGE_ONLY:-}" ]; then
+    for plan in $plans; do
+        echo "$plan" >&2
+        "$voidwalk" campaign "scripts/campaigns/$plan.toml" --out "$out/$plan" --packings "$out/packings" >/dev/null
+    done
+    if ! grep -q 40x40x60 "$out/percolation/percolation.csv" 2>/dev/null; then
+        # the paper's sizes, the lattice that the paper walks, and 100 realisations of each
+        "$voidwalk" percolation --sizes 10,20,30,40,40x40x60,50,60,70,80 --realisations 100 --seed 1 --quiet --overwrite --out "$out/percolation"
+    fi
+    if [ ! -f "$out/constrictions/constrictions.json" ]; then
+        # the grains that overlap-0.5 packed, with voids merged at our own overlap
+        "$voidwalk" constrictions "$out"/packings/cu1.5-*/grains.csv --out "$out/constrictions" >/dev/null
+    fi
+fi
+target/release/voidwalk-paper "$out"
+[ -n "${NO_COPY:-}" ] && exit 0
+
+results=results/paper
+rm -rf "$results"
+mkdir -p "$results/figures" "$results/cases"
+cp "$out/report.html" "$out/statements.csv" "$results/"
+cp "$out"/figures/*.svg "$results/figures/"
+{
+    echo "# The paper's reproduction, $(date -u +%F)"
+    echo
+    echo "Made by \`scripts/paper/paper.sh\` on $(nproc) cores, $(grep -m1 'model name' /proc/cpuinfo | cut -d: -f2 | xargs). Seeds: in the plans,"
+    echo "\`scripts/campaigns\`; each case's own in \`cases/*.csv\`."
+    echo
+    echo "- [\`report.html\`](report.html): the page, with every figure and statement."
+    echo "- [\`statements.csv\`](statements.csv): every number that the paper states, ours in every campaign, and the judgement."
+    echo "- \`figures/\`: the figures. \`cases/\`: the ledger of each plan as a table."
+    echo
+    echo "| plan | cases walked | of | replicates | walks, minutes | commit |"
+    echo "|---|---|---|---|---|---|"
+    for plan in $plans; do
+        [ -f "$out/$plan/ledger.jsonl" ] || continue
+        cp "$out/$plan/cases.csv" "$results/cases/$plan.csv"
+        python3 - "$plan" "$out/$plan/ledger.jsonl" "$("$voidwalk" campaign "scripts/campaigns/$plan.toml" --list | wc -l)" <<'PY'
+import json, sys
+lines = [json.loads(line) for line in open(sys.argv[2])]
+minutes = sum(line["made"]["seconds"] for line in lines) / 60
+commits = ", ".join(sorted({str(line["commit"]) for line in lines}))
+print(f"| {sys.argv[1]} | {len(lines)} | {sys.argv[3]} | {min(line['replicates'] for line in lines)} | {minutes:.1f} | {commits} |")
+PY
+    done
+} >"$results/README.md"
+cp "$out/percolation/percolation.csv" "$results/cases/percolation.csv" 2>/dev/null || true
+du -sh "$results"

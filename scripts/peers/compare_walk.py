@@ -1,0 +1,176 @@
+"""Times the plain walks and the library's in turns and writes results/walk-speed-DATE.md.
+
+Called by compare_walk.sh: BUILD BINARY SCALE_BINARY N...
+"""
+
+import datetime
+import os
+import platform
+import statistics
+import subprocess
+import sys
+
+CURVE = "src/data/filters/shire2016-cu1.5-loose.csv"
+PYTHON = "target/venv-compare/bin/python"
+SEED = 1
+#: Repeats by scene; the slow languages are timed once in each.
+REPEATS = 5
+
+
+def values(command):
+    """The name-value pairs that a walk prints."""
+    one_thread = dict(os.environ, OPENBLAS_NUM_THREADS="1", OMP_NUM_THREADS="1")
+    words = subprocess.run(command, check=True, capture_output=True, text=True, env=one_thread).stdout.split()
+    return {name: float(value) for name, value in zip(words[::2], words[1::2])}
+
+
+def isas(binary):
+    names = ["portable", "avx2", "avx512"]
+    tries = [subprocess.run([binary, "1", "passive", "1", "1", "1", n], capture_output=True) for n in names]
+    return [name for name, tried in zip(names, tries) if tried.returncode == 0]
+
+
+def scene(build, binary, n, name, repeats):
+    """Every walk of a scene in turns; the lists of what each printed."""
+    # A run of 2e8 particles to its end takes plain code an hour: its first 110 increments stand for it.
+    until = 0 if n < 100_000_000 else 110
+    tail = [str(n), CURVE, name, str(SEED), str(until)]
+    commands = {
+        "plain C++": [f"{build}/walk_cpp", *tail],
+        "plain Rust": [f"{build}/walk_rust", *tail],
+    }
+    slow = {
+        "Numba": [PYTHON, "benches/baseline/walk_numba.py", *tail],
+        "NumPy": [PYTHON, "benches/baseline/walk_numpy.py", *tail],
+    }
+    for isa in isas(binary):
+        for threads in (1, 2):
+            label = f"voidwalk {isa}, {threads} thread{'s' * (threads > 1)}"
+            commands[label] = [binary, str(n), name, str(SEED), str(until), str(threads), isa]
+    seen = {label: [] for label in commands}
+    for repeat in range(repeats):
+        for label, command in commands.items():
+            seen[label].append(values(command))
+        if repeat == 0 and n <= 2_000_000:
+            for label, command in slow.items():
+                seen[label] = [values(command)]
+    return seen
+
+
+def table(seen):
+    """Rows of Markdown; ratios against the faster plain walk."""
+
+    def times(label, field):
+        # Several threads by the wall; one by the processor's time, which other programs do not lengthen.
+        field = field.replace("ns_", "wall_") if "threads" in label else field
+        return [run[field] for run in seen[label]]
+
+    base = {}
+    for field in ("ns_step_all", "ns_step_after"):
+        fastest = min(("plain C++", "plain Rust"), key=lambda label: statistics.median(times(label, field)))
+        base[field] = (min(times(fastest, field)), statistics.median(times(fastest, field)))
+    rows = [
+        "| walk | ns a step, insertion included: min, median | ratio of medians (of minima) | "
+        "ns a step, after the last insertion: min, median | ratio of medians (of minima) | processor ns a step | "
+        "eroded | blocked |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
+    for label, runs in seen.items():
+        cells = [label]
+        for field in ("ns_step_all", "ns_step_after"):
+            low, middle = min(times(label, field)), statistics.median(times(label, field))
+            cells.append(f"{low:.2f}, {middle:.2f}")
+            cells.append(f"{base[field][1] / middle:.1f} ({base[field][0] / low:.1f})")
+        cells.append(f"{min(run['ns_step_all'] for run in runs):.2f}")
+        cells += [f"{runs[0]['eroded']:.0f}", f"{runs[0]['blocked']:.0f}"]
+        rows.append("| " + " | ".join(cells) + " |")
+    return rows
+
+
+def counts(build, scale):
+    """Whole first runs of engine counts beside the time that the plain walks would take for the same moves."""
+    plain = {}
+    for label, program in (("plain C++", "walk_cpp"), ("plain Rust", "walk_rust")):
+        plain[label] = values([f"{build}/{program}", "200000000", CURVE, "graded", str(SEED), "110"])["ns_step_all"]
+    best = min(plain.values())
+    lines = [
+        "",
+        "## Engine `counts`: whole first runs",
+        "",
+        "The plain walks' first 110 increments with 2e8 particles (a whole run takes minutes) cost "
+        + " and ".join(f"{ns:.1f} ns a step ({label})" for label, ns in plain.items())
+        + ". The ratio is the faster of these times the completed moves, over the run's processor time: a plain walk on one "
+        "core against all that counts need, its coarse particles included. Least of three runs; 1e12 is of a wider base (Cu 24), "
+        "of which as many particles are coarse as of 2e8 at Cu 4.5.",
+        "",
+        "| walk | N | processor s | wall s | increments | walked one by one | moves | ratio to plain | peak MB |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
+    cases = [(isa, 1, "200000000", "4.5") for isa in reversed(isas_of(scale))]
+    cases += [("best", 2, "200000000", "4.5")]
+    cases += [("best", 1, "1000000000", "4.5"), ("best", 1, "1000000000000", "24")]
+    top = isas_of(scale)[-1]
+    for isa, threads, n, cu in cases:
+        isa = top if isa == "best" else isa
+        command = [scale, "counts", n, "40", "40", "60", str(threads), isa, cu]
+        runs = [values_of(command) for _ in range(3)]
+        run = min(runs, key=lambda run: float(run["cpu"]))
+        wall = min(float(run["wall"]) for run in runs)
+        ratio = best * 1e-9 * float(run["moves"]) / float(run["cpu"])
+        lines.append(
+            f"| voidwalk {isa}, {threads} thread{'s' * (threads > 1)} | {float(n):.0e} | {float(run['cpu']):.2f} | {wall:.2f} | "
+            f"{run['increments']} | {run['one_by_one']} | {float(run['moves']):.3g} | {ratio:.3g} | {run['peak_mb']} |"
+        )
+    return lines
+
+
+def values_of(command):
+    """The name-value pairs of a line, as words."""
+    words = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()
+    return dict(zip(words[::2], words[1::2]))
+
+
+def isas_of(scale):
+    """Instruction sets of this machine, the slowest first."""
+    names = ["portable", "avx2", "avx512"]
+    tries = [subprocess.run([scale, "counts", "1", "2", "2", "2", "1", n], capture_output=True) for n in names]
+    return [name for name, tried in zip(names, tries) if tried.returncode == 0]
+
+
+def first_line(*command):
+    return subprocess.run(command, capture_output=True, text=True).stdout.splitlines()[0]
+
+
+def processor():
+    lines = open("/proc/cpuinfo").read().splitlines()
+    return next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), platform.machine())
+
+
+def main():
+    build, binary, scale, *sizes = sys.argv[1:]
+    date = datetime.date.today().isoformat()
+    lines = [
+        "# The walk against plain walks",
+        "",
+        f"{date}, commit {first_line('git', 'rev-parse', '--short', 'HEAD')}, {processor()}, "
+        f"{os.cpu_count()} cores, {first_line('rustc', '--version')}, {first_line('g++', '--version')}. Seed {SEED}.",
+        f"Load average when it began {os.getloadavg()[0]:.1f}.",
+        "",
+        "Scene: 40 x 40 x 60 lattice, curve shire2016-cu1.5-loose; `graded` is a base of Cu 4.5 with D85 = Dc5,",
+        "`passive` the same shape, finer than every constriction. A step is an attempted move. One thread: processor",
+        "time; two threads: wall time. Walks are timed in turns; ratios are against the faster of plain C++ and",
+        "plain Rust (one core). Made by `scripts/peers/compare_walk.sh`.",
+    ]
+    lines += counts(build, scale)
+    for n in map(int, sizes):
+        for name in ("graded", "passive"):
+            repeats = REPEATS if n < 10_000_000 else 1
+            lines += ["", f"## {name}, N = {n:.0e}, {repeats} repeats", ""]
+            lines += table(scene(build, binary, n, name, repeats))
+            with open(f"results/walk-speed-{date}.md", "w") as out:
+                out.write("\n".join(lines + [f"\nLoad average at the end {os.getloadavg()[0]:.1f}."]) + "\n")
+    print("\n".join(lines))
+
+
+if __name__ == "__main__":
+    main()

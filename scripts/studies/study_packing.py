@@ -1,0 +1,167 @@
+#!/usr/bin/env python3
+"""How void ratio, constriction curve and run time of a packing depend on the settings of its compression.
+
+    python3 scripts/studies/study_packing.py [--set narrow|wide|table2] [--grains 5000] [--seeds 1,2,3] [--work DIR] [--only NAME,...]
+
+Every row is the protocol with its default settings, but a tenth of the stiffness (half the time), and except for what it names, for each of the seeds; the table gives the mean over the
+seeds and, after the sign, the standard deviation of one packing. `narrow` is Cu 1.5, dense and loose; `wide` is Cu 3, dense and
+loose, and Cu 6; `table2` is the six filters of the paper with the numbers of grains that go with them, one row each (then --grains is ignored). One thread,
+so that CPU seconds mean something on a busy machine. Prints Markdown; every run is also kept as a JSON line in DIR/runs.jsonl, and is
+not done again if it is there (delete the file after a change of the program).
+
+Dc5, Dc50 and Cu_CSD are those of `voidwalk constrictions`; diameters are relative to the smallest grain of the gradation.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import resource
+import statistics
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+BASE = {"stiffness_ratio": 0.1, "hold_steps": 4000, "max_steps": 400_000}
+
+# The hold is a number of steps, and the step goes with stiffness to the power of -1/3: rows of other stiffness hold for the same time.
+VARIANTS = {
+    "none": {},
+    "stiffness 0.01": {"stiffness_ratio": 0.01, "hold_steps": 1860},
+    "stiffness 0.3": {"stiffness_ratio": 0.3, "hold_steps": 5770},
+    "stiffness 1": {"stiffness_ratio": 1, "hold_steps": 8620},
+    "half the compression and servo rate": {"squeeze_rate": 5e-3, "servo_rate": 1e-3},
+    "mass exponent 0 (true masses)": {"mass_exponent": 0},
+    "mass exponent 2": {"mass_exponent": 2},
+    "1500 grains": {"grains": 1500},
+    "15000 grains": {"grains": 15000},
+    "restitution 0.2": {"restitution": 0.2},
+    "restitution 0.8": {"restitution": 0.8},
+    "drag 0.01": {"drag": 0.01},
+    "drag 0.1": {"drag": 0.1},
+    "settling drag 0.03": {"settling_drag": 0.03},
+    "settling drag 0.3": {"settling_drag": 0.3},
+    "start fraction 0.2": {"start_fraction": 0.2},
+    "start fraction 0.45": {"start_fraction": 0.45},
+    "compression to a fraction of 0.8": {"compression_target_fraction": 0.8},
+    "servo gain 0.003": {"servo_gain": 3e-3},
+    "servo gain 0.03": {"servo_gain": 3e-2},
+    "half the time step": {"step_fraction": 0.35, "hold_steps": 8000},
+    "twice the hold": {"hold_steps": 8000},
+}
+
+FILTERS = {
+    "narrow": [(1.5, 0.0), (1.5, 0.3)],
+    "wide": [(3.0, 0.0), (3.0, 0.3), (6.0, 0.7)],
+}
+
+# Cu, friction, grains, void ratio of the paper's Table 2.
+TABLE2 = [
+    (1.2, 0.0, 8262, 0.558), (1.5, 0.0, 9313, 0.531), (1.5, 0.3, 9313, 0.658),
+    (3.0, 0.0, 22600, 0.382), (3.0, 0.3, 22600, 0.455), (6.0, 0.7, 60000, 0.340),
+]
+
+
+def built():
+    """Paths of the benchmark and of the program."""
+    run = subprocess.run(["cargo", "build", "--release", "--bins", "--message-format=json"],
+                         cwd=ROOT, check=True, capture_output=True, text=True)
+    bench = subprocess.run(["cargo", "bench", "--bench", "packing", "--no-run", "--message-format=json"],
+                           cwd=ROOT, check=True, capture_output=True, text=True)
+
+    def path(out, name):
+        messages = [json.loads(line) for line in out.stdout.splitlines() if line.startswith("{")]
+        return next(m["executable"] for m in messages if m.get("executable") and m["target"]["name"] == name)
+
+    return path(bench, "packing"), path(run, "voidwalk")
+
+
+def one(programs, settings, work):
+    """One packing and its curve."""
+    pack, voidwalk = programs
+    table = work / "packing.csv"
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = subprocess.run([pack, "threads=1", f"out={table}", *(f"{k}={v}" for k, v in settings.items())],
+                          check=True, capture_output=True, text=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    line = json.loads(done.stdout.strip().splitlines()[-1])
+    line["cpu_s"] = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+    curve = subprocess.run([voidwalk, "constrictions", str(table), "--overwrite", "--json", "--out", str(work / "curve")],
+                           check=True, capture_output=True, text=True)
+    curve = json.loads(curve.stdout)
+    line["dc5"], line["dc50"] = curve["dc_mm"]["5"] / curve["d0_mm"], curve["dc_mm"]["50"] / curve["d0_mm"]
+    line["cu_csd"] = curve["cu_csd"]
+    return line
+
+
+def spread(lines, field, digits):
+    values = [line[field] for line in lines]
+    mean = f"{statistics.fmean(values):.{digits}f}"
+    return mean if len(values) < 2 else f"{mean} ± {statistics.stdev(values):.{digits}f}"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--set", choices=["narrow", "wide", "table2"], default="narrow")
+    parser.add_argument("--grains", type=int, default=5000)
+    parser.add_argument("--seeds", default="1,2,3")
+    parser.add_argument("--filters", help="Cu:friction, ... instead of those of the set")
+    parser.add_argument("--only", help="names of rows, separated by commas")
+    parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path(tempfile.gettempdir()) / "study-packing")
+    options = parser.parse_args()
+    options.work.mkdir(parents=True, exist_ok=True)
+    kept = options.work / "runs.jsonl"
+    known = {}
+    if kept.exists():
+        for text in kept.read_text().splitlines():
+            entry = json.loads(text)
+            known[json.dumps(entry["settings"], sort_keys=True)] = entry["result"]
+    programs = built()
+    names = options.only.split(",") if options.only else list(VARIANTS)
+
+    def result(settings):
+        key = json.dumps(settings, sort_keys=True)
+        if key not in known:
+            known[key] = one(programs, settings, options.work)
+            with kept.open("a") as out:
+                out.write(json.dumps({"settings": settings, "result": known[key], "load": os.getloadavg()[0]}) + "\n")
+        return known[key]
+
+    seeds = [int(s) for s in options.seeds.split(",")]
+    head = ["void ratio", "with friction 0.3", "coordination without rattlers", "rattler fraction", "Dc5", "Dc50", "Cu_CSD", "steps", "CPU s"]
+
+    def row(name, lines):
+        cells = [
+            spread(lines, "void_ratio_before", 4), spread(lines, "void_ratio", 4), spread(lines, "coordination_held", 2),
+            spread(lines, "rattlers", 3), spread(lines, "dc5", 4), spread(lines, "dc50", 4), spread(lines, "cu_csd", 3),
+            f"{statistics.fmean(line['steps'] for line in lines):.0f}",
+            f"{statistics.fmean(line['cpu_s'] for line in lines):.1f}",
+        ]
+        settled = sum(line["settled"] for line in lines)
+        note = "" if settled == len(lines) else f" ({settled} of {len(lines)} at rest)"
+        print(f"| {name}{note} | " + " | ".join(cells) + " |", flush=True)
+
+    def header(first):
+        print(f"| {first} | " + " | ".join(head) + " |\n|" + "---|" * (len(head) + 1), flush=True)
+
+    if options.set == "table2":
+        header("Cu, friction, grains (void ratio of the paper)")
+        for cu, friction, grains, paper in TABLE2:
+            row(f"{cu:g}, {friction:g}, {grains} ({paper})",
+                [result({"cu": cu, "friction": friction, "grains": grains, "seed": s}) for s in seeds])
+        return
+    filters = FILTERS[options.set]
+    if options.filters:
+        filters = [tuple(map(float, pair.split(":"))) for pair in options.filters.split(",")]
+    for cu, friction in filters:
+        print(f"\nCu {cu:g}, friction {friction:g}, {options.grains} grains, seeds {options.seeds}\n")
+        header("changed")
+        for name in names:
+            base = {"cu": cu, "friction": friction, "grains": options.grains, **BASE}
+            row(name, [result({**base, **VARIANTS[name], "seed": s}) for s in seeds])
+
+
+if __name__ == "__main__":
+    sys.exit(main())

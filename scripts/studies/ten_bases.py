@@ -1,0 +1,110 @@
+#!/usr/bin/env python3
+"""How coarse may the filter be, for ten bases: the boundaries of `voidwalk design`, and what they cost.
+
+    scripts/studies/ten_bases.py [--out target/ten-bases] [--binary target/release/voidwalk] [--filter cu1.5-loose] [--threads 2] [--set KEY=VALUE]
+    scripts/studies/ten_bases.py --only "linear, Cu 1.5"          # one of them
+    VOIDWALK_ISA=avx2 scripts/studies/ten_bases.py --out other    # as on a machine without AVX-512
+
+Five bases that are linear on semi-log paper (D85 0.2 mm) and five sieve tables. A base that is done is not walked again: the same command
+continues. Settings are the program's defaults but for --set. Prints a table in Markdown: boundaries with their 5 to 95 % over networks, ratios walked, processor time, wall time, and the
+machine's load when each began and ended. Python 3's standard library only.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import resource
+import shutil
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+LINEAR = [1.2, 1.5, 2, 3, 4.5]
+TABLES = {
+    "uniform fine sand": [(0.1, 0), (0.125, 12), (0.18, 62), (0.25, 95), (0.355, 100)],
+    "fine sand": [(0.063, 0), (0.125, 30), (0.25, 80), (0.5, 100)],
+    "medium sand": [(0.15, 0), (0.3, 15), (0.6, 50), (1.18, 85), (2.36, 100)],
+    "gap-graded sand": [(0.05, 0), (0.1, 25), (0.15, 28), (0.4, 34), (0.6, 75), (0.85, 100)],
+    "silty sand": [(0.02, 0), (0.045, 8), (0.075, 18), (0.15, 45), (0.3, 78), (0.6, 96), (1.18, 100)],
+}
+
+
+def bases(args):
+    """Name, and how design is told."""
+    for cu in LINEAR:
+        yield f"linear, Cu {cu:g}", ["--set", f"base.cu={cu:g}", "--set", "base.d85_mm=0.2"]
+    for name, points in TABLES.items():
+        path = args.out / (name.replace(" ", "-") + ".csv")
+        path.write_text("opening_mm,percent_finer\n" + "".join(f"{mm},{percent}\n" for mm, percent in points))
+        yield name, [path]
+
+
+def walk(args, name, told):
+    folder = args.out / "design"
+    shutil.rmtree(folder, ignore_errors=True)
+    command = [args.binary, "design", *told, "--filter", args.filter, "--threads", args.threads, "--out", folder, "--quiet"]
+    command += [part for setting in args.set for part in ("--set", setting)]
+    load, before, begun = os.getloadavg()[0], resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
+    code = subprocess.call([str(part) for part in command])
+    wall, after = time.monotonic() - begun, resource.getrusage(resource.RUSAGE_CHILDREN)
+    if code:
+        sys.exit(f"{name}: voidwalk ended with {code}")
+    walks = (folder / "design.csv").read_text().splitlines()[1:]
+    return {
+        "base": name,
+        "design": json.loads((folder / "design.json").read_text()),
+        "walks": len(walks) + sum(not line.endswith(",") for line in walks),
+        "processor_s": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime,
+        "wall_s": wall,
+        "load": [load, os.getloadavg()[0]],
+    }
+
+
+def words(found, note):
+    if not found:
+        return note or "none"
+    band = "no band" if found["low"] is None or found["high"] is None else f"{found['low']:.3f} to {found['high']:.3f}"
+    mm = found.get("d15f_mm")
+    return f"{found['median']:.3f} ({band})" + (f"; D15F {mm['median']:.3f} mm" if mm else "")
+
+
+def table(done):
+    print("| base | Cu | no erosion up to D15F/D85B (5 to 95 %) | continuing from | not monotone | walks | processor s | wall s | load |")
+    print("|---|---|---|---|---|---|---|---|---|")
+    for one in done:
+        row, cu = one["design"]["boundaries"][0], one["design"]["base"]["cu"]
+        print(f"| {one['base']} | {'not known' if cu is None else f'{cu:.2f}'} | {words(row['no_erosion'], row.get('no_erosion_note'))} "
+              f"| {words(row['continuing'], row.get('continuing_note'))} | {row['not_monotone']} of {len(row['networks'])} "
+              f"| {one['walks']} | {one['processor_s']:.0f} | {one['wall_s']:.0f} | {one['load'][0]:.0f} to {one['load'][1]:.0f} |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "target/ten-bases")
+    parser.add_argument("--binary", type=pathlib.Path, default=ROOT / "target/release/voidwalk")
+    parser.add_argument("--filter", default="cu1.5-loose")
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
+    parser.add_argument("--only", action="append", default=[], metavar="BASE", help="the bases with these names")
+    args = parser.parse_args()
+    args.out.mkdir(parents=True, exist_ok=True)
+    kept = args.out / "done.jsonl"
+    done = {one["base"]: one for one in map(json.loads, kept.read_text().splitlines())} if kept.exists() else {}
+    version = subprocess.run([args.binary, "--version"], capture_output=True, text=True, check=True).stdout.strip()
+    asked = {"filter": args.filter, "set": args.set, "version": version, "isa": os.environ.get("VOIDWALK_ISA")}
+    wanted = [(name, told) for name, told in bases(args) if name in args.only or not args.only]
+    for name, told in wanted:
+        if name in done and done[name].get("asked") != asked:
+            sys.exit(f"{kept}: {name} was found with {done[name].get('asked')}, not {asked}: give these, or another --out")
+        if name not in done:
+            done[name] = {**walk(args, name, told), "asked": asked}
+            with kept.open("a") as file:
+                file.write(json.dumps(done[name]) + "\n")
+            print(f"{name}: {done[name]['processor_s']:.0f} s of processor time", file=sys.stderr)
+    table([done[name] for name, _ in wanted])
+
+
+if __name__ == "__main__":
+    main()
