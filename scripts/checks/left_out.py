@@ -106,7 +106,7 @@ def main():
             f"Made by `scripts/checks/left_out.py`; commit {commit}, seed 1, one thread, load {load:.1f} at the start. Networks of 12 x 12 x 20, 12 "
             "replicates, two runs. Times are processor seconds of whole processes. The full path walks every particle one by one; "
             "differences of the eroded mass are paired by network (percentage points, with the standard error of the mean). "
-            "Both engines on all 78 combinations of the paper: `results/engines-2026-11-21.md`.", "",
+            "Both engines on all 78 combinations of the paper: `results/engines.md`.", "",
             "| scene | engine as it is | s | s, full path | ratio | peak MB, as it is / full | first run, difference | second run, difference | "
             "first run alone, nothing recorded: s, quantities |", "|---|---|---|---|---|---|---|---|---|", *rows, "",
             "## What was left out, as the report of each says", "", *said]

@@ -353,7 +353,7 @@ def _(folder):
     return table_of(rows) + "; " + passed([("model", "packing::friction_sets_the_density_and_none_makes_no_torque")])
 
 
-by_tests("Packing", "half the compression rate", "the void ratio hardly moves (study: results/packing-2026-11-21.md)",
+by_tests("Packing", "half the compression rate", "the void ratio hardly moves (study: results/packing.md)",
          ("model", "packing::half_the_rate_gives_the_same_void_ratio"))
 by_tests("Packing", "size ratios 10, 36, 100 with friction", "no energy from nowhere; a small grain between large ones is expelled",
          ("lib", CHECKS + "friction_makes_no_energy_at_any_size_ratio"), ("lib", CHECKS + "a_small_grain_between_large_ones_is_expelled"),
@@ -457,7 +457,7 @@ by_tests("Machine", "symlinked folder, hostile names", "refused; inert", ("comma
          ("commands", "hostile_names::an_error_of_any_reader_says_the_name_and_leaves_the_terminal_alone"))
 
 
-@case("Machine", "every n-th write, sync, rename or allocation fails (EIO, ENOSPC, EINTR); power cuts (the fixed part; all of them: results/robustness-*.md)",
+@case("Machine", "every n-th write, sync, rename or allocation fails (EIO, ENOSPC, EINTR); power cuts (the fixed part; all of them: results/faults.md)",
       "clear error, last checkpoint intact, the same results after going on")
 def _(_):
     done = subprocess.run([TESTS["faults"]], capture_output=True, text=True, cwd=ROOT)

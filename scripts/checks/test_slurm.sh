@@ -2,7 +2,7 @@
 # Walks small campaigns on a private Slurm (scripts/slurm/private.sh, installed if it is missing), disturbs them, and compares
 # each with the local run of the same plan, byte for byte apart from where and when:
 #     scripts/checks/test_slurm.sh            # everything once, some two minutes
-#     scripts/checks/test_slurm.sh 10         # the array and its disturbances ten times, and the counts to results/slurm-DATE.md
+#     scripts/checks/test_slurm.sh 10         # the array and its disturbances ten times, and the counts to target/slurm-DATE.md
 #     scripts/checks/test_slurm.sh 10 ""      # the array alone ten times; likewise "kill node"
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -249,5 +249,5 @@ date=$(date -u +%F)
     row node "slurmd killed (SIGKILL), a second later started again"
     echo
     echo "16 walks a campaign are begun where nothing is lost. What a killed process had not kept is walked again."
-} >"results/slurm-$date.md"
-echo "results/slurm-$date.md"
+} >"target/slurm-$date.md"
+echo "target/slurm-$date.md"

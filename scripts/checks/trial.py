@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The first hour of a dam engineer, again: common filters against common bases, each walked, in one table.
 
-    scripts/checks/trial.py --binary target/release/voidwalk [--out results/trial-DATE.md] [--pack] [--small]
+    scripts/checks/trial.py --binary target/release/voidwalk [--out target/trial-DATE.md] [--pack] [--small]
 
 Writes the sieve sheets, walks every pair with a constriction curve that is guessed from the gradation (`filter.estimate`; with `--pack`
 each filter is packed by `filter.density` instead, which takes minutes to hours), and prints for each: the verdict, its confidence, the

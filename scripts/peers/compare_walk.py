@@ -1,4 +1,4 @@
-"""Times the plain walks and the library's in turns and writes results/walk-speed-DATE.md.
+"""Times the plain walks and the library's in turns and writes target/walk-speed-DATE.md.
 
 Called by compare_walk.sh: BUILD BINARY SCALE_BINARY N...
 """
@@ -167,7 +167,7 @@ def main():
             repeats = REPEATS if n < 10_000_000 else 1
             lines += ["", f"## {name}, N = {n:.0e}, {repeats} repeats", ""]
             lines += table(scene(build, binary, n, name, repeats))
-            with open(f"results/walk-speed-{date}.md", "w") as out:
+            with open(f"target/walk-speed-{date}.md", "w") as out:
                 out.write("\n".join(lines + [f"\nLoad average at the end {os.getloadavg()[0]:.1f}."]) + "\n")
     print("\n".join(lines))
 

@@ -1,12 +1,12 @@
 #!/bin/sh
 # Builds and times the plain walks of benches/baseline beside the library's, in turns, and writes the ratios to
-# results/walk-speed-DATE.md. NumPy and Numba are installed into target/venv-compare.
+# target/walk-speed-DATE.md. NumPy and Numba are installed into target/venv-compare.
 # Usage: scripts/peers/compare_walk.sh [N ...]   (default 2000000 20000000; 200000000 takes half an hour). Whole runs of engine counts
 # are always among them.
 set -eu
 cd "$(dirname "$0")/../.."
 build=target/compare
-mkdir -p "$build" results
+mkdir -p "$build"
 g++ -O3 -march=native -o "$build/walk_cpp" benches/baseline/walk.cpp
 rustc --edition 2024 -C opt-level=3 -C target-cpu=native -o "$build/walk_rust" benches/baseline/walk.rs
 if [ ! -x target/venv-compare/bin/python ]; then

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Times the engines `particles`, `counts` and `auto` beside each other, for the rule by which `auto` picks.
 
-    scripts/studies/auto_rule.py --binary target/release/voidwalk > results/auto-DATE.md
+    scripts/studies/auto_rule.py --binary target/release/voidwalk > target/auto-DATE.md
 
 One thread, one replicate of the built-in lattice with both runs; processor seconds of whole processes,
 `--turns` turns in alternation. Columns: least seconds of each engine; what `auto` loses, which is the larger of the medians

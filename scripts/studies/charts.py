@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Charts of how coarse a filter may be: both boundaries of `voidwalk design` against Cu of filter and base.
 
-    scripts/studies/charts.py [--out results/charts-DATE] [--binary target/release/voidwalk] [--threads N] [--until 13:05]
+    scripts/studies/charts.py [--out target/charts-DATE] [--binary target/release/voidwalk] [--threads N] [--until 13:05]
     scripts/studies/charts.py --cu-f 1.5 --cu-b 1.5,3 --densities loose --thicknesses 60layers --networks 3     # a part of it
     scripts/studies/charts.py --collect                                                                        # tables and charts alone
 
@@ -34,7 +34,7 @@ from xml.sax.saxutils import escape
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BOUNDARIES = {"no_erosion": "no erosion up to", "continuing": "continuing erosion from"}
-# Curves that ship with the program, each of a packing of this Cu and density (results/filters-2026-11-21.md). The loosest Cu 6 that was
+# Curves that ship with the program, each of a packing of this Cu and density (results/filters.md). The loosest Cu 6 that was
 # packed had friction 0.7 between its grains.
 SHIPPED = {
     (1.2, "dense"): "cu1.2-dense",
@@ -73,7 +73,7 @@ def time_of_day(text):
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     date = datetime.date.today().isoformat()
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "results" / f"charts-{date}")
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "target" / f"charts-{date}")
     parser.add_argument("--binary", type=pathlib.Path, default=ROOT / "target/release/voidwalk")
     parser.add_argument("--cu-f", type=numbers, default=[1.2, 1.5, 2, 3, 4, 6])
     parser.add_argument("--cu-b", type=numbers, default=[1.5, 2, 3, 4.5, 6])

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Instructions and cache misses per particle-step of the kernels that valgrind can run, on a small fixed scene, so that a
-# regression shows on a noisy machine. Writes results/walk-instructions-DATE.md.
+# regression shows on a noisy machine. Writes target/walk-instructions-DATE.md.
 # Usage: scripts/studies/count_instructions.sh [NAME=BINARY ...]
 # Each BINARY is an executable of the bench `compare_walk`; without one, that of this commit.
 set -eu
@@ -20,7 +20,7 @@ counts() { # BINARY INSTRUCTIONS N UNTIL: attempted moves, instructions, accesse
     sed -n 's/.*Collected : //p' target/callgrind.log |
         awk -v steps="$steps" '{ print steps, $1, $2 + $3, $5 + $6, $8 + $9 }'
 }
-out=results/walk-instructions-$(date +%F).md
+out=target/walk-instructions-$(date +%F).md
 mkdir -p results
 {
     echo "# Instructions and cache misses per particle-step"

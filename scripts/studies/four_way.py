@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How coarse may a filter be, by four models, beside tests: lattice or the packing's own voids, by area or by water.
 
-    scripts/studies/four_way.py --binary target/release/voidwalk --work FOLDER --out results/four-way-2026-11-23 --minutes 120
+    scripts/studies/four_way.py --binary target/release/voidwalk --work FOLDER --out results/four-way --minutes 120
 
 Packs each filter with several seeds into FOLDER (once), walks the cells of PLAN in their order until the time is over, and writes
 OUT.csv (every walk), OUT.svg and OUT.md. What is in OUT.csv is not walked again, so that a study that was stopped goes on; with

@@ -10,7 +10,7 @@ KENNEY, SUSPENDED = {1.2: 0.167, 3.0: 0.182, 6.0: 0.146}, 0.11
 # Percent eroded in the first run: filter Cu 1.5 loose, base Cu 1.5, 60 layers. A prototype (frontier.md, "What to expect").
 EXPECTED = {("lattice, area", 5.5): 60, ("lattice, area", 4.4): 8, ("lattice, flux", 5.5): 93,
             ("lattice, flux", 4.4): 50, ("graph, flux", 5.5): 78, ("graph, flux", 4.4): 28}
-# The same in results/graph-2026-11-22.md: lattices 40 x 40 voids wide with a published curve, graph of a larger packing.
+# The same in results/graph.md: lattices 40 x 40 voids wide with a published curve, graph of a larger packing.
 EARLIER = {("lattice, area", 5.5): (58.8, 61.6), ("lattice, area", 4.4): (7.4, 7.5), ("lattice, flux", 5.5): (95.7, 95.7),
            ("lattice, flux", 4.4): (80.5, 80.6), ("graph, flux", 5.5): (94.5, 94.6), ("graph, flux", 4.4): (76.9,)}
 # No erosion by lattice and area at 60 and at 600 layers (frontier.md, section 1).
@@ -111,7 +111,7 @@ def expected(rows, usual):
     found = {key: here(rows, *key) for key in EXPECTED}
     lines = ["## Beside \"What to expect\"", "",
              paragraph("Percent of the base eroded in the first run; filter Cu 1.5 loose, base Cu 1.5, 60 layers. Expected: a prototype. Earlier: "
-                       "`graph-2026-11-22.md`, with wider lattices, a published constriction curve and a larger packing."),
+                       "`graph.md`, with wider lattices, a published constriction curve and a larger packing."),
              "| model | D15F/D85B | expected | earlier | here |", "|---|---|---|---|---|"]
     for key, values in found.items():
         lines.append(f"| {SHOWN[key[0]]} | {key[1]:g} | {EXPECTED[key]} | {percents(EARLIER[key])} | {percents(values) or 'not run'} |")
@@ -127,12 +127,12 @@ def off(walked):
     one = lambda key: f"{SHOWN[key[0]]} at {key[1]:g}, {walked[key]:.0f} % for {EXPECTED[key]} expected"
     each = lambda keys: "; ".join(map(one, keys))
     if again:
-        yield (f"**Other than expected by more than 5 points, and the same in `graph-2026-11-22.md`**: {each(again)}. That page has no explanation "
+        yield (f"**Other than expected by more than 5 points, and the same in `graph.md`**: {each(again)}. That page has no explanation "
                "yet. It names two known differences from the prototype: here particles come in with the water, on the lattice mostly by wide ways "
                "in; and a void whose exits are all blocked passes its particles on when the flow is solved again, where the prototype holds many "
                "back. Neither was tested.")
     if alone := [key for key in far if key not in again]:
-        yield (f"**Other than expected, and than in `graph-2026-11-22.md`**: {each(alone)}. Here the lattice is narrower and its constrictions are "
+        yield (f"**Other than expected, and than in `graph.md`**: {each(alone)}. Here the lattice is narrower and its constrictions are "
                "those of the packing; what causes it was not tested.")
 
 

@@ -66,7 +66,7 @@ for name, study in studies.items():
             continue
         interval = "" if row["bias_low"] is None else f"{100 * row['bias_low']:+.3f} to {100 * row['bias_high']:+.3f}"
         lines.append(f"| {name} | {row['factor']}: {row['level']} | {row['replicates']} | {100 * row['bias']:+.3f} | {interval} | {row['core_seconds']:.3f} |")
-lines += ["", "Packings: `built-in/packing.csv`; the study of 21 November 2026 with more grains and settings is `results/packing-2026-11-21.md`.", ""]
+lines += ["", "Packings: `built-in/packing.csv`; the study of 21 November 2026 with more grains and settings is `results/packing.md`.", ""]
 (results / "README.md").write_text("\n".join(lines))
 PY
 du -sh "$results"

@@ -1,11 +1,11 @@
 #!/bin/sh
-# How the cost of a first run grows with base particles, voids and threads: writes results/walk-scaling-DATE.csv and two figures.
+# How the cost of a first run grows with base particles, voids and threads: writes target/walk-scaling-DATE.csv and two figures.
 # Usage: scripts/studies/scale_walk.sh   (some ten minutes)
 set -eu
 cd "$(dirname "$0")/../.."
 binary=$(cargo bench --bench scale_walk --no-run --message-format=json 2>/dev/null |
     sed -n 's/.*"name":"scale_walk".*"executable":"\([^"]*\)".*/\1/p' | tail -1)
-out=results/walk-scaling-$(date +%F)
+out=target/walk-scaling-$(date +%F)
 isa=portable
 for try in avx2 avx512; do
     "$binary" counts 1 2 2 2 1 "$try" >/dev/null 2>&1 && isa=$try

@@ -12,7 +12,7 @@ const MANY_MOVES: f64 = 1e5;
 /// A larger share of grains without load is worth a word ...
 const MANY_LOOSE: f64 = 0.5;
 /// ... and where it is as large as this, coarse grains carry each other: of two sizes far apart 98 % were
-/// without load with 30 % of the mass in the finer one, 19 % with 40 % (`results/cuts-2026-11-22.md`).
+/// without load with 30 % of the mass in the finer one, 19 % with 40 % (`results/cuts.md`).
 const SKELETON: f64 = 0.9;
 
 /// With fewer replicates than these their number is said beside the verdict: their scatter is hardly known.

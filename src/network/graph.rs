@@ -130,7 +130,7 @@ mod tests {
     /// that each has its part of the void and of the surface, and pressure falls evenly along the axis: k is
     /// the sum of g dz^2 over the throats of a cell of edge 1, by its volume. It comes within a tenth of
     /// Stokes flow through the same grains, as `scripts/studies/stokes_lattices.py` solves it (k / D^2 to
-    /// 0.2 %; the tables are in `results/graph-2026-11-23.md`).
+    /// 0.2 %; the tables are in `results/graph.md`).
     #[test]
     fn permeability_of_body_centred_and_face_centred_cubic_packings() {
         let pi = std::f64::consts::PI;

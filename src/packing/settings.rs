@@ -16,7 +16,7 @@ section! {
     /// How the grains are compressed; the defaults suit nearly every filter.
     ///
     /// The defaults are those of the paper where it gives them. The others come from the study in
-    /// `results/packing-2026-11-21.md` (`scripts/studies/study_packing.py`): half the rates, other masses,
+    /// `results/packing.md` (`scripts/studies/study_packing.py`): half the rates, other masses,
     /// half the time step, twice the hold, and more or fewer grains change the void ratio by no more than
     /// 0.003, about what seeds do (standard deviation 0.0035 loose and 0.0016 dense for 4,000 grains, 0.0011
     /// and 0.0005 for 15,000).

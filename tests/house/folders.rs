@@ -59,7 +59,7 @@ fn differences(folder: &str) -> Vec<String> {
 #[test]
 fn every_script_and_every_result_stands_in_its_index() {
     if is_the_repository() {
-        let wrong = [differences("scripts")].concat();
+        let wrong = [differences("scripts"), differences("results")].concat();
         assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     }
 }

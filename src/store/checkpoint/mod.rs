@@ -54,7 +54,7 @@
 //! # Read, not mapped
 //! A checkpoint is read piece by piece into the columns, each piece checked before it is used. It is not
 //! mapped: a mapped file that somebody cuts short ends the process (SIGBUS), and a mapped page can change
-//! after its sum was found right. What that costs is one copy in memory; `results/robustness-2026-11-21.md`
+//! after its sum was found right. What that costs is one copy in memory; `results/faults.md`
 //! holds the seconds of a whole resume.
 
 mod error;
