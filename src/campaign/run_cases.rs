@@ -26,6 +26,7 @@ use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, clear, shown};
 use crate::run::machine::Machine;
 use crate::run::other_walks::OtherWalks;
+use crate::run::planned;
 use crate::run::replicates::{self, ReplicateContext};
 use crate::run::results;
 use crate::run::shared_networks::SharedNetworks;
@@ -237,7 +238,7 @@ impl CaseRunner<'_> {
         (self.callbacks.on_case)(name, CaseEvent::Begun { resumes });
         let (begun, started) = (Instant::now(), SystemTime::now());
         let checkpoints = Checkpoints::new(folder, &prepared.fingerprint, self.checkpoint_interval)?;
-        let runs = Mutex::new([0, replicates::runs_to_walk(case)]);
+        let runs = Mutex::new([0, planned::runs_to_walk(case)]);
         let count = |event: Event| {
             let Ok(mut runs) = runs.lock() else { return };
             match event {

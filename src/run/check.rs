@@ -6,8 +6,9 @@ use serde::Serialize;
 
 use super::error::RunError;
 use super::machine::number_of_threads;
+use super::planned::runs_to_walk;
 use super::prepare::{Draft, PrepareOptions};
-use super::replicates::{have_networks, left_out_of_first_run, runs_to_walk};
+use super::replicates::{have_networks, left_out_of_first_run};
 use crate::case::{CaseError, PackedFilter, PackingPlan};
 use crate::outcome::record::{Inputs, Ratios};
 use crate::scene::Scene;

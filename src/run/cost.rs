@@ -7,8 +7,7 @@
 //! times (`scripts/checks/check_times.py`).
 
 use super::pilot::{WorkByVoid, pilot, small_packing_seconds};
-use super::replicates::first_replicates;
-use super::studies::likely_replicates;
+use super::planned::{first_replicates, likely_replicates};
 use crate::case::{Case, PackingPlan};
 use crate::packing::is_wide;
 use crate::scene::NetworkSource;

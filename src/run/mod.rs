@@ -27,6 +27,7 @@ pub mod other_walks;
 pub mod pack;
 mod packing_record;
 mod pilot;
+pub mod planned;
 pub mod prepare;
 pub mod replicates;
 pub mod results;

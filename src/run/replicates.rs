@@ -12,8 +12,8 @@ use rayon::prelude::*;
 use super::callbacks::{Callbacks, Event};
 use super::checkpoints::{Checkpoints, Done, WalkId};
 use super::error::RunError;
+use super::planned::first_replicates;
 use super::shared_networks::SharedNetworks;
-use super::studies::replicates_at_least;
 use crate::case::{Case, replicate_seed};
 use crate::network::{Network, NetworkError};
 use crate::outcome::record::{Replicate, Run, RunSummary, Statistic, Stopping, Verdict};
@@ -60,15 +60,6 @@ pub struct ReplicateResult {
     pub left_out: Vec<String>,
     /// Whether less than 7.5 % of the mass eroded, by run.
     pub(super) below: Vec<bool>,
-}
-
-/// Number of runs that are walked for a case: of itself, of the ends of its curve's range, and of its
-/// studies, as far as it is known before.
-pub fn runs_to_walk(case: &Case) -> u64 {
-    let first = first_replicates(case);
-    let of_verdict = first * (case.readings().count() + case.curve_ends().len()) as u64;
-    let points = (case.sensitivity_factors().len() + case.thickness_factors().len()) as u64;
-    case.scene.walk.runs * (of_verdict + points * replicates_at_least(case))
 }
 
 /// Walks every replicate of the case: as many as the scene says, or until its rule stops.
@@ -120,12 +111,6 @@ pub fn stopping(case: &Case, walked: &[ReplicateResult]) -> Option<Stopping> {
         Look::Stop(stopping) => Some(stopping),
         Look::Until(_) => None,
     }
-}
-
-/// Replicates of a case as far as it is known before it is walked.
-pub(super) fn first_replicates(case: &Case) -> u64 {
-    let (rule, replicates) = (&case.scene.stop, case.scene.walk.replicates);
-    if rule.is_set() { rule.replicates_at(replicates, 1) } else { replicates }
 }
 
 /// A look of the scene's rule at what is walked.

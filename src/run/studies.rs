@@ -13,14 +13,11 @@ use rayon::prelude::*;
 
 use super::callbacks::Event;
 use super::error::RunError;
-use super::replicates::{
-    ReplicateContext, ReplicateResult, first_replicates, summarise, values_by_run, walk_replicate,
-};
+use super::planned::replicates_at_least;
+use super::replicates::{ReplicateContext, ReplicateResult, summarise, values_by_run, walk_replicate};
 use crate::case::Case;
-use crate::outcome::early_stop::{FEWEST_OWN, clear, looks};
+use crate::outcome::early_stop::{clear, looks};
 use crate::outcome::record::{OfThickness, Sensitivity, Statistic, Verdict};
-use crate::outcome::stopping::ReplicateValues;
-use crate::outcome::verdict::{THRESHOLD, classify};
 
 /// What came of the studies; empty where they are left out.
 #[derive(Clone, Default)]
@@ -67,37 +64,6 @@ fn points(case: &Case) -> Vec<Point<'_>> {
     };
     let thick = thicknesses.zip(case.thickness_factors()).filter_map(of_thickness);
     (1..).zip(factors).map(of_base).chain(thick).collect()
-}
-
-/// Replicates of each point that are walked at the least, as far as it is known before the case is walked.
-pub(super) fn replicates_at_least(case: &Case) -> u64 {
-    let each = case.scene.record.sensitivity_replicates;
-    if first_replicates(case) >= FEWEST_OWN as u64 { each.min(1) } else { each }
-}
-
-/// Scatter of replicates over their mean that is taken where nothing is walked yet: that of the built-in
-/// scene.
-const LIKELY_SCATTER: f64 = 0.05;
-
-/// Replicates of a point that are likely to be walked, where a replicate of the case and one of the point
-/// erode so much in each run; all of them where that is not known.
-pub(super) fn likely_replicates(case: &Case, eroded: Option<(&[f64], &[f64])>) -> u64 {
-    let each = case.scene.record.sensitivity_replicates;
-    let Some((own, point)) = eroded else { return each };
-    let several = |values: &[f64], replicates: u64| -> Vec<ReplicateValues> {
-        let about = |&value: &f64| {
-            let sign = |k: u64| if k.is_multiple_of(2) { -LIKELY_SCATTER } else { LIKELY_SCATTER };
-            (0..replicates).map(|k| value * (1.0 + sign(k))).map(|v| (v, v < THRESHOLD)).collect()
-        };
-        values.iter().map(about).collect()
-    };
-    let below = |run: usize| own.get(run).map(|&eroded| eroded < THRESHOLD);
-    let class = classify(below(0), below(1));
-    let replicates = first_replicates(case);
-    let own = several(own, replicates);
-    let is_clear = |&look: &u64| clear(&own, class, &several(point, look)).is_some();
-    let looks = looks(class, replicates as usize, each);
-    looks.into_iter().find(is_clear).map_or(each, |look| look.min(each))
 }
 
 impl Studies {

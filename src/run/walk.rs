@@ -11,8 +11,9 @@ use super::folder::{
 };
 use super::machine::on_threads;
 use super::other_walks::OtherWalks;
+use super::planned::runs_to_walk;
 use super::prepare::{PrepareOptions, prepare_into};
-use super::replicates::{ReplicateContext, ReplicateResult, replicates, runs_to_walk};
+use super::replicates::{ReplicateContext, ReplicateResult, replicates};
 use super::results;
 use super::studies::Studies;
 use super::unfinished::{self, Unfinished};

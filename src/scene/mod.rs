@@ -10,6 +10,7 @@ mod groups;
 mod init;
 mod keys;
 mod meaning;
+mod packing_keys;
 mod reference;
 mod tables;
 
@@ -26,13 +27,14 @@ pub use keys::{
 pub use meaning::{
     Amount, BaseGradation, D85, Extent, FilterGradation, NetworkSource, PackingSpec, USUAL_LAYERS,
 };
+pub use packing_keys::PackingKeys;
 pub use reference::{ExclusiveSettings, SceneReference, SectionReference, SettingReference, WayReference};
 pub use tables::{TableOptions, keep_soils, quoted};
 
 use crate::network::ExitRule;
 use crate::outcome::stopping::StopRule;
-use crate::packing;
 use crate::schema::{GivenSettings, KeyInfo, Names};
+use packing_keys::packing_keys;
 
 /// What errors call the built-in scene.
 const BUILT_IN_NAME: &str = "built-in scene";
@@ -73,17 +75,6 @@ pub struct Scene {
     /// What the first page of the report says besides.
     #[serde(skip_serializing_if = "About::is_unset")]
     pub about: About,
-}
-
-/// The section `packing`: what belongs to the measured packing, and how its grains are compressed.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct PackingKeys {
-    /// Grains and voids.
-    #[serde(flatten)]
-    pub filter: FilterPacking,
-    /// The compression; friction and number of grains are not set here.
-    #[serde(flatten)]
-    pub compression: packing::Settings,
 }
 
 /// The names of all settings, and which exclude each other.
@@ -353,21 +344,6 @@ impl Scene {
         self.filter.fill_in();
         self.base.fill_in();
         self.network.fill_in();
-    }
-}
-
-/// The section `packing`, where density or friction asks for a packing.
-fn packing_keys(s: &GivenSettings) -> Result<Option<PackingKeys>, SceneError> {
-    let stated = s.has("filter.density") || s.has("filter.friction");
-    match s.first_in("packing.") {
-        Some(name) if !stated => Err(s.clash(format!(
-            "{name} goes with filter.density or filter.friction: nothing is packed without one of them"
-        ))),
-        _ if !stated => Ok(None),
-        _ => Ok(Some(PackingKeys {
-            filter: FilterPacking::read(s)?,
-            compression: packing::Settings::read(s)?,
-        })),
     }
 }
 

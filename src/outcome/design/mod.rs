@@ -9,7 +9,5 @@ pub mod products;
 mod record;
 mod spread;
 
-pub use record::{
-    BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignRow, NetworkBoundaries, Range, WalkRow,
-};
-pub use spread::spread;
+pub use record::{BETWEEN_STEPS, BaseStated, Boundary, Design, DesignRow, NetworkBoundaries, Range, WalkRow};
+pub use spread::{Beyond, spread};

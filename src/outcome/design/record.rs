@@ -4,22 +4,12 @@ use serde::{Deserialize, Serialize};
 
 use super::band::Band;
 use super::products::Fit;
-use super::spread;
+use super::spread::{Beyond, spread};
 use crate::outcome::record::{AppliedRule, Confidence};
 use crate::walk::Engine;
 
 /// Steps of the scale of ratios on which boundaries are found: half a percent, in ln(D15F/D85B).
 pub const BETWEEN_STEPS: f64 = 0.005;
-
-/// On which side of all that was searched something lies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Beyond {
-    /// At smaller ratios.
-    Below,
-    /// At larger ratios.
-    Above,
-}
 
 /// The whole of `design.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

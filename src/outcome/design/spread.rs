@@ -1,6 +1,16 @@
 //! Median and 5 to 95 % band of the networks' boundaries, where some lie beyond what was searched.
 
-use super::Beyond;
+use serde::{Deserialize, Serialize};
+
+/// On which side of all that was searched something lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Beyond {
+    /// At smaller ratios.
+    Below,
+    /// At larger ratios.
+    Above,
+}
 
 /// Percentiles of a boundary over networks (percent).
 const PERCENTILES: [f64; 3] = [5.0, 50.0, 95.0];

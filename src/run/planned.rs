@@ -1,0 +1,52 @@
+//! How many replicates and runs are walked, as far as it is known before.
+
+use crate::case::Case;
+use crate::outcome::early_stop::{FEWEST_OWN, clear, looks};
+use crate::outcome::stopping::ReplicateValues;
+use crate::outcome::verdict::{THRESHOLD, classify};
+
+/// Number of runs that are walked for a case: of itself, of the ends of its curve's range, and of its
+/// studies, as far as it is known before.
+pub fn runs_to_walk(case: &Case) -> u64 {
+    let first = first_replicates(case);
+    let of_verdict = first * (case.readings().count() + case.curve_ends().len()) as u64;
+    let points = (case.sensitivity_factors().len() + case.thickness_factors().len()) as u64;
+    case.scene.walk.runs * (of_verdict + points * replicates_at_least(case))
+}
+
+/// Replicates of a case as far as it is known before it is walked.
+pub(super) fn first_replicates(case: &Case) -> u64 {
+    let (rule, replicates) = (&case.scene.stop, case.scene.walk.replicates);
+    if rule.is_set() { rule.replicates_at(replicates, 1) } else { replicates }
+}
+
+/// Replicates of each point that are walked at the least, as far as it is known before the case is walked.
+pub(super) fn replicates_at_least(case: &Case) -> u64 {
+    let each = case.scene.record.sensitivity_replicates;
+    if first_replicates(case) >= FEWEST_OWN as u64 { each.min(1) } else { each }
+}
+
+/// Scatter of replicates over their mean that is taken where nothing is walked yet: that of the built-in
+/// scene.
+const LIKELY_SCATTER: f64 = 0.05;
+
+/// Replicates of a point that are likely to be walked, where a replicate of the case and one of the point
+/// erode so much in each run; all of them where that is not known.
+pub(super) fn likely_replicates(case: &Case, eroded: Option<(&[f64], &[f64])>) -> u64 {
+    let each = case.scene.record.sensitivity_replicates;
+    let Some((own, point)) = eroded else { return each };
+    let several = |values: &[f64], replicates: u64| -> Vec<ReplicateValues> {
+        let about = |&value: &f64| {
+            let sign = |k: u64| if k.is_multiple_of(2) { -LIKELY_SCATTER } else { LIKELY_SCATTER };
+            (0..replicates).map(|k| value * (1.0 + sign(k))).map(|v| (v, v < THRESHOLD)).collect()
+        };
+        values.iter().map(about).collect()
+    };
+    let below = |run: usize| own.get(run).map(|&eroded| eroded < THRESHOLD);
+    let class = classify(below(0), below(1));
+    let replicates = first_replicates(case);
+    let own = several(own, replicates);
+    let is_clear = |&look: &u64| clear(&own, class, &several(point, look)).is_some();
+    let looks = looks(class, replicates as usize, each);
+    looks.into_iter().find(is_clear).map_or(each, |look| look.min(each))
+}
