@@ -22,14 +22,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use base64::Engine as _;
-use base64::prelude::BASE64_STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
-use sha2::{Digest, Sha256};
 
 use super::figures::{Figure, Size, visible};
 
 const STYLE: &str = include_str!("page.css");
+/// Its SHA-256 in base64, as a content policy names it; a test says the new one where the style is changed.
+const STYLE_HASH: &str = "sDoxPJ18LQkr33O8Sr/itWL4uWCd2kSUyS6oowyn4wg=";
 
 /// A figure of a page with its caption.
 pub struct Drawn {
@@ -51,8 +50,7 @@ impl Drawn {
 /// What every page may do: nothing but show itself.
 pub fn content_policy() -> String {
     // the style is named by its hash: a style that a hostile name might bring along would not be obeyed
-    let hash = BASE64_STANDARD.encode(Sha256::digest(STYLE.as_bytes()));
-    format!("default-src 'none'; style-src 'sha256-{hash}'; base-uri 'none'; form-action 'none'")
+    format!("default-src 'none'; style-src 'sha256-{STYLE_HASH}'; base-uri 'none'; form-action 'none'")
 }
 
 /// A page as text: `title` for the browser, and what stands in each part of its body.
@@ -181,7 +179,21 @@ pub(super) fn fact(name: &str, value: impl AsRef<str>) -> Markup {
 
 #[cfg(test)]
 mod tests {
+    use base64::Engine as _;
+    use base64::prelude::BASE64_STANDARD;
+    use sha2::{Digest, Sha256};
+
     use super::*;
+
+    #[test]
+    fn the_policy_names_the_style_by_its_hash() {
+        let hash = BASE64_STANDARD.encode(Sha256::digest(STYLE));
+        assert_eq!(STYLE_HASH, hash, "page.css has changed: STYLE_HASH is {hash} now");
+        let page = whole_page("A page", &html! {}, &html! {}, &html! {});
+        let (_, style) = page.split_once("<style>").unwrap();
+        let (style, _) = style.split_once("</style>").unwrap();
+        assert!(style == STYLE && page.contains(&format!("style-src 'sha256-{hash}'")));
+    }
 
     #[test]
     fn headings_are_listed_where_that_is_wanted() {
