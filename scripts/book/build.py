@@ -110,7 +110,7 @@ def copy_results(source):
     shutil.copytree(ROOT / "results", source / "results", ignore=NOT_SHOWN)
     for path in (source / "results").rglob("README.md"):
         path.rename(path.with_name("index.md"))
-    found = sorted((source / "results").rglob("*.md"))
+    found = sorted((source / "results").rglob("*.md"), key=lambda path: (path != source / "results" / "index.md", path))
     return {path.relative_to(source): pages.title_of(path.read_text()) for path in found}
 
 
