@@ -5,12 +5,10 @@
 //! Throughput is in moves that particles complete. Goals, on one core: 2e8 in 0.5 s with AVX-512; 1e9 within 1.3 times that, 1e12 within
 //! 2 times; less than 100 MB resident, which is printed at the end.
 
-mod timing;
-
-use std::hint::black_box;
-use std::time::Instant;
+use std::time::Duration;
 
 use bitvec::vec::BitVec;
+use criterion::{Criterion, Throughput};
 use voidwalk::constrictions::find;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
@@ -42,6 +40,9 @@ impl Scene {
 }
 
 fn main() {
+    let mut criterion = Criterion::default().configure_from_args();
+    let mut group = criterion.benchmark_group("first run");
+    group.sample_size(10).warm_up_time(Duration::from_millis(100));
     let (graded, wide) = (Scene::new(4.5), Scene::new(24.0));
     for (name, scene, engine, n) in [
         ("counts 2e8", &graded, Engine::Counts, 200_000_000),
@@ -51,14 +52,13 @@ fn main() {
         ("particles 1e6", &graded, Engine::Particles, 1_000_000),
     ] {
         let (state, one_by_one) = scene.first_run(engine, n);
+        group.throughput(Throughput::Elements(state.tally.particle_moves));
+        group.bench_function(name, |bencher| bencher.iter(|| scene.first_run(engine, n)));
         let (increments, moves) = (state.increment, state.tally.particle_moves);
-        timing::time(name, moves, |times| {
-            let begin = Instant::now();
-            (0..times).for_each(|_| drop(black_box(scene.first_run(engine, n))));
-            begin.elapsed()
-        });
         println!("{name}: {one_by_one} one by one, {increments} increments, {moves} moves");
     }
+    group.finish();
+    criterion.final_summary();
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     status.lines().filter(|line| line.starts_with("VmHWM")).for_each(|line| println!("{line}"));
 }

@@ -4,12 +4,11 @@
 //! constrictions for `merge`, and constrictions for `network`. Goals on one core, against the plain walk timed in
 //! the same hour (`scripts/peers/compare_walk.sh`): 15 times with AVX-512, 5 times portable.
 
-mod timing;
-
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use bitvec::vec::BitVec;
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use voidwalk::constrictions::{self, Curve};
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
@@ -36,7 +35,7 @@ fn state(network: &Network, supply: &Supply) -> State {
 }
 
 /// Increments `from + 1 ..= to` of fresh walks, timed alone: time and attempted moves of `times` such.
-fn increments(network: &Network, supply: &Supply, isa: Isa, span: [u64; 2], times: u32) -> (Duration, u64) {
+fn increments(network: &Network, supply: &Supply, isa: Isa, span: [u64; 2], times: u64) -> (Duration, u64) {
     let (mut spent, mut steps) = (Duration::ZERO, 0);
     for _ in 0..times {
         let mut state = state(network, supply);
@@ -56,7 +55,7 @@ fn increments(network: &Network, supply: &Supply, isa: Isa, span: [u64; 2], time
 }
 
 /// Steps without insertion, insertion with one step, and an increment that blocks a great deal.
-fn walk() {
+fn walk(c: &mut Criterion) {
     let network = network();
     let pool = threads(1, false).unwrap();
     for (name, percent, n, span) in [
@@ -65,37 +64,33 @@ fn walk() {
         ("merge", 50.0, 1 << 17, [0, 1]),
     ] {
         let supply = supply(percent, n, 1);
+        let mut group = c.benchmark_group(name);
+        group.sample_size(10).measurement_time(Duration::from_secs(3));
         let (_, steps) = increments(&network, &supply, Isa::chosen(), span, 1);
+        group.throughput(Throughput::Elements(steps));
         for isa in Isa::ALL.into_iter().filter(|isa| isa.is_available()) {
-            timing::time(&format!("{name}/{}", isa.name()), steps, |times| {
-                pool.install(|| increments(&network, &supply, isa, span, times).0)
+            group.bench_function(BenchmarkId::from_parameter(isa.name()), |bencher| {
+                bencher
+                    .iter_custom(|times| pool.install(|| increments(&network, &supply, isa, span, times).0));
             });
         }
     }
 }
 
-/// The network drawn, and the table of its exits.
-fn build() {
+fn build(c: &mut Criterion) {
     let pool = threads(1, false).unwrap();
     let curve = curve();
-    let constrictions = 3 * 40 * 40 * 60;
-    timing::time("network/cubic", constrictions, |times| {
-        let begin = Instant::now();
-        for _ in 0..times {
-            black_box(pool.install(|| Network::cubic([40, 40, 60], black_box(&curve), 1.0, 1).unwrap()));
-        }
-        begin.elapsed()
+    let mut group = c.benchmark_group("network");
+    group.sample_size(10).throughput(Throughput::Elements(3 * 40 * 40 * 60));
+    group.bench_function("cubic", |bencher| {
+        bencher.iter(|| pool.install(|| Network::cubic([40, 40, 60], black_box(&curve), 1.0, 1).unwrap()));
     });
     let (network, supply) = (network(), supply(5.0, 1, 1));
     let state = state(&network, &supply);
-    timing::time("network/exit_table", constrictions, |times| {
-        let begin = Instant::now();
-        (0..times).for_each(|_| drop(black_box(Walk::new(black_box(&network), &supply, &state))));
-        begin.elapsed()
+    group.bench_function("exit_table", |bencher| {
+        bencher.iter(|| Walk::new(black_box(&network), &supply, &state));
     });
 }
 
-fn main() {
-    walk();
-    build();
-}
+criterion_group!(benches, walk, build);
+criterion_main!(benches);
