@@ -24,6 +24,7 @@
 //! on every length changes no bit of any ratio.
 
 mod burenkova;
+mod comma;
 mod error;
 mod numbers;
 mod regrade;

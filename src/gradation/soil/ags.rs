@@ -98,9 +98,17 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
             grid.notes
                 .push("the group GRAG, which sums gradings up, was passed over: sizes are of GRAT".into());
         }
-        let soil = SoilColumn { column: 1, heading: name.clone(), role: Role::Finer };
-        let layout =
-            Layout { size: 0, other_size: None, unit: size_unit, soils: vec![soil], first: 0, headed: true };
+        let soil = SoilColumn { column: 1, heading: name.clone(), role: Role::Finer, end: None };
+        let layout = Layout {
+            size: 0,
+            other_size: None,
+            unit: size_unit,
+            soils: vec![soil],
+            at: 0,
+            first: 0,
+            headed: true,
+            notes: Vec::new(),
+        };
         (name, grid, layout)
     });
     Ok(soils.collect())
