@@ -119,7 +119,7 @@ def texts():
         [(9.5, 100), (4.75, 97), (0.075, 1)], ["pan"])
     put("three_no_header.csv", "No. 4,4.75,100\nNo. 40,0.425,30\nNo. 200,0.075,1\n", [(4.75, 100), (0.425, 30), (0.075, 1)])
     put("all_columns.csv", "Sieve mm,Mass retained g,% retained,Cum. % retained,% passing\n4,0,0,0,100\n2,100,20,20,80\n1,150,30,50,50\n0.5,200,40,90,10\nPan,50,10,100,\n", soil)
-    put("blank_cell.csv", "mm,passing\n9.5,100\n4.75,\n2,-\n1,50\n0.5,10\n", [(9.5, 100), (1, 50), (0.5, 10)], ["line 3 has no percent"])
+    put("blank_cell.csv", "mm,passing\n9.5,100\n4.75,\n2,-\n1,50\n0.5,10\n", [(9.5, 100), (1, 50), (0.5, 10)], ["lines 3, 4 have no percent"])
     put("hydrometer.csv", "Sieve (mm),% finer\n2,100\n0.425,70\n0.075,35\nHydrometer\nSieve (mm),% finer\n0.032,21\n0.002,6\n",
         [(2, 100), (0.425, 70), (0.075, 35), (0.032, 21), (0.002, 6)], ["line 5 taken as a remark"])
     put("footer.csv", table(down) + "Tested by,J. Smith\n", BASE, ["remark"])

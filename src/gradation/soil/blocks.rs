@@ -17,8 +17,6 @@ pub(super) struct Block {
     pub(super) layout: Layout,
     /// Its columns in the file.
     pub(super) columns: Range<usize>,
-    /// Line of the first row that may hold its title.
-    pub(super) from: usize,
 }
 
 impl Block {
@@ -34,7 +32,7 @@ pub(super) fn blocks(grid: Grid) -> Result<Vec<Block>, TableError> {
         return Err(fields(&grid, row));
     }
     if let Some((grid, layout)) = across::find(&grid)? {
-        return Ok(vec![Block { grid, layout, columns: 0..0, from: 0 }]);
+        return Ok(vec![Block { grid, layout, columns: 0..0 }]);
     }
     let width = grid.rows.iter().map(|row| row.cells.len()).max().unwrap_or(0);
     let regions = regions(&grid, width);
@@ -172,7 +170,6 @@ fn side_by_side(band: Grid, several: bool) -> Result<Vec<Block>, TableError> {
         (Some(headings), _) => groups(&band, &headings)?,
         (None, _) => Vec::new(),
     };
-    let from = band.rows.first().map_or(0, |row| row.line);
     let parts = if groups.len() > 1 { band.columns(&groups) } else { vec![band] };
     let several = several || parts.len() > 1;
     let mut blocks = Vec::new();
@@ -184,7 +181,7 @@ fn side_by_side(band: Grid, several: bool) -> Result<Vec<Block>, TableError> {
         refuse_other_headings(&grid, &layout)?;
         let width = grid.rows.iter().map(|row| row.cells.len()).max().unwrap_or(0);
         let columns = grid.left..grid.left + width;
-        blocks.push(Block { grid, layout, columns, from });
+        blocks.push(Block { grid, layout, columns });
     }
     Ok(blocks)
 }

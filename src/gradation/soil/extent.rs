@@ -1,7 +1,7 @@
 //! Which rows below the headings are the table's: not its remarks, not its headings again, not what a laboratory
 //! writes below it.
 
-use super::content::{is_blank, is_text, is_value, is_words};
+use super::content::{is_blank, is_text, is_value, is_words, percentage};
 use super::grid::{Grid, GridRow};
 use super::layout::{Layout, repeats_headings};
 use super::lines::listed;
@@ -60,7 +60,7 @@ impl Extent {
         for row in &rows[end..] {
             let Some(column) = extent.column_of_words(layout, row) else { continue };
             let value =
-                row.filled().filter(|&c| c > column).find_map(|c| super::content::percentage(row.cell(c)));
+                row.filled().filter(|&c| c > column).find_map(|c| percentage(row.cell(c)));
             let words = shortened(row.cell(column));
             extent.below.push(Below { line: row.line, column, words, value });
         }
@@ -100,8 +100,7 @@ impl Extent {
         };
         let Some(begun) = rows.iter().position(is_data) else { return rows.len() };
         let Some(last) = rows.iter().rposition(is_data) else { return rows.len() };
-        let ends =
-            |row: &GridRow| row.filled().nth(1).is_some() && self.column_of_words(layout, row).is_some();
+        let ends = |row: &GridRow| !is_text(row) && self.column_of_words(layout, row).is_some();
         match rows[begun..].iter().position(ends) {
             Some(after) if begun + after > last => begun + after,
             _ => rows.len(),
