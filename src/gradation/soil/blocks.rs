@@ -3,10 +3,10 @@
 
 use std::ops::Range;
 
-use super::content::{begins_with_words, is_data, is_short_opening, is_text, is_value, percentage};
+use super::content::{begins_with_words, is_data, is_text, is_value, percentage};
 use super::grid::{Grid, GridRow};
 use super::heading::{Role, role};
-use super::layout::{Headings, Layout, fields, find, headings, is_heading, repeats_headings, says_soil};
+use super::layout::{Headings, Layout, fields, find, headings, is_heading, says_soil};
 use super::size::{Opening, opening};
 use super::{across, agreement};
 use crate::gradation::error::TableError;
@@ -166,19 +166,21 @@ fn goes_on(above: &[GridRow], next: &GridRow, below: &[GridRow]) -> bool {
 
 /// The tables of a band: one, or several with nothing between them, of which each begins with its openings.
 fn side_by_side(band: Grid, several: bool) -> Result<Vec<Block>, TableError> {
-    let groups = match headings(&band) {
-        (Some(headings), _) => groups(&band, &headings)?,
-        (None, _) => Vec::new(),
+    let (groups, line) = match headings(&band) {
+        (Some(headings), _) => (groups(&band, &headings)?, Some(band.rows[headings.at].line)),
+        (None, _) => (Vec::new(), None),
     };
     let parts = if groups.len() > 1 { band.columns(&groups) } else { vec![band] };
     let several = several || parts.len() > 1;
     let mut blocks = Vec::new();
     for grid in parts {
+        if let Some(line) = line {
+            refuse_other_headings(&grid, line)?;
+        }
         let layout = find(&grid)?;
         if several {
             refuse_far_values(&grid, &layout)?;
         }
-        refuse_other_headings(&grid, &layout)?;
         let width = grid.rows.iter().map(|row| row.cells.len()).max().unwrap_or(0);
         let columns = grid.left..grid.left + width;
         blocks.push(Block { grid, layout, columns });
@@ -279,11 +281,10 @@ fn refuse_far_values(grid: &Grid, layout: &Layout) -> Result<(), TableError> {
     Ok(())
 }
 
-/// Headings of a table amid the rows of another.
-fn refuse_other_headings(grid: &Grid, layout: &Layout) -> Result<(), TableError> {
-    for row in grid.rows.iter().skip(layout.first).filter(|row| !repeats_headings(row, layout)) {
-        let size = row.filled().find(|&c| is_size_heading(row.cell(c)) && !is_short_opening(row.cell(c)));
-        let Some(size) = size else { continue };
+/// Headings of a table amid the rows of another, below the line of its own.
+fn refuse_other_headings(grid: &Grid, line: usize) -> Result<(), TableError> {
+    for row in grid.rows.iter().filter(|row| row.line > line && !is_text(row)) {
+        let Some(size) = row.filled().find(|&c| is_size_heading(row.cell(c))) else { continue };
         let mut right = row.filled().filter(|&c| c > size).take(3);
         let of_soil = |c: usize| matches!(role(row.cell(c)), Role::Finer | Role::Retained(_));
         if right.any(|c| !is_value(row.cell(c)) && of_soil(c)) {

@@ -22,8 +22,8 @@ pub(super) struct Below {
     /// The column of its words.
     pub(super) column: usize,
     pub(super) words: String,
-    /// The first number that stands behind them.
-    pub(super) value: Option<f64>,
+    /// The first number that stands behind them, and its column.
+    pub(super) value: Option<(usize, f64)>,
 }
 
 /// The rows of a table.
@@ -60,7 +60,7 @@ impl Extent {
         for row in &rows[end..] {
             let Some(column) = extent.column_of_words(layout, row) else { continue };
             let value =
-                row.filled().filter(|&c| c > column).find_map(|c| percentage(row.cell(c)));
+                row.filled().filter(|&c| c > column).find_map(|c| Some((c, percentage(row.cell(c))?)));
             let words = shortened(row.cell(column));
             extent.below.push(Below { line: row.line, column, words, value });
         }
@@ -123,7 +123,7 @@ impl Extent {
         const MOST: usize = 4;
         let (first, last) = (rows.first()?, rows.last()?);
         let said = |below: &Below| match below.value {
-            Some(value) => format!("\"{}\" {value}", below.words),
+            Some((_, value)) => format!("\"{}\" {value}", below.words),
             None => format!("\"{}\"", below.words),
         };
         let mut named: Vec<String> = self.below.iter().take(MOST).map(said).collect();

@@ -145,6 +145,28 @@ pub(super) fn says_sedimentation(text: &str) -> bool {
     words(text).iter().any(|word| STEMS.iter().any(|stem| word.starts_with(stem)))
 }
 
+/// `Sample no.`, `Borehole:`: what stands before the name of a soil.
+pub(super) fn says_sample(text: &str) -> bool {
+    const SAMPLE: [&str; 15] = [
+        "sample",
+        "samples",
+        "specimen",
+        "soil",
+        "material",
+        "probe",
+        "borehole",
+        "boring",
+        "bohrung",
+        "name",
+        "échantillon",
+        "echantillon",
+        "muestra",
+        "pit",
+        "source",
+    ];
+    any(&words(text), &SAMPLE)
+}
+
 /// Whether the heading of percents says that they are of the fines alone.
 pub(super) fn says_of_fines(text: &str) -> bool {
     let small = text.to_lowercase();

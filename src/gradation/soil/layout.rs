@@ -3,7 +3,7 @@
 use super::columns::Columns;
 use super::content::{begins_with_words, is_data, is_short_opening, is_text, is_value, percentage};
 use super::grid::{Grid, GridRow};
-use super::heading::{Role, role, unit, words};
+use super::heading::{Role, role, says_sample, unit, words};
 use super::size::{Unit, opening};
 use crate::gradation::error::{TableError, shortened};
 
@@ -104,9 +104,12 @@ pub(super) fn headings(grid: &Grid) -> (Option<Headings>, Option<usize>) {
     let belongs = |row: &&GridRow| is_text(row) && sizes.iter().all(|&c| belongs_to_heading(row.cell(c)));
     let below = data.map_or(0, |data| data - at - 1);
     let below = rows[at + 1..].iter().take_while(belongs).take(below).count();
-    let width = rows[at..=at + below].iter().map(|row| row.cells.len()).max().unwrap_or(0);
+    let samples =
+        rows[..at].iter().rev().find(|row| row.filled().next().is_some_and(|c| says_sample(row.cell(c))));
+    let wide = rows[at..=at + below].iter().chain(samples);
+    let width = wide.map(|row| row.cells.len()).max().unwrap_or(0);
     let heads = (0..width).map(|c| head(&rows[at..=at + below], c)).collect();
-    let (heads, roles) = spread(grid, at, at + 1 + below, heads);
+    let (heads, roles) = spread(&rows[at..=at + below], samples, heads);
     (Some(Headings { at, first: at + 1 + below, heads, roles }), data)
 }
 
@@ -263,21 +266,28 @@ fn is_constriction_curve(heads: &[String]) -> bool {
     heads.len() == 2 && named("percent_smaller") && is_diameter
 }
 
-/// A heading that is merged over several columns stands in the first of them; the rows below name each.
-fn spread(grid: &Grid, at: usize, first: usize, mut heads: Vec<String>) -> (Vec<String>, Vec<Role>) {
+/// A heading that is merged over several columns stands in the first of them; the rows below name each, or a row
+/// of samples above.
+fn spread(rows: &[GridRow], samples: Option<&GridRow>, mut heads: Vec<String>) -> (Vec<String>, Vec<Role>) {
     let mut roles: Vec<Role> = heads.iter().map(|name| role(name)).collect();
-    let (top, below) = (&grid.rows[at], &grid.rows[at + 1..first]);
+    let (top, below) = (&rows[0], &rows[1..]);
     for column in 1..heads.len() {
         let before = roles[column - 1];
-        let is_merged = top.cell(column).is_empty()
-            && roles[column] == Role::Other
-            && matches!(before, Role::Finer | Role::Retained(_))
-            && below.iter().any(|row| !row.cell(column).is_empty() && !row.cell(column - 1).is_empty());
-        if is_merged {
+        if !top.cell(column).is_empty()
+            || roles[column] != Role::Other
+            || !matches!(before, Role::Finer | Role::Retained(_))
+        {
+            continue;
+        }
+        let in_both = |row: &GridRow| !row.cell(column).is_empty() && !row.cell(column - 1).is_empty();
+        if below.iter().any(in_both) {
             roles[column] = before;
             for named in [column - 1, column] {
                 heads[named] = head(below, named);
             }
+        } else if samples.is_some_and(in_both) && heads[column].is_empty() {
+            roles[column] = before;
+            heads[column] = heads[column - 1].clone();
         }
     }
     (heads, roles)

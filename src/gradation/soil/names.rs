@@ -5,27 +5,9 @@ use std::collections::HashMap;
 use super::blocks::Block;
 use super::content::{is_data, is_value};
 use super::grid::GridRow;
-use super::heading::{Role, role, words};
+use super::heading::{Role, role, says_sample, words};
 use super::layout::End;
 
-const SAMPLE: [&str; 16] = [
-    "sample",
-    "samples",
-    "specimen",
-    "soil",
-    "material",
-    "probe",
-    "borehole",
-    "boring",
-    "bohrung",
-    "name",
-    "échantillon",
-    "echantillon",
-    "muestra",
-    "pit",
-    "source",
-    "test pit",
-];
 /// What a line above a table says that names no soil.
 const NO_NAME: [&str; 14] = [
     "date",
@@ -44,10 +26,6 @@ const NO_NAME: [&str; 14] = [
     "page",
 ];
 
-fn is_sample_label(cell: &str) -> bool {
-    words(cell).iter().any(|word| SAMPLE.contains(&word.as_str()))
-}
-
 /// The title that a row above a table gives it.
 fn title_in(row: &GridRow) -> Option<&str> {
     let cells: Vec<&str> = row.filled().take(3).map(|c| row.cell(c)).collect();
@@ -59,7 +37,7 @@ fn title_in(row: &GridRow) -> Option<&str> {
                 && of_one.first().is_some_and(|word| !NO_NAME.contains(&word.as_str()));
             is_name.then_some(one)
         }
-        [label, value] if is_sample_label(label) => Some(value),
+        [label, value] if says_sample(label) => Some(value),
         _ => None,
     }
 }
@@ -113,7 +91,7 @@ pub(super) fn name_columns(block: &mut Block) {
         cells.iter().all(|cell| !cell.is_empty()) && (ends || cells.windows(2).all(|pair| pair[0] != pair[1]))
     };
     let above = || block.grid.rows[..layout.at.min(block.grid.rows.len())].iter().rev().filter(distinct);
-    let labelled = above().find(|row| (0..first).any(|c| is_sample_label(row.cell(c))));
+    let labelled = above().find(|row| (0..first).any(|c| says_sample(row.cell(c))));
     let lettered = |row: &&GridRow| columns.iter().all(|&c| row.cell(c).contains(char::is_alphabetic));
     let row = labelled.or_else(|| above().find(lettered).filter(|_| same_headings));
     let Some(names) = row.map(|row| columns.iter().map(|&c| row.cell(c).to_owned()).collect::<Vec<_>>())

@@ -206,7 +206,10 @@ fn named(tables: Vec<Read>) -> Vec<Named> {
                             if grid.sheet.is_some() { "row" } else { "line" },
                             place.line
                         ),
-                        (false, true) => format!("{name} (cell {letters}{})", place.line),
+                        (false, true) if grid.sheet.is_some() => {
+                            format!("{name} (cell {letters}{})", place.line)
+                        }
+                        (false, true) => format!("{name} (line {}, column {})", place.line, place.column + 1),
                         (false, false) => format!("{name} (column {letters})"),
                     }
                     .trim()

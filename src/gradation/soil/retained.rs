@@ -34,7 +34,7 @@ impl Weighed<'_> {
         ];
         const MASS: [&str; 6] = ["mass", "weight", "masse", "gewicht", "wt", "total"];
         for row in self.below {
-            let Some(value) = row.value.filter(|&value| value > 0.0) else { continue };
+            let Some((column, value)) = row.value.filter(|found| found.1 > 0.0) else { continue };
             let of_row = words(&row.words);
             let any = |list: &[&str]| of_row.iter().any(|word| list.contains(&word.as_str()));
             if any(&LOST) {
@@ -42,14 +42,21 @@ impl Weighed<'_> {
                                lost: it is a part of the whole";
                 return Err(self.grid.refused(row.line, row.column, FIELDS[0], &row.words, allowed));
             }
-            if !self.retained.percent && any(&MASS) && value > 1.01 * whole {
-                notes.push(format!(
-                    "the masses of the table come to {}, and \"{}\" below it is {value}: was anything washed \
-                     out or lost?",
-                    (whole * 1e6).round() / 1e6,
-                    row.words
-                ));
+            if self.retained.percent || !any(&MASS) || value <= 1.01 * whole {
+                continue;
             }
+            let sum = (whole * 1e6).round() / 1e6;
+            if any(&["dry"]) && !any(&["tare", "container", "dish", "can", "pan", "wet", "with"]) {
+                let allowed = format!(
+                    "all of it in the table, whose masses come to {sum}: with the pan, and all that was washed out"
+                );
+                return Err(self.grid.refused(row.line, column, "dry mass", &value.to_string(), allowed));
+            }
+            notes.push(format!(
+                "the masses of the table come to {sum}, and \"{}\" below it is {value}: was anything washed \
+                     out or lost?",
+                row.words
+            ));
         }
         Ok(())
     }

@@ -6,9 +6,10 @@ use super::size::{Entry, Opening, Said, Unit};
 use crate::gradation::error::TableError;
 use crate::gradation::sieve::FIELDS;
 
-/// US sieves in decimals of an inch, with the usual roundings, that are the openings of no metric sieve.
+/// US sieves in decimals of an inch, with the usual roundings, that are the openings of no metric sieve. The first
+/// few may be chosen in mm, too: one of them alone says nothing.
 const ONLY_INCHES: [f64; 70] = [
-    3.5, 1.75, 1.5, 0.875, 0.75, 0.625, 0.53, 0.4375, 0.4380, 0.438, 0.44, 0.375, 0.38, 0.3125, 0.313, 0.312,
+    3.5, 1.75, 1.5, 0.75, 0.875, 0.625, 0.53, 0.4375, 0.4380, 0.438, 0.44, 0.375, 0.38, 0.3125, 0.313, 0.312,
     0.265, 0.223, 0.187, 0.1870, 0.1875, 0.19, 0.157, 0.132, 0.1319, 0.111, 0.1102, 0.1110, 0.0937, 0.0938,
     0.094, 0.0929, 0.093, 0.0787, 0.079, 0.0661, 0.0669, 0.0555, 0.0551, 0.0469, 0.047, 0.0465, 0.0394,
     0.0331, 0.0335, 0.0278, 0.0234, 0.0236, 0.0232, 0.0197, 0.0165, 0.0167, 0.0139, 0.0138, 0.0117, 0.0118,
@@ -79,23 +80,27 @@ fn goes_one_way(entries: &[Entry], unit: Unit) -> bool {
     sizes.windows(2).all(|w| w[0] > w[1]) || sizes.windows(2).all(|w| w[0] < w[1])
 }
 
-/// Whether all openings without a unit are those of US sieves in decimals of an inch, and one of them that of
-/// no metric sieve. The ordinary series in mm, such as 4, 2, 1, 0.5, 0.25, 0.125, are none.
+/// How many of the openings that are only in inches are round numbers.
+const ROUND: usize = 4;
+
+/// Whether all openings without a unit are those of US sieves in decimals of an inch, and they are those of no
+/// metric sieves. The ordinary series in mm, such as 4, 2, 1, 0.5, 0.25, 0.125, are none.
 fn is_series_of_inches(entries: &[Entry]) -> bool {
-    let mut only = false;
+    let (mut only, mut round) = (false, 0);
     for entry in entries {
         let (Opening::Bare(value) | Opening::Below(value)) = entry.opening else { continue };
         if value == 0.0 || entry.said != Said::Plain {
             continue;
         }
-        let is_in = |list: &[f64]| list.iter().any(|inches| (inches - value).abs() < 1e-9);
-        match (is_in(&ONLY_INCHES), is_in(&ALSO_MM)) {
-            (true, _) => only = true,
-            (false, true) => {}
-            (false, false) => return false,
+        let place = |list: &[f64]| list.iter().position(|inches| (inches - value).abs() < 1e-9);
+        match (place(&ONLY_INCHES), place(&ALSO_MM)) {
+            (Some(place), _) if place < ROUND => round += 1,
+            (Some(_), _) => only = true,
+            (None, Some(_)) => {}
+            (None, None) => return false,
         }
     }
-    only
+    only || round > 1
 }
 
 /// Says which names of openings were translated.
