@@ -37,7 +37,7 @@ mod xlsx;
 mod zipped;
 
 pub(crate) use read::file_and_soil;
-pub use read::{curves_in_file, soils_in_file};
+pub use read::{curves_in_file, notes_in_file, soils_in_file};
 pub(super) use summary::GRAVEL_MM;
 pub use summary::{FINES_MM, SoilSummary};
 pub use table::Soil;

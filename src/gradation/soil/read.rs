@@ -1,6 +1,6 @@
 //! The way from a file to its soils.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use super::blocks::Block;
@@ -262,6 +262,17 @@ pub fn soils_in_file(path: &Path, d0_mm: Option<f64>) -> Result<Vec<SoilSummary>
 pub fn curves_in_file(path: &Path, d0_mm: Option<f64>) -> Result<Vec<(String, Gradation)>, GradationError> {
     let soils = soils_of_file(path)?;
     soils.iter().map(|soil| Ok((soil.name.clone(), soil.gradation(d0_mm)?))).collect()
+}
+
+/// What was assumed of the soils of a file, or of the one that `path` names after a `#`, each thing once.
+///
+/// # Errors
+/// As [`Gradation::from_sieve_csv`], for each of them.
+pub fn notes_in_file(path: &Path) -> Result<Vec<String>, GradationError> {
+    let mut seen = HashSet::new();
+    let mut notes: Vec<String> = soils_of_file(path)?.into_iter().flat_map(|soil| soil.notes).collect();
+    notes.retain(|note| seen.insert(note.clone()));
+    Ok(notes)
 }
 
 impl Gradation {
