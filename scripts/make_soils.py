@@ -297,6 +297,9 @@ def several_tables():
     put("openings_behind.csv", "Opening (mm),% passing,Sieve\n4.75,100,No. 4\n2,80,No. 10\n0.075,5,No. 200\n", [(4.75, 100), (2, 80), (0.075, 5)])
     put("openings_behind_differ.csv", "Opening (mm),% passing,Sieve\n4.75,100,3/4 in\n2,80,No. 4\n0.075,5,No. 200\n", refused=["heading: \"Sieve\""])
     put("values_far.csv", "Sieve (mm),A,,Sieve (mm),B,,C\n4,100,,8,100,,100\n2,80,,3,50,,60\n1,50,,1,5,,20\n", refused=["columns 4 to 7", "heading: \"C\""])
+    put("openings_unnamed.csv", "Opening (mm),% passing,,Weite,% passing\n12.5,100,,37.5,100\n9.5,90,,25,97\n4.75,20,,12.5,40\n", refused=["heading: \"Weite\"", "what these numbers are"])
+    put("openings_no_heading.csv", "Opening (mm),% passing,,,% passing\n12.5,100,,37.5,100\n9.5,90,,25,97\n4.75,20,,12.5,40\n", refused=["line 1, heading", "what these numbers are"])
+    put("names_are_numbers.csv", "Sieve (mm),57,8,5\n37.5,100,100,100\n25,97,100,100\n12.5,40,100,50\n4.75,5,20,2\n", refused=["line 1"])
     # A hydrometer beside the sieves, or below them.
     sieved, fine = [(4.75, 100), (2, 91), (0.425, 72), (0.075, 36)], [(0.05, 30), (0.02, 20), (0.005, 15), (0.001, 10)]
     wide = [["Sieve (mm)", "% passing", None, "Diameter (mm)", "% finer"]] + [[a, b, None, c, d] for (a, b), (c, d) in zip(sieved, fine)]

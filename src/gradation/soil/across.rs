@@ -18,7 +18,7 @@ pub(super) fn find(grid: &Grid) -> Result<Option<(Grid, Layout)>, TableError> {
     }
     let found = upper.iter().enumerate().find_map(|(at, row)| {
         let openings = openings(row)?;
-        let soils = soils(&grid.rows[at + 1..], &openings)?;
+        let soils = soils(row, &grid.rows[at + 1..], &openings)?;
         Some((at, openings, soils))
     });
     let Some((at, openings, soils)) = found else { return Ok(None) };
@@ -46,9 +46,15 @@ fn openings(row: &GridRow) -> Option<Vec<usize>> {
 }
 
 /// The rows below that hold a soil each: words, then percents.
-fn soils(below: &[GridRow], openings: &[usize]) -> Option<Vec<usize>> {
+fn soils(heading: &GridRow, below: &[GridRow], openings: &[usize]) -> Option<Vec<usize>> {
+    // A number is a name only below a heading of names: below one of openings it is an opening.
+    let of_names = |c: usize| !heading.cell(c).is_empty() && role(heading.cell(c)) == Role::Other;
+    let is_name = |c: usize, cell: &str| match is_value(cell) || opening(cell).is_some() {
+        true => of_names(c),
+        false => !is_blank(cell),
+    };
     let is_soil = |row: &GridRow| {
-        let named = (0..openings[0]).any(|c| !is_blank(row.cell(c)));
+        let named = (0..openings[0]).any(|c| is_name(c, row.cell(c)));
         let values = openings.iter().filter(|&&c| is_value(row.cell(c))).count();
         let filled = openings.iter().filter(|&&c| !is_blank(row.cell(c))).count();
         named && values >= 2 && 2 * values > filled

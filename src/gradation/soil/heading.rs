@@ -66,7 +66,7 @@ const RETAINED: [&str; 14] = [
     "zeefrest",
     "trattenuto",
 ];
-const SIZE: [&str; 33] = [
+const SIZE: [&str; 46] = [
     "opening",
     "size",
     "sieve",
@@ -100,6 +100,19 @@ const SIZE: [&str; 33] = [
     "μm",
     "micron",
     "microns",
+    "grain",
+    "grains",
+    "größe",
+    "grösse",
+    "korn",
+    "sieb",
+    "malla",
+    "maille",
+    "dia",
+    "diam",
+    "apertura",
+    "luz",
+    "zeef",
 ];
 const MASS: [&str; 11] =
     ["mass", "weight", "masse", "gewicht", "wt", "peso", "g", "gram", "grams", "kg", "grammes"];

@@ -4,14 +4,14 @@ use super::columns::Columns;
 use super::content::{begins_with_words, is_data, is_short_opening, is_text, is_value, percentage};
 use super::grid::{Grid, GridRow};
 use super::heading::{Role, role, says_sample, unit, words};
-use super::size::{Unit, opening};
+use super::size::{Opening, Unit, opening};
 use crate::gradation::error::{TableError, shortened};
 
 /// Titles may take this many rows.
 pub(super) const ROWS_OF_TITLES: usize = 60;
 
 /// A table has at most this many places, filled or not.
-const MOST_PLACES: usize = 20_000_000;
+const MOST_PLACES: usize = 40_000_000;
 
 /// Where the table is.
 #[derive(Debug)]
@@ -175,6 +175,14 @@ fn with_headings(grid: &Grid, headings: Headings) -> Result<Layout, TableError> 
             _ => Err(TableError::NoRows { file: grid.place(), header: true }),
         };
     }
+    // A specification is two soils.
+    if rows.len().saturating_mul(2 * values.len()) > MOST_PLACES {
+        let is = format!("a table of {} rows for {} soils, most of it empty", rows.len(), values.len());
+        return Err(TableError::Format { file: grid.place(), is });
+    }
+    for pair in values.windows(2) {
+        refuse_unnamed_openings(grid, &heads, &columns, first, [pair[0], pair[1]])?;
+    }
     for &column in &values {
         let (heading, role) = (heads[column].clone(), roles[column]);
         if role == Role::Finer && words(&heading).iter().any(|word| word == "number") {
@@ -189,10 +197,6 @@ fn with_headings(grid: &Grid, headings: Headings) -> Result<Layout, TableError> 
         } else {
             layout.soils.push(soil);
         }
-    }
-    if rows.len().saturating_mul(layout.soils.len()) > MOST_PLACES {
-        let is = format!("a table of {} rows for {} soils, most of it empty", rows.len(), layout.soils.len());
-        return Err(TableError::Format { file: grid.place(), is });
     }
     layout.notes.extend(not_used(grid, &heads, &columns, &sizes, &values));
     Ok(layout)
@@ -234,6 +238,37 @@ fn value_columns(roles: &[Role], columns: &Columns) -> Vec<usize> {
     .into_iter()
     .find(|columns| !columns.is_empty())
     .unwrap_or_default()
+}
+
+/// Numbers that rise or fall all the way, between two columns of percents, may be the openings of the second.
+fn refuse_unnamed_openings(
+    grid: &Grid,
+    heads: &[String],
+    columns: &Columns,
+    first: usize,
+    [left, right]: [usize; 2],
+) -> Result<(), TableError> {
+    let rows = &grid.rows[first..];
+    let Some(column) = (left + 1..right).rev().find(|&c| columns.with_values[c]) else { return Ok(()) };
+    if role(&heads[column]) != Role::Other {
+        return Ok(());
+    }
+    let sizes: Vec<f64> = rows
+        .iter()
+        .filter(|row| is_value(row.cell(right)))
+        .filter_map(|row| match opening(row.cell(column)) {
+            Some((Opening::Mm(size) | Opening::Bare(size), _)) if size > 0.0 => Some(size),
+            _ => None,
+        })
+        .collect();
+    let one_way = sizes.windows(2).all(|w| w[0] > w[1]) || sizes.windows(2).all(|w| w[0] < w[1]);
+    if sizes.len() < 2 || !one_way {
+        return Ok(());
+    }
+    let allowed = "a heading that says what these numbers are: openings (such as Sieve (mm)) for the percents to \
+                   their right, or percents (% passing) of a soil";
+    let line = grid.rows[first.saturating_sub(1)].line;
+    Err(grid.refused(line, column, "heading", &heads[column], allowed))
 }
 
 /// Says which columns hold numbers and are not read.
