@@ -226,34 +226,35 @@ fn groups(grid: &Grid, headings: &Headings) -> Result<Vec<Range<usize>>, TableEr
         return Err(grid.refused(grid.rows[*at].line, c, "heading", grid.rows[*at].cell(c), allowed));
     }
     let mut groups: Vec<Range<usize>> = Vec::new();
+    // Of the last group: its first openings, and whether all of its values are what is retained.
+    let (mut openings_before, mut retained_before) = (None, false);
+    let mut rest = &kinds[..];
     for (place, &start) in starts.iter().enumerate() {
         let end = starts.get(place + 1).copied().unwrap_or(width);
-        let with =
-            |wanted: bool| kinds.iter().filter(move |(c, size)| (start..end).contains(c) && *size == wanted);
-        let sizes: Vec<usize> = with(true).map(|(c, _)| *c).collect();
-        let before =
-            groups.last().and_then(|group| kinds.iter().find(|(c, size)| *size && group.contains(c)));
-        let agrees = || match (before, sizes.first()) {
-            (Some(&(a, _)), Some(&b)) => agreement::of(grid, headings, a, b),
+        let (own, after) = rest.split_at(rest.partition_point(|(c, _)| *c < end));
+        rest = after;
+        let openings = own.iter().find(|(_, size)| *size).map(|(c, _)| *c);
+        let values = || own.iter().filter(|(_, size)| !size).map(|(c, _)| roles[*c]);
+        let (some, all_finer) = (values().next().is_some(), values().all(|role| role == Role::Finer));
+        let agrees = || match (openings_before, openings) {
+            (Some(a), Some(b)) => agreement::of(grid, headings, a, b),
             _ => false,
         };
-        let all_retained = |group: &Range<usize>| {
-            let values = kinds.iter().filter(|(c, size)| !size && group.contains(c));
-            values.clone().count() > 0 && values.clone().all(|(c, _)| matches!(roles[*c], Role::Retained(_)))
-        };
-        let values: Vec<usize> = with(false).map(|(c, _)| *c).collect();
-        let all_finer = !values.is_empty() && values.iter().all(|&c| roles[c] == Role::Finer);
         match groups.last_mut() {
             // The openings once more, behind the percents; or the same table with more columns.
-            Some(last) if values.is_empty() && agrees() || all_finer && all_retained(last) && agrees() => {
+            Some(last) if !some && agrees() || some && all_finer && retained_before && agrees() => {
                 last.end = end;
             }
-            Some(_) if values.is_empty() => {
-                let c = sizes.first().copied().unwrap_or(start);
+            Some(_) if !some => {
+                let c = openings.unwrap_or(start);
                 let allowed = "percents to the right of these openings, as they differ from those before";
                 return Err(grid.refused(grid.rows[*at].line, c, "heading", grid.rows[*at].cell(c), allowed));
             }
-            _ => groups.push(start..end),
+            _ => {
+                groups.push(start..end);
+                openings_before = openings;
+                retained_before = some && values().all(|role| matches!(role, Role::Retained(_)));
+            }
         }
     }
     Ok(groups)
