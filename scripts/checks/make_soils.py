@@ -119,7 +119,7 @@ def texts():
         [(9.5, 100), (4.75, 97), (0.075, 1)], ["pan"])
     put("three_no_header.csv", "No. 4,4.75,100\nNo. 40,0.425,30\nNo. 200,0.075,1\n", [(4.75, 100), (0.425, 30), (0.075, 1)])
     put("all_columns.csv", "Sieve mm,Mass retained g,% retained,Cum. % retained,% passing\n4,0,0,0,100\n2,100,20,20,80\n1,150,30,50,50\n0.5,200,40,90,10\nPan,50,10,100,\n", soil)
-    put("blank_cell.csv", "mm,passing\n9.5,100\n4.75,\n2,-\n1,50\n0.5,10\n", [(9.5, 100), (1, 50), (0.5, 10)], ["line 3 has no percent"])
+    put("blank_cell.csv", "mm,passing\n9.5,100\n4.75,\n2,-\n1,50\n0.5,10\n", [(9.5, 100), (1, 50), (0.5, 10)], ["lines 3, 4 have no percent"])
     put("hydrometer.csv", "Sieve (mm),% finer\n2,100\n0.425,70\n0.075,35\nHydrometer\nSieve (mm),% finer\n0.032,21\n0.002,6\n",
         [(2, 100), (0.425, 70), (0.075, 35), (0.032, 21), (0.002, 6)], ["line 5 taken as a remark"])
     put("footer.csv", table(down) + "Tested by,J. Smith\n", BASE, ["remark"])
@@ -172,6 +172,10 @@ def ags():
         refused=["line 8", "GRAG", "a group GRAT with a row for each opening"])
     put("gradings_both.ags", both.replace('"GROUP","GRAT"', grag + '"GROUP","GRAT"'),
         {"BH1 1.50 1.50": bh1, "BH2 3.00 3.00": [(0.063, 1), (2, 30), (20, 100)]}, notes=["GRAG, which sums"])
+    put("gradings_types.ags", (AGS % ("mm", "30")),
+        {"BH1 1.50 1.50": bh1, "BH2 3.00 3.00": [(0.063, 1), (2, 30), (20, 100)]}, notes=["GRAT_TYPE HD, WS", "line 13 left out, the same"])
+    put("gradings_no_unit.ags", AGS % ("", "30"), {"BH1 1.50 1.50": bh1, "BH2 3.00 3.00": [(0.063, 1), (2, 30), (20, 100)]}, notes=["without a unit taken as mm"])
+    put("gradings_percent_unit.ags", (AGS % ("mm", "30")).replace('"mm","%"', '"mm","kg"'), refused=["line 7", "GRAT_PERP"])
     put("no_gradings.ags", '"GROUP","PROJ"\n"HEADING","PROJ_ID"\n"DATA","P1"\n', refused=["GRAT"])
 
 
@@ -264,6 +268,110 @@ def workbooks():
     hostile((HERE / "one.xlsx").read_bytes())
 
 
+def several_tables():
+    """Sheets with several tables, each with its own openings."""
+    stone8 = [(12.5, 100), (9.5, 90), (4.75, 20), (2.36, 5), (1.18, 2)]
+    stone57 = [(37.5, 100), (25, 97), (12.5, 40), (4.75, 5), (2.36, 2)]
+    both = {"No. 8 stone": stone8, "No. 57 stone": stone57}
+    side = [["No. 8 stone", None, None, "No. 57 stone"], ["Opening (mm)", "% passing", None, "Opening (mm)", "% passing"]]
+    side += [[a, b, None, c, d] for (a, b), (c, d) in zip(stone8, stone57)]
+    close = [[row[0], row[1]] + row[3:] for row in side]
+
+    def text(rows, separator=","):
+        return "".join(separator.join("" if c is None else str(c) for c in row) + "\n" for row in rows)
+
+    def merge(book):
+        book.active.merge_cells("A1:B1")
+        book.active.merge_cells("D1:E1")
+
+    put("side_by_side.csv", text(side), both)
+    put("side_by_side_close.csv", text(close + [["", "", 1.18, 0]]), {"No. 8 stone": stone8, "No. 57 stone": stone57 + [(1.18, 0)]})
+    xlsx("side_by_side.xlsx", {"A": side}, merge, soils={f"A/{name}": soil for name, soil in both.items()})
+    ods("side_by_side.ods", {"A": [["" if c is None else c for c in row] for row in close]}, soils={f"A/{name}": soil for name, soil in both.items()})
+    um = [row[:3] + (["Size (um)", "% finer"] if r == 1 else [round(row[3] * 1000), row[4]] if r > 1 else row[3:]) for r, row in enumerate(side)]
+    put("side_by_side_units.csv", text(um), both)
+    put("side_by_side_low.csv", text([side[0], ["Opening (mm)", "% passing"], side[2][:2] + [None, "Opening (mm)", "% passing"]]
+        + [stone8_row + [None] + row[3:] for stone8_row, row in zip([r[:2] for r in side[3:]] + [["", ""]], side[2:])]),
+        {"": stone8, " ": stone57})
+    put("side_by_side_low_close.csv", "Sieve (mm),% passing,,\n4,100,Sieve (mm),% passing\n2,60,8,100\n1,10,1,5\n", refused=["line 2, heading: \"Sieve (mm)\""])
+    put("openings_behind.csv", "Opening (mm),% passing,Sieve\n4.75,100,No. 4\n2,80,No. 10\n0.075,5,No. 200\n", [(4.75, 100), (2, 80), (0.075, 5)])
+    put("openings_behind_differ.csv", "Opening (mm),% passing,Sieve\n4.75,100,3/4 in\n2,80,No. 4\n0.075,5,No. 200\n", refused=["heading: \"Sieve\""])
+    put("values_far.csv", "Sieve (mm),A,,Sieve (mm),B,,C\n4,100,,8,100,,100\n2,80,,3,50,,60\n1,50,,1,5,,20\n", refused=["columns 4 to 7", "heading: \"C\""])
+    put("openings_unnamed.csv", "Opening (mm),% passing,,Weite,% passing\n12.5,100,,37.5,100\n9.5,90,,25,97\n4.75,20,,12.5,40\n", refused=["heading: \"Weite\"", "what these numbers are"])
+    put("openings_no_heading.csv", "Opening (mm),% passing,,,% passing\n12.5,100,,37.5,100\n9.5,90,,25,97\n4.75,20,,12.5,40\n", refused=["line 1, heading", "what these numbers are"])
+    put("names_are_numbers.csv", "Sieve (mm),57,8,5\n37.5,100,100,100\n25,97,100,100\n12.5,40,100,50\n4.75,5,20,2\n", refused=["line 1"])
+    # A hydrometer beside the sieves, or below them.
+    sieved, fine = [(4.75, 100), (2, 91), (0.425, 72), (0.075, 36)], [(0.05, 30), (0.02, 20), (0.005, 15), (0.001, 10)]
+    wide = [["Sieve (mm)", "% passing", None, "Diameter (mm)", "% finer"]] + [[a, b, None, c, d] for (a, b), (c, d) in zip(sieved, fine)]
+    of_fines = [row[:4] + [new] for row, new in zip(wide, ["% finer", 100, 72, 48, 20])]
+    put("hydrometer_right.csv", text(wide), sieved + fine, ["continue the sieves"])
+    xlsx("hydrometer_right.xlsx", {"A": wide}, soils=sieved + fine, notes=["rows 2 to 5 of column E continue the sieves"])
+    put("hydrometer_of_fines.csv", text(of_fines), refused=["columns 4 to 5, line 2, percent_finer: \"100\"", "at most 36"])
+    xlsx("hydrometer_of_fines.xlsx", {"A": of_fines}, refused=["cell E2, percent_finer: \"100\"", "at most 36"])
+    put("hydrometer_of_fines_below.csv", "Sieve (mm),% passing\n4.75,100\n0.075,36\nSieve (mm),% passing\n0.05,100\n0.002,10\n", refused=["line 5, percent_finer: \"100\""])
+    # Tables below each other, sieves across, samples above the headings, both ends of a specification.
+    put("stacked.csv", "Sample ST-5\nSieve (mm),% passing\n4.75,100\n2,91\n\nSample ST-7\nSieve (mm),% passing\n19,100\n2,31\n0.075,3\n",
+        {"Sample ST-5": [(4.75, 100), (2, 91)], "Sample ST-7": [(19, 100), (2, 31), (0.075, 3)]})
+    st5, st7 = [(4.75, 100), (2, 91), (0.075, 36)], [(4.75, 100), (2, 80), (0.075, 20)]
+    across = [["Sample", "No. 4", "No. 10", "No. 200", "Pan"], ["ST-5", 100, 91, 36, 0], ["ST-7", 100, 80, 20, 0]]
+    put("across.csv", text(across), {"ST-5": st5, "ST-7": st7}, ["a row for each soil", "ASTM E11"])
+    xlsx("across.xlsx", {"A": across}, soils={"A/ST-5": st5, "A/ST-7": st7})
+    xlsx("across_bad.xlsx", {"A": [row[:2] + ["x" if row[0] == "ST-7" else row[2]] + row[3:] for row in across]}, refused=["cell C3, percent_finer: \"x\""])
+    xlsx("across_not_monotone.xlsx", {"A": across[:1] + [["ST-5", 100, 30, 36, 0]]}, refused=["cell D2, percent_finer: \"36\"", "column C"])
+    core = [["Sample:", None, "ST-5", "ST-7"], ["Depth (m)", None, 3.5, 4.5], ["Sieve", "Opening (mm)", "Percent passing", None], ["No. 4", 4.75, 100, 100],
+            ["No. 10", 2, 91, 80], ["No. 200", 0.075, 36, 20], ["Hydrometer"], [None, 0.03, 22, 11], ["Dry mass (g)", None, 500, 600],
+            ["Specific gravity", None, 2.65, 2.66], ["Notes: washed"]]
+    cores = {"ST-5": st5 + [(0.03, 22)], "ST-7": st7 + [(0.03, 11)]}
+    put("core.csv", text(core), cores, ["lines 9 to 11 below the table (\"Dry mass (g)\" 500"])
+    xlsx("core.xlsx", {"Core": core}, lambda book: book.active.merge_cells("C3:D3"), soils={f"Core/{name}": soil for name, soil in cores.items()})
+    mass = [["Sieve", "Opening (mm)", "Retained (g)", "% passing"], ["3/8 in", 9.5, 0, 100], ["No. 4", 4.75, 15, 97], ["No. 200", 0.075, 480, 1],
+            ["Pan", None, 5, None], ["Total", None, 500, None], ["Fineness modulus", None, None, 2.65]]
+    xlsx("fineness_modulus.xlsx", {"A": mass}, soils=[(9.5, 100), (4.75, 97), (0.075, 1)], notes=["\"Fineness modulus\" 2.65", "not used: column C"])
+    xlsx("words_within.xlsx", {"A": core[:3] + [core[8]] + core[3:6] + [core[8], core[7]]}, refused=["sheet \"A\", cell A4", "Dry mass (g)"])
+    put("masses_lost.csv", "Sieve (mm),Retained (g)\n4,0\n2,100\n1,150\nPan,50\nLoss on washing,120\n", refused=["line 6", "a part of the whole"])
+    put("masses_dry.csv", "Sieve (mm),Retained (g)\n4,0\n2,100\n1,150\nPan,50\nDry mass (g),500\n", refused=["line 6, dry mass: \"500\"", "come to 300"])
+    put("ranges.csv", "Sieve (mm),% passing\n9.5,100\n4.75,95-100\n2.36,80 to 100\n0.3,10-30\n0.15,2-10\n",
+        {"% passing min": [(9.5, 100), (4.75, 95), (2.36, 80), (0.3, 10), (0.15, 2)],
+         "% passing max": [(9.5, 100), (4.75, 100), (2.36, 100), (0.3, 30), (0.15, 10)]}, ["two curves"])
+    put("minus_no_4.csv", "Sieve (mm),% passing\n4.75,74\n2,60\n0.075,10\n", refused=["line 2, percent_finer: \"74\"", "100 at the coarsest"])
+    # Sizes without a unit.
+    put("no_unit.csv", "Sieve,Passing\n4,100\n2,80\n1,50\n0.5,20\n0.25,10\n0.125,1\n", [(4, 100), (2, 80), (1, 50), (0.5, 20), (0.25, 10), (0.125, 1)], ["without a unit taken as mm"])
+    put("no_unit_inches.csv", "Sieve,Passing\n1.5,100\n1,95\n.5,40\n.187,5\n.0937,2\n", refused=["line 2, opening_mm: \"1.5\"", "1.5 in or 1.5 mm"])
+    put("no_unit_french.csv", "Tamis;Passant\n5;100\n2,5;80\n1,25;50\n0,63;20\n0,315;10\n0,16;5\n0,08;1\n",
+        [(5, 100), (2.5, 80), (1.25, 50), (0.63, 20), (0.315, 10), (0.16, 5), (0.08, 1)], ["without a unit taken as mm"])
+    put("numbers_among_inches.csv", "Sieve,% passing\n1 1/2,100\n1,97\n1/2,40\n#4,5\n#8,2\n", [(37.5, 100), (25, 97), (12.5, 40), (4.75, 5), (2.36, 2)])
+    # Thousands, dates, slips of the pen.
+    put("thousands_quoted.csv", 'opening_um,percent\n"1,180",10\n"2,360",50\n"4,750",100\n', refused=["line 2, number: \"1,180\"", "1.180 or 1180"])
+    put("thousands_decided.csv", 'opening_mm,percent\n"1,180",10\n"2,360",50\n"4,75",100\n', [(1.18, 10), (2.36, 50), (4.75, 100)], ["read as decimal signs"])
+    put("dates_first.csv", "Sieve,% passing\n04-Mar,05-Mar\nNo. 4,100\nNo. 10,40\n", refused=["line 2, opening_mm: \"04-Mar\"", "a date"])
+    put("slips_first.csv", "Sieve,% passing\n4..75,1O0\n2,100\n1,40\n", refused=["line 2, opening_mm: \"4..75\""])
+    xlsx("dates_first.xlsx", {"A": [["Sieve", "% passing"], [datetime.date(2026, 3, 8), datetime.date(2026, 3, 9)], ["No. 4", 100], ["No. 10", 10]]},
+         refused=["sheet \"A\", cell A2", "a date"])
+    # What nobody sees, and what stands twice.
+    def hide(book):
+        book["Old"].sheet_state = "veryHidden"
+        book["A"].row_dimensions[3].hidden = True
+        book["A"].column_dimensions["B"].hidden = True
+
+    table8 = [["Opening (mm)", "% passing"]] + [list(point) for point in stone8]
+    xlsx("hidden.xlsx", {"Old": [["Opening (mm)", "% passing"]] + [list(point) for point in stone57], "A": table8}, hide, soils={"Old": stone57, "A": stone8},
+         notes=["its sheet is hidden"])
+    xlsx("hidden_rows.xlsx", {"A": table8}, lambda book: setattr(book["A"].row_dimensions[3], "hidden", True), soils=stone8, notes=["row 3 of the sheet, though hidden"])
+    one = (HERE / "one.ods").read_bytes()
+    cell = '<table:table-cell office:value-type="float" office:value="%s"/>'
+    head = '<table:table-cell office:value-type="string"><text:p>%s</text:p></table:table-cell>'
+    lines = [head % "Opening (mm)" + head % "% passing"] + [cell % a + cell % b for a, b in stone8]
+    content = ('<office:document-content><style:style style:name="t" style:family="table"><style:table-properties table:display="false"/></style:style>'
+               '<table:table table:name="A" table:style-name="t">' + "".join(f'<table:table-row{" table:visibility=" + chr(34) + "filter" + chr(34) if r == 2 else ""}>{line}</table:table-row>'
+               for r, line in enumerate(lines)) + "</table:table></office:document-content>")
+    put("hidden.ods", repacked(one, {"content.xml": content}), stone8, ["its sheet is hidden", "row 3 of the sheet, though hidden"])
+    book, sheet = (HERE / "one.xlsx").read_bytes(), "xl/worksheets/sheet1.xml"
+    twice = "".join(f'<row r="{r}"><c r="A{r}"><v>{a}</v></c><c r="B{r}"><v>{b}</v></c></row>' for r, a, b in [(1, 4, 100), (2, 2, 50), (2, 1, 20), (3, 0.5, 10)])
+    put("row_twice.xlsx", repacked(book, {sheet: f"<worksheet><sheetData>{twice}</sheetData></worksheet>"}), refused=["row 2 stands in sheet \"Sheet1\" twice"])
+    cell_twice = '<row r="1"><c r="A1"><v>4</v></c><c r="B1"><v>100</v></c><c r="B1"><v>90</v></c></row>'
+    put("cell_twice.xlsx", repacked(book, {sheet: f"<worksheet><sheetData>{cell_twice}</sheetData></worksheet>"}), refused=["cell B1 stands in it twice"])
+
+
 def repacked(book, changes, deflate=zipfile.ZIP_DEFLATED):
     """The zip with parts replaced or added."""
     out = io.BytesIO()
@@ -329,6 +437,7 @@ def main():
     texts()
     ags()
     workbooks()
+    several_tables()
     print(len(list(HERE.iterdir())) // 2, "files", file=sys.stderr)
 
 

@@ -2,7 +2,7 @@
 
 use super::args::RulesArgs;
 use super::print::{json, plain, to_stdout};
-use crate::gradation::curves_in_file;
+use crate::gradation::{curves_in_file, notes_in_file};
 use crate::outcome::record::{AppliedRule, RuleRole};
 use crate::outcome::{PairOptions, PairRules};
 use crate::run::RunError;
@@ -17,11 +17,13 @@ pub fn rules(args: &RulesArgs) -> Result<(), RunError> {
     let bases = curves_in_file(&args.base, None).map_err(RunError::refused)?;
     let options = PairOptions { dispersive: args.dispersive, joint_mm: args.joint_mm };
     let pair = PairRules::of_envelopes(&filters, &bases, options);
-    to_stdout(&if args.json { json(&pair)? } else { words(&pair, args) });
+    let assumed = |path| notes_in_file(path).map_err(RunError::refused);
+    let notes = [("filter", assumed(&args.filter)?), ("base", assumed(&args.base)?)];
+    to_stdout(&if args.json { json(&pair)? } else { words(&pair, args, &notes) });
     Ok(())
 }
 
-fn words(pair: &PairRules, args: &RulesArgs) -> String {
+fn words(pair: &PairRules, args: &RulesArgs, notes: &[(&str, Vec<String>)]) -> String {
     let (filter, base) = (&pair.filter, &pair.base);
     let mut text = String::new();
     // Writing to a string cannot fail.
@@ -59,6 +61,9 @@ fn words(pair: &PairRules, args: &RulesArgs) -> String {
     line(format!("        {category}{dispersive}, {fines}; {regraded}"));
     for warning in &pair.warnings {
         line(format!("warning {warning}"));
+    }
+    for (whose, notes) in notes {
+        notes.iter().for_each(|note| line(format!("note    {whose}: {note}")));
     }
     for (role, heading) in [
         (RuleRole::Retention, "The filter retains the base"),

@@ -155,11 +155,25 @@ pub enum TableError {
 }
 
 impl TableError {
-    /// The same with the cell of a sheet in place of the line, in the columns of openings and of percents.
-    pub(super) fn in_sheet(self, columns: [u32; 2]) -> TableError {
+    /// The same for a table whose rows were counted from 1: `place` gives the line and the column of a row's
+    /// opening or percent, `said` what the row is called.
+    pub(super) fn placed(
+        self,
+        place: impl Fn(usize, bool) -> (usize, Option<u32>),
+        said: impl Fn(usize) -> String,
+    ) -> TableError {
         let TableError::Value { mut at, value, allowed } = self else { return self };
-        at.column = Some(columns[usize::from(at.field.starts_with("percent"))]);
-        TableError::Value { at, value, allowed: allowed.replace("line ", "row ") }
+        (at.line, at.column) = place(at.line, at.field.starts_with("percent"));
+        let mut parts = allowed.split("line ");
+        let mut renamed = parts.next().unwrap_or_default().to_owned();
+        for part in parts {
+            let digits = part.find(|c: char| !c.is_ascii_digit()).unwrap_or(part.len());
+            match part[..digits].parse() {
+                Ok(row) => renamed.push_str(&format!("{}{}", said(row), &part[digits..])),
+                Err(_) => renamed.push_str(&format!("line {part}")),
+            }
+        }
+        TableError::Value { at, value, allowed: renamed }
     }
 }
 

@@ -5,6 +5,7 @@
 //! comments; one header row; quotes; empty fields at the end of a row, as spreadsheets write them.
 //! A row is the header when it is the first and none of its fields is a number.
 
+use super::comma::{Comma, comma};
 use super::error::{NumberError, Position, TableError, shortened};
 use crate::store::read_regular;
 use std::path::Path;
@@ -113,7 +114,7 @@ impl Table {
         if table.rows.is_empty() {
             return Err(TableError::NoRows { header: table.header.is_some(), file: table.file });
         }
-        table.check_decimal_signs()?;
+        table.check_decimal_signs(delimiter)?;
         Ok(table)
     }
 
@@ -126,8 +127,30 @@ impl Table {
         TableError::Fields { file: self.file.clone(), line, found, value: shortened(content.trim()), allowed }
     }
 
-    /// A file that uses both `.` and `,` inside numbers has thousands separators, or a mistake.
-    fn check_decimal_signs(&self) -> Result<(), TableError> {
+    /// A file that uses both `.` and `,` inside numbers has thousands separators, or a mistake; one that separates
+    /// its columns by commas may have them in `"1,180"`.
+    fn check_decimal_signs(&self, delimiter: char) -> Result<(), TableError> {
+        let is = |wanted: Comma| {
+            let of_row = move |(line, fields): &(usize, [String; 2])| {
+                let found = fields.iter().find(|f| number(f).is_some() && comma(f) == Some(wanted));
+                found.map(|f| (*line, f.clone()))
+            };
+            self.rows.iter().find_map(of_row)
+        };
+        if delimiter == ','
+            && is(Comma::Decimal).is_none()
+            && let Some((line, value)) = is(Comma::Either)
+        {
+            return Err(TableError::Value {
+                at: Position { file: self.file.clone(), line, field: "number", column: None },
+                allowed: format!(
+                    "{} or {}: here the comma may be a decimal sign or separate thousands",
+                    value.replace(',', "."),
+                    value.replace(',', "")
+                ),
+                value: shortened(&value),
+            });
+        }
         let with = |sign: char| {
             self.rows.iter().find_map(|(line, fields)| {
                 fields.iter().find(|f| f.contains(sign) && number(f).is_some()).map(|f| (*line, f))

@@ -5,5 +5,6 @@ mod forged_checkpoints;
 mod golden;
 #[path = "../readers/mod.rs"]
 mod readers;
+mod sheets;
 mod soils;
 mod torn_checkpoints;

@@ -1,12 +1,14 @@
 //! AGS4, the format in which ground investigations are handed over: its group GRAT holds a row for each
 //! opening. Its group GRAG sums a grading up (percents of gravel, sand, silt and clay, Cu) and has no curve.
 
+use std::collections::{BTreeSet, HashMap};
+
 use super::csv::split;
 use super::grid::{Grid, GridRow};
 use super::heading::{Role, unit};
 use super::layout::{Layout, SoilColumn};
-use super::size::Unit;
-use crate::gradation::error::TableError;
+use super::lines::listed;
+use crate::gradation::error::{TableError, shortened};
 use crate::gradation::table::number;
 
 /// What tells one specimen from another.
@@ -25,8 +27,9 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
         value: value.into(),
         allowed: allowed.into(),
     };
-    let (mut group, mut headings, mut size_unit) = (String::new(), Vec::new(), Some(Unit::Mm));
-    let mut soils: Vec<(String, Grid)> = Vec::new();
+    let (mut group, mut headings, mut size_unit) = (String::new(), Vec::new(), None);
+    let mut soils: Vec<(String, Grid, BTreeSet<String>)> = Vec::new();
+    let mut places: HashMap<String, usize> = HashMap::new();
     let mut summary = None;
     for (index, content) in text.lines().enumerate() {
         let (cells, line) = (split(content, ',').0, index + 1);
@@ -47,12 +50,16 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
             "HEADING" => headings = cells,
             "UNIT" => {
                 size_unit = match cell("GRAT_SIZE") {
-                    "" => Some(Unit::Mm),
+                    "" => None,
                     given => match unit(given) {
                         Ok(Some(unit)) => Some(unit),
                         _ => return Err(refused(line, given, "a unit of GRAT_SIZE: mm")),
                     },
                 };
+                let percent = cell("GRAT_PERP");
+                if !["", "%"].contains(&percent) {
+                    return Err(refused(line, percent, "the unit of GRAT_PERP: %"));
+                }
             }
             "DATA" => {
                 for name in ["GRAT_SIZE", "GRAT_PERP"] {
@@ -69,14 +76,14 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
                     text: None,
                     open: false,
                 };
-                match soils.iter_mut().find(|soil| soil.0 == name) {
-                    Some((_, grid)) => grid.rows.push(row),
-                    None => {
-                        let grid =
-                            Grid { file: file.into(), delimiter: ',', rows: vec![row], ..Grid::default() };
-                        soils.push((name, grid));
-                    }
+                let place = *places.entry(name.clone()).or_insert(soils.len());
+                if place == soils.len() {
+                    let grid = Grid { file: file.into(), delimiter: ',', ..Grid::default() };
+                    soils.push((name, grid, BTreeSet::new()));
                 }
+                let (_, grid, types) = &mut soils[place];
+                grid.rows.push(row);
+                types.extend(Some(cell("GRAT_TYPE").to_owned()).filter(|kind| !kind.is_empty()));
             }
             _ => {}
         }
@@ -92,15 +99,30 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
             is: "AGS4 without a row in its group GRAT (gradings)".into(),
         });
     }
-    let soils = soils.into_iter().map(|(name, mut grid)| {
+    let soils = soils.into_iter().map(|(name, mut grid, types)| {
         in_order(&mut grid);
+        if types.len() > 1 {
+            let types = types.into_iter().take(8).collect::<Vec<_>>().join(", ");
+            grid.notes.push(format!(
+                "the tests of several kinds (GRAT_TYPE {}) read as one curve",
+                shortened(&types)
+            ));
+        }
         if summary.is_some() {
             grid.notes
                 .push("the group GRAG, which sums gradings up, was passed over: sizes are of GRAT".into());
         }
-        let soil = SoilColumn { column: 1, heading: name.clone(), role: Role::Finer };
-        let layout =
-            Layout { size: 0, other_size: None, unit: size_unit, soils: vec![soil], first: 0, headed: true };
+        let soil = SoilColumn { column: 1, heading: name.clone(), role: Role::Finer, end: None };
+        let layout = Layout {
+            size: 0,
+            other_size: None,
+            unit: size_unit,
+            soils: vec![soil],
+            at: 0,
+            first: 0,
+            headed: true,
+            notes: Vec::new(),
+        };
         (name, grid, layout)
     });
     Ok(soils.collect())
@@ -110,5 +132,13 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
 fn in_order(grid: &mut Grid) {
     let size = |row: &GridRow| number(&row.cells[0]).unwrap_or(f64::INFINITY);
     grid.rows.sort_by(|a, b| size(b).total_cmp(&size(a)));
-    grid.rows.dedup_by(|a, b| a.cells == b.cells);
+    let mut twice = Vec::new();
+    grid.rows.dedup_by(|next, kept| {
+        let same = next.cells == kept.cells;
+        twice.extend(same.then(|| next.line.to_string()));
+        same
+    });
+    if !twice.is_empty() {
+        grid.notes.push(format!("{} left out, the same as a row before", listed("line", &twice)));
+    }
 }

@@ -1,7 +1,8 @@
 //! Text to rows of cells.
 
 use super::grid::{Grid, GridRow};
-use super::size::us_sieve_number;
+use super::heading::{Role, role, unit};
+use super::size::{Said, Unit, opening, us_sieve_number};
 use crate::gradation::table::number;
 
 /// A quoted cell may go on over this many lines.
@@ -68,14 +69,25 @@ pub(super) fn grid(file: &str, text: &str, delimiter: char) -> Grid {
     grid
 }
 
-/// Whether lines like `#200,12` are rows of a table: they are where no other row begins with a bare number,
-/// of which such a line could be one that is commented out.
+/// Whether lines like `#200,12` are rows of a table: they are where other rows begin with sieves in inches, and
+/// where none begins with a bare number, of which such a line could be one that is commented out.
 fn names_are_sieves(text: &str) -> bool {
-    let mut others = text.lines().filter(|line| !line.trim_start().starts_with('#'));
-    let first = |line: &str| {
-        line.trim_start_matches('"').split([',', ';', '\t', '"']).next().map(str::trim).and_then(number)
-    };
-    !others.any(|line| first(line.trim()).is_some())
+    let mut bare = false;
+    for line in text.lines().map(str::trim).filter(|line| !line.starts_with('#')) {
+        let quoted = line.starts_with('"');
+        let first = line.trim_start_matches('"').split([',', ';', '\t']).next().unwrap_or_default();
+        let first = first.split(if quoted { "\"\"" } else { "\t" }).next().unwrap_or_default();
+        let first = first.trim_end_matches('"').trim();
+        let is_fraction = first.contains('/') && opening(first).is_some();
+        if is_fraction || opening(first).is_some_and(|(_, said)| said > Said::WithUnit) {
+            return true;
+        }
+        if role(first) == Role::Size && unit(first) == Ok(Some(Unit::Inch)) {
+            return true;
+        }
+        bare |= number(first).is_some();
+    }
+    !bare
 }
 
 /// `#200,12`: a US sieve and a number.

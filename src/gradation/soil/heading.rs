@@ -66,7 +66,7 @@ const RETAINED: [&str; 14] = [
     "zeefrest",
     "trattenuto",
 ];
-const SIZE: [&str; 33] = [
+const SIZE: [&str; 46] = [
     "opening",
     "size",
     "sieve",
@@ -100,6 +100,19 @@ const SIZE: [&str; 33] = [
     "μm",
     "micron",
     "microns",
+    "grain",
+    "grains",
+    "größe",
+    "grösse",
+    "korn",
+    "sieb",
+    "malla",
+    "maille",
+    "dia",
+    "diam",
+    "apertura",
+    "luz",
+    "zeef",
 ];
 const MASS: [&str; 11] =
     ["mass", "weight", "masse", "gewicht", "wt", "peso", "g", "gram", "grams", "kg", "grammes"];
@@ -118,9 +131,69 @@ fn any(words: &[String], list: &[&str]) -> bool {
     words.iter().any(|word| list.contains(&word.as_str()))
 }
 
+/// `D10`, `D 85 (mm)`: a size that was read off a curve, not a column of openings.
+fn is_characteristic(words: &[String]) -> bool {
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    match words {
+        [first, ..] if first.strip_prefix('d').is_some_and(is_number) => true,
+        [first, second, ..] => first == "d" && is_number(second),
+        _ => false,
+    }
+}
+
+/// Whether a text says that a table goes on from the finest sieve: a hydrometer or another sedimentation test.
+pub(super) fn says_sedimentation(text: &str) -> bool {
+    const STEMS: [&str; 10] = [
+        "hydrom",
+        "sediment",
+        "sédiment",
+        "areom",
+        "aräom",
+        "aréom",
+        "schlämm",
+        "schlaemm",
+        "densim",
+        "pipette",
+    ];
+    words(text).iter().any(|word| STEMS.iter().any(|stem| word.starts_with(stem)))
+}
+
+/// `Sample no.`, `Borehole:`: what stands before the name of a soil.
+pub(super) fn says_sample(text: &str) -> bool {
+    const SAMPLE: [&str; 15] = [
+        "sample",
+        "samples",
+        "specimen",
+        "soil",
+        "material",
+        "probe",
+        "borehole",
+        "boring",
+        "bohrung",
+        "name",
+        "échantillon",
+        "echantillon",
+        "muestra",
+        "pit",
+        "source",
+    ];
+    any(&words(text), &SAMPLE)
+}
+
+/// Whether the heading of percents says that they are of the fines alone.
+pub(super) fn says_of_fines(text: &str) -> bool {
+    let small = text.to_lowercase();
+    let of_part =
+        ["minus", "of fines", "of the fines", "partial", "< 0", "<0", "of passing", "of the passing"];
+    of_part.iter().any(|part| small.contains(part)) || small.contains("200") && !small.contains("2000")
+}
+
 /// What a column of this name holds.
 pub(super) fn role(name: &str) -> Role {
     let words = words(name);
+    if is_characteristic(&words) {
+        return Role::Other;
+    }
     let percent = name.contains('%') || any(&words, &["percent", "pct", "percentage", "prozent"]);
     let mass = any(&words, &MASS);
     let size = any(&words, &SIZE);
@@ -136,7 +209,10 @@ pub(super) fn role(name: &str) -> Role {
     if percent || any(&words, &FINER) || any(&words, &["fraction", "ratio"]) && !size {
         return Role::Finer;
     }
+    let has_unit = !matches!(unit(name), Ok(None | Some(Unit::SieveNumber)) | Err(()));
     match (size, mass) {
+        // `Mass of sieve (g)` is what the empty sieve weighs.
+        (true, true) if !has_unit => Role::Other,
         (true, _) => Role::Size,
         // `mass` alone may be that of what passes; grams are weighed.
         (false, true) if any(&words, &GRAMS) => Role::Retained(Retained { percent: false, cumulative }),
@@ -190,6 +266,10 @@ mod tests {
             ("Cum. mass retained", retained(false, Some(true))),
             ("percent coarser", retained(true, Some(true))),
             ("Filter A", Role::Other),
+            ("D10 (mm)", Role::Other),
+            ("D 60, mm", Role::Other),
+            ("D (mm)", Role::Size),
+            ("Mass of sieve (g)", Role::Other),
         ] {
             assert_eq!(role(name), expected, "{name}");
         }

@@ -1,13 +1,17 @@
-//! Where in a grid the table is: which column holds the openings, which ones a soil each.
+//! Where in a grid with one table the openings stand, and which columns hold a soil each.
 
+use super::columns::Columns;
+use super::content::{begins_with_words, is_data, is_short_opening, is_text, is_value, percentage};
 use super::grid::{Grid, GridRow};
-use super::heading::{Role, role, unit, words};
-use super::size::{Opening, Said, Unit, opening};
+use super::heading::{Role, role, says_sample, unit, words};
+use super::size::{Opening, Unit, opening};
 use crate::gradation::error::{TableError, shortened};
-use crate::gradation::table::number;
 
 /// Titles may take this many rows.
-const ROWS_OF_TITLES: usize = 60;
+pub(super) const ROWS_OF_TITLES: usize = 60;
+
+/// A table has at most this many places, filled or not.
+const MOST_PLACES: usize = 40_000_000;
 
 /// Where the table is.
 #[derive(Debug)]
@@ -20,61 +24,43 @@ pub(super) struct Layout {
     pub(super) unit: Option<Unit>,
     /// The columns that hold a soil each.
     pub(super) soils: Vec<SoilColumn>,
+    /// Index of the row of headings.
+    pub(super) at: usize,
     /// Index of the first row below the headings.
     pub(super) first: usize,
     /// There are headings.
     pub(super) headed: bool,
+    /// What was assumed or left out.
+    pub(super) notes: Vec<String>,
 }
 
-/// A column that holds a soil.
+/// A column that holds a soil, or one end of a specification.
 #[derive(Clone, Debug)]
 pub(super) struct SoilColumn {
     pub(super) column: usize,
     pub(super) heading: String,
     pub(super) role: Role,
+    /// Which end is read of ranges such as `95-100`.
+    pub(super) end: Option<End>,
 }
 
-/// A percentage as laboratories write it: `97`, `97 %`, `97,0%`.
-pub(super) fn percentage(cell: &str) -> Option<f64> {
-    number(cell.strip_suffix('%').unwrap_or(cell).trim())
-}
-
-/// Whether a cell says that there is no value.
-pub(super) fn is_blank(cell: &str) -> bool {
-    ["", "-", "–", "—", "n/a", "n.a.", "na", "N/A", "n.d.", "nd"].contains(&cell)
-}
-
-fn is_numeric(cell: &str) -> bool {
-    percentage(cell).is_some()
-}
-
-/// An opening in one cell and a number in another.
-fn is_data(row: &GridRow) -> bool {
-    let is_size = |cell: &str| matches!(opening(cell), Some((Opening::Mm(_) | Opening::Bare(_), _)));
-    let sizes: Vec<usize> = row.filled().filter(|&c| is_size(row.cell(c))).collect();
-    row.filled().any(|c| is_numeric(row.cell(c)) && sizes.iter().any(|&s| s != c))
+/// An end of a range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum End {
+    Least,
+    Most,
 }
 
 /// A row of headings: one of them that of openings, none of them a number.
-fn is_heading(row: &GridRow) -> bool {
-    row.filled().count() >= 2
-        && row.filled().all(|c| !is_numeric(row.cell(c)) && !is_short_opening(row.cell(c)))
+pub(super) fn is_heading(row: &GridRow) -> bool {
+    row.filled().take(2).count() == 2
+        && row.filled().all(|c| !is_value(row.cell(c)) && !is_short_opening(row.cell(c)))
         && row.filled().any(|c| role(row.cell(c)) == Role::Size)
 }
 
-/// `No. 4`: an opening, not the heading of a column.
-fn is_short_opening(cell: &str) -> bool {
-    matches!(opening(cell), Some((Opening::Mm(_), Said::UsNumber | Said::Inches)))
-}
-
 /// Whether a heading says that its column holds a soil.
-fn says_soil(row: &GridRow) -> bool {
+pub(super) fn says_soil(row: &GridRow) -> bool {
     row.filled().any(|c| !matches!(role(row.cell(c)), Role::Size | Role::Other))
-}
-
-/// Whether a row within the table repeats its headings, or is a line of text.
-pub(super) fn is_text(row: &GridRow) -> bool {
-    row.filled().all(|c| !is_numeric(row.cell(c)) && opening(row.cell(c)).is_none())
 }
 
 /// A table's headings again, as above the rows of a hydrometer.
@@ -85,27 +71,59 @@ pub(super) fn repeats_headings(row: &GridRow, layout: &Layout) -> bool {
         && layout.soils.iter().all(|soil| role(row.cell(soil.column)) == soil.role)
 }
 
-/// Finds the table.
-pub(super) fn find(grid: &Grid) -> Result<Layout, TableError> {
+/// The headings of a table.
+pub(super) struct Headings {
+    /// Index of their row.
+    pub(super) at: usize,
+    /// Index of the first row below them and what belongs to them.
+    pub(super) first: usize,
+    /// What stands above each column.
+    pub(super) heads: Vec<String>,
+    pub(super) roles: Vec<Role>,
+}
+
+/// The headings of the first table of a grid, and the first row of its numbers.
+pub(super) fn headings(grid: &Grid) -> (Option<Headings>, Option<usize>) {
     let rows = &grid.rows;
-    if let Some(row) = rows.iter().find(|row| row.open) {
-        return Err(fields(grid, row));
-    }
-    let data = rows.iter().take(ROWS_OF_TITLES).position(is_data);
-    let above = &rows[..data.unwrap_or(rows.len().min(ROWS_OF_TITLES))];
-    let headings = above.iter().rposition(|row| is_heading(row) && says_soil(row));
-    let headings = headings.or_else(|| above.iter().rposition(is_heading));
-    let Some(at) = headings else { return without_headings(grid, data) };
-    // Units, or the names of soils, may stand in rows below the headings.
-    let texts = rows[at + 1..].iter().take_while(|row| is_text(row));
-    let below = match data {
-        Some(data) => data - at - 1,
-        None => 0,
+    let upper = &rows[..rows.len().min(ROWS_OF_TITLES)];
+    let above = |data: Option<usize>| {
+        let above = &upper[..data.unwrap_or(upper.len())];
+        let headings = above.iter().rposition(|row| is_heading(row) && says_soil(row));
+        headings.or_else(|| above.iter().rposition(is_heading))
     };
-    let below = texts.take(below).count();
-    let width = rows[at..=at + below].iter().map(|row| row.cells.len()).max().unwrap_or(0);
-    let heads: Vec<String> = (0..width).map(|c| head(&rows[at..=at + below], c)).collect();
-    with_headings(grid, at, at + 1 + below, heads)
+    // Numbers behind words may be a depth above the table.
+    let plain = upper.iter().position(|row| is_data(row) && !begins_with_words(row));
+    let any = upper.iter().position(is_data);
+    let (at, data) = match above(plain) {
+        Some(at) => (Some(at), plain.or(any.filter(|&row| row > at))),
+        None => (above(any), any),
+    };
+    let Some(at) = at else { return (None, any) };
+    // Units, or the names of soils, may stand in rows below the headings.
+    let sizes: Vec<usize> = rows[at].filled().filter(|&c| role(rows[at].cell(c)) == Role::Size).collect();
+    let belongs = |row: &&GridRow| is_text(row) && sizes.iter().all(|&c| belongs_to_heading(row.cell(c)));
+    let below = data.map_or(0, |data| data - at - 1);
+    let below = rows[at + 1..].iter().take_while(belongs).take(below).count();
+    let samples =
+        rows[..at].iter().rev().find(|row| row.filled().next().is_some_and(|c| says_sample(row.cell(c))));
+    let wide = rows[at..=at + below].iter().chain(samples);
+    let width = wide.map(|row| row.cells.len()).max().unwrap_or(0);
+    let heads = (0..width).map(|c| head(&rows[at..=at + below], c)).collect();
+    let (heads, roles) = spread(&rows[at..=at + below], samples, heads);
+    (Some(Headings { at, first: at + 1 + below, heads, roles }), data)
+}
+
+/// Whether a cell below the heading of openings is a part of it, such as a unit; `4..75` is none.
+fn belongs_to_heading(cell: &str) -> bool {
+    !cell.contains(|c: char| c.is_ascii_digit()) || cell.starts_with(char::is_alphabetic)
+}
+
+/// Finds the table of a grid that holds one.
+pub(super) fn find(grid: &Grid) -> Result<Layout, TableError> {
+    match headings(grid) {
+        (Some(headings), _) => with_headings(grid, headings),
+        (None, data) => without_headings(grid, data),
+    }
 }
 
 /// What stands above a column.
@@ -114,7 +132,8 @@ fn head(rows: &[GridRow], column: usize) -> String {
     cells.join(" ")
 }
 
-fn with_headings(grid: &Grid, at: usize, first: usize, heads: Vec<String>) -> Result<Layout, TableError> {
+fn with_headings(grid: &Grid, headings: Headings) -> Result<Layout, TableError> {
+    let Headings { at, first, heads, roles } = headings;
     let rows = &grid.rows[first..];
     let line = grid.rows[at].line;
     if is_constriction_curve(&heads) {
@@ -126,72 +145,153 @@ fn with_headings(grid: &Grid, at: usize, first: usize, heads: Vec<String>) -> Re
     if rows.is_empty() {
         return Err(TableError::NoRows { file: grid.place(), header: true });
     }
-    let too_wide =
-        |row: &&GridRow| grid.sheet.is_none() && row.filled().any(|c| c >= heads.len()) && !is_text(row);
-    if let Some(row) = rows.iter().find(too_wide) {
+    let too_wide = |row: &&GridRow| row.cells.len() > heads.len() && !is_text(row) && !begins_with_words(row);
+    if let Some(row) = rows.iter().find(too_wide).filter(|_| grid.sheet.is_none()) {
         return Err(fields(grid, row));
     }
-    let (heads, roles) = spread(grid, at, first, heads);
-    let of_role = |wanted: Role| (0..heads.len()).filter(|&c| roles[c] == wanted).collect::<Vec<_>>();
-    let sizes: Vec<usize> = {
-        let mut sizes = of_role(Role::Size);
-        let bare = |c: usize| rows.iter().filter(|row| number(row.cell(c)).is_some()).count();
-        let rank = |c: usize| match unit(&heads[c]) {
-            Ok(Some(Unit::Mm)) => 0,
-            Ok(Some(Unit::Micrometre | Unit::Cm | Unit::Phi)) => 1,
-            Ok(Some(Unit::Inch)) => 2,
-            Ok(None) if bare(c) > 0 => 3,
-            _ => 4,
-        };
-        sizes.sort_by_key(|&c| rank(c));
-        sizes
-    };
+    let columns = Columns::of(rows, heads.len());
+    let sizes = sizes(&heads, &roles, &columns);
     let Some(&size) = sizes.first() else {
         return Err(TableError::NoRows { file: grid.place(), header: true });
     };
     let unit = unit(&heads[size]).map_err(|()| {
         grid.refused_heading(line, &heads[size], "openings in mm (opening_mm), or in cm, um, inches or phi")
     })?;
-    let holds_numbers = |c: &usize| rows.iter().any(|row| is_numeric(row.cell(*c)));
-    let finer: Vec<usize> = of_role(Role::Finer).into_iter().filter(holds_numbers).collect();
-    let by = |percent: bool, cumulative: bool| -> Vec<usize> {
-        let wanted = |c: &usize| match roles[*c] {
-            Role::Retained(r) => r.percent == percent && (r.cumulative == Some(true)) == cumulative,
-            _ => false,
-        };
-        (0..heads.len()).filter(wanted).filter(holds_numbers).collect()
+    let mut layout = Layout {
+        size,
+        other_size: sizes.get(1).copied(),
+        unit,
+        soils: Vec::new(),
+        at,
+        first,
+        headed: true,
+        notes: Vec::new(),
     };
-    let others = || -> Vec<usize> {
-        let all_numbers = |c: &usize| {
-            rows.iter().all(|row| is_blank(row.cell(*c)) || is_numeric(row.cell(*c)) || is_text(row))
-        };
-        of_role(Role::Other).into_iter().filter(holds_numbers).filter(all_numbers).collect()
-    };
-    let columns = [finer, by(true, true), by(true, false), by(false, true), by(false, false), others()]
-        .into_iter()
-        .find(|columns| !columns.is_empty());
-    let Some(columns) = columns else {
+    let values = value_columns(&roles, &columns);
+    if values.is_empty() {
         return match rows.iter().find(|row| row.filled().count() != 2) {
             Some(row) if grid.sheet.is_none() => Err(fields(grid, row)),
-            _ if heads.len() == 2 => {
-                Ok(Layout { size, other_size: None, unit, soils: vec![], first, headed: true }
-                    .with_one(&heads))
-            }
+            _ if heads.len() == 2 => Ok(layout.with_one(&heads)),
             _ => Err(TableError::NoRows { file: grid.place(), header: true }),
         };
-    };
-    let soils = columns
-        .into_iter()
-        .map(|column| SoilColumn { column, heading: heads[column].clone(), role: roles[column] })
-        .collect::<Vec<_>>();
-    for soil in &soils {
-        let words = words(&soil.heading);
-        if soil.role == Role::Finer && words.iter().any(|word| word == "number") {
-            return Err(grid.refused_heading(line, &soil.heading, "percent finer by mass (percent_finer)"));
+    }
+    // A specification is two soils.
+    if rows.len().saturating_mul(2 * values.len()) > MOST_PLACES {
+        let is = format!("a table of {} rows for {} soils, most of it empty", rows.len(), values.len());
+        return Err(TableError::Format { file: grid.place(), is });
+    }
+    for pair in values.windows(2) {
+        refuse_unnamed_openings(grid, &heads, &columns, first, [pair[0], pair[1]])?;
+    }
+    for &column in &values {
+        let (heading, role) = (heads[column].clone(), roles[column]);
+        if role == Role::Finer && words(&heading).iter().any(|word| word == "number") {
+            return Err(grid.refused_heading(line, &heading, "percent finer by mass (percent_finer)"));
+        }
+        let soil = SoilColumn { column, heading, role, end: None };
+        if columns.with_ranges[column] && !matches!(role, Role::Retained(_)) {
+            for (end, word) in [(End::Least, "min"), (End::Most, "max")] {
+                let heading = format!("{} {word}", soil.heading).trim().to_owned();
+                layout.soils.push(SoilColumn { heading, end: Some(end), ..soil.clone() });
+            }
+        } else {
+            layout.soils.push(soil);
         }
     }
-    let other_size = sizes.get(1).copied();
-    Ok(Layout { size, other_size, unit, soils, first, headed: true })
+    layout.notes.extend(not_used(grid, &heads, &columns, &sizes, &values));
+    Ok(layout)
+}
+
+/// The columns of openings or of their names, the one to be read first.
+fn sizes(heads: &[String], roles: &[Role], columns: &Columns) -> Vec<usize> {
+    let mut sizes: Vec<usize> = (0..heads.len()).filter(|&c| roles[c] == Role::Size).collect();
+    let rank = |c: usize| match unit(&heads[c]) {
+        Ok(Some(Unit::Mm)) => 0,
+        Ok(Some(Unit::Micrometre | Unit::Cm | Unit::Phi)) => 1,
+        Ok(Some(Unit::Inch)) => 2,
+        Ok(None) if columns.with_numbers[c] => 3,
+        _ => 4,
+    };
+    sizes.sort_by_key(|&c| rank(c));
+    sizes
+}
+
+/// The columns that are read as soils: what is finer, or else what is retained, or else the other numbers.
+fn value_columns(roles: &[Role], columns: &Columns) -> Vec<usize> {
+    let with_values = |wanted: &dyn Fn(usize) -> bool| -> Vec<usize> {
+        (0..roles.len()).filter(|&c| columns.with_values[c] && wanted(c)).collect()
+    };
+    let retained = |percent: bool, cumulative: bool| {
+        with_values(&|c| match roles[c] {
+            Role::Retained(r) => r.percent == percent && (r.cumulative == Some(true)) == cumulative,
+            _ => false,
+        })
+    };
+    [
+        with_values(&|c| roles[c] == Role::Finer),
+        retained(true, true),
+        retained(true, false),
+        retained(false, true),
+        retained(false, false),
+        with_values(&|c| roles[c] == Role::Other && columns.mostly_values[c]),
+    ]
+    .into_iter()
+    .find(|columns| !columns.is_empty())
+    .unwrap_or_default()
+}
+
+/// Numbers that rise or fall all the way, between two columns of percents, may be the openings of the second.
+fn refuse_unnamed_openings(
+    grid: &Grid,
+    heads: &[String],
+    columns: &Columns,
+    first: usize,
+    [left, right]: [usize; 2],
+) -> Result<(), TableError> {
+    let rows = &grid.rows[first..];
+    let Some(column) = (left + 1..right).rev().find(|&c| columns.with_values[c]) else { return Ok(()) };
+    if role(&heads[column]) != Role::Other {
+        return Ok(());
+    }
+    let sizes: Vec<f64> = rows
+        .iter()
+        .filter(|row| is_value(row.cell(right)))
+        .filter_map(|row| match opening(row.cell(column)) {
+            Some((Opening::Mm(size) | Opening::Bare(size), _)) if size > 0.0 => Some(size),
+            _ => None,
+        })
+        .collect();
+    let one_way = sizes.windows(2).all(|w| w[0] > w[1]) || sizes.windows(2).all(|w| w[0] < w[1]);
+    if sizes.len() < 2 || !one_way {
+        return Ok(());
+    }
+    let allowed = "a heading that says what these numbers are: openings (such as Sieve (mm)) for the percents to \
+                   their right, or percents (% passing) of a soil";
+    let line = grid.rows[first.saturating_sub(1)].line;
+    Err(grid.refused(line, column, "heading", &heads[column], allowed))
+}
+
+/// Says which columns hold numbers and are not read.
+fn not_used(
+    grid: &Grid,
+    heads: &[String],
+    columns: &Columns,
+    sizes: &[usize],
+    values: &[usize],
+) -> Option<String> {
+    const MOST: usize = 6;
+    let is_used = |c: &usize| values.binary_search(c).is_ok() || sizes.contains(c);
+    let unused: Vec<usize> =
+        (0..columns.with_values.len()).filter(|&c| columns.with_values[c]).filter(|c| !is_used(c)).collect();
+    let name = |&c: &usize| match heads.get(c).map(String::as_str).unwrap_or_default() {
+        "" => format!("{} (no heading)", grid.column_said(c)),
+        head => format!("{} (\"{}\")", grid.column_said(c), shortened(head)),
+    };
+    let mut named: Vec<String> = unused.iter().take(MOST).map(name).collect();
+    if unused.len() > MOST {
+        named.push(format!("and {} more", unused.len() - MOST));
+    }
+    (!named.is_empty()).then(|| format!("not used: {}", named.join(", ")))
 }
 
 /// Whether a table has the header of a constriction curve: percents by number of constrictions, not by mass.
@@ -201,21 +301,28 @@ fn is_constriction_curve(heads: &[String]) -> bool {
     heads.len() == 2 && named("percent_smaller") && is_diameter
 }
 
-/// A heading that is merged over several columns stands in the first of them; the rows below name each.
-fn spread(grid: &Grid, at: usize, first: usize, mut heads: Vec<String>) -> (Vec<String>, Vec<Role>) {
+/// A heading that is merged over several columns stands in the first of them; the rows below name each, or a row
+/// of samples above.
+fn spread(rows: &[GridRow], samples: Option<&GridRow>, mut heads: Vec<String>) -> (Vec<String>, Vec<Role>) {
     let mut roles: Vec<Role> = heads.iter().map(|name| role(name)).collect();
-    let (top, below) = (&grid.rows[at], &grid.rows[at + 1..first]);
+    let (top, below) = (&rows[0], &rows[1..]);
     for column in 1..heads.len() {
         let before = roles[column - 1];
-        let is_merged = top.cell(column).is_empty()
-            && roles[column] == Role::Other
-            && matches!(before, Role::Finer | Role::Retained(_))
-            && below.iter().any(|row| !row.cell(column).is_empty() && !row.cell(column - 1).is_empty());
-        if is_merged {
+        if !top.cell(column).is_empty()
+            || roles[column] != Role::Other
+            || !matches!(before, Role::Finer | Role::Retained(_))
+        {
+            continue;
+        }
+        let in_both = |row: &GridRow| !row.cell(column).is_empty() && !row.cell(column - 1).is_empty();
+        if below.iter().any(in_both) {
             roles[column] = before;
             for named in [column - 1, column] {
                 heads[named] = head(below, named);
             }
+        } else if samples.is_some_and(in_both) && heads[column].is_empty() {
+            roles[column] = before;
+            heads[column] = heads[column - 1].clone();
         }
     }
     (heads, roles)
@@ -225,22 +332,26 @@ impl Layout {
     /// With the column that is not that of the openings as its only soil.
     fn with_one(mut self, heads: &[String]) -> Layout {
         let column = usize::from(self.size == 0);
-        self.soils.push(SoilColumn { column, heading: heads[column].clone(), role: Role::Finer });
+        let heading = heads[column].clone();
+        self.soils.push(SoilColumn { column, heading, role: Role::Finer, end: None });
         self
     }
 }
 
+fn is_number(cell: &str) -> bool {
+    percentage(cell).is_some()
+}
+
 /// No row names the openings: the first row of numbers begins the table, by place.
 fn without_headings(grid: &Grid, data: Option<usize>) -> Result<Layout, TableError> {
-    let begins =
-        |row: &GridRow| row.filled().any(|c| is_numeric(row.cell(c)) || is_short_opening(row.cell(c)));
+    let begins = |row: &GridRow| row.filled().any(|c| is_value(row.cell(c)) || is_short_opening(row.cell(c)));
     let start = grid.rows.iter().position(begins);
     let start = match (start, data) {
         // Titles hold numbers too; but a title looks like a row that is broken only where it has two cells.
         (Some(start), Some(data))
             if grid.rows[start..data]
                 .iter()
-                .all(|row| row.filled().count() == 1 && !is_numeric(row.cell(0))) =>
+                .all(|row| row.filled().count() == 1 && !is_number(row.cell(0))) =>
         {
             data
         }
@@ -264,9 +375,7 @@ fn without_headings(grid: &Grid, data: Option<usize>) -> Result<Layout, TableErr
             let percent = role(&head(a)) == Role::Finer && role(&head(b)) != Role::Finer;
             if percent { (b, None, a) } else { (a, None, b) }
         }
-        [a, b, c] if !is_numeric(first_row.cell(a)) && opening(first_row.cell(a)).is_some() => {
-            (b, Some(a), c)
-        }
+        [a, b, c] if !is_number(first_row.cell(a)) && opening(first_row.cell(a)).is_some() => (b, Some(a), c),
         _ => return Err(fields(grid, first_row)),
     };
     let most = columns.len();
@@ -285,8 +394,9 @@ fn without_headings(grid: &Grid, data: Option<usize>) -> Result<Layout, TableErr
             "openings in mm (opening_mm), or in cm, um, inches or phi",
         )
     })?;
-    let soils = vec![SoilColumn { column: value, heading: head(value), role }];
-    Ok(Layout { size, other_size: other, unit, soils, first: start, headed: headings.is_some() })
+    let soils = vec![SoilColumn { column: value, heading: head(value), role, end: None }];
+    let (headed, at) = (headings.is_some(), start.saturating_sub(1));
+    Ok(Layout { size, other_size: other, unit, soils, at, first: start, headed, notes: Vec::new() })
 }
 
 /// A row with another number of cells than the table has columns.

@@ -1,16 +1,28 @@
 //! Soils as laboratories write them down: from the bytes of a file to tables of openings and percents finer.
 //!
 //! Bytes become text or sheets (`text`, `csv`; `workbook` with `xlsx` and `ods`; `ags`), those become rows of
-//! cells (`grid`), in which the table is found (`layout`, by `heading`) and read (`points`, `size`,
-//! `retained`). `read` is the way through. What is taken for something that the file does not spell out
+//! cells (`grid`), which are cut into parts with one table each (`blocks`; `across` turns one that lies on its
+//! side), in which the table is found (`layout`, by `heading`; `extent` says where it ends) and read (`points`,
+//! `size`, `units`, `retained`). What continues another table is joined to it (`joined`); `names` says what the
+//! soils are called. `read` is the way through. What is taken for something that the file does not spell out
 //! becomes a note; what could be two things is refused.
 
+mod across;
+mod agreement;
 mod ags;
+mod blocks;
 mod cells;
+mod columns;
+mod commas;
+mod content;
 mod csv;
+mod extent;
 mod grid;
 mod heading;
+mod joined;
 mod layout;
+mod lines;
+mod names;
 mod ods;
 mod points;
 mod read;
@@ -19,12 +31,13 @@ mod size;
 mod summary;
 mod table;
 mod text;
+mod units;
 mod workbook;
 mod xlsx;
 mod zipped;
 
 pub(crate) use read::file_and_soil;
-pub use read::{curves_in_file, soils_in_file};
+pub use read::{curves_in_file, notes_in_file, soils_in_file};
 pub(super) use summary::GRAVEL_MM;
 pub use summary::{FINES_MM, SoilSummary};
 pub use table::Soil;

@@ -1,5 +1,7 @@
 //! Sheets of OpenDocument: `content.xml`.
 
+use std::collections::HashSet;
+
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
@@ -17,11 +19,23 @@ pub(super) fn sheets(file: &str, zipped: &mut Zipped) -> Result<Vec<Grid>, Table
     let mut reader = Reader::from_str(&text);
     reader.config_mut().expand_empty_elements = true;
     let (mut sheets, mut budget) = (Vec::new(), Budget::new());
+    // Styles stand before the sheets; one that is not shown hides the sheets that have it.
+    let (mut hidden, mut style) = (HashSet::new(), String::new());
     loop {
         match reader.read_event().map_err(|_| broken(file))? {
+            Event::Start(e) if e.name().as_ref() == "style:style" => {
+                style = attribute(&e, "style:name").unwrap_or_default();
+            }
+            Event::Start(e) if e.name().as_ref() == "style:table-properties" => {
+                if attribute(&e, "table:display").is_some_and(|display| display == "false") {
+                    hidden.insert(style.clone());
+                }
+            }
             Event::Start(e) if e.name().as_ref() == "table:table" => {
                 let name = attribute(&e, "table:name").unwrap_or_default();
-                sheets.push(sheet(file, &name, &mut reader, &mut budget)?);
+                let is_hidden =
+                    attribute(&e, "table:style-name").is_some_and(|style| hidden.contains(&style));
+                sheets.push(sheet(file, &name, is_hidden, &mut reader, &mut budget)?);
             }
             Event::Eof => return Ok(sheets),
             _ => {}
@@ -40,28 +54,42 @@ fn repeats(element: &BytesStart, name: &str) -> usize {
 fn sheet(
     file: &str,
     name: &str,
+    hidden: bool,
     reader: &mut Reader<&[u8]>,
     budget: &mut Budget,
 ) -> Result<Grid, TableError> {
     let mut cells = Cells::new(file, name, budget);
-    let mut row = 0usize;
+    let (mut row, mut columns) = (0usize, 0usize);
+    let is_collapsed =
+        |e: &BytesStart| attribute(e, "table:visibility").is_some_and(|visibility| visibility != "visible");
     loop {
         match reader.read_event().map_err(|_| broken(file))? {
+            Event::Start(e) if e.name().as_ref() == "table:table-column" => {
+                let end = columns.saturating_add(repeats(&e, "table:number-columns-repeated"));
+                if is_collapsed(&e) {
+                    cells.hide_columns(columns..end);
+                }
+                columns = end;
+            }
             Event::Start(e) if e.name().as_ref() == "table:table-row" => {
                 let times = repeats(&e, "table:number-rows-repeated");
+                let collapsed = is_collapsed(&e);
                 let filled = read_row(file, reader)?;
                 if !filled.is_empty() && times > MOST_REPEATS {
                     return Err(too_large(file, &format!("a row that is repeated {times} times")));
                 }
                 let kept = if filled.is_empty() { 0 } else { times };
                 for again in 0..kept {
+                    if collapsed {
+                        cells.hide_row(row.saturating_add(again));
+                    }
                     for (column, text) in &filled {
                         cells.put(row.saturating_add(again), *column, text)?;
                     }
                 }
                 row = row.saturating_add(times);
             }
-            Event::End(e) if e.name().as_ref() == "table:table" => return Ok(cells.done()),
+            Event::End(e) if e.name().as_ref() == "table:table" => return Ok(cells.done(hidden)),
             Event::Eof => return Err(broken(file)),
             _ => {}
         }

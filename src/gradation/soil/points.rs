@@ -1,27 +1,40 @@
-//! From a column of a grid to openings in mm and percents finer.
+//! From a column of a table to openings in mm and percents finer.
 
+use std::collections::HashMap;
+
+use super::content::{is_blank, is_date, percentage, range};
+use super::extent::{Extent, Of};
 use super::grid::Grid;
 use super::heading::Role;
-use super::layout::{Layout, SoilColumn, fields, is_blank, is_text, percentage, repeats_headings};
+use super::layout::{End, Layout, SoilColumn, fields};
+use super::lines::listed;
 use super::retained::{Weighed, percents_finer};
 use super::size::{Entry, Opening, Said, Unit, opening};
-use super::table::Soil;
+use super::table::{Kind, Soil};
+use super::{commas, units};
 use crate::gradation::error::TableError;
 use crate::gradation::sieve::FIELDS;
 use crate::gradation::table::{Row, allowed_percent, allowed_size, percent_is_allowed, size_is_allowed};
 
+/// The soils of a table, column by column.
+pub(super) fn soils(grid: &Grid, layout: &Layout) -> Vec<Result<Soil, TableError>> {
+    let extent = Extent::of(grid, layout);
+    layout.soils.iter().map(|column| soil(grid, layout, &extent, column)).collect()
+}
+
 /// The soil in one column of a grid.
-pub(super) fn soil(grid: &Grid, layout: &Layout, column: &SoilColumn) -> Result<Soil, TableError> {
+fn soil(grid: &Grid, layout: &Layout, extent: &Extent, column: &SoilColumn) -> Result<Soil, TableError> {
     let mut notes = grid.notes.clone();
-    let mut entries = entries(grid, layout, column, &mut notes)?;
-    let unit = unit_of_bare(grid, layout, &entries, &mut notes)?;
+    notes.extend(layout.notes.iter().chain(&extent.notes).cloned());
+    let mut entries = entries(grid, layout, extent, column, &mut notes)?;
+    let unit = units::of_bare(grid, layout, &entries, &mut notes)?;
     for entry in &mut entries {
         entry.opening = match entry.opening {
-            Opening::Bare(value) => in_mm(grid, layout, entry, value, unit)?,
-            Opening::Mm(mm) => in_mm(grid, layout, entry, mm, Unit::Mm)?,
+            Opening::Bare(value) => in_mm(grid, entry, value, unit)?,
+            Opening::Mm(mm) => in_mm(grid, entry, mm, Unit::Mm)?,
             Opening::Below(value) => {
                 let unit = if entry.said == Said::Plain { unit } else { Unit::Mm };
-                match in_mm(grid, layout, entry, value, unit)? {
+                match in_mm(grid, entry, value, unit)? {
                     Opening::Mm(mm) => Opening::Below(mm),
                     other => other,
                 }
@@ -29,10 +42,11 @@ pub(super) fn soil(grid: &Grid, layout: &Layout, column: &SoilColumn) -> Result<
             other => other,
         };
     }
-    say_names(&entries, unit, &mut notes);
+    units::say_names(&entries, unit, &mut notes);
     let rows = match column.role {
         Role::Retained(retained) => {
-            let weighed = Weighed { grid, column: column.column, retained };
+            let below = &extent.below;
+            let weighed = Weighed { grid, column: column.column, retained, below };
             percents_finer(&weighed, &entries, &mut notes)?
         }
         _ => finer(grid, column, &entries, &mut notes)?,
@@ -44,44 +58,44 @@ pub(super) fn soil(grid: &Grid, layout: &Layout, column: &SoilColumn) -> Result<
     if largest > 500.0 && unit == Unit::Mm && layout.unit != Some(Unit::Inch) {
         notes.push(format!("its largest opening is {largest} mm: is the column in micrometres?"));
     }
-    let columns = grid.sheet.as_ref().map(|_| [layout.size as u32, column.column as u32]);
-    Ok(Soil { name: column.heading.clone(), file: grid.place(), rows, notes, columns })
+    if let Some(end) = column.end {
+        let which = if end == End::Least { "least" } else { "most" };
+        notes.push(format!(
+            "ranges such as 95-100 are two curves; this is that of the {which} that is allowed"
+        ));
+    }
+    let elsewhere: HashMap<usize, usize> =
+        entries.iter().filter(|e| e.column != layout.size).map(|e| (e.line, e.column)).collect();
+    let place = |row: &Row| {
+        let of_size = elsewhere.get(&row.line).copied().unwrap_or(layout.size);
+        [grid.place_of(row.line, of_size), grid.place_of(row.line, column.column)]
+    };
+    let places = rows.iter().map(place).collect();
+    let (name, file, kind) = (column.heading.clone(), grid.place(), Kind::of(grid));
+    Ok(Soil { name, file, rows, places, kind, notes })
 }
 
 /// The rows of the table as they are written.
 fn entries(
     grid: &Grid,
     layout: &Layout,
+    extent: &Extent,
     column: &SoilColumn,
     notes: &mut Vec<String>,
 ) -> Result<Vec<Entry>, TableError> {
-    let rows = &grid.rows[layout.first..];
-    let is_number = |cell: &str| percentage(cell).is_some();
-    let last = rows.iter().rposition(|row| row.filled().any(|c| is_number(row.cell(c)))).unwrap_or(0);
     let single = layout.soils.len() == 1;
     let retained = matches!(column.role, Role::Retained(_));
-    let mut entries = Vec::new();
-    for (index, row) in rows.iter().enumerate() {
+    let (mut entries, mut without) = (Vec::new(), Vec::new());
+    for (row, _) in extent.rows(grid, layout).filter(|(_, of)| *of == Of::Table) {
         let line = row.line;
         let value = row.cell(column.column);
-        let of_size = row.cell(layout.size);
-        let other = layout.other_size.map_or("", |c| row.cell(c));
-        let size = if is_blank(of_size) && !other.is_empty() { other } else { of_size };
-        if repeats_headings(row, layout) {
-            continue;
-        }
-        let is_remark = is_text(row) && (row.filled().count() == 1 || index > last);
-        if is_remark {
-            notes.push(format!("{} {line} taken as a remark and left out", row_word(grid)));
-            continue;
-        }
+        let at = extent.column_of_size(layout, row);
+        let size = row.cell(at);
         let read = opening(size);
         if is_blank(value) {
             match read {
                 Some((Opening::Mm(_) | Opening::Bare(_) | Opening::Below(_), _)) => {
-                    if single {
-                        notes.push(format!("{} {line} has no percent: left out", row_word(grid)));
-                    }
+                    without.push(grid.row_name(line));
                     continue;
                 }
                 Some((Opening::Pan | Opening::Total, _)) => continue,
@@ -98,36 +112,34 @@ fn entries(
             return Err(fields(grid, row));
         }
         let Some((opening, said)) = read else {
-            return Err(grid.refused(line, layout.size, FIELDS[0], size, allowed_opening(size)));
+            return Err(grid.refused(line, at, FIELDS[0], size, allowed_opening(size)));
         };
         if matches!(opening, Opening::Bare(value) if !value.is_finite()) {
-            return Err(grid.refused(line, layout.size, FIELDS[0], size, allowed_size()));
+            return Err(grid.refused(line, at, FIELDS[0], size, allowed_size()));
         }
         let allowed = if retained { "a number from 0".to_owned() } else { allowed_percent() };
-        let number = percentage(value)
-            .filter(|&v| if retained { v >= 0.0 && v.is_finite() } else { percent_is_allowed(v) });
+        let of_range = |(least, most): (f64, f64)| if column.end == Some(End::Least) { least } else { most };
+        let value_read =
+            percentage(value).or_else(|| range(value).filter(|_| column.end.is_some()).map(of_range));
+        let number =
+            value_read.filter(|&v| if retained { v >= 0.0 && v.is_finite() } else { percent_is_allowed(v) });
         let Some(number) = number else {
             return Err(grid.refused(line, column.column, FIELDS[1], value, allowed));
         };
-        entries.push(Entry { line, opening, text: size.to_owned(), said, value: number + 0.0 });
+        let text = size.to_owned();
+        entries.push(Entry { line, column: at, opening, text, said, value: number + 0.0 });
     }
-    check_decimal_signs(grid, layout, column)?;
+    if single && !without.is_empty() {
+        let have = if without.len() == 1 { "has" } else { "have" };
+        notes.push(format!("{} {have} no percent: left out", listed(grid.row_word(), &without)));
+    }
+    commas::check(grid, layout, extent, column, notes)?;
     Ok(entries)
-}
-
-/// What rows are called.
-fn row_word(grid: &Grid) -> &'static str {
-    if grid.sheet.is_some() { "row" } else { "line" }
 }
 
 /// What an opening may be; spreadsheets turn `3/8` into a date.
 fn allowed_opening(found: &str) -> String {
-    const MONTHS: [&str; 12] =
-        ["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"];
-    let small = found.to_lowercase();
-    match found.contains(|c: char| c.is_ascii_digit()) && MONTHS.iter().any(|month| small.contains(month))
-        || small.contains("(a date)")
-    {
+    match is_date(found) {
         true => {
             "an opening; this is a date, into which spreadsheets turn fractions such as 3/8: write 3/8 in"
                 .into()
@@ -136,76 +148,7 @@ fn allowed_opening(found: &str) -> String {
     }
 }
 
-/// A file that uses both `.` and `,` inside numbers has thousands separators, or a mistake.
-fn check_decimal_signs(grid: &Grid, layout: &Layout, column: &SoilColumn) -> Result<(), TableError> {
-    if grid.sheet.is_some() {
-        return Ok(());
-    }
-    let with = |sign: char| {
-        grid.rows[layout.first..].iter().find_map(|row| {
-            let cells = [row.cell(layout.size), row.cell(column.column)];
-            let is_with = |cell: &&str| cell.contains(sign) && percentage(cell).is_some();
-            cells.into_iter().find(is_with).map(|cell| (row.line, cell))
-        })
-    };
-    match (with('.'), with(',')) {
-        (Some((dot_line, _)), Some((line, value))) => {
-            let allowed = format!(
-                "one decimal sign in the whole file (line {dot_line} has a decimal point), no thousands \
-                 separators"
-            );
-            Err(grid.refused(line, layout.size, "number", value, allowed))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// The unit of openings that are bare numbers: the heading's; mm where nothing else has inches; else the one
-/// in which the openings go one way.
-fn unit_of_bare(
-    grid: &Grid,
-    layout: &Layout,
-    entries: &[Entry],
-    notes: &mut Vec<String>,
-) -> Result<Unit, TableError> {
-    let is_no_sieve = |entry: &Entry| match entry.opening {
-        Opening::Bare(value) => value != 0.0 && Unit::SieveNumber.mm(value).is_none(),
-        _ => false,
-    };
-    match layout.unit {
-        // Headings say `Sieve no.` of openings in mm too.
-        Some(Unit::SieveNumber) if entries.iter().any(is_no_sieve) => {}
-        Some(unit) => return Ok(unit),
-        None => {}
-    }
-    let inches = entries.iter().any(|entry| entry.said == Said::Inches);
-    let bare = |entry: &&Entry| matches!(entry.opening, Opening::Bare(value) if value > 0.0);
-    let Some(first) = entries.iter().find(bare).filter(|_| inches) else { return Ok(Unit::Mm) };
-    let goes_one_way = |unit: Unit| {
-        let sizes: Vec<f64> = entries
-            .iter()
-            .filter_map(|entry| match entry.opening {
-                Opening::Mm(mm) => Some(mm),
-                Opening::Bare(value) if value > 0.0 => unit.mm(value),
-                _ => None,
-            })
-            .collect();
-        sizes.windows(2).all(|w| w[0] > w[1]) || sizes.windows(2).all(|w| w[0] < w[1])
-    };
-    match (goes_one_way(Unit::Mm), goes_one_way(Unit::Inch)) {
-        (true, false) => Ok(Unit::Mm),
-        (false, true) => {
-            notes.push("openings without a unit read as inches, as those around them are".into());
-            Ok(Unit::Inch)
-        }
-        _ => {
-            let allowed = "an opening with its unit (mm or in), as other rows are in inches";
-            Err(grid.refused(first.line, layout.size, FIELDS[0], &first.text, allowed))
-        }
-    }
-}
-
-fn in_mm(grid: &Grid, layout: &Layout, entry: &Entry, value: f64, unit: Unit) -> Result<Opening, TableError> {
+fn in_mm(grid: &Grid, entry: &Entry, value: f64, unit: Unit) -> Result<Opening, TableError> {
     if value == 0.0 && unit != Unit::Phi {
         // Nothing passes the pan.
         return Ok(Opening::Pan);
@@ -216,24 +159,7 @@ fn in_mm(grid: &Grid, layout: &Layout, entry: &Entry, value: f64, unit: Unit) ->
         _ => allowed_size(),
     };
     let mm = unit.mm(value).filter(|&mm| size_is_allowed(mm) && (unit == Unit::Phi || value > 0.0));
-    mm.map(Opening::Mm).ok_or_else(|| grid.refused(entry.line, layout.size, FIELDS[0], &entry.text, allowed))
-}
-
-/// Says which names of openings were translated.
-fn say_names(entries: &[Entry], unit: Unit, notes: &mut Vec<String>) {
-    let any = |said: Said| entries.iter().any(|entry| entry.said == said);
-    let number = any(Said::UsNumber) || unit == Unit::SieveNumber;
-    let inches = any(Said::Inches) || unit == Unit::Inch;
-    if number || inches {
-        let example = if number { "No. 200 = 0.075 mm" } else { "3/8 in = 9.5 mm" };
-        notes.push(format!("US sieves read as the openings of ASTM E11 ({example})"));
-    }
-    match unit {
-        Unit::Micrometre => notes.push("openings in micrometres".into()),
-        Unit::Cm => notes.push("openings in cm".into()),
-        Unit::Phi => notes.push("openings in phi: size = 2^-phi mm".into()),
-        _ => {}
-    }
+    mm.map(Opening::Mm).ok_or_else(|| grid.refused(entry.line, entry.column, FIELDS[0], &entry.text, allowed))
 }
 
 /// Rows of a column that is in percent finer, or in fractions.

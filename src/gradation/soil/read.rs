@@ -1,13 +1,16 @@
 //! The way from a file to its soils.
 
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
+use super::blocks::Block;
 use super::grid::Grid;
 use super::heading::Role;
-use super::layout::Layout;
+use super::joined::Read;
+use super::layout::{Layout, SoilColumn};
 use super::summary::SoilSummary;
 use super::table::Soil;
-use super::{ags, csv, layout, points, text, workbook};
+use super::{ags, blocks, csv, joined, names, points, text, workbook};
 use crate::gradation::error::{GradationError, TableError, letters, shortened};
 use crate::gradation::sieve::Gradation;
 use crate::gradation::table::{FILE_LIMIT_BYTES, bytes_of};
@@ -88,10 +91,12 @@ fn tables(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Named>, 
     let (text, note) = text::decoded(file, bytes)?;
     if ags::is_ags(&text) {
         let named = |(name, grid, layout): (String, Grid, Layout)| {
-            let soil = points::soil(&grid, &layout, &layout.soils[0]);
-            (vec![name], soil)
+            points::soils(&grid, &layout)
+                .into_iter()
+                .map(|soil| (vec![name.clone()], soil))
+                .collect::<Vec<_>>()
         };
-        return Ok(ags::soils(file, &text)?.into_iter().map(named).collect());
+        return Ok(ags::soils(file, &text)?.into_iter().flat_map(named).collect());
     }
     let mut refusal = None;
     for delimiter in csv::separators(&text) {
@@ -101,7 +106,7 @@ fn tables(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Named>, 
             return Err(TableError::NoRows { file: file.into(), header: false });
         }
         // What the first separator cannot make a table of may be one by another.
-        match soils_of(&grid) {
+        match soils_of(grid) {
             Ok(soils) if soils.iter().any(|(_, soil)| soil.is_ok()) => return Ok(soils),
             Ok(mut soils) => refusal = refusal.or(soils.pop().and_then(|(_, soil)| soil.err())),
             Err(error) => refusal = refusal.or(Some(error)),
@@ -119,9 +124,14 @@ fn of_workbook(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Nam
         return Err(TableError::NoRows { file: file.into(), header: false });
     }
     for grid in sheets {
-        match soils_of(&grid) {
+        let sheet = grid.sheet.clone().unwrap_or_default();
+        match soils_of(grid) {
             Ok(found) => soils.extend(found),
-            Err(error) => refusals.push((grid.sheet.unwrap_or_default(), error)),
+            // A table that is there and cannot be read is not passed over.
+            Err(error @ (TableError::Value { .. } | TableError::Header { .. })) => {
+                soils.push((vec![sheet], Err(error)));
+            }
+            Err(error) => refusals.push((sheet, error)),
         }
     }
     if let Some(at) =
@@ -148,30 +158,76 @@ fn is_named(names: &[String], wanted: &str) -> bool {
 }
 
 /// The soils of one grid.
-fn soils_of(grid: &Grid) -> Result<Vec<Named>, TableError> {
-    let layout = layout::find(grid)?;
-    let single = layout.soils.len() == 1;
-    let mut soils = Vec::new();
-    for column in &layout.soils {
-        let mut name = column.heading.clone();
-        if single && grid.sheet.is_none() && column.role != Role::Other {
-            // `% passing` is no name.
-            name.clear();
-        } else if name.is_empty() || layout.soils.iter().filter(|other| other.heading == name).count() > 1 {
-            name = format!("{name} (column {})", letters(column.column as u32)).trim().to_owned();
+fn soils_of(grid: Grid) -> Result<Vec<Named>, TableError> {
+    let mut blocks = blocks::blocks(grid)?;
+    let several = blocks.len() > 1;
+    blocks.iter_mut().for_each(names::name_columns);
+    let titles = if several { names::titles(&blocks) } else { vec![String::new(); blocks.len()] };
+    let read = |(block, title): (Block, String)| {
+        let soils = points::soils(&block.grid, &block.layout);
+        Read { block, title, soils }
+    };
+    let tables = joined::joined(blocks.into_iter().zip(titles).map(read).collect())?;
+    Ok(named(tables))
+}
+
+/// Soils with their names: the title of their table, the heading of their column, or both, and the sheet.
+fn named(tables: Vec<Read>) -> Vec<Named> {
+    let single = tables.iter().map(|table| table.soils.len()).sum::<usize>() == 1;
+    let several = tables.len() > 1;
+    let own_name = |table: &Read, column: &SoilColumn| match (table.title.as_str(), &column.heading) {
+        ("", heading) => heading.clone(),
+        (title, _) if table.soils.len() == 1 => title.to_owned(),
+        (title, heading) => format!("{title} {heading}"),
+    };
+    let mut times: HashMap<String, usize> = HashMap::new();
+    for table in &tables {
+        for column in &table.block.layout.soils {
+            *times.entry(own_name(table, column)).or_default() += 1;
         }
-        let mut names = vec![name.clone()];
-        if let Some(sheet) = &grid.sheet {
-            names = if single {
-                vec![sheet.clone(), name.clone()]
-            } else {
-                vec![format!("{sheet}/{name}"), name.clone()]
-            };
-        }
-        let soil = points::soil(grid, &layout, column).map(|soil| Soil { name: names[0].clone(), ..soil });
-        soils.push((names, soil));
     }
-    Ok(soils)
+    let mut soils = Vec::new();
+    for table in tables {
+        let (grid, layout) = (&table.block.grid, &table.block.layout);
+        let names: Vec<Vec<String>> = layout
+            .soils
+            .iter()
+            .map(|column| {
+                let mut name = own_name(&table, column);
+                if single && grid.sheet.is_none() && column.role != Role::Other {
+                    // `% passing` is no name.
+                    name.clear();
+                } else if name.is_empty() || times[&name] > 1 {
+                    let place = grid.place_of(table.block.line(), column.column);
+                    let letters = letters(place.column as u32);
+                    name = match (grid.across.is_some(), several) {
+                        (true, _) => format!(
+                            "{name} ({} {})",
+                            if grid.sheet.is_some() { "row" } else { "line" },
+                            place.line
+                        ),
+                        (false, true) if grid.sheet.is_some() => {
+                            format!("{name} (cell {letters}{})", place.line)
+                        }
+                        (false, true) => format!("{name} (line {}, column {})", place.line, place.column + 1),
+                        (false, false) => format!("{name} (column {letters})"),
+                    }
+                    .trim()
+                    .to_owned();
+                }
+                match &grid.sheet {
+                    Some(sheet) if single => vec![sheet.clone(), name],
+                    Some(sheet) => vec![format!("{sheet}/{name}"), name],
+                    None => vec![name],
+                }
+            })
+            .collect();
+        for (names, soil) in names.into_iter().zip(table.soils) {
+            let soil = soil.map(|soil| Soil { name: names[0].clone(), ..soil });
+            soils.push((names, soil));
+        }
+    }
+    soils
 }
 
 /// The soils of a file, or the one that `path` names after a `#`; a soil without a name is called by its
@@ -206,6 +262,17 @@ pub fn soils_in_file(path: &Path, d0_mm: Option<f64>) -> Result<Vec<SoilSummary>
 pub fn curves_in_file(path: &Path, d0_mm: Option<f64>) -> Result<Vec<(String, Gradation)>, GradationError> {
     let soils = soils_of_file(path)?;
     soils.iter().map(|soil| Ok((soil.name.clone(), soil.gradation(d0_mm)?))).collect()
+}
+
+/// What was assumed of the soils of a file, or of the one that `path` names after a `#`, each thing once.
+///
+/// # Errors
+/// As [`Gradation::from_sieve_csv`], for each of them.
+pub fn notes_in_file(path: &Path) -> Result<Vec<String>, GradationError> {
+    let mut seen = HashSet::new();
+    let mut notes: Vec<String> = soils_of_file(path)?.into_iter().flat_map(|soil| soil.notes).collect();
+    notes.retain(|note| seen.insert(note.clone()));
+    Ok(notes)
 }
 
 impl Gradation {

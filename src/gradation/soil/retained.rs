@@ -1,7 +1,8 @@
 //! What stays on the sieves, by mass or in percent, turned into percent finer.
 
+use super::extent::Below;
 use super::grid::Grid;
-use super::heading::Retained;
+use super::heading::{Retained, words};
 use super::size::{Entry, Opening};
 use crate::gradation::error::TableError;
 use crate::gradation::sieve::FIELDS;
@@ -15,11 +16,49 @@ pub(super) struct Weighed<'a> {
     pub(super) grid: &'a Grid,
     pub(super) column: usize,
     pub(super) retained: Retained,
+    /// The rows below the table.
+    pub(super) below: &'a [Below],
 }
 
 impl Weighed<'_> {
     fn refused(&self, line: usize, value: f64, allowed: &str) -> TableError {
         self.grid.refused(line, self.column, FIELDS[1], &value.to_string(), allowed)
+    }
+
+    /// What was washed out or lost is a part of the whole; a mass below the table that is more than all that is
+    /// in it is said.
+    fn check_below(&self, whole: f64, notes: &mut Vec<String>) -> Result<(), TableError> {
+        const LOST: [&str; 12] = [
+            "wash", "washed", "washing", "loss", "losses", "lost", "fines", "minus", "through", "decanted",
+            "silt", "clay",
+        ];
+        const MASS: [&str; 6] = ["mass", "weight", "masse", "gewicht", "wt", "total"];
+        for row in self.below {
+            let Some((column, value)) = row.value.filter(|found| found.1 > 0.0) else { continue };
+            let of_row = words(&row.words);
+            let any = |list: &[&str]| of_row.iter().any(|word| list.contains(&word.as_str()));
+            if any(&LOST) {
+                let allowed = "the pan as the last row of what is retained, with all that was washed out or \
+                               lost: it is a part of the whole";
+                return Err(self.grid.refused(row.line, row.column, FIELDS[0], &row.words, allowed));
+            }
+            if self.retained.percent || !any(&MASS) || value <= 1.01 * whole {
+                continue;
+            }
+            let sum = (whole * 1e6).round() / 1e6;
+            if any(&["dry"]) && !any(&["tare", "container", "dish", "can", "pan", "wet", "with"]) {
+                let allowed = format!(
+                    "all of it in the table, whose masses come to {sum}: with the pan, and all that was washed out"
+                );
+                return Err(self.grid.refused(row.line, column, "dry mass", &value.to_string(), allowed));
+            }
+            notes.push(format!(
+                "the masses of the table come to {sum}, and \"{}\" below it is {value}: was anything washed \
+                     out or lost?",
+                row.words
+            ));
+        }
+        Ok(())
     }
 }
 
@@ -42,7 +81,7 @@ pub(super) fn percents_finer(
     sieves.sort_by(|a, b| b.1.total_cmp(&a.1));
     let Some(&(first_line, _, first)) = sieves.first() else { return Ok(Vec::new()) };
     if let Some(pair) = sieves.windows(2).find(|pair| pair[0].1 == pair[1].1) {
-        let allowed = format!("every size once (it is also in line {})", pair[0].0);
+        let allowed = format!("every size once (it is also in {})", weighed.grid.said(pair[0].0));
         return Err(weighed.grid.refused(
             pair[1].0,
             weighed.column,
@@ -104,6 +143,7 @@ pub(super) fn percents_finer(
     if whole <= 0.0 {
         return Err(weighed.refused(first_line, first, "masses of which any is above 0"));
     }
+    weighed.check_below(whole, notes)?;
     let mut coarser = 0.0;
     let mut rows = Vec::new();
     for (line, size, value) in sieves {

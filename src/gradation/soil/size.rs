@@ -96,6 +96,8 @@ pub(super) enum Opening {
 /// A row of the table, not yet in percent finer.
 pub(super) struct Entry {
     pub(super) line: usize,
+    /// The column that the opening stands in.
+    pub(super) column: usize,
     pub(super) opening: Opening,
     /// The opening as it is written.
     pub(super) text: String,

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use quick_xml::Reader;
-use quick_xml::events::Event;
+use quick_xml::events::{BytesStart, Event};
 
 use super::cells::{Budget, Cells};
 use super::grid::Grid;
@@ -24,7 +24,9 @@ pub(super) fn sheets(file: &str, zipped: &mut Zipped) -> Result<Vec<Grid>, Table
     })?;
     let mut names = Vec::new();
     each(file, &book, "sheet", |e| {
-        names.extend(attribute(e, "name").zip(attribute(e, "r:id").or(attribute(e, "id"))))
+        let hidden = attribute(e, "state").is_some_and(|state| state != "visible");
+        let named = attribute(e, "name").zip(attribute(e, "r:id").or(attribute(e, "id")));
+        names.extend(named.map(|(name, id)| (name, id, hidden)));
     })?;
     if names.len() > MOST_SHEETS {
         return Err(too_large(file, &format!("{} sheets", names.len())));
@@ -38,7 +40,7 @@ pub(super) fn sheets(file: &str, zipped: &mut Zipped) -> Result<Vec<Grid>, Table
         false => Vec::new(),
     };
     let (mut sheets, mut budget) = (Vec::new(), Budget::new());
-    for (name, id) in names {
+    for (name, id, hidden) in names {
         let Some(target) = targets.get(&id) else { continue };
         let path = match target.strip_prefix('/') {
             Some(absolute) => absolute.to_owned(),
@@ -46,7 +48,7 @@ pub(super) fn sheets(file: &str, zipped: &mut Zipped) -> Result<Vec<Grid>, Table
         };
         // A chart's sheet holds no cells.
         if path.contains("worksheets/") {
-            let context = Context { file, sheet: &name, strings: &strings, styles: &styles };
+            let context = Context { file, sheet: &name, hidden, strings: &strings, styles: &styles };
             sheets.push(context.sheet(&zipped.text(&path)?, &mut budget)?);
         }
     }
@@ -158,6 +160,7 @@ fn of_format(code: &str) -> Style {
 struct Context<'a> {
     file: &'a str,
     sheet: &'a str,
+    hidden: bool,
     strings: &'a [String],
     styles: &'a [Style],
 }
@@ -168,12 +171,27 @@ impl Context<'_> {
         reader.config_mut().expand_empty_elements = true;
         let mut cells = Cells::new(self.file, self.sheet, budget);
         let (mut row, mut column) = (0usize, 0usize);
+        let is_hidden = |e: &BytesStart| attribute(e, "hidden").is_some_and(|h| h == "1" || h == "true");
+        let mut before = None;
         loop {
             match reader.read_event().map_err(|_| broken(self.file))? {
+                Event::Start(e) if e.local_name().as_ref() == "col" && is_hidden(&e) => {
+                    let end = |name| attribute(&e, name).and_then(|n| n.parse::<usize>().ok());
+                    if let (Some(first), Some(last)) = (end("min"), end("max")) {
+                        cells.hide_columns(first.saturating_sub(1)..last);
+                    }
+                }
                 Event::Start(e) if e.local_name().as_ref() == "row" => {
                     let given = attribute(&e, "r").and_then(|r| r.parse::<usize>().ok());
                     row = given.map_or(row, |r| r.saturating_sub(1));
                     column = 0;
+                    if before.replace(row) == Some(row) {
+                        let why = format!("its row {} stands in sheet \"{}\" twice", row + 1, self.sheet);
+                        return Err(unreadable(self.file, &why));
+                    }
+                    if is_hidden(&e) {
+                        cells.hide_row(row);
+                    }
                 }
                 Event::End(e) if e.local_name().as_ref() == "row" => row = row.saturating_add(1),
                 Event::Start(e) if e.local_name().as_ref() == "c" => {
@@ -186,7 +204,7 @@ impl Context<'_> {
                     cells.put(row, column, &text)?;
                     column += 1;
                 }
-                Event::Eof => return Ok(cells.done()),
+                Event::Eof => return Ok(cells.done(self.hidden)),
                 _ => {}
             }
         }

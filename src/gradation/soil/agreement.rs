@@ -1,0 +1,33 @@
+//! Whether two columns name the same openings.
+
+use super::grid::Grid;
+use super::heading::unit;
+use super::layout::Headings;
+use super::size::{Opening, Unit, opening};
+
+/// Openings of old and new standards, such as 4.76 and 4.75 mm, differ by less than this.
+const NEAR: f64 = 0.07;
+
+/// Whether the openings in columns `a` and `b` are the same in every row, and any are given in both.
+pub(super) fn of(grid: &Grid, headings: &Headings, a: usize, b: usize) -> bool {
+    let unit_of = |c: usize| headings.heads.get(c).and_then(|head| unit(head).ok().flatten());
+    let (unit_a, unit_b) = (unit_of(a), unit_of(b));
+    let mut both = 0;
+    for row in &grid.rows[headings.first..] {
+        match (in_mm(row.cell(a), unit_a), in_mm(row.cell(b), unit_b)) {
+            (Some(one), Some(other)) if (one - other).abs() <= NEAR * one.max(other) => both += 1,
+            (None, None) => {}
+            (Some(_), None) | (None, Some(_)) | (Some(_), Some(_)) => return false,
+        }
+    }
+    both > 0
+}
+
+/// Openings in mm, where headings say their unit and where they do not.
+fn in_mm(cell: &str, unit: Option<Unit>) -> Option<f64> {
+    match opening(cell)?.0 {
+        Opening::Mm(mm) => Some(mm),
+        Opening::Bare(value) => unit.unwrap_or(Unit::Mm).mm(value),
+        _ => None,
+    }
+}

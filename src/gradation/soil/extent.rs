@@ -1,0 +1,141 @@
+//! Which rows below the headings are the table's: not its remarks, not its headings again, not what a laboratory
+//! writes below it.
+
+use super::content::{is_blank, is_text, is_value, is_words, percentage};
+use super::grid::{Grid, GridRow};
+use super::layout::{Layout, repeats_headings};
+use super::lines::listed;
+use super::size::opening;
+use crate::gradation::error::shortened;
+
+/// What a row is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Of {
+    Table,
+    Remark,
+    Headings,
+}
+
+/// A row below a table: `Dry mass (g) | 500`.
+pub(super) struct Below {
+    pub(super) line: usize,
+    /// The column of its words.
+    pub(super) column: usize,
+    pub(super) words: String,
+    /// The first number that stands behind them, and its column.
+    pub(super) value: Option<(usize, f64)>,
+}
+
+/// The rows of a table.
+pub(super) struct Extent {
+    kinds: Vec<Of>,
+    /// The rows below it, which are left out.
+    pub(super) below: Vec<Below>,
+    /// What was left out, in words.
+    pub(super) notes: Vec<String>,
+    /// The first column that holds a soil.
+    first_value: usize,
+}
+
+impl Extent {
+    /// Of the table of a grid.
+    pub(super) fn of(grid: &Grid, layout: &Layout) -> Extent {
+        let rows = &grid.rows[layout.first..];
+        let first_value = layout.soils.iter().map(|soil| soil.column).min().unwrap_or(0);
+        let mut extent = Extent { kinds: Vec::new(), below: Vec::new(), notes: Vec::new(), first_value };
+        let end = extent.end(rows, layout);
+        let last =
+            rows[..end].iter().rposition(|row| row.filled().any(|c| is_value(row.cell(c)))).unwrap_or(0);
+        let mut remarks = Vec::new();
+        for (index, row) in rows[..end].iter().enumerate() {
+            extent.kinds.push(match () {
+                () if repeats_headings(row, layout) => Of::Headings,
+                () if is_text(row) && (row.filled().count() == 1 || index > last) => Of::Remark,
+                () => Of::Table,
+            });
+            if extent.kinds.last() == Some(&Of::Remark) {
+                remarks.push(grid.row_name(row.line));
+            }
+        }
+        for row in &rows[end..] {
+            let Some(column) = extent.column_of_words(layout, row) else { continue };
+            let value =
+                row.filled().filter(|&c| c > column).find_map(|c| Some((c, percentage(row.cell(c))?)));
+            let words = shortened(row.cell(column));
+            extent.below.push(Below { line: row.line, column, words, value });
+        }
+        if !remarks.is_empty() {
+            let taken = if remarks.len() == 1 { "a remark" } else { "remarks" };
+            extent.notes.push(format!("{} taken as {taken} and left out", listed(grid.row_word(), &remarks)));
+        }
+        extent.notes.extend(extent.said_below(grid, &rows[end..]));
+        extent
+    }
+
+    /// The rows below the headings that are not below the table, and what each is.
+    pub(super) fn rows<'a>(
+        &'a self,
+        grid: &'a Grid,
+        layout: &Layout,
+    ) -> impl Iterator<Item = (&'a GridRow, Of)> {
+        grid.rows[layout.first..].iter().zip(self.kinds.iter().copied())
+    }
+
+    /// The column of a row that says its opening.
+    pub(super) fn column_of_size(&self, layout: &Layout, row: &GridRow) -> usize {
+        let other = layout.other_size.filter(|&c| !row.cell(c).is_empty());
+        match is_blank(row.cell(layout.size)) {
+            // Words in another column are where the row is refused.
+            true => other.or(self.column_of_words(layout, row)).unwrap_or(layout.size),
+            false => layout.size,
+        }
+    }
+
+    /// Where the table ends: at the first row of words below its numbers, unless numbers go on below it without
+    /// headings of their own, so that the row is refused.
+    fn end(&self, rows: &[GridRow], layout: &Layout) -> usize {
+        let is_data = |row: &GridRow| {
+            let column = self.column_of_size(layout, row);
+            opening(row.cell(column)).is_some() && row.filled().any(|c| c != column && is_value(row.cell(c)))
+        };
+        let Some(begun) = rows.iter().position(is_data) else { return rows.len() };
+        let Some(last) = rows.iter().rposition(is_data) else { return rows.len() };
+        let ends = |row: &GridRow| !is_text(row) && self.column_of_words(layout, row).is_some();
+        match rows[begun..].iter().position(ends) {
+            Some(after) if begun + after > last => begun + after,
+            _ => rows.len(),
+        }
+    }
+
+    /// The column of the words with which a row begins in place of an opening.
+    fn column_of_words(&self, layout: &Layout, row: &GridRow) -> Option<usize> {
+        let sizes = [Some(layout.size), layout.other_size];
+        let of_size = |c: usize| sizes.contains(&Some(c));
+        let is_free = |c: usize| is_blank(row.cell(c)) || is_words(row.cell(c));
+        if !sizes.into_iter().flatten().all(is_free) {
+            return None;
+        }
+        let before = self.first_value.max(layout.size + 1);
+        row.filled().take_while(|&c| c < before || of_size(c)).find(|&c| is_words(row.cell(c)))
+    }
+
+    fn said_below(&self, grid: &Grid, rows: &[GridRow]) -> Option<String> {
+        const MOST: usize = 4;
+        let (first, last) = (rows.first()?, rows.last()?);
+        let said = |below: &Below| match below.value {
+            Some((_, value)) => format!("\"{}\" {value}", below.words),
+            None => format!("\"{}\"", below.words),
+        };
+        let mut named: Vec<String> = self.below.iter().take(MOST).map(said).collect();
+        if self.below.len() > MOST {
+            named.push("...".into());
+        }
+        let word = grid.row_word();
+        let which = match first.line == last.line {
+            true => format!("{word} {}", grid.row_name(first.line)),
+            false => format!("{word}s {} to {}", grid.row_name(first.line), grid.row_name(last.line)),
+        };
+        let left = if rows.len() == 1 { "was" } else { "were" };
+        Some(format!("{which} below the table ({}) {left} left out", named.join(", ")))
+    }
+}

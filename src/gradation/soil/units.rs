@@ -1,0 +1,121 @@
+//! What openings without a unit of their own mean.
+
+use super::grid::Grid;
+use super::layout::Layout;
+use super::size::{Entry, Opening, Said, Unit};
+use crate::gradation::error::TableError;
+use crate::gradation::sieve::FIELDS;
+
+/// US sieves in decimals of an inch, with the usual roundings, that are the openings of no metric sieve. The first
+/// few may be chosen in mm, too: one of them alone says nothing.
+const ONLY_INCHES: [f64; 70] = [
+    3.5, 1.75, 1.5, 0.75, 0.875, 0.625, 0.53, 0.4375, 0.4380, 0.438, 0.44, 0.375, 0.38, 0.3125, 0.313, 0.312,
+    0.265, 0.223, 0.187, 0.1870, 0.1875, 0.19, 0.157, 0.132, 0.1319, 0.111, 0.1102, 0.1110, 0.0937, 0.0938,
+    0.094, 0.0929, 0.093, 0.0787, 0.079, 0.0661, 0.0669, 0.0555, 0.0551, 0.0469, 0.047, 0.0465, 0.0394,
+    0.0331, 0.0335, 0.0278, 0.0234, 0.0236, 0.0232, 0.0197, 0.0165, 0.0167, 0.0139, 0.0138, 0.0117, 0.0118,
+    0.0116, 0.0098, 0.0083, 0.007, 0.0059, 0.0058, 0.0049, 0.0041, 0.0035, 0.0029, 0.0025, 0.0021, 0.0017,
+    0.0015,
+];
+/// US sieves in decimals of an inch that could be metric ones as well.
+const ALSO_MM: [f64; 22] = [
+    12.0, 6.0, 5.0, 4.0, 3.0, 2.5, 2.0, 1.25, 1.0, 0.5, 0.25, 0.033, 0.028, 0.023, 0.017, 0.012, 0.006,
+    0.003, 0.01, 0.004, 0.002, 0.125,
+];
+
+/// The unit of openings that are bare numbers: the heading's; mm where nothing else has inches; else the one
+/// in which the openings go one way.
+pub(super) fn of_bare(
+    grid: &Grid,
+    layout: &Layout,
+    entries: &[Entry],
+    notes: &mut Vec<String>,
+) -> Result<Unit, TableError> {
+    let is_no_sieve = |entry: &Entry| match entry.opening {
+        Opening::Bare(value) => value != 0.0 && Unit::SieveNumber.mm(value).is_none(),
+        _ => false,
+    };
+    match layout.unit {
+        // Headings say `Sieve no.` of openings in mm too.
+        Some(Unit::SieveNumber) if entries.iter().any(is_no_sieve) => {}
+        Some(unit) => return Ok(unit),
+        None => {}
+    }
+    let bare = |entry: &&Entry| matches!(entry.opening, Opening::Bare(value) if value > 0.0);
+    let Some(first) = entries.iter().find(bare) else { return Ok(Unit::Mm) };
+    let any = |said: Said| entries.iter().any(|entry| entry.said == said);
+    let refused =
+        |allowed: &str| Err(grid.refused(first.line, first.column, FIELDS[0], &first.text, allowed));
+    if any(Said::Inches) || any(Said::UsNumber) {
+        match (goes_one_way(entries, Unit::Mm), goes_one_way(entries, Unit::Inch)) {
+            (false, true) => {
+                notes.push("openings without a unit read as inches, as those around them are".into());
+                return Ok(Unit::Inch);
+            }
+            (true, false) => {}
+            (false, false) if !any(Said::Inches) => {}
+            (true, true) if !any(Said::Inches) && !is_series_of_inches(entries) => {}
+            _ => return refused("an opening with its unit (mm or in), as other rows are in inches"),
+        }
+    } else if is_series_of_inches(entries) {
+        let text = &first.text;
+        return refused(&format!(
+            "{text} in or {text} mm: no unit is given, and all openings are those of US sieves in inches; write \
+             the unit in the heading, as Sieve (in) or Sieve (mm)"
+        ));
+    }
+    notes.push("openings without a unit taken as mm".into());
+    Ok(Unit::Mm)
+}
+
+/// Whether the openings rise or fall all the way where those without a unit are in this one.
+fn goes_one_way(entries: &[Entry], unit: Unit) -> bool {
+    let sizes: Vec<f64> = entries
+        .iter()
+        .filter_map(|entry| match entry.opening {
+            Opening::Mm(mm) => Some(mm),
+            Opening::Bare(value) if value > 0.0 => unit.mm(value),
+            _ => None,
+        })
+        .collect();
+    sizes.windows(2).all(|w| w[0] > w[1]) || sizes.windows(2).all(|w| w[0] < w[1])
+}
+
+/// How many of the openings that are only in inches are round numbers.
+const ROUND: usize = 4;
+
+/// Whether all openings without a unit are those of US sieves in decimals of an inch, and they are those of no
+/// metric sieves. The ordinary series in mm, such as 4, 2, 1, 0.5, 0.25, 0.125, are none.
+fn is_series_of_inches(entries: &[Entry]) -> bool {
+    let (mut only, mut round) = (false, 0);
+    for entry in entries {
+        let (Opening::Bare(value) | Opening::Below(value)) = entry.opening else { continue };
+        if value == 0.0 || entry.said != Said::Plain {
+            continue;
+        }
+        let place = |list: &[f64]| list.iter().position(|inches| (inches - value).abs() < 1e-9);
+        match (place(&ONLY_INCHES), place(&ALSO_MM)) {
+            (Some(place), _) if place < ROUND => round += 1,
+            (Some(_), _) => only = true,
+            (None, Some(_)) => {}
+            (None, None) => return false,
+        }
+    }
+    only || round > 1
+}
+
+/// Says which names of openings were translated.
+pub(super) fn say_names(entries: &[Entry], unit: Unit, notes: &mut Vec<String>) {
+    let any = |said: Said| entries.iter().any(|entry| entry.said == said);
+    let number = any(Said::UsNumber) || unit == Unit::SieveNumber;
+    let inches = any(Said::Inches) || unit == Unit::Inch;
+    if number || inches {
+        let example = if number { "No. 200 = 0.075 mm" } else { "3/8 in = 9.5 mm" };
+        notes.push(format!("US sieves read as the openings of ASTM E11 ({example})"));
+    }
+    match unit {
+        Unit::Micrometre => notes.push("openings in micrometres".into()),
+        Unit::Cm => notes.push("openings in cm".into()),
+        Unit::Phi => notes.push("openings in phi: size = 2^-phi mm".into()),
+        _ => {}
+    }
+}
