@@ -24,7 +24,7 @@ const RESOLVED: f64 = 30.0;
 
 /// Where it is less than so many times that, pressures come as close as rounding lets them: fluxes that the
 /// residual may stand for are none, and what is left of a filter that clogs may be small.
-const CLEAR: f64 = 1e4;
+const CLEAR: f64 = 1e3;
 
 /// Flow that pressures may be wrong by, over the most that the network was found to conduct.
 const KNOWN: f64 = 5e-7;
