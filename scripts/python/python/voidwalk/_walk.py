@@ -116,12 +116,12 @@ def walk(
     >>> result.verdict, len(result.summary), result.blocked.shape
     ('continuing erosion', 2, (3, 2, 6000))
     >>> result.confidence, result.outcome["n_base"], result.outcome["n_base_eq2"]
-    ('outside checked range', 20000, 21804)
+    ('outside checked range', 20000, 61979)
 
     A lattice with a shipped curve knows its filter, and so how many particles Eq. (2) asks for:
 
     >>> vw.walk(vw.Network.cubic([10, 10, 20]), base, replicates=3).outcome["n_base"]
-    21804
+    61979
 
     A new network for each replicate:
 
