@@ -32,7 +32,7 @@ impl Case {
                 "base.mass_ratio is {ratio}; the model was checked with {PAPER_MASS_RATIO}, base over filter"
             ))),
             None => {
-                let n = self.scene.base.n_base.filter(|_| self.fixed_network.is_none())?;
+                let n = self.scene.base.n_base?;
                 Some(format!(
                     "base.n_base gives {n} base particles; without filter.grains_per_void Eq. (2) cannot say \
                      whether they are enough"

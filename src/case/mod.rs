@@ -32,7 +32,9 @@ pub use packing_plan::PackingPlan;
 pub use record::base_record;
 pub use scaled::StatedBase;
 use supply::Against;
+pub use supply::PAPER_MASS_RATIO;
 use void_graph::GraphPacking;
+pub use warnings::NOT_STUDIED;
 
 use crate::constrictions::{Curve, CurveError, CurveUnit, ShippedFilter, inscribed};
 use crate::gradation::{Gradation, GradationError, NumberError, SizeSampler};

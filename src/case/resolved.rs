@@ -10,7 +10,7 @@ use crate::scene::{About, CurveSource, Scene};
 const PROTOCOL: u32 = 2;
 
 /// The same of cases in which water flows.
-const WATER_PROTOCOL: u32 = 3;
+const WATER_PROTOCOL: u32 = 4;
 
 impl Case {
     /// The scene with what its files and its filter's packing say of it, and with its files' names in a run

@@ -7,7 +7,7 @@ use crate::outcome::record::PanSize;
 use crate::scene::{Amount, Scene};
 
 /// The mass ratio that Eq. (2) speaks of where the scene gives a number: the paper's 5 %.
-pub(super) const PAPER_MASS_RATIO: f64 = 0.05;
+pub const PAPER_MASS_RATIO: f64 = 0.05;
 
 /// The base as it is walked.
 pub(super) struct WalkedBase {

@@ -2,7 +2,7 @@
 
 use super::packed_filter::GUESSED_GRAINS_PER_VOID;
 use super::{Case, Input, PackingPlan, guesses_grains_per_void, replicate_seed};
-use crate::gradation::{FEW_FINES, FINES_MM};
+use crate::gradation::{FEW_FINES, FINES_MM, Gradation};
 use crate::network::ExitRule;
 use crate::outcome::Mistake;
 
@@ -19,7 +19,8 @@ const SKELETON: f64 = 0.9;
 const FEW_REPLICATES: u64 = 5;
 
 /// What a first look leaves out.
-const NOT_STUDIED: &str = "how the verdict moves with the amount of base and with thickness was not studied";
+pub const NOT_STUDIED: &str =
+    "how the verdict moves with the amount of base and with thickness was not studied";
 
 /// What says how thick the graph of a packing is.
 const GRAPH_THICKNESS: &str =
@@ -124,7 +125,12 @@ impl Case {
             true => self.scene.stop.replicates_at(walk.replicates, 1),
             false => walk.replicates,
         };
-        match least {
+        Self::few(least)
+    }
+
+    /// The same of any number of replicates.
+    pub fn few(replicates: u64) -> Option<String> {
+        match replicates {
             1 => Some(
                 "one replicate: the scatter is unknown; walk more before relying on this (replicates = 10)"
                     .to_owned(),
@@ -205,10 +211,11 @@ impl Case {
 
     /// Fines of the base that may be cohesive, or that are not known.
     fn fines(&self) -> Option<String> {
-        if self.is_scale_free() {
-            return None;
-        }
-        let base = &self.base;
+        if self.is_scale_free() { None } else { Self::fines_of(&self.base) }
+    }
+
+    /// The same of any base in mm.
+    pub fn fines_of(base: &Gradation) -> Option<String> {
         let fines = base.percent_finer_by_mass(FINES_MM);
         if fines <= FEW_FINES {
             return None;

@@ -10,7 +10,8 @@
 use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
 
-use super::system::{CONVERGED, Kept, NotConverged, System};
+use super::flow_error::FlowError;
+use super::system::{CLOSEST, CONVERGED, Kept, ROUNDING, System};
 use super::together::Together;
 use super::twins::NO_TWIN;
 use super::{END, Network};
@@ -21,42 +22,19 @@ const NO_FLUX: f64 = 1e-8;
 /// The mean flux of an inlet is at least so many times what the residual may stand for.
 const RESOLVED: f64 = 30.0;
 
+/// Where it is less than so many times that, pressures come as close as rounding lets them: fluxes that the
+/// residual may stand for are none, and what is left of a filter that clogs may be small.
+const CLEAR: f64 = 1e3;
+
+/// Flow that pressures may be wrong by, over the most that the network was found to conduct.
+const KNOWN: f64 = 5e-7;
+
+/// The same over what passes now, for a reader of every flux.
+const CLOSELY: f64 = 1e-8;
+
 /// A factor is kept until more than one in so many exits have closed: so it serves where little closes from
 /// one solution to the next, and costs fewer rounds then than making another would.
 const KEPT_UNTIL: usize = 100;
-
-/// Why no flow is known.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum FlowError {
-    /// Conductances so far apart that numbers do not tell.
-    #[error(
-        "the flow through the network cannot be solved: after {rounds} rounds the residual is \
-         still {residual:.1e} \
-         of the inflow; constrictions whose conductances lie many orders apart do that"
-    )]
-    NotConverged {
-        /// Rounds.
-        rounds: usize,
-        /// Residual over inflow.
-        residual: f64,
-    },
-    /// So large conductances where water comes in that what passes is lost in their rounding.
-    #[error(
-        "the flow through the network cannot be told: constrictions from the reservoir conduct so well that \
-         what passes them is {part:.1e} of what rounding may stand for, where {RESOLVED} times is needed; \
-         give them conductances that lie fewer orders above those inside"
-    )]
-    Unresolved {
-        /// Mean flux of an inlet over what the residual may stand for.
-        part: f64,
-    },
-}
-
-impl From<NotConverged> for FlowError {
-    fn from(NotConverged { rounds, residual }: NotConverged) -> Self {
-        Self::NotConverged { rounds, residual }
-    }
-}
 
 /// How well a network conducts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,6 +58,10 @@ pub struct Flow {
     blocked: BitVec,
     /// Residual that the last solution may have, over the inflow.
     accuracy: f64,
+    /// Flow that no flux of the last solution is wrong by more than.
+    missing: f64,
+    /// The most that the network was found to conduct.
+    most: f64,
     /// What serves solution after solution.
     kept: Option<Kept>,
     /// By void: whether water flowed through it when the factor that is kept was first wanted.
@@ -132,6 +114,8 @@ impl Flow {
             open,
             blocked,
             accuracy: CONVERGED,
+            missing: 0.0,
+            most: 0.0,
             kept: None,
             inside: BitVec::new(),
         }
@@ -148,14 +132,70 @@ impl Flow {
     }
 
     /// Solves for the constrictions that `blocked` leaves open: a bit for each exit, the same for both of one
-    /// constriction. A conductance below 1e-10 of the inlets' is
-    /// 0, and so is one that what comes out does not bear out: pressures are no more exact.
+    /// constriction. What is found is 0 where no way leads through, and nowhere else.
     ///
     /// # Errors
-    /// Conductances too far apart.
+    /// Conductances so far apart that the flow is not known to half a millionth of the most that the network
+    /// was found to conduct, or, while open ways lead through, that it does not tell where water goes: every
+    /// flux would count as none and all particles would wait, so that a filter that lets everything through
+    /// would seem to hold it.
     pub fn solve(&mut self, network: &Network, blocked: &BitSlice) -> Result<Permeability, FlowError> {
+        self.solve_as(network, blocked, false)
+    }
+
+    /// The same, as close as rounding lets pressures come: for a reader of every flux.
+    ///
+    /// # Errors
+    /// As [`Flow::solve`], and fluxes that are not known to a hundred-millionth of what passes.
+    pub fn solve_closely(
+        &mut self,
+        network: &Network,
+        blocked: &BitSlice,
+    ) -> Result<Permeability, FlowError> {
+        self.solve_as(network, blocked, true)
+    }
+
+    fn solve_as(
+        &mut self,
+        network: &Network,
+        blocked: &BitSlice,
+        closely: bool,
+    ) -> Result<Permeability, FlowError> {
         let undirected = network.undirected.as_ref();
         let rho = undirected.map_or(0.0, |u| u.rho);
+        self.set_blocked(network, blocked, rho);
+        let Some(reservoir) = network.reservoir() else {
+            return Ok(Permeability { conductance: 0.0, k_mm2: None });
+        };
+        let meets = self.meets(network, reservoir, |_| true);
+        if self.kept.is_none() {
+            self.inside = meets.iter().map(|&meets| meets == THROUGH).collect();
+        }
+        let leads_through = meets.contains(&THROUGH);
+        // What leaks through blocked constrictions carries no particle out.
+        let is_open = |passage: &Passage| !blocked[passage.exit as usize];
+        let is_passed =
+            leads_through && (rho == 0.0 || self.meets(network, reservoir, is_open).contains(&THROUGH));
+        self.find_pressures(network, &meets, CONVERGED)?;
+        if leads_through && (closely || !self.is_known(network) || is_passed && self.part(network) < CLEAR) {
+            // Where they come no closer in time, what there is has to do.
+            let _ = self.find_pressures(network, &meets, CLOSEST);
+        }
+        let through = self.through(network);
+        let tells = self.is_known(network)
+            && (!is_passed || self.part(network) >= RESOLVED)
+            && (!closely || self.missing <= CLOSELY * through);
+        if leads_through && !tells {
+            return Err(FlowError::Unresolved { off: self.missing / through.abs() });
+        }
+        let conductance = if leads_through && through > 0.0 { through } else { 0.0 };
+        self.most = self.most.max(conductance);
+        let factor = undirected.and_then(|u| u.permeability_mm2);
+        Ok(Permeability { conductance, k_mm2: factor.map(|factor| factor * conductance) })
+    }
+
+    /// Conducts as these blocked constrictions let it.
+    fn set_blocked(&mut self, network: &Network, blocked: &BitSlice, rho: f64) {
         self.blocked ^= blocked;
         let changed = self.blocked.count_ones();
         let is_open_again = self.blocked.iter_ones().any(|c| !blocked[c]);
@@ -169,32 +209,43 @@ impl Flow {
             self.open[c] = if blocked[c] { rho * whole(network, c) } else { whole(network, c) };
         }
         self.blocked.copy_from_bitslice(blocked);
-        let Some(reservoir) = network.reservoir() else {
-            return Ok(Permeability { conductance: 0.0, k_mm2: None });
-        };
-        let meets = self.meets(network, reservoir);
-        let flows = Meets { reservoir: true, end: true };
-        if self.kept.is_none() {
-            self.inside = meets.iter().map(|&meets| meets == flows).collect();
-        }
-        let system = self.system(&meets, reservoir);
-        let residual = system.solve(&mut self.pressure, network.layers(), &mut self.kept)?;
+    }
+
+    /// Pressures of all voids, within so much of the inflow.
+    fn find_pressures(&mut self, network: &Network, meets: &[Meets], within: f64) -> Result<(), FlowError> {
+        let Some(reservoir) = network.reservoir() else { return Ok(()) };
+        let system = self.system(meets, reservoir);
+        let fit = system.solve(&mut self.pressure, network.layers(), within, &mut self.kept)?;
         // Water flows where it comes in and gets out; elsewhere it stands under the pressure of the one side.
-        for (pressure, &meets) in self.pressure.iter_mut().zip(&meets) {
-            if meets != flows {
+        for (pressure, &meets) in self.pressure.iter_mut().zip(meets) {
+            if meets != THROUGH {
                 *pressure = f64::from(u8::from(meets.reservoir));
             }
         }
         self.pressure[reservoir as usize] = 1.0;
+        self.missing = fit.missing;
         // What is asked for, but where rounding allows no more.
-        self.accuracy = if residual <= 2.0 * CONVERGED { CONVERGED } else { residual };
+        let asked = within.max(ROUNDING);
+        self.accuracy = if fit.residual <= 2.0 * asked { asked } else { fit.residual };
+        Ok(())
+    }
+
+    /// Flow times viscosity in from the reservoir.
+    fn through(&self, network: &Network) -> f64 {
+        let Some(reservoir) = network.reservoir() else { return 0.0 };
+        network.exits(reservoir).map(|c| self.flux(reservoir, c)).sum()
+    }
+
+    /// Mean flux of an inlet over what the residual may stand for.
+    fn part(&self, network: &Network) -> f64 {
+        let Some(reservoir) = network.reservoir() else { return 0.0 };
         let inlets = network.exits(reservoir);
-        let least = CONVERGED * inlets.clone().map(|c| self.open[c]).sum::<f64>();
-        let through: f64 = inlets.map(|c| self.flux(reservoir, c)).sum();
-        let imbalance = (through - self.outflow(network)).abs();
-        let conductance = if through > least.max(imbalance) { through } else { 0.0 };
-        let factor = undirected.and_then(|u| u.permeability_mm2);
-        Ok(Permeability { conductance, k_mm2: factor.map(|factor| factor * conductance) })
+        self.through(network) / inlets.len().max(1) as f64 / self.residual_of(inlets)
+    }
+
+    /// Whether the flow is known, over the most that there was.
+    fn is_known(&self, network: &Network) -> bool {
+        self.missing <= KNOWN * self.most.max(self.through(network))
     }
 
     /// The equations of the voids that water flows through, with a row for each that is `inside`: an empty
@@ -202,10 +253,7 @@ impl Flow {
     fn system(&self, meets: &[Meets], reservoir: u32) -> System {
         let mut system = System::of_voids(self.inside.iter().by_vals(), self.passages.len());
         let outside = meets.len() as u32;
-        for passage in self.open_passages().filter(|passage| {
-            let Meets { reservoir, end } = meets[passage.one as usize];
-            reservoir && end
-        }) {
+        for passage in self.open_passages().filter(|passage| meets[passage.one as usize] == THROUGH) {
             let open = self.open[passage.exit as usize];
             if passage.other == reservoir {
                 system.hold(passage.one, open, 1.0);
@@ -223,33 +271,16 @@ impl Flow {
         self.passages.iter().filter(|passage| self.open[passage.exit as usize] > 0.0)
     }
 
-    /// Whether the flow that was solved last tells where water goes. Where it does not, every flux counts as
-    /// none, and all particles would wait: a filter that lets everything through would seem to hold it.
-    ///
-    /// # Errors
-    /// Open ways lead through the network, but conductances of the inlets are so large that rounding hides
-    /// what passes.
-    pub fn resolved(&self, network: &Network) -> Result<(), FlowError> {
-        let Some(reservoir) = network.reservoir() else { return Ok(()) };
-        let inlets = network.exits(reservoir);
-        let leads_through = self.meets(network, reservoir).contains(&Meets { reservoir: true, end: true });
-        let mean = inlets.clone().map(|c| self.flux(reservoir, c)).sum::<f64>() / inlets.len().max(1) as f64;
-        let part = mean / self.residual_of(inlets);
-        if leads_through && part.is_nan() | (part < RESOLVED) {
-            return Err(FlowError::Unresolved { part });
-        }
-        Ok(())
-    }
-
     /// Flux that the residual may stand for.
     fn residual_of(&self, inlets: std::ops::Range<usize>) -> f64 {
-        self.accuracy * inlets.map(|c| self.open[c] * self.open[c]).sum::<f64>().sqrt()
-    }
-
-    /// Flow times viscosity out behind the filter.
-    fn outflow(&self, network: &Network) -> f64 {
-        let outlets = self.passages.iter().filter(|passage| passage.other as usize == network.voids());
-        outlets.map(|passage| self.flux(passage.one, passage.exit as usize)).sum()
+        let largest = inlets.clone().map(|c| self.open[c]).fold(0.0, f64::max);
+        if largest == 0.0 {
+            return 0.0;
+        }
+        // A power of two changes no digit, and squares of very large and very small numbers are none.
+        let unit = libm::scalbn(1.0, -libm::ilogb(largest).max(-1000));
+        let square = |c: usize| (self.open[c] * unit) * (self.open[c] * unit);
+        self.accuracy * inlets.map(square).sum::<f64>().sqrt() / unit
     }
 
     /// Gives each exit of the network its weight by the flow that was solved last; what was blocked then has
@@ -258,7 +289,7 @@ impl Flow {
         let Some(reservoir) = network.reservoir() else { return };
         let rule = network.exit_rule();
         let inlets = network.exits(reservoir);
-        let through: f64 = inlets.clone().map(|c| self.flux(reservoir, c)).sum();
+        let through = self.through(network);
         // Nor is one that the residual may stand for.
         let least = (NO_FLUX * through / inlets.len().max(1) as f64).max(self.residual_of(inlets));
         let Network { diameter, undirected, .. } = network;
@@ -274,16 +305,16 @@ impl Flow {
         }
     }
 
-    /// What each void hangs together with, by way of other voids.
-    fn meets(&self, network: &Network, reservoir: u32) -> Vec<Meets> {
+    /// What each void hangs together with, by way of other voids and of such constrictions.
+    fn meets(&self, network: &Network, reservoir: u32, is_way: impl Fn(&Passage) -> bool) -> Vec<Meets> {
         let (voids, outside) = (network.voids(), network.voids() as u32);
         let is_inner = |passage: &&Passage| passage.other != reservoir && passage.other != outside;
         let mut together = Together::of(voids);
-        for passage in self.open_passages().filter(is_inner) {
+        for passage in self.open_passages().filter(|passage| is_way(passage)).filter(is_inner) {
             together.join(passage.one, passage.other);
         }
         let mut of_root = vec![Meets::default(); voids];
-        for passage in self.open_passages().filter(|passage| !is_inner(passage)) {
+        for passage in self.open_passages().filter(|passage| is_way(passage) && !is_inner(passage)) {
             let meets = &mut of_root[together.root(passage.one) as usize];
             meets.reservoir |= passage.other == reservoir;
             meets.end |= passage.other == outside;
@@ -303,6 +334,9 @@ struct Meets {
     reservoir: bool,
     end: bool,
 }
+
+/// Both.
+const THROUGH: Meets = Meets { reservoir: true, end: true };
 
 #[cfg(test)]
 mod tests {

@@ -1,7 +1,7 @@
 //! Permeability of a packing's voids in an endless medium.
 
-use super::flow::FlowError;
-use super::system::System;
+use super::flow_error::FlowError;
+use super::system::{CONVERGED, System};
 use super::together::Together;
 use crate::constrictions::VoidGraph;
 
@@ -29,7 +29,7 @@ pub fn permeability_mm2(graph: &VoidGraph, axis: usize) -> Result<f64, FlowError
     }
     let mut pressure = vec![0.0; voids];
     let layers = libm::cbrt(voids as f64) as usize;
-    system.solve(&mut pressure, layers, &mut None)?;
+    system.solve(&mut pressure, layers, CONVERGED, &mut None)?;
     let through: f64 = (0..graph.from.len())
         .map(|c| {
             let by = f64::from(graph.shift[c][axis]);

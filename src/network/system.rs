@@ -11,8 +11,14 @@ use super::rest::Link;
 /// The residual is below this part of what flows in.
 pub(super) const CONVERGED: f64 = 1e-10;
 
+/// Asks for no less than rounding lets them come: a part of what flows in that a residual hardly gets below.
+pub(super) const CLOSEST: f64 = f64::EPSILON / 4.0;
+
 /// The residual that is taken, as part of what flows in, where rounding lets it come no closer.
 const BEST_OF_ROUNDING: f64 = 1e-6;
+
+/// What sums of each row may lose in rounding, as part of the flow through its known pressures.
+pub(super) const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Rounds after which a system that has not converged is given up, for each layer and a hundred besides.
 const ROUNDS: usize = 100;
@@ -31,6 +37,24 @@ pub(super) struct NotConverged {
     pub rounds: usize,
     /// Residual over inflow.
     pub residual: f64,
+}
+
+/// How well pressures fit their equations.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Fit {
+    /// Residual over the inflow, both as roots of sums of squares.
+    pub residual: f64,
+    /// What the balances of all voids are off by together, rounding included. No flux, and no sum of fluxes
+    /// through a cut, differs by more from that of the exact pressures: a unit of flow that is fed into a
+    /// void passes no constriction more than once.
+    pub missing: f64,
+}
+
+impl Fit {
+    /// In the unit of conductance that a system had before it was multiplied by `unit`.
+    fn over(self, unit: f64) -> Self {
+        Self { missing: self.missing / unit, ..self }
+    }
 }
 
 /// A factor that serves one system after another of the same rows.
@@ -103,35 +127,39 @@ impl System {
     }
 
     /// Divides both sides by a power of two, which changes no digit of a solution, so that squares of very
-    /// large and very small conductances are numbers still.
-    fn normalise(&mut self) {
+    /// large and very small conductances are numbers still. Gives that power.
+    fn normalise(&mut self) -> f64 {
         let mut diagonal = self.ground.clone();
         for link in &self.links {
             diagonal[link.one as usize] += link.conductance;
             diagonal[link.other as usize] += link.conductance;
         }
         let largest = diagonal.iter().fold(0.0, |a: f64, &b| a.max(b));
-        if largest > 0.0 && largest.is_finite() {
-            let unit = libm::scalbn(1.0, -libm::ilogb(largest).max(-1000));
-            let sides = self.ground.iter_mut().chain(&mut self.inflow);
-            sides.chain(self.links.iter_mut().map(|link| &mut link.conductance)).for_each(|g| *g *= unit);
+        if !(largest > 0.0 && largest.is_finite()) {
+            return 1.0;
         }
+        let unit = libm::scalbn(1.0, -libm::ilogb(largest).max(-1000));
+        let sides = self.ground.iter_mut().chain(&mut self.inflow);
+        sides.chain(self.links.iter_mut().map(|link| &mut link.conductance)).for_each(|g| *g *= unit);
+        unit
     }
 
     /// Conjugate gradients from the pressures that there are, and again from where they end while what they
-    /// carry along as the residual has left the true one. What is kept is a factor of nearly this system;
-    /// where there is none, or it takes too many rounds, one of this system is made and left there.
-    /// Gives the residual over the inflow.
+    /// carry along as the residual has left the true one, until that is about `within` of the inflow or
+    /// rounding lets it come no closer. What is kept is a factor of nearly this system; where there is none,
+    /// or it takes too many rounds, one of this system is made and left there.
     pub(super) fn solve(
         mut self,
         pressure: &mut [f64],
         layers: usize,
+        within: f64,
         kept: &mut Option<Kept>,
-    ) -> Result<f64, NotConverged> {
-        self.normalise();
+    ) -> Result<Fit, NotConverged> {
+        let unit = self.normalise();
         let scale = dot(&self.inflow, &self.inflow).sqrt();
         if self.void.is_empty() || scale == 0.0 {
-            return Ok(0.0);
+            let x = self.rows_of(pressure);
+            return Ok(self.fit(&x, &self.residual(&x), 0.0).over(unit));
         }
         if !scale.is_finite() {
             return Err(NotConverged { rounds: 0, residual: f64::INFINITY });
@@ -139,46 +167,59 @@ impl System {
         if let Some(Kept { factor, rounds, closed }) = kept.take() {
             let [least, times] = ROUNDS_OF_ANOTHER;
             let mut other = Some(factor);
-            if let Ok((residual, _)) =
-                self.solve_within(pressure, scale, &mut other, least.max(times * rounds))
-            {
+            let most = least.max(times * rounds);
+            if let Ok((fit, _)) = self.solve_within(pressure, scale, within, &mut other, most) {
                 *kept = other.map(|factor| Kept { factor, rounds, closed });
-                return Ok(residual);
+                return Ok(fit.over(unit));
             }
         }
         let mut factor = None;
         let most = ROUNDS * (layers + 100);
-        let (residual, rounds) = self.solve_within(pressure, scale, &mut factor, most)?;
+        let (fit, rounds) = self.solve_within(pressure, scale, within, &mut factor, most)?;
         *kept = factor.map(|factor| Kept { factor, rounds, closed: 0 });
-        Ok(residual)
+        Ok(fit.over(unit))
     }
 
-    /// The same in at most so many rounds: residual and rounds; pressures stay where they do not suffice.
+    /// Pressures by row.
+    fn rows_of(&self, pressure: &[f64]) -> Vec<f64> {
+        self.void.iter().map(|&v| pressure[v as usize]).collect()
+    }
+
+    /// How well pressures fit that leave this residual, so large over the inflow.
+    fn fit(&self, x: &[f64], residual: &[f64], part: f64) -> Fit {
+        let sum = |flows: &mut dyn Iterator<Item = f64>| flows.map(f64::abs).sum::<f64>();
+        let held = sum(&mut self.ground.iter().zip(x).map(|(ground, x)| ground * x));
+        let fed = sum(&mut self.inflow.iter().copied());
+        Fit { residual: part, missing: sum(&mut residual.iter().copied()) + ROUNDING * (held + fed) }
+    }
+
+    /// The same in at most so many rounds, and their number; pressures stay where these do not suffice.
     fn solve_within(
         &self,
         pressure: &mut [f64],
         scale: f64,
+        within: f64,
         factor: &mut Option<Factor>,
         most: usize,
-    ) -> Result<(f64, usize), NotConverged> {
-        let mut x: Vec<f64> = self.void.iter().map(|&v| pressure[v as usize]).collect();
+    ) -> Result<(Fit, usize), NotConverged> {
+        let mut x = self.rows_of(pressure);
         let (mut rounds, mut before) = (0, f64::INFINITY);
         loop {
             let mut residual = self.residual(&x);
             let size = dot(&residual, &residual).sqrt();
-            let is_close = size <= if rounds == 0 { 1.0 } else { 2.0 } * CONVERGED * scale;
+            let is_close = size <= if rounds == 0 { 1.0 } else { 2.0 } * within * scale;
             // Closer than rounding lets them come they do not get.
             let is_stuck = size > 0.5 * before && size <= BEST_OF_ROUNDING * scale;
             if is_close || is_stuck {
                 self.void.iter().zip(&x).for_each(|(&v, &p)| pressure[v as usize] = p);
-                return Ok((size / scale, rounds));
+                return Ok((self.fit(&x, &residual, size / scale), rounds));
             }
             if size > 0.5 * before {
                 return Err(NotConverged { rounds, residual: size / scale });
             }
             before = size;
             let factor = factor.get_or_insert_with(|| Factor::new(&self.ground, &self.links));
-            rounds = self.descend(factor, &mut x, &mut residual, scale, rounds..most)?;
+            rounds = self.descend(factor, &mut x, &mut residual, [scale, within], rounds..most)?;
         }
     }
 
@@ -195,7 +236,7 @@ impl System {
         factor: &Factor,
         x: &mut [f64],
         residual: &mut [f64],
-        scale: f64,
+        [scale, within]: [f64; 2],
         allowed: Range<usize>,
     ) -> Result<usize, NotConverged> {
         let rows = self.void.len();
@@ -206,7 +247,7 @@ impl System {
         let mut before = 0.0;
         for round in allowed.start.. {
             let size = dot(residual, residual).sqrt();
-            if size <= CONVERGED * scale {
+            if size <= within * scale {
                 return Ok(round);
             }
             if round >= allowed.end || !size.is_finite() {
@@ -266,7 +307,7 @@ mod tests {
                 }
             }
             let mut pressure = vec![0.0; VOIDS as usize];
-            system.solve(&mut pressure, VOIDS as usize, &mut None).unwrap();
+            system.solve(&mut pressure, VOIDS as usize, CONVERGED, &mut None).unwrap();
             pressure
         };
         assert_eq!(of(true), of(false));
@@ -295,8 +336,8 @@ mod tests {
                 }
             }
             let mut pressure = vec![0.5; (SIDE * SIDE) as usize];
-            let residual = system.solve(&mut pressure, SIDE as usize, kept).unwrap();
-            assert!(residual < 2.0 * CONVERGED, "{residual}");
+            let fit = system.solve(&mut pressure, SIDE as usize, CONVERGED, kept).unwrap();
+            assert!(fit.residual < 2.0 * CONVERGED, "{fit:?}");
             pressure
         };
         let (mut own, mut other) = (None, None);
@@ -323,7 +364,7 @@ mod tests {
         (0..VOIDS - 1).for_each(|void| system.join(void, void + 1, 1.0 + f64::from(void % 7)));
         system.join(VOIDS / 2, VOIDS, 1e50);
         let mut pressure = vec![0.0; VOIDS as usize + 1];
-        system.solve(&mut pressure, VOIDS as usize, &mut None).unwrap();
+        system.solve(&mut pressure, VOIDS as usize, CONVERGED, &mut None).unwrap();
         assert!(pressure[..VOIDS as usize].is_sorted_by(|above, below| above > below));
         assert!((pressure[VOIDS as usize] - pressure[VOIDS as usize / 2]).abs() < 1e-6);
     }

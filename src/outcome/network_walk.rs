@@ -2,17 +2,29 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::record::{BaseRecord, Replicate, RunSummary, Verdict};
+use super::record::{BaseRecord, Confidence, Replicate, RunSummary, Verdict};
 
 /// The results of [`crate::run::walk_networks`]; the names are those of `outcome.json` where both have them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NetworkWalkRecord {
     /// The class that the replicates together support.
     pub verdict: Verdict,
+    /// How far the verdict can be relied on.
+    pub confidence: Confidence,
+    /// Why no further, the weightiest first, and what else rules of practice say.
+    pub reasons: Vec<String>,
+    /// What a reader must know.
+    pub warnings: Vec<String>,
     /// The user's seed.
     pub seed: u64,
     /// Base particles inserted in each run.
     pub n_base: u64,
+    /// Those that Eq. (2) gives, where the filter and its grains per void are known.
+    pub n_base_eq2: Option<u64>,
+    /// Filter grains per void, where they are known.
+    pub grains_per_void: Option<f64>,
+    /// Mass of the base over that of the filter, of Eq. (2).
+    pub mass_ratio: f64,
     /// Equal parts in which they were inserted.
     pub increments: u64,
     /// Name of the engine that walked.

@@ -16,11 +16,7 @@ use super::verdict_box::{Said, brief, eroded_table, in_words, replicates_in_word
 use super::walks::{RowSource, RunRows, Walks, check_curve, check_results};
 use crate::outcome::Recorded;
 use crate::outcome::network_walk::NetworkWalkRecord;
-use crate::outcome::record::Verdict;
-
-/// The doubt of every such verdict.
-const NO_PRACTICE: &str = "The network was given, and the gradation of the filter was not: no rule of \
-                           practice is applied, and nothing says how far the verdict can be relied on.";
+use crate::outcome::record::{Confidence, Verdict};
 
 /// What errors call the record.
 const RECORD: &str = "outcome";
@@ -58,9 +54,9 @@ pub fn network_walk_brief(record: &str) -> Result<String, ReportError> {
     Ok(brief(
         &walks,
         &Said {
-            headline: record.verdict.words(),
+            headline: &headline(&record),
             meaning: in_words(&walks),
-            doubt: Some(NO_PRACTICE),
+            doubt: Some(&doubt(&record)),
             replicate: replicate(&record),
             leaves_out: &record.model_leaves_out,
         },
@@ -136,11 +132,10 @@ fn page(record: &NetworkWalkRecord, walks: &Walks, figures: &[Drawn]) -> String 
         section.sheet {
             div.first {
                 (verdict_section(record, walks))
-                (leaves_out(&record.model_leaves_out, &html! {
-                    p { (NO_PRACTICE) }
-                }))
+                (leaves_out(&record.model_leaves_out, &html! {}))
             }
         }
+        (doubts(record))
         (shell::contents())
         h2 { "Figures" }
         (shell::figures(figures))
@@ -150,6 +145,56 @@ fn page(record: &NetworkWalkRecord, walks: &Walks, figures: &[Drawn]) -> String 
         (inputs(record))
     };
     whole_page(&title, &header, &main, &citation())
+}
+
+/// The verdict in a few words.
+fn headline(record: &NetworkWalkRecord) -> String {
+    let model = if record.confidence == Confidence::Within { "" } else { " in the model" };
+    format!("{}{model}", record.verdict.words())
+}
+
+/// How far it can be relied on and why no further, and what else there is to know.
+fn doubt(record: &NetworkWalkRecord) -> String {
+    let sentences = record.reasons.iter().chain(besides(record)).map(|said| format!(" {}.", capital(said)));
+    format!("Confidence: {}.{}", record.confidence.words(), sentences.collect::<String>())
+}
+
+/// Warnings that are no reasons.
+fn besides(record: &NetworkWalkRecord) -> impl Iterator<Item = &String> {
+    record.warnings.iter().filter(|warning| !record.reasons.contains(warning))
+}
+
+fn doubts(record: &NetworkWalkRecord) -> Markup {
+    html! {
+        @if !record.reasons.is_empty() {
+            section.sheet {
+                h2 { "Why this is in doubt" }
+                ul { @for reason in &record.reasons { li { (clean(&capital(reason))) "." } } }
+            }
+        }
+        @if besides(record).next().is_some() {
+            section.sheet {
+                h2 { "What else to know" }
+                ul { @for warning in besides(record) { li { (clean(&capital(warning))) "." } } }
+            }
+        }
+    }
+}
+
+/// How many base particles there were, and how many Eq. (2) asks for.
+fn amount(record: &NetworkWalkRecord) -> String {
+    let walked = whole(record.n_base);
+    match (record.n_base_eq2, record.grains_per_void) {
+        (Some(eq2), Some(grains)) => {
+            let of =
+                format!("{} grains per void and a mass ratio of {}", significant(grains), record.mass_ratio);
+            match eq2 == record.n_base {
+                true => format!("{walked}, by Eq. (2) with {of}"),
+                false => format!("{walked}; Eq. (2) gives {} with {of}", whole(eq2)),
+            }
+        }
+        _ => format!("{walked}, as given"),
+    }
 }
 
 fn verdict_section(record: &NetworkWalkRecord, walks: &Walks) -> Markup {
@@ -162,7 +207,8 @@ fn verdict_section(record: &NetworkWalkRecord, walks: &Walks) -> Markup {
     };
     html! {
         section.verdict.(class) {
-            p.word { (capital(record.verdict.words())) "." }
+            p.word { (capital(&headline(record))) "." }
+            p { "Confidence: " b { (record.confidence.words()) } "." }
             p.lead { (in_words(walks)) }
             div { (drawing(&run_figures::verdict(walks))) }
             (eroded_table(walks))
@@ -194,7 +240,7 @@ fn inputs(record: &NetworkWalkRecord) -> Markup {
             (fact("Voids, constrictions, layers",
                 [network.voids, network.constrictions, network.layers].map(whole).join(", ")))
             (fact("Particles choose an exit by", &network.exit))
-            (fact("Base particles in each run", whole(record.n_base)))
+            (fact("Base particles in each run", amount(record)))
             (fact("Inserted in equal parts", whole(record.increments)))
             (fact("Threshold between the classes", significant(record.threshold)))
             (fact("Seed", record.seed.to_string()))

@@ -2,6 +2,7 @@
 
 use rayon::slice::ParallelSliceMut;
 
+use super::network_doubts::Said;
 use super::network_walk::{NetworkOutcome, NetworkWalk};
 use crate::case::base_record;
 use crate::gradation::Gradation;
@@ -16,10 +17,17 @@ impl NetworkOutcome {
     /// The record of these walks by a plan, on so many networks of which this is the first.
     pub fn record(&self, plan: &NetworkWalk, network: &Network, networks: usize) -> NetworkWalkRecord {
         let first = self.replicates.first().map(|walked| &walked.result);
+        let Said { confidence, reasons, warnings } = self.said(plan, network, networks);
         NetworkWalkRecord {
             verdict: self.verdict,
+            confidence,
+            reasons,
+            warnings,
             seed: plan.seed,
             n_base: plan.n_base,
+            n_base_eq2: plan.eq2(network, plan.mass_ratio).ok().flatten(),
+            grains_per_void: plan.filter.as_ref().and_then(|filter| filter.grains_per_void),
+            mass_ratio: plan.mass_ratio,
             increments: plan.increments,
             engine: first.map_or(plan.engine, |first| first.engine).name().into(),
             replicates: self.replicates.iter().map(|walked| walked.result.replicate.clone()).collect(),
@@ -28,7 +36,7 @@ impl NetworkOutcome {
             left_out: first.map(|first| first.left_out.clone()).unwrap_or_default(),
             model_leaves_out: leaves_out(network.exit_rule()),
             base: base_record(in_words(&plan.base), &plan.base),
-            d15f_mm: plan.d15f_mm,
+            d15f_mm: plan.d15f_mm(),
             network: given(network, networks),
             version: env!("CARGO_PKG_VERSION").into(),
         }
@@ -97,5 +105,11 @@ mod tests {
         assert_eq!((record.base.name.as_str(), record.base.d85_mm), ("one size", 0.1));
         assert_eq!((record.n_base, record.replicates.len(), record.summary.len()), (1000, 2, 2));
         assert!(record.model_leaves_out[0].starts_with("hydraulics but for"));
+        assert_eq!((record.n_base_eq2, record.grains_per_void), (None, None));
+        assert!(
+            record.reasons[0].contains("Eq. (2) cannot say whether they are enough"),
+            "{:?}",
+            record.reasons
+        );
     }
 }

@@ -10,8 +10,8 @@ use super::callbacks::{Callbacks, Event};
 use super::error::RunError;
 use super::machine::Machine;
 use super::replicates::{ReplicateResult, summarise};
-use crate::case::{CaseError, in_words, replicate_seed};
-use crate::gradation::{Gradation, SizeSampler};
+use crate::case::{CaseError, PAPER_MASS_RATIO, in_words, replicate_seed};
+use crate::gradation::{Gradation, GradationError, SizeSampler, base_particles};
 use crate::network::Network;
 use crate::outcome::record::{Replicate, RunSummary, Verdict};
 use crate::outcome::verdict::classify;
@@ -44,8 +44,21 @@ pub struct NetworkWalk {
     pub replicates: u64,
     /// What to record.
     pub wanted: Wanted,
-    /// D15F (mm), where the filter is known.
-    pub d15f_mm: Option<f64>,
+    /// The filter, where it is known.
+    pub filter: Option<GivenFilter>,
+    /// Mass of the base over that of the filter, of Eq. (2).
+    pub mass_ratio: f64,
+}
+
+/// What is known of the filter that a given network is of.
+#[derive(Clone, Debug)]
+pub struct GivenFilter {
+    /// Its gradation.
+    pub gradation: Gradation,
+    /// Whether that is a sieve curve, and not a straight line that was assumed.
+    pub is_measured: bool,
+    /// Its grains per void, without which Eq. (2) is not known.
+    pub grains_per_void: Option<f64>,
 }
 
 /// What came of the walks.
@@ -135,8 +148,28 @@ impl NetworkWalk {
             runs: 2,
             replicates: 10,
             wanted: Wanted { series_every: 1, size_curves: Vec::new(), size_classes: 64, voids: None },
-            d15f_mm: None,
+            filter: None,
+            mass_ratio: PAPER_MASS_RATIO,
         }
+    }
+
+    /// 15 % of the filter are finer by mass (mm), where that is known.
+    pub fn d15f_mm(&self) -> Option<f64> {
+        self.filter.as_ref()?.gradation.d(15.0)
+    }
+
+    /// Base particles that Eq. (2) gives on a network for this mass ratio, where filter and grains per void are
+    /// known.
+    ///
+    /// # Errors
+    /// Numbers that Eq. (2) does not take.
+    pub fn eq2(&self, network: &Network, mass_ratio: f64) -> Result<Option<u64>, GradationError> {
+        let Some(GivenFilter { gradation, grains_per_void: Some(grains), .. }) = &self.filter else {
+            return Ok(None);
+        };
+        let voids = network.filter_voids() as u64;
+        let supply = base_particles(mass_ratio, *grains, voids, &self.base, gradation, None)?;
+        Ok(Some(supply.n_base_eq2))
     }
 
     /// Refuses what cannot be walked; draws sizes for each network.
@@ -157,6 +190,7 @@ impl NetworkWalk {
         }
         let mut samplers = Vec::with_capacity(networks.len());
         for network in networks {
+            self.eq2(network, self.mass_ratio).map_err(CaseError::from)?;
             let finest_mm = f64::from(network.finest_open(|_| false)) * network.unit_mm();
             if self.base.pan_fraction() > 0.0 && self.base.smallest_mm() > finest_mm {
                 return Err(RunError::Refused(format!(
@@ -240,11 +274,12 @@ impl NetworkWalk {
                 }
             })?;
             let (end, flow) = walk.end(&state)?;
-            let (d15f_mm, pan_fraction) = (self.d15f_mm.unwrap_or(f64::NAN), self.base.pan_fraction());
+            let d15f = self.d15f_mm();
+            let (d15f_mm, pan_fraction) = (d15f.unwrap_or(f64::NAN), self.base.pan_fraction());
             let of = RunId { replicate, run, d15f_mm, pan_fraction };
             let seconds = begun.elapsed().as_secs_f64();
             let mut metrics = RunMetrics::new(&end, &state, flow.as_ref(), of, seconds);
-            if self.d15f_mm.is_none() {
+            if d15f.is_none() {
                 metrics.run.largest_eroded_over_d15f = None;
             }
             recorded.append(Recorded::new(&end, &state, flow.as_ref(), &recorder, of));
@@ -300,7 +335,11 @@ mod tests {
                 seed: 9,
                 replicates: 3,
                 engine: Engine::ALL.into_iter().find(|e| e.name() == engine).unwrap(),
-                d15f_mm: case.filter.d(15.0),
+                filter: Some(GivenFilter {
+                    gradation: case.filter.clone(),
+                    is_measured: false,
+                    grains_per_void: None,
+                }),
                 ..NetworkWalk::new(case.base.clone(), 30_000)
             };
             let mut found = walk_networks(&[Arc::new(lattice())], &plan, &Callbacks::default()).unwrap();

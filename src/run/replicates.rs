@@ -15,10 +15,12 @@ use super::error::RunError;
 use super::planned::first_replicates;
 use super::shared_networks::SharedNetworks;
 use crate::case::{Case, replicate_seed};
+use crate::gradation::Gradation;
 use crate::network::{Network, NetworkError};
 use crate::outcome::record::{Replicate, Run, RunSummary, Statistic, Stopping, Verdict};
 use crate::outcome::stopping::{Look, ReplicateValues};
 use crate::outcome::verdict::{below_by_interval, classify};
+use crate::outcome::walk_doubts::{Walked, is_clogged, walk_doubts};
 use crate::outcome::{Recorded, RunId, RunMetrics};
 use crate::scene::NetworkSource;
 use crate::store::checkpoint::{Checkpoint, CheckpointError};
@@ -337,6 +339,27 @@ fn blocked_at_start(network: &Network, saved: &Checkpoint) -> Result<BitVec, Run
         }
     }
     Ok(blocked)
+}
+
+/// What walks say themselves against their verdict: of a base, in so many increments, through so many layers.
+pub fn said_by_walks<'a>(
+    verdict: Verdict,
+    walked: impl IntoIterator<Item = &'a ReplicateResult, IntoIter: Clone>,
+    base: &Gradation,
+    increments: u64,
+    layers: u64,
+) -> Vec<String> {
+    let walked = walked.into_iter();
+    let mut clogged: Vec<[u64; 3]> = Vec::new();
+    for row in walked.clone().flat_map(|w| &w.recorded.flow).filter(|row| is_clogged(row.k_over_k0)) {
+        // The first row of its run.
+        if clogged.last().is_none_or(|last| last[..2] != [row.replicate, row.run]) {
+            clogged.push([row.replicate, row.run, row.increment]);
+        }
+    }
+    let replicates = walked.map(|w| &w.replicate).collect();
+    let share = 1.0 / increments as f64;
+    walk_doubts(verdict, &Walked { replicates, clogged, base, share, layers })
 }
 
 /// The verdict that the replicates support together, and their statistics by run.

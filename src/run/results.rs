@@ -7,14 +7,13 @@ use serde::Serialize;
 use super::error::RunError;
 use super::machine::Machine;
 use super::other_walks::OtherWalks;
-use super::replicates::{ReplicateResult, stopping, summarise};
+use super::replicates::{ReplicateResult, said_by_walks, stopping, summarise};
 use super::studies::Studies;
 use crate::case::{Case, INPUT_NAMES, replicate_seed};
 use crate::outcome::record::{
     CurveRange, Manifest, Outcome, PanBounds, PanReading, RunSummary, Statistic, Stopping, Verdict, VoidRow,
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
-use crate::outcome::walk_doubts::{Walked, is_clogged, walk_doubts};
 use crate::outcome::{Recorded, by_void, confidence, infiltration, leaves_out, rules, verdict};
 use crate::store::{Folder, StoreError};
 
@@ -99,21 +98,7 @@ pub fn outcome(
 
 /// What these walks say themselves against the verdict.
 fn doubts_of_walk(case: &Case, verdict: Verdict, walked: &[ReplicateResult]) -> Vec<String> {
-    let mut clogged: Vec<[u64; 3]> = Vec::new();
-    for row in walked.iter().flat_map(|w| &w.recorded.flow).filter(|row| is_clogged(row.k_over_k0)) {
-        // The first row of its run.
-        if clogged.last().is_none_or(|last| last[..2] != [row.replicate, row.run]) {
-            clogged.push([row.replicate, row.run, row.increment]);
-        }
-    }
-    let of = Walked {
-        replicates: walked.iter().map(|w| &w.replicate).collect(),
-        clogged,
-        base: &case.base,
-        share: 1.0 / case.increments() as f64,
-        layers: case.counts[3],
-    };
-    walk_doubts(verdict, &of)
+    said_by_walks(verdict, walked, &case.base, case.increments(), case.counts[3])
 }
 
 /// The verdict of replicates, their statistics by run, and what a rule that adds replicates came to.

@@ -8,6 +8,7 @@ use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
 use crate::run::checkpoints;
+use crate::store::open_regular;
 
 /// Packs the results in `folder`, below `name`, into a file without a name in `beside`. What begins with a
 /// dot and checkpoints are left out, and no link is followed.
@@ -33,11 +34,13 @@ fn add(writer: &mut ZipWriter<File>, folder: &Path, name: &str) -> io::Result<()
         }
         if kind.is_dir() {
             add(writer, &entry.path(), &inside)?;
-        } else if kind.is_file() {
+        } else if kind.is_file()
+            && let Some(mut content) = open_regular(&entry.path())?
+        {
             let options =
                 SimpleFileOptions::default().large_file(entry.metadata()?.len() > u64::from(u32::MAX));
             writer.start_file(inside, options).map_err(io::Error::other)?;
-            io::copy(&mut File::open(entry.path())?, writer)?;
+            io::copy(&mut content, writer)?;
         }
     }
     Ok(())

@@ -3,6 +3,7 @@
 
 use std::io;
 use std::net::{Shutdown, TcpStream};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -20,6 +21,8 @@ const LOOK: Duration = Duration::from_millis(50);
 pub struct Connections {
     /// In the order in which they came.
     open: Mutex<Vec<Connection>>,
+    /// How many have come: each has a number of its own, also after the last was ended.
+    came: AtomicU64,
     freed: Condvar,
 }
 
@@ -59,7 +62,7 @@ impl Connections {
             }
             open = self.freed.wait_timeout(open, LOOK).unwrap_or_else(PoisonError::into_inner).0;
         }
-        let id = open.last().map_or(0, |last| last.id + 1);
+        let id = self.came.fetch_add(1, Ordering::Relaxed);
         open.push(Connection { id, shed, since: Instant::now() });
         Ok(Place { connections: Arc::clone(self), id })
     }
@@ -78,5 +81,35 @@ impl Drop for Place {
     fn drop(&mut self) {
         self.connections.locked().retain(|one| one.id != self.id);
         self.connections.freed.notify_one();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::net::TcpListener;
+
+    /// All but the last have shown the secret; the last makes room for another, and when its thread finds it
+    /// ended, that other keeps its place.
+    #[test]
+    fn a_connection_that_is_ended_takes_no_other_out_of_the_list() {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let address = listener.local_addr().unwrap();
+        let connections = Arc::new(Connections::default());
+        let (mut streams, mut places) = (Vec::new(), Vec::new());
+        for number in 0..MOST {
+            streams.push((TcpStream::connect(address).unwrap(), listener.accept().unwrap().0));
+            let place = connections.place(&streams[number].1).unwrap();
+            if number + 1 < MOST {
+                place.keep();
+            }
+            places.push(place);
+        }
+        let _stays = connections.place(&TcpStream::connect(address).unwrap()).unwrap();
+        assert_eq!(connections.locked().len(), MOST);
+        drop(places.pop());
+        assert_eq!(connections.locked().len(), MOST, "the place of one that was ended before is none");
+        drop(places);
+        assert_eq!(connections.locked().len(), 1);
     }
 }

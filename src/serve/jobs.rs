@@ -22,8 +22,9 @@ use super::job_file::JobFile;
 use super::live::Live;
 use crate::run::error::Exit;
 use crate::run::{PrepareOptions, RunError};
+use crate::store::remove_folder;
 use earlier::{LAST, earlier};
-use job::{Job, JobState, how_to_continue};
+use job::{Job, JobState, has_scene, how_to_continue};
 use work::WorkContext;
 pub use work::{OnResults, Work};
 
@@ -77,7 +78,11 @@ impl JobQueue {
         let is_free = |id: &usize| path(id).symlink_metadata().is_err();
         let id = (first..=LAST).find(is_free);
         let id = id.ok_or_else(|| RunError::Refused("this folder is full: start on another".into()))?;
-        file.write(&path(&id)).map_err(|error| RunError::failed(error.to_string()))?;
+        if let Err(error) = file.write(&path(&id)) {
+            // It was free, so what is there is of this job, which is none.
+            let _ = remove_folder(&path(&id));
+            return Err(RunError::failed(error.to_string()));
+        }
         let folder = format!("{}-{id}", work.name());
         let JobFile { title, asked, .. } = file;
         all.push(Job { asked, ..Job::new(id, title, folder, work, JobState::Waiting) });
@@ -110,17 +115,24 @@ impl JobQueue {
     pub fn kept(&self, id: usize) -> Result<Option<JobFile>, String> {
         let all = self.locked();
         let job = all.iter().find(|job| job.id == id).ok_or("there is no such job")?;
-        match (job.can_continue(), &job.work) {
+        let folder = self.context.root.join(&job.folder);
+        match (job.can_continue(&self.context.root), &job.work) {
             (false, _) => Err("this job cannot continue".into()),
             (true, Work::Resume) => Ok(None),
-            (true, _) => {
-                let file = JobFile::read(&self.context.root.join(&job.folder));
-                file.map(Some).ok_or_else(|| "what this job was asked for is lost; ask again".into())
-            }
+            (true, _) => match JobFile::read(&folder) {
+                None if !has_scene(&folder) => Err("what this job was asked for is lost; ask again".into()),
+                file => Ok(file),
+            },
         }
     }
 
-    /// Lets a job that was stopped continue, with its work planned anew.
+    /// Whether the folder of a job holds the scene of a run that has begun, from which it can be resumed.
+    pub fn has_scene(&self, id: usize) -> bool {
+        let all = self.locked();
+        all.iter().any(|job| job.id == id && has_scene(&self.context.root.join(&job.folder)))
+    }
+
+    /// Lets a job that was stopped or has failed continue, with its work planned anew.
     ///
     /// # Errors
     /// There is none of this number that could continue; too many wait.
@@ -128,8 +140,13 @@ impl JobQueue {
         let mut all = self.locked();
         self.has_room(&all)?;
         let job = all.iter_mut().find(|job| job.id == id).ok_or("there is no such job")?;
-        if !job.can_continue() {
+        if !job.can_continue(&self.context.root) {
             return Err("this job cannot continue".into());
+        }
+        // How it ended before is no longer so.
+        let folder = self.context.root.join(&job.folder);
+        if let Some(file) = JobFile::read(&folder).filter(|file| file.ended.is_some()) {
+            let _ = JobFile { ended: None, ..file }.write(&folder);
         }
         (job.work, job.state, job.message) = (work, JobState::Waiting, String::new());
         job.stop.store(false, Ordering::Relaxed);

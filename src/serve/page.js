@@ -557,7 +557,7 @@ function card(job) {
   parts.push(el("p", { class: "actions" },
     job.page ? el("a", { href: job.page, target: "_blank", rel: "noopener" }, "The page, to read or print") : null,
     job.page ? el("button", { type: "button", onclick: () => printPage(job.page) }, "Print, or save as PDF") : null,
-    ["done", "stopped"].includes(job.state) ? el("a", { href: `zip/${job.folder}.zip` }, "The folder (.zip)") : null,
+    ["done", "stopped", "failed"].includes(job.state) ? el("a", { href: `zip/${job.folder}.zip` }, "The folder (.zip)") : null,
     ["waiting", "running"].includes(job.state) && !job.stopping ? el("button", { type: "button", onclick: act("stop") }, "Stop") : null,
     job.can_continue ? el("button", { type: "button", onclick: act("continue") }, "Continue") : null,
     el("span", { class: "small" }, job.path)));

@@ -1,6 +1,5 @@
 //! What is answered to which request: each answer is a call of the library.
 
-use std::fs::File;
 use std::io;
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
@@ -23,6 +22,7 @@ use crate::report;
 use crate::run::error::Exit;
 use crate::run::{self, PrepareOptions, RunError};
 use crate::scene::{Density, Scene, TableOptions};
+use crate::store::open_regular;
 use crate::study::compare::{ComparePlan, Compared};
 use crate::study::design;
 use crate::text::is_plain_part;
@@ -175,7 +175,12 @@ impl Routes {
             "api/continue" => {
                 let id = id()?;
                 let work = match self.jobs.kept(id).map_err(conflict)? {
-                    Some(file) => self.planned(&file.kind, &file.request)?.work,
+                    Some(file) => match self.planned(&file.kind, &file.request) {
+                        Ok(planned) => planned.work,
+                        // A sheet is gone, and the folder has all that is needed.
+                        Err(_) if self.jobs.has_scene(id) => Work::Resume,
+                        Err(problem) => return Err(problem),
+                    },
                     None => Work::Resume,
                 };
                 self.jobs.resume(id, work).map(|()| accepted(id)).map_err(conflict)
@@ -303,7 +308,8 @@ impl Routes {
         if !real(&path).zip(real(&folder)).is_some_and(|(path, folder)| path.starts_with(folder)) {
             return Err(missing());
         }
-        let file = File::open(&path).ok().filter(|file| file.metadata().is_ok_and(|meta| meta.is_file()));
+        // A pipe would hold the connection for ever.
+        let file = open_regular(&path).ok().flatten();
         let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
         let kind = match ending {
             "html" => "text/html; charset=utf-8",

@@ -233,10 +233,18 @@ fn regular(file: File) -> io::Result<Option<File>> {
 /// # Errors
 /// What the system says.
 pub fn read_regular(path: &Path, largest: u64) -> io::Result<Option<Vec<u8>>> {
-    let Some(file) = regular(platform::open_any(File::options().read(true), path)?)? else { return Ok(None) };
+    let Some(file) = open_regular(path)? else { return Ok(None) };
     let mut bytes = Vec::new();
     file.take(largest.saturating_add(1)).read_to_end(&mut bytes)?;
     Ok((bytes.len() as u64 <= largest).then_some(bytes))
+}
+
+/// Opens a file for reading; `None` where it is no regular file. A pipe is not waited for.
+///
+/// # Errors
+/// What the system says.
+pub fn open_regular(path: &Path) -> io::Result<Option<File>> {
+    regular(platform::open_any(File::options().read(true), path)?)
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ mod npz;
 pub mod platform;
 
 pub use column::{Column, Placement};
-pub use disk::read_regular;
+pub use disk::{open_regular, read_regular};
 pub use folder::{
     Folder, LOCK_FILE, StoreError, files_in, make_folder, read_whole, remove_folder, write_whole,
 };

@@ -46,7 +46,6 @@ impl Directions {
         let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
         let mut flow = Flow::new(network);
         let clean = flow.solve(network, &blocked)?;
-        flow.resolved(network)?;
         let record = FlowRecord { k0_mm2: clean.k_mm2, k_over_k0: vec![] };
         let clean = clean.conductance;
         let mut directions = Self { flow, record, clean, solved_at: 0, blocked_then: 0 };

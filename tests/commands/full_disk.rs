@@ -3,7 +3,7 @@
 
 use std::fs;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 const SCENE: &str = "seed = 3\nreplicates = 2\nengine = \"particles\"\n[filter]\ncurve = \"shire2016-cu1.5-loose\"\n[base]\ncu = 1.5\n\
@@ -12,42 +12,56 @@ const FILES: [&str; 6] =
     ["scene.toml", "series.csv", "layers.csv", "retained.csv", "eroded.csv", "figures/eroded.svg"];
 
 /// A disk of 16 MB that is gone with this value.
-struct Disk(tempfile::TempDir);
+pub struct Disk {
+    path: PathBuf,
+    _folder: Option<tempfile::TempDir>,
+}
 
 impl Disk {
     fn new() -> Result<Self, String> {
         let folder = tempfile::tempdir().unwrap();
+        let mut disk = Self::on(folder.path())?;
+        disk._folder = Some(folder);
+        Ok(disk)
+    }
+
+    /// On a folder that is there.
+    pub fn on(folder: &Path) -> Result<Self, String> {
         let mounted = Command::new("mount")
             .args(["-t", "tmpfs", "-o", "size=16m", "voidwalk-test"])
-            .arg(folder.path())
+            .arg(folder)
             .output()
             .map_err(|e| e.to_string())?;
         match mounted.status.success() {
-            true => Ok(Self(folder)),
+            true => Ok(Self { path: folder.to_owned(), _folder: None }),
             false => Err(String::from_utf8_lossy(&mounted.stderr).into_owned()),
         }
     }
 
+    fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Fills the disk until so many bytes are left.
-    fn leave(&self, bytes: u64) {
+    pub fn leave(&self, bytes: u64) {
         let free = || {
-            let disk = rustix::fs::statvfs(self.0.path()).unwrap();
+            let disk = rustix::fs::statvfs(self.path()).unwrap();
             disk.f_bavail * disk.f_frsize
         };
-        let mut filler = fs::File::create(self.0.path().join("filler")).unwrap();
+        let mut filler = fs::File::create(self.path().join("filler")).unwrap();
         while free() > bytes {
             filler.write_all(&vec![1; (free() - bytes).min(1 << 20) as usize]).unwrap();
         }
     }
 
-    fn free(&self) {
-        fs::remove_file(self.0.path().join("filler")).unwrap();
+    pub fn free(&self) {
+        fs::remove_file(self.path().join("filler")).unwrap();
     }
 }
 
 impl Drop for Disk {
     fn drop(&mut self) {
-        let _ = Command::new("umount").arg(self.0.path()).status();
+        let _ = Command::new("umount").arg(&self.path).status();
     }
 }
 
@@ -65,7 +79,7 @@ fn a_folder_on_a_disk_that_is_read_only_is_refused() {
         Ok(disk) => disk,
         Err(problem) => return println!("skipped: a disk cannot be mounted here: {}", problem.trim()),
     };
-    let at = disk.0.path();
+    let at = disk.path();
     fs::write(at.join("scene.toml"), SCENE).unwrap();
     assert!(voidwalk(at, &["run", "scene.toml", "-q", "--out", "old"]).status.success());
     let remount = Command::new("mount").args(["-o", "remount,ro"]).arg(at).status().unwrap();
@@ -88,7 +102,7 @@ fn a_run_on_a_full_disk_ends_with_an_error_and_goes_on_when_there_is_room() {
         Ok(disk) => disk,
         Err(problem) => return println!("skipped: a disk cannot be mounted here: {}", problem.trim()),
     };
-    let at = disk.0.path();
+    let at = disk.path();
     fs::write(at.join("scene.toml"), SCENE).unwrap();
     // Particles in mapped files, and in memory.
     for memory in ["700kB", "1GB"] {

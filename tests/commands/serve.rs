@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
+use crate::full_disk::Disk;
 use crate::judge::{BASE, COARSE, FINE};
 use crate::program::{call, done, refused, voidwalk};
 
@@ -601,4 +602,52 @@ fn a_foreign_folder_and_a_port_that_is_taken_are_refused() {
     }
     refused(&call(at.path(), &["report", "served"]), "name the folder of a finished run");
     assert_eq!(fs::read_dir(at.path().join("served")).unwrap().count(), 2);
+}
+
+/// A pipe with nobody at its other end would hold the connection for ever.
+#[test]
+fn a_pipe_in_a_folder_is_no_file() {
+    let served = serve();
+    served.two_sheets();
+    let (status, asked) = served.judge(&["base.n_base=100", "replicates=1"]);
+    assert_eq!(status, 200, "{asked}");
+    let done = served.until(1, |job| job["state"] == "done");
+    assert_eq!(done["folder"], "run-1");
+    let pipe = served.root().join("served/run-1/pipe.txt");
+    assert!(Command::new("mkfifo").arg(pipe).status().unwrap().success());
+    assert_eq!(served.get("files/run-1/pipe.txt").0, 404);
+    assert_eq!(served.get("files/run-1/outcome.json").0, 200);
+    assert_eq!(served.get("zip/run-1.zip").0, 200);
+}
+
+/// A job that has no room to begin leaves nothing behind; one that ran out of it goes on once there is some, as its
+/// message says and as `voidwalk resume` would.
+#[test]
+fn a_full_disk_ends_no_job_for_good() {
+    let at = tempfile::tempdir().unwrap();
+    fs::create_dir(at.path().join("served")).unwrap();
+    let disk = match Disk::on(&at.path().join("served")) {
+        Ok(disk) => disk,
+        Err(problem) => return println!("not tested, as no small disk is to be had: {problem}"),
+    };
+    let served = serve_in(at);
+    served.two_sheets();
+    disk.leave(0);
+    let (status, said) = served.judge(&[]);
+    assert_eq!(status, 500, "{said}");
+    assert!(!served.root().join("served/run-1").exists(), "{said}");
+    disk.free();
+    disk.leave(60 << 10);
+    let (status, said) = served.judge(&["replicates=4", "base.n_base=2000"]);
+    assert_eq!((status, &said["id"]), (200, &json!(1)), "{said}");
+    let is_over = |job: &Value| !["waiting", "running"].contains(&job["state"].as_str().unwrap());
+    let job = served.until(1, is_over);
+    assert_eq!((&job["state"], &job["can_continue"]), (&json!("failed"), &json!(true)), "{job}");
+    disk.free();
+    assert_eq!(served.post("api/continue?id=1", b"").0, 200);
+    let job = served.until(1, is_over);
+    assert_eq!((&job["state"], &job["can_continue"]), (&json!("done"), &json!(false)), "{job}");
+    let (_, _, at) = served.end();
+    drop(disk);
+    drop(at);
 }

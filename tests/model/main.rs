@@ -4,6 +4,7 @@ mod counts;
 mod counts_distribution;
 mod coverage;
 mod exact_answers;
+mod exact_flow;
 mod flow;
 mod gradation;
 mod packing;

@@ -13,6 +13,7 @@ use voidwalk::network::{
 };
 use voidwalk::run::RunError;
 use voidwalk::run::machine::threads as pool;
+use voidwalk::store::read_regular;
 
 use crate::arrays::{Grains, column, of_rows, rows, voids};
 use crate::problem::{failed, of_constrictions, of_network, refused};
@@ -63,7 +64,7 @@ impl Network {
         }
         let open = self.nothing_blocked();
         let mut flow = Flow::new(&inner);
-        flow.solve(&inner, &open).map_err(failed)?;
+        flow.solve_closely(&inner, &open).map_err(failed)?;
         flow.direct(&mut inner);
         Ok((inner, Some(flow)))
     }
@@ -177,7 +178,9 @@ impl Network {
     #[staticmethod]
     fn from_csv(py: Python<'_>, path: std::path::PathBuf, unit_mm: f64) -> PyResult<Self> {
         let name = path.display().to_string();
-        let bytes = std::fs::read(&path).map_err(|error| refused(format!("{name}: {error}")))?;
+        // A pipe is not waited for.
+        let bytes = read_regular(&path, u64::MAX).map_err(|error| refused(format!("{name}: {error}")))?;
+        let bytes = bytes.ok_or_else(|| refused(format!("{name}: is no regular file")))?;
         let read = py.detach(|| network::Network::from_csv(&bytes, &name, unit_mm));
         Ok(read.map_err(|error| of_network(&error))?.into())
     }

@@ -127,12 +127,13 @@ impl Curve {
         Ok(Self { inner })
     }
 
-    /// The shipped curve of this name, of a filter with this smallest grain, and its grains per void.
+    /// The shipped curve of this name, of a filter with this smallest grain; that filter and its grains per void.
     #[staticmethod]
-    fn shipped(name: &str, d0_mm: f64) -> PyResult<(Self, f64)> {
+    fn shipped(name: &str, d0_mm: f64) -> PyResult<(Self, Gradation, f64)> {
         let filter = constrictions::find(name).map_err(refused)?;
         let inner = filter.curve().and_then(|curve| curve.in_mm(d0_mm)).map_err(refused)?;
-        Ok((Self { inner }, filter.grains_per_void))
+        let gradation = gradation::Gradation::linear_from_d0(d0_mm, filter.cu).map_err(refused)?;
+        Ok((Self { inner }, Gradation { inner: gradation }, filter.grains_per_void))
     }
 
     #[staticmethod]

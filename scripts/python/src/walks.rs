@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 use voidwalk::case;
 use voidwalk::outcome::{Recorded, Wanted};
 use voidwalk::run::machine::threads as pool;
-use voidwalk::run::{NetworkWalk, walk_networks};
+use voidwalk::run::{GivenFilter, NetworkWalk, walk_networks};
 use voidwalk::walk::{Engine, Sampling};
 
 use crate::network::Network;
@@ -27,14 +27,14 @@ pub fn replicate_seed(seed: u64, replicate: u64) -> u64 {
 #[pyfunction]
 #[pyo3(signature = (
     networks, base, n_base, increments, engine, sampling, seed, runs, replicates, series_every, size_curves,
-    size_classes, d15f_mm, threads, progress
+    size_classes, filter, grains_per_void, mass_ratio, threads, progress
 ))]
 #[allow(clippy::too_many_arguments)]
 pub fn walk<'py>(
     py: Python<'py>,
     networks: Vec<PyRef<'py, Network>>,
     base: &Gradation,
-    n_base: u64,
+    n_base: Option<u64>,
     increments: u64,
     engine: &str,
     sampling: &str,
@@ -44,7 +44,9 @@ pub fn walk<'py>(
     series_every: u64,
     size_curves: Vec<u64>,
     size_classes: usize,
-    d15f_mm: Option<f64>,
+    filter: Option<(PyRef<'py, Gradation>, bool)>,
+    grains_per_void: Option<f64>,
+    mass_ratio: f64,
     threads: Option<usize>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<(String, Bound<'py, PyDict>, Bound<'py, PyAny>)> {
@@ -53,9 +55,9 @@ pub fn walk<'py>(
     };
     let engines = || word("engine", engine, Engine::ALL.map(Engine::name).join(", "));
     let samplings = || word("sampling", sampling, Sampling::ALL.map(Sampling::name).join(", "));
-    let plan = NetworkWalk {
+    let mut plan = NetworkWalk {
         base: base.inner.clone(),
-        n_base,
+        n_base: n_base.unwrap_or(0),
         increments,
         engine: Engine::ALL.into_iter().find(|known| known.name() == engine).ok_or_else(engines)?,
         sampling: Sampling::ALL.into_iter().find(|known| known.name() == sampling).ok_or_else(samplings)?,
@@ -63,13 +65,25 @@ pub fn walk<'py>(
         runs,
         replicates,
         wanted: Wanted { series_every, size_curves, size_classes, voids: None },
-        d15f_mm,
+        filter: filter.map(|(soil, is_measured)| GivenFilter {
+            gradation: soil.inner.clone(),
+            is_measured,
+            grains_per_void,
+        }),
+        mass_ratio,
     };
+    let given: Vec<Arc<voidwalk::Network>> = networks.iter().map(|network| network.inner.clone()).collect();
+    if n_base.is_none() {
+        let eq2 = given.first().map_or(Ok(None), |network| plan.eq2(network, mass_ratio)).map_err(refused)?;
+        plan.n_base = eq2.ok_or_else(|| refused("n_base is missing"))?;
+        if plan.n_base == 0 {
+            return Err(refused("Eq. (2) gives no base particle on so small a network; give n_base"));
+        }
+    }
     let throats = networks.first().map_or(0, |network| network.throat_count());
     if networks.iter().any(|network| network.throat_count() != throats) {
         return Err(refused("the networks of the replicates differ in their number of throats"));
     }
-    let given: Vec<Arc<voidwalk::Network>> = networks.iter().map(|network| network.inner.clone()).collect();
     let (outcome, record) = at_work(py, progress, |callbacks| {
         pool(threads)?.install(|| {
             let outcome = walk_networks(&given, &plan, &callbacks.run)?;

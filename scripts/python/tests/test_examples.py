@@ -38,7 +38,9 @@ def test_an_example_runs_and_draws(name: str, tmp_path: Path) -> None:
     pytest.importorskip(NEEDS.get(name, "numpy"))
     script = ROOT / "scripts" / "examples" / f"{name}.py"
     environment = {**os.environ, "MPLCONFIGDIR": str(tmp_path / "matplotlib")}
-    done = subprocess.run([sys.executable, str(script)], cwd=tmp_path, env=environment, capture_output=True, text=True)
+    # What a reader should know is said by the example itself: nothing is warned of.
+    command = [sys.executable, "-W", "error", str(script)]
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     for words in SAID[name]:
         assert words in done.stdout

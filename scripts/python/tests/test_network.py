@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import pickle
+from html import unescape
+from pathlib import Path
 from typing import Any, Tuple
 
 import numpy as np
@@ -209,3 +212,68 @@ def test_a_network_of_porespy_is_walked() -> None:
     result = vw.walk(network, float(np.median(network.diameter)), n_base=500, replicates=2)
     assert result.verdict in ("no erosion", "some erosion", "continuing erosion", "undecided")
     assert result.replicates[0]["runs"][0]["inserted"] == 500
+
+
+def test_the_number_of_base_particles_is_never_guessed() -> None:
+    """A lattice with a shipped curve knows its filter, and so what Eq. (2) asks for; another network is asked about."""
+    base, made = vw.Gradation.linear(1.5, 0.25, 85), vw.Network.cubic([10, 10, 12], "cu1.5-loose", d0_mm=1.0)
+    filter = vw.Gradation.linear(1.5)
+    assert made.filter == filter and made.grains_per_void == vw.Curve.shipped("cu1.5-loose").grains_per_void
+    eq2 = base.base_particles(filter, made.count, made.grains_per_void)
+    assert vw.walk(made, base, replicates=2).outcome["n_base"] == eq2
+    again = pickle.loads(pickle.dumps(made))
+    assert again.filter == filter and vw.walk(lambda seed: again, base, replicates=2).outcome["n_base"] == eq2
+    assert vw.walk(made, base, replicates=2, mass_ratio=0.1).outcome["n_base"] == pytest.approx(2 * eq2, abs=1)
+    plain = vw.Network(made.conns, made.diameter, made.inlets, made.outlets, exit="area", count=made.count)
+    with pytest.raises(ValueError, match="n_base is missing.*Give n_base, or filter and grains_per_void, which"):
+        vw.walk(plain, base)
+    with pytest.raises(ValueError, match="or grains_per_void, which this network does not know"):
+        vw.walk(plain, base, filter=filter)
+    with pytest.raises(ValueError, match="or filter, which this network does not know"):
+        vw.walk(plain, base, grains_per_void=0.6)
+    given = vw.walk(plain, base, filter=filter, grains_per_void=made.grains_per_void, replicates=2)
+    assert given.outcome["n_base"] == given.outcome["n_base_eq2"] == eq2
+    with pytest.raises(ValueError, match="filter = float is not allowed; a Gradation"):
+        vw.walk(plain, base, filter=1.0)  # type: ignore[arg-type]
+
+
+def test_what_speaks_against_a_verdict_stands_beside_it() -> None:
+    made, base = vw.Network.cubic([10, 10, 12]), vw.Gradation.linear(1.5, 0.25, 85)
+    result = vw.walk(made, base, replicates=6)
+    assert result.confidence == "outside checked range"
+    assert any("nothing of it was checked against tests" in reason for reason in result.reasons)
+    assert not any("base particles" in reason for reason in result.reasons)
+    few = vw.walk(made, base, n_base=1000, replicates=6)
+    assert any(reason.startswith("1000 base particles were walked; Eq. (2) requires") for reason in few.reasons)
+    assert set(few.reasons) - {few.reasons[-1]} <= set(few.warnings)
+    for result in (result, few):
+        box = result._repr_html_()
+        assert "Confidence: outside checked range" in box and result.confidence in repr(result)
+        assert result.reasons[0] in repr(result) and all(said[1:] in unescape(box) for said in result.reasons)
+    # A filter ten times as coarse as the network's: practice speaks against a verdict that says that it holds.
+    coarse = vw.walk(made, vw.Gradation.linear(1.5, 0.9, 85), n_base=500, filter=vw.Gradation.linear(1.5, 10.0))
+    assert (coarse.verdict, coarse.confidence) == ("no erosion", "contradicted by practice")
+
+
+def test_a_flow_that_cannot_be_told_is_refused() -> None:
+    """1 : 0.001 : 1 mm in a row: a flow below 1e-12 of what the ways in conduct is lost in rounding."""
+    network = vw.Network([[0, 1], [1, 2], [2, 3]], [1.0, 0.001, 1.0], [0], [3])
+    for refused in (
+        network.flow,
+        lambda: network.first_passage(0.0005),
+        lambda: vw.walk(network, 0.0005, n_base=100, replicates=2),
+    ):
+        with pytest.raises(vw.VoidwalkError, match="cannot be told"):
+            refused()
+    # What rounding leaves is known to eight digits.
+    network = vw.Network([[0, 1], [1, 2], [2, 3]], [1.0, 0.03, 1.0], [0], [3])
+    assert network.first_passage(0.02)[0] == pytest.approx(1.0, abs=1e-6)
+    _, flux = network.flow()
+    assert flux == pytest.approx(np.full(3, 1 / (2 + 2 / np.mean([1, 0.03**4, 1]) + 0.03**-4)), rel=1e-6)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes here")
+def test_a_pipe_is_no_network(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(ValueError, match="no regular file"):
+        vw.Network.from_file(tmp_path / "pipe")

@@ -53,3 +53,11 @@ def test_the_package_is_typed_strictly(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "mypy", "--strict", "-p", "voidwalk"]
     said = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
     assert said.returncode == 0, said.stdout + said.stderr
+
+
+def test_what_the_readme_shows_runs_without_a_warning() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
+    done = subprocess.run([sys.executable, "-W", "error", "-c", block], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("continuing erosion 0.") and "outside checked range" in done.stdout

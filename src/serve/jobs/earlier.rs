@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::job::{Job, JobState, how_to_continue};
+use super::job::{Job, JobState, has_scene, how_to_continue};
 use super::work::{Work, of_run};
 use crate::outcome::design::Design;
 use crate::outcome::record::Outcome;
@@ -38,11 +38,20 @@ pub fn earlier(root: &Path, most: usize) -> Vec<Job> {
     jobs
 }
 
+/// Whether there is nothing in a folder but marks of the program: a job that was never taken.
+fn holds_nothing(folder: &Path) -> bool {
+    let entries = std::fs::read_dir(folder);
+    entries.is_ok_and(|mut entries| {
+        entries.all(|entry| entry.is_ok_and(|entry| entry.file_name().as_encoded_bytes().starts_with(b".")))
+    })
+}
+
 /// A job that an earlier server left; `None` where a folder of this name is none.
 fn earlier_job(id: usize, name: String, root: &Path) -> Option<Job> {
     let path = root.join(&name);
     let file = JobFile::read(&path);
-    if file.is_none() && !["run-", "compare-", "design-"].iter().any(|kind| name.starts_with(kind)) {
+    let is_ours = ["run-", "compare-", "design-"].iter().any(|kind| name.starts_with(kind));
+    if file.is_none() && (!is_ours || holds_nothing(&path)) {
         return None;
     }
     let record = |kind: FolderKind| read_whole(&path.join(kind.record())).ok();
@@ -62,7 +71,7 @@ fn earlier_job(id: usize, name: String, root: &Path) -> Option<Job> {
         file.as_ref().map_or_else(|| format!("{name}, of an earlier start"), |file| file.title.clone());
     let work = match &file {
         Some(_) => Work::Kept,
-        None if path.join("scene.toml").is_file() => Work::Resume,
+        None if has_scene(&path) => Work::Resume,
         None => Work::Nothing,
     };
     let mut job = Job::new(id, title, name, work, JobState::Stopped);

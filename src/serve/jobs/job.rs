@@ -66,9 +66,15 @@ impl Job {
         Self { id, title, asked, folder, work, state, message, result, live, stop }
     }
 
-    /// Whether it was stopped and can go on.
-    pub fn can_continue(&self) -> bool {
-        self.state == JobState::Stopped && !matches!(self.work, Work::Nothing)
+    /// Whether it can go on: wherever it ended early, as far as the command line would take its folder. What
+    /// was refused before any work would be refused again.
+    pub fn can_continue(&self, root: &Path) -> bool {
+        let ended_early = match self.state {
+            JobState::Stopped | JobState::Failed => true,
+            JobState::Refused => has_scene(&root.join(&self.folder)),
+            JobState::Waiting | JobState::Running | JobState::Done => false,
+        };
+        ended_early && !matches!(self.work, Work::Nothing)
     }
 
     /// What the page is told of it; messages pass through `said`.
@@ -94,7 +100,7 @@ impl Job {
             "path": root.join(&self.folder).display().to_string(),
             "state": self.state.words(),
             "stopping": self.state == JobState::Running && self.stop.load(Ordering::Relaxed),
-            "can_continue": self.can_continue(),
+            "can_continue": self.can_continue(root),
             "before": all.iter().filter(waits).count(),
             "message": said(&self.message),
             "page": page.map(|page| format!("files/{}/{page}", self.folder)),
@@ -115,9 +121,14 @@ fn all_said(value: &Value, said: &impl Fn(&str) -> String) -> Value {
     }
 }
 
+/// Whether a folder holds the scene of a run that has begun: what the command line resumes.
+pub fn has_scene(folder: &Path) -> bool {
+    folder.join("scene.toml").is_file()
+}
+
 /// How a job goes on that was stopped.
 pub fn how_to_continue(folder: &Path) -> String {
-    let resume = match folder.join("scene.toml").is_file() {
+    let resume = match has_scene(folder) {
         true => format!(", or `voidwalk resume {}`,", folder.display()),
         false => String::new(),
     };

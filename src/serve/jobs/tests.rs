@@ -74,6 +74,10 @@ fn every_job_of_an_earlier_server_is_listed_and_no_number_is_too_large() {
     ] {
         std::fs::create_dir(root.path().join(folder)).unwrap();
     }
+    // Of one nobody knows what was asked; another, of which there is only the mark, was never taken.
+    std::fs::write(root.path().join("compare-7/cases.jsonl"), "").unwrap();
+    std::fs::create_dir(root.path().join("run-5")).unwrap();
+    std::fs::write(root.path().join("run-5/.voidwalk.lock"), "").unwrap();
     #[cfg(unix)]
     std::os::unix::fs::symlink("/tmp", root.path().join("run-8")).unwrap();
     let queue = queue(root.path());
@@ -82,7 +86,7 @@ fn every_job_of_an_earlier_server_is_listed_and_no_number_is_too_large() {
     let states = |key: &str| told.iter().map(|job| job[key].clone()).collect::<Vec<_>>();
     assert_eq!(states("id"), [7, 3, 2, 1]);
     assert_eq!(states("state"), ["stopped", "failed", "refused", "stopped"]);
-    assert_eq!(states("can_continue"), [false, false, false, true]);
+    assert_eq!(states("can_continue"), [false, true, false, true]);
     assert_eq!((&told[1]["message"], &told[3]["title"]), (&json!("why"), &json!("a job")));
     assert_eq!(queue.kept(1), Ok(Some(file())));
     assert!(queue.kept(7).is_err() && queue.kept(2).is_err());
@@ -99,4 +103,32 @@ fn of_very_many_jobs_the_first_to_end_are_left_out() {
     shorten(&mut all);
     let ids: Vec<usize> = all.iter().map(|job| job.id).collect();
     assert_eq!((all.len(), &ids[..3]), (LISTED, &[1, 3, 6][..]));
+}
+
+/// What a full disk ends goes on once there is room: where the command line resumes a folder, so does the page,
+/// on this server and the next.
+#[test]
+fn what_has_failed_can_continue() {
+    let root = tempfile::tempdir().unwrap();
+    let before = queue(root.path());
+    let ids = [(); 3].map(|()| before.add(file(), Work::Kept).unwrap());
+    let folder = |id: usize| root.path().join(format!("run-{id}"));
+    for (id, state) in ids.into_iter().zip([JobState::Failed, JobState::Refused, JobState::Refused]) {
+        set(&before, id, state);
+        let ended = Some((state.words().to_owned(), "the disk is full".to_owned()));
+        JobFile { ended, ..file() }.write(&folder(id)).unwrap();
+    }
+    std::fs::write(folder(ids[1]).join("scene.toml"), "").unwrap();
+    let after = queue(root.path());
+    for queue in [&before, &after] {
+        let can = ids.map(|id| queue.kept(id).is_ok());
+        assert_eq!(can, [true, true, false], "the last was refused before it began");
+    }
+    // What was asked is lost, and the scene is not.
+    std::fs::write(folder(ids[1]).join("job.json"), "{").unwrap();
+    assert_eq!(after.kept(ids[1]), Ok(None));
+    // While it goes on, nothing says that it has failed.
+    after.resume(ids[0], Work::Kept).unwrap();
+    assert_eq!(JobFile::read(&folder(ids[0])).unwrap().ended, None);
+    assert!(after.resume(ids[0], Work::Kept).is_err(), "it waits already");
 }

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from . import _voidwalk
 from ._arrays import Floats, Ints, floats, frozen, ints, names, pores, whole
 from ._grains import MERGE_OVERLAP, Constrictions, Packing
-from ._soil import Curve
+from ._soil import Curve, Gradation
 
 __all__ = ["Network"]
 
@@ -68,7 +68,10 @@ class Network:
     [False, False, True, False]
     """
 
-    __slots__ = ("_native", "_made", "conns", "diameter", "inlets", "outlets", "coords", "conductance", "rho")
+    __slots__ = (
+        "_native", "_made", "conns", "diameter", "inlets", "outlets", "coords", "conductance", "rho", "filter",
+        "grains_per_void",
+    )
     _native: _voidwalk.Network
     _made: Tuple[str, Dict[str, Any]]
     #: Voids at both ends of each constriction, shape (n, 2); -1 is the outside.
@@ -85,6 +88,10 @@ class Network:
     conductance: Optional[Floats]
     #: Part of its conductance that a blocked constriction keeps.
     rho: float
+    #: Gradation of the filter that the network is of, where that is known: of lattices with a shipped curve.
+    filter: Optional[Gradation]
+    #: Filter grains per void, where they are known: of lattices with a shipped or measured curve, and of packings.
+    grains_per_void: Optional[float]
 
     def __init__(
         self,
@@ -111,6 +118,7 @@ class Network:
         self.outlets = frozen(pores("outlets", outlets, count))
         self.coords = None if coords is None else frozen(floats("coords", coords, count, 3))
         self.rho = float(rho)
+        self.filter, self.grains_per_void = None, None
         self._native = _voidwalk.Network.from_columns(
             whole("count", count),
             self.conns,
@@ -144,6 +152,7 @@ class Network:
     ) -> Network:
         new = cls.__new__(cls)
         new._native, new._made, new.coords, new.conductance, new.rho = native, (made, arguments), coords, None, rho
+        new.filter, new.grains_per_void = None, None
         new.conns, new.diameter = frozen(native.conns()), frozen(native.diameter())
         new.inlets, new.outlets = frozen(native.inlets()), frozen(native.outlets())
         return new
@@ -208,7 +217,9 @@ class Network:
         made = dict(shape=sizes, curve=sizes_curve, seed=seed, exit=exit, rho=rho, reference_mm=unit)
         z, y, x = np.meshgrid(*[np.arange(float(n)) for n in sizes[::-1]], indexing="ij")
         coords = np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
-        return cls._of(native, "cubic", made, frozen(coords), rho)
+        new = cls._of(native, "cubic", made, frozen(coords), rho)
+        new.filter, new.grains_per_void = sizes_curve.filter, sizes_curve.grains_per_void
+        return new
 
     @classmethod
     def from_packing(
@@ -244,7 +255,10 @@ class Network:
             raise ValueError(f"copies = {number} is not allowed; a whole number below {2**32}")
         native = _voidwalk.Network.of_packing(packing._columns, merge_overlap, number, exit, rho, None)
         made = dict(packing=packing, copies=number, exit=exit, rho=rho, merge_overlap=merge_overlap)
-        return cls._of(native, "from_packing", made, None, rho)
+        new = cls._of(native, "from_packing", made, None, rho)
+        # Copies have as many grains a void as the cell.
+        new.grains_per_void = len(packing) * number / new.count
+        return new
 
     @classmethod
     def from_file(cls, path: Union[str, os.PathLike[str]], reference_mm: float = 1.0) -> Network:
@@ -376,6 +390,11 @@ class Network:
         moves : float
             Its mean number of moves.
 
+        Raises
+        ------
+        VoidwalkError
+            Conductances so many orders apart that the flow cannot be told, where it says the way.
+
         Examples
         --------
         >>> import voidwalk as vw
@@ -401,6 +420,8 @@ class Network:
         ------
         ValueError
             A network whose particles choose by area.
+        VoidwalkError
+            Conductances so many orders apart that the flow cannot be told.
         """
         return self._native.flow()
 

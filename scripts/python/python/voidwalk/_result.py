@@ -40,8 +40,8 @@ class Result:
     Attributes
     ----------
     outcome : dict
-        Everything that ``outcome.json`` says of a scene; of a network the verdict, the summary, every
-        replicate, and what was walked with what.
+        Everything that ``outcome.json`` says of a scene; of a network the verdict with confidence, reasons and
+        warnings, the summary, every replicate, what was walked with what, and what Eq. (2) asks for.
     series : dict of ndarray
         Counts of particles after each recorded increment, by replicate and run: inserted, moving, eroded,
         retained_in_constrictions, retained_in_voids, trapped, blocked (constrictions), eroded_mass_fraction.
@@ -90,6 +90,22 @@ class Result:
     def verdict(self) -> str:
         """Class of erosion: ``"no erosion"``, ``"some erosion"``, ``"continuing erosion"`` or ``"undecided"``."""
         return str(self.outcome["verdict"])
+
+    @property
+    def confidence(self) -> str:
+        """How far the verdict can be relied on: ``"within checked range"``, ``"outside checked range"`` or
+        ``"contradicted by practice"``."""
+        return str(self.outcome["confidence"])
+
+    @property
+    def reasons(self) -> List[str]:
+        """Why it cannot be relied on further, the weightiest first, and what else rules of practice say."""
+        return [str(reason) for reason in self.outcome["reasons"]]
+
+    @property
+    def warnings(self) -> List[str]:
+        """What a reader must know of the walk."""
+        return [str(warning) for warning in self.outcome["warnings"]]
 
     @property
     def summary(self) -> List[Dict[str, Any]]:
@@ -174,7 +190,12 @@ class Result:
         means = ((run["run"], 100 * run["eroded_mass_fraction"]["mean"]) for run in self.summary)
         rows = "; ".join(f"run {run}: {mean:.2f} % of the mass eroded" for run, mean in means)
         count = len(self.replicates)
-        return f"Result({self.verdict}: {rows}; {count} {'replicate' if count == 1 else 'replicates'})"
+        said = f"{self.verdict}, {self.confidence}: {rows}; {count} {'replicate' if count == 1 else 'replicates'}"
+        reasons, warnings = self.reasons, [said for said in self.warnings if said not in self.reasons]
+        if reasons:
+            said += f"; {reasons[0]}"
+        more = len(reasons[1:]) + len(warnings)
+        return f"Result({said}{f'; {more} more in reasons and warnings' if more else ''})"
 
     def _repr_html_(self) -> str:
         brief = _voidwalk.run_brief if self.blocked is None else _voidwalk.walk_brief

@@ -251,20 +251,24 @@ class Curve:
     0.25
     """
 
-    __slots__ = ("_native", "grains_per_void")
+    __slots__ = ("_native", "filter", "grains_per_void")
     _native: _voidwalk.Curve
+    #: Gradation of the filter of a shipped curve, a straight line, or ``None``.
+    filter: Optional[Gradation]
     #: Filter grains per void where the curve was measured, or ``None``.
     grains_per_void: Optional[float]
 
     def __init__(self, percent_smaller: Any, diameter_mm: Any) -> None:
         percents = floats("percent_smaller", percent_smaller, None)
         self._native = _voidwalk.Curve.from_points(percents, floats("diameter_mm", diameter_mm, None))
-        self.grains_per_void = None
+        self.filter, self.grains_per_void = None, None
 
     @classmethod
-    def _of(cls, native: _voidwalk.Curve, grains_per_void: Optional[float]) -> Curve:
+    def _of(
+        cls, native: _voidwalk.Curve, filter: Optional[Gradation], grains_per_void: Optional[float]
+    ) -> Curve:
         new = cls.__new__(cls)
-        new._native, new.grains_per_void = native, grains_per_void
+        new._native, new.filter, new.grains_per_void = native, filter, grains_per_void
         return new
 
     @classmethod
@@ -284,13 +288,13 @@ class Curve:
         >>> round(vw.Curve.shipped("cu1.5-loose").dc(5), 3)
         0.204
         """
-        native, grains_per_void = _voidwalk.Curve.shipped(name, d0_mm)
-        return cls._of(native, grains_per_void)
+        native, filter, grains_per_void = _voidwalk.Curve.shipped(name, d0_mm)
+        return cls._of(native, Gradation._of(filter), grains_per_void)
 
     @classmethod
     def from_file(cls, path: Union[str, os.PathLike[str]], d0_mm: float = 1.0) -> Curve:
         """A curve from a CSV file with the columns percent_smaller and diameter_mm (or diameter_over_d0f)."""
-        return cls._of(_voidwalk.Curve.from_file(os.fspath(path), d0_mm), None)
+        return cls._of(_voidwalk.Curve.from_file(os.fspath(path), d0_mm), None, None)
 
     def dc(self, percent: float) -> float:
         """Diameter (mm) that `percent` of the constrictions are smaller than."""
@@ -310,14 +314,16 @@ class Curve:
         return self._native.points()
 
     def __reduce__(self) -> Tuple[Any, ...]:
-        return _curve, (*self.points(), self.grains_per_void)
+        return _curve, (*self.points(), self.grains_per_void, self.filter)
 
     def __repr__(self) -> str:
         percents, sizes = self.points()
         return f"Curve({len(percents)} points, {sizes[0]:g} to {sizes[-1]:g} mm)"
 
 
-def _curve(percents: Floats, sizes: Floats, grains_per_void: Optional[float]) -> Curve:
+def _curve(
+    percents: Floats, sizes: Floats, grains_per_void: Optional[float], filter: Optional[Gradation] = None
+) -> Curve:
     curve = Curve(frozen(percents), frozen(sizes))
-    curve.grains_per_void = grains_per_void
+    curve.filter, curve.grains_per_void = filter, grains_per_void
     return curve

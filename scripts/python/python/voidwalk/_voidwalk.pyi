@@ -91,7 +91,7 @@ class Curve:
     @staticmethod
     def from_points(percent_smaller: _Floats, diameter_mm: _Floats) -> Curve: ...
     @staticmethod
-    def shipped(name: str, d0_mm: float) -> Tuple[Curve, float]: ...
+    def shipped(name: str, d0_mm: float) -> Tuple[Curve, Gradation, float]: ...
     @staticmethod
     def from_file(path: _Path, d0_mm: float) -> Curve: ...
     def dc(self, percent: float) -> Optional[float]: ...
@@ -174,7 +174,7 @@ def replicate_seed(seed: int, replicate: int) -> int: ...
 def walk(
     networks: List[Network],
     base: Gradation,
-    n_base: int,
+    n_base: Optional[int],
     increments: int,
     engine: str,
     sampling: str,
@@ -184,7 +184,9 @@ def walk(
     series_every: int,
     size_curves: List[int],
     size_classes: int,
-    d15f_mm: Optional[float],
+    filter: Optional[Tuple[Gradation, bool]],
+    grains_per_void: Optional[float],
+    mass_ratio: float,
     threads: Optional[int],
     progress: _Callback,
 ) -> Tuple[str, _Tables, NDArray[np.bool_]]: ...

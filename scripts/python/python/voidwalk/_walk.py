@@ -19,10 +19,6 @@ from ._soil import Gradation
 
 __all__ = ["campaign", "read", "replicate_seed", "resume", "run", "walk"]
 
-#: Base particles of a walk that is not told how many.
-USUAL_PARTICLES = 100_000
-
-
 def replicate_seed(seed: int, replicate: int) -> int:
     """Seed of the network and the walk of a replicate, counted from 1, of a scene with this seed.
 
@@ -64,11 +60,16 @@ def walk(
     base : Gradation or float
         The base, or the one size (mm) of its particles.
     n_base : int, optional
-        Base particles of a run. By Eq. (2) where `filter` and `grains_per_void` are given, else 100,000.
+        Base particles of a run. The class of erosion follows from their number: without it that of the paper's
+        Eq. (2), for which `filter` and `grains_per_void` are given or known to the network.
     filter : Gradation, optional
-        The filter: its D15 scales the largest eroded particle.
-    grains_per_void, mass_ratio : float
-        Of Eq. (2), see :meth:`Gradation.base_particles`.
+        The filter, which rules of practice are asked about. Without it the network's own, where it knows it: of
+        lattices with a shipped curve.
+    grains_per_void : float, optional
+        Filter grains per void, of Eq. (2). Without it the network's own, where it knows it: of lattices with a
+        shipped or measured curve, and of packings.
+    mass_ratio : float
+        Mass of the base over that of the filter, of Eq. (2), see :meth:`Gradation.base_particles`.
     engine : {"auto", "particles", "counts", "expected"}
         How passive particles, which can block nothing, are walked; "expected" follows their expectation only.
     sampling : {"independent", "stratified"}
@@ -100,7 +101,8 @@ def walk(
     Raises
     ------
     ValueError
-        What is refused before any work.
+        What is refused before any work: also a walk without a number of base particles, where it cannot be worked
+        out.
     VoidwalkError
         Work that failed.
     KeyboardInterrupt
@@ -113,6 +115,13 @@ def walk(
     >>> result = vw.walk(vw.Network.cubic([10, 10, 20]), base, n_base=20_000, replicates=3)
     >>> result.verdict, len(result.summary), result.blocked.shape
     ('continuing erosion', 2, (3, 2, 6000))
+    >>> result.confidence, result.outcome["n_base"], result.outcome["n_base_eq2"]
+    ('outside checked range', 20000, 61979)
+
+    A lattice with a shipped curve knows its filter, and so how many particles Eq. (2) asks for:
+
+    >>> vw.walk(vw.Network.cubic([10, 10, 20]), base, replicates=3).outcome["n_base"]
+    61979
 
     A new network for each replicate:
 
@@ -131,17 +140,22 @@ def walk(
         networks = [network(replicate_seed(seed, replicate)) for replicate in range(1, count + 1)]
     else:
         raise ValueError(f"network = {type(network).__name__} is not allowed; a Network, or what makes one")
-    if n_base is not None:
-        particles = whole("n_base", n_base, 1)
-    elif filter is not None and grains_per_void is not None:
-        particles = soil.base_particles(filter, networks[0].count, grains_per_void, mass_ratio)
-    else:
-        particles = USUAL_PARTICLES
+    # What is given goes before what the network knows; a line that was assumed is no sieve curve.
+    of, is_measured = (filter, True) if filter is not None else (networks[0].filter, False)
+    if of is not None and not isinstance(of, Gradation):
+        raise ValueError(f"filter = {type(of).__name__} is not allowed; a Gradation")
+    grains = networks[0].grains_per_void if grains_per_void is None else float(grains_per_void)
+    if n_base is None and (of is None or grains is None):
+        missing = " and ".join(name for name, known in [("filter", of), ("grains_per_void", grains)] if known is None)
+        raise ValueError(
+            "n_base is missing: the class of erosion follows from how many base particles there are. Give n_base, or "
+            f"{missing}, which this network does not know, for the number of the paper's Eq. (2)"
+        )
     with Following(progress) as callback:
         said, tables, blocked = _voidwalk.walk(
             [network._native for network in networks],
             soil._native,
-            particles,
+            None if n_base is None else whole("n_base", n_base, 1),
             whole("increments", increments, 1),
             engine,
             sampling,
@@ -151,7 +165,9 @@ def walk(
             whole("series_every", series_every),
             [whole("size_curves", increment, 1) for increment in size_curves],
             whole("size_classes", size_classes, 1),
-            None if filter is None else filter.d(15),
+            None if of is None else (of._native, is_measured),
+            grains,
+            float(mass_ratio),
             threads_or_none(threads),
             callback,
         )
