@@ -59,6 +59,7 @@ pub fn network_walk_brief(record: &str) -> Result<String, ReportError> {
         &walks,
         &Said {
             headline: record.verdict.words(),
+            practice: None,
             meaning: in_words(&walks),
             doubt: Some(NO_PRACTICE),
             replicate: replicate(&record),
