@@ -190,7 +190,7 @@ set = { filter = { density = "dense", cu = 1.5 }, packing = { grains = 300, stif
 """
 
 WORDS = {"verdict", "engine", "kind", "counted_facets"}  # their text is a result
-DROPPED = {"seconds", "settings", "rules", "confidence", "reasons"}
+DROPPED = {"seconds", "settings", "rules", "confidence", "reasons", "notes", "practice"}
 ROWS = 12
 
 

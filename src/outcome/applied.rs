@@ -142,3 +142,28 @@ impl Confidence {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Folders and ledgers of earlier versions have three of them.
+    #[test]
+    fn every_label_is_read_back_by_its_words() {
+        for label in Confidence::DOUBTS.into_iter().chain([Confidence::Within]) {
+            let text = serde_json::to_string(&label).unwrap();
+            assert_eq!(text, format!("\"{}\"", label.words()));
+            assert_eq!(serde_json::from_str::<Confidence>(&text).unwrap(), label);
+        }
+        assert!(
+            Confidence::DOUBTS.is_sorted_by(|a, b| a > b)
+                && !Confidence::DOUBTS.contains(&Confidence::Within)
+        );
+        let old = serde_json::json!({
+            "name": "Permeability", "role": "drainage", "quantity": "D15F", "value": 1.0, "limit": 2.0,
+            "met": false, "source": ""
+        });
+        let rule: AppliedRule = serde_json::from_value(old).unwrap();
+        assert!(rule.role == RuleRole::Drainage && !rule.limit_at_most);
+    }
+}
