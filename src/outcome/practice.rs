@@ -147,7 +147,7 @@ fn of_tests(none: Option<&AppliedRule>, continuing: Option<&AppliedRule>) -> Opt
 fn agreement(rules: &[AppliedRule], verdict: Verdict) -> Option<&'static str> {
     const STRICTER: &str = "the walk is stricter";
     const MILDER: &str = "the walk is more favourable: rely on practice";
-    const AGREE: &str = "practice and walk agree";
+    const AGREE: &str = "practice and walk agree on retention";
     let met = |id: &str| rules.iter().find(|rule| rule.id == id && rule.applies)?.met;
     let retained = !rules.iter().any(|rule| rule.is_broken() && rule.role == RuleRole::Retention);
     let (none, continuing) = (met("foster-fell-no-erosion"), met("foster-fell-continuing"));
@@ -203,7 +203,7 @@ mod tests {
                      tests found no erosion up to 0.700 mm only, and continuing erosion beyond ";
         for (verdict, end) in [
             (Verdict::None, "; the walk is more favourable: rely on practice"),
-            (Verdict::Some, "; practice and walk agree"),
+            (Verdict::Some, "; practice and walk agree on retention"),
             (Verdict::Continuing, "; practice and walk agree that it does not hold"),
             (Verdict::Undecided, " (Foster and Fell)"),
         ] {
@@ -217,14 +217,14 @@ mod tests {
         let met = "met: D15F 1.18 mm is within the 2.04 mm that Sherard and Dunnigan allow (design); tests found \
                    no erosion up to 3.56 mm (Foster and Fell); ";
         for (verdict, end) in [
-            (Verdict::None, "practice and walk agree"),
+            (Verdict::None, "practice and walk agree on retention"),
             (Verdict::Some, "the walk is stricter"),
             (Verdict::Continuing, "the walk is stricter"),
         ] {
             assert_eq!(said(&[(1.0, 0.0), (3.0, 100.0)], &SAND, verdict), format!("{met}{end}"));
         }
         for (verdict, end) in [
-            (Verdict::Continuing, "practice and walk agree"),
+            (Verdict::Continuing, "practice and walk agree on retention"),
             (Verdict::Some, "the walk is more favourable: rely on practice"),
             (Verdict::None, "the walk is more favourable: rely on practice"),
         ] {
@@ -242,7 +242,7 @@ mod tests {
     #[test]
     fn stability_and_drainage_are_said() {
         let too_fine = said(&SAND, &SAND, Verdict::None);
-        let drains = "; the filter may be too fine to drain the base: D15F ";
+        let drains = "; the filter may be too fine to drain the base; D15F ";
         assert!(too_fine.starts_with("met: ") && too_fine.contains(drains), "{too_fine}");
         let gap = [(0.3, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)];
         let unstable = said(&gap, &SAND, Verdict::None);

@@ -51,7 +51,7 @@ pub fn said_of_all(role: RuleRole, rules: &[&AppliedRule]) -> Option<String> {
                     None => String::new(),
                 };
                 said.push(format!(
-                    "the filter may be too fine to drain the base: D15F {value}, practice asks for {limit} \
+                    "the filter may be too fine to drain the base; D15F {value}, USBR and NRCS ask for {limit} \
                      or more{by_all}"
                 ));
             }
