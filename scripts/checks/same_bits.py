@@ -190,7 +190,8 @@ set = { filter = { density = "dense", cu = 1.5 }, packing = { grains = 300, stif
 """
 
 WORDS = {"verdict", "engine", "kind", "counted_facets"}  # their text is a result
-DROPPED = {"seconds", "settings", "rules", "confidence", "reasons"}
+DROPPED = {"seconds", "settings", "rules", "confidence", "reasons", "notes", "practice"}
+LABELS = {"confidence", "reason", "rules_not_met", "warnings"}  # columns of a campaign's table that are no result of a walk
 ROWS = 12
 
 
@@ -314,7 +315,7 @@ class Program:
     def campaign(self, folder, threads=None):
         self.call(folder, "campaign", "plan.toml", "--out", "out", "-q", threads=threads)
         outcomes = sorted(path.relative_to(folder / "out").as_posix() for path in folder.glob("out/cases/*/outcome.json"))
-        return results(folder / "out", "cases.csv", *outcomes)
+        return {"cases.csv": digest(without_labels(folder / "out" / "cases.csv")), **results(folder / "out", *outcomes)}
 
     def percolation(self, folder, threads=None):
         self.call(folder, "percolation", "--sizes", "5,8,12,20", "--realisations", "20", "--out", "out", threads=threads)
@@ -383,6 +384,13 @@ def shortened(value):
     if isinstance(value, list):
         return digest(json.dumps(value, sort_keys=True).encode()) if len(value) > ROWS else [shortened(v) for v in value]
     return value
+
+
+def without_labels(path):
+    """A campaign's table without what is said of its verdicts."""
+    with open(path, newline="") as file:
+        rows = [{k: v for k, v in row.items() if k not in LABELS} for row in csv.DictReader(file)]
+    return json.dumps(rows).encode()
 
 
 def without_times(path):

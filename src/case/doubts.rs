@@ -2,6 +2,7 @@
 
 use super::Case;
 use super::supply::PAPER_MASS_RATIO;
+use crate::outcome::doubt::{Doubt, Way};
 use crate::scene::NetworkSource;
 
 /// A lattice narrower than this many voids has few ways beside each other: on one pair of soils one void
@@ -43,8 +44,13 @@ impl Case {
     }
 
     /// What speaks against the network, whatever comes of its walk.
-    pub(super) fn network_doubts(&self) -> Vec<String> {
-        [self.own_network(), self.narrow_lattice(), self.all_on_its_way()].into_iter().flatten().collect()
+    pub(super) fn network_doubts(&self) -> Vec<Doubt> {
+        let own = Doubt::all(Way::Open, self.own_network());
+        own.chain(Doubt::all(
+            Way::Unsafe,
+            [self.narrow_lattice(), self.all_on_its_way()].into_iter().flatten(),
+        ))
+        .collect()
     }
 
     /// A network that the user gives.
@@ -96,7 +102,8 @@ mod tests {
         let small =
             ["network.nx=10", "network.ny=10", "network.nz=12", "base.cu=3", "base.d15f_over_d85b=3.9"];
         let all: Vec<String> = small.iter().chain(set).map(ToString::to_string).collect();
-        Case::new(Scene::built_in(&all).unwrap()).unwrap().doubts()
+        let doubts = Case::new(Scene::built_in(&all).unwrap()).unwrap().doubts();
+        doubts.into_iter().map(|doubt| doubt.said).collect()
     }
 
     #[track_caller]

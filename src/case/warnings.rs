@@ -5,6 +5,7 @@ use super::{Case, Input, PackingPlan, guesses_grains_per_void, replicate_seed};
 use crate::gradation::{FEW_FINES, FINES_MM, Gradation};
 use crate::network::ExitRule;
 use crate::outcome::Mistake;
+use crate::outcome::doubt::{Doubt, Way};
 
 /// More moves than these of a particle that nothing stops are worth a word.
 const MANY_MOVES: f64 = 1e5;
@@ -30,74 +31,109 @@ const GRAPH_THICKNESS: &str =
 const LOOKED_AT: u64 = 50_000_000;
 
 impl Case {
-    /// Where the inputs leave the range in which the model was checked: no verdict on them stands in green.
-    pub fn doubts(&self) -> Vec<String> {
+    /// Where the inputs leave the range in which the model was checked, each with the way in which the walk
+    /// errs for it.
+    pub fn doubts(&self) -> Vec<Doubt> {
         let mut doubts = Vec::new();
-        doubts.extend(self.fines());
-        doubts.extend(self.errs_unsafe());
-        doubts.extend(self.not_walked());
+        doubts.extend(Doubt::all(Way::Open, self.fines()));
+        doubts.extend(Doubt::all(Way::Unsafe, self.errs_unsafe()));
+        doubts.extend(Doubt::all(Way::Unsafe, self.not_walked()));
         doubts.extend(self.too_thick());
-        doubts.extend(self.too_little_base());
+        doubts.extend(Doubt::all(Way::Open, self.too_little_base()));
         doubts.extend(self.network_doubts());
-        for (whose, soil, low, high) in [("filter", &self.filter, 1.2, 6.0), ("base", &self.base, 1.2, 4.5)] {
-            match soil.cu() {
-                Some(cu) if cu < low - 1e-9 || cu > high + 1e-9 => doubts
-                    .push(format!("Cu of the {whose} is {cu:.2}: the model was checked for {low} to {high}")),
-                Some(_) => {}
-                None => doubts.push(format!(
-                    "Cu of the {whose} is not known, as its D10 is finer than its finest sieve: the model \
-                     was checked for {low} to {high}"
-                )),
-            }
-        }
+        doubts.extend(Doubt::all(Way::Open, self.not_as_uniform()));
         if let Some(gap) = self.filter.gap(0.0).filter(|_| self.filter_is_measured()) {
-            doubts.push(format!(
+            let said = format!(
                 "the filter is gap-graded: only {:.1} % of it is between {:.3} mm and four times that. The \
                  constrictions between its fines, which it may lose, were walked",
                 gap.within, gap.from_mm
-            ));
-        }
-        doubts.extend(self.pan_doubt());
-        if let Some(shipped) = self.shipped.filter(|_| self.fixed_network.is_none())
-            && let Some(cu) = self.filter.cu()
-            && (cu / shipped.cu - 1.0).abs() > 0.05
-        {
-            doubts.push(format!(
-                "the filter's Cu is {cu:.2}, but its constriction curve {} belongs to Cu {}: constrictions \
-                 of another filter",
-                shipped.name, shipped.cu
-            ));
-        }
-        if self.scene.filter.estimate.is_some() {
-            doubts.push(
-                "the constriction curve is a guess from circles inscribed between three or four grains: on \
-                 packed filters its Dc50 was 0.65 to 0.82 times the measured one at 1, and 1.6 to 1.9 times \
-                 at 0, so both are walked besides. filter.density packs the grains and measures it, of \
-                 a broad filter on its finer part"
-                    .into(),
             );
-            if guesses_grains_per_void(&self.scene) {
-                doubts.push(format!(
-                    "filter.grains_per_void is not given, and a guess knows none: {GUESSED_GRAINS_PER_VOID} \
-                     was taken, as of loose packings (0.43 to 0.69 were measured); the base that Eq. (2) \
-                     gives goes with it"
-                ));
-            }
+            doubts.push(Doubt { said, way: Way::Unsafe });
         }
-        if let Some(part) = self.packed.as_ref().and_then(|packed| packed.part.as_ref()) {
-            doubts.push(part.sentence());
-        }
+        // Finer than every constriction it is passive for certain.
+        let way = if self.pan_size.is_some() { Way::Open } else { Way::Settled };
+        doubts.extend(Doubt::all(way, self.pan_doubt()));
+        doubts.extend(Doubt::all(Way::Open, self.other_filter()));
+        doubts.extend(Doubt::all(Way::Open, self.guesses()));
+        // The grains that were left out can only make constrictions coarser than those that were walked.
+        let part = self.packed.as_ref().and_then(|packed| packed.part.as_ref());
+        doubts.extend(Doubt::all(Way::Unsafe, part.map(|part| part.sentence())));
         let loose = self.packed.as_ref().and_then(|packed| packed.rattlers);
         if let Some(loose) = loose.filter(|loose| *loose > SKELETON) {
-            doubts.push(format!(
+            let said = format!(
                 "{:.0} % of the packed grains, by number, carry no load: the coarse grains carry each other, \
                  and nearly all finer ones lie loose between them. Water may wash those out, and with them \
                  the constrictions that were walked",
                 100.0 * loose
-            ));
+            );
+            doubts.push(Doubt { said, way: Way::Unsafe });
         }
-        doubts.extend(self.few_replicates());
+        doubts.extend(Doubt::all(Way::Open, self.few_replicates()));
         doubts
+    }
+
+    /// That a soil is more or less uniform than those for which the model was checked.
+    fn not_as_uniform(&self) -> Vec<String> {
+        let mut said = Vec::new();
+        let mut compare = |whose: &str, cu: Option<[f64; 2]>, low: f64, high: f64| {
+            let is_within = |cu: f64| (low - 1e-9..=high + 1e-9).contains(&cu);
+            let checked = format!("the model was checked for {low} to {high}");
+            match cu {
+                Some([least, most]) if is_within(least) && is_within(most) => {}
+                Some([least, most]) if most - least < 0.005 => {
+                    said.push(format!("Cu of the {whose} is {least:.2}: {checked}"));
+                }
+                Some([least, most]) => said.push(format!(
+                    "Cu of the {whose} is between {least:.2} and {most:.2}, as its D10 is finer than its \
+                     finest sieve: {checked}"
+                )),
+                None => said.push(format!(
+                    "Cu of the {whose} is not known, as its D10 is finer than its finest sieve: {checked}"
+                )),
+            }
+        };
+        compare("filter", self.filter.cu().map(|cu| [cu, cu]), 1.2, 6.0);
+        compare("base", self.cu_of_base(), 1.2, 4.5);
+        said
+    }
+
+    /// Cu of the base between its two readings where D10 lies in an open tail.
+    fn cu_of_base(&self) -> Option<[f64; 2]> {
+        if let Some(cu) = self.base.cu() {
+            return Some([cu, cu]);
+        }
+        let [fine, coarse] = self.tail_as()?.map(|reading| reading.cu());
+        Some([coarse?, fine?])
+    }
+
+    /// A shipped constriction curve of another filter.
+    fn other_filter(&self) -> Option<String> {
+        let shipped = self.shipped.filter(|_| self.fixed_network.is_none())?;
+        let cu = self.filter.cu().filter(|cu| (cu / shipped.cu - 1.0).abs() > 0.05)?;
+        Some(format!(
+            "the filter's Cu is {cu:.2}, but its constriction curve {} belongs to Cu {}: constrictions of \
+             another filter",
+            shipped.name, shipped.cu
+        ))
+    }
+
+    /// What is guessed where nobody packed the filter.
+    fn guesses(&self) -> Vec<String> {
+        if self.scene.filter.estimate.is_none() {
+            return Vec::new();
+        }
+        let curve = "the constriction curve is a guess from circles inscribed between three or four grains: \
+                     on packed filters its Dc50 was 0.65 to 0.82 times the measured one at 1, and 1.6 to 1.9 \
+                     times at 0, so both are walked besides. filter.density packs the grains and measures \
+                     it, of a broad filter on its finer part";
+        let grains = guesses_grains_per_void(&self.scene).then(|| {
+            format!(
+                "filter.grains_per_void is not given, and a guess knows none: {GUESSED_GRAINS_PER_VOID} was \
+                 taken, as of loose packings (0.43 to 0.69 were measured); the base that Eq. (2) gives goes \
+                 with it"
+            )
+        });
+        std::iter::once(curve.to_owned()).chain(grains).collect()
     }
 
     /// What the scene says of the soils that the model does not know.
@@ -153,16 +189,17 @@ impl Case {
 
     /// A real filter layer that is thinner than the modelled one by more than half a layer of voids, to which
     /// a thickness is rounded.
-    fn too_thick(&self) -> Option<String> {
+    fn too_thick(&self) -> Option<Doubt> {
         let real = self.scene.filter.thickness_mm?;
         if self.is_scale_free() {
-            return Some(Self::thickness_without_unit(real, "D0F"));
+            return Some(Doubt { said: Self::thickness_without_unit(real, "D0F"), way: Way::Open });
         }
         let Some(modelled) = self.thickness() else {
-            return Some(format!(
+            let said = format!(
                 "how thick a network from a file is, is not known: filter.thickness_mm, {real}, is compared \
                  with nothing"
-            ));
+            );
+            return Some(Doubt { said, way: Way::Open });
         };
         let half = 0.5 * self.filter.d_by_number(50.0).unwrap_or(0.0);
         let (what, key) = match self.copies {
@@ -173,12 +210,11 @@ impl Case {
                 "network.nz says how many layers",
             ),
         };
-        (modelled > real + half * (1.0 + 1e-9)).then(|| {
-            format!(
-                "the modelled filter is thicker than the real one; {what} {modelled:.1} mm, \
-                 filter.thickness_mm is {real}: {key}"
-            )
-        })
+        let said = format!(
+            "the modelled filter is thicker than the real one; {what} {modelled:.1} mm, filter.thickness_mm \
+             is {real}: {key}"
+        );
+        (modelled > real + half * (1.0 + 1e-9)).then_some(Doubt { said, way: Way::Unsafe })
     }
 
     /// That a real thickness says nothing where sizes are multiples of another.
@@ -235,7 +271,7 @@ impl Case {
 
     /// Where the inputs leave the range in which the model was checked, and what else a reader must know.
     pub fn warnings(&self) -> Vec<String> {
-        let mut warnings = self.doubts();
+        let mut warnings: Vec<String> = self.doubts().into_iter().map(|doubt| doubt.said).collect();
         warnings.extend(self.regrading());
         let of_file = |input: &Input| -> Vec<String> {
             input.notes.iter().map(|note| format!("{}: {note}", input.name)).collect()
@@ -322,7 +358,11 @@ mod tests {
 
     fn said(changes: &[&str]) -> String {
         let doubts = case(changes).unwrap().doubts();
-        doubts.into_iter().filter(|doubt| doubt.contains("thicker than the real one")).collect()
+        doubts
+            .into_iter()
+            .map(|doubt| doubt.said)
+            .filter(|said| said.contains("thicker than the real one"))
+            .collect()
     }
 
     #[test]

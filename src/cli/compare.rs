@@ -77,6 +77,7 @@ fn words(comparison: &Comparison) -> String {
             case.ratios.d15f_over_d85b,
             grains_per_void(case.grains_per_void)
         ));
+        line(format!("  Practice: {}", case.practice));
         for reason in case.reasons.iter().chain(&case.beside) {
             line(format!("  {reason}"));
         }

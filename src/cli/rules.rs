@@ -68,7 +68,8 @@ fn words(pair: &PairRules, args: &RulesArgs, notes: &[(&str, Vec<String>)]) -> S
     for (role, heading) in [
         (RuleRole::Retention, "The filter retains the base"),
         (RuleRole::Continuation, "Coarser filters: where erosion still ends"),
-        (RuleRole::Drainage, "The filter drains and can be placed"),
+        (RuleRole::Drainage, "The filter drains the base"),
+        (RuleRole::Placing, "The filter can be placed"),
         (RuleRole::Stability, "The filter holds its own fines"),
     ] {
         line(String::new());
@@ -100,7 +101,9 @@ fn row(rule: &AppliedRule) -> String {
     };
     let sign = if rule.at_least { ">=" } else { "<=" };
     let unit = if rule.unit.is_empty() { String::new() } else { format!(" {}", rule.unit) };
-    let limit = rule.limit.map_or(String::new(), |limit| format!(", {sign} {}{unit}", number(Some(limit))));
+    let at_most = if rule.limit_at_most { " at most" } else { "" };
+    let limit =
+        rule.limit.map_or(String::new(), |limit| format!(", {sign} {}{unit}{at_most}", number(Some(limit))));
     format!("  {result:<11}{}: {} = {}{unit}{limit}", rule.name, rule.quantity, number(rule.value))
 }
 

@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use super::args::{ResultArgs, ResumeArgs, RunArgs, SettingArgs};
-use super::print::{count, counted, grains_per_void, json, leaves_out, percent, shown, to_stdout};
+use super::print::{count, counted, grains_per_void, json, leaves_out, percent, plain, shown, to_stdout};
 use super::progress::followed;
-use crate::outcome::record::RunSummary;
+use crate::outcome::record::{Confidence, RunSummary};
 use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
 
 /// Walks a scene and writes its folder.
@@ -67,7 +67,11 @@ fn summary(run: &FinishedRun) -> String {
         let _ = writeln!(text, "{s}");
     };
     line(format!("Verdict: {}", outcome.headline()));
-    for reason in outcome.reasons.iter().skip(1) {
+    line(format!("Practice: {}", plain(&outcome.practice_in_words())));
+    if outcome.confidence != Confidence::Within {
+        line(format!("  Confidence: {}", outcome.confidence.words()));
+    }
+    for reason in outcome.reasons_below() {
         line(format!("  also: {reason}"));
     }
     for run in &outcome.summary {

@@ -16,6 +16,9 @@ pub struct Regraded {
     pub at_mm: Option<f64>,
     /// Why it was regraded, or not.
     pub why: String,
+    /// The size below which practice looks at it, where no sieve tells the sizes there: `gradation` is then
+    /// the whole soil, coarser than what practice looks at.
+    pub hidden_below_mm: Option<f64>,
 }
 
 impl Gradation {
@@ -36,11 +39,12 @@ impl Gradation {
     pub fn regraded(&self) -> Regraded {
         let (at, why) = self.regrading();
         match at.map(|at| self.passing(at)) {
-            None => Regraded { gradation: self.clone(), at_mm: None, why },
-            Some(Some(gradation)) => Regraded { gradation, at_mm: at, why },
+            None => Regraded { gradation: self.clone(), at_mm: None, why, hidden_below_mm: None },
+            Some(Some(gradation)) => Regraded { gradation, at_mm: at, why, hidden_below_mm: None },
             Some(None) => {
                 let why = format!("{why}; but no known size of it passes that sieve: left as it is");
-                Regraded { gradation: self.clone(), at_mm: None, why }
+                let hidden_below_mm = at.filter(|at| self.percent_finer_by_mass(*at) > 0.0);
+                Regraded { gradation: self.clone(), at_mm: None, why, hidden_below_mm }
             }
         }
     }

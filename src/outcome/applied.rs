@@ -28,6 +28,9 @@ pub struct AppliedRule {
     /// Whether `limit` is the least that the rule allows instead of the most.
     #[serde(default)]
     pub at_least: bool,
+    /// Whether the true limit is not known, and is at most `limit`.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub limit_at_most: bool,
     /// Whether the value keeps the limit; `None` where the rule has no result.
     #[serde(alias = "meets")]
     pub met: Option<bool>,
@@ -72,8 +75,10 @@ pub enum RuleRole {
     Retention,
     /// A coarser filter: erosion ends.
     Continuation,
-    /// The filter drains and can be placed.
+    /// The filter drains the base.
     Drainage,
+    /// The filter can be placed without segregating.
+    Placing,
     /// The filter holds its own fines.
     Stability,
     /// The walk itself: it is checked by this, not the filter.
@@ -87,7 +92,10 @@ impl RuleRole {
             Self::Retention => "a verdict of no erosion",
             Self::Continuation => "a verdict of no or of some erosion",
             Self::Stability => "any verdict: without its fines it is not the filter that was walked",
-            Self::Drainage => "a verdict of no erosion, as of a filter that practice would not build",
+            Self::Drainage => "building this filter: it may not drain, which says nothing of retention",
+            Self::Placing => {
+                "building this filter: it may segregate when placed, which says nothing of retention"
+            }
             Self::Walk => "no verdict",
         }
     }
@@ -99,22 +107,63 @@ pub enum Confidence {
     /// The model was checked for such soils, and no rule of practice speaks against the verdict.
     #[serde(rename = "within checked range")]
     Within,
+    /// "No erosion", but practice would not place such a filter.
+    #[serde(rename = "may segregate")]
+    MaySegregate,
     /// The model was not checked for such soils.
     #[default]
     #[serde(rename = "outside checked range")]
     Outside,
-    /// A rule of practice that was made for these soils speaks against it.
+    /// "No erosion", but the filter may not drain the base: that says nothing of retention.
+    #[serde(rename = "may not drain")]
+    MayNotDrain,
+    /// The filter may lose its own fines, and is then not the filter that was walked.
+    #[serde(rename = "may lose its own fines")]
+    Unstable,
+    /// A rule of retention, or of coarser filters, that was made for these soils speaks against it.
     #[serde(rename = "contradicted by practice")]
     Contradicted,
 }
 
 impl Confidence {
+    /// All of them that are a doubt, the worst first.
+    pub const DOUBTS: [Self; 5] =
+        [Self::Contradicted, Self::Unstable, Self::MayNotDrain, Self::Outside, Self::MaySegregate];
+
     /// Its name in `outcome.json`.
     pub fn words(self) -> &'static str {
         match self {
             Self::Within => "within checked range",
+            Self::MaySegregate => "may segregate",
             Self::Outside => "outside checked range",
+            Self::MayNotDrain => "may not drain",
+            Self::Unstable => "may lose its own fines",
             Self::Contradicted => "contradicted by practice",
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Folders and ledgers of earlier versions have three of them.
+    #[test]
+    fn every_label_is_read_back_by_its_words() {
+        for label in Confidence::DOUBTS.into_iter().chain([Confidence::Within]) {
+            let text = serde_json::to_string(&label).unwrap();
+            assert_eq!(text, format!("\"{}\"", label.words()));
+            assert_eq!(serde_json::from_str::<Confidence>(&text).unwrap(), label);
+        }
+        assert!(
+            Confidence::DOUBTS.is_sorted_by(|a, b| a > b)
+                && !Confidence::DOUBTS.contains(&Confidence::Within)
+        );
+        let old = serde_json::json!({
+            "name": "Permeability", "role": "drainage", "quantity": "D15F", "value": 1.0, "limit": 2.0,
+            "met": false, "source": ""
+        });
+        let rule: AppliedRule = serde_json::from_value(old).unwrap();
+        assert!(rule.role == RuleRole::Drainage && !rule.limit_at_most);
     }
 }

@@ -4,7 +4,8 @@ use super::digits::{count, percent};
 use super::record::{Outcome, PanBounds};
 
 impl Outcome {
-    /// What a reader must see beside the verdict and its reasons, in sentences: both readings of the base's
+    /// What a reader must see beside the verdict and its reasons, in sentences: what else is to be known of
+    /// the pair, both readings of the base's
     /// finest part, what the replicates leave open, what was trapped or capped, the thickness and how the
     /// verdict moves with it, and what water and voids came to.
     pub fn beside_the_verdict(&self) -> Vec<String> {
@@ -19,7 +20,7 @@ impl Outcome {
             self.flow_sentence(),
             self.overfull_sentence(),
         ];
-        first.into_iter().chain(second).flatten().collect()
+        self.notes.iter().cloned().chain(first.into_iter().chain(second).flatten()).collect()
     }
 
     /// How many particles circle for ever.

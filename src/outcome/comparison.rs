@@ -50,6 +50,9 @@ pub struct ComparedCase {
     pub reasons: Vec<String>,
     /// The rules of practice that were made for these soils and are not kept, by name.
     pub rules_not_kept: Vec<String>,
+    /// What filter practice says of the pair, in a line; records of earlier versions do not say.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub practice: String,
     /// What else stands beside every verdict, in sentences.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub beside: Vec<String>,
@@ -150,6 +153,7 @@ impl ComparedCase {
             verdict: outcome.verdict,
             confidence: outcome.confidence,
             reasons: outcome.reasons.clone(),
+            practice: outcome.practice_in_words(),
             rules_not_kept: broken.map(|rule| rule.name.clone()).collect(),
             beside: outcome.beside_the_verdict(),
             replicates: outcome.replicates.len() as u64,

@@ -25,7 +25,7 @@ impl CurveRange {
     }
 
     /// Whether the ends have the class of the curve itself.
-    fn agrees(&self) -> bool {
+    pub fn agrees(&self) -> bool {
         self.ends.iter().all(|end| end.verdict == self.verdict)
     }
 

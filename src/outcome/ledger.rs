@@ -175,8 +175,8 @@ pub fn leaves_out(lines: &[LedgerLine]) -> Vec<String> {
 /// checked range`; empty without cases.
 pub fn confidences(lines: &[LedgerLine], class: Verdict) -> String {
     let count = |wanted| lines.iter().filter(|l| l.verdict == class && l.confidence == wanted).count();
-    let doubts = [Confidence::Contradicted, Confidence::Outside, Confidence::Within].map(Some);
-    let counted = doubts.into_iter().chain([None]).filter(|wanted| count(*wanted) > 0).map(|wanted| {
+    let labels = Confidence::DOUBTS.into_iter().chain([Confidence::Within]).map(Some);
+    let counted = labels.chain([None]).filter(|wanted| count(*wanted) > 0).map(|wanted| {
         format!("{} {}", count(wanted), wanted.map_or("of unknown confidence", Confidence::words))
     });
     counted.collect::<Vec<_>>().join(", ")

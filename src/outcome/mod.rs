@@ -10,7 +10,8 @@
 //! - [`so_far`] is a look at the replicates of a run that is under way.
 //! - [`paper`] holds what the paper states.
 //! - [`rules`] applies the rules of filter practice to the same two curves; [`PairRules`] without a walk.
-//! - [`confidence`] says how far a verdict can be relied on, and why no further.
+//! - [`confidence`] is the label of a verdict and what sets it, by each [`doubt`] and rule; [`practice`] is what
+//!   practice says of the pair, whatever the verdict.
 //! - [`walk_doubts`] are what a walk itself says against its verdict.
 //! - [`infiltration()`] is Eq. (1) beside the walk.
 //! - [`network_walk`] is what comes of walks on given networks, without a scene.
@@ -29,6 +30,7 @@ pub mod confidence;
 mod curve_range;
 pub mod design;
 pub(crate) mod digits;
+pub mod doubt;
 pub mod early_stop;
 mod flow_words;
 mod infiltration;
@@ -41,9 +43,11 @@ mod pair;
 mod pan;
 pub mod paper;
 pub mod percolation;
+pub mod practice;
 pub mod precision;
 pub mod record;
 mod recorder;
+mod rule_words;
 pub mod rules;
 pub mod so_far;
 mod statistic;

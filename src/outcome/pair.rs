@@ -109,7 +109,7 @@ impl PairRules {
         let sides = Sides::of(filters, bases);
         let (curve, filter) = &filters[sides.coarsest_filter];
         let (base_curve, base) = &bases[sides.finest_base];
-        let BaseSoil { gradation, regraded, regraded_at_mm, why, fines_percent, category } =
+        let BaseSoil { gradation, regraded, regraded_at_mm, why, fines_percent, category, .. } =
             BaseSoil::of(base, false);
         let names = |curves: &[NamedCurve]| match curves.len() {
             1 => Vec::new(),
@@ -169,7 +169,10 @@ fn stricter(
     sides: Sides,
     rules: &[AppliedRule],
 ) -> Option<String> {
-    let limit = |rules: &[AppliedRule]| rules.iter().find(|rule| rule.id == "sherard-dunnigan")?.limit;
+    let limit = |rules: &[AppliedRule]| {
+        let rule = rules.iter().find(|rule| rule.id == "sherard-dunnigan")?;
+        rule.limit.filter(|_| !rule.limit_at_most)
+    };
     let of_finest = limit(rules)?;
     let filter = std::slice::from_ref(&filters[sides.coarsest_filter]);
     let of_curve = |curve: &NamedCurve| {

@@ -16,23 +16,28 @@ const LIMITS: [(&str, &str, Colour, &str); 4] = [
     ("foster-fell-continuing", "CE", PURPLE, "continuing erosion (CE)"),
 ];
 
-/// A boundary: its place in [`LIMITS`], and the D15F at which it is.
-type Boundary = (usize, f64);
+/// A boundary: its place in [`LIMITS`], the D15F at which it is, and whether it is that or less.
+type Boundary = (usize, f64, bool);
 
 /// The boundaries that are known for these soils.
 pub(super) fn boundaries(outcome: &Outcome) -> Vec<Boundary> {
     let limit = |id: &str| {
         let rule = outcome.rules.iter().find(|rule| rule.id == id && rule.applies)?;
-        rule.limit.filter(|limit| rule.quantity == "D15F" && *limit > 0.0 && limit.is_finite())
+        let limit =
+            rule.limit.filter(|limit| rule.quantity == "D15F" && *limit > 0.0 && limit.is_finite())?;
+        Some((limit, rule.limit_at_most))
     };
-    let found = LIMITS.iter().enumerate().filter_map(|(place, (id, ..))| Some((place, limit(id)?)));
-    found.collect()
+    let boundary = |(place, (id, ..)): (usize, &(&str, _, _, _))| {
+        let (limit, at_most) = limit(id)?;
+        Some((place, limit, at_most))
+    };
+    LIMITS.iter().enumerate().filter_map(boundary).collect()
 }
 
 /// Draws the row of 15 % and the boundaries at it.
 pub(super) fn draw(figure: &mut Figure, boundaries: &[Boundary]) {
     figure.add(Rule::new(Across::Y, 15.0, BLACK).dash(Dash::Dotted).label("15 %"));
-    for (place, limit) in boundaries {
+    for (place, limit, _) in boundaries {
         let (_, name, colour, _) = LIMITS[*place];
         let line = Line::new(vec![(*limit, 15.0 - HALF), (*limit, 15.0 + HALF)], colour);
         figure.add(line.width(3.0).stays().label(name));
@@ -44,7 +49,10 @@ pub(super) fn caption(boundaries: &[Boundary], scale_free: bool) -> String {
     if boundaries.is_empty() {
         return String::new();
     }
-    let one = |(place, limit): &Boundary| format!("{} {}", LIMITS[*place].3, size(*limit, scale_free));
+    let one = |(place, limit, at_most): &Boundary| {
+        let at_most = if *at_most { " at most" } else { "" };
+        format!("{} {}{at_most}", LIMITS[*place].3, size(*limit, scale_free))
+    };
     let all: Vec<String> = boundaries.iter().map(one).collect();
     format!(
         " Short lines at the 15 % row: the D15F up to which practice sees {}, the erosion boundaries by \

@@ -28,9 +28,9 @@ pub(super) fn cases(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> M
         @if ledger.len() > LISTED { p.small { "The rest is in cases.csv." } }
         p.small {
             "Class: with a link to the page of the case; below it the replicates by class, where they \
-             differ. Confidence: within or outside the range in which the model was checked, or \
-             contradicted by a rule of practice; below it the first reason. Below a number its 95 % \
-             interval over the replicates."
+             differ. Confidence: within or outside the range in which the model was checked, contradicted \
+             by a rule of retention, or of a filter that practice would not build; below it the first \
+             reason, which sets it. Below a number its 95 % interval over the replicates."
         }
         (listed("Rules of practice that are not met", &tally(ledger, rules_of)))
         (listed("Warnings", &tally(ledger, |line| line.warnings.clone())))
@@ -40,7 +40,7 @@ pub(super) fn cases(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> M
 /// How many verdicts cannot be relied on as they stand; nothing where all can.
 pub(super) fn doubted(ledger: &[LedgerLine]) -> Markup {
     let count = |wanted| ledger.iter().filter(|line| line.confidence == Some(wanted)).count() as u64;
-    let doubts = [Confidence::Outside, Confidence::Contradicted].map(|doubt| (doubt, count(doubt)));
+    let doubts = Confidence::DOUBTS.map(|doubt| (doubt, count(doubt)));
     html! {
         @for (doubt, count) in doubts.into_iter().filter(|(_, count)| *count > 0) {
             p {
@@ -150,6 +150,7 @@ fn confidence(line: &LedgerLine) -> Markup {
             Some(Confidence::Within) => "within",
             Some(Confidence::Outside) => span.amber { "outside" },
             Some(Confidence::Contradicted) => span.amber { "contradicted" },
+            Some(doubt) => span.amber { (doubt.words()) },
         }
         @if let Some(reason) = &line.reason { br; span.small { (clean(&shorten(reason, 200))) } }
     }

@@ -125,6 +125,7 @@ fn page(folder: &Path, comparison: &Comparison, drawn: &[Drawn]) -> String {
                 @if comparison.cases.iter().any(|case| case.verdict == Verdict::Undecided) {
                     p { "Undecided is no verdict: the page of the case says what would decide it." }
                 }
+                (practice(comparison))
                 (doubts(comparison))
             }
             (leaves_out(&comparison.model_leaves_out, &html! {
@@ -140,8 +141,9 @@ fn page(folder: &Path, comparison: &Comparison, drawn: &[Drawn]) -> String {
         (cases(folder, comparison))
         p.small {
             "Class: with a link to the page of the case. Confidence: within or outside the range in which \
-             the model was checked, or contradicted by a rule of practice. Below a number its 95 % interval \
-             over the replicates; the threshold between the classes is " (threshold(comparison.threshold))
+             the model was checked, contradicted by a rule of retention, or of a filter that practice would \
+             not build. Below a number its 95 % interval over the replicates; the threshold between the \
+             classes is " (threshold(comparison.threshold))
             "."
         }
         h2 { "Differences" }
@@ -178,8 +180,18 @@ fn lead(comparison: &Comparison) -> String {
     format!("In the model: {}. {relied}", classes.join(", "))
 }
 
+/// What practice says of each case, whatever its verdict.
+fn practice(comparison: &Comparison) -> Markup {
+    html! { @for case in comparison.cases.iter().filter(|case| !case.practice.is_empty()) {
+        p.practice {
+            bdi { (name(&case.name)) } ": " (case.verdict.words()) ". " b { "Practice" } ": "
+            (clean(&case.practice)) "."
+        }
+    } }
+}
+
 fn doubts(comparison: &Comparison) -> Markup {
-    html! { @for doubt in [Confidence::Contradicted, Confidence::Outside] {
+    html! { @for doubt in Confidence::DOUBTS {
         @let named: Vec<String> = comparison.cases.iter().filter(|case| case.confidence == doubt)
             .map(|case| name(&case.name)).collect();
         @if !named.is_empty() {
@@ -208,6 +220,7 @@ fn cases(folder: &Path, comparison: &Comparison) -> Markup {
         Confidence::Within => html! { "within" },
         Confidence::Outside => html! { span.amber { "outside" } },
         Confidence::Contradicted => html! { span.amber { "contradicted" } },
+        doubt => html! { span.amber { (doubt.words()) } },
     };
     Table::of(&comparison.cases)
         .class("cases")

@@ -107,7 +107,8 @@ fn table(rules: &[&AppliedRule]) -> Markup {
         .number("limit", |rule| {
             let sign = if rule.at_least { "≥" } else { "≤" };
             let limit = |limit: f64| format!("{sign} {} {}", in_digits(limit, 3), rule.unit);
-            clean(rule.limit.map_or_else(|| "–".to_owned(), limit).trim_end())
+            let limit = clean(rule.limit.map_or_else(|| "–".to_owned(), limit).trim_end());
+            html! { (limit) @if rule.limit_at_most { " at most" } }
         })
         .text("", |rule| match result(rule) {
             Some(true) => html! { span.keeps { "✓ met" } },

@@ -55,6 +55,7 @@ pub fn network_walk_brief(record: &str) -> Result<String, ReportError> {
         &walks,
         &Said {
             headline: &headline(&record),
+            practice: None,
             meaning: in_words(&walks),
             doubt: Some(&doubt(&record)),
             replicate: replicate(&record),

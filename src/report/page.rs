@@ -62,6 +62,7 @@ pub fn run_brief(outcome: &str) -> Result<String, ReportError> {
     let walks = walks(&outcome, &rows);
     let said = Said {
         headline: &outcome.headline(),
+        practice: Some(outcome.practice_in_words()),
         meaning: in_words(&outcome, &walks),
         // The headline has the first reason.
         doubt: None,
@@ -111,12 +112,13 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
                          judgement." }
                 }))
             }
-            (reasons(outcome))
-            (warnings(outcome))
             div.pair {
                 (shell::figure(1, gradations))
                 (in_short(outcome))
             }
+            (reasons(outcome))
+            (notes(outcome))
+            (warnings(outcome))
         }
         (shell::contents())
         h2 { "Figures" }
@@ -150,6 +152,7 @@ fn verdict_section(folder: &RunFolder, verdict: &Drawn) -> Markup {
     html! {
         section.verdict.(class) {
             p.word.long[!outcome.reasons.is_empty()] { (clean(&capital(&outcome.headline()))) "." }
+            p.practice { b { "Practice" } ": " (clean(&outcome.practice_in_words())) "." }
             @if doubted { p { "Confidence: " b { (outcome.confidence.words()) } "." } }
             p.lead { (in_words(outcome, walks)) }
             div { (drawing(verdict)) }
@@ -224,8 +227,20 @@ fn reasons(outcome: &Outcome) -> Markup {
     }
 }
 
+/// What else is to be known, none of which speaks against the verdict.
+fn notes(outcome: &Outcome) -> Markup {
+    html! {
+        @if !outcome.notes.is_empty() {
+            section.warnings {
+                h2 { "What else to know of this pair" }
+                ul { @for note in &outcome.notes { li { (clean(note)) } } }
+            }
+        }
+    }
+}
+
 fn warnings(outcome: &Outcome) -> Markup {
-    let said = |warning: &&String| !outcome.reasons.contains(warning);
+    let said = |warning: &&String| !outcome.reasons.contains(warning) && !outcome.notes.contains(warning);
     let warnings: Vec<&String> = outcome.warnings.iter().filter(said).collect();
     let all = || outcome.warnings.iter().chain(&outcome.reasons);
     let is_capped = outcome.capped && !all().any(|said| said.starts_with("capped at"));

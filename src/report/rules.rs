@@ -52,7 +52,8 @@ pub(super) fn table(rules: &[&AppliedRule]) -> Markup {
         .number("Limit", |rule| {
             let sign = if rule.at_least { "≥" } else { "≤" };
             let limit = |limit: f64| format!("{sign} {} {}", trimmed((limit * 1e4).round() / 1e4), rule.unit);
-            clean(rule.limit.map_or_else(|| "–".to_owned(), limit).trim_end())
+            let limit = clean(rule.limit.map_or_else(|| "–".to_owned(), limit).trim_end());
+            html! { (limit) @if rule.limit_at_most { " at most" } }
         })
         .text("", |rule| match (rule.role, rule.met) {
             (RuleRole::Walk, Some(true)) => html! { "within" },

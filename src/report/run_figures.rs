@@ -92,7 +92,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     let limits = boundaries(&folder.outcome);
     let rows = filter.gradation.iter().chain(&filter.constrictions).chain(&base.gradation);
     let x =
-        size_axis(inputs.scale_free, rows.map(|row| row[0]).chain(limits.iter().map(|(_, limit)| *limit)));
+        size_axis(inputs.scale_free, rows.map(|row| row[0]).chain(limits.iter().map(|(_, limit, _)| *limit)));
     let x = if coarse_left(folder) { x.downward() } else { x };
     let y = Axis::percent("Percent finer (%)");
     let what = format!(

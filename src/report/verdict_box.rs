@@ -92,6 +92,8 @@ pub(super) fn replicates_in_words(walks: &Walks, what: [&str; 2]) -> Markup {
 pub(super) struct Said<'a> {
     /// The verdict in a few words.
     pub headline: &'a str,
+    /// What filter practice says of the pair; of a network there is no pair.
+    pub practice: Option<String>,
     /// What the class means, in the sentence of the page.
     pub meaning: String,
     /// Why nobody should rely on the verdict as it stands, where the headline does not say it.
@@ -115,6 +117,7 @@ pub(super) fn brief(walks: &Walks, said: &Said) -> String {
     html! {
         div {
             p { b { (clean(&capital(said.headline))) "." } " " (clean(&said.meaning)) }
+            @if let Some(practice) = &said.practice { p { b { "Practice" } ": " (clean(practice)) "." } }
             @if let Some(doubt) = said.doubt { p { span style=(AMBER) { (clean(doubt)) } } }
             img src={ "data:image/svg+xml;base64," (picture) }
                 alt="Mean and 95 % interval of the eroded mass in each run, against the threshold";

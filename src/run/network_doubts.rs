@@ -5,9 +5,11 @@ use super::network_walk::{NetworkOutcome, NetworkWalk};
 use super::replicates::said_by_walks;
 use crate::case::{Case, NOT_STUDIED, PAPER_MASS_RATIO};
 use crate::network::Network;
+use crate::outcome::confidence::{self, Judgement};
+use crate::outcome::doubt::{Doubt, Way};
 use crate::outcome::record::{Confidence, Statistic};
 use crate::outcome::rules::{self, RuleInputs};
-use crate::outcome::{Mistake, confidence};
+use crate::outcome::Mistake;
 
 /// A lattice narrower than this many voids has few ways beside each other.
 const FEWEST_ACROSS: u32 = 10;
@@ -35,8 +37,8 @@ impl NetworkOutcome {
         let in_increments = |said: String| {
             said.replace("a smaller inject_share", "more increments, a smaller share of the base in each")
         };
-        let of_walk = of_walk.into_iter().map(in_increments);
-        let doubts: Vec<String> = of_walk.chain(plan.doubts(network, self.replicates.len() as u64)).collect();
+        let of_walk = Doubt::all(Way::Unsafe, of_walk.into_iter().map(in_increments));
+        let doubts: Vec<Doubt> = of_walk.chain(plan.doubts(network, self.replicates.len() as u64)).collect();
         let rules = plan.filter.as_ref().map_or(Vec::new(), |filter| {
             let largest: Vec<f64> =
                 walked().filter_map(|w| w.replicate.runs.first()?.largest_eroded_over_d15f).collect();
@@ -48,7 +50,7 @@ impl NetworkOutcome {
         });
         let mistake = plan.filter.as_ref().and_then(|f| Mistake::find(&f.gradation, &plan.base, false));
         let mut warnings: Vec<String> = mistake.map(|mistake| mistake.sentence).into_iter().collect();
-        warnings.extend(doubts.iter().cloned());
+        warnings.extend(doubts.iter().map(|doubt| doubt.said.clone()));
         if networks == 1 && self.replicates.len() > 1 {
             warnings.push(
                 "all replicates walk one network: their spread is that of their walks, and says nothing of \
@@ -56,35 +58,38 @@ impl NetworkOutcome {
                     .into(),
             );
         }
-        let (confidence, mut reasons) = confidence::judge(self.verdict, &rules, doubts);
-        reasons.push(NOT_STUDIED.into());
+        let Judgement { confidence, reasons, notes } = confidence::judge(self.verdict, &rules, doubts);
+        let new: Vec<String> = notes.into_iter().filter(|note| !warnings.contains(note)).collect();
+        warnings.extend(new);
+        warnings.push(NOT_STUDIED.into());
         Said { confidence, reasons, warnings }
     }
 }
 
 impl NetworkWalk {
     /// What was not checked, or is not known, whatever comes of the walk.
-    fn doubts(&self, network: &Network, replicates: u64) -> Vec<String> {
-        let mut doubts: Vec<String> = Case::fines_of(&self.base).into_iter().collect();
-        doubts.extend(self.amount(network));
-        doubts.push(format!(
+    fn doubts(&self, network: &Network, replicates: u64) -> Vec<Doubt> {
+        let mut open: Vec<String> = Case::fines_of(&self.base).into_iter().collect();
+        open.extend(self.amount(network));
+        open.push(format!(
             "the network was given as it is, {} voids; nothing of it was checked against tests",
             network.filter_voids()
         ));
         if self.filter.is_none() {
-            doubts.push("the filter was not given; no rule of practice was asked".into());
+            open.push("the filter was not given; no rule of practice was asked".into());
         }
+        let mut of_shape = Vec::new();
         if let Some([nx, ny, _]) = network.shape()
             && nx.min(ny) < FEWEST_ACROSS
         {
-            doubts.push(format!(
+            of_shape.push(format!(
                 "the lattice is only {nx} x {ny} voids across; a narrow one seals by chance, so that filters \
                  seem to hold: {FEWEST_ACROSS} x {FEWEST_ACROSS} at the least, better 40 x 40"
             ));
         }
         let layers = network.layers() as u64;
         if network.exit_rule().needs_flow() && self.increments <= layers {
-            doubts.push(format!(
+            of_shape.push(format!(
                 "the whole base is inserted before any of it can be through the filter; there are {} \
                  increments, and a particle needs {layers} to pass as many layers. Where water flows, all \
                  that is on its way when the filter clogs counts as retained: take {} increments or more",
@@ -98,23 +103,24 @@ impl NetworkWalk {
         {
             let Some(soil) = soil else { continue };
             match soil.cu() {
-                Some(cu) if cu < low - 1e-9 || cu > high + 1e-9 => doubts
+                Some(cu) if cu < low - 1e-9 || cu > high + 1e-9 => open
                     .push(format!("Cu of the {whose} is {cu:.2}: the model was checked for {low} to {high}")),
                 Some(_) => {}
-                None => doubts.push(format!(
+                None => open.push(format!(
                     "Cu of the {whose} is not known, as its D10 is finer than its finest sieve: the model \
                      was checked for {low} to {high}"
                 )),
             }
         }
         if self.base.pan_fraction() > 0.0 {
-            doubts.push(format!(
+            open.push(format!(
                 "{:.1} % of the base is finer than its finest sieve: taken as passive and counted by mass only",
                 100.0 * self.base.pan_fraction()
             ));
         }
-        doubts.extend(Case::few(replicates));
-        doubts
+        open.extend(Case::few(replicates));
+        // What is finer than every constriction has one reading.
+        Doubt::all(Way::Unsafe, of_shape).chain(Doubt::all(Way::Open, open)).collect()
     }
 
     /// That the class follows from a number of base particles that is not the one of Eq. (2), or that nobody

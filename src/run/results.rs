@@ -10,11 +10,14 @@ use super::other_walks::OtherWalks;
 use super::replicates::{ReplicateResult, said_by_walks, stopping, summarise};
 use super::studies::Studies;
 use crate::case::{Case, INPUT_NAMES, replicate_seed};
+use crate::outcome::confidence::{self, Judgement};
+use crate::outcome::doubt::{Doubt, Way};
 use crate::outcome::record::{
-    CurveRange, Manifest, Outcome, PanBounds, PanReading, RunSummary, Statistic, Stopping, Verdict, VoidRow,
+    CurveRange, Manifest, Outcome, PanBounds, PanReading, Practice, RunSummary, Statistic, Stopping, Verdict,
+    VoidRow,
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
-use crate::outcome::{Recorded, by_void, confidence, infiltration, leaves_out, rules, verdict};
+use crate::outcome::{Recorded, by_void, infiltration, leaves_out, rules, verdict};
 use crate::store::{Folder, StoreError};
 
 /// The outcome of a case that has been walked; with what was walked besides, and its studies, none so far
@@ -32,40 +35,48 @@ pub fn outcome(
     let verdict = pan_bounds.as_ref().map_or(verdict, PanBounds::verdict);
     let rules = rules::apply(&rule_inputs(case, walked));
     // What was to be walked twice has been.
-    let told = |sentences: Vec<String>| match (&pan_bounds, case.pan_doubt()) {
-        (Some(bounds), Some(doubt)) => {
-            let one = |said: String| if said == doubt { bounds.sentence() } else { said };
-            sentences.into_iter().map(one).collect()
+    let to_be_walked = case.pan_doubt().zip(pan_bounds.as_ref());
+    let told = |said: String| match &to_be_walked {
+        Some((doubt, bounds)) if said == *doubt => bounds.sentence(),
+        _ => said,
+    };
+    let settled = |doubt: Doubt| match &to_be_walked {
+        Some((said, bounds)) if doubt.said == *said => {
+            Doubt { said: bounds.sentence(), way: if bounds.differ() { Way::Open } else { Way::Settled } }
         }
-        _ => sentences,
+        _ => doubt,
     };
     let agreed = match &other.range {
         Some(range) if range.whole() != verdict => Verdict::Undecided,
         _ => verdict,
     };
-    let of_range = other.range.iter().map(CurveRange::sentence);
+    let way_of_range =
+        if other.range.as_ref().is_some_and(CurveRange::agrees) { Way::Settled } else { Way::Open };
+    let of_range = Doubt::all(way_of_range, other.range.iter().map(CurveRange::sentence));
     let mut of_walk = doubts_of_walk(case, agreed, walked);
     if let Some(second) = &case.other_reading {
         of_walk.extend(doubts_of_walk(second, agreed, &other.reading));
     }
-    let of_case = unsure.into_iter().chain(of_walk).chain(told(case.doubts()));
-    let doubts = match agreed == verdict {
-        true => of_case.chain(of_range).collect(),
-        false => of_range.chain(of_case).collect(),
+    let of_walk = Doubt::all(Way::Open, unsure).chain(Doubt::all(Way::Unsafe, of_walk));
+    let mut doubts: Vec<Doubt> =
+        of_walk.chain(case.doubts().into_iter().map(settled)).chain(of_range).collect();
+    // What leaves the verdict undecided comes first.
+    let decides = |said: &str| match &pan_bounds {
+        Some(bounds) if bounds.differ() && said == bounds.sentence() => 0,
+        _ if agreed != verdict && other.range.as_ref().is_some_and(|range| said == range.sentence()) => 1,
+        _ => 2,
     };
+    doubts.sort_by_cached_key(|doubt| decides(&doubt.said));
     let verdict = agreed;
-    let (confidence, mut reasons) = confidence::judge(verdict, &rules, doubts);
-    if let Some(bounds) = pan_bounds.as_ref().filter(|bounds| bounds.differ()) {
-        // That is why nothing is decided.
-        reasons.retain(|reason| *reason != bounds.sentence());
-        reasons.insert(0, bounds.sentence());
-    }
-    reasons.extend(case.not_studied().map(String::from));
-    let warnings = told(case.warnings());
+    let Judgement { confidence, reasons, mut notes } = confidence::judge(verdict, &rules, doubts);
+    notes.extend(case.not_studied().map(String::from));
+    let warnings = case.warnings().into_iter().map(told).collect();
     Outcome {
         verdict,
         confidence,
         reasons,
+        notes,
+        practice: Practice::of(&rules),
         seed: case.scene.walk.seed,
         n_base: case.n_base,
         n_base_eq2: case.n_base_eq2,

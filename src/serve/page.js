@@ -255,7 +255,7 @@ function readCurves(svg) {
 
 const ROLES = [["retention", "The filter retains the base"],
   ["continuation", "Coarser filters: where erosion still ends"],
-  ["drainage", "The filter drains and can be placed"], ["stability", "The filter holds its own fines"]];
+  ["drainage", "The filter drains the base"], ["placing", "The filter can be placed"], ["stability", "The filter holds its own fines"]];
 
 function result(rule) {
   if (rule.met === true) return el("span", { class: "keeps" }, "met");
@@ -275,7 +275,7 @@ function showRules(pair) {
     const unit = rule.unit ? ` ${rule.unit}` : "";
     return el("tr", {}, el("td", {}, result(rule)), el("td", {}, rule.name),
       el("td", {}, rule.quantity), el("td", { class: "n" }, rule.value === null ? "–" : number(rule.value) + unit),
-      el("td", { class: "n" }, rule.limit === null ? "–" : `${rule.at_least ? "≥" : "≤"} ${number(rule.limit)}${unit}`),
+      el("td", { class: "n" }, rule.limit === null ? "–" : `${rule.at_least ? "≥" : "≤"} ${number(rule.limit)}${unit}${rule.limit_at_most ? " at most" : ""}`),
       el("td", { class: "small" }, [rule.note, rule.needs, rule.source].filter(Boolean).join(" – ")));
   });
   const table = el("table", { class: "rules" }, el("thead", {}, el("tr", {},
@@ -522,12 +522,14 @@ function verdictOf(job) {
         el("td", {}, confidenceOf(one.confidence)), el("td", {}, one.rules_not_kept.length ? el("span", { class: "mark" }, String(one.rules_not_kept.length)) : "0"),
         ...[0, 1].map((at) => el("td", {}, one.runs[at] ? percent(one.runs[at].mean) : "–",
           one.runs[at] && one.runs[at].low !== null ? el("span", { class: "small" }, ` ${percent(one.runs[at].low)} to ${percent(one.runs[at].high)}`) : "")))))) ),
+      ...done.cases.map((one) => el("p", { class: "practice" }, el("b", {}, `${one.name}, practice`), `: ${one.practice}.`)),
       ...done.cases.map((one) => el("details", { open: one.confidence !== "within checked range" }, el("summary", {}, `${one.name}: to know beside its verdict`),
         list([...one.reasons, ...one.beside]))),
       el("p", { class: "small" }, "Differences, each with its interval, are on the page of this comparison.")];
   }
   const text = done.headline.charAt(0).toUpperCase() + done.headline.slice(1);
   return [el("p", { class: "word" }, text + "."),
+    el("p", { class: "practice" }, el("b", {}, "Practice"), `: ${done.practice}.`),
     el("p", {}, "Confidence: ", confidenceOf(done.confidence), `; ${done.replicates} ${done.replicates === 1 ? "replicate: the scatter is unknown" : "replicates"}.`),
     ...plot(done.runs), list(done.runs.map((run, at) => `${RUNS[at]}: ${eroded(run)}`)),
     done.range ? el("p", {}, el("span", { class: "mark" }, "Over the range of the constriction curve"), `: ${percent(done.range[0][0])} to ${percent(done.range[0][1])} in the first run.`) : null,

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::PathBuf;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::program::{call, done, refused};
 
@@ -68,13 +68,13 @@ fn a_first_look_says_so_beside_the_verdict() {
     let whole = run(&["--set", "record.sensitivity=[]"]);
     let unstudied = "how the verdict moves with the amount of base and with thickness was not studied";
     assert_eq!(
-        (&whole["confidence"], &whole["reasons"]),
-        (&"within checked range".into(), &vec![Value::from(unstudied)].into())
+        (&whole["confidence"], &whole["reasons"], &whole["notes"]),
+        (&"within checked range".into(), &json!([]), &json!([unstudied]))
     );
     let few = run(&["--set", "replicates=4", "--set", "record.sensitivity=[]"]);
     assert_eq!(
-        (&few["confidence"], &few["reasons"]),
-        (&"outside checked range".into(), &vec![Value::from("only 4 replicates"), unstudied.into()].into())
+        (&few["confidence"], &few["reasons"], &few["notes"]),
+        (&"outside checked range".into(), &json!(["only 4 replicates"]), &json!([unstudied]))
     );
     // A rule that may add none is no better.
     let most = ["--set", "stop.most_replicates=2", "--decide", "50%", "--set", "replicates=2"];
@@ -87,8 +87,41 @@ fn a_first_look_says_so_beside_the_verdict() {
         call(&at, &[&["judge", "base.csv", "fine.csv", "--quick", "--out", "b"][..], &SMALL].concat());
     done(&judged);
     let text = String::from_utf8(judged.stdout).unwrap();
-    assert!(text.contains(&format!("also: {unstudied}")), "{text}");
+    assert!(text.contains(unstudied), "{text}");
     assert!(fs::read_to_string(at.join("b/report.html")).unwrap().contains(unstudied));
+}
+
+/// The till of the first trial on its gravel: six times the limit of design. Whatever the class, the second line
+/// and the box of the verdict say so, and a worse soil does not take it back.
+#[test]
+fn a_broken_rule_of_retention_stands_in_the_first_lines_of_every_verdict() {
+    let (_root, at) = soils();
+    fs::write(at.join("till.csv"), "size_mm,percent\n0.075,22\n0.425,60\n2,82\n4.75,92\n19,100\n").unwrap();
+    fs::write(at.join("gravel.csv"), "size_mm,percent\n5,0\n6.5,15\n20,100\n").unwrap();
+    for (ratio, dispersive) in [("0.5", false), ("0.05", false), ("0.5", true)] {
+        let set = format!("base.mass_ratio={ratio}");
+        let words =
+            ["judge", "till.csv", "gravel.csv", "--quick", "--overwrite", "--out", "a", "--set", &set];
+        let worse: &[&str] = if dispersive { &["--dispersive"] } else { &[] };
+        let said = call(&at, &[&words[..], &SMALL, worse].concat());
+        done(&said);
+        let text = String::from_utf8(said.stdout).unwrap();
+        let lines: Vec<&str> = text.lines().skip_while(|line| !line.starts_with("Verdict: ")).collect();
+        // (40 - 22/0.92)/25 (4 x 1.530 - 0.7) + 0.7, with D85B of what passes No. 4.
+        let at_most = if dispersive { " at most" } else { "" };
+        let not_met =
+            format!("Practice: not met: D15F 6.50 mm is more than the 4.19 mm{at_most} that Sherard");
+        assert!(lines[1].starts_with(&not_met), "{text}");
+        let outcome = json(at.join("a/outcome.json"));
+        let design = &outcome["practice"]["design"];
+        assert_eq!((&design["rule"], &design["met"]), (&"sherard-dunnigan".into(), &false.into()));
+        assert_eq!(design["value_mm"], 6.5);
+        let page = fs::read_to_string(at.join("a/report.html")).unwrap();
+        let place = |what: &str| page.find(what).unwrap_or_else(|| panic!("{what}"));
+        let practice = place("<b>Practice</b>: not met: D15F 6.50 mm");
+        assert!(place("class=\"word") < practice && practice < place("Rules of practice, in short"));
+        assert!(place("Rules of practice, in short") < place("Why this verdict is in doubt"));
+    }
 }
 
 /// Silt, and a filter whose D15F of 0.6 mm lies between the limits: 0.5 mm where the base is dispersive, 0.7 mm.

@@ -88,8 +88,36 @@ fn a_pan_fraction_that_may_block_gives_two_verdicts_and_their_common_one() {
     let found = outcome(&root.path().join("few"));
     assert_eq!(found["pan_bounds"]["readings"][0]["verdict"], found["pan_bounds"]["readings"][1]["verdict"]);
     assert_eq!(found["verdict"], found["pan_bounds"]["readings"][0]["verdict"]);
-    let reasons = found["reasons"].to_string();
-    assert!(reasons.contains("or as all 0.15 mm, it gives no erosion"), "{reasons}");
+    // What both agree on is no doubt, and nor is a Cu that both put within the range: D10 is known here.
+    let [reasons, notes] = ["reasons", "notes"].map(|key| found[key].to_string());
+    let agreed = "or as all 0.15 mm, it gives no erosion";
+    assert!(notes.contains(agreed) && !reasons.contains(agreed), "{reasons} {notes}");
+    assert!(!reasons.contains("finest sieve"), "{reasons}");
+}
+
+/// 12 % finer than the finest sieve, so that D10 is not known, and D60 is.
+#[test]
+fn cu_of_an_open_tail_comes_from_its_two_readings() {
+    let root = tempfile::tempdir().unwrap();
+    let said = |finest: &str| {
+        files(root.path(), 12);
+        let base = format!("opening_mm,percent_finer\n0.3,100\n0.2,85\n{finest},12\n");
+        fs::write(root.path().join("base.csv"), base).unwrap();
+        let words = ["check", "scene.toml", "--json"];
+        let check = call(root.path(), &words);
+        done(&check);
+        let value: Value = serde_json::from_slice(&check.stdout).unwrap();
+        value["warnings"].to_string()
+    };
+    // 0.124 mm over 0.05 mm: finer than every constriction, and passive of whatever size.
+    let fine = said("0.05");
+    assert!(!fine.contains("Cu of the base") && fine.contains("taken as passive"), "{fine}");
+    // 0.181 mm over 0.15 mm, or over the finest constriction, 0.074 mm: 1.21 to 2.5.
+    let coarse = said("0.15");
+    assert!(!coarse.contains("Cu of the base") && coarse.contains("walked twice"), "{coarse}");
+    // 0.091 mm over 0.02 mm is more than 4.5 however it is read.
+    let broad = said("0.02");
+    assert!(broad.contains("Cu of the base is 4.55: the model was checked for 1.2 to 4.5"), "{broad}");
 }
 
 #[test]

@@ -55,6 +55,7 @@ fn a_run_in_memory_has_the_page_of_its_folder() {
         assert!(words(&brief).contains(part), "{part}: {brief}");
     }
     assert!(brief.contains("<img") && words(&page).contains("10 replicates"));
+    assert!(words(&brief).contains("Practice: "), "{brief}");
     assert!(run_brief("{}").unwrap_err().to_string().contains("outcome.json"));
 }
 

@@ -49,13 +49,14 @@ fn the_page_says_what_an_engineer_reads_first() {
     let place = |what: &str| text.find(what).unwrap_or_else(|| panic!("{what:?} is not on the page"));
     let order = [
         "Some erosion",
+        "Practice: ",
         "What the model leaves out",
         "Hydraulics: no gradient",
-        "18 % of the base is finer than 0.075 mm",
         "Figure 1.",
         "Rules of practice, in short",
         "Terzaghi",
         "Thickness modelled: 296 mm",
+        "18 % of the base is finer than 0.075 mm",
         "Figure 2.",
         "Figure 5.",
         "Filter rules beside the verdict",

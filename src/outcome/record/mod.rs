@@ -31,6 +31,7 @@ pub use voids::{BlockedRow, ConstrictionRow, RetainedRow, VoidRow};
 
 pub use super::applied::{AppliedRule, Confidence, RuleRole};
 pub use super::pan::{PanBounds, PanReading, PanSize};
+pub use super::practice::{LimitOfDesign, Practice};
 
 /// The whole of `outcome.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -40,9 +41,16 @@ pub struct Outcome {
     /// How far it can be relied on; folders of earlier versions do not say, and are outside.
     #[serde(default)]
     pub confidence: Confidence,
-    /// Why no further: sentences, the weightiest first.
+    /// Why no further: sentences, the weightiest first, which sets the label; none within the checked range,
+    /// but for folders of earlier versions, which have here what is now in `notes`.
     #[serde(default)]
     pub reasons: Vec<String>,
+    /// What else is to be known of the pair; none of it speaks against the verdict.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
+    /// What filter practice says of the pair; folders of earlier versions have it in `rules` alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub practice: Option<Practice>,
     /// The user's seed.
     pub seed: u64,
     /// Base particles inserted in each run.

@@ -21,7 +21,7 @@ const BAND: &str = "Megech Dam, Appendix B-1, Design of Filter Gradation (scribd
                     the practice of one design";
 
 /// Every rule, in the order of a reader.
-pub const RULES: [FilterRule; 19] = [
+pub const RULES: [FilterRule; 20] = [
     FilterRule {
         id: "sherard-dunnigan",
         name: "Sherard and Dunnigan: the filter retains the base (design)",
@@ -118,13 +118,27 @@ pub const RULES: [FilterRule; 19] = [
         role: RuleRole::Drainage,
         applies_to: "design of filters; D15B before regrading",
         quantity: "D15F",
-        formula: "5 D15B, and not less than 0.1 mm (older manuals: 3 to 5 D15B)",
+        formula: "5 D15B by USBR (2011) and NRCS (2017), and not less than 0.1 mm",
         at_least: true,
         unit: RuleUnit::Size,
         source: "U.S. Army Corps of Engineers, Filter Evaluation manual, chapter Permeability, which cites \
-                 USBR (2011), NRCS (2017) and EM 1110-2-1901",
+                 USBR (2011) and NRCS (2017)",
         pairing: Pairing::FineFilterCoarseBase,
         judge: drainage::permeability,
+    },
+    FilterRule {
+        id: "permeability-em-1901",
+        name: "Permeability, the least by EM 1110-2-1901: the filter drains the base",
+        role: RuleRole::Drainage,
+        applies_to: "filters of which this older manual is asked; D15B before regrading",
+        quantity: "D15F",
+        formula: "3 D15B, the least of the 3 to 5 D15B of EM 1110-2-1901, and not less than 0.1 mm",
+        at_least: true,
+        unit: RuleUnit::Size,
+        source: "U.S. Army Corps of Engineers, Filter Evaluation manual, chapter Permeability, which cites \
+                 EM 1110-2-1901 (2005)",
+        pairing: Pairing::FineFilterCoarseBase,
+        judge: drainage::least_permeability,
     },
     FilterRule {
         id: "filter-fines",
@@ -142,7 +156,7 @@ pub const RULES: [FilterRule; 19] = [
     FilterRule {
         id: "filter-greatest-size",
         name: "The filter has no cobbles",
-        role: RuleRole::Drainage,
+        role: RuleRole::Placing,
         applies_to: "design of filters: coarse grains segregate",
         quantity: "D100F",
         formula: "75 mm",
@@ -155,7 +169,7 @@ pub const RULES: [FilterRule; 19] = [
     FilterRule {
         id: "filter-uniformity",
         name: "The filter is uniform enough for its band",
-        role: RuleRole::Drainage,
+        role: RuleRole::Placing,
         applies_to: "design of filters: both sides of the band; wider curves leave room for gap-graded ones",
         quantity: "Cu of the filter",
         formula: "6",
@@ -168,7 +182,7 @@ pub const RULES: [FilterRule; 19] = [
     FilterRule {
         id: "filter-band",
         name: "The band of the filter is narrow",
-        role: RuleRole::Drainage,
+        role: RuleRole::Placing,
         applies_to: "design of filters that are stated as a band of curves",
         quantity: "size of the coarse side / of the fine side",
         formula: "5, from 5 to 60 % finer",

@@ -110,6 +110,8 @@ fn applied(rule: &FilterRule, inputs: &RuleInputs) -> Option<AppliedRule> {
     }
     let keeps = |(value, limit): (f64, f64)| if rule.at_least { value >= limit } else { value <= limit };
     let met = judged.met.or_else(|| judged.value.zip(judged.limit).map(keeps));
+    // A limit that can only be less is broken for certain, or kept for certain where it is the least allowed.
+    let met = met.filter(|met| !judged.limit_at_most || *met == rule.at_least || judged.met.is_some());
     Some(AppliedRule {
         id: rule.id.into(),
         name: rule.name.into(),
@@ -125,6 +127,7 @@ fn applied(rule: &FilterRule, inputs: &RuleInputs) -> Option<AppliedRule> {
             RuleUnit::Percent => "%".into(),
         },
         at_least: rule.at_least,
+        limit_at_most: judged.limit_at_most,
         met: met.filter(|_| judged.applies),
         needs: judged.needs,
         note: judged.note,

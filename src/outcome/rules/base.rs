@@ -13,6 +13,9 @@ pub struct BaseSoil {
     pub regraded_at_mm: Option<f64>,
     /// Why it was regraded, or not.
     pub why: String,
+    /// The size below which practice looks at it, where no sieve tells the sizes there (mm): they are at most
+    /// this.
+    pub hidden_below_mm: Option<f64>,
     /// Percent finer than 0.075 mm after regrading; `None` where the finest sieve is coarser and leaves a
     /// tail.
     pub fines_percent: Option<f64>,
@@ -31,13 +34,20 @@ impl BaseSoil {
                 regraded: false,
                 regraded_at_mm: None,
                 why: "sizes are multiples of D0F".into(),
+                hidden_below_mm: None,
                 fines_percent: None,
                 category: None,
             };
         }
-        let Regraded { gradation, at_mm, why } = base.regraded();
-        let at_most = gradation.percent_finer_by_mass(FINES_MM);
-        let is_known = gradation.pan_fraction() == 0.0 || gradation.smallest_mm() <= FINES_MM;
+        let Regraded { gradation, at_mm, why, hidden_below_mm } = base.regraded();
+        let at_most = match hidden_below_mm {
+            Some(_) => 100.0,
+            None => gradation.percent_finer_by_mass(FINES_MM),
+        };
+        let is_known = match hidden_below_mm {
+            Some(below) => below <= FINES_MM,
+            None => gradation.pan_fraction() == 0.0 || gradation.smallest_mm() <= FINES_MM,
+        };
         let fines_percent = is_known.then_some(at_most);
         let category = match fines_percent {
             Some(percent) if percent > 85.0 => Some(1),
@@ -46,7 +56,15 @@ impl BaseSoil {
             Some(_) => Some(4),
             None => (at_most < FEW_FINES).then_some(4),
         };
-        Self { gradation, regraded: at_mm.is_some(), regraded_at_mm: at_mm, why, fines_percent, category }
+        Self {
+            gradation,
+            regraded: at_mm.is_some(),
+            regraded_at_mm: at_mm,
+            why,
+            hidden_below_mm,
+            fines_percent,
+            category,
+        }
     }
 }
 

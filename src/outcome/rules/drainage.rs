@@ -1,31 +1,52 @@
 //! Rules by which a filter drains and can be placed. None of them says whether it retains its base.
+//!
+//! What is not known never hides a failure: a size in a finest tail is at most the finest sieve.
 
 use super::rule::{Judged, RuleInputs};
 use crate::gradation::{FINES_MM, Gradation};
 
-/// Times D15B that D15F is at least.
+/// Times D15B that D15F is at least, by USBR (2011) and NRCS (2017).
 const TIMES: f64 = 5.0;
+
+/// The same by EM 1110-2-1901, which asks for 3 to 5.
+const LEAST_TIMES: f64 = 3.0;
 
 /// The least D15F whatever the base (mm).
 const LEAST_MM: f64 = 0.1;
 
 /// The filter is coarse enough to drain the base, as it is before regrading.
 pub fn permeability(inputs: &RuleInputs) -> Judged {
+    coarse_enough(inputs, TIMES)
+}
+
+/// The same by the manual that asks for least.
+pub fn least_permeability(inputs: &RuleInputs) -> Judged {
+    coarse_enough(inputs, LEAST_TIMES)
+}
+
+fn coarse_enough(inputs: &RuleInputs, times: f64) -> Judged {
     let least = if inputs.scale_free { 0.0 } else { LEAST_MM };
-    let d15f = inputs.d15f();
-    if let Some(d15b) = inputs.base.d(15.0) {
-        return Judged::of(d15f, Some((TIMES * d15b).max(least))).noted("base before regrading");
-    }
-    // D15B is finer than the finest sieve: the limit is at most this.
-    let at_most = (TIMES * inputs.base.smallest_mm()).max(least);
-    match d15f {
-        Some(d15f) if d15f >= at_most => Judged {
-            met: Some(true),
-            ..Judged::of(Some(d15f), Some(at_most))
-                .noted("D15B is finer than the finest sieve: the limit is at most this")
-        },
-        _ => Judged::of(d15f, None).lacking("needs the base's D15: finer sieves, or base.d0_mm"),
-    }
+    let (d15f, d15b) = (inputs.d15f(), inputs.base.d(15.0));
+    let limit = (times * d15b.unwrap_or(inputs.base.smallest_mm())).max(least);
+    let finest = inputs.filter.smallest_mm();
+    // Where D15B is finer than the finest sieve, the limit lies between the least and this one.
+    let surely = if d15b.is_some() { limit } else { least };
+    let judged = match (d15f, d15b) {
+        (Some(_), Some(_)) => Judged::of(d15f, Some(limit)).noted("base before regrading"),
+        (None, _) if finest < surely => Judged { met: Some(false), ..Judged::of(Some(finest), Some(limit)) }
+            .noted("D15F is finer than the finest sieve: at most this"),
+        (None, Some(_)) => Judged::of(None, Some(limit)).lacking("needs the filter's D15: finer sieves"),
+        (Some(d15f), None) if d15f >= limit => Judged::of(Some(d15f), Some(limit))
+            .noted("D15B is finer than the finest sieve: the limit is at most this"),
+        (Some(d15f), None) if d15f < least => {
+            Judged { met: Some(false), ..Judged::of(Some(d15f), Some(least)) }
+                .noted("D15B is finer than the finest sieve; the limit is never less than this")
+        }
+        (_, None) => {
+            Judged::of(d15f, Some(limit)).lacking("needs the base's D15: finer sieves, or base.d0_mm")
+        }
+    };
+    Judged { limit_at_most: d15b.is_none() && judged.limit == Some(limit), ..judged }
 }
 
 /// The filter has few fines.
@@ -55,7 +76,15 @@ pub fn uniformity(inputs: &RuleInputs) -> Judged {
     const MOST: Option<f64> = Some(6.0);
     match (inputs.filter_is_measured, inputs.filter.cu()) {
         (false, _) => Judged { limit: MOST, ..Judged::default() }.lacking("needs the filter's sieve curve"),
-        (true, None) => Judged::of(None, MOST).lacking("needs the filter's D10: finer sieves"),
+        (true, None) => {
+            // D10 is at most the finest sieve, or D60 lies in the tail as well.
+            let least = inputs.filter.d(60.0).map(|d60| d60 / inputs.filter.smallest_mm());
+            match least.filter(|least| Some(*least) > MOST) {
+                Some(least) => Judged::of(Some(least), MOST)
+                    .noted("D10 is finer than the finest sieve: Cu is at least this"),
+                None => Judged::of(None, MOST).lacking("needs the filter's D10: finer sieves"),
+            }
+        }
         (true, cu) => Judged::of(cu, MOST),
     }
 }

@@ -17,10 +17,12 @@ mod walk;
 pub use all::RULES;
 pub use apply::{NamedCurve, Sides, apply, apply_to_envelopes};
 pub use base::BaseSoil;
-pub use rule::{FilterRule, Fines, Judged, Pairing, RuleInputs, RuleUnit};
+pub use rule::{BaseSize, FilterRule, Fines, Judged, Pairing, RuleInputs, RuleUnit};
 
 #[cfg(doc)]
 use super::applied::RuleRole;
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod worse_soils;

@@ -1,10 +1,17 @@
 //! Rules by which a filter retains its base, and the boundaries of coarser filters.
 
 use super::rule::{Fines, Judged, RuleInputs};
-use crate::gradation::FEW_FINES;
+use crate::gradation::{FEW_FINES, FINES_MM};
 
 /// What is said where the fines are not known.
 const FINES_NEEDED: &str = "needs finer sieves of the base: whether it has 15 % fines or more is not known";
+
+/// What is said where the base's D85 lies in its finest tail.
+const D85B_NEEDED: &str = "needs the base's D85: finer sieves, or base.d0_mm";
+
+/// What is said of dispersive bases with 15 to 40 % fines.
+const DISPERSIVE: &str = "needs a test of this soil: it is dispersive, and no source that was read gives its \
+                          limit with so few fines; that of other soils is the most that it can be";
 
 /// What is said of sizes without a unit.
 const ASSUMED: &str = "sizes are multiples of D0F: taken as a sand without fines";
@@ -14,16 +21,33 @@ fn between(few: f64, many: f64, fines: f64, d85b: f64) -> f64 {
     (many - fines) / (many - few) * (4.0 * d85b - 0.7) + 0.7
 }
 
+/// A limit of D15F for a base with so many percent of fines and this D85B.
+#[derive(Clone, Copy)]
+enum Limit {
+    /// The limit itself.
+    Is(f64),
+    /// No source gives it; it is at most this.
+    AtMost(f64),
+}
+
+impl Limit {
+    fn most(self) -> f64 {
+        match self {
+            Self::Is(limit) | Self::AtMost(limit) => limit,
+        }
+    }
+}
+
 /// Sherard and Dunnigan's limit of design; with the limits for dispersive soils where the base is one.
 pub fn sherard_dunnigan(inputs: &RuleInputs) -> Judged {
     let limit = |fines: f64, d85b: f64| match (inputs.dispersive, fines) {
-        (false, fines) if fines > 85.0 => Some((9.0 * d85b).max(0.2)),
-        (true, fines) if fines > 85.0 => Some((6.5 * d85b).max(0.2)),
-        (false, fines) if fines >= 40.0 => Some(0.7),
-        (true, fines) if fines >= 40.0 => Some(0.5),
-        (true, fines) if fines >= 15.0 => None,
-        (_, fines) if fines >= 15.0 => Some(between(15.0, 40.0, fines, d85b)),
-        _ => Some(4.0 * d85b),
+        (false, fines) if fines > 85.0 => Limit::Is((9.0 * d85b).max(0.2)),
+        (true, fines) if fines > 85.0 => Limit::Is((6.5 * d85b).max(0.2)),
+        (false, fines) if fines >= 40.0 => Limit::Is(0.7),
+        (true, fines) if fines >= 40.0 => Limit::Is(0.5),
+        (true, fines) if fines >= FEW_FINES => Limit::AtMost(between(FEW_FINES, 40.0, fines, d85b)),
+        (_, fines) if fines >= FEW_FINES => Limit::Is(between(FEW_FINES, 40.0, fines, d85b)),
+        _ => Limit::Is(4.0 * d85b),
     };
     by_fines(inputs, limit, |category| format!("base category {category}"))
 }
@@ -31,45 +55,61 @@ pub fn sherard_dunnigan(inputs: &RuleInputs) -> Judged {
 /// Foster and Fell's boundary of no erosion; with their limits for dispersive soils where the base is one.
 pub fn no_erosion(inputs: &RuleInputs) -> Judged {
     let limit = |fines: f64, d85b: f64| match (inputs.dispersive, fines) {
-        (false, fines) if fines > 85.0 => Some(9.0 * d85b),
-        (true, fines) if fines > 85.0 => Some(6.4 * d85b),
-        (false, fines) if fines >= 35.0 => Some(0.7),
-        (true, fines) if fines >= 35.0 => Some(0.5),
-        (true, fines) if fines >= 15.0 => None,
-        (_, fines) if fines >= 15.0 => Some(1.6 * between(15.0, 35.0, fines, d85b)),
-        _ => Some(7.0 * d85b),
+        (false, fines) if fines > 85.0 => Limit::Is(9.0 * d85b),
+        (true, fines) if fines > 85.0 => Limit::Is(6.4 * d85b),
+        (false, fines) if fines >= 35.0 => Limit::Is(0.7),
+        (true, fines) if fines >= 35.0 => Limit::Is(0.5),
+        (true, fines) if fines >= FEW_FINES => Limit::AtMost(1.6 * between(FEW_FINES, 35.0, fines, d85b)),
+        (_, fines) if fines >= FEW_FINES => Limit::Is(1.6 * between(FEW_FINES, 35.0, fines, d85b)),
+        _ => Limit::Is(7.0 * d85b),
     };
     by_fines(inputs, limit, |_| String::new())
 }
 
-/// A limit of D15F that follows from fines and D85B of the regraded base; `None` where no source gives it.
-fn by_fines(
-    inputs: &RuleInputs,
-    limit: impl Fn(f64, f64) -> Option<f64>,
-    note: impl Fn(u8) -> String,
-) -> Judged {
-    let (d15f, d85b) = (inputs.d15f(), inputs.d85b());
-    let (fines, said) = match inputs.fines() {
-        Fines::Percent(percent) => (percent, regraded(inputs, note(inputs.base_soil.category.unwrap_or(4)))),
-        Fines::Few => (0.0, regraded(inputs, note(4))),
-        Fines::Assumed => (0.0, ASSUMED.to_owned()),
-        Fines::Unknown => return Judged::of(d15f, None).lacking(FINES_NEEDED),
+/// A limit of D15F that follows from fines and D85B of the regraded base.
+///
+/// What is not known never hides a failure: where the limit itself is not known, the most that it can be is,
+/// and a filter beyond that breaks the rule whatever a test of the soil may show.
+fn by_fines(inputs: &RuleInputs, limit: impl Fn(f64, f64) -> Limit, note: impl Fn(u8) -> String) -> Judged {
+    let (d15f, d85b) = (inputs.d15f(), inputs.size_of_base(85.0));
+    let (known, said) = match inputs.fines() {
+        Fines::Percent(percent) => {
+            (Some(percent), regraded(inputs, note(inputs.base_soil.category.unwrap_or(4))))
+        }
+        Fines::Few => (Some(0.0), regraded(inputs, note(4))),
+        Fines::Assumed => (Some(0.0), ASSUMED.to_owned()),
+        Fines::Unknown => (None, regraded(inputs, String::new())),
     };
-    let said = match inputs.dispersive && fines >= FEW_FINES {
+    let said = match inputs.dispersive && known.is_none_or(|fines| fines >= FEW_FINES) {
         true => format!("dispersive; {said}").trim_end_matches("; ").to_owned(),
         false => said,
     };
-    let limit = d85b.map(|d85b| limit(fines, d85b));
-    let judged = Judged::of(d15f, limit.flatten()).noted(said);
+    let (limit, needs) = match known.map(|fines| limit(fines, d85b.most)) {
+        Some(Limit::Is(limit)) if d85b.is_known => (Limit::Is(limit), ""),
+        Some(Limit::AtMost(most)) if d85b.is_known => (Limit::AtMost(most), DISPERSIVE),
+        Some(limit) => (Limit::AtMost(limit.most()), D85B_NEEDED),
+        None => (Limit::AtMost(whatever_its_fines(&limit, d85b.most)), FINES_NEEDED),
+    };
+    let judged = Judged::of(d15f, Some(limit.most()));
     match (d15f, limit) {
-        (None, _) => judged.lacking("needs the filter's D15: finer sieves, or filter.d0_mm"),
-        (_, None) => judged.lacking("needs the base's D85: finer sieves, or base.d0_mm"),
-        (_, Some(None)) => judged.lacking(
-            "needs a test of this soil: no source that was read gives a limit for dispersive soils with so \
-                          few fines",
-        ),
-        _ => judged,
+        (None, _) => judged.noted(said).lacking("needs the filter's D15: finer sieves, or filter.d0_mm"),
+        (_, Limit::Is(_)) => judged.noted(said),
+        (Some(d15f), Limit::AtMost(most)) if d15f > most => {
+            let said = format!("{said}; beyond the most that the limit can be");
+            judged.at_most().noted(said.trim_start_matches("; "))
+        }
+        (_, Limit::AtMost(_)) => judged.at_most().noted(said).lacking(needs),
     }
+}
+
+/// The most that a limit can be where the fines are not known. D85B of a base that is nearly all fines is a
+/// fine itself.
+fn whatever_its_fines(limit: &impl Fn(f64, f64) -> Limit, d85b: f64) -> f64 {
+    let of = |fines: u32| {
+        let d85b = if fines > 85 { d85b.min(FINES_MM) } else { d85b };
+        limit(f64::from(fines), d85b).most()
+    };
+    (0..=100).map(of).fold(0.0, f64::max)
 }
 
 /// A note, and whether the base was regraded.
@@ -82,13 +122,15 @@ fn regraded(inputs: &RuleInputs, note: String) -> String {
 
 /// Terzaghi's ratio, for bases with few fines.
 pub fn terzaghi(inputs: &RuleInputs) -> Judged {
-    let value = inputs.d15f().zip(inputs.d85b()).map(|(d15f, d85b)| d15f / d85b);
+    let d85b = Some(inputs.size_of_base(85.0)).filter(|size| size.is_known).map(|size| size.most);
+    let value = inputs.d15f().zip(d85b).map(|(d15f, d85b)| d15f / d85b);
     let judged = Judged::of(value, Some(4.0));
     match inputs.fines() {
-        Fines::Percent(percent) if percent >= 15.0 => {
+        Fines::Percent(percent) if percent >= FEW_FINES => {
             judged.not_for(format!("{percent:.0} % of the base is fines: limits by fines stand in its place"))
         }
-        Fines::Unknown => Judged { limit: Some(4.0), ..judged }.noted(FINES_NEEDED),
+        // With more fines other limits stand in its place, and most of them are stricter.
+        Fines::Unknown => judged.at_most().lacking(FINES_NEEDED),
         Fines::Assumed => judged.noted(ASSUMED),
         _ => judged.noted(regraded(inputs, String::new())),
     }
@@ -96,13 +138,18 @@ pub fn terzaghi(inputs: &RuleInputs) -> Judged {
 
 /// Foster and Fell's boundary of continuing erosion.
 pub fn continuing(inputs: &RuleInputs) -> Judged {
-    let d95b = inputs.base_soil.gradation.d(95.0);
-    let judged = Judged::of(inputs.d15f(), d95b.map(|d95b| 9.0 * d95b));
-    match (inputs.fines(), d95b) {
-        (Fines::Percent(percent), Some(d95b)) if percent >= 15.0 && d95b > 2.0 => {
+    let (d15f, d95b) = (inputs.d15f(), inputs.size_of_base(95.0));
+    let judged = Judged::of(d15f, Some(9.0 * d95b.most));
+    if !d95b.is_known {
+        let judged = judged.at_most().noted(regraded(inputs, String::new()));
+        let is_broken = d15f.is_some_and(|d15f| d15f > 9.0 * d95b.most);
+        return if is_broken { judged } else { judged.lacking("needs the base's D95: finer sieves") };
+    }
+    match inputs.fines() {
+        Fines::Percent(percent) if percent >= FEW_FINES && d95b.most > 2.0 => {
             judged.noted("for bases with 15 to 85 % fines and D95B above 2 mm tests found no clear boundary")
         }
-        (Fines::Assumed, _) => judged.noted(ASSUMED),
+        Fines::Assumed => judged.noted(ASSUMED),
         _ => judged.noted(regraded(inputs, String::new())),
     }
 }

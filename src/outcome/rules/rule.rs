@@ -61,6 +61,8 @@ pub struct Judged {
     pub value: Option<f64>,
     /// Its limit here.
     pub limit: Option<f64>,
+    /// Whether the true limit is not known, and is at most `limit`.
+    pub limit_at_most: bool,
     /// The result where it does not follow from value and limit.
     pub met: Option<bool>,
     /// What is missing for a result.
@@ -75,6 +77,11 @@ impl Judged {
     /// A rule that applies, with its value and limit where they are known.
     pub fn of(value: Option<f64>, limit: Option<f64>) -> Self {
         Self { applies: true, value, limit, ..Self::default() }
+    }
+
+    /// The same where the limit is only the most that the true one can be.
+    pub fn at_most(self) -> Self {
+        Self { limit_at_most: true, ..self }
     }
 
     /// The same with a note.
@@ -145,9 +152,15 @@ impl<'a> RuleInputs<'a> {
         self.filter.d(15.0)
     }
 
-    /// D85 of the base after regrading.
-    pub fn d85b(&self) -> Option<f64> {
-        self.base_soil.gradation.d(85.0)
+    /// A size of the base after regrading; where it lies in the finest tail, or what practice looks at does,
+    /// the most that it can be.
+    pub fn size_of_base(&self, percent: f64) -> BaseSize {
+        let soil = &self.base_soil;
+        match (soil.hidden_below_mm, soil.gradation.d(percent)) {
+            (Some(most), _) => BaseSize { most, is_known: false },
+            (None, Some(size)) => BaseSize { most: size, is_known: true },
+            (None, None) => BaseSize { most: soil.gradation.smallest_mm(), is_known: false },
+        }
     }
 
     /// The category of the base; sizes without a unit are those of a sand without fines.
@@ -159,6 +172,15 @@ impl<'a> RuleInputs<'a> {
             _ => Fines::Unknown,
         }
     }
+}
+
+/// A size of a base.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BaseSize {
+    /// The size, or the most that it can be.
+    pub most: f64,
+    /// Whether it is that size.
+    pub is_known: bool,
 }
 
 /// What is known of the fines of a base.

@@ -99,6 +99,9 @@ fn permeability_is_five_d15_of_the_base_as_it_is() {
     // Never less than 0.1 mm.
     let clay = sieve(&[(0.001, 0.0), (0.002, 15.0), (0.02, 100.0)]);
     assert!(close(of("permeability", &filter(0.09), &clay).limit, 0.1));
+    // 3 x 0.3 mm is the least that any manual asks for.
+    let least = of("permeability-em-1901", &filter(0.95), &soil);
+    assert!(close(least.limit, 0.9) && least.met == Some(true) && least.formula.contains("EM 1110-2-1901"));
     // A till whose table ends at No. 200 with 35 %: at most 5 x 0.075 mm.
     let till = sieve(&[(0.075, 35.0), (1.0, 100.0)]);
     let rule = of("permeability", &filter(0.4), &till);
@@ -181,21 +184,77 @@ fn sizes_without_a_unit_are_those_of_a_sand() {
     assert!(close(find("paper-no-erosion").value, d15f / 0.2));
 }
 
+/// 25 % finer than 0.3 mm, and D85B 0.3 x (1/0.3)^(60/75) = 0.786 mm: whatever its fines, the limit of design
+/// is at most 4 D85B = 3.144 mm, and tests saw no erosion up to 7 D85B = 5.502 mm at most.
 #[test]
-fn fines_that_are_not_known_are_asked_for() {
+fn fines_that_are_not_known_hide_no_failure() {
     let hidden = sieve(&[(0.3, 25.0), (1.0, 100.0)]);
-    for id in ["sherard-dunnigan", "foster-fell-no-erosion"] {
-        let rule = of(id, &filter(1.0), &hidden);
-        assert!(rule.met.is_none() && rule.limit.is_none() && rule.needs.contains("fines"), "{rule:?}");
+    let d85 = 0.3 * (1.0f64 / 0.3).powf(0.8);
+    for (id, most) in [("sherard-dunnigan", 4.0 * d85), ("foster-fell-no-erosion", 7.0 * d85)] {
+        let fine = of(id, &filter(0.99 * most), &hidden);
+        assert!(fine.met.is_none() && fine.limit_at_most && fine.needs.contains("fines"), "{fine:?}");
+        assert!(close(fine.limit, most), "{fine:?}");
+        let coarse = of(id, &filter(1.01 * most), &hidden);
+        assert!(coarse.met == Some(false) && coarse.needs.is_empty(), "{coarse:?}");
+        assert!(coarse.note.contains("beyond the most that the limit can be"), "{coarse:?}");
     }
+    // With few fines Terzaghi would hold it for good: nobody knows that they are few.
+    let terzaghi = of("terzaghi", &filter(1.0), &hidden);
+    assert!(terzaghi.value < Some(4.0) && terzaghi.met.is_none() && !terzaghi.needs.is_empty());
+    assert_eq!(of("terzaghi", &filter(4.0), &hidden).met, Some(false));
 }
 
-/// The notes of Table 9.2: 6.4 D85B in group 1, 0.5 mm in group 2A; no limit for fewer fines was read.
+/// A clay whose table ends at No. 200 with 88 %: D85B is at most 0.075 mm, and 9 D85B 0.675 mm. D95B is known:
+/// 0.075 x (2/0.075)^(7/12).
+#[test]
+fn a_size_in_the_finest_tail_hides_no_failure() {
+    let clay = sieve(&[(0.075, 88.0), (2.0, 100.0)]);
+    for id in ["sherard-dunnigan", "foster-fell-no-erosion"] {
+        let rule = of(id, &filter(0.7), &clay);
+        assert!(rule.met == Some(false) && close(rule.limit, 0.675) && rule.limit_at_most, "{rule:?}");
+        let rule = of(id, &filter(0.6), &clay);
+        assert!(rule.met.is_none() && rule.needs.contains("D85"), "{rule:?}");
+    }
+    let clay = sieve(&[(0.075, 97.0), (2.0, 100.0)]);
+    let continuing = of("foster-fell-continuing", &filter(0.7), &clay);
+    assert!(continuing.met == Some(false) && close(continuing.limit, 0.675) && continuing.limit_at_most);
+    assert!(of("foster-fell-continuing", &filter(0.6), &clay).met.is_none());
+    // D15F is finer than 0.2 mm, and the base asks for 5 x 0.3 mm.
+    let silty = sieve(&[(0.2, 20.0), (4.0, 100.0)]);
+    let coarse = sieve(&[(0.1, 0.0), (0.3, 15.0), (2.0, 100.0)]);
+    let drains = of("permeability", &silty, &coarse);
+    assert!(drains.met == Some(false) && close(drains.value, 0.2) && drains.note.contains("at most"));
+    // Whatever D15B, it is never less than 0.1 mm.
+    let drains = of("permeability", &filter(0.09), &sieve(&[(0.075, 35.0), (1.0, 100.0)]));
+    assert!(drains.met == Some(false) && close(drains.limit, 0.1), "{drains:?}");
+    // D60 over a D10 of at most 0.2 mm.
+    let broad = sieve(&[(0.2, 12.0), (2.0, 60.0), (4.0, 100.0)]);
+    let cu = of("filter-uniformity", &broad, &coarse);
+    assert!(cu.met == Some(false) && close(cu.value, 10.0) && cu.note.contains("at least"), "{cu:?}");
+}
+
+/// 20 % finer than 0.075 mm and next to nothing up to 0.5 mm: practice looks at the fines alone, of which no
+/// sieve tells the sizes. 9 x 0.075 = 0.675 mm at most; of the whole it would be 0.8 x (4 D85B - 0.7) + 0.7.
+#[test]
+fn a_gap_above_unknown_fines_is_no_reason_to_judge_the_coarse_part() {
+    let gap = sieve(&[(0.075, 20.0), (0.5, 21.0), (1.0, 85.0), (2.0, 100.0)]);
+    let rule = of("sherard-dunnigan", &filter(2.0), &gap);
+    assert!(rule.met == Some(false) && close(rule.limit, 0.675) && rule.limit_at_most, "{rule:?}");
+    assert_eq!(of("sherard-dunnigan", &filter(0.5), &gap).met, None);
+    let continuing = of("foster-fell-continuing", &filter(2.0), &gap);
+    assert!(continuing.met == Some(false) && close(continuing.limit, 0.675), "{continuing:?}");
+    // With a hydrometer the gap is where it was, and the limits are no wider.
+    let tested = sieve(&[(0.001, 0.0), (0.04, 17.0), (0.075, 20.0), (0.5, 21.0), (1.0, 85.0), (2.0, 100.0)]);
+    let rule = of("sherard-dunnigan", &filter(2.0), &tested);
+    assert!(rule.met == Some(false) && rule.limit < Some(0.675), "{rule:?}");
+}
+
+/// The notes of Table 9.2: 6.4 D85B in group 1, 0.5 mm in group 2A; no limit for fewer fines was read, and that
+/// of other soils is the most that it can be.
 #[test]
 fn dispersive_bases_have_limits_of_their_own() {
-    let filter = filter(0.4);
-    let of = |id: &str, fines: f64, d85: f64| {
-        let base = base(fines, d85);
+    let of = |id: &str, d15: f64, fines: f64, d85: f64| {
+        let (filter, base) = (filter(d15), base(fines, d85));
         let rules = apply(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(&filter, &base) });
         rules.into_iter().find(|rule| rule.id == id).unwrap()
     };
@@ -208,12 +267,15 @@ fn dispersive_bases_have_limits_of_their_own() {
         ("foster-fell-no-erosion", 35.0, 0.5, 0.5),
         ("foster-fell-no-erosion", 5.0, 0.6, 4.2),
     ] {
-        let rule = of(id, fines, d85);
+        let rule = of(id, 0.4, fines, d85);
         assert!(close(rule.limit, limit) && rule.met == Some(0.4 <= limit), "{rule:?}");
     }
-    for id in ["sherard-dunnigan", "foster-fell-no-erosion"] {
-        let rule = of(id, 25.0, 0.6);
-        assert!(rule.limit.is_none() && rule.met.is_none() && rule.needs.contains("test"), "{rule:?}");
+    // (40 - 25)/25 (4 x 0.6 - 0.7) + 0.7; 1.6 ((35 - 25)/20 (4 x 0.6 - 0.7) + 0.7).
+    for (id, most) in [("sherard-dunnigan", 1.72), ("foster-fell-no-erosion", 2.48)] {
+        let rule = of(id, 0.99 * most, 25.0, 0.6);
+        assert!(close(rule.limit, most) && rule.limit_at_most && rule.met.is_none(), "{rule:?}");
+        assert!(rule.needs.contains("test of this soil"), "{rule:?}");
+        assert_eq!(of(id, 1.01 * most, 25.0, 0.6).met, Some(false));
     }
 }
 

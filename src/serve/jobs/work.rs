@@ -132,6 +132,7 @@ fn often() -> CheckpointInterval {
 pub fn of_run(outcome: &Outcome) -> Value {
     json!({
         "headline": outcome.headline(),
+        "practice": outcome.practice_in_words(),
         "verdict": outcome.verdict.words(),
         "confidence": outcome.confidence.words(),
         "reasons": outcome.reasons,

@@ -2,7 +2,8 @@
 
 use super::row::Row;
 use crate::case::{Case, StatedBase};
-use crate::outcome::confidence;
+use crate::outcome::confidence::{self, Judgement};
+use crate::outcome::doubt::{Doubt, Way};
 use crate::outcome::record::{AppliedRule, Confidence, Verdict};
 use crate::outcome::rules::{BaseSoil, RuleInputs, apply};
 use crate::run::error::RunError;
@@ -137,16 +138,18 @@ impl Judged {
         // Said of every ratio below.
         let of_one = self.case.too_little_base().filter(|_| of_amount(row).is_some());
         let doubts = self.case.doubts().into_iter();
-        let doubts: Vec<String> = doubts.filter(|said| Some(said) != of_one.as_ref()).collect();
+        let doubts = doubts.filter(|doubt| Some(&doubt.said) != of_one.as_ref());
         let coarse = self.d85_mm.filter(|d85| *d85 > COARSE_BASE_MM).map(|d85| {
             format!("the base's D85 is {d85:.1} mm: are its sizes micrometres under a header in mm?")
         });
         let not_compared = self.real_thickness.map(|real| Case::thickness_without_unit(real, self.unit()));
         let of_search = [not_compared, recut(row), few_networks(row), of_amount(row)].into_iter().flatten();
-        let doubts: Vec<String> = coarse.into_iter().chain(doubts).chain(of_search).collect();
-        let is_new = |said: &String| !doubts.contains(said) && Some(said) != of_one.as_ref();
-        let warnings = self.case.warnings().into_iter().filter(is_new).collect();
-        let (confidence, reasons) = confidence::judge(Verdict::None, rules, doubts);
-        (confidence, reasons, warnings)
+        let coarse = Doubt::all(Way::Open, coarse);
+        let doubts = coarse.chain(doubts).chain(Doubt::all(Way::Open, of_search)).collect();
+        let Judgement { confidence, reasons, notes } = confidence::judge(Verdict::None, rules, doubts);
+        let is_new =
+            |said: &String| !reasons.contains(said) && !notes.contains(said) && Some(said) != of_one.as_ref();
+        let warnings: Vec<String> = self.case.warnings().into_iter().filter(is_new).collect();
+        (confidence, reasons, notes.into_iter().chain(warnings).collect())
     }
 }
