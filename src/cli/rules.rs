@@ -1,7 +1,7 @@
 //! `voidwalk rules`: what filter practice says of two soils, without a walk.
 
 use super::args::RulesArgs;
-use super::print::{json, plain, to_stdout};
+use super::print::{json, plain, shown, to_stdout};
 use crate::gradation::curves_in_file;
 use crate::outcome::record::{AppliedRule, RuleRole};
 use crate::outcome::{PairOptions, PairRules};
@@ -13,10 +13,14 @@ const WIDTH: usize = 100;
 
 /// Applies every rule to two sieve tables, or to the curves of two envelopes.
 pub fn rules(args: &RulesArgs) -> Result<(), RunError> {
-    let filters = curves_in_file(&args.filter, None).map_err(RunError::refused)?;
     let bases = curves_in_file(&args.base, None).map_err(RunError::refused)?;
-    let options = PairOptions { dispersive: args.dispersive, joint_mm: args.joint_mm };
-    let pair = PairRules::of_envelopes(&filters, &bases, options);
+    let filters = curves_in_file(&args.filter, None).map_err(RunError::refused)?;
+    let options =
+        PairOptions { dispersive: args.dispersive, joint_mm: args.joint_mm, as_given: args.as_given };
+    let pair = PairRules::guarded(&bases, &filters, options).map_err(|mistake| {
+        let files = format!("base {}, filter {}", shown(&args.base), shown(&args.filter));
+        RunError::Refused(format!("{files}: {}", mistake.refusal()))
+    })?;
     to_stdout(&if args.json { json(&pair)? } else { words(&pair, args) });
     Ok(())
 }
@@ -40,8 +44,16 @@ fn words(pair: &PairRules, args: &RulesArgs) -> String {
         number(filter.d85_mm),
         number(filter.cu)
     ));
+    let how = match base.regraded_at_mm {
+        Some(at) => format!(
+            "regraded on {} mm (D85 as sampled {} mm)",
+            number(Some(at)),
+            number(base.d85_as_sampled_mm)
+        ),
+        None => "as sampled".into(),
+    };
     line(format!(
-        "base    {}{}: D15 {}, D85 {}, D95 {} mm, Cu {}",
+        "base    {}{}: D15 {} mm as sampled, D85 {}, D95 {} mm {how}, Cu {}",
         args.base.display(),
         of_curve(&base.curves, &base.curve),
         number(base.d15_mm),

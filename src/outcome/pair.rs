@@ -26,6 +26,8 @@ pub struct PairOptions {
     pub dispersive: bool,
     /// Width of an open joint at the exit (mm).
     pub joint_mm: Option<f64>,
+    /// Whether base and filter are taken as they are given, though they look exchanged.
+    pub as_given: bool,
 }
 
 /// Sizes of a filter (mm), of its coarsest curve where it is an envelope; `None` where they lie in a finest
@@ -74,6 +76,8 @@ pub struct BaseSizes {
     pub d15_mm: Option<f64>,
     /// 85 % finer, after regrading.
     pub d85_mm: Option<f64>,
+    /// 85 % finer, before regrading.
+    pub d85_as_sampled_mm: Option<f64>,
     /// 95 % finer, after regrading.
     pub d95_mm: Option<f64>,
     /// D60 / D10, before regrading.
@@ -83,29 +87,47 @@ pub struct BaseSizes {
 }
 
 impl PairRules {
-    /// Every rule on a filter and a base of one curve each, both in mm.
+    /// Every rule on a base and a filter of one curve each, both in mm.
     ///
     /// ```
     /// use voidwalk::{Gradation, outcome::PairRules};
     /// let filter = Gradation::from_points(&[(0.5, 0.0), (2.0, 100.0)], None)?;
     /// let base = Gradation::from_points(&[(0.08, 0.0), (0.3, 100.0)], None)?;
-    /// let pair = PairRules::of(&filter, &base);
+    /// let pair = PairRules::of(&base, &filter);
     /// assert_eq!(pair.base.category, Some(4));
     /// let rule = pair.rules.iter().find(|rule| rule.id == "sherard-dunnigan").unwrap();
     /// assert_eq!(rule.met, Some(true));
     /// # Ok::<(), voidwalk::gradation::GradationError>(())
     /// ```
-    pub fn of(filter: &Gradation, base: &Gradation) -> Self {
+    pub fn of(base: &Gradation, filter: &Gradation) -> Self {
         let one = |name: &str, curve: &Gradation| vec![(name.to_owned(), curve.clone())];
-        Self::of_envelopes(&one("filter", filter), &one("base", base), PairOptions::default())
+        Self::of_envelopes(&one("base", base), &one("filter", filter), PairOptions::default())
     }
 
-    /// Every rule on the curves of a filter and of a base, all in mm: retention reads the finest base and the
+    /// The same of two envelopes that are not exchanged, as far as their sizes tell.
+    ///
+    /// # Errors
+    /// The two can hardly be a base and its filter, and `options` do not say that they are as given.
+    ///
+    /// # Panics
+    /// Where either has no curve.
+    pub fn guarded(
+        bases: &[NamedCurve],
+        filters: &[NamedCurve],
+        options: PairOptions,
+    ) -> Result<Self, Mistake> {
+        match Mistake::of_envelopes(bases, filters).filter(|of| of.is_refused() && !options.as_given) {
+            Some(mistake) => Err(mistake),
+            None => Ok(Self::of_envelopes(bases, filters, options)),
+        }
+    }
+
+    /// Every rule on the curves of a base and of a filter, all in mm: retention reads the finest base and the
     /// coarsest filter, permeability the coarsest base and the finest filter.
     ///
     /// # Panics
     /// Where either has no curve.
-    pub fn of_envelopes(filters: &[NamedCurve], bases: &[NamedCurve], options: PairOptions) -> Self {
+    pub fn of_envelopes(bases: &[NamedCurve], filters: &[NamedCurve], options: PairOptions) -> Self {
         let sides = Sides::of(filters, bases);
         let (curve, filter) = &filters[sides.coarsest_filter];
         let (base_curve, base) = &bases[sides.finest_base];
@@ -116,7 +138,7 @@ impl PairRules {
             _ => curves.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>(),
         };
         let mut warnings: Vec<String> =
-            Mistake::find(filter, base, false).into_iter().map(|mistake| mistake.sentence).collect();
+            Mistake::of_envelopes(bases, filters).into_iter().map(|mistake| mistake.sentence).collect();
         for (whose, curves) in [("filter", filters), ("base", bases)] {
             if curves.len() > 1 {
                 warnings.push(format!(
@@ -150,6 +172,7 @@ impl PairRules {
                 why,
                 d15_mm: base.d(15.0),
                 d85_mm: gradation.d(85.0),
+                d85_as_sampled_mm: base.d(85.0),
                 d95_mm: gradation.d(95.0),
                 cu: base.cu(),
                 cc: base.cc(),
@@ -185,46 +208,122 @@ fn stricter(
     })
 }
 
-/// Two tables that can hardly be a filter and its base.
+/// Two tables that can hardly be a base and its filter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mistake {
     /// What is wrong, in words.
     pub sentence: String,
-    /// Whether sizes are so far apart that a unit must be wrong.
-    pub is_certain: bool,
+    /// What it is.
+    pub kind: MistakeKind,
+}
+
+/// What is wrong with two tables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MistakeKind {
+    /// Sizes are so far apart that a unit must be wrong, or the files are exchanged.
+    Unit,
+    /// The base is the coarser of the two.
+    Exchanged,
+    /// The filter's sizes may be micrometres.
+    Boulders,
+}
+
+/// The size that a percentage is finer than, between two bounds where it lies in a finest tail.
+struct Bounds {
+    least: f64,
+    most: f64,
+}
+
+impl Bounds {
+    fn of(soil: &Gradation, percent: f64) -> Self {
+        match soil.d(percent) {
+            Some(size) => Self { least: size, most: size },
+            None => Self { least: 0.0, most: soil.smallest_mm() },
+        }
+    }
+
+    fn words(&self) -> String {
+        if self.least > 0.0 { format!("{:.3} mm", self.most) } else { format!("below {:.3} mm", self.most) }
+    }
 }
 
 impl Mistake {
     /// Looks for exchanged tables, and for micrometres where mm are meant.
     ///
-    /// Sizes that are multiples of D0F (`scale_free`) have no unit that could be wrong.
-    pub fn find(filter: &Gradation, base: &Gradation, scale_free: bool) -> Option<Self> {
+    /// The D15 of both are compared as sampled, as for permeability, and their D50 after the base was
+    /// regraded, as for retention: a broad till has a D50 above that of many filters which hold it, and a D15
+    /// far below. Sizes that are multiples of D0F (`scale_free`) have no unit that could be wrong.
+    ///
+    /// ```
+    /// use voidwalk::{Gradation, outcome::Mistake};
+    /// let base = Gradation::from_points(&[(0.08, 0.0), (0.3, 100.0)], None)?;
+    /// let filter = Gradation::from_points(&[(0.5, 0.0), (2.0, 100.0)], None)?;
+    /// assert_eq!(Mistake::find(&base, &filter, false), None);
+    /// assert!(Mistake::find(&filter, &base, false).unwrap().is_refused());
+    /// # Ok::<(), voidwalk::gradation::GradationError>(())
+    /// ```
+    pub fn find(base: &Gradation, filter: &Gradation, scale_free: bool) -> Option<Self> {
         /// No soil is so much coarser than its filter (D50).
         const HOPELESS: f64 = 50.0;
+        /// A filter whose D15 is so much finer than that of its base drains nothing, whatever its D50 is.
+        const FINER: f64 = 2.0;
         /// No filter is coarser than this (D50, mm).
         const BOULDERS_MM: f64 = 300.0;
-        let (f, b) = (filter.d(50.0)?, base.d(50.0)?);
-        if b > HOPELESS * f && !scale_free {
+        let [d15f, d50f] = [15.0, 50.0].map(|percent| Bounds::of(filter, percent));
+        let [d15b, d50b] = [15.0, 50.0].map(|percent| Bounds::of(base, percent));
+        if d50b.least > HOPELESS * d50f.most && d15b.most > d15f.least && !scale_free {
             let sentence = format!(
-                "the base (D50 {b:.3} mm) is {:.0} times as coarse as the filter (D50 {f:.3} mm): are its \
-                 sizes micrometres under a header in mm, or are the two files exchanged?",
-                b / f
+                "the base (D50 {}) is {:.0} times as coarse as the filter (D50 {}): are its sizes micrometres \
+                 under a header in mm, or are the two files exchanged?",
+                d50b.words(),
+                d50b.least / d50f.most,
+                d50f.words()
             );
-            return Some(Self { sentence, is_certain: true });
+            return Some(Self { sentence, kind: MistakeKind::Unit });
         }
-        if b > f {
+        let BaseSoil { gradation, regraded_at_mm, .. } = BaseSoil::of(base, scale_free);
+        let regraded = Bounds::of(&gradation, 50.0);
+        let finer = d15b.least > d15f.most;
+        if finer && (regraded.least > d50f.most || d15b.least > FINER * d15f.most) {
+            let how = regraded_at_mm.map_or(String::new(), |at| format!(" regraded on {at:.3} mm"));
             let sentence = format!(
-                "the base is coarser than the filter (D50 {b:.3} mm against {f:.3} mm): are the two files \
-                 exchanged? Or its sizes micrometres under a header in mm?"
+                "the base is coarser than the filter (D15 {} against {}, D50 {}{how} against {}): are the two \
+                 files exchanged? Or its sizes micrometres under a header in mm?",
+                d15b.words(),
+                d15f.words(),
+                regraded.words(),
+                d50f.words()
             );
-            return Some(Self { sentence, is_certain: false });
+            return Some(Self { sentence, kind: MistakeKind::Exchanged });
         }
-        (f > BOULDERS_MM && !scale_free).then(|| Self {
+        (d50f.least > BOULDERS_MM && !scale_free).then(|| Self {
             sentence: format!(
-                "the filter's D50 is {f:.0} mm: are its sizes micrometres under a header in mm?"
+                "the filter's D50 is {:.0} mm: are its sizes micrometres under a header in mm?",
+                d50f.least
             ),
-            is_certain: false,
+            kind: MistakeKind::Boulders,
         })
+    }
+
+    /// The same of two envelopes: of the finest base and the coarsest filter, so that nothing is refused
+    /// which one pair of their curves makes sensible.
+    pub fn of_envelopes(bases: &[NamedCurve], filters: &[NamedCurve]) -> Option<Self> {
+        let sides = Sides::of(filters, bases);
+        Self::find(&bases.get(sides.finest_base)?.1, &filters.get(sides.coarsest_filter)?.1, false)
+    }
+
+    /// Whether two tables are refused for it, unless whoever names them says that they are as given.
+    pub fn is_refused(&self) -> bool {
+        self.kind != MistakeKind::Boulders
+    }
+
+    /// What is said where the two are refused.
+    pub fn refusal(&self) -> String {
+        format!(
+            "{} The base is named first, then the filter: exchange the two, or say that they are as given \
+             (--as-given)",
+            self.sentence
+        )
     }
 }
 
@@ -238,14 +337,18 @@ mod tests {
 
     #[test]
     fn exchanged_tables_and_micrometres_are_recognised() {
-        let said = |filter: f64, base: f64| Mistake::find(&linear(filter), &linear(base), false);
-        assert_eq!(said(2.0, 0.2), None);
-        let exchanged = said(0.2, 2.0).unwrap();
-        assert!(exchanged.sentence.contains("files exchanged") && !exchanged.is_certain);
+        let said = |base: f64, filter: f64| Mistake::find(&linear(base), &linear(filter), false);
+        assert_eq!(said(0.2, 2.0), None);
+        let exchanged = said(2.0, 0.2).unwrap();
+        assert_eq!(exchanged.kind, MistakeKind::Exchanged);
+        assert!(exchanged.refusal().contains("are the two files exchanged?"));
+        assert!(exchanged.refusal().ends_with("(--as-given)"));
         // 318 um as if they were mm.
-        let micrometres = said(2.0, 200.0).unwrap();
-        assert!(micrometres.sentence.contains("micrometres under a header in mm") && micrometres.is_certain);
-        assert!(said(400.0, 0.2).unwrap().sentence.contains("the filter's D50 is 800 mm"));
+        let micrometres = said(200.0, 2.0).unwrap();
+        assert!(micrometres.sentence.contains("micrometres under a header in mm"));
+        assert_eq!(micrometres.kind, MistakeKind::Unit);
+        let boulders = said(0.2, 400.0).unwrap();
+        assert!(boulders.sentence.contains("the filter's D50 is 800 mm") && !boulders.is_refused());
     }
 
     /// The till with 35 % fines on a gravel with D15 6.3 mm, of the first trial.
@@ -254,7 +357,7 @@ mod tests {
         let till = [(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)];
         let till = Gradation::from_points(&till, None).unwrap();
         let gravel = Gradation::linear_from_dx(15.0, 6.3, 1.5).unwrap();
-        let pair = PairRules::of(&gravel, &till);
+        let pair = PairRules::of(&till, &gravel);
         assert_eq!((pair.base.category, pair.base.regraded), (Some(3), true));
         let met = |id: &str| pair.rules.iter().find(|rule| rule.id == id).unwrap().met;
         assert_eq!(met("sherard-dunnigan"), Some(false));

@@ -28,6 +28,8 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use sha2::{Digest, Sha256};
 
 use super::figures::{Figure, Size, visible};
+use super::numbers::significant;
+use crate::outcome::BaseSize;
 
 const STYLE: &str = include_str!("page.css");
 
@@ -171,6 +173,14 @@ pub(super) fn citation() -> Markup {
                                                         combinations" }
             ", Computers and Geotechnics."
         }
+    }
+}
+
+/// D15F/D85B, and below it which base D85B is of.
+pub(super) fn of_base(ratio: f64, base: Option<BaseSize>) -> Markup {
+    html! {
+        (significant(ratio))
+        @if let Some(base) = base { br; span.small { (base.words()) } }
     }
 }
 

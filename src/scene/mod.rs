@@ -27,7 +27,7 @@ pub use meaning::{
     Amount, BaseGradation, D85, Extent, FilterGradation, NetworkSource, PackingSpec, USUAL_LAYERS,
 };
 pub use reference::{ExclusiveSettings, SceneReference, SectionReference, SettingReference, WayReference};
-pub use tables::{TableOptions, keep_soils, quoted};
+pub use tables::{TableOptions, keep_soils, quoted, refuse_exchanged};
 
 use crate::network::ExitRule;
 use crate::outcome::stopping::StopRule;
