@@ -53,12 +53,12 @@ fn words(pair: &PairRules, args: &RulesArgs) -> String {
         None => "as sampled".into(),
     };
     line(format!(
-        "base    {}{}: D15 {} mm as sampled, D85 {}, D95 {} mm {how}, Cu {}",
+        "base    {}{}: D85 {}, D95 {} mm {how}; D15 {}, Cu {} as sampled",
         args.base.display(),
         of_curve(&base.curves, &base.curve),
-        number(base.d15_mm),
         number(base.d85_mm),
         number(base.d95_mm),
+        number(base.d15_mm),
         number(base.cu)
     ));
     let category = base.category.map_or("category not known".into(), |of| format!("category {of}"));

@@ -366,4 +366,73 @@ mod tests {
         assert_eq!(met("permeability"), Some(true));
         assert!(pair.warnings.is_empty());
     }
+
+    /// A base, its filter, and whether the filter drains it.
+    fn a_pair(draw: &mut impl FnMut() -> f64) -> Option<(Gradation, Gradation, bool)> {
+        let mut between = |low: f64, high: f64| low + (high - low) * draw();
+        // Three straight pieces over log size, of any breadth; two in five end at the No. 200 sieve.
+        let d50 = libm::exp(between(libm::log(0.01), libm::log(2.0)));
+        let widths = [between(0.2, 2.5), between(0.2, 2.0), between(0.1, 1.6), between(0.1, 1.2)];
+        let size = |power: f64| d50 * libm::exp(power);
+        let rows = [
+            (size(-widths[0] - widths[1]), 0.0),
+            (size(-widths[1]), between(8.0, 30.0)),
+            (d50, 50.0),
+            (size(widths[2]), between(70.0, 92.0)),
+            (size(widths[2] + widths[3]), 100.0),
+        ];
+        let is_open = between(0.0, 1.0) < 0.4;
+        let rows: Vec<(f64, f64)> = rows.into_iter().filter(|row| !is_open || row.0 >= 0.075).collect();
+        let base = Gradation::from_points(&rows, None).ok()?;
+        let any = Gradation::linear_from_dx(15.0, 1.0, 1.5).ok()?;
+        let rules = PairRules::of(&base, &any).rules;
+        let limit = rules.iter().find(|rule| rule.id == "sherard-dunnigan")?.limit?;
+        let d15f = limit * between(0.4, 1.5);
+        let filter = Gradation::linear_from_dx(15.0, d15f, between(1.3, 8.0)).ok()?;
+        let drains = d15f >= 4.0 * base.d(15.0).unwrap_or(base.smallest_mm());
+        Some((base, filter, drains))
+    }
+
+    /// 5000 pairs of which the filter holds the base, or nearly: half to one and a half of the limit of design.
+    #[test]
+    fn sensible_pairs_pass_in_their_order_and_are_refused_in_the_other() {
+        let mut state = 20_261_124_u64;
+        let mut draw = || {
+            // Knuth's MMIX generator: good enough for soils.
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let (mut all, mut draining, mut refused, mut missed, mut missed_draining) = (0, 0, 0, 0, 0);
+        while all < 5000 {
+            let Some((base, filter, drains)) = a_pair(&mut draw) else { continue };
+            let is_refused = |base: &Gradation, filter: &Gradation| {
+                Mistake::find(base, filter, false).is_some_and(|m| m.is_refused())
+            };
+            all += 1;
+            draining += usize::from(drains);
+            refused += usize::from(is_refused(&base, &filter));
+            let is_missed = !is_refused(&filter, &base);
+            missed += usize::from(is_missed);
+            missed_draining += usize::from(is_missed && drains);
+        }
+        println!(
+            "{all} pairs, {draining} drain: {refused} refused in the right order; exchanged, {missed} of all and \
+             {missed_draining} of those that drain are not refused"
+        );
+        assert_eq!(refused, 0);
+        assert!(missed * 50 < all && missed_draining * 200 < draining, "{missed} {missed_draining}");
+    }
+
+    /// A till whose D50 is above that of the sand that filters it.
+    #[test]
+    fn a_broad_till_is_no_exchange() {
+        let till = [(0.002, 2.0), (0.02, 15.0), (0.075, 22.0), (0.425, 34.0), (5.0, 50.0), (75.0, 100.0)];
+        let till = Gradation::from_points(&till, None).unwrap();
+        let c33 =
+            [(0.075, 1.5), (0.15, 5.0), (0.3, 17.5), (0.6, 42.5), (1.18, 67.5), (2.36, 90.0), (9.5, 100.0)];
+        let c33 = Gradation::from_points(&c33, None).unwrap();
+        assert!(till.d(50.0) > c33.d(50.0) && till.d(15.0).unwrap() < 0.021);
+        assert_eq!(Mistake::find(&till, &c33, false), None);
+        assert_eq!(Mistake::find(&c33, &till, false).unwrap().kind, MistakeKind::Exchanged);
+    }
 }

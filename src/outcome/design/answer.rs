@@ -6,6 +6,7 @@
 
 use super::band::{DESIGN, SetBy, limits, retention, whose};
 use super::record::{Answer, Design, DesignRow};
+use crate::outcome::digits::percent;
 use crate::outcome::record::{AppliedRule, RuleRole};
 use crate::outcome::three;
 
@@ -39,12 +40,15 @@ impl Answer {
             (false, _) => strictest.map(|(rule, limit)| Limit { ratio: limit / sizes.d85, rule }),
         };
         let held = design.least_held();
+        let too_open = design.base.tail_mass_fraction >= design.threshold;
         // Files of an earlier version know only whether the base that the walk holds breaks a rule.
         let broken = design.rules.iter().find(|rule| rule.role == RuleRole::Retention && rule.is_broken());
         let known = broken.filter(|_| design.inverse && sizes.has_unit && finest.is_none());
         let forbidden = known.or(finest.filter(|of| of.ratio.is_none()).map(|of| &of.rule));
         let (ratio, set_by) = match (&held, &limit) {
             _ if forbidden.is_some() => (None, SetBy::Practice),
+            // The walk says nothing against a base of which it does not know enough.
+            (None, Some(limit)) if too_open => (Some(limit.ratio), SetBy::Practice),
             (None, _) => (None, SetBy::Walk),
             (Some((_, held)), Some(limit)) if limit.ratio <= *held => (Some(limit.ratio), SetBy::Practice),
             (Some((_, held)), _) => (Some(*held), SetBy::Walk),
@@ -57,6 +61,14 @@ impl Answer {
                 )
             }
             (None, None, _) => "No ratio is known that nearly all networks hold".into(),
+            (None, Some(limit), _) if too_open => format!(
+                "{}, by practice alone ({}{}); the walk has no answer, as {} of the base is finer than its \
+                 finest sieve",
+                sizes.words(limit.ratio),
+                whose(limit.rule),
+                sizes.other(design, limit.rule),
+                percent(design.base.tail_mass_fraction)
+            ),
             (None, Some(limit), _) => format!(
                 "No ratio is known that nearly all networks hold; practice alone allows {} ({})",
                 sizes.words(limit.ratio),
@@ -172,5 +184,112 @@ impl Design {
     /// The answer, of files of earlier versions too.
     pub fn answer(&self) -> Answer {
         self.answer.clone().unwrap_or_else(|| Answer::of(self, None))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gradation::Gradation;
+    use crate::outcome::PairRules;
+    use crate::outcome::design::Boundary;
+
+    /// A design in which the walk holds to this D15F/D85B, `None` where it holds nothing, as its file has it.
+    fn design(base: &Gradation, held: Option<f64>) -> Design {
+        let regraded = base.regraded();
+        let d85 = regraded.gradation.d(85.0).unwrap();
+        let filter = Gradation::linear_from_dx(15.0, 4.0 * d85, 1.5).unwrap();
+        let no_erosion = held.and_then(|held| Boundary::of(&[Ok(held), Ok(held)], Some(d85)));
+        let text = serde_json::json!({
+            "version": "1", "inverse": false, "filter": "f", "filter_cu": 1.5, "filter_d15_mm": null, "unit": "mm",
+            "base": {"name": "b", "cu": null, "d15_mm": null, "d85_mm": d85, "d95_over_d85": null},
+            "threshold": 0.075, "replicates": 2, "seed": 1, "bracket": [0.5, 100.0], "step": 0.005,
+            "confidence": "within checked range", "reasons": [], "rules": PairRules::of(base, &filter).rules,
+            "rules_at": 4.0, "products": [], "warnings": [], "model_leaves_out": [], "settings": [], "seconds": 1.0,
+            "boundaries": [{"density": "loose", "thickness": "60 layers", "layers": 60, "thickness_mm": null,
+                "grains_per_void": 0.6, "no_erosion": no_erosion, "continuing": null, "not_monotone": 0,
+                "networks": [], "band": null}],
+        });
+        serde_json::from_value(text).unwrap()
+    }
+
+    fn till() -> Gradation {
+        let points = [(0.001, 0.0), (0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)];
+        Gradation::from_points(&points, None).unwrap()
+    }
+
+    fn sand() -> Gradation {
+        Gradation::from_points(&[(0.1, 0.0), (0.5, 100.0)], None).unwrap()
+    }
+
+    /// The till of the third trial: the walk holds it to 12.6 D85B, here 19.3 mm, and practice to 0.70 mm.
+    #[test]
+    fn a_till_is_limited_by_practice_and_the_walks_figure_stands_nowhere() {
+        let found = design(&till(), Some(12.6));
+        let answer = found.answer();
+        assert!((answer.d15f_max_mm.unwrap() - 0.7).abs() < 1e-9, "{answer:?}");
+        assert_eq!(
+            (answer.set_by, answer.rule.as_deref()),
+            (SetBy::Practice, Some("foster-fell-no-erosion"))
+        );
+        assert!(
+            answer.said.starts_with("D15F up to 0.700 mm, by practice (Foster and Fell"),
+            "{}",
+            answer.said
+        );
+        assert!(answer.said.contains("Sherard and Dunnigan's limit of design is 1.1"), "{}", answer.said);
+        assert!(answer.said.ends_with("the walk sets no tighter limit"), "{}", answer.said);
+        assert!(!serde_json::to_string(&answer).unwrap().contains("19."), "{answer:?}");
+    }
+
+    #[test]
+    fn a_walk_that_holds_less_than_practice_sets_the_answer() {
+        let base = sand();
+        let (d85, answer) = (base.d(85.0).unwrap(), design(&base, Some(3.0)).answer());
+        assert!((answer.d15f_max_mm.unwrap() - 3.0 * d85).abs() < 1e-9);
+        assert_eq!((answer.set_by, answer.rule), (SetBy::Walk, None));
+        assert!(answer.said.contains("by the walk; practice allows D15F up to"), "{}", answer.said);
+        let answer = design(&base, Some(7.0)).answer();
+        assert!((answer.d15f_max_mm.unwrap() - 4.0 * d85).abs() < 1e-9);
+        assert_eq!(answer.rule.as_deref(), Some("sherard-dunnigan"));
+    }
+
+    #[test]
+    fn what_neither_or_one_of_them_knows_is_said() {
+        let nothing = design(&sand(), None).answer();
+        assert_eq!((nothing.d15f_max_mm, nothing.set_by), (None, SetBy::Walk));
+        assert!(nothing.said.contains("practice alone allows D15F up to"), "{}", nothing.said);
+        // A third of the base may be anything: the walk says nothing against it.
+        let mut open = design(&till(), None);
+        open.base.tail_mass_fraction = 0.38;
+        let answer = open.answer();
+        assert!((answer.d15f_max_mm.unwrap() - 0.7).abs() < 1e-9, "{answer:?}");
+        assert!(
+            answer.said.contains("by practice alone") && answer.said.contains("38.0 %"),
+            "{}",
+            answer.said
+        );
+        let mut scale_free = design(&sand(), Some(5.2));
+        (scale_free.base.d85_mm, scale_free.unit) = (None, "D85B".into());
+        let answer = scale_free.answer();
+        assert_eq!((answer.d15f_max_mm, answer.d15f_over_d85b), (None, Some(5.2)));
+        assert!(answer.said.starts_with("D15F up to 5.20 D85B in the model alone"), "{}", answer.said);
+        assert!(answer.said.contains("the limit of practice is not known"), "{}", answer.said);
+        let mut unknown = design(&sand(), Some(5.2));
+        unknown.rules.clear();
+        assert!(unknown.answer().said.ends_with("the limit of practice is not known for this base"));
+    }
+
+    #[test]
+    fn the_inverse_stops_at_the_base_that_practice_allows() {
+        let mut inverse = design(&sand(), Some(7.0));
+        (inverse.inverse, inverse.filter_d15_mm, inverse.base.d85_mm) = (true, Some(2.0), None);
+        let rule = inverse.rules.iter().find(|rule| rule.id == "sherard-dunnigan").unwrap().clone();
+        let finest = FinestBase { ratio: Some(4.0), rule };
+        let answer = Answer::of(&inverse, Some(&finest));
+        assert_eq!((answer.d85b_min_mm, answer.d15f_max_mm), (Some(0.5), None));
+        assert!(answer.said.starts_with("D85B down to 0.500 mm, by practice"), "{}", answer.said);
+        let none = Answer::of(&inverse, Some(&FinestBase { ratio: None, ..finest }));
+        assert!(none.d85b_min_mm.is_none() && none.said.starts_with("No base is known that both"));
     }
 }

@@ -120,6 +120,9 @@ pub struct BaseStated {
     /// The size (mm) that it was regraded on before it was walked; `None` where it was walked as sampled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub regraded_at_mm: Option<f64>,
+    /// The part of its mass that is finer than its finest sieve, as it was walked.
+    #[serde(default)]
+    pub tail_mass_fraction: f64,
     /// D85 (mm) before regrading, where it was regraded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub d85_as_sampled_mm: Option<f64>,

@@ -401,6 +401,7 @@ mod tests {
                 d85_mm: None,
                 d95_over_d85: None,
                 regraded_at_mm: None,
+                tail_mass_fraction: 0.0,
                 d85_as_sampled_mm: None,
             },
             filter: "f".into(),
@@ -434,6 +435,11 @@ mod tests {
         let boundary = || {
             let networks = [Ok(4.3), Ok(4.5)];
             Boundary::of(&networks, Some(0.2))
+        };
+        let design = |boundary, confidence| {
+            let mut design = design(boundary, confidence);
+            design.base.d85_mm = Some(0.2);
+            design
         };
         let page = written(&design(boundary(), Confidence::Within), CSV);
         assert!(page.contains("verdict none") && page.contains("D15F up to 0.862 mm"), "{page}");

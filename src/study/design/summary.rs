@@ -286,6 +286,7 @@ fn base(row: &Row, name: &str) -> BaseStated {
         d85_mm: sized,
         d95_over_d85: row.base.d(95.0),
         regraded_at_mm: row.stated.regraded_from.as_ref().filter(|_| sized.is_some()).map(|(_, at)| *at),
+        tail_mass_fraction: walked.pan_fraction(),
         d85_as_sampled_mm: row
             .stated
             .regraded_from
