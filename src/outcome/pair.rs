@@ -317,11 +317,16 @@ impl Mistake {
         self.kind != MistakeKind::Boulders
     }
 
-    /// What is said where the two are refused.
+    /// What is said where the two are refused, on the command line.
     pub fn refusal(&self) -> String {
+        self.refusal_unless("--as-given")
+    }
+
+    /// The same where something else says that the two are as given.
+    pub fn refusal_unless(&self, as_given: &str) -> String {
         format!(
             "{} The base is named first, then the filter: exchange the two, or say that they are as given \
-             (--as-given)",
+             ({as_given})",
             self.sentence
         )
     }
