@@ -36,14 +36,6 @@ fn words(pair: &PairRules, args: &RulesArgs) -> String {
         true => String::new(),
         false => format!(", curve {curve}"),
     };
-    line(format!(
-        "filter  {}{}: D15 {}, D85 {} mm, Cu {}",
-        args.filter.display(),
-        of_curve(&filter.curves, &filter.curve),
-        number(filter.d15_mm),
-        number(filter.d85_mm),
-        number(filter.cu)
-    ));
     let how = match base.regraded_at_mm {
         Some(at) => format!(
             "regraded on {} mm (D85 as sampled {} mm)",
@@ -69,6 +61,14 @@ fn words(pair: &PairRules, args: &RulesArgs) -> String {
     };
     let dispersive = if base.dispersive { ", dispersive" } else { "" };
     line(format!("        {category}{dispersive}, {fines}; {regraded}"));
+    line(format!(
+        "filter  {}{}: D15 {}, D85 {} mm, Cu {}",
+        args.filter.display(),
+        of_curve(&filter.curves, &filter.curve),
+        number(filter.d15_mm),
+        number(filter.d85_mm),
+        number(filter.cu)
+    ));
     for warning in &pair.warnings {
         line(format!("warning {warning}"));
     }

@@ -222,8 +222,10 @@ pub struct Mistake {
 pub enum MistakeKind {
     /// Sizes are so far apart that a unit must be wrong, or the files are exchanged.
     Unit,
-    /// The base is the coarser of the two.
+    /// The D15 of the base is far above that of the filter.
     Exchanged,
+    /// The base is the coarser of the two, but not by so much that they must be exchanged.
+    Coarser,
     /// The filter's sizes may be micrometres.
     Boulders,
 }
@@ -250,9 +252,9 @@ impl Bounds {
 impl Mistake {
     /// Looks for exchanged tables, and for micrometres where mm are meant.
     ///
-    /// The D15 of both are compared as sampled, as for permeability, and their D50 after the base was
-    /// regraded, as for retention: a broad till has a D50 above that of many filters which hold it, and a D15
-    /// far below. Sizes that are multiples of D0F (`scale_free`) have no unit that could be wrong.
+    /// The D15 of both are compared as sampled, as for permeability: a broad till has a D50 above that of many
+    /// filters which hold it, and a D15 far below. Where a finest tail is open its bounds are compared. Two
+    /// soils that are close are told apart by the D50 of the regraded base, with a warning only. Sizes that are multiples of D0F (`scale_free`) have no unit that could be wrong.
     ///
     /// ```
     /// use voidwalk::{Gradation, outcome::Mistake};
@@ -265,7 +267,8 @@ impl Mistake {
     pub fn find(base: &Gradation, filter: &Gradation, scale_free: bool) -> Option<Self> {
         /// No soil is so much coarser than its filter (D50).
         const HOPELESS: f64 = 50.0;
-        /// A filter whose D15 is so much finer than that of its base drains nothing, whatever its D50 is.
+        /// A filter whose D15 is so much finer than that of its base drains less than the base does, and
+        /// practice asks for the contrary, four or five times: of such a pair the other order is the right one.
         const FINER: f64 = 2.0;
         /// No filter is coarser than this (D50, mm).
         const BOULDERS_MM: f64 = 300.0;
@@ -283,8 +286,8 @@ impl Mistake {
         }
         let BaseSoil { gradation, regraded_at_mm, .. } = BaseSoil::of(base, scale_free);
         let regraded = Bounds::of(&gradation, 50.0);
-        let finer = d15b.least > d15f.most;
-        if finer && (regraded.least > d50f.most || d15b.least > FINER * d15f.most) {
+        let is_far = d15b.least > FINER * d15f.most;
+        if is_far || (d15b.least > d15f.most && regraded.least > d50f.most) {
             let how = regraded_at_mm.map_or(String::new(), |at| format!(" regraded on {at:.3} mm"));
             let sentence = format!(
                 "the base is coarser than the filter (D15 {} against {}, D50 {}{how} against {}): are the two \
@@ -294,7 +297,8 @@ impl Mistake {
                 regraded.words(),
                 d50f.words()
             );
-            return Some(Self { sentence, kind: MistakeKind::Exchanged });
+            let kind = if is_far { MistakeKind::Exchanged } else { MistakeKind::Coarser };
+            return Some(Self { sentence, kind });
         }
         (d50f.least > BOULDERS_MM && !scale_free).then(|| Self {
             sentence: format!(
@@ -314,7 +318,7 @@ impl Mistake {
 
     /// Whether two tables are refused for it, unless whoever names them says that they are as given.
     pub fn is_refused(&self) -> bool {
-        self.kind != MistakeKind::Boulders
+        matches!(self.kind, MistakeKind::Unit | MistakeKind::Exchanged)
     }
 
     /// What is said where the two are refused, on the command line.
@@ -426,6 +430,15 @@ mod tests {
         );
         assert_eq!(refused, 0);
         assert!(missed * 50 < all && missed_draining * 200 < draining, "{missed} {missed_draining}");
+    }
+
+    /// A natural sand a little coarser than the sand that is to filter it is warned of, and not refused.
+    #[test]
+    fn two_soils_that_are_close_are_no_exchange() {
+        let sand = |d15: f64| Gradation::linear_from_dx(15.0, d15, 2.0).unwrap();
+        let close = Mistake::find(&sand(0.3), &sand(0.18), false).unwrap();
+        assert!(close.kind == MistakeKind::Coarser && !close.is_refused());
+        assert!(Mistake::find(&sand(0.37), &sand(0.18), false).unwrap().is_refused());
     }
 
     /// A till whose D50 is above that of the sand that filters it.
