@@ -54,7 +54,7 @@ pub(super) fn collect(
 }
 
 /// Columns of `cases.csv` after the case and its levels.
-const COLUMNS: [&str; 28] = [
+const COLUMNS: [&str; 29] = [
     "verdict",
     "confidence",
     "reason",
@@ -68,6 +68,7 @@ const COLUMNS: [&str; 28] = [
     "grains_per_void",
     "d15f_over_d85b",
     "d15f_over_d95b",
+    "d85b_of",
     "first_eroded_mass_percent",
     "first_low",
     "first_high",
@@ -128,6 +129,7 @@ fn table(factors: &[String], lines: &[LedgerLine]) -> Result<Vec<u8>, RunError> 
             line.grains_per_void.map_or(String::new(), |grains| format!("{grains:.5}")),
             format!("{:.5}", line.ratios.d15f_over_d85b),
             format!("{:.5}", line.ratios.d15f_over_d95b),
+            line.base.map_or(String::new(), |base| base.grading()),
         ]);
         row.extend(percent(0, |r| Some(r.eroded_mass_fraction)));
         row.extend(percent(1, |r| Some(r.eroded_mass_fraction)));

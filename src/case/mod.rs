@@ -39,8 +39,8 @@ pub use warnings::NOT_STUDIED;
 use crate::constrictions::{Curve, CurveError, CurveUnit, ShippedFilter, inscribed};
 use crate::gradation::{Gradation, GradationError, NumberError, SizeSampler};
 use crate::network::{CONDUCTANCE_EXPONENT, ExitRule, Network, NetworkError, WIDE};
-use crate::outcome::Mistake;
 use crate::outcome::record::{PanSize, Ratios};
+use crate::outcome::{Mistake, MistakeKind};
 use crate::scene::{
     Amount, BaseGradation, D85, Extent, FilterGradation, NetworkSource, Scene, SceneError, USUAL_LAYERS,
 };
@@ -278,10 +278,13 @@ impl Case {
         let (base, regraded_from) = regrade::walked(&scene, base)?;
         // A sieve table alone can be in another unit, or the filter's.
         let mistake = match scene.base.gradation() {
-            BaseGradation::Sieve(..) => Mistake::find(&filter, &base, false),
+            BaseGradation::Sieve(..) => {
+                let as_given = regraded_from.as_ref().map_or(&base, |(given, _)| given);
+                Mistake::find(as_given, &filter, false)
+            }
             _ => None,
         };
-        if let Some(mistake) = mistake.as_ref().filter(|mistake| mistake.is_certain) {
+        if let Some(mistake) = mistake.as_ref().filter(|mistake| mistake.kind == MistakeKind::Unit) {
             return Err(scene.clash(&mistake.sentence).into());
         }
         let (counts, connectivity) = match (&fixed_network, &scene.network.source()) {

@@ -98,6 +98,12 @@ impl Case {
             },
             base: record::BaseRecord {
                 regraded_at_mm: self.regraded_from.as_ref().map(|(_, at)| *at),
+                as_sampled: self.regraded_from.as_ref().map(|(given, _)| record::SampledBase {
+                    d85_mm: given.d(85.0),
+                    d95_mm: given.d(95.0),
+                    d100_mm: given.largest_mm(),
+                    gradation: pairs(given.points()),
+                }),
                 ..base_record(self.base_name(), &self.base)
             },
             network: record::NetworkRecord {
@@ -200,6 +206,7 @@ pub fn base_record(name: String, base: &Gradation) -> record::BaseRecord {
         d100_mm: base.largest_mm(),
         tail_mass_fraction: base.pan_fraction(),
         regraded_at_mm: None,
+        as_sampled: None,
         gradation: pairs(base.points()),
     }
 }

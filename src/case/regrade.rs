@@ -1,7 +1,7 @@
 //! The base as it is walked: regraded as filter practice does, where the scene asks for that.
 
 use super::{Case, CaseError};
-use crate::gradation::Gradation;
+use crate::gradation::{GRAVEL_MM, Gradation};
 use crate::scene::{BaseGradation, D85, FilterGradation, Regrade, Scene};
 
 /// Cu from which a base counts as broadly graded: that of well-graded sands by ASTM D2487.
@@ -70,7 +70,8 @@ impl Case {
                  mm",
                 given.percent_finer_by_mass(*at)
             )),
-            (None, Some(Regrade::Practice)) => {
+            // Of a base without gravel nobody expects it.
+            (None, Some(Regrade::Practice)) if self.base.largest_mm() > GRAVEL_MM => {
                 Some(format!("practice does not regrade this base: {}", self.base.regraded().why))
             }
             _ => None,

@@ -277,7 +277,7 @@ impl Case {
             input.notes.iter().map(|note| format!("{}: {note}", input.name)).collect()
         };
         warnings.extend(self.inputs.iter().flat_map(of_file));
-        if let Some(mistake) = Mistake::find(&self.filter, &self.base, self.is_scale_free()) {
+        if let Some(mistake) = Mistake::find(self.base_as_given(), &self.filter, self.is_scale_free()) {
             warnings.insert(0, mistake.sentence);
         }
         if self.filter.pan_fraction() > 0.0 {

@@ -93,17 +93,20 @@ pub enum Command {
 /// Which two soils.
 #[derive(Debug, Args)]
 pub struct RulesArgs {
+    /// The base: a sieve table, as base.sieve in a scene; several soils in it are the curves of its envelope
+    pub base: PathBuf,
     /// The filter: a sieve table, as filter.sieve in a scene; several soils in it are the curves of its
     /// envelope
     pub filter: PathBuf,
-    /// The base: a sieve table, as base.sieve in a scene; several soils in it are the curves of its envelope
-    pub base: PathBuf,
     /// The base is dispersive: stricter limits where it has many fines
     #[arg(long)]
     pub dispersive: bool,
     /// Width of an open joint beside the base: the probability of continuing erosion into it
     #[arg(long, value_name = "MM", value_parser = millimetres, allow_hyphen_values = true)]
     pub joint_mm: Option<f64>,
+    /// Take base and filter as they are given, though they look exchanged
+    #[arg(long)]
+    pub as_given: bool,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
@@ -219,6 +222,12 @@ pub struct TableArgs {
     /// A first look: four replicates, and no studies of the amount of base and of the thickness
     #[arg(long)]
     pub quick: bool,
+    /// Walk the base as it was sampled: without it, as filter practice regrades it (base.regrade)
+    #[arg(long)]
+    pub as_sampled: bool,
+    /// Take base and filter as they are given, though they look exchanged
+    #[arg(long)]
+    pub as_given: bool,
     /// The base is dispersive: stricter limits where it has many fines (base.dispersive)
     #[arg(long)]
     pub dispersive: bool,
@@ -329,6 +338,13 @@ pub struct DesignArgs {
     /// How thick the filter is: 60layers, 500mm or 75D50F; can be given again [default: 60layers]
     #[arg(long = "thickness", value_name = "THICKNESS", value_delimiter = ',', allow_hyphen_values = true)]
     pub thicknesses: Vec<Thickness>,
+    /// Walk the base as it was sampled: without it, as filter practice regrades it (base.regrade); the base of
+    /// --inverse, which has no size of its own, is always taken so
+    #[arg(long)]
+    pub as_sampled: bool,
+    /// Take base and filter as they are given, though they look exchanged
+    #[arg(long)]
+    pub as_given: bool,
     /// Find the finest base that the filter holds instead: the filter is as large as it is, the base's shape
     /// is scaled
     #[arg(long)]

@@ -67,9 +67,18 @@ fn words(check: &Check) -> String {
     }
     line("base", base.name.clone());
     let [d0, d85, d95, d100] = [base.d0_mm, base.d85_mm, base.d95_mm, base.d100_mm];
-    line("  sizes", format!("D0 {d0:.4}, D85 {d85:.4}, D95 {d95:.4}, D100 {d100:.4} {unit}"));
+    let grading = check.inputs.base_size().map_or(String::new(), |base| format!(", {}", base.grading()));
+    line("  sizes", format!("D0 {d0:.4}, D85 {d85:.4}, D95 {d95:.4}, D100 {d100:.4} {unit}{grading}"));
+    if let Some(before) = &base.as_sampled {
+        let size = |size: Option<f64>| size.map_or("unknown".into(), |mm| format!("{mm:.4}"));
+        let [d85, d95] = [before.d85_mm, before.d95_mm].map(size);
+        line("  as sampled", format!("D85 {d85}, D95 {d95}, D100 {:.4} mm", before.d100_mm));
+    }
     let ratios = &check.ratios;
-    line("ratios", format!("D15F/D85B {:.3}, D15F/D95B {:.3}", ratios.d15f_over_d85b, ratios.d15f_over_d95b));
+    line(
+        "ratios",
+        format!("D15F/D85B {:.3}, D15F/D95B {:.3}{grading}", ratios.d15f_over_d85b, ratios.d15f_over_d95b),
+    );
     let rounded = |grains: f64| (grains * 1e4).round() / 1e4;
     let given = |value: Option<f64>| value.map_or("not given".to_string(), |v| format!("{v}"));
     line(

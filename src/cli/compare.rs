@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::args::CompareArgs;
 use super::case_progress::CaseProgress;
-use super::print::{grains_per_void, json, leaves_out, percent, plain, shown, to_stderr, to_stdout};
+use super::print::{grains_per_void, json, leaves_out, of_base, percent, plain, shown, to_stderr, to_stdout};
 use super::progress::followed;
 use super::run::command_line;
 use crate::campaign::CampaignCallbacks;
@@ -72,9 +72,10 @@ fn words(comparison: &Comparison) -> String {
         let runs: Vec<String> = case.runs.iter().map(eroded).collect();
         line(format!("{}: {} ({})", case.name, case.verdict.words(), case.confidence.words()));
         line(format!(
-            "  {} of the mass eroded; D15F/D85B {:.2}, {}",
+            "  {} of the mass eroded; D15F/D85B {:.2}{}, {}",
             runs.join(", then "),
             case.ratios.d15f_over_d85b,
+            of_base(case.base),
             grains_per_void(case.grains_per_void)
         ));
         line(format!("  Practice: {}", case.practice));

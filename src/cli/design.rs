@@ -4,6 +4,7 @@ use super::args::DesignArgs;
 use super::print::{counted, json, leaves_out, plain, shown, to_stdout};
 use super::progress::followed;
 use super::values::with_options;
+use crate::outcome::design::band::SetBy;
 use crate::outcome::design::{Boundary, Design, DesignRow, Range};
 use crate::outcome::record::Confidence;
 use crate::run::{PrepareOptions, RunError};
@@ -19,6 +20,8 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
         densities: args.densities.clone(),
         thicknesses: args.thicknesses.clone(),
         settings,
+        as_sampled: args.as_sampled,
+        as_given: args.as_given,
         inverse: args.inverse,
         bracket: [args.bracket.0, args.bracket.1],
         out: args.out.clone(),
@@ -47,6 +50,8 @@ fn words(design: &Design) -> String {
             design.filter, design.base.name
         ),
     }];
+    lines.push(design.answer().said);
+    lines.extend(design.base.size().map(|base| format!("  {}", base.words())));
     for row in &design.boundaries {
         lines.extend(of_row(row, design));
     }
@@ -80,7 +85,7 @@ fn of_row(row: &DesignRow, design: &Design) -> Vec<String> {
         true => ["no erosion down to", "continuing erosion below"],
     };
     let boundaries = [(&row.no_erosion, &row.no_erosion_note), (&row.continuing, &row.continuing_note)];
-    let mut lines = vec![format!("{}, {}:", row.name(), row.thickness)];
+    let mut lines = vec![format!("{}, {}, in the model:", row.name(), row.thickness)];
     for (what, (boundary, note)) in what.into_iter().zip(boundaries) {
         let said = boundary.as_ref().map(|boundary| ratio(boundary, design));
         lines.push(match (said, note) {
@@ -94,8 +99,9 @@ fn of_row(row: &DesignRow, design: &Design) -> Vec<String> {
     if let Some(band) = &row.band {
         let over_range = design.boundaries.iter().any(|end| end.end_of.as_ref() == Some(&row.density));
         let what = if over_range { "band over the whole range of this curve" } else { "band" };
-        let practice = band.practice.map(|limit| format!("; practice allows up to {limit:.3} {}", band.unit));
-        lines.push(format!("  {what}: {}{}", band.said, practice.unwrap_or_default()));
+        let practice = band.practice.filter(|_| band.set_by == Some(SetBy::Walk) && !band.is_empty);
+        let practice = practice.map(|limit| format!("; practice allows up to {limit:.3} {}", band.unit));
+        lines.push(format!("  {what}: {}{}", band.words(), practice.unwrap_or_default()));
     }
     if let Some(note) = &row.band_note {
         lines.push(format!("  no band: {note}"));

@@ -60,8 +60,8 @@ const EXAMPLES: [(&str, [Example; 2]); 19] = [
     (
         "rules",
         [
-            ["voidwalk rules filter.csv base.csv", "every rule of filter practice, the filter first"],
-            ["voidwalk rules filter.csv base.csv --dispersive --joint-mm 2", "beside an open joint of 2 mm"],
+            ["voidwalk rules base.csv filter.csv", "every rule of filter practice, the base first"],
+            ["voidwalk rules base.csv filter.csv --dispersive --joint-mm 2", "beside an open joint of 2 mm"],
         ],
     ),
     (

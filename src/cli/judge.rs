@@ -19,7 +19,8 @@ impl TableArgs {
             ("--joint-mm", self.joint_mm.map(|mm| format!("filter.joint_mm={mm:?}"))),
         ];
         let changes = with_options(&self.set.settings()?, options)?;
-        Ok(TableOptions { density: self.density, quick: self.quick, changes })
+        let (as_sampled, as_given) = (self.as_sampled, self.as_given);
+        Ok(TableOptions { density: self.density, quick: self.quick, as_sampled, as_given, changes })
     }
 }
 

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use crate::outcome::BaseSize;
 pub use crate::outcome::digits::{count, percent};
 use crate::report::figures::visible;
 use crate::run::RunError;
@@ -28,6 +29,11 @@ pub fn plain(text: &str) -> String {
 /// A path made safe for a terminal.
 pub fn shown(path: &Path) -> String {
     plain(&path.display().to_string())
+}
+
+/// Which base a D15F/D85B is of, in brackets; nothing where sizes have no unit.
+pub fn of_base(base: Option<BaseSize>) -> String {
+    base.map_or(String::new(), |base| format!(" ({})", base.words()))
 }
 
 /// A value as indented JSON with a newline at its end.

@@ -1,7 +1,7 @@
 //! `voidwalk rules`: what filter practice says of two soils, without a walk.
 
 use super::args::RulesArgs;
-use super::print::{json, plain, to_stdout};
+use super::print::{json, plain, shown, to_stdout};
 use crate::gradation::{curves_in_file, notes_in_file};
 use crate::outcome::record::{AppliedRule, RuleRole};
 use crate::outcome::{PairOptions, PairRules};
@@ -13,12 +13,16 @@ const WIDTH: usize = 100;
 
 /// Applies every rule to two sieve tables, or to the curves of two envelopes.
 pub fn rules(args: &RulesArgs) -> Result<(), RunError> {
-    let filters = curves_in_file(&args.filter, None).map_err(RunError::refused)?;
     let bases = curves_in_file(&args.base, None).map_err(RunError::refused)?;
-    let options = PairOptions { dispersive: args.dispersive, joint_mm: args.joint_mm };
-    let pair = PairRules::of_envelopes(&filters, &bases, options);
+    let filters = curves_in_file(&args.filter, None).map_err(RunError::refused)?;
+    let options =
+        PairOptions { dispersive: args.dispersive, joint_mm: args.joint_mm, as_given: args.as_given };
+    let pair = PairRules::guarded(&bases, &filters, options).map_err(|mistake| {
+        let files = format!("base {}, filter {}", shown(&args.base), shown(&args.filter));
+        RunError::Refused(format!("{files}: {}", mistake.refusal()))
+    })?;
     let assumed = |path| notes_in_file(path).map_err(RunError::refused);
-    let notes = [("filter", assumed(&args.filter)?), ("base", assumed(&args.base)?)];
+    let notes = [("base", assumed(&args.base)?), ("filter", assumed(&args.filter)?)];
     to_stdout(&if args.json { json(&pair)? } else { words(&pair, args, &notes) });
     Ok(())
 }
@@ -34,21 +38,21 @@ fn words(pair: &PairRules, args: &RulesArgs, notes: &[(&str, Vec<String>)]) -> S
         true => String::new(),
         false => format!(", curve {curve}"),
     };
+    let how = match base.regraded_at_mm {
+        Some(at) => format!(
+            "regraded on {} mm (D85 as sampled {} mm)",
+            number(Some(at)),
+            number(base.d85_as_sampled_mm)
+        ),
+        None => "as sampled".into(),
+    };
     line(format!(
-        "filter  {}{}: D15 {}, D85 {} mm, Cu {}",
-        args.filter.display(),
-        of_curve(&filter.curves, &filter.curve),
-        number(filter.d15_mm),
-        number(filter.d85_mm),
-        number(filter.cu)
-    ));
-    line(format!(
-        "base    {}{}: D15 {}, D85 {}, D95 {} mm, Cu {}",
+        "base    {}{}: D85 {}, D95 {} mm {how}; D15 {}, Cu {} as sampled",
         args.base.display(),
         of_curve(&base.curves, &base.curve),
-        number(base.d15_mm),
         number(base.d85_mm),
         number(base.d95_mm),
+        number(base.d15_mm),
         number(base.cu)
     ));
     let category = base.category.map_or("category not known".into(), |of| format!("category {of}"));
@@ -59,6 +63,14 @@ fn words(pair: &PairRules, args: &RulesArgs, notes: &[(&str, Vec<String>)]) -> S
     };
     let dispersive = if base.dispersive { ", dispersive" } else { "" };
     line(format!("        {category}{dispersive}, {fines}; {regraded}"));
+    line(format!(
+        "filter  {}{}: D15 {}, D85 {} mm, Cu {}",
+        args.filter.display(),
+        of_curve(&filter.curves, &filter.curve),
+        number(filter.d15_mm),
+        number(filter.d85_mm),
+        number(filter.cu)
+    ));
     for warning in &pair.warnings {
         line(format!("warning {warning}"));
     }

@@ -3,7 +3,9 @@
 use std::fmt::Write;
 
 use super::args::{ResultArgs, ResumeArgs, RunArgs, SettingArgs};
-use super::print::{count, counted, grains_per_void, json, leaves_out, percent, plain, shown, to_stdout};
+use super::print::{
+    count, counted, grains_per_void, json, leaves_out, of_base, percent, plain, shown, to_stdout,
+};
 use super::progress::followed;
 use crate::outcome::record::{Confidence, RunSummary};
 use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
@@ -81,11 +83,12 @@ fn summary(run: &FinishedRun) -> String {
         line(format!("  {said}"));
     }
     line(format!(
-        "  {} of {} base particles, {} voids; D15F/D85B {:.2}, D15F/D95B {:.2}, {}",
+        "  {} of {} base particles, {} voids; D15F/D85B {:.2}{}, D15F/D95B {:.2}, {}",
         counted(outcome.replicates.len() as u64, "replicate", "replicates"),
         count(outcome.n_base),
         count(inputs.network.voids),
         outcome.ratios.d15f_over_d85b,
+        of_base(inputs.base_size()),
         outcome.ratios.d15f_over_d95b,
         grains_per_void(outcome.grains_per_void)
     ));

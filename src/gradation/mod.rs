@@ -47,7 +47,7 @@ pub use sampler::{SizeRange, SizeSampler};
 pub use shape::Gap;
 pub use sieve::Gradation;
 pub(crate) use soil::file_and_soil;
-pub use soil::{FINES_MM, Soil, SoilSummary, curves_in_file, notes_in_file, soils_in_file};
+pub use soil::{FINES_MM, GRAVEL_MM, Soil, SoilSummary, curves_in_file, notes_in_file, soils_in_file};
 pub use stability::{KEZDI_RANGE, ShapeIndex};
 pub use supply::{BaseSupply, base_particles};
 pub(crate) use table::{Direction, Row, Table, check_size, rising};

@@ -7,8 +7,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::leaves_out_of_all;
 use super::record::{Confidence, Outcome, Ratios, Statistic, Verdict};
+use super::{BaseSize, leaves_out_of_all};
 
 /// Error of all differences together where it is said that two cases differ.
 const ERROR: f64 = 0.05;
@@ -71,6 +71,9 @@ pub struct ComparedCase {
     pub grains_per_void: Option<f64>,
     /// D15F over D85B and D95B.
     pub ratios: Ratios,
+    /// D85B and which base it is of; `None` without a unit, and in records of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub base: Option<BaseSize>,
     /// Eroded mass fraction of each run.
     pub runs: Vec<Statistic>,
     /// Least and most eroded over the range of the constriction curve, one pair per run; empty where the
@@ -162,6 +165,7 @@ impl ComparedCase {
             n_base: outcome.n_base,
             grains_per_void: outcome.grains_per_void,
             ratios: outcome.ratios,
+            base: outcome.inputs.base_size(),
             runs: outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect(),
             curve_range: outcome
                 .curve_range

@@ -108,7 +108,7 @@ mod tests {
 
     fn rules(filter: &[(f64, f64)], base: &[(f64, f64)]) -> Vec<AppliedRule> {
         let soil = |points| Gradation::from_points(points, None).unwrap();
-        PairRules::of(&soil(filter), &soil(base)).rules
+        PairRules::of(&soil(base), &soil(filter)).rules
     }
 
     fn doubt(said: &str, way: Way) -> Doubt {
@@ -224,7 +224,7 @@ mod tests {
         let base = [("b".to_owned(), soil(&[(0.01, 0.0), (0.05, 40.0), (0.075, 55.0), (0.3, 100.0)]))];
         let judged = |dispersive| {
             let options = PairOptions { dispersive, ..PairOptions::default() };
-            judge(Verdict::None, &PairRules::of_envelopes(&filter, &base, options).rules, Vec::new())
+            judge(Verdict::None, &PairRules::of_envelopes(&base, &filter, options).rules, Vec::new())
         };
         assert_eq!(judged(false), within(&[]));
         let found = judged(true);

@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::digits::count;
-use super::leaves_out_of_all;
 use super::record::{Confidence, Outcome, Ratios, RunSummary, Verdict};
 use super::undecided::UndecidedBy;
+use super::{BaseSize, leaves_out_of_all};
 
 /// A finished case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -59,6 +59,9 @@ pub struct LedgerLine {
     pub grains_per_void: Option<f64>,
     /// D15F over D85B and D95B.
     pub ratios: Ratios,
+    /// D85B and which base it is of; `None` without a unit, and in lines of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub base: Option<BaseSize>,
     /// Statistics of each run.
     pub runs: Vec<RunSummary>,
     /// What else a reader must know.
@@ -159,6 +162,7 @@ impl LedgerLine {
             capped: outcome.capped,
             grains_per_void: outcome.grains_per_void,
             ratios: outcome.ratios,
+            base: outcome.inputs.base_size(),
             runs: outcome.summary.clone(),
             warnings: outcome.warnings.clone(),
             made,

@@ -22,6 +22,7 @@
 //! - [`design`] is how coarse a filter may be, and the band of a specification.
 
 mod applied;
+mod base_size;
 mod beside;
 pub mod by_connectivity;
 pub mod by_void;
@@ -58,11 +59,13 @@ pub mod undecided;
 pub mod verdict;
 pub mod walk_doubts;
 
+pub use base_size::BaseSize;
+pub(crate) use base_size::three;
 pub use infiltration::infiltration;
 pub(crate) use least_squares::log_log_slope;
 pub(crate) use metrics::eroded_mass_fraction;
 pub use metrics::{Eroded, Recorded, RunId, RunMetrics};
-pub use pair::{BaseSizes, FilterSizes, Mistake, PairOptions, PairRules};
+pub use pair::{BaseSizes, FilterSizes, Mistake, MistakeKind, PairOptions, PairRules};
 pub use recorder::{Recorder, Wanted};
 
 use crate::network::ExitRule;

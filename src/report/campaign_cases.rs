@@ -7,7 +7,7 @@ use maud::{Markup, Render, html};
 
 use super::figures::shorten;
 use super::numbers::{percent, percent_interval, significant, size, whole};
-use super::shell::clean;
+use super::shell::{clean, of_base};
 use super::table::Table;
 use crate::outcome::ledger::{Campaign, LedgerLine, of_earlier_versions};
 use crate::outcome::record::{Confidence, Statistic, Verdict};
@@ -93,7 +93,7 @@ fn table(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Markup {
         .number("Warnings", |line| line.warnings.len())
         .number("Eroded, first run", move |line| eroded(line, 0))
         .number("second run", move |line| eroded(line, 1))
-        .number("D15F/ D85B", |line| significant(line.ratios.d15f_over_d85b))
+        .number("D15F/ D85B", |line| of_base(line.ratios.d15f_over_d85b, line.base))
         .number("D15F/ D95B", |line| significant(line.ratios.d15f_over_d95b))
         .number("Thickness", thickness)
         .number("Grains per void", |line| line.grains_per_void.map_or_else(|| "–".to_owned(), significant))

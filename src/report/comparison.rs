@@ -11,7 +11,7 @@ use super::numbers::{
     capital, interval_in_percent, known, percent, percent_interval, significant, size, threshold, whole,
 };
 use super::run_figures::run_name;
-use super::shell::{Drawn, citation, clean, contents, figures, leaves_out, whole_page};
+use super::shell::{Drawn, citation, clean, contents, figures, leaves_out, of_base, whole_page};
 use super::table::Table;
 use super::written::{Written, write_page_as};
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
@@ -239,7 +239,7 @@ fn cases(folder: &Path, comparison: &Comparison) -> Markup {
         })
         .number("Eroded, first run", |case| with_interval(case.runs.first(), case.curve_range.first()))
         .number("second run", |case| with_interval(case.runs.get(1), case.curve_range.get(1)))
-        .number("D15F/ D85B", |case| significant(case.ratios.d15f_over_d85b))
+        .number("D15F/ D85B", |case| of_base(case.ratios.d15f_over_d85b, case.base))
         .number("D15F/ D95B", |case| significant(case.ratios.d15f_over_d95b))
         .number("Thickness", |case| {
             case.thickness_mm.map_or_else(|| "–".to_owned(), |thickness| size(thickness, case.scale_free))

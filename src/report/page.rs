@@ -318,6 +318,7 @@ fn missing(folder: &RunFolder, figures: &[Drawn]) -> Markup {
 
 fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
     let inputs = &outcome.inputs;
+    let grading = inputs.base_size().map_or(String::new(), |base| format!(", {}", base.grading()));
     let (filter, base, network) = (&inputs.filter, &inputs.base, &inputs.network);
     let mm = |value: f64| size(value, inputs.scale_free);
     let kind = match (network.kind, network.nx, network.ny, network.nz) {
@@ -381,7 +382,12 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
             (fact("Cu = D60/D10", known(base.cu, significant)))
             (fact("D0, D15, D50 (by mass)",
                 [Some(base.d0_mm), base.d15_mm, base.d50_mm].map(|d| known(d, mm)).join(", ")))
-            (fact("D85, D95, D100 (by mass)", [base.d85_mm, base.d95_mm, base.d100_mm].map(mm).join(", ")))
+            (fact(&format!("D85, D95, D100 (by mass){grading}"),
+                [base.d85_mm, base.d95_mm, base.d100_mm].map(mm).join(", ")))
+            @if let Some(before) = &base.as_sampled {
+                (fact("D85, D95, D100 as sampled (not walked)",
+                    [before.d85_mm, before.d95_mm, Some(before.d100_mm)].map(|d| known(d, mm)).join(", ")))
+            }
             @if base.tail_mass_fraction > 0.0 {
                 (fact("Pan fraction (finer than the finest sieve)",
                     format!("{} by mass; {}", percent(base.tail_mass_fraction),
@@ -391,7 +397,7 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
                                      mass is counted",
                         })))
             }
-            (fact("D15F/D85B, D15F/D95B", format!("{}, {}", significant(outcome.ratios.d15f_over_d85b),
+            (fact(&format!("D15F/D85B, D15F/D95B{grading}"), format!("{}, {}", significant(outcome.ratios.d15f_over_d85b),
                 significant(outcome.ratios.d15f_over_d95b))))
             (fact("Mass of base over mass of filter", known(inputs.mass_ratio, percent)))
             (fact("Base particles in each run, N_base", format!("{}{}", whole(outcome.n_base),

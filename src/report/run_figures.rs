@@ -90,16 +90,23 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     let inputs = &folder.outcome.inputs;
     let (filter, base) = (&inputs.filter, &inputs.base);
     let limits = boundaries(&folder.outcome);
-    let rows = filter.gradation.iter().chain(&filter.constrictions).chain(&base.gradation);
+    let sampled = base.as_sampled.as_ref();
+    let sampled_rows = sampled.map_or(&[][..], |before| &before.gradation);
+    let rows =
+        filter.gradation.iter().chain(&filter.constrictions).chain(&base.gradation).chain(sampled_rows);
     let x =
         size_axis(inputs.scale_free, rows.map(|row| row[0]).chain(limits.iter().map(|(_, limit, _)| *limit)));
     let x = if coarse_left(folder) { x.downward() } else { x };
     let y = Axis::percent("Percent finer (%)");
+    let d85b = match inputs.base_size() {
+        Some(of) => of.words(),
+        None => format!("D85B is {}", size(base.d85_mm, true)),
+    };
     let what = format!(
         "Percent finer against size for the filter (by mass), its constrictions (by number) and the base (by \
-         mass). D15F is {}, D85B is {}.",
+         mass). D15F is {}, {}.",
         size(filter.d15_mm, inputs.scale_free),
-        size(base.d85_mm, inputs.scale_free),
+        d85b,
     );
     let mut figure = Figure::new("Gradations and constriction curve", &what, "", x, y)
         .sizes((720.0, 460.0), (358.0, 400.0));
@@ -110,7 +117,16 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
         if name.is_empty() { kind.to_owned() } else { format!("{kind}:\n{}", shorten(soil_name(name), 24)) }
     };
     boundaries::draw(&mut figure, &limits);
-    figure.add(Line::new(points(&base.gradation), VERMILLION).width(2.6).label(&name("base", &base.name)));
+    // Of two curves of the base each says which it is; of one, it is as sampled.
+    let walked = match (inputs.base_size(), sampled) {
+        (Some(of), Some(_)) => format!("base, {}", of.grading()),
+        _ => name("base", &base.name),
+    };
+    if let Some(before) = sampled {
+        let line = Line::new(points(&before.gradation), VERMILLION).width(1.4).dash(Dash::Dashed);
+        figure.add(line.label("base as sampled,\nnot walked"));
+    }
+    figure.add(Line::new(points(&base.gradation), VERMILLION).width(2.6).label(&walked));
     let constrictions = Line::new(points(&filter.constrictions), BLUE).dash(Dash::Dashed);
     figure.add(constrictions.label("constrictions\n(by number)"));
     figure.add(Line::new(points(&filter.gradation), BLACK).width(2.6).label(&name("filter", &filter.name)));
@@ -123,9 +139,10 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     let caption = format!(
         "Gradations of filter and base (percent finer by mass) and the filter’s constrictions (percent \
          smaller by number, curve “{}”). Base particles pass a constriction that is no smaller than they \
-         are. D15F/D85B = {}, D15F/D95B = {}.{}{}",
+         are. D15F/D85B = {}{}, D15F/D95B = {}.{}{}",
         shorten(&filter.curve_name, 80),
         significant(folder.outcome.ratios.d15f_over_d85b),
+        inputs.base_size().map_or(String::new(), |of| format!(" ({})", of.words())),
         significant(folder.outcome.ratios.d15f_over_d95b),
         boundaries::caption(&limits, inputs.scale_free),
         if inputs.scale_free { " Sizes are multiples of D0F, the smallest filter grain." } else { "" },

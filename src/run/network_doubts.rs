@@ -5,11 +5,11 @@ use super::network_walk::{NetworkOutcome, NetworkWalk};
 use super::replicates::said_by_walks;
 use crate::case::{Case, NOT_STUDIED, PAPER_MASS_RATIO};
 use crate::network::Network;
+use crate::outcome::Mistake;
 use crate::outcome::confidence::{self, Judgement};
 use crate::outcome::doubt::{Doubt, Way};
 use crate::outcome::record::{Confidence, Statistic};
 use crate::outcome::rules::{self, RuleInputs};
-use crate::outcome::Mistake;
 
 /// A lattice narrower than this many voids has few ways beside each other.
 const FEWEST_ACROSS: u32 = 10;

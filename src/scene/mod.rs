@@ -29,7 +29,7 @@ pub use meaning::{
 };
 pub use packing_keys::PackingKeys;
 pub use reference::{ExclusiveSettings, SceneReference, SectionReference, SettingReference, WayReference};
-pub use tables::{TableOptions, keep_soils, quoted};
+pub use tables::{TableOptions, keep_soils, quoted, refuse_exchanged};
 
 use crate::network::ExitRule;
 use crate::outcome::stopping::StopRule;

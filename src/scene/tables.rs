@@ -4,6 +4,8 @@ use std::path::Path;
 
 use super::keys::Density;
 use super::{Origin, Scene, SceneError};
+use crate::gradation::curves_in_file;
+use crate::outcome::Mistake;
 
 /// What a scene of two tables is given besides them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -13,6 +15,11 @@ pub struct TableOptions {
     pub density: Option<Density>,
     /// A first look: fewer replicates, and no studies of the amount of base and of the thickness.
     pub quick: bool,
+    /// The base is walked as it was sampled. Without it a base in a table is walked as filter practice regrades
+    /// it, where `changes` do not say `base.regrade`.
+    pub as_sampled: bool,
+    /// Base and filter are taken as they are given, though their sizes look exchanged.
+    pub as_given: bool,
     /// Further settings, as `name=value`; they go before all of these.
     pub changes: Vec<String>,
 }
@@ -35,6 +42,9 @@ const CONSTRICTIONS: [&str; 6] = [
 
 /// Settings that say how many replicates are walked.
 const REPLICATES: [&str; 3] = ["replicates", "stop.target_error_pp", "stop.decide_percent"];
+
+/// The setting that says how the base is walked.
+const REGRADE: [&str; 1] = ["base.regrade"];
 
 /// Settings that say what the base is.
 const BASE: [&str; 3] = ["base.sieve", "base.cu", "base.single_mm"];
@@ -65,8 +75,26 @@ impl TableOptions {
         if self.quick && !self.is_set(&["record.sensitivity"]) {
             settings.push("record.sensitivity=[]".into());
         }
+        if self.as_sampled {
+            settings.push(self.regrading()?);
+        }
         settings.extend(self.changes.iter().cloned());
         Ok(settings)
+    }
+
+    /// How a base in a table is walked, as a setting.
+    ///
+    /// # Errors
+    /// [`SceneError::Clash`]: a change says it, too.
+    fn regrading(&self) -> Result<String, SceneError> {
+        if self.is_set(&REGRADE) {
+            return Err(SceneError::Clash {
+                file: Origin::CommandLine.to_string(),
+                problem: "--as-sampled and base.regrade say the same thing twice: give one".into(),
+            });
+        }
+        let how = if self.as_sampled { "no" } else { "practice" };
+        Ok(format!("base.regrade=\"{how}\""))
     }
 
     fn is_set(&self, names: &[&str]) -> bool {
@@ -79,7 +107,8 @@ impl Scene {
     /// rest is that of the built-in scene.
     ///
     /// # Errors
-    /// As [`Scene::built_in`]; a change would replace one of the two; or a name is not UTF-8.
+    /// As [`Scene::built_in`]; a change would replace one of the two; a name is not UTF-8; or the two look
+    /// exchanged.
     pub fn of_tables(base: &Path, filter: &Path, options: &TableOptions) -> Result<Self, SceneError> {
         let [named_base, named_filter] = [base, filter].map(|path| path.display().to_string());
         keep_soils(&options.changes, Some(&named_base), Some(&named_filter))?;
@@ -90,8 +119,15 @@ impl Scene {
         if options.density.is_none() && !options.is_set(&CONSTRICTIONS) {
             settings.push(format!("filter.estimate={MIDDLE}"));
         }
+        if !options.as_sampled && !options.is_set(&REGRADE) {
+            settings.push(options.regrading()?);
+        }
         settings.extend(options.settings()?);
-        Self::built_in(&settings)
+        let scene = Self::built_in(&settings)?;
+        if !options.as_given {
+            refuse_exchanged(base, filter)?;
+        }
+        Ok(scene)
     }
 
     /// What the filter's constrictions come from, in a sentence.
@@ -111,6 +147,25 @@ impl Scene {
             (None, Some(_)) => "The filter's constrictions are those of filter.curve.".into(),
             (None, None) => "The constrictions are those of the network that was given.".into(),
         }
+    }
+}
+
+/// Refuses two sieve tables that can hardly be a base and its filter. A table that cannot be read, or holds
+/// several soils, is left to whoever reads it.
+///
+/// # Errors
+/// [`SceneError::Clash`], with both files and their sizes.
+pub fn refuse_exchanged(base: &Path, filter: &Path) -> Result<(), SceneError> {
+    let [Ok(bases), Ok(filters)] = [base, filter].map(|path| curves_in_file(path, None)) else {
+        return Ok(());
+    };
+    let ([(_, of_base)], [(_, of_filter)]) = (&bases[..], &filters[..]) else { return Ok(()) };
+    match Mistake::find(of_base, of_filter, false).filter(Mistake::is_refused) {
+        Some(mistake) => Err(SceneError::Clash {
+            file: format!("base {}, filter {}", base.display(), filter.display()),
+            problem: mistake.refusal(),
+        }),
+        None => Ok(()),
     }
 }
 
@@ -153,6 +208,7 @@ pub fn quoted(path: &Path) -> Result<String, SceneError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Regrade;
 
     fn scene(options: &TableOptions) -> Result<Scene, SceneError> {
         Scene::of_tables(Path::new("1e5"), Path::new("a \"b\".xlsx#Filter A"), options)
@@ -169,6 +225,42 @@ mod tests {
         assert_eq!(scene.base.sieve.as_deref(), Some(Path::new("1e5")));
         assert_eq!((scene.filter.curve, scene.filter.estimate, scene.filter.cu), (None, Some(MIDDLE), None));
         assert_eq!((scene.base.cu, scene.walk.replicates), (None, 10));
+    }
+
+    #[test]
+    fn a_base_in_a_table_is_walked_as_practice_regrades_it_unless_it_is_said_otherwise() {
+        let of = |options: &TableOptions| scene(options).unwrap().base.regrade;
+        assert_eq!(of(&with(&[])), Some(Regrade::Practice));
+        assert_eq!(of(&TableOptions { as_sampled: true, ..with(&[]) }), Some(Regrade::No));
+        for (set, wanted) in [("base.regrade=no", Regrade::No), ("base.regrade=practice", Regrade::Practice)]
+        {
+            assert_eq!(of(&with(&[set])), Some(wanted), "{set}");
+            let twice = TableOptions { as_sampled: true, ..with(&[set]) };
+            assert!(scene(&twice).unwrap_err().to_string().contains("say the same thing twice"));
+        }
+        // Of a scene's settings only what was asked for.
+        assert!(with(&[]).settings().unwrap().is_empty());
+    }
+
+    #[test]
+    fn two_tables_that_are_exchanged_are_refused_unless_they_are_as_given() {
+        let root = tempfile::tempdir().unwrap();
+        let table = |name: &str, rows: &str| {
+            let path = root.path().join(name);
+            std::fs::write(&path, format!("size_mm,percent\n{rows}")).unwrap();
+            path
+        };
+        let base = table("base.csv", "0.1,0\n0.3,100\n");
+        let filter = table("filter.csv", "0.5,0\n2,100\n");
+        let scene = |base: &Path, filter: &Path, as_given| {
+            Scene::of_tables(base, filter, &TableOptions { as_given, ..TableOptions::default() })
+        };
+        assert!(scene(&base, &filter, false).is_ok() && scene(&filter, &base, true).is_ok());
+        let said = scene(&filter, &base, false).unwrap_err().to_string();
+        for words in ["filter.csv, filter ", "are the two files exchanged?", "exchange the two", "--as-given"]
+        {
+            assert!(said.contains(words), "{said}");
+        }
     }
 
     #[test]

@@ -31,6 +31,10 @@ pub struct AskedDesign {
     #[serde(default)]
     pub inverse: bool,
     #[serde(default)]
+    pub as_sampled: bool,
+    #[serde(default)]
+    pub as_given: bool,
+    #[serde(default)]
     pub changes: Vec<String>,
 }
 
@@ -43,6 +47,10 @@ pub struct KeptDesign {
     densities: Vec<String>,
     thicknesses: Vec<String>,
     inverse: bool,
+    #[serde(default)]
+    as_sampled: bool,
+    #[serde(default)]
+    as_given: bool,
     settings: Vec<String>,
 }
 
@@ -86,6 +94,8 @@ impl AskedDesign {
             densities: listed(&self.density),
             thicknesses: listed(&self.thickness),
             inverse: self.inverse,
+            as_sampled: self.as_sampled,
+            as_given: self.as_given,
             settings: self.changes,
         })
     }
@@ -115,6 +125,8 @@ impl KeptDesign {
             thicknesses: thicknesses.collect::<Result<_, _>>().map_err(RunError::Refused)?,
             settings: self.settings.clone(),
             inverse: self.inverse,
+            as_sampled: self.as_sampled,
+            as_given: self.as_given,
             out: out.to_owned(),
             prepare: prepare.clone(),
             ..DesignOptions::default()
@@ -153,7 +165,9 @@ pub fn of_design(design: &Design) -> Result<Value, serde_json::Error> {
     }
     Ok(json!({
         "inverse": design.inverse,
+        "answer": design.answer(),
         "base": design.base.name,
+        "d85b": design.base.size().map(|base| base.words()),
         "filter": design.filter,
         "boundaries": boundaries,
         "replicates": design.replicates,
@@ -180,6 +194,8 @@ mod tests {
             density: "loose, dense,".into(),
             thickness: "8layers".into(),
             inverse: false,
+            as_sampled: false,
+            as_given: false,
             changes: Vec::new(),
         }
     }

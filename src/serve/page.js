@@ -130,7 +130,7 @@ function setUpSheets() {
     if (paste) paste.addEventListener("click", () => add(box, `${role}.csv`, new Blob([$("textarea", box).value])));
     $(".which select", box).addEventListener("change", (event) => take(role, event.target.value));
   }
-  for (const field of ["#dispersive", "#joint"]) $(field).addEventListener("change", showPair);
+  for (const field of ["#dispersive", "#joint", "#as-given"]) $(field).addEventListener("change", showPair);
   for (const kind of ["dragover", "drop"]) document.addEventListener(kind, (event) => event.preventDefault());
 }
 
@@ -176,7 +176,8 @@ async function showPair() {
   if (state.more.length) query.set("more", state.more.join("\n"));
   if ($("#dispersive").checked) query.set("dispersive", "1");
   if ($("#joint").value.trim()) query.set("joint_mm", $("#joint").value.trim());
-  $("#soil-options").hidden = !both;
+  if ($("#as-given").checked) query.set("as_given", "1");
+  $("#soil-options").hidden = !state.base;
   if (!any || state.seen === String(query)) return;
   state.seen = String(query);
   showCurves(query);
@@ -267,6 +268,10 @@ function result(rule) {
 function showRules(pair) {
   const broken = pair.rules.filter((rule) => rule.applies && rule.met === false);
   const parts = pair.warnings.map((warning) => el("p", { class: "problem" }, warning));
+  const { base } = pair;
+  parts.push(el("p", {}, `The base as practice reads it: D85 ${number(base.d85_mm)} mm, `, base.regraded
+    ? `regraded on ${number(base.regraded_at_mm)} mm (as sampled ${number(base.d85_as_sampled_mm)} mm)` : "as sampled",
+  `; ${base.why}.`));
   parts.push(el("p", {}, broken.length
     ? el("span", {}, el("b", { class: "breaks" }, `${broken.length} not met: `), broken.map((rule) => rule.name).join("; "))
     : "Every rule that was made for these soils and has a result is met. What the walk says is another question."),
@@ -304,7 +309,7 @@ async function setUpForm() {
     el("label", {}, "Published curve", el("select", { "data-key": "filter.curve", title: about["filter.curve"].doc },
       el("option", { value: "" }, "none"), ...form.curves.map((curve) => el("option", { value: curve.name }, `${curve.name}: ${curve.title}`)))),
     ...FIRST.filter(([name]) => about[name]).map(([name, label]) => el("label", {}, label, input(about[name]))));
-  const own = ["base.sieve", "filter.sieve", "filter.measured", "filter.density", "filter.curve", "base.dispersive", "filter.joint_mm", ...FIRST.map(([name]) => name)];
+  const own = ["base.sieve", "filter.sieve", "filter.measured", "filter.density", "filter.curve", "base.dispersive", "base.regrade", "filter.joint_mm", ...FIRST.map(([name]) => name)];
   const sections = [...new Set(form.keys.map((key) => key.section))];
   $("#all").append(...sections.map((section) => {
     const keys = form.keys.filter((key) => key.section === section && !own.includes(key.name));
@@ -322,12 +327,15 @@ function ofSoils() {
   return [...($("#dispersive").checked ? ["base.dispersive=true"] : []), ...(joint ? [`filter.joint_mm=${joint}`] : [])];
 }
 
+/** How the two sheets are taken. */
+const taken = () => ({ as_sampled: $("#as-sampled").checked, as_given: $("#as-given").checked });
+
 function asked(compare) {
   const changes = $$("[data-key]").filter((field) => field.value.trim())
     .map((field) => `${field.dataset.key}=${field.value.trim()}`);
   changes.push(...ofSoils());
   changes.push(...$("#free").value.split("\n").map((line) => line.trim()).filter(Boolean));
-  const what = { base: state.base, filter: state.filter, density: $("#density").value, quick: $("#quick").checked, changes };
+  const what = { base: state.base, filter: state.filter, density: $("#density").value, quick: $("#quick").checked, ...taken(), changes };
   if (compare) what[$("input[name=as]:checked").value] = state.more;
   return what;
 }
@@ -377,7 +385,7 @@ async function design() {
   try {
     if (shape === CU && !cu) throw new Error("give the Cu of the filter");
     await ask("api/design", { base: state.base, filter: shape ? "" : state.filter, shape: shape === CU ? cu : shape,
-      density: $("#design-density").value, thickness: $("#design-thickness").value, inverse: $("#inverse").checked, changes });
+      density: $("#design-density").value, thickness: $("#design-thickness").value, inverse: $("#inverse").checked, ...taken(), changes });
     await poll();
     $("#results").scrollIntoView({ block: "start" });
   } catch (error) {
@@ -490,13 +498,14 @@ function boundary(of, note) {
 }
 
 function boundariesOf(done) {
-  const head = done.inverse ? ["No erosion down to", "Continuing erosion below"] : ["No erosion up to", "Continuing erosion from"];
+  const head = done.inverse ? ["In the model: no erosion down to", "continuing erosion below"] : ["In the model: no erosion up to", "continuing erosion from"];
   const rows = done.boundaries.map((row) => el("tr", {}, el("th", {}, row.end_of ? `${row.density} (an end of the range of ${row.end_of})` : row.density, el("br"), row.thickness),
     el("td", {}, boundary(row.no_erosion, row.no_erosion_note)), el("td", {}, boundary(row.continuing, row.continuing_note)),
-    el("td", {}, row.band ? row.band.said : row.band_note || "–", row.band && row.band.practice !== null
+    el("td", {}, row.band ? row.band.said : row.band_note || "–", row.band && row.band.practice !== null && row.band.set_by === "walk"
       ? [el("br"), el("span", { class: "small" }, `practice allows up to ${number(row.band.practice)} ${row.band.unit}`)] : null,
     row.not_monotone ? [el("br"), el("span", { class: "small" }, `not monotone on ${row.not_monotone} network${row.not_monotone === 1 ? "" : "s"}: the smallest ratio seen to erode counts`)] : null)));
-  return [el("p", {}, `Base ${done.base}, filter ${done.filter}; median of ${done.replicates} networks.`),
+  return [done.answer ? el("p", { class: "word" }, `${done.answer.said}.`) : null,
+    el("p", {}, `Base ${done.base}${done.d85b ? ` (${done.d85b})` : ""}, filter ${done.filter}; median of ${done.replicates} networks.`),
     el("p", {}, "Confidence: ", confidenceOf(done.confidence), "."),
     el("div", { class: "scroll" }, el("table", { class: "boundaries" },
       el("thead", {}, el("tr", {}, ...["Density, thickness", ...head, "Band"].map((text) => el("th", {}, text)))), el("tbody", {}, ...rows))),

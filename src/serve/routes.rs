@@ -57,6 +57,12 @@ struct Asked {
     density: String,
     #[serde(default)]
     quick: bool,
+    /// The base is walked as it was sampled, not as practice regrades it.
+    #[serde(default)]
+    as_sampled: bool,
+    /// The two are taken as they are given, though they look exchanged.
+    #[serde(default)]
+    as_given: bool,
     #[serde(default)]
     changes: Vec<String>,
 }
@@ -273,8 +279,11 @@ impl Routes {
             Some(Ok(mm)) if mm > 0.0 && mm.is_finite() => Some(mm),
             Some(_) => return Err(wrong("the open joint: write a number of millimetres above 0")),
         };
-        let options = PairOptions { dispersive: request.parameter("dispersive").is_some(), joint_mm };
-        let pair = PairRules::of_envelopes(&curves("filter")?, &curves("base")?, options);
+        let is_ticked = |name: &str| request.parameter(name).is_some();
+        let options =
+            PairOptions { dispersive: is_ticked("dispersive"), joint_mm, as_given: is_ticked("as_given") };
+        let pair = PairRules::guarded(&curves("base")?, &curves("filter")?, options)
+            .map_err(|mistake| wrong(mistake.refusal()))?;
         Ok(Answer::json(200, &serde_json::to_value(pair).map_err(wrong)?))
     }
 
@@ -365,7 +374,8 @@ fn options(asked: &Asked) -> Result<TableOptions, Problem> {
         word => Some(Density::named(word).ok_or_else(|| wrong(format!("density: {}", Density::WORDS)))?),
     };
     bounded(&asked.changes)?;
-    Ok(TableOptions { density, quick: asked.quick, changes: asked.changes.clone() })
+    let Asked { quick, as_sampled, as_given, .. } = *asked;
+    Ok(TableOptions { density, quick, as_sampled, as_given, changes: asked.changes.clone() })
 }
 
 fn bounded(changes: &[String]) -> Result<(), Problem> {

@@ -65,7 +65,7 @@ fn a_design_fills_a_folder_and_says_it_all() {
         assert!(row["no_erosion"]["median"].as_f64() <= row["continuing"]["median"].as_f64());
     }
     assert_eq!((rows[0]["layers"].as_u64(), rows[1]["thickness_mm"].as_f64()), (Some(12), Some(15.0)));
-    let header = "density,thickness,network,d15f_over_d85b,eroded_first,eroded_second\n";
+    let header = "density,thickness,network,d15f_over_d85b,eroded_first,eroded_second,d85b_of\n";
     let csv = fs::read_to_string(out.join("design.csv")).unwrap();
     assert!(csv.starts_with(header) && csv.lines().count() > 30, "{csv}");
     figures_are_listed(FolderKind::Design, &out);

@@ -13,6 +13,7 @@ mod graph;
 mod hostile_names;
 mod judge;
 mod mistakes;
+mod order;
 mod pack;
 mod pan;
 mod precision;

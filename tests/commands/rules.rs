@@ -22,7 +22,7 @@ fn rules_are_applied_without_a_walk_under_the_names_of_the_contract() {
     let sieve = |name: &str, rows: &str| table(root.path(), name, rows);
     let filter = sieve("gravel.csv", "5,0\n6.5,15\n20,100\n");
     let till = sieve("till.csv", "19,100\n4.75,92\n2,82\n0.425,60\n0.075,35\n");
-    let output = voidwalk(&["rules", &filter, &till, "--json"]);
+    let output = voidwalk(&["rules", &till, &filter, "--json"]);
     assert!(output.status.success());
     let value: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let base = &value["base"];
@@ -48,14 +48,22 @@ fn rules_are_applied_without_a_walk_under_the_names_of_the_contract() {
     let met = |id: &str| rules.iter().find(|rule| rule["id"] == id).unwrap()["met"].clone();
     assert_eq!(met("sherard-dunnigan"), false);
     assert_eq!(met("terzaghi"), serde_json::Value::Null);
-    let words = String::from_utf8(voidwalk(&["rules", &filter, &till]).stdout).unwrap();
+    let words = String::from_utf8(voidwalk(&["rules", &till, &filter]).stdout).unwrap();
     assert!(words.contains("NOT MET") && words.contains("category 3, 38.0 % fines"), "{words}");
     // Exchanged files, and micrometres under a header in mm.
-    let exchanged = String::from_utf8(voidwalk(&["rules", &till, &filter]).stdout).unwrap();
-    assert!(exchanged.contains("are the two files exchanged?"), "{exchanged}");
+    let output = voidwalk(&["rules", &filter, &till]);
+    let exchanged = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(2) && output.stdout.is_empty(), "{exchanged}");
+    for said in ["are the two files exchanged?", "exchange the two", "--as-given"] {
+        assert!(exchanged.contains(said), "{exchanged}");
+    }
+    let output = voidwalk(&["rules", &filter, &till, "--as-given"]);
+    let as_given = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success() && as_given.contains("are the two files exchanged?"), "{as_given}");
     let micrometres = sieve("um.csv", "75,0\n318,85\n600,100\n");
-    let output = voidwalk(&["rules", &filter, &micrometres]);
-    assert!(String::from_utf8(output.stdout).unwrap().contains("micrometres under a header in mm"));
+    let output = voidwalk(&["rules", &micrometres, &filter]);
+    assert!(output.status.code() == Some(2));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("micrometres under a header in mm"));
 }
 
 /// Several soils in a sheet are the curves of one envelope; every number names its curve.
@@ -71,7 +79,7 @@ fn envelopes_dispersive_soils_and_joints_by_the_command() {
         sheet("filter.csv", "opening_mm,fine side,coarse side\n0.5,15,0\n1,60,15\n2,100,60\n5,100,100\n");
     let base = sheet("base.csv", "opening_mm,fine,coarse\n0.001,0,0\n0.075,90,60\n0.2,98,85\n1,100,100\n");
     let json = |more: &[&str]| -> serde_json::Value {
-        let output = voidwalk(&[&["rules", &filter, &base, "--json"], more].concat());
+        let output = voidwalk(&[&["rules", &base, &filter, "--json"], more].concat());
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         serde_json::from_slice(&output.stdout).unwrap()
     };
@@ -96,7 +104,7 @@ fn envelopes_dispersive_soils_and_joints_by_the_command() {
     let limit = rule(&dispersive, "sherard-dunnigan").unwrap()["limit"].as_f64().unwrap();
     assert!((limit - 0.0065 * 75f64.powf(85.0 / 90.0)).abs() < 1e-9);
     assert_eq!(rule(&dispersive, "constricted-exit").unwrap()["value"], 0.0);
-    let words = String::from_utf8(voidwalk(&["rules", &filter, &base, "--joint-mm", "5"]).stdout).unwrap();
+    let words = String::from_utf8(voidwalk(&["rules", &base, &filter, "--joint-mm", "5"]).stdout).unwrap();
     for said in [
         "filter curve coarse side, base curve fine",
         "probability = 90.0 %",
@@ -106,11 +114,11 @@ fn envelopes_dispersive_soils_and_joints_by_the_command() {
         assert!(words.contains(said), "{said}: {words}");
     }
     // One curve of each by its name.
-    let one = voidwalk(&["rules", &format!("{filter}#fine side"), &format!("{base}#coarse"), "--json"]);
+    let one = voidwalk(&["rules", &format!("{base}#coarse"), &format!("{filter}#fine side"), "--json"]);
     let one: serde_json::Value = serde_json::from_slice(&one.stdout).unwrap();
     assert!(one["base"].get("curves").is_none() && rule(&one, "filter-band").is_none());
     for joint in ["0", "-1", "wide"] {
-        let output = voidwalk(&["rules", &filter, &base, "--joint-mm", joint]);
+        let output = voidwalk(&["rules", &base, &filter, "--joint-mm", joint]);
         let stderr = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.code() == Some(2) && stderr.contains("millimetres above 0"), "{stderr}");
     }
@@ -155,7 +163,13 @@ fn the_base_is_walked_regraded_where_the_scene_says_so() {
     // What practice leaves as it is, is left and said; what has no unit is refused.
     let sand = format!("base.sieve={}", sieve("sand.csv", "0.1,0\n0.5,85\n1,100\n"));
     let left = check(&["--set", &sand, "--set", "base.regrade=practice"]);
-    assert!(warned(&left, "practice does not regrade this base: nothing is coarser"), "{left}");
+    assert!(
+        !warned(&left, "practice does not regrade") && left["inputs"]["base"]["d100_mm"] == 1.0,
+        "{left}"
+    );
+    let stone = format!("base.sieve={}", sieve("stone.csv", "2,0\n4,60\n5.5,100\n"));
+    let left = check(&["--set", &stone, "--set", "base.regrade=practice"]);
+    assert!(warned(&left, "practice does not regrade this base: less than 15 % fines"), "{left}");
     let output = voidwalk(&["check", "--set", "base.regrade=practice"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("needs sizes in mm"));

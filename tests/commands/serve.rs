@@ -474,6 +474,24 @@ fn a_design_is_refused_in_the_words_of_the_command_line() {
         let (told, said) = (String::from_utf8(told.stderr).unwrap(), said["problem"].as_str().unwrap());
         assert!(told.contains(said) && said.len() > 20, "{told} {said}");
     }
+    // Exchanged sheets are refused by every kind of work, and by the rules, unless they are as given.
+    assert_eq!(served.sheet("stone.csv", "size_mm,percent\n5,0\n20,100\n").0, 200);
+    let exchanged = json!({ "base": "2", "filter": "1", "changes": [] });
+    for kind in ["judge", "check"] {
+        let (status, said) = served.post(&format!("api/{kind}"), exchanged.to_string().as_bytes());
+        let said = said["problem"].as_str().unwrap();
+        assert!(
+            status == 422 && said.starts_with("base stone.csv, filter narrow.csv: the base is"),
+            "{said}"
+        );
+    }
+    let (status, said) = served.design(&[], json!({ "base": "2", "filter": "1", "shape": "" }));
+    assert!(status == 422 && said.to_string().contains("are the two files exchanged?"), "{said}");
+    let (status, _, said) = served.get("api/rules?base=2&filter=1");
+    assert!(status == 422 && String::from_utf8(said).unwrap().contains("are the two files exchanged?"));
+    assert_eq!(served.get("api/rules?base=2&filter=1&as_given=1").0, 200);
+    let pair = served.json("api/rules?base=1&filter=2");
+    assert_eq!(pair["base"]["d85_mm"], pair["base"]["d85_as_sampled_mm"]);
     // A path is no shape, a soil that is none no base, and nothing is left of either.
     for shape in ["narrow.csv", "./narrow.csv", "/etc/passwd", "../x", "sheets/1/narrow.csv"] {
         let (status, said) = served.design(&[], json!({ "shape": shape }));

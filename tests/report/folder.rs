@@ -189,6 +189,7 @@ pub fn outcome(replicates: u64) -> Outcome {
                 d100_mm: base_at(100.0),
                 tail_mass_fraction: 0.0,
                 regraded_at_mm: None,
+                as_sampled: None,
                 gradation: straight(d0b, cu_b),
             },
             network: NetworkRecord {

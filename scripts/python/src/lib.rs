@@ -9,6 +9,7 @@ mod grains;
 mod network;
 mod pages;
 mod problem;
+mod rules;
 mod scenes;
 mod soil;
 mod tables;
@@ -29,6 +30,8 @@ mod _voidwalk {
     use crate::pages::{report, run_brief, run_page, walk_brief, walk_page};
     #[pymodule_export]
     use crate::problem::VoidwalkError;
+    #[pymodule_export]
+    use crate::rules::rules;
     #[pymodule_export]
     use crate::scenes::{Scene, campaign, init_text, resume, run, run_in_memory};
     #[pymodule_export]

@@ -38,6 +38,5 @@ mod zipped;
 
 pub(crate) use read::file_and_soil;
 pub use read::{curves_in_file, notes_in_file, soils_in_file};
-pub(super) use summary::GRAVEL_MM;
-pub use summary::{FINES_MM, SoilSummary};
+pub use summary::{FINES_MM, GRAVEL_MM, SoilSummary};
 pub use table::Soil;

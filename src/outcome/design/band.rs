@@ -4,13 +4,27 @@ use serde::{Deserialize, Serialize};
 
 use crate::outcome::record::{AppliedRule, RuleRole};
 
+/// What set the answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SetBy {
+    /// A rule of practice.
+    Practice,
+    /// The walk.
+    Walk,
+}
+
 /// Between which D15F a filter both drains and holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Band {
     /// Least D15F, of the rule of permeability.
     pub least: f64,
-    /// Greatest D15F at which the walk erodes less than 7.5 % in the first run, on all but 5 % of networks.
+    /// Greatest D15F that both allow: the walk, which erodes less than 7.5 % in the first run on all but 5 % of
+    /// networks, and practice. Files of earlier versions hold that of the walk alone.
     pub greatest: f64,
+    /// Which of the two set it; `None` in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub set_by: Option<SetBy>,
     /// Greatest D15F that the strictest rule of retention allows, which was made for this base.
     pub practice: Option<f64>,
     /// Name of that rule.
@@ -47,17 +61,36 @@ pub fn limits(rules: &[AppliedRule], d15f: f64) -> Vec<(&AppliedRule, f64)> {
     rules.iter().filter_map(one).collect()
 }
 
+/// The rule by which new filters are specified.
+pub const DESIGN: &str = "sherard-dunnigan";
+
+/// A rule of retention, as a sentence names it.
+pub fn whose(rule: &AppliedRule) -> String {
+    match rule.id.as_str() {
+        DESIGN => "Sherard and Dunnigan's limit of design".into(),
+        "foster-fell-no-erosion" => "Foster and Fell's boundary of no erosion".into(),
+        "terzaghi" => "Terzaghi's rule".into(),
+        _ => rule.name.clone(),
+    }
+}
+
+/// The strictest rule by which a filter retains a base, with its limit of D15F.
+pub fn retention(rules: &[AppliedRule], d15f: f64) -> Option<(&AppliedRule, f64)> {
+    let of_role = |rule: &AppliedRule| rule.role == RuleRole::Retention && !rule.at_least;
+    let all = limits(rules, d15f).into_iter().filter(|(rule, _)| of_role(rule));
+    all.min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
 impl Band {
     /// From the rules of a filter of this D15F and the greatest D15F that holds, in the unit of the rules;
     /// `None` where the least is not known.
     pub fn new(rules: &[AppliedRule], d15f: f64, greatest: f64, unit: &str) -> Option<Self> {
         let limits = limits(rules, d15f);
         let (_, least) = *limits.iter().find(|(rule, _)| rule.id == PERMEABILITY)?;
-        let retention = limits.iter().filter(|(rule, _)| rule.role == RuleRole::Retention && !rule.at_least);
-        let strictest = retention.min_by(|a, b| a.1.total_cmp(&b.1));
+        let strictest = retention(rules, d15f);
         // The stricter of walk and practice is the one that clashes.
         let practice = strictest.filter(|(_, limit)| *limit < greatest);
-        let is_empty = least > practice.map_or(greatest, |(_, limit)| *limit);
+        let is_empty = least > practice.map_or(greatest, |(_, limit)| limit);
         let asked = format!("permeability asks for a D15F of at least {least:.3} {unit}");
         let said = match (is_empty, practice) {
             (true, Some((rule, limit))) => format!(
@@ -69,17 +102,35 @@ impl Band {
                 "no filter of this shape both drains and holds this base: {asked}, but the walk holds up to \
                  {greatest:.3} {unit} only"
             ),
-            (false, _) => format!("D15F from {least:.3} to {greatest:.3} {unit}"),
+            (false, Some((rule, limit))) => format!(
+                "D15F from {least:.3} to {limit:.3} {unit}, the coarse side by practice ({})",
+                whose(rule)
+            ),
+            (false, None) => {
+                format!("D15F from {least:.3} to {greatest:.3} {unit}, the coarse side by the walk")
+            }
         };
         Some(Self {
             least,
-            greatest,
-            practice: strictest.map(|(_, limit)| *limit),
+            greatest: practice.map_or(greatest, |(_, limit)| limit),
+            set_by: Some(if practice.is_some() { SetBy::Practice } else { SetBy::Walk }),
+            practice: strictest.map(|(_, limit)| limit),
             practice_rule: strictest.map_or_else(String::new, |(rule, _)| rule.name.clone()),
             unit: unit.into(),
             is_empty,
             said,
         })
+    }
+
+    /// Its two sides in words. That of an earlier version may say more than practice allows.
+    pub fn words(&self) -> String {
+        match (self.is_empty, self.set_by, self.practice) {
+            (false, None, Some(practice)) if practice < self.greatest => format!(
+                "D15F from {:.3} to {practice:.3} {}, the coarse side by practice ({})",
+                self.least, self.unit, self.practice_rule
+            ),
+            _ => self.said.clone(),
+        }
     }
 
     /// Greatest D15F that both walk and practice allow.
@@ -99,7 +150,7 @@ mod tests {
 
     fn rules_of(base: &Gradation) -> Vec<AppliedRule> {
         let filter = Gradation::linear_from_dx(15.0, D15F, 1.5).unwrap();
-        PairRules::of(&filter, base).rules
+        PairRules::of(base, &filter).rules
     }
 
     fn rules(base_cu: f64) -> Vec<AppliedRule> {
@@ -117,8 +168,19 @@ mod tests {
         // D15B of a linear Cu 3 base: 0.4 x 3^(-70/50).
         let d15b = 0.4 * libm::pow(3.0, -1.4);
         assert!((band.least - 5.0 * d15b).abs() < 1e-9 && !band.is_empty, "{band:?}");
-        assert!((band.practice.unwrap() - 1.6).abs() < 1e-9 && (band.greatest_of_both() - 1.6).abs() < 1e-9);
-        assert!(band.said.contains("from 0.430 to 1.800 mm"), "{}", band.said);
+        assert!((band.practice.unwrap() - 1.6).abs() < 1e-9 && (band.greatest - 1.6).abs() < 1e-9);
+        assert_eq!(
+            band.said,
+            "D15F from 0.430 to 1.600 mm, the coarse side by practice (Sherard and Dunnigan's limit of design)"
+        );
+        let narrow = Band::new(&all, D15F, 1.2, "mm").unwrap();
+        assert_eq!((narrow.greatest, narrow.set_by), (1.2, Some(SetBy::Walk)));
+        assert_eq!(narrow.said, "D15F from 0.430 to 1.200 mm, the coarse side by the walk");
+        // As an earlier version wrote it.
+        let old = Band { greatest: 1.8, set_by: None, said: "D15F from 0.430 to 1.800 mm".into(), ..band };
+        assert!(
+            old.words().contains("from 0.430 to 1.600 mm") && (old.greatest_of_both() - 1.6).abs() < 1e-9
+        );
     }
 
     #[test]
@@ -135,7 +197,7 @@ mod tests {
         let all = rules(1.1);
         let band = Band::new(&all, D15F, 1.8, "mm").unwrap();
         let least = 5.0 * 0.4 * libm::pow(1.1, -1.4);
-        assert!(band.practice.unwrap() < least && least < band.greatest, "{band:?}");
+        assert!(band.practice.unwrap() < least && least < 1.8, "{band:?}");
         assert!(band.is_empty && band.said.contains(&format!("{least:.3} mm")), "{}", band.said);
         assert!(band.said.contains("up to 1.600 mm only") && !band.said.contains("1.800"), "{}", band.said);
     }

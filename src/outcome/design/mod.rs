@@ -4,10 +4,14 @@
 //! turns into some), or in the second as well (some turns into continuing). One packing a shape and density;
 //! the filter is scaled, which repacks nothing.
 
+mod answer;
 pub mod band;
 pub mod products;
 mod record;
 mod spread;
 
-pub use record::{BETWEEN_STEPS, BaseStated, Boundary, Design, DesignRow, NetworkBoundaries, Range, WalkRow};
+pub use answer::FinestBase;
+pub use record::{
+    Answer, BETWEEN_STEPS, BaseStated, Boundary, Design, DesignRow, NetworkBoundaries, Range, WalkRow,
+};
 pub use spread::{Beyond, spread};

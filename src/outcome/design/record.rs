@@ -2,9 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::band::Band;
+use super::band::{Band, SetBy};
 use super::products::Fit;
 use super::spread::{Beyond, spread};
+use crate::outcome::BaseSize;
 use crate::outcome::record::{AppliedRule, Confidence};
 use crate::walk::Engine;
 
@@ -16,6 +17,10 @@ pub const BETWEEN_STEPS: f64 = 0.005;
 pub struct Design {
     /// Version of voidwalk.
     pub version: String,
+    /// How coarse the filter may be: the least of what walk and practice allow; `None` in files of earlier
+    /// versions, of which [`Design::answer()`] works it out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub answer: Option<Answer>,
     /// One per density and thickness, in the order in which they were asked for.
     pub boundaries: Vec<DesignRow>,
     /// Whether the base was scaled against a filter of given size, to find the finest base that it holds.
@@ -70,6 +75,25 @@ pub struct Design {
     pub seconds: f64,
 }
 
+/// How coarse the filter may be; for the inverse, how fine the base.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Answer {
+    /// Greatest D15F (mm) that both walk and practice allow; `None` where none is known, where the base has no
+    /// size, and for the inverse.
+    pub d15f_max_mm: Option<f64>,
+    /// Finest D85B (mm) that both allow, for the inverse.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub d85b_min_mm: Option<f64>,
+    /// The same as D15F/D85B, of the base as it was walked.
+    pub d15f_over_d85b: Option<f64>,
+    /// Which of the two is the stricter.
+    pub set_by: SetBy,
+    /// Name of the rule for programs, where practice set it.
+    pub rule: Option<String>,
+    /// The same in a sentence without its full stop.
+    pub said: String,
+}
+
 /// What is known of the base.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BaseStated {
@@ -83,6 +107,15 @@ pub struct BaseStated {
     pub d85_mm: Option<f64>,
     /// D95/D85.
     pub d95_over_d85: Option<f64>,
+    /// The size (mm) that it was regraded on before it was walked; `None` where it was walked as sampled.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub regraded_at_mm: Option<f64>,
+    /// The part of its mass that is finer than its finest sieve, as it was walked.
+    #[serde(default)]
+    pub tail_mass_fraction: f64,
+    /// D85 (mm) before regrading, where it was regraded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub d85_as_sampled_mm: Option<f64>,
 }
 
 /// The boundaries of one density and thickness.
@@ -209,6 +242,18 @@ pub struct WalkRow {
     pub eroded_first: f64,
     /// The same in the second run; empty where it was not walked.
     pub eroded_second: Option<f64>,
+    /// Which base D85B is of: `as sampled`, or the size that it was regraded on; empty without a size, and in
+    /// files of earlier versions.
+    #[serde(default)]
+    pub d85b_of: String,
+}
+
+impl BaseStated {
+    /// D85 and which base it is of; `None` without a size of its own.
+    pub fn size(&self) -> Option<BaseSize> {
+        let (regraded_at_mm, as_sampled_mm) = (self.regraded_at_mm, self.d85_as_sampled_mm);
+        Some(BaseSize { d85_mm: self.d85_mm?, regraded_at_mm, as_sampled_mm })
+    }
 }
 
 impl Design {

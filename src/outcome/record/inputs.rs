@@ -74,6 +74,22 @@ pub struct BaseRecord {
     /// The size that it was regraded on before it was walked; `None` where it is walked as it is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub regraded_at_mm: Option<f64>,
+    /// The base as it was sampled, where it was regraded before it was walked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub as_sampled: Option<SampledBase>,
+    /// Rows of (size, percent finer by mass), sizes ascending.
+    pub gradation: Vec<[f64; 2]>,
+}
+
+/// A base before it was regraded.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SampledBase {
+    /// 85 % finer by mass.
+    pub d85_mm: Option<f64>,
+    /// 95 % finer by mass.
+    pub d95_mm: Option<f64>,
+    /// Largest particle.
+    pub d100_mm: f64,
     /// Rows of (size, percent finer by mass), sizes ascending.
     pub gradation: Vec<[f64; 2]>,
 }

@@ -23,7 +23,9 @@ mod voids;
 use serde::{Deserialize, Serialize};
 
 pub use answer::{Statistic, Stopping, Verdict};
-pub use inputs::{BaseRecord, FilterRecord, Inputs, NetworkKind, NetworkRecord, NetworkSummary, Ratios};
+pub use inputs::{
+    BaseRecord, FilterRecord, Inputs, NetworkKind, NetworkRecord, NetworkSummary, Ratios, SampledBase,
+};
 pub use manifest::{InputFile, Manifest};
 pub use rows::{FlowRow, LayerRow, SeriesRow, SizeRow};
 pub use varied::{CurveEnd, CurveRange, OfThickness, Sensitivity};

@@ -1,6 +1,6 @@
 //! Erosion against D15F: what every network eroded, the three zones, and the limits of practice on one axis.
 
-use crate::outcome::design::band::limits;
+use crate::outcome::design::band::{limits, retention};
 use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow};
 use crate::outcome::record::AppliedRule;
 use crate::report::figures::{
@@ -53,7 +53,8 @@ pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
     let mut figure =
         Figure::new("Erosion against D15F", what, "", x, Axis::percent("Base eroded, by mass (%)"))
             .sizes((760.0, 480.0), (358.0, 420.0));
-    zones(&mut figure, row, d85, ends);
+    let practice = retention(&design.rules, design.rules_at * d85).map(|(_, limit)| limit);
+    zones(&mut figure, row, d85, practice.filter(|_| !design.inverse), ends);
     for (rule, at) in &limits {
         let name = NAMES.iter().find(|(id, _)| *id == rule.id).map_or(rule.id.as_str(), |(_, name)| *name);
         figure.add(
@@ -64,10 +65,12 @@ pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
     }
     figure.add(Rule::new(Across::Y, 100.0 * design.threshold, BLACK).dash(Dash::Dashed).label("7.5 %"));
     draw_runs(&mut figure, &walks, d85);
+    let of_base = design.base.size().map_or(String::new(), |base| format!(" {}.", base.words()));
     let mut caption = format!(
         "Base eroded against D15F: {}, {}. Each thin line is a network, blue its first run, purple its \
-         second where it was walked. Green: no erosion, orange: some, red: continuing; where colours run \
-         into each other are 5 to 95 % of networks.",
+         second where it was walked. Green: no erosion, as far as practice allows it, grey: beyond that; \
+         orange: some erosion, red: continuing; where colours run into each other are 5 to 95 % of \
+         networks.{of_base}",
         row.name(),
         row.thickness
     );
@@ -95,7 +98,9 @@ fn of_rules(design: &Design, d85: f64) -> Vec<(&AppliedRule, f64)> {
 }
 
 /// The zones, as wide as the figure is.
-fn zones(figure: &mut Figure, row: &DesignRow, d85: f64, (left, right): (f64, f64)) {
+///
+/// What the walk alone holds beyond practice is no zone of no erosion.
+fn zones(figure: &mut Figure, row: &DesignRow, d85: f64, practice: Option<f64>, (left, right): (f64, f64)) {
     let of = |boundary: &Boundary| {
         let at = |ratio: f64| (ratio * d85).clamp(left, right);
         // Where no ratio is known that nearly all networks hold, some erosion begins at the left.
@@ -114,7 +119,9 @@ fn zones(figure: &mut Figure, row: &DesignRow, d85: f64, (left, right): (f64, f6
             figure.add(if name.is_empty() { area } else { area.label(name) });
         }
     };
-    zone(left, to, GREEN, 0.10, "no erosion");
+    let allowed = practice.map_or(to, |limit| limit.clamp(left, to));
+    zone(left, allowed, GREEN, 0.10, "no erosion");
+    zone(allowed, to, GREY, 0.12, "beyond practice");
     if row.no_erosion.is_none() {
         return;
     }

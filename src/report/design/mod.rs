@@ -13,7 +13,7 @@ use super::rules;
 use super::shell::{self, clean, fact, leaves_out, whole_page};
 use super::table::Table;
 use super::written::{Written, write_page_as};
-use crate::outcome::design::{Boundary, Design, DesignRow, Range, WalkRow};
+use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow};
 use crate::outcome::record::{AppliedRule, Confidence, RuleRole};
 
 /// Writes `design.html` and its figure into the folder of a design, from `design.json` and `design.csv`
@@ -67,7 +67,7 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
 }
 
 fn answer(design: &Design) -> Markup {
-    let found = design.least_held();
+    let (found, said) = (design.least_held(), design.answer());
     let others = design.boundaries.iter().filter(|row| row.no_erosion.is_none() || row.band_note.is_some());
     let others = others.count();
     let is_empty = |row: &DesignRow| row.band.as_ref().is_some_and(|band| band.is_empty);
@@ -80,21 +80,16 @@ fn answer(design: &Design) -> Markup {
     html! {
         section class=(format!("verdict {class}")) {
             p.word.long {
-                @match &found {
-                    Some((row, held)) => {
-                        (headline(row, *held, design))
-                        @if design.confidence != Confidence::Within { " in the model" }
-                    },
-                    None => "No ratio is known that nearly all networks hold",
-                }
+                (clean(&said.said))
             }
             @if design.confidence != Confidence::Within {
                 p { b { (capital(design.confidence.words())) } "; see below." }
             }
             @if let Some((row, held)) = &found {
-                p.lead {
-                    "No erosion (less than " (threshold(design.threshold)) " of the base in the first run) \
-                     up to D15F/D85B "
+                @if let Some(base) = design.base.size() { p.lead { (base.words()) "." } }
+                p {
+                    "In the model no erosion (less than " (threshold(design.threshold)) " of the base in the \
+                     first run) up to D15F/D85B "
                     @match &row.no_erosion {
                         Some(boundary) => {
                             b { (ratio(boundary.median)) }
@@ -117,16 +112,11 @@ fn answer(design: &Design) -> Markup {
                     (clean(&row.name())) ", " (clean(&row.thickness)) "."
                 }
                 @if let Some(band) = design.band_of(row) {
-                    p { b { "Band: " (clean(&band.said)) } "." }
-                    @if let Some(practice) = band.practice {
+                    p { b { "Band: " (clean(&band.words())) } "." }
+                    @if let Some(practice) = band.practice.filter(|_| !band.is_empty) {
                         p {
                             "Practice allows up to " (significant(practice)) " " (band.unit) " ("
-                            (clean(&band.practice_rule)) ")"
-                            @if !band.is_empty {
-                                ", both together up to " b { (significant(band.greatest_of_both())) }
-                                " " (band.unit)
-                            }
-                            "."
+                            (clean(&band.practice_rule)) ")."
                         }
                     }
                 }
@@ -153,30 +143,6 @@ fn answer(design: &Design) -> Markup {
     }
 }
 
-/// The answer in a few words, on the cautious side.
-fn headline(row: &DesignRow, held: f64, design: &Design) -> String {
-    let Some(boundary) = &row.no_erosion else {
-        let size = match design.inverse {
-            true => design.filter_d15_mm.map(|d15| format!("D85B down to {} mm", significant(d15 / held))),
-            false => design.base.d85_mm.map(|d85| format!("D15F up to {} mm", significant(held * d85))),
-        };
-        let size = size.unwrap_or_else(|| format!("D15F up to {} D85B", ratio(held)));
-        let held = match row.eroding_networks() {
-            0 => "Holds as far as was searched",
-            _ => "Held by nearly all networks",
-        };
-        return format!("{held}: {size}");
-    };
-    let cautious = |range: &Range| range.low.unwrap_or(range.median);
-    match (&boundary.d15f_mm, &boundary.d85b_mm) {
-        (Some(range), _) => format!("D15F up to {} mm", significant(cautious(range))),
-        (None, Some(range)) if design.inverse => {
-            format!("D85B down to {} mm", significant(range.high.unwrap_or(range.median)))
-        }
-        _ => format!("D15F up to {} D85B", ratio(held)),
-    }
-}
-
 fn ratio(value: f64) -> String {
     format!("{value:.2}")
 }
@@ -198,6 +164,7 @@ fn said(heading: &str, sentences: &[String], confidence: Confidence) -> Markup {
 }
 
 fn boundaries(design: &Design) -> Markup {
+    let of_base = design.base.size().map_or(String::new(), |base| format!(" ({})", base.words()));
     let cell = |boundary: Option<&Boundary>, note: Option<&String>| {
         html! {
             @match boundary {
@@ -218,9 +185,9 @@ fn boundaries(design: &Design) -> Markup {
         format!("{} layers{mm}", whole(row.layers))
     };
     html! {
-        h2 { "Boundaries" }
+        h2 { "Boundaries of the model" }
         p {
-            "D15F/D85B, median and 5 to 95 % of " (whole(design.replicates)) " networks; below it the "
+            "What the walks alone say, before practice: D15F/D85B" (of_base) ", median and 5 to 95 % of " (whole(design.replicates)) " networks; below it the "
             @if design.inverse { "finest D85B" } @else { "D15F" } " in mm where sizes have a unit."
         }
         (Table::of(&design.boundaries).class("study")
@@ -228,7 +195,7 @@ fn boundaries(design: &Design) -> Markup {
             .text("Thickness, at the no-erosion boundary", |row| {
                 html! { (clean(&row.thickness)) br; span.small { (thick(row)) } }
             })
-            .text("No erosion up to", |row| cell(row.no_erosion.as_ref(), row.no_erosion_note.as_ref()))
+            .text("No erosion in the model up to", |row| cell(row.no_erosion.as_ref(), row.no_erosion_note.as_ref()))
             .text("Continuing erosion from", |row| {
                 cell(row.continuing.as_ref(), row.continuing_note.as_ref())
             })
@@ -255,20 +222,25 @@ fn bands(design: &Design) -> Markup {
         let band = row.band.as_ref().expect("rows without one were left out");
         of(band).map_or_else(|| "–".to_owned(), |value| format!("{} {}", significant(value), band.unit))
     };
+    let set_by = |row: &DesignRow| match row.band.as_ref().map(|band| band.greatest_of_both()) {
+        Some(greatest) if row.band.as_ref().and_then(|band| band.practice) == Some(greatest) => "practice",
+        _ => "the walk",
+    };
     html! {
         @if !rows.is_empty() {
             h2 { "The band of a specification" }
             p {
-                "D15F from the least that drains the base to the greatest at which all but 5 % of networks \
-                 show no erosion, and what the strictest rule of retention allows. It is empty where the \
-                 least is more than either of the two. Where the constriction curve is known \
-                 within a range only, all of the range must hold."
+                "D15F from the least that drains the base to the greatest that both allow: the walk, in which \
+                 all but 5 % of networks show no erosion, and the strictest rule of retention. It is empty \
+                 where the least is more than that. Where the constriction curve is known within a range \
+                 only, all of the range must hold."
             }
             (Table::of(rows.iter().copied()).class("study")
                 .name("Density, thickness", |row| clean(&format!("{}, {}", row.density, row.thickness)))
                 .number("Least (drains)", |row| size(row, |band| Some(band.least)))
-                .number("Greatest (walk)", |row| size(row, |band| Some(band.greatest)))
-                .number("Greatest (practice)", |row| size(row, |band| band.practice))
+                .number("Greatest", |row| size(row, |band| Some(band.greatest_of_both())))
+                .text("Set by", |row| set_by(row))
+                .number("Practice allows", |row| size(row, |band| band.practice))
                 .text("", |row| match row.band.as_ref().is_some_and(|band| band.is_empty) {
                     true => html! { span.breaks { "✗ empty" } },
                     false => html! { span.keeps { "✓" } },
@@ -310,7 +282,7 @@ fn products(design: &Design) -> Markup {
                     format!("{} to {}", significant(fit.d15_mm[0]), significant(fit.d15_mm[1]))
                 })
                 .text("Drains", |fit| yes(fit.drains))
-                .text("Holds (walk)", |fit| yes(fit.holds))
+                .text("Holds (walk and practice)", |fit| yes(fit.holds))
                 .text("Practice", |fit| fit.practice.map_or_else(|| html! { "–" }, yes))
                 .number("", |fit| match (fit.fits(), design.may_fit()) {
                     (true, true) => html! { b { "fits" } },
@@ -360,12 +332,13 @@ fn made(design: &Design, walks: &[WalkRow]) -> Markup {
         h2 { "How this was made" }
         table.facts { tbody {
             (fact("Base", &design.base.name))
-            (fact("Cu of the base; D15, D85", format!(
+            (fact("Cu of the base as walked; D15 as sampled, D85 as walked", format!(
                 "{}; {}, {}",
                 design.base.cu.map_or_else(|| "not known".to_owned(), trimmed),
                 size(design.base.d15_mm),
                 size(design.base.d85_mm)
             )))
+            @if let Some(base) = design.base.size() { (fact("D85B", base.words())) }
             (fact("Filter", &design.filter))
             (fact("Cu of the filter", design.filter_cu.map_or_else(|| "not known".to_owned(), trimmed)))
             (fact("Grains per void, Eq. (2)", grains.map_or_else(|| "not given".to_owned(), trimmed)))
@@ -401,6 +374,7 @@ mod tests {
     fn design(no_erosion: Option<Boundary>, confidence: Confidence) -> Design {
         Design {
             version: "1".into(),
+            answer: None,
             boundaries: vec![DesignRow {
                 density: "<loose>".into(),
                 thickness: "60 layers".into(),
@@ -420,7 +394,16 @@ mod tests {
                 end_of: None,
             }],
             inverse: false,
-            base: BaseStated { name: "b".into(), cu: None, d15_mm: None, d85_mm: None, d95_over_d85: None },
+            base: BaseStated {
+                name: "b".into(),
+                cu: None,
+                d15_mm: None,
+                d85_mm: None,
+                d95_over_d85: None,
+                regraded_at_mm: None,
+                tail_mass_fraction: 0.0,
+                d85_as_sampled_mm: None,
+            },
             filter: "f".into(),
             filter_cu: None,
             filter_d15_mm: None,
@@ -452,6 +435,11 @@ mod tests {
         let boundary = || {
             let networks = [Ok(4.3), Ok(4.5)];
             Boundary::of(&networks, Some(0.2))
+        };
+        let design = |boundary, confidence| {
+            let mut design = design(boundary, confidence);
+            design.base.d85_mm = Some(0.2);
+            design
         };
         let page = written(&design(boundary(), Confidence::Within), CSV);
         assert!(page.contains("verdict none") && page.contains("D15F up to 0.862 mm"), "{page}");
@@ -489,7 +477,7 @@ mod tests {
         design.boundaries.push(loose);
         design.base.d85_mm = Some(d85);
         let filter = Gradation::linear_from_dx(15.0, design.rules_at * d85, 1.5).unwrap();
-        design.rules = PairRules::of(&filter, &base).rules;
+        design.rules = PairRules::of(&base, &filter).rules;
         let page = written(&design, &format!("{CSV}loosest,60 layers,1,3.0,0.01,\n"));
         assert!(page.contains("Base eroded against D15F: loosest, 60 layers"), "{page}");
         assert!(page.contains("this one holds least"));

@@ -156,18 +156,27 @@ fn write(folder: &Folder, comparison: &Comparison) -> Result<(), RunError> {
     let number = |value: Option<f64>| value.map_or(String::new(), |v| format!("{:.4}", 100.0 * v));
     let of = |s: Option<&Statistic>| [s.map(|s| s.mean), s.and_then(|s| s.low), s.and_then(|s| s.high)];
     let header = "case,verdict,confidence,rules_not_kept,replicates,n_base,d15f_over_d85b,d15f_over_d95b,\
-        first_eroded_mass_percent,first_low,first_high,second_eroded_mass_percent,second_low,second_high,\
+        d85b_of,first_eroded_mass_percent,first_low,first_high,second_eroded_mass_percent,second_low,second_high,\
         grains_per_void,thickness_mm,folder";
     let rows = comparison.cases.iter().map(|case| {
         let words = [case.name.clone(), case.verdict.words().into(), case.confidence.words().into()];
         let counts = [case.rules_not_kept.len() as u64, case.replicates, case.n_base].map(|n| n.to_string());
         let ratios = [case.ratios.d15f_over_d85b, case.ratios.d15f_over_d95b].map(|r| format!("{r:.6}"));
+        let of_base = [case.base.map_or(String::new(), |base| base.grading())];
         let eroded = [of(case.runs.first()), of(case.runs.get(1))].concat().into_iter().map(number);
         let thickness_mm = case.thickness_mm.filter(|_| !case.scale_free);
         let given = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:.5}"));
         let sizes = [case.grains_per_void, thickness_mm].map(given);
         let folder = [case.folder.clone()];
-        words.into_iter().chain(counts).chain(ratios).chain(eroded).chain(sizes).chain(folder).collect()
+        words
+            .into_iter()
+            .chain(counts)
+            .chain(ratios)
+            .chain(of_base)
+            .chain(eroded)
+            .chain(sizes)
+            .chain(folder)
+            .collect()
     });
     folder.write(CASES, &table(CASES, header, rows)?)?;
     let header = "first,second,run,replicates,difference_percentage_points,low,high,joint_low,joint_high,\

@@ -18,6 +18,7 @@ mod judged;
 mod kept;
 mod options;
 mod plan;
+mod practice;
 mod row;
 mod search;
 mod steadiness;

@@ -4,7 +4,10 @@ use std::path::{Path, PathBuf};
 
 use crate::outcome::stopping::StopRule;
 use crate::run::error::RunError;
-use crate::scene::{Base, Density, Extent, NetworkSource, Scene, keep_soils, quoted};
+use crate::scene::{
+    Base, BaseGradation, D85, Density, Extent, NetworkSource, Regrade, Scene, keep_soils, quoted,
+    refuse_exchanged,
+};
 use crate::walk::Engine;
 
 use super::options::{DesignOptions, Thickness};
@@ -117,6 +120,10 @@ fn one(
     settings.extend(of_density);
     let mut scene = Scene::built_in(&settings)?;
     refuse(&scene)?;
+    regrade(&mut scene, options)?;
+    if let (Some(base), Some(filter), false) = (&scene.base.sieve, &scene.filter.sieve, options.as_given) {
+        refuse_exchanged(base, filter)?;
+    }
     let thickness = thickness.or(match scene.network.extent() {
         Extent::Mm(mm) => Some(Thickness::Mm(mm)),
         Extent::D50F(multiple) => Some(Thickness::D50F(multiple)),
@@ -157,6 +164,26 @@ fn one(
     let thickness = thickness.unwrap_or(Thickness::Layers(layers));
     let states_d0 = options.settings.iter().any(|setting| key_of(setting) == "filter.d0_mm");
     Ok(Wanted { scene, of_filter, density, thickness, states_d0 })
+}
+
+/// Has a base with a size of its own walked as practice regrades it, where nothing says otherwise. A base that
+/// is scaled has none: practice would regrade each of its sizes elsewhere.
+fn regrade(scene: &mut Scene, options: &DesignOptions) -> Result<(), RunError> {
+    if let (Some(said), true) = (scene.base.regrade, options.as_sampled) {
+        return Err(RunError::Refused(format!(
+            "--as-sampled and --set base.regrade={} say the same thing twice: give one",
+            format!("{said:?}").to_lowercase()
+        )));
+    }
+    let has_size = match scene.base.gradation() {
+        BaseGradation::Sieve(..) => true,
+        BaseGradation::Linear { d85, .. } => matches!(d85, D85::Mm(_)),
+        BaseGradation::Single(_) => false,
+    };
+    if scene.base.regrade.is_none() && has_size && !options.inverse && !options.as_sampled {
+        scene.base.regrade = Some(Regrade::Practice);
+    }
+    Ok(())
 }
 
 /// The key of a setting.

@@ -3,12 +3,14 @@
 use super::judged::{Judged, Said};
 use super::kept::Done;
 use super::options::{DesignOptions, Thickness};
+use super::practice::{allowed, finest_base};
 use super::row::Row;
 use super::steadiness;
 use crate::outcome::design::band::Band;
 use crate::outcome::design::products::fits;
 use crate::outcome::design::{
-    BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignRow, NetworkBoundaries, WalkRow, spread,
+    Answer, BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignRow, NetworkBoundaries, WalkRow,
+    spread,
 };
 use crate::outcome::leaves_out;
 use crate::outcome::record::Confidence;
@@ -41,20 +43,25 @@ pub(super) fn design(
         let held = held[at].filter(|_| note.is_none());
         (boundaries[at].band, boundaries[at].band_note) = (band(&rows[at], held)?, note);
     }
-    let each: Vec<Asked> = asked().map(|at| asked_for(at, rows, &boundaries, held[at])).collect();
+    let of_row = |at: usize| asked_for(at, rows, &boundaries, held[at]);
+    let each: Vec<Asked> = asked().map(of_row).collect::<Result<_, _>>()?;
     let (confidence, reasons, warnings) = all_judged(&each, &boundaries)?;
     let known = asked().filter_map(|at| Some((at, held[at]?)));
     // Rules are shown of the coarsest filter that is said to hold: there they fail first.
     let (at, ratio) = known.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, USUAL_RATIO));
+    let finest = finest_base(&rows[0])?;
+    let ratio = allowed(&rows[at], ratio, finest.as_ref())?;
     let judged = Judged::new(&rows[at], ratio)?;
     let rules = judged.rules();
     let bands = boundaries.iter().filter_map(|of| of.band.as_ref());
     let narrowest = bands.min_by(|a, b| a.greatest.total_cmp(&b.greatest));
     let products = narrowest.filter(|band| band.unit == "mm").map(fits).unwrap_or_default();
-    let products_confidence = if products.is_empty() { None } else { Some(of_products(&each)?) };
+    // None that fits is coarser than the answer.
+    let products_confidence = (!products.is_empty()).then_some(confidence);
     let first = &rows[0];
     let record = judged.case.record();
-    Ok(Design {
+    let design = Design {
+        answer: None,
         version: env!("CARGO_PKG_VERSION").into(),
         inverse: options.inverse,
         base: base(first, &judged.base_name),
@@ -79,24 +86,32 @@ pub(super) fn design(
         settings: settings(options),
         seconds,
         boundaries,
-    })
+    };
+    Ok(Design { answer: Some(Answer::of(&design, finest.as_ref())), ..design })
 }
 
 /// A row that was asked for, and the ratio that nearly all networks hold over the range of its curve.
 struct Asked<'a> {
     row: &'a Row,
     of: &'a DesignRow,
+    /// The same, no more than practice allows.
     held: Option<f64>,
     /// What the walks of the curve of that range that holds least say against its boundary.
     unsteady: Option<String>,
 }
 
-fn asked_for<'a>(at: usize, rows: &'a [Row], boundaries: &'a [DesignRow], held: Option<f64>) -> Asked<'a> {
+fn asked_for<'a>(
+    at: usize,
+    rows: &'a [Row],
+    boundaries: &'a [DesignRow],
+    held: Option<f64>,
+) -> Result<Asked<'a>, RunError> {
     let row = &rows[at];
     let held_by = |of: &DesignRow| of.held().unwrap_or(0.0);
     let least = range(row, rows, boundaries).min_by(|a, b| held_by(a).total_cmp(&held_by(b)));
     let unsteady = least.and_then(|of| Some(named(row, of, of.unsteady.clone()?)));
-    Asked { row, of: &boundaries[at], held, unsteady }
+    let held = held.map(|held| allowed(row, held, finest_base(row)?.as_ref())).transpose()?;
+    Ok(Asked { row, of: &boundaries[at], held, unsteady })
 }
 
 /// The row itself, and those of the ends of its range.
@@ -223,24 +238,6 @@ fn judged_at(Asked { row, of, unsteady, .. }: &Asked, ratio: f64) -> Result<Said
     Ok((confidence, why, warnings))
 }
 
-/// How far it can be relied on that a product fits, the worst of all rows: each at the greatest D15F that
-/// walk and practice both allow, as no product that fits is coarser.
-fn of_products(asked: &[Asked]) -> Result<Confidence, RunError> {
-    let mut worst = Confidence::Within;
-    for asked in asked {
-        let band = asked.of.band.as_ref().filter(|band| !band.is_empty);
-        worst = worst.max(match band {
-            // A hair less, so that no rounding breaks the limit itself.
-            Some(band) => {
-                let ratio = band.greatest_of_both() / asked.row.d85_mm.unwrap_or(1.0) * (1.0 - 1e-9);
-                judged_at(asked, ratio)?.0
-            }
-            None => Confidence::Outside,
-        });
-    }
-    Ok(worst)
-}
-
 /// `design.csv`.
 ///
 /// # Errors
@@ -250,6 +247,7 @@ pub(super) fn csv(rows: &[Row], done: &[Done]) -> Result<Vec<u8>, RunError> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for done in done {
         let wanted = &rows[done.row].wanted;
+        let of_base = base(&rows[done.row], "").size().map_or(String::new(), |size| size.grading());
         for &(ratio, first, second) in &done.found.walks {
             let row = WalkRow {
                 density: wanted.density.clone(),
@@ -258,6 +256,7 @@ pub(super) fn csv(rows: &[Row], done: &[Done]) -> Result<Vec<u8>, RunError> {
                 d15f_over_d85b: ratio,
                 eroded_first: first,
                 eroded_second: second,
+                d85b_of: of_base.clone(),
             };
             writer.serialize(row).map_err(format)?;
         }
@@ -271,7 +270,9 @@ fn settings(options: &DesignOptions) -> Vec<String> {
     let densities = options.densities.iter().map(|density| format!("--density {density}"));
     let thicknesses = options.thicknesses.iter().map(|thickness| format!("--thickness {thickness}"));
     let settings = options.settings.iter().map(|setting| format!("--set {setting}"));
-    base.chain(filter).chain(densities).chain(thicknesses).chain(settings).collect()
+    let ticks = [("--as-sampled", options.as_sampled), ("--as-given", options.as_given)];
+    let ticks = ticks.into_iter().filter(|(_, is_given)| *is_given).map(|(name, _)| name.to_owned());
+    base.chain(filter).chain(densities).chain(thicknesses).chain(ticks).chain(settings).collect()
 }
 
 fn base(row: &Row, name: &str) -> BaseStated {
@@ -284,6 +285,14 @@ fn base(row: &Row, name: &str) -> BaseStated {
         d15_mm: sized.and(given.d(15.0)),
         d85_mm: sized,
         d95_over_d85: row.base.d(95.0),
+        regraded_at_mm: row.stated.regraded_from.as_ref().filter(|_| sized.is_some()).map(|(_, at)| *at),
+        tail_mass_fraction: walked.pan_fraction(),
+        d85_as_sampled_mm: row
+            .stated
+            .regraded_from
+            .as_ref()
+            .filter(|_| sized.is_some())
+            .and_then(|(given, _)| given.d(85.0)),
     }
 }
 

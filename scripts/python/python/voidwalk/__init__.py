@@ -14,6 +14,7 @@ Examples
 from ._grains import Constrictions, Packing, constrictions, pack
 from ._network import Network
 from ._result import CampaignResult, Result
+from ._rules import rules
 from ._scene import Scene, init_text, scene_text
 from ._soil import Curve, Gradation
 from ._voidwalk import Progress, VoidwalkError, __version__
@@ -38,6 +39,7 @@ __all__ = [
     "read",
     "replicate_seed",
     "resume",
+    "rules",
     "run",
     "scene_text",
     "walk",

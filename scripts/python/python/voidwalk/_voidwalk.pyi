@@ -29,6 +29,7 @@ __all__ = [
     "walk_brief",
     "walk_page",
     "VoidwalkError",
+    "rules",
     "Scene",
     "campaign",
     "init_text",
@@ -190,6 +191,13 @@ def walk(
     threads: Optional[int],
     progress: _Callback,
 ) -> Tuple[str, _Tables, NDArray[np.bool_]]: ...
+def rules(
+    bases: List[Tuple[str, Gradation]],
+    filters: List[Tuple[str, Gradation]],
+    dispersive: bool,
+    joint_mm: Optional[float],
+    as_given: bool,
+) -> str: ...
 def init_text() -> str: ...
 @final
 class Scene:

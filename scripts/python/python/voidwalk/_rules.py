@@ -1,0 +1,65 @@
+"""What filter practice says of two soils, without a walk."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import Any, Dict, List, Optional, Tuple, Union
+
+from . import _voidwalk
+from ._soil import Gradation
+
+__all__ = ["rules"]
+
+_Soil = Union[Gradation, str, "os.PathLike[str]"]
+
+
+def _curves(name: str, soil: _Soil) -> List[Tuple[str, _voidwalk.Gradation]]:
+    if isinstance(soil, Gradation):
+        return [(name, soil._native)]
+    return _voidwalk.Gradation.in_file(os.fspath(soil))
+
+
+def rules(
+    base: _Soil,
+    filter: _Soil,
+    *,
+    dispersive: bool = False,
+    joint_mm: Optional[float] = None,
+    as_given: bool = False,
+) -> Dict[str, Any]:
+    """Every rule of filter practice on a base and a filter, as ``voidwalk rules BASE FILTER --json`` prints it.
+
+    Parameters
+    ----------
+    base, filter : Gradation or path-like
+        The soil to be retained, and the soil that retains it. Several soils in a file are the curves of one
+        envelope; ``"FILE#NAME"`` takes one.
+    dispersive : bool
+        The base is a dispersive clay or silt.
+    joint_mm : float, optional
+        Width of an open joint beside the base (mm).
+    as_given : bool
+        Take the two as they are given, though they look exchanged.
+
+    Returns
+    -------
+    dict
+        ``"base"``, ``"filter"``, ``"rules"`` and ``"warnings"``.
+
+    Raises
+    ------
+    ValueError
+        The two look exchanged; a file that is refused.
+
+    Examples
+    --------
+    >>> import voidwalk as vw
+    >>> base = vw.Gradation([0.08, 0.3], [0, 100])
+    >>> pair = vw.rules(base, vw.Gradation([0.5, 2.0], [0, 100]))
+    >>> [rule["met"] for rule in pair["rules"] if rule["id"] == "sherard-dunnigan"]
+    [True]
+    """
+    bases, filters = _curves("base", base), _curves("filter", filter)
+    found: Dict[str, Any] = json.loads(_voidwalk.rules(bases, filters, dispersive, joint_mm, as_given))
+    return found

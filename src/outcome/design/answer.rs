@@ -1,0 +1,295 @@
+//! The answer of a design: the least of what walk and practice allow, and which of the two set it.
+//!
+//! The limit of practice is the strictest rule of retention that was made for the base: as a rule Sherard and
+//! Dunnigan's limit of design, and Foster and Fell's boundary of no erosion where that is lower, as for 35 to
+//! 40 % fines. No specification allows a filter with which tests saw erosion.
+
+use super::band::{DESIGN, SetBy, limits, retention, whose};
+use super::record::{Answer, Design, DesignRow};
+use crate::outcome::digits::percent;
+use crate::outcome::record::{AppliedRule, RuleRole};
+use crate::outcome::three;
+
+/// The finest base that practice allows with a filter, for the inverse.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FinestBase {
+    /// D15F/D85B up to which every rule of retention is kept; `None` where one is broken at all that was
+    /// searched.
+    pub ratio: Option<f64>,
+    /// The rule that a finer base breaks.
+    pub rule: AppliedRule,
+}
+
+/// A limit of practice.
+struct Limit<'a> {
+    ratio: f64,
+    rule: &'a AppliedRule,
+}
+
+impl Answer {
+    /// Of a design whose boundaries and rules are known; `finest` is what practice says for the inverse, where
+    /// that was searched.
+    pub fn of(design: &Design, finest: Option<&FinestBase>) -> Self {
+        let sizes = Sizes::of(design);
+        let strictest = retention(&design.rules, design.rules_at * sizes.d85);
+        let limit = match (design.inverse, finest) {
+            (true, Some(FinestBase { ratio: Some(ratio), rule })) => Some(Limit { ratio: *ratio, rule }),
+            (true, _) => None,
+            // Sizes without a unit are taken as a sand without fines: no limit is known of the base itself.
+            (false, _) if !sizes.has_unit => None,
+            (false, _) => strictest.map(|(rule, limit)| Limit { ratio: limit / sizes.d85, rule }),
+        };
+        let held = design.least_held();
+        let too_open = design.base.tail_mass_fraction >= design.threshold;
+        // Files of an earlier version know only whether the base that the walk holds breaks a rule.
+        let broken = design.rules.iter().find(|rule| rule.role == RuleRole::Retention && rule.is_broken());
+        let known = broken.filter(|_| design.inverse && sizes.has_unit && finest.is_none());
+        let forbidden = known.or(finest.filter(|of| of.ratio.is_none()).map(|of| &of.rule));
+        let (ratio, set_by) = match (&held, &limit) {
+            _ if forbidden.is_some() => (None, SetBy::Practice),
+            // The walk says nothing against a base of which it does not know enough.
+            (None, Some(limit)) if too_open => (Some(limit.ratio), SetBy::Practice),
+            (None, _) => (None, SetBy::Walk),
+            (Some((_, held)), Some(limit)) if limit.ratio <= *held => (Some(limit.ratio), SetBy::Practice),
+            (Some((_, held)), _) => (Some(*held), SetBy::Walk),
+        };
+        let said = match (&held, &limit, forbidden) {
+            (.., Some(rule)) => {
+                format!(
+                    "No base is known that both walk and practice allow with this filter ({})",
+                    whose(rule)
+                )
+            }
+            (None, None, _) => "No ratio is known that nearly all networks hold".into(),
+            (None, Some(limit), _) if too_open => format!(
+                "{}, by practice alone ({}{}); the walk has no answer, as {} of the base is finer than its \
+                 finest sieve",
+                sizes.words(limit.ratio),
+                whose(limit.rule),
+                sizes.other(design, limit.rule),
+                percent(design.base.tail_mass_fraction)
+            ),
+            (None, Some(limit), _) => format!(
+                "No ratio is known that nearly all networks hold; practice alone allows {} ({})",
+                sizes.words(limit.ratio),
+                whose(limit.rule)
+            ),
+            (Some(_), Some(limit), _) if set_by == SetBy::Practice => {
+                let other = sizes.other(design, limit.rule);
+                format!(
+                    "{}, by practice ({}{other}); the walk sets no tighter limit",
+                    sizes.words(limit.ratio),
+                    whose(limit.rule)
+                )
+            }
+            (Some((row, held)), Some(limit), _) => format!(
+                "{}{}, by the walk; practice allows {} ({})",
+                searched(row),
+                sizes.words(*held),
+                sizes.words(limit.ratio),
+                whose(limit.rule)
+            ),
+            (Some((row, held)), None, _) => format!(
+                "{}{} in the model alone; {}",
+                searched(row),
+                sizes.words(*held),
+                sizes.without_limit(strictest)
+            ),
+        };
+        let size = |ratio: f64| sizes.mm(ratio);
+        Self {
+            d15f_max_mm: ratio.filter(|_| !design.inverse).and_then(size),
+            d85b_min_mm: ratio.filter(|_| design.inverse).and_then(size),
+            d15f_over_d85b: ratio,
+            set_by,
+            rule: match (set_by, forbidden, limit) {
+                (SetBy::Practice, Some(rule), _) => Some(rule.id.clone()),
+                (SetBy::Practice, None, limit) => limit.map(|limit| limit.rule.id.clone()),
+                (SetBy::Walk, ..) => None,
+            },
+            said,
+        }
+    }
+}
+
+/// The sizes that ratios stand for.
+struct Sizes {
+    inverse: bool,
+    has_unit: bool,
+    d85: f64,
+    d15f_mm: Option<f64>,
+}
+
+impl Sizes {
+    fn of(design: &Design) -> Self {
+        let d85 = design.base.d85_mm.filter(|_| !design.inverse);
+        Self {
+            inverse: design.inverse,
+            has_unit: if design.inverse { design.filter_d15_mm.is_some() } else { d85.is_some() },
+            d85: d85.unwrap_or(1.0),
+            d15f_mm: design.filter_d15_mm,
+        }
+    }
+
+    /// D15F (mm) of a ratio, or D85B for the inverse.
+    fn mm(&self, ratio: f64) -> Option<f64> {
+        match (self.has_unit, self.inverse) {
+            (false, _) => None,
+            (true, false) => Some(ratio * self.d85),
+            (true, true) => Some(self.d15f_mm? / ratio),
+        }
+    }
+
+    fn words(&self, ratio: f64) -> String {
+        match (self.mm(ratio), self.inverse) {
+            (Some(mm), false) => format!("D15F up to {} mm", three(mm)),
+            (Some(mm), true) => format!("D85B down to {} mm", three(mm)),
+            (None, _) => format!("D15F up to {ratio:.2} D85B"),
+        }
+    }
+
+    /// The limit of design, where another rule is stricter.
+    fn other(&self, design: &Design, rule: &AppliedRule) -> String {
+        let of_design = limits(&design.rules, design.rules_at * self.d85).into_iter();
+        let mut of_design = of_design.filter(|(of, _)| of.id == DESIGN && rule.id != DESIGN && !self.inverse);
+        of_design
+            .next()
+            .map_or(String::new(), |(of, limit)| format!("; {} is {} mm", whose(of), three(limit)))
+    }
+
+    /// Why no limit of practice is known.
+    fn without_limit(&self, assumed: Option<(&AppliedRule, f64)>) -> String {
+        match assumed.filter(|_| !self.inverse && !self.has_unit) {
+            Some((rule, limit)) => format!(
+                "the limit of practice is not known, as sizes have no unit (for a sand without fines it is \
+                 {limit:.2} D85B, {})",
+                whose(rule)
+            ),
+            None if self.has_unit => "the limit of practice is not known for this base".into(),
+            None => "the limit of practice is not known, as sizes have no unit".into(),
+        }
+    }
+}
+
+/// Whether a row holds all that was searched, before its size.
+fn searched(row: &DesignRow) -> &'static str {
+    match (&row.no_erosion, row.eroding_networks()) {
+        (Some(_), _) => "",
+        (None, 0) => "Holds as far as was searched: ",
+        (None, _) => "Held by nearly all networks: ",
+    }
+}
+
+impl Design {
+    /// The answer, of files of earlier versions too.
+    pub fn answer(&self) -> Answer {
+        self.answer.clone().unwrap_or_else(|| Answer::of(self, None))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gradation::Gradation;
+    use crate::outcome::PairRules;
+    use crate::outcome::design::Boundary;
+
+    /// A design in which the walk holds to this D15F/D85B, `None` where it holds nothing, as its file has it.
+    fn design(base: &Gradation, held: Option<f64>) -> Design {
+        let regraded = base.regraded();
+        let d85 = regraded.gradation.d(85.0).unwrap();
+        let filter = Gradation::linear_from_dx(15.0, 4.0 * d85, 1.5).unwrap();
+        let no_erosion = held.and_then(|held| Boundary::of(&[Ok(held), Ok(held)], Some(d85)));
+        let text = serde_json::json!({
+            "version": "1", "inverse": false, "filter": "f", "filter_cu": 1.5, "filter_d15_mm": null, "unit": "mm",
+            "base": {"name": "b", "cu": null, "d15_mm": null, "d85_mm": d85, "d95_over_d85": null},
+            "threshold": 0.075, "replicates": 2, "seed": 1, "bracket": [0.5, 100.0], "step": 0.005,
+            "confidence": "within checked range", "reasons": [], "rules": PairRules::of(base, &filter).rules,
+            "rules_at": 4.0, "products": [], "warnings": [], "model_leaves_out": [], "settings": [], "seconds": 1.0,
+            "boundaries": [{"density": "loose", "thickness": "60 layers", "layers": 60, "thickness_mm": null,
+                "grains_per_void": 0.6, "no_erosion": no_erosion, "continuing": null, "not_monotone": 0,
+                "networks": [], "band": null}],
+        });
+        serde_json::from_value(text).unwrap()
+    }
+
+    fn till() -> Gradation {
+        let points = [(0.001, 0.0), (0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)];
+        Gradation::from_points(&points, None).unwrap()
+    }
+
+    fn sand() -> Gradation {
+        Gradation::from_points(&[(0.1, 0.0), (0.5, 100.0)], None).unwrap()
+    }
+
+    /// The till of the third trial: the walk holds it to 12.6 D85B, here 19.3 mm, and practice to 0.70 mm.
+    #[test]
+    fn a_till_is_limited_by_practice_and_the_walks_figure_stands_nowhere() {
+        let found = design(&till(), Some(12.6));
+        let answer = found.answer();
+        assert!((answer.d15f_max_mm.unwrap() - 0.7).abs() < 1e-9, "{answer:?}");
+        assert_eq!(
+            (answer.set_by, answer.rule.as_deref()),
+            (SetBy::Practice, Some("foster-fell-no-erosion"))
+        );
+        assert!(
+            answer.said.starts_with("D15F up to 0.700 mm, by practice (Foster and Fell"),
+            "{}",
+            answer.said
+        );
+        assert!(answer.said.contains("Sherard and Dunnigan's limit of design is 1.1"), "{}", answer.said);
+        assert!(answer.said.ends_with("the walk sets no tighter limit"), "{}", answer.said);
+        assert!(!serde_json::to_string(&answer).unwrap().contains("19."), "{answer:?}");
+    }
+
+    #[test]
+    fn a_walk_that_holds_less_than_practice_sets_the_answer() {
+        let base = sand();
+        let (d85, answer) = (base.d(85.0).unwrap(), design(&base, Some(3.0)).answer());
+        assert!((answer.d15f_max_mm.unwrap() - 3.0 * d85).abs() < 1e-9);
+        assert_eq!((answer.set_by, answer.rule), (SetBy::Walk, None));
+        assert!(answer.said.contains("by the walk; practice allows D15F up to"), "{}", answer.said);
+        let answer = design(&base, Some(7.0)).answer();
+        assert!((answer.d15f_max_mm.unwrap() - 4.0 * d85).abs() < 1e-9);
+        assert_eq!(answer.rule.as_deref(), Some("sherard-dunnigan"));
+    }
+
+    #[test]
+    fn what_neither_or_one_of_them_knows_is_said() {
+        let nothing = design(&sand(), None).answer();
+        assert_eq!((nothing.d15f_max_mm, nothing.set_by), (None, SetBy::Walk));
+        assert!(nothing.said.contains("practice alone allows D15F up to"), "{}", nothing.said);
+        // A third of the base may be anything: the walk says nothing against it.
+        let mut open = design(&till(), None);
+        open.base.tail_mass_fraction = 0.38;
+        let answer = open.answer();
+        assert!((answer.d15f_max_mm.unwrap() - 0.7).abs() < 1e-9, "{answer:?}");
+        assert!(
+            answer.said.contains("by practice alone") && answer.said.contains("38.0 %"),
+            "{}",
+            answer.said
+        );
+        let mut scale_free = design(&sand(), Some(5.2));
+        (scale_free.base.d85_mm, scale_free.unit) = (None, "D85B".into());
+        let answer = scale_free.answer();
+        assert_eq!((answer.d15f_max_mm, answer.d15f_over_d85b), (None, Some(5.2)));
+        assert!(answer.said.starts_with("D15F up to 5.20 D85B in the model alone"), "{}", answer.said);
+        assert!(answer.said.contains("the limit of practice is not known"), "{}", answer.said);
+        let mut unknown = design(&sand(), Some(5.2));
+        unknown.rules.clear();
+        assert!(unknown.answer().said.ends_with("the limit of practice is not known for this base"));
+    }
+
+    #[test]
+    fn the_inverse_stops_at_the_base_that_practice_allows() {
+        let mut inverse = design(&sand(), Some(7.0));
+        (inverse.inverse, inverse.filter_d15_mm, inverse.base.d85_mm) = (true, Some(2.0), None);
+        let rule = inverse.rules.iter().find(|rule| rule.id == "sherard-dunnigan").unwrap().clone();
+        let finest = FinestBase { ratio: Some(4.0), rule };
+        let answer = Answer::of(&inverse, Some(&finest));
+        assert_eq!((answer.d85b_min_mm, answer.d15f_max_mm), (Some(0.5), None));
+        assert!(answer.said.starts_with("D85B down to 0.500 mm, by practice"), "{}", answer.said);
+        let none = Answer::of(&inverse, Some(&FinestBase { ratio: None, ..finest }));
+        assert!(none.d85b_min_mm.is_none() && none.said.starts_with("No base is known that both"));
+    }
+}

@@ -1,0 +1,150 @@
+//! One order of two soils, the base and then the filter; and a base that is walked as practice regrades it.
+
+use std::fs;
+use std::path::PathBuf;
+
+use serde_json::Value;
+
+use crate::judge::{SMALL, soils};
+use crate::program::{call, done, refused};
+
+/// 92 % finer than 4.75 mm, 35 % than 0.075 mm.
+const TILL: &str = "size_mm,percent\n19,100\n4.75,92\n2,82\n0.425,60\n0.075,35\n0.02,0\n";
+const SAND: &str = "size_mm,percent\n0.3,0\n0.45,15\n0.9,60\n2,100\n";
+
+fn till_and_sand() -> (tempfile::TempDir, PathBuf) {
+    let (root, at) = soils();
+    fs::write(at.join("till.csv"), TILL).unwrap();
+    fs::write(at.join("sand.csv"), SAND).unwrap();
+    (root, at)
+}
+
+fn json(path: PathBuf) -> Value {
+    serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
+}
+
+#[test]
+fn exchanged_files_are_refused_in_the_same_words_by_every_command_and_nothing_is_written() {
+    let (_root, at) = till_and_sand();
+    let words: [&[&str]; 5] = [
+        &["rules", "sand.csv", "till.csv"],
+        &["judge", "sand.csv", "till.csv", "--out", "x"],
+        &["compare", "--base", "sand.csv", "till.csv", "base.csv", "--out", "x"],
+        &["compare", "--filter", "till.csv", "sand.csv", "fine.csv", "--out", "x"],
+        &["design", "sand.csv", "--filter", "till.csv", "--out", "x"],
+    ];
+    for words in words {
+        let said = call(&at, words);
+        for message in [
+            "base sand.csv, filter till.csv: the base is coarser than the filter",
+            "are the two files exchanged?",
+            "The base is named first, then the filter: exchange the two",
+            "--as-given",
+        ] {
+            refused(&said, message);
+        }
+        assert!(!at.join("x").exists() && said.stdout.is_empty(), "{words:?}");
+    }
+    // In their own order they are taken, and exchanged where it is said that they are as given.
+    done(&call(&at, &["rules", "till.csv", "sand.csv"]));
+    done(&call(&at, &["rules", "sand.csv", "till.csv", "--as-given"]));
+}
+
+#[test]
+fn a_base_in_a_table_is_walked_regraded_and_every_d85b_says_which_it_is() {
+    let (_root, at) = till_and_sand();
+    let few = ["--quick", "--set", "base.n_base=2000"];
+    let judge = |more: &[&str]| {
+        let words = [&["judge", "till.csv", "sand.csv", "--overwrite", "--out", "a"][..], &SMALL, &few, more];
+        let said = call(&at, &words.concat());
+        done(&said);
+        let figure = fs::read_to_string(at.join("a/figures/gradations.svg")).unwrap();
+        let page = fs::read_to_string(at.join("a/report.html")).unwrap();
+        (String::from_utf8(said.stdout).unwrap(), json(at.join("a/outcome.json")), figure, page)
+    };
+    let label = "D85B 1.53 mm, regraded on 4.75 mm (as sampled 2.59 mm)";
+    let (text, outcome, figure, page) = judge(&[]);
+    assert!(text.contains(label), "{text}");
+    let base = &outcome["inputs"]["base"];
+    assert_eq!((base["regraded_at_mm"].as_f64(), base["d100_mm"].as_f64()), (Some(4.75), Some(4.75)));
+    assert_eq!(base["as_sampled"]["d100_mm"], 19.0);
+    assert!((base["as_sampled"]["d85_mm"].as_f64().unwrap() - 2.592).abs() < 1e-2, "{base}");
+    assert!(figure.contains("base as sampled,") && figure.contains("base, regraded on 4.75 mm"), "{figure}");
+    assert!(page.contains(label) && page.contains("as sampled (not walked)"), "{page}");
+    let (text, outcome, figure, _) = judge(&["--as-sampled"]);
+    assert!(text.contains("D85B 2.59 mm as sampled") && !text.contains("regraded on 4.75 mm ("), "{text}");
+    assert!(outcome["inputs"]["base"].get("as_sampled").is_none() && !figure.contains("not walked"));
+    // What a setting says goes before that, and both are one too many.
+    let (text, ..) = judge(&["--set", "base.regrade=no"]);
+    assert!(text.contains("D85B 2.59 mm as sampled"), "{text}");
+    let words = ["judge", "till.csv", "sand.csv", "--as-sampled", "--set", "base.regrade=practice"];
+    refused(&call(&at, &words), "say the same thing twice");
+    // A comparison of tables does the same, and its table says it.
+    let words = ["compare", "--base", "till.csv", "sand.csv", "fine.csv", "--out", "c"];
+    let said = call(&at, &[&words[..], &SMALL, &few].concat());
+    done(&said);
+    assert!(String::from_utf8(said.stdout).unwrap().contains(label));
+    assert!(fs::read_to_string(at.join("c/compare.html")).unwrap().contains(label));
+    let table = fs::read_to_string(at.join("c/compare.csv")).unwrap();
+    assert!(table.lines().next().unwrap().contains(",d15f_over_d95b,d85b_of,"), "{table}");
+    assert_eq!(table.matches("regraded on 4.75 mm").count(), 2, "{table}");
+    // A scene keeps what it says.
+    let scene = "seed = 1\n[filter]\nsieve = \"sand.csv\"\nestimate = 0.5\n[base]\nsieve = \"till.csv\"\nn_base = 2000\n";
+    fs::write(at.join("s.toml"), scene).unwrap();
+    fs::write(at.join("t.toml"), scene.replace("0.5", "0.6")).unwrap();
+    let words = ["compare", "s.toml", "t.toml", "--quick", "--out", "s"];
+    let said = call(&at, &[&words[..], &SMALL].concat());
+    done(&said);
+    let text = String::from_utf8(said.stdout).unwrap();
+    assert!(text.contains("D85B 2.59 mm as sampled") && !text.contains("(as sampled"), "{text}");
+}
+
+/// The till of the third trial, with a hydrometer part: practice allows 0.70 mm, whatever the walk holds.
+#[test]
+fn a_design_never_says_more_than_practice_allows() {
+    let (_root, at) = till_and_sand();
+    let till = "size_mm,percent\n19,100\n4.75,92\n2,82\n0.425,60\n0.075,35\n0.06,0\n";
+    fs::write(at.join("till.csv"), till).unwrap();
+    let small = ["--set", "network.nx=3", "--set", "network.ny=3", "--set", "replicates=2"];
+    let words = ["design", "till.csv", "--filter", "cu1.5-loose", "--thickness", "60layers"];
+    let said = call(&at, &[&words[..], &small].concat());
+    done(&said);
+    let found = json(at.join("voidwalk-design/design.json"));
+    let answer = &found["answer"];
+    let d85 = found["base"]["d85_mm"].as_f64().unwrap();
+    assert_eq!(found["base"]["regraded_at_mm"], 4.75);
+    // The walk on its own goes further.
+    let row = &found["boundaries"][0];
+    let held = row["no_erosion"]["low"].as_f64().or(row["no_erosion"]["median"].as_f64());
+    assert!(held.or(row["holds_to"].as_f64()).unwrap() * d85 > 0.71, "{row}");
+    assert!((answer["d15f_max_mm"].as_f64().unwrap() - 0.7).abs() < 1e-9, "{answer}");
+    assert_eq!((&answer["set_by"], &answer["rule"]), (&"practice".into(), &"foster-fell-no-erosion".into()));
+    if let Some(greatest) = row["band"]["greatest"].as_f64() {
+        assert!(greatest <= 0.7 + 1e-9, "{row}");
+    }
+    for product in found["products"].as_array().unwrap() {
+        assert!(
+            product["holds"] == false || product["d15_mm"][1].as_f64().unwrap() <= 0.7 + 1e-9,
+            "{product}"
+        );
+    }
+    let text = String::from_utf8(said.stdout).unwrap();
+    let first: Vec<&str> = text.lines().take(3).collect();
+    assert!(first[1].starts_with("D15F up to 0.700 mm, by practice (Foster and Fell's boundary"), "{text}");
+    assert_eq!(first[2], "  D85B 1.53 mm, regraded on 4.75 mm (as sampled 2.59 mm)");
+    let page = fs::read_to_string(at.join("voidwalk-design/design.html")).unwrap();
+    let headline = page.split("class=\"word long\">").nth(1).unwrap().split("</p>").next().unwrap();
+    assert!(headline.starts_with("D15F up to 0.700 mm, by practice"), "{headline}");
+    let csv = fs::read_to_string(at.join("voidwalk-design/design.csv")).unwrap();
+    assert!(csv.lines().next().unwrap().ends_with(",eroded_second,d85b_of"), "{csv}");
+    assert!(csv.lines().skip(1).all(|line| line.ends_with(",regraded on 4.75 mm")), "{csv}");
+    // The folder of an earlier version has no answer, and its page has the same headline.
+    let mut old = found.clone();
+    old.as_object_mut().unwrap().shift_remove("answer");
+    fs::write(at.join("voidwalk-design/design.json"), old.to_string()).unwrap();
+    done(&call(&at, &["report", "voidwalk-design"]));
+    let page = fs::read_to_string(at.join("voidwalk-design/design.html")).unwrap();
+    assert!(page.contains(headline), "{page}");
+    let words = ["design", "till.csv", "--as-sampled", "--set", "base.regrade=practice"];
+    refused(&call(&at, &words), "say the same thing twice");
+}
