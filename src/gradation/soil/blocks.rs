@@ -103,7 +103,7 @@ fn bands(grid: &Grid) -> Vec<Range<usize>> {
     let (Some(Headings { at, first, .. }), Some(data)) = headings(grid) else { return whole() };
     let is_next = |r: &usize| {
         is_heading(&rows[*r])
-            && (says_soil(&rows[*r]) || rows.get(r + 1).is_some_and(|row| is_data(row)))
+            && (says_soil(&rows[*r]) || rows.get(r + 1).is_some_and(is_data))
             && rows[r + 1..].iter().take(4).any(is_data)
     };
     let later: Vec<usize> = (data.max(first)..rows.len()).filter(is_next).collect();
