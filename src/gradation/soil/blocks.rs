@@ -221,8 +221,8 @@ fn groups(grid: &Grid, headings: &Headings) -> Result<Vec<Range<usize>>, TableEr
     }
     if !begins && !ends && starts.len() > 1 {
         let c = kinds[0].0;
-        let allowed = "openings to the left of the values, or to the right of them, in all of the tables that \
-                       stand side by side";
+        let allowed = "openings to the left of the values, or to the right of them, in all of the tables \
+                       that stand side by side";
         return Err(grid.refused(grid.rows[*at].line, c, "heading", grid.rows[*at].cell(c), allowed));
     }
     let mut groups: Vec<Range<usize>> = Vec::new();
@@ -274,8 +274,8 @@ fn refuse_far_values(grid: &Grid, layout: &Layout) -> Result<(), TableError> {
         if (pair[0] + 1..pair[1]).any(is_empty) {
             let heading = &layout.soils[0].heading;
             let heading = layout.soils.iter().find(|s| s.column == pair[1]).map_or(heading, |s| &s.heading);
-            let allowed = "openings of its own to its left, as the other tables have: an empty column parts it \
-                           from those of the table before it";
+            let allowed = "openings of its own to its left, as the other tables have: an empty column \
+                           parts it from those of the table before it";
             return Err(grid.refused(grid.rows[layout.at].line, pair[1], "heading", heading, allowed));
         }
     }
@@ -289,8 +289,8 @@ fn refuse_other_headings(grid: &Grid, line: usize) -> Result<(), TableError> {
         let mut right = row.filled().filter(|&c| c > size).take(3);
         let of_soil = |c: usize| matches!(role(row.cell(c)), Role::Finer | Role::Retained(_));
         if right.any(|c| !is_value(row.cell(c)) && of_soil(c)) {
-            let allowed = "a table whose headings stand in a row with those of the tables beside it, or below the \
-                           numbers of the one above it";
+            let allowed = "a table whose headings stand in a row with those of the tables beside it, or \
+                           below the numbers of the one above it";
             return Err(grid.refused(row.line, size, "heading", row.cell(size), allowed));
         }
     }

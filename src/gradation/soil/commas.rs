@@ -9,7 +9,8 @@ use super::size::Unit;
 use crate::gradation::comma::{Comma, comma};
 use crate::gradation::error::TableError;
 
-/// Refuses a table whose numbers have points and commas, and one in which every comma may be that of thousands.
+/// Refuses a table whose numbers have points and commas, and one in which every comma may be that of
+/// thousands.
 pub(super) fn check(
     grid: &Grid,
     layout: &Layout,

@@ -1,5 +1,5 @@
-//! Which rows below the headings are the table's: not its remarks, not its headings again, not what a laboratory
-//! writes below it.
+//! Which rows below the headings are the table's: not its remarks, not its headings again, not what a
+//! laboratory writes below it.
 
 use super::content::{is_blank, is_text, is_value, is_words, percentage};
 use super::grid::{Grid, GridRow};
@@ -91,8 +91,8 @@ impl Extent {
         }
     }
 
-    /// Where the table ends: at the first row of words below its numbers, unless numbers go on below it without
-    /// headings of their own, so that the row is refused.
+    /// Where the table ends: at the first row of words below its numbers, unless numbers go on below it
+    /// without headings of their own, so that the row is refused.
     fn end(&self, rows: &[GridRow], layout: &Layout) -> usize {
         let is_data = |row: &GridRow| {
             let column = self.column_of_size(layout, row);
