@@ -11,6 +11,9 @@ use super::size::{Opening, opening};
 use super::{across, agreement};
 use crate::gradation::error::TableError;
 
+/// A sheet of soils has some tens of tables; their columns may be many more.
+const MOST_TABLES: usize = 10_000;
+
 /// A part of a grid that holds one table.
 pub(super) struct Block {
     pub(super) grid: Grid,
@@ -35,19 +38,34 @@ pub(super) fn blocks(grid: Grid) -> Result<Vec<Block>, TableError> {
         return Ok(vec![Block { grid, layout, columns: 0..0 }]);
     }
     let width = grid.rows.iter().map(|row| row.cells.len()).max().unwrap_or(0);
+    let place = grid.place();
     let regions = regions(&grid, width);
+    bounded(&place, regions.len())?;
     let parts = if regions.len() > 1 { grid.columns(&regions) } else { vec![grid] };
     let several = parts.len() > 1;
     let mut blocks = Vec::new();
     for part in parts {
         let bands = bands(&part);
+        bounded(&place, blocks.len() + bands.len())?;
         let bands =
             if bands.len() > 1 { bands.into_iter().map(|b| part.band(b)).collect() } else { vec![part] };
         for band in bands {
             blocks.extend(side_by_side(band, several)?);
+            bounded(&place, blocks.len())?;
         }
     }
     Ok(blocks)
+}
+
+/// Refuses more tables than any sheet has.
+fn bounded(place: &str, tables: usize) -> Result<(), TableError> {
+    match tables > MOST_TABLES {
+        true => {
+            let is = format!("a sheet of more than {MOST_TABLES} tables");
+            Err(TableError::Format { file: place.to_owned(), is })
+        }
+        false => Ok(()),
+    }
 }
 
 /// Whether a cell may be the heading of openings.
@@ -170,6 +188,7 @@ fn side_by_side(band: Grid, several: bool) -> Result<Vec<Block>, TableError> {
         (Some(headings), _) => (groups(&band, &headings)?, Some(band.rows[headings.at].line)),
         (None, _) => (Vec::new(), None),
     };
+    bounded(&band.place(), groups.len())?;
     let parts = if groups.len() > 1 { band.columns(&groups) } else { vec![band] };
     let several = several || parts.len() > 1;
     let mut blocks = Vec::new();
