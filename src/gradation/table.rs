@@ -127,8 +127,8 @@ impl Table {
         TableError::Fields { file: self.file.clone(), line, found, value: shortened(content.trim()), allowed }
     }
 
-    /// A file that uses both `.` and `,` inside numbers has thousands separators, or a mistake; one that separates
-    /// its columns by commas may have them in `"1,180"`.
+    /// A file that uses both `.` and `,` inside numbers has thousands separators, or a mistake; one that
+    /// separates its columns by commas may have them in `"1,180"`.
     fn check_decimal_signs(&self, delimiter: char) -> Result<(), TableError> {
         let is = |wanted: Comma| {
             let of_row = move |(line, fields): &(usize, [String; 2])| {

@@ -140,9 +140,12 @@ fn write(grid: &mut Grid, table: &Table, row: usize, column: usize) -> (usize, u
     (row + 1 + table.points.len(), column + table.headings.len())
 }
 
+/// A soil's name, where it has one, and its points.
+type Named = (Option<String>, Vec<(f64, f64)>);
+
 /// What must be read of a sheet.
 enum Wanted {
-    Soils(Vec<(Option<String>, Vec<(f64, f64)>)>),
+    Soils(Vec<Named>),
     Refusal,
 }
 
@@ -230,7 +233,7 @@ fn sheet(draw: &mut Draw, layout: Layout) -> (Grid, Wanted) {
                 points: fine.clone(),
             };
             let column = next + draw.below(2);
-            if k % 2 == 0 {
+            if k.is_multiple_of(2) {
                 put(&mut grid, project, column, text("Hydrometer"));
             }
             write(&mut grid, &hydrometer, project + 1, column);
@@ -241,7 +244,7 @@ fn sheet(draw: &mut Draw, layout: Layout) -> (Grid, Wanted) {
             (grid, Wanted::Soils(vec![(None, all)]))
         }
         Layout::Stacked => {
-            let (mut row, mut wanted) = (project, named(&tables));
+            let (mut row, wanted) = (project, named(&tables));
             for (k, table) in tables.iter().enumerate() {
                 put(&mut grid, row, 0, text(&table.name));
                 (row, _) = write(&mut grid, table, row + 1, 0);
@@ -254,12 +257,11 @@ fn sheet(draw: &mut Draw, layout: Layout) -> (Grid, Wanted) {
                 put(&mut grid, row, 0, None);
                 row += 1;
             }
-            wanted.iter_mut().for_each(|soil| soil.0 = soil.0.take());
             (grid, Wanted::Soils(wanted))
         }
         Layout::Across => {
             let sieves: Vec<f64> = tables[0].points.iter().map(|p| p.0).collect();
-            let soils: Vec<(Option<String>, Vec<(f64, f64)>)> = tables
+            let soils: Vec<Named> = tables
                 .iter()
                 .map(|table| (Some(table.name.clone()), percents(draw, &sieves, 100.0, 1.0)))
                 .collect();

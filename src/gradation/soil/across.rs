@@ -74,8 +74,8 @@ fn refuse_second(grid: &Grid, at: usize, soils: &[usize], columns: &[usize]) -> 
         let beyond = index >= after && (is_data(row) && !begins_with_words(row) || openings(row).is_some());
         if again || beyond {
             let column = row.filled().next().unwrap_or(columns[0]);
-            let allowed = "one row of openings, and the rows of soils directly below it: keep each table in a \
-                           file or a sheet of its own";
+            let allowed = "one row of openings, and the rows of soils directly below it: keep each table \
+                           in a file or a sheet of its own";
             return Err(grid.refused(row.line, column, "row", row.cell(column), allowed));
         }
     }

@@ -139,6 +139,7 @@ fn in_order(grid: &mut Grid) {
         same
     });
     if !twice.is_empty() {
-        grid.notes.push(format!("{} left out, the same as a row before", listed("line", &twice)));
+        grid.notes
+            .push(format!("{} left out, the same as a row before", listed("line", &twice, String::clone)));
     }
 }

@@ -11,6 +11,9 @@ use super::size::{Opening, opening};
 use super::{across, agreement};
 use crate::gradation::error::TableError;
 
+/// A sheet of soils has some tens of tables; their columns may be many more.
+const MOST_TABLES: usize = 10_000;
+
 /// A part of a grid that holds one table.
 pub(super) struct Block {
     pub(super) grid: Grid,
@@ -35,19 +38,34 @@ pub(super) fn blocks(grid: Grid) -> Result<Vec<Block>, TableError> {
         return Ok(vec![Block { grid, layout, columns: 0..0 }]);
     }
     let width = grid.rows.iter().map(|row| row.cells.len()).max().unwrap_or(0);
+    let place = grid.place();
     let regions = regions(&grid, width);
+    bounded(&place, regions.len())?;
     let parts = if regions.len() > 1 { grid.columns(&regions) } else { vec![grid] };
     let several = parts.len() > 1;
     let mut blocks = Vec::new();
     for part in parts {
         let bands = bands(&part);
+        bounded(&place, blocks.len() + bands.len())?;
         let bands =
             if bands.len() > 1 { bands.into_iter().map(|b| part.band(b)).collect() } else { vec![part] };
         for band in bands {
             blocks.extend(side_by_side(band, several)?);
+            bounded(&place, blocks.len())?;
         }
     }
     Ok(blocks)
+}
+
+/// Refuses more tables than any sheet has.
+fn bounded(place: &str, tables: usize) -> Result<(), TableError> {
+    match tables > MOST_TABLES {
+        true => {
+            let is = format!("a sheet of more than {MOST_TABLES} tables");
+            Err(TableError::Format { file: place.to_owned(), is })
+        }
+        false => Ok(()),
+    }
 }
 
 /// Whether a cell may be the heading of openings.
@@ -103,7 +121,7 @@ fn bands(grid: &Grid) -> Vec<Range<usize>> {
     let (Some(Headings { at, first, .. }), Some(data)) = headings(grid) else { return whole() };
     let is_next = |r: &usize| {
         is_heading(&rows[*r])
-            && (says_soil(&rows[*r]) || rows.get(r + 1).is_some_and(|row| is_data(row)))
+            && (says_soil(&rows[*r]) || rows.get(r + 1).is_some_and(is_data))
             && rows[r + 1..].iter().take(4).any(is_data)
     };
     let later: Vec<usize> = (data.max(first)..rows.len()).filter(is_next).collect();
@@ -170,6 +188,7 @@ fn side_by_side(band: Grid, several: bool) -> Result<Vec<Block>, TableError> {
         (Some(headings), _) => (groups(&band, &headings)?, Some(band.rows[headings.at].line)),
         (None, _) => (Vec::new(), None),
     };
+    bounded(&band.place(), groups.len())?;
     let parts = if groups.len() > 1 { band.columns(&groups) } else { vec![band] };
     let several = several || parts.len() > 1;
     let mut blocks = Vec::new();
@@ -221,8 +240,8 @@ fn groups(grid: &Grid, headings: &Headings) -> Result<Vec<Range<usize>>, TableEr
     }
     if !begins && !ends && starts.len() > 1 {
         let c = kinds[0].0;
-        let allowed = "openings to the left of the values, or to the right of them, in all of the tables that \
-                       stand side by side";
+        let allowed = "openings to the left of the values, or to the right of them, in all of the tables \
+                       that stand side by side";
         return Err(grid.refused(grid.rows[*at].line, c, "heading", grid.rows[*at].cell(c), allowed));
     }
     let mut groups: Vec<Range<usize>> = Vec::new();
@@ -274,8 +293,8 @@ fn refuse_far_values(grid: &Grid, layout: &Layout) -> Result<(), TableError> {
         if (pair[0] + 1..pair[1]).any(is_empty) {
             let heading = &layout.soils[0].heading;
             let heading = layout.soils.iter().find(|s| s.column == pair[1]).map_or(heading, |s| &s.heading);
-            let allowed = "openings of its own to its left, as the other tables have: an empty column parts it \
-                           from those of the table before it";
+            let allowed = "openings of its own to its left, as the other tables have: an empty column \
+                           parts it from those of the table before it";
             return Err(grid.refused(grid.rows[layout.at].line, pair[1], "heading", heading, allowed));
         }
     }
@@ -289,8 +308,8 @@ fn refuse_other_headings(grid: &Grid, line: usize) -> Result<(), TableError> {
         let mut right = row.filled().filter(|&c| c > size).take(3);
         let of_soil = |c: usize| matches!(role(row.cell(c)), Role::Finer | Role::Retained(_));
         if right.any(|c| !is_value(row.cell(c)) && of_soil(c)) {
-            let allowed = "a table whose headings stand in a row with those of the tables beside it, or below the \
-                           numbers of the one above it";
+            let allowed = "a table whose headings stand in a row with those of the tables beside it, or \
+                           below the numbers of the one above it";
             return Err(grid.refused(row.line, size, "heading", row.cell(size), allowed));
         }
     }

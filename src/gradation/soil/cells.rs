@@ -119,7 +119,8 @@ impl<'a> Cells<'a> {
         let rows: Vec<String> =
             self.hidden_rows.iter().filter(|row| filled.contains(row)).map(usize::to_string).collect();
         if !rows.is_empty() {
-            grid.notes.push(format!("{} of the sheet, though hidden, read", listed("row", &rows)));
+            grid.notes
+                .push(format!("{} of the sheet, though hidden, read", listed("row", &rows, String::clone)));
         }
         let width = grid.rows.iter().map(|row| row.cells.len()).max().unwrap_or(0);
         let mut is_filled = vec![false; width];
@@ -128,7 +129,10 @@ impl<'a> Cells<'a> {
         let columns: Vec<String> =
             (0..width).filter(|&c| is_filled[c]).filter(is_hidden).map(|c| letters(c as u32)).collect();
         if !columns.is_empty() {
-            grid.notes.push(format!("{} of the sheet, though hidden, read", listed("column", &columns)));
+            grid.notes.push(format!(
+                "{} of the sheet, though hidden, read",
+                listed("column", &columns, String::clone)
+            ));
         }
         self.grid
     }

@@ -9,7 +9,8 @@ use super::size::Unit;
 use crate::gradation::comma::{Comma, comma};
 use crate::gradation::error::TableError;
 
-/// Refuses a table whose numbers have points and commas, and one in which every comma may be that of thousands.
+/// Refuses a table whose numbers have points and commas, and one in which every comma may be that of
+/// thousands.
 pub(super) fn check(
     grid: &Grid,
     layout: &Layout,
@@ -18,7 +19,7 @@ pub(super) fn check(
     notes: &mut Vec<String>,
 ) -> Result<(), TableError> {
     let (mut point, mut other, mut decimal, mut either) = (None, None, false, None);
-    for (row, _) in extent.rows(grid, layout) {
+    for row in extent.rows(grid, layout) {
         let at = extent.column_of_size(layout, row);
         for c in [at, column.column] {
             let cell = row.cell(c);

@@ -11,7 +11,8 @@ pub(super) fn percentage(cell: &str) -> Option<f64> {
 
 /// The least and the most that a specification allows: `95-100`, `95 to 100 %`.
 pub(super) fn range(cell: &str) -> Option<(f64, f64)> {
-    let ends = ["-", "–", "—", " to ", " bis ", " à ", " a "].iter().find_map(|sign| cell.split_once(sign));
+    const SIGNS: [&str; 7] = ["-", "–", "—", " to ", " bis ", " à ", " a "];
+    let ends = SIGNS.iter().find_map(|sign| cell.split_once(sign));
     let (least, most) = ends.and_then(|(a, b)| Some((percentage(a.trim())?, percentage(b.trim())?)))?;
     (least >= 0.0 && least <= most && most.is_finite()).then_some((least, most))
 }

@@ -69,8 +69,8 @@ pub(super) fn grid(file: &str, text: &str, delimiter: char) -> Grid {
     grid
 }
 
-/// Whether lines like `#200,12` are rows of a table: they are where other rows begin with sieves in inches, and
-/// where none begins with a bare number, of which such a line could be one that is commented out.
+/// Whether lines like `#200,12` are rows of a table: they are where other rows begin with sieves in inches,
+/// and where none begins with a bare number, of which such a line could be one that is commented out.
 fn names_are_sieves(text: &str) -> bool {
     let mut bare = false;
     for line in text.lines().map(str::trim).filter(|line| !line.starts_with('#')) {

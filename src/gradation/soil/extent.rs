@@ -1,5 +1,5 @@
-//! Which rows below the headings are the table's: not its remarks, not its headings again, not what a laboratory
-//! writes below it.
+//! Which rows below the headings are the table's: not its remarks, not its headings again, not what a
+//! laboratory writes below it.
 
 use super::content::{is_blank, is_text, is_value, is_words, percentage};
 use super::grid::{Grid, GridRow};
@@ -7,14 +7,6 @@ use super::layout::{Layout, repeats_headings};
 use super::lines::listed;
 use super::size::opening;
 use crate::gradation::error::shortened;
-
-/// What a row is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Of {
-    Table,
-    Remark,
-    Headings,
-}
 
 /// A row below a table: `Dry mass (g) | 500`.
 pub(super) struct Below {
@@ -28,7 +20,8 @@ pub(super) struct Below {
 
 /// The rows of a table.
 pub(super) struct Extent {
-    kinds: Vec<Of>,
+    /// Indices of its rows, counted from the first below the headings.
+    table: Vec<usize>,
     /// The rows below it, which are left out.
     pub(super) below: Vec<Below>,
     /// What was left out, in words.
@@ -42,19 +35,16 @@ impl Extent {
     pub(super) fn of(grid: &Grid, layout: &Layout) -> Extent {
         let rows = &grid.rows[layout.first..];
         let first_value = layout.soils.iter().map(|soil| soil.column).min().unwrap_or(0);
-        let mut extent = Extent { kinds: Vec::new(), below: Vec::new(), notes: Vec::new(), first_value };
+        let mut extent = Extent { table: Vec::new(), below: Vec::new(), notes: Vec::new(), first_value };
         let end = extent.end(rows, layout);
         let last =
             rows[..end].iter().rposition(|row| row.filled().any(|c| is_value(row.cell(c)))).unwrap_or(0);
         let mut remarks = Vec::new();
         for (index, row) in rows[..end].iter().enumerate() {
-            extent.kinds.push(match () {
-                () if repeats_headings(row, layout) => Of::Headings,
-                () if is_text(row) && (row.filled().count() == 1 || index > last) => Of::Remark,
-                () => Of::Table,
-            });
-            if extent.kinds.last() == Some(&Of::Remark) {
-                remarks.push(grid.row_name(row.line));
+            match () {
+                () if repeats_headings(row, layout) => {}
+                () if is_text(row) && (row.filled().count() == 1 || index > last) => remarks.push(row.line),
+                () => extent.table.push(index),
             }
         }
         for row in &rows[end..] {
@@ -66,19 +56,19 @@ impl Extent {
         }
         if !remarks.is_empty() {
             let taken = if remarks.len() == 1 { "a remark" } else { "remarks" };
-            extent.notes.push(format!("{} taken as {taken} and left out", listed(grid.row_word(), &remarks)));
+            extent.notes.push(format!(
+                "{} taken as {taken} and left out",
+                listed(grid.row_word(), &remarks, |&line| grid.row_name(line))
+            ));
         }
         extent.notes.extend(extent.said_below(grid, &rows[end..]));
         extent
     }
 
-    /// The rows below the headings that are not below the table, and what each is.
-    pub(super) fn rows<'a>(
-        &'a self,
-        grid: &'a Grid,
-        layout: &Layout,
-    ) -> impl Iterator<Item = (&'a GridRow, Of)> {
-        grid.rows[layout.first..].iter().zip(self.kinds.iter().copied())
+    /// The rows of the table.
+    pub(super) fn rows<'a>(&'a self, grid: &'a Grid, layout: &Layout) -> impl Iterator<Item = &'a GridRow> {
+        let first = layout.first;
+        self.table.iter().map(move |index| &grid.rows[first + index])
     }
 
     /// The column of a row that says its opening.
@@ -91,8 +81,8 @@ impl Extent {
         }
     }
 
-    /// Where the table ends: at the first row of words below its numbers, unless numbers go on below it without
-    /// headings of their own, so that the row is refused.
+    /// Where the table ends: at the first row of words below its numbers, unless numbers go on below it
+    /// without headings of their own, so that the row is refused.
     fn end(&self, rows: &[GridRow], layout: &Layout) -> usize {
         let is_data = |row: &GridRow| {
             let column = self.column_of_size(layout, row);

@@ -141,7 +141,8 @@ fn is_characteristic(words: &[String]) -> bool {
     }
 }
 
-/// Whether a text says that a table goes on from the finest sieve: a hydrometer or another sedimentation test.
+/// Whether a text says that a table goes on from the finest sieve: a hydrometer or another sedimentation
+/// test.
 pub(super) fn says_sedimentation(text: &str) -> bool {
     const STEMS: [&str; 10] = [
         "hydrom",

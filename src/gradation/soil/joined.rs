@@ -101,8 +101,8 @@ fn continues(sieves: &Read, table: &Read) -> Result<bool, TableError> {
             return Ok(false);
         };
         let allowed = format!(
-            "sizes below {} mm and percents of the whole soil, at most {}, as this table continues the sieves; a \
-             soil of its own goes to a file or sheet of its own",
+            "sizes below {} mm and percents of the whole soil, at most {}, as this table continues the \
+             sieves; a soil of its own goes to a file or sheet of its own",
             last.0, last.1
         );
         let (grid, row) = (&table.block.grid, first.rows[index]);

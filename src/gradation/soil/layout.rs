@@ -265,8 +265,8 @@ fn refuse_unnamed_openings(
     if sizes.len() < 2 || !one_way {
         return Ok(());
     }
-    let allowed = "a heading that says what these numbers are: openings (such as Sieve (mm)) for the percents to \
-                   their right, or percents (% passing) of a soil";
+    let allowed = "a heading that says what these numbers are: openings (such as Sieve (mm)) for the \
+                   percents to their right, or percents (% passing) of a soil";
     let line = grid.rows[first.saturating_sub(1)].line;
     Err(grid.refused(line, column, "heading", &heads[column], allowed))
 }
@@ -301,8 +301,8 @@ fn is_constriction_curve(heads: &[String]) -> bool {
     heads.len() == 2 && named("percent_smaller") && is_diameter
 }
 
-/// A heading that is merged over several columns stands in the first of them; the rows below name each, or a row
-/// of samples above.
+/// A heading that is merged over several columns stands in the first of them; the rows below name each, or a
+/// row of samples above.
 fn spread(rows: &[GridRow], samples: Option<&GridRow>, mut heads: Vec<String>) -> (Vec<String>, Vec<Role>) {
     let mut roles: Vec<Role> = heads.iter().map(|name| role(name)).collect();
     let (top, below) = (&rows[0], &rows[1..]);

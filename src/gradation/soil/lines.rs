@@ -4,9 +4,10 @@
 const MOST: usize = 8;
 
 /// `line 5`, `rows 5, 7, 8`, `lines 5, 7 and 12 more`.
-pub(super) fn listed(word: &str, names: &[String]) -> String {
-    let shown = names[..names.len().min(MOST)].join(", ");
-    match names.len() {
+pub(super) fn listed<T>(word: &str, all: &[T], name: impl Fn(&T) -> String) -> String {
+    let shown: Vec<String> = all.iter().take(MOST).map(name).collect();
+    let shown = shown.join(", ");
+    match all.len() {
         1 => format!("{word} {shown}"),
         n if n > MOST => format!("{word}s {shown} and {} more", n - MOST),
         _ => format!("{word}s {shown}"),

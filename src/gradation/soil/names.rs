@@ -1,4 +1,5 @@
-//! What tables and columns are called: by the titles above them, and by a row of samples above their headings.
+//! What tables and columns are called: by the titles above them, and by a row of samples above their
+//! headings.
 
 use std::collections::HashMap;
 

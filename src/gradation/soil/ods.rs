@@ -26,10 +26,11 @@ pub(super) fn sheets(file: &str, zipped: &mut Zipped) -> Result<Vec<Grid>, Table
             Event::Start(e) if e.name().as_ref() == "style:style" => {
                 style = attribute(&e, "style:name").unwrap_or_default();
             }
-            Event::Start(e) if e.name().as_ref() == "style:table-properties" => {
-                if attribute(&e, "table:display").is_some_and(|display| display == "false") {
-                    hidden.insert(style.clone());
-                }
+            Event::Start(e)
+                if e.name().as_ref() == "style:table-properties"
+                    && attribute(&e, "table:display").is_some_and(|display| display == "false") =>
+            {
+                hidden.insert(style.clone());
             }
             Event::Start(e) if e.name().as_ref() == "table:table" => {
                 let name = attribute(&e, "table:name").unwrap_or_default();

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::content::{is_blank, is_date, percentage, range};
-use super::extent::{Extent, Of};
+use super::extent::Extent;
 use super::grid::Grid;
 use super::heading::Role;
 use super::layout::{End, Layout, SoilColumn, fields};
@@ -86,7 +86,7 @@ fn entries(
     let single = layout.soils.len() == 1;
     let retained = matches!(column.role, Role::Retained(_));
     let (mut entries, mut without) = (Vec::new(), Vec::new());
-    for (row, _) in extent.rows(grid, layout).filter(|(_, of)| *of == Of::Table) {
+    for row in extent.rows(grid, layout) {
         let line = row.line;
         let value = row.cell(column.column);
         let at = extent.column_of_size(layout, row);
@@ -95,7 +95,7 @@ fn entries(
         if is_blank(value) {
             match read {
                 Some((Opening::Mm(_) | Opening::Bare(_) | Opening::Below(_), _)) => {
-                    without.push(grid.row_name(line));
+                    without.push(line);
                     continue;
                 }
                 Some((Opening::Pan | Opening::Total, _)) => continue,
@@ -131,7 +131,10 @@ fn entries(
     }
     if single && !without.is_empty() {
         let have = if without.len() == 1 { "has" } else { "have" };
-        notes.push(format!("{} {have} no percent: left out", listed(grid.row_word(), &without)));
+        notes.push(format!(
+            "{} {have} no percent: left out",
+            listed(grid.row_word(), &without, |&line| grid.row_name(line))
+        ));
     }
     commas::check(grid, layout, extent, column, notes)?;
     Ok(entries)

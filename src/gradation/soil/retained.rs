@@ -25,8 +25,8 @@ impl Weighed<'_> {
         self.grid.refused(line, self.column, FIELDS[1], &value.to_string(), allowed)
     }
 
-    /// What was washed out or lost is a part of the whole; a mass below the table that is more than all that is
-    /// in it is said.
+    /// What was washed out or lost is a part of the whole; a mass below the table that is more than all that
+    /// is in it is said.
     fn check_below(&self, whole: f64, notes: &mut Vec<String>) -> Result<(), TableError> {
         const LOST: [&str; 12] = [
             "wash", "washed", "washing", "loss", "losses", "lost", "fines", "minus", "through", "decanted",
@@ -48,7 +48,8 @@ impl Weighed<'_> {
             let sum = (whole * 1e6).round() / 1e6;
             if any(&["dry"]) && !any(&["tare", "container", "dish", "can", "pan", "wet", "with"]) {
                 let allowed = format!(
-                    "all of it in the table, whose masses come to {sum}: with the pan, and all that was washed out"
+                    "all of it in the table, whose masses come to {sum}: with the pan, and all that was \
+                     washed out"
                 );
                 return Err(self.grid.refused(row.line, column, "dry mass", &value.to_string(), allowed));
             }

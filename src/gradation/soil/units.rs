@@ -6,8 +6,8 @@ use super::size::{Entry, Opening, Said, Unit};
 use crate::gradation::error::TableError;
 use crate::gradation::sieve::FIELDS;
 
-/// US sieves in decimals of an inch, with the usual roundings, that are the openings of no metric sieve. The first
-/// few may be chosen in mm, too: one of them alone says nothing.
+/// US sieves in decimals of an inch, with the usual roundings, that are the openings of no metric sieve. The
+/// first few may be chosen in mm, too: one of them alone says nothing.
 const ONLY_INCHES: [f64; 70] = [
     3.5, 1.75, 1.5, 0.75, 0.875, 0.625, 0.53, 0.4375, 0.4380, 0.438, 0.44, 0.375, 0.38, 0.3125, 0.313, 0.312,
     0.265, 0.223, 0.187, 0.1870, 0.1875, 0.19, 0.157, 0.132, 0.1319, 0.111, 0.1102, 0.1110, 0.0937, 0.0938,
@@ -59,8 +59,8 @@ pub(super) fn of_bare(
     } else if is_series_of_inches(entries) {
         let text = &first.text;
         return refused(&format!(
-            "{text} in or {text} mm: no unit is given, and all openings are those of US sieves in inches; write \
-             the unit in the heading, as Sieve (in) or Sieve (mm)"
+            "{text} in or {text} mm: no unit is given, and all openings are those of US sieves in inches; \
+             write the unit in the heading, as Sieve (in) or Sieve (mm)"
         ));
     }
     notes.push("openings without a unit taken as mm".into());
@@ -83,8 +83,8 @@ fn goes_one_way(entries: &[Entry], unit: Unit) -> bool {
 /// How many of the openings that are only in inches are round numbers.
 const ROUND: usize = 4;
 
-/// Whether all openings without a unit are those of US sieves in decimals of an inch, and they are those of no
-/// metric sieves. The ordinary series in mm, such as 4, 2, 1, 0.5, 0.25, 0.125, are none.
+/// Whether all openings without a unit are those of US sieves in decimals of an inch, and they are those of
+/// no metric sieves. The ordinary series in mm, such as 4, 2, 1, 0.5, 0.25, 0.125, are none.
 fn is_series_of_inches(entries: &[Entry]) -> bool {
     let (mut only, mut round) = (false, 0);
     for entry in entries {
