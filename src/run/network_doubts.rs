@@ -1,5 +1,5 @@
-//! Why walks on given networks cannot be relied on further than they can: what nobody has checked, and what the
-//! caller left open.
+//! Why walks on given networks cannot be relied on further than they can: what nobody has checked, and what
+//! the caller left open.
 
 use super::network_walk::{NetworkOutcome, NetworkWalk};
 use super::replicates::said_by_walks;
@@ -109,7 +109,8 @@ impl NetworkWalk {
         }
         if self.base.pan_fraction() > 0.0 {
             doubts.push(format!(
-                "{:.1} % of the base is finer than its finest sieve: taken as passive and counted by mass only",
+                "{:.1} % of the base is finer than its finest sieve: taken as passive and counted by \
+                 mass only",
                 100.0 * self.base.pan_fraction()
             ));
         }
@@ -185,8 +186,8 @@ mod tests {
         assert!(has(&said(Some(n), None, None).1, "no rule of practice was asked"));
     }
 
-    /// D15F 1.13 mm and D85B 0.25 mm: practice accepts the pair. A filter ten times as coarse is refused by its
-    /// rules, whatever is walked; without a filter nobody is asked.
+    /// D15F 1.13 mm and D85B 0.25 mm: practice accepts the pair. A filter ten times as coarse is refused by
+    /// its rules, whatever is walked; without a filter nobody is asked.
     #[test]
     fn rules_of_practice_are_asked_where_the_filter_is_known() {
         let confidence = |d0_mm: f64| {
