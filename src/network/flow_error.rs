@@ -19,8 +19,8 @@ pub enum FlowError {
     },
     /// Conductances so far apart that what passes is lost in their rounding.
     #[error(
-        "the flow through the network cannot be told: as close as rounding lets pressures come, voids take in \
-         {off:.1e} of what passes the network more or less than they let out. Conductances lie too many \
+        "the flow through the network cannot be told: as close as rounding lets pressures come, voids take \
+         in {off:.1e} of what passes the network more or less than they let out. Conductances lie too many \
          orders apart: leave out constrictions that conduct many orders more than the ways through, blind \
          ones too, since a way in that nothing can block conducts as constrictions do on average"
     )]

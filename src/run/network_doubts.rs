@@ -1,5 +1,5 @@
-//! Why walks on given networks cannot be relied on further than they can: what nobody has checked, and what the
-//! caller left open.
+//! Why walks on given networks cannot be relied on further than they can: what nobody has checked, and what
+//! the caller left open.
 
 use super::network_walk::{NetworkOutcome, NetworkWalk};
 use super::replicates::said_by_walks;
@@ -114,7 +114,8 @@ impl NetworkWalk {
         }
         if self.base.pan_fraction() > 0.0 {
             open.push(format!(
-                "{:.1} % of the base is finer than its finest sieve: taken as passive and counted by mass only",
+                "{:.1} % of the base is finer than its finest sieve: taken as passive and counted by \
+                 mass only",
                 100.0 * self.base.pan_fraction()
             ));
         }
@@ -157,6 +158,7 @@ mod tests {
     use super::*;
     use crate::constrictions::find;
     use crate::gradation::Gradation;
+    use crate::network::{ExitRule, NetworkColumns};
     use crate::run::{Callbacks, GivenFilter, walk_networks};
 
     fn said(n_base: Option<u64>, filter: Option<Gradation>, grains_per_void: Option<f64>) -> (u64, Said) {
@@ -191,16 +193,11 @@ mod tests {
         assert!(has(&said(Some(n), None, None).1, "no rule of practice was asked"));
     }
 
-    /// D15F 1.13 mm and D85B 0.25 mm: practice accepts the pair. A filter ten times as coarse is refused by its
-    /// rules, whatever is walked; without a filter nobody is asked.
+    /// D15F 1.13 mm and D85B 0.25 mm: practice accepts the pair. A filter ten times as coarse is refused by
+    /// its rules, whatever is walked; without a filter nobody is asked.
     #[test]
     fn rules_of_practice_are_asked_where_the_filter_is_known() {
-        let confidence = |d0_mm: f64| {
-            let filter = Gradation::linear_from_d0(d0_mm, 1.5).ok();
-            let plan = |n| said(Some(n), filter.clone(), Some(0.6)).1;
-            plan(2000)
-        };
-        let fine = confidence(1.0);
+        let fine = said(Some(2000), Gradation::linear_from_d0(1.0, 1.5).ok(), Some(0.6)).1;
         assert_eq!(fine.confidence, Confidence::Outside, "{:?}", fine.reasons);
         let curve = find("cu1.5-loose").unwrap().curve().unwrap().in_mm(1.0).unwrap();
         let network = Arc::new(Network::cubic([10, 10, 12], &curve, 1.0, 5).unwrap());
@@ -216,5 +213,28 @@ mod tests {
         let said = outcome.said(&plan, &network, 1);
         assert_eq!(said.confidence, Confidence::Contradicted, "{:?}", said.reasons);
         assert!(said.reasons[0].contains("practice allows D15F"), "{:?}", said.reasons);
+    }
+
+    /// The one constriction is closed by the first particle: what to try is said in the words of a walk
+    /// without a scene.
+    #[test]
+    fn a_network_that_clogs_is_a_doubt() {
+        let columns = NetworkColumns {
+            voids: 2,
+            conns: &[[0, 1]],
+            diameter_mm: &[0.1],
+            conductance: None,
+            inlets: &[0],
+            outlets: &[1],
+            rule: ExitRule::Flux,
+            rho: 0.0,
+            unit_mm: 1.0,
+        };
+        let network = Arc::new(Network::from_columns(&columns).unwrap().0);
+        let plan = NetworkWalk { replicates: 2, ..NetworkWalk::new(Gradation::single(0.2).unwrap(), 1000) };
+        let outcome = walk_networks(&[Arc::clone(&network)], &plan, &Callbacks::default()).unwrap();
+        let reasons = outcome.said(&plan, &network, 1).reasons.join("\n");
+        assert!(reasons.contains("clogged wholly") && reasons.contains("more increments, a smaller share"));
+        assert!(!reasons.contains("inject_share"), "{reasons}");
     }
 }

@@ -158,8 +158,8 @@ impl NetworkWalk {
         self.filter.as_ref()?.gradation.d(15.0)
     }
 
-    /// Base particles that Eq. (2) gives on a network for this mass ratio, where filter and grains per void are
-    /// known.
+    /// Base particles that Eq. (2) gives on a network for this mass ratio, where filter and grains per void
+    /// are known.
     ///
     /// # Errors
     /// Numbers that Eq. (2) does not take.

@@ -105,8 +105,8 @@ fn of_very_many_jobs_the_first_to_end_are_left_out() {
     assert_eq!((all.len(), &ids[..3]), (LISTED, &[1, 3, 6][..]));
 }
 
-/// What a full disk ends goes on once there is room: where the command line resumes a folder, so does the page,
-/// on this server and the next.
+/// What a full disk ends goes on once there is room: where the command line resumes a folder, so does the
+/// page, on this server and the next.
 #[test]
 fn what_has_failed_can_continue() {
     let root = tempfile::tempdir().unwrap();
