@@ -10,8 +10,8 @@
 //! - [`so_far`] is a look at the replicates of a run that is under way.
 //! - [`paper`] holds what the paper states.
 //! - [`rules`] applies the rules of filter practice to the same two curves; [`PairRules`] without a walk.
-//! - [`confidence`] is the label of a verdict and what sets it, by each [`doubt`] and rule; [`practice`] is what
-//!   practice says of the pair, whatever the verdict.
+//! - [`confidence`] is the label of a verdict and what sets it, by each [`doubt`] and rule; [`practice`] is
+//!   what practice says of the pair, whatever the verdict.
 //! - [`walk_doubts`] are what a walk itself says against its verdict.
 //! - [`infiltration()`] is Eq. (1) beside the walk.
 //! - [`network_walk`] is what comes of walks on given networks, without a scene.

@@ -199,8 +199,8 @@ mod tests {
     /// A broken rule of retention is said of every verdict, undecided and continuing too.
     #[test]
     fn a_broken_rule_is_said_of_every_verdict() {
-        let begin = "not met: D15F 6.50 mm is more than the 1.12 mm that Sherard and Dunnigan allow (design); \
-                     tests found no erosion up to 0.700 mm only, and continuing erosion beyond ";
+        let begin = "not met: D15F 6.50 mm is more than the 1.12 mm that Sherard and Dunnigan allow \
+                     (design); tests found no erosion up to 0.700 mm only, and continuing erosion beyond ";
         for (verdict, end) in [
             (Verdict::None, "; the walk is more favourable: rely on practice"),
             (Verdict::Some, "; practice and walk agree on retention"),
@@ -214,8 +214,8 @@ mod tests {
 
     #[test]
     fn agreement_and_disagreement_are_said() {
-        let met = "met: D15F 1.18 mm is within the 2.04 mm that Sherard and Dunnigan allow (design); tests found \
-                   no erosion up to 3.56 mm (Foster and Fell); ";
+        let met = "met: D15F 1.18 mm is within the 2.04 mm that Sherard and Dunnigan allow (design); tests \
+                   found no erosion up to 3.56 mm (Foster and Fell); ";
         for (verdict, end) in [
             (Verdict::None, "practice and walk agree on retention"),
             (Verdict::Some, "the walk is stricter"),

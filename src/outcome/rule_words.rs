@@ -51,8 +51,8 @@ pub fn said_of_all(role: RuleRole, rules: &[&AppliedRule]) -> Option<String> {
                     None => String::new(),
                 };
                 said.push(format!(
-                    "the filter may be too fine to drain the base; D15F {value}, USBR and NRCS ask for {limit} \
-                     or more{by_all}"
+                    "the filter may be too fine to drain the base; D15F {value}, USBR and NRCS ask for \
+                     {limit} or more{by_all}"
                 ));
             }
             if !fines.is_empty() {

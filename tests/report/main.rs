@@ -54,7 +54,6 @@ fn the_page_says_what_an_engineer_reads_first() {
         "Hydraulics: no gradient",
         "Figure 1.",
         "Rules of practice, in short",
-        "Terzaghi",
         "Thickness modelled: 296 mm",
         "18 % of the base is finer than 0.075 mm",
         "Figure 2.",

@@ -204,8 +204,7 @@ fn fines_that_are_not_known_hide_no_failure() {
     assert_eq!(of("terzaghi", &filter(4.0), &hidden).met, Some(false));
 }
 
-/// A clay whose table ends at No. 200 with 88 %: D85B is at most 0.075 mm, and 9 D85B 0.675 mm. D95B is known:
-/// 0.075 x (2/0.075)^(7/12).
+/// A clay whose table ends at No. 200 with 88 %: D85B is at most 0.075 mm, and 9 D85B 0.675 mm.
 #[test]
 fn a_size_in_the_finest_tail_hides_no_failure() {
     let clay = sieve(&[(0.075, 88.0), (2.0, 100.0)]);
@@ -249,8 +248,8 @@ fn a_gap_above_unknown_fines_is_no_reason_to_judge_the_coarse_part() {
     assert!(rule.met == Some(false) && rule.limit < Some(0.675), "{rule:?}");
 }
 
-/// The notes of Table 9.2: 6.4 D85B in group 1, 0.5 mm in group 2A; no limit for fewer fines was read, and that
-/// of other soils is the most that it can be.
+/// The notes of Table 9.2: 6.4 D85B in group 1, 0.5 mm in group 2A; no limit for fewer fines was read, and
+/// that of other soils is the most that it can be.
 #[test]
 fn dispersive_bases_have_limits_of_their_own() {
     let of = |id: &str, d15: f64, fines: f64, d85: f64| {

@@ -3,12 +3,13 @@
 //! What is monotone, and so is held here:
 //! - a dispersive base breaks every rule that it breaks otherwise, and its limits are never wider;
 //! - an open joint takes nothing away;
-//! - with more of its fines sieved, a base breaks every limit of D15F that it broke before, and keeps every one
-//!   that it kept before.
+//! - with more of its fines sieved, a base breaks every limit of D15F that it broke before, and keeps every
+//!   one that it kept before.
 //!
-//! What is not: whether a base with gravel is regraded hangs on its Cu and its fines. As long as no sieve tells
-//! them, it is regraded, which is the stricter reading; finer sieves may show that it need not be, and widen its
-//! limits. And Terzaghi's ratio gives way to limits by fines once a base is known to have 15 % of them.
+//! What is not: whether a base with gravel is regraded hangs on its Cu and its fines. As long as no sieve
+//! tells them, it is regraded, which is the stricter reading; finer sieves may show that it need not be, and
+//! widen its limits. And Terzaghi's ratio gives way to limits by fines once a base is known to have 15 % of
+//! them.
 
 use super::*;
 use crate::gradation::Gradation;

@@ -230,12 +230,16 @@ fn judged_at(Asked { row, of, unsteady, .. }: &Asked, ratio: f64) -> Result<Said
     let empty = of.band.as_ref().filter(|band| band.is_empty).map(|band| band.said.clone());
     let unknown = of.no_erosion_note.clone().filter(|_| of.no_erosion.is_none());
     let why = [row.thicker_in_words(greatest), unsteady.clone(), empty, of.band_note.clone(), unknown];
-    let mut why: Vec<String> = why.into_iter().flatten().collect();
+    let why: Vec<String> = why.into_iter().flatten().collect();
+    // The first reason is the one that sets the label.
+    let said = match confidence > Confidence::Outside {
+        true => [reasons, why.clone()].concat(),
+        false => [why.clone(), reasons].concat(),
+    };
     if !why.is_empty() {
         confidence = confidence.max(Confidence::Outside);
     }
-    why.extend(reasons);
-    Ok((confidence, why, warnings))
+    Ok((confidence, said, warnings))
 }
 
 /// `design.csv`.
