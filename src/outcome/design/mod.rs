@@ -12,6 +12,6 @@ mod spread;
 
 pub use answer::FinestBase;
 pub use record::{
-    Answer, BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignRow, NetworkBoundaries, Range, WalkRow,
+    DesignAnswer, BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignRow, NetworkBoundaries, Range, WalkRow,
 };
 pub use spread::spread;
