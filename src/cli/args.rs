@@ -338,7 +338,8 @@ pub struct DesignArgs {
     /// How thick the filter is: 60layers, 500mm or 75D50F; can be given again [default: 60layers]
     #[arg(long = "thickness", value_name = "THICKNESS", value_delimiter = ',', allow_hyphen_values = true)]
     pub thicknesses: Vec<Thickness>,
-    /// Walk the base as it was sampled: without it, as filter practice regrades it (base.regrade); the base of
+    /// Walk the base as it was sampled: without it, as filter practice regrades it (base.regrade); the
+    /// base of
     /// --inverse, which has no size of its own, is always taken so
     #[arg(long)]
     pub as_sampled: bool,

@@ -255,9 +255,11 @@ impl Bounds {
 impl Mistake {
     /// Looks for exchanged tables, and for micrometres where mm are meant.
     ///
-    /// The D15 of both are compared as sampled, as for permeability: a broad till has a D50 above that of many
+    /// The D15 of both are compared as sampled, as for permeability: a broad till has a D50 above that
+    /// of many
     /// filters which hold it, and a D15 far below. Where a finest tail is open its bounds are compared. Two
-    /// soils that are close are told apart by the D50 of the regraded base, with a warning only. Sizes that are multiples of D0F (`scale_free`) have no unit that could be wrong.
+    /// soils that are close are told apart by the D50 of the regraded base, with a warning only. Sizes
+    /// that are multiples of D0F (`scale_free`) have no unit that could be wrong.
     ///
     /// ```
     /// use voidwalk::{Gradation, outcome::Mistake};
@@ -271,7 +273,8 @@ impl Mistake {
         /// No soil is so much coarser than its filter (D50).
         const HOPELESS: f64 = 50.0;
         /// A filter whose D15 is so much finer than that of its base drains less than the base does, and
-        /// practice asks for the contrary, four or five times: of such a pair the other order is the right one.
+        /// practice asks for the contrary, four or five times: of such a pair the other order is the
+        /// right one.
         const FINER: f64 = 2.0;
         /// No filter is coarser than this (D50, mm).
         const BOULDERS_MM: f64 = 300.0;
@@ -279,7 +282,8 @@ impl Mistake {
         let [d15b, d50b] = [15.0, 50.0].map(|percent| Bounds::of(base, percent));
         if d50b.least > HOPELESS * d50f.most && d15b.most > d15f.least && !scale_free {
             let sentence = format!(
-                "the base (D50 {}) is {:.0} times as coarse as the filter (D50 {}): are its sizes micrometres \
+                "the base (D50 {}) is {:.0} times as coarse as the filter (D50 {}): are its sizes \
+                 micrometres \
                  under a header in mm, or are the two files exchanged?",
                 d50b.words(),
                 d50b.least / d50f.most,
@@ -293,7 +297,8 @@ impl Mistake {
         if is_far || (d15b.least > d15f.most && regraded.least > d50f.most) {
             let how = regraded_at_mm.map_or(String::new(), |at| format!(" regraded on {at:.3} mm"));
             let sentence = format!(
-                "the base is coarser than the filter (D15 {} against {}, D50 {}{how} against {}): are the two \
+                "the base is coarser than the filter (D15 {} against {}, D50 {}{how} against {}): are \
+                 the two \
                  files exchanged? Or its sizes micrometres under a header in mm?",
                 d15b.words(),
                 d15f.words(),
@@ -405,7 +410,8 @@ mod tests {
         Some((base, filter, drains))
     }
 
-    /// 5000 pairs of which the filter holds the base, or nearly: half to one and a half of the limit of design.
+    /// 5000 pairs of which the filter holds the base, or nearly: half to one and a half of the limit of
+    /// design.
     #[test]
     fn sensible_pairs_pass_in_their_order_and_are_refused_in_the_other() {
         let mut state = 20_261_124_u64;
@@ -428,7 +434,8 @@ mod tests {
             missed_draining += usize::from(is_missed && drains);
         }
         println!(
-            "{all} pairs, {draining} drain: {refused} refused in the right order; exchanged, {missed} of all and \
+            "{all} pairs, {draining} drain: {refused} refused in the right order; exchanged, {missed} of \
+             all and \
              {missed_draining} of those that drain are not refused"
         );
         assert_eq!(refused, 0);

@@ -106,7 +106,8 @@ fn by_ratio(ledger: &[LedgerLine]) -> Drawn {
         eroded(line, 0).map(|first| (100.0 * first.mean, interval_in_percent(first)))
     });
     let caption = "Base eroded in the first run against D15F/D85B: one symbol a case, with the 95 % interval \
-                   over its replicates. D85B is that of the base as it is walked: the table of cases says where \
+                   over its replicates. D85B is that of the base as it is walked: the table of cases \
+                   says where \
                    it is regraded. The class also takes the second run.";
     Drawn::new("by-ratio", figure, caption)
 }

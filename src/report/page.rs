@@ -397,8 +397,8 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
                                      mass is counted",
                         })))
             }
-            (fact(&format!("D15F/D85B, D15F/D95B{grading}"), format!("{}, {}", significant(outcome.ratios.d15f_over_d85b),
-                significant(outcome.ratios.d15f_over_d95b))))
+            (fact(&format!("D15F/D85B, D15F/D95B{grading}"), format!("{}, {}",
+                significant(outcome.ratios.d15f_over_d85b), significant(outcome.ratios.d15f_over_d95b))))
             (fact("Mass of base over mass of filter", known(inputs.mass_ratio, percent)))
             (fact("Base particles in each run, N_base", format!("{}{}", whole(outcome.n_base),
                 if Some(outcome.n_base) == outcome.n_base_eq2 { " (Eq. 2)".to_owned() }

@@ -125,7 +125,8 @@ section! {
         /// With a sieve table: where its open finest tail ends (mm).
         pub d0_mm: Option<f64> = None, off "0.01", above_zero();
         /// Whether the base is walked as filter practice regrades it ("practice": to 100 % finer than 4.75 mm
-        /// or a gap, where practice does), or as it was sampled ("no", the default of a scene). Needs sizes in
+        /// or a gap, where practice does), or as it was sampled ("no", the default of a scene). Needs
+        /// sizes in
         /// mm. Of two tables (`voidwalk judge`, `compare`, `design`, `serve`) it is "practice" unless
         /// --as-sampled is given.
         pub regrade: Option<Regrade> = None, off "\"practice\"", any("\"practice\" or \"no\"");

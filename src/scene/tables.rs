@@ -15,7 +15,8 @@ pub struct TableOptions {
     pub density: Option<Density>,
     /// A first look: fewer replicates, and no studies of the amount of base and of the thickness.
     pub quick: bool,
-    /// The base is walked as it was sampled. Without it a base in a table is walked as filter practice regrades
+    /// The base is walked as it was sampled. Without it a base in a table is walked as filter practice
+    /// regrades
     /// it, where `changes` do not say `base.regrade`.
     pub as_sampled: bool,
     /// Base and filter are taken as they are given, though their sizes look exchanged.

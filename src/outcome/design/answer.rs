@@ -5,7 +5,7 @@
 //! 40 % fines. No specification allows a filter with which tests saw erosion.
 
 use super::band::{DESIGN, SetBy, limits, retention, whose};
-use super::record::{Answer, Design, DesignRow};
+use super::record::{DesignAnswer, Design, DesignRow};
 use crate::outcome::digits::percent;
 use crate::outcome::record::{AppliedRule, RuleRole};
 use crate::outcome::three;
@@ -26,8 +26,9 @@ struct Limit<'a> {
     rule: &'a AppliedRule,
 }
 
-impl Answer {
-    /// Of a design whose boundaries and rules are known; `finest` is what practice says for the inverse, where
+impl DesignAnswer {
+    /// Of a design whose boundaries and rules are known; `finest` is what practice says for the
+    /// inverse, where
     /// that was searched.
     pub fn of(design: &Design, finest: Option<&FinestBase>) -> Self {
         let sizes = Sizes::of(design);
@@ -68,6 +69,14 @@ impl Answer {
                 whose(limit.rule),
                 sizes.other(design, limit.rule),
                 percent(design.base.tail_mass_fraction)
+            ),
+            (None, Some(limit), _) if limit.ratio < design.bracket[0] => format!(
+                "Practice allows {} ({}); the walk was searched from {} only, where it erodes: a lower \
+                 end of \
+                 --bracket looks below",
+                sizes.words(limit.ratio),
+                whose(limit.rule),
+                sizes.words(design.bracket[0]).replace("D15F up to", "a D15F of")
             ),
             (None, Some(limit), _) => format!(
                 "No ratio is known that nearly all networks hold; practice alone allows {} ({})",
@@ -182,8 +191,8 @@ fn searched(row: &DesignRow) -> &'static str {
 
 impl Design {
     /// The answer, of files of earlier versions too.
-    pub fn answer(&self) -> Answer {
-        self.answer.clone().unwrap_or_else(|| Answer::of(self, None))
+    pub fn answer(&self) -> DesignAnswer {
+        self.answer.clone().unwrap_or_else(|| DesignAnswer::of(self, None))
     }
 }
 
@@ -201,11 +210,13 @@ mod tests {
         let filter = Gradation::linear_from_dx(15.0, 4.0 * d85, 1.5).unwrap();
         let no_erosion = held.and_then(|held| Boundary::of(&[Ok(held), Ok(held)], Some(d85)));
         let text = serde_json::json!({
-            "version": "1", "inverse": false, "filter": "f", "filter_cu": 1.5, "filter_d15_mm": null, "unit": "mm",
+            "version": "1", "inverse": false, "filter": "f", "filter_cu": 1.5, "filter_d15_mm": null,
+            "unit": "mm",
             "base": {"name": "b", "cu": null, "d15_mm": null, "d85_mm": d85, "d95_over_d85": null},
             "threshold": 0.075, "replicates": 2, "seed": 1, "bracket": [0.5, 100.0], "step": 0.005,
             "confidence": "within checked range", "reasons": [], "rules": PairRules::of(base, &filter).rules,
-            "rules_at": 4.0, "products": [], "warnings": [], "model_leaves_out": [], "settings": [], "seconds": 1.0,
+            "rules_at": 4.0, "products": [], "warnings": [], "model_leaves_out": [], "settings": [],
+            "seconds": 1.0,
             "boundaries": [{"density": "loose", "thickness": "60 layers", "layers": 60, "thickness_mm": null,
                 "grains_per_void": 0.6, "no_erosion": no_erosion, "continuing": null, "not_monotone": 0,
                 "networks": [], "band": null}],
@@ -259,6 +270,10 @@ mod tests {
         let nothing = design(&sand(), None).answer();
         assert_eq!((nothing.d15f_max_mm, nothing.set_by), (None, SetBy::Walk));
         assert!(nothing.said.contains("practice alone allows D15F up to"), "{}", nothing.said);
+        // The least D15F that was searched is above the limit of practice: 0.77 against 0.70 mm.
+        let below = design(&till(), None).answer();
+        assert!(below.d15f_max_mm.is_none() && below.said.starts_with("Practice allows D15F up to 0.700 mm"));
+        assert!(below.said.contains("searched from a D15F of 0.765 mm only"), "{}", below.said);
         // A third of the base may be anything: the walk says nothing against it.
         let mut open = design(&till(), None);
         open.base.tail_mass_fraction = 0.38;
@@ -286,10 +301,10 @@ mod tests {
         (inverse.inverse, inverse.filter_d15_mm, inverse.base.d85_mm) = (true, Some(2.0), None);
         let rule = inverse.rules.iter().find(|rule| rule.id == "sherard-dunnigan").unwrap().clone();
         let finest = FinestBase { ratio: Some(4.0), rule };
-        let answer = Answer::of(&inverse, Some(&finest));
+        let answer = DesignAnswer::of(&inverse, Some(&finest));
         assert_eq!((answer.d85b_min_mm, answer.d15f_max_mm), (Some(0.5), None));
         assert!(answer.said.starts_with("D85B down to 0.500 mm, by practice"), "{}", answer.said);
-        let none = Answer::of(&inverse, Some(&FinestBase { ratio: None, ..finest }));
+        let none = DesignAnswer::of(&inverse, Some(&FinestBase { ratio: None, ..finest }));
         assert!(none.d85b_min_mm.is_none() && none.said.starts_with("No base is known that both"));
     }
 }

@@ -19,7 +19,8 @@ pub enum SetBy {
 pub struct Band {
     /// Least D15F, of the rule of permeability.
     pub least: f64,
-    /// Greatest D15F that both allow: the walk, which erodes less than 7.5 % in the first run on all but 5 % of
+    /// Greatest D15F that both allow: the walk, which erodes less than 7.5 % in the first run on all
+    /// but 5 % of
     /// networks, and practice. Files of earlier versions hold that of the walk alone.
     pub greatest: f64,
     /// Which of the two set it; `None` in files of earlier versions.
@@ -171,7 +172,8 @@ mod tests {
         assert!((band.practice.unwrap() - 1.6).abs() < 1e-9 && (band.greatest - 1.6).abs() < 1e-9);
         assert_eq!(
             band.said,
-            "D15F from 0.430 to 1.600 mm, the coarse side by practice (Sherard and Dunnigan's limit of design)"
+            "D15F from 0.430 to 1.600 mm, the coarse side by practice (Sherard and Dunnigan's limit of \
+             design)"
         );
         let narrow = Band::new(&all, D15F, 1.2, "mm").unwrap();
         assert_eq!((narrow.greatest, narrow.set_by), (1.2, Some(SetBy::Walk)));

@@ -12,6 +12,6 @@ mod spread;
 
 pub use answer::FinestBase;
 pub use record::{
-    Answer, BETWEEN_STEPS, BaseStated, Boundary, Design, DesignRow, NetworkBoundaries, Range, WalkRow,
+    BETWEEN_STEPS, BaseStated, Boundary, Design, DesignAnswer, DesignRow, NetworkBoundaries, Range, WalkRow,
 };
 pub use spread::{Beyond, spread};

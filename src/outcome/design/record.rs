@@ -20,7 +20,7 @@ pub struct Design {
     /// How coarse the filter may be: the least of what walk and practice allow; `None` in files of earlier
     /// versions, of which [`Design::answer()`] works it out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub answer: Option<Answer>,
+    pub answer: Option<DesignAnswer>,
     /// One per density and thickness, in the order in which they were asked for.
     pub boundaries: Vec<DesignRow>,
     /// Whether the base was scaled against a filter of given size, to find the finest base that it holds.
@@ -77,8 +77,9 @@ pub struct Design {
 
 /// How coarse the filter may be; for the inverse, how fine the base.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Answer {
-    /// Greatest D15F (mm) that both walk and practice allow; `None` where none is known, where the base has no
+pub struct DesignAnswer {
+    /// Greatest D15F (mm) that both walk and practice allow; `None` where none is known, where the base
+    /// has no
     /// size, and for the inverse.
     pub d15f_max_mm: Option<f64>,
     /// Finest D85B (mm) that both allow, for the inverse.

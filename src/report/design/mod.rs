@@ -187,7 +187,8 @@ fn boundaries(design: &Design) -> Markup {
     html! {
         h2 { "Boundaries of the model" }
         p {
-            "What the walks alone say, before practice: D15F/D85B" (of_base) ", median and 5 to 95 % of " (whole(design.replicates)) " networks; below it the "
+            "What the walks alone say, before practice: D15F/D85B" (of_base)
+            ", median and 5 to 95 % of " (whole(design.replicates)) " networks; below it the "
             @if design.inverse { "finest D85B" } @else { "D15F" } " in mm where sizes have a unit."
         }
         (Table::of(&design.boundaries).class("study")
@@ -195,7 +196,9 @@ fn boundaries(design: &Design) -> Markup {
             .text("Thickness, at the no-erosion boundary", |row| {
                 html! { (clean(&row.thickness)) br; span.small { (thick(row)) } }
             })
-            .text("No erosion in the model up to", |row| cell(row.no_erosion.as_ref(), row.no_erosion_note.as_ref()))
+            .text("No erosion in the model up to", |row| {
+                cell(row.no_erosion.as_ref(), row.no_erosion_note.as_ref())
+            })
             .text("Continuing erosion from", |row| {
                 cell(row.continuing.as_ref(), row.continuing_note.as_ref())
             })
@@ -230,7 +233,8 @@ fn bands(design: &Design) -> Markup {
         @if !rows.is_empty() {
             h2 { "The band of a specification" }
             p {
-                "D15F from the least that drains the base to the greatest that both allow: the walk, in which \
+                "D15F from the least that drains the base to the greatest that both allow: the walk, in \
+                 which \
                  all but 5 % of networks show no erosion, and the strictest rule of retention. It is empty \
                  where the least is more than that. Where the constriction curve is known within a range \
                  only, all of the range must hold."

@@ -9,7 +9,7 @@ use super::steadiness;
 use crate::outcome::design::band::Band;
 use crate::outcome::design::products::fits;
 use crate::outcome::design::{
-    Answer, BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignRow, NetworkBoundaries, WalkRow,
+    DesignAnswer, BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignRow, NetworkBoundaries, WalkRow,
     spread,
 };
 use crate::outcome::leaves_out;
@@ -87,7 +87,7 @@ pub(super) fn design(
         seconds,
         boundaries,
     };
-    Ok(Design { answer: Some(Answer::of(&design, finest.as_ref())), ..design })
+    Ok(Design { answer: Some(DesignAnswer::of(&design, finest.as_ref())), ..design })
 }
 
 /// A row that was asked for, and the ratio that nearly all networks hold over the range of its curve.
