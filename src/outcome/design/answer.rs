@@ -5,7 +5,7 @@
 //! 40 % fines. No specification allows a filter with which tests saw erosion.
 
 use super::band::{DESIGN, SetBy, limits, retention, whose};
-use super::record::{DesignAnswer, Design, DesignRow};
+use super::record::{Design, DesignAnswer, DesignRow};
 use crate::outcome::digits::percent;
 use crate::outcome::record::{AppliedRule, RuleRole};
 use crate::outcome::three;

@@ -12,6 +12,7 @@ mod spread;
 
 pub use answer::FinestBase;
 pub use record::{
-    DesignAnswer, BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignRow, NetworkBoundaries, Range, WalkRow,
+    BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignAnswer, DesignRow, NetworkBoundaries, Range,
+    WalkRow,
 };
 pub use spread::spread;

@@ -27,7 +27,8 @@ pub(super) fn allowed(row: &Row, held: f64, finest: Option<&FinestBase>) -> Resu
     Ok(retention(&rules, held * d85).map_or(held, |(_, limit)| held.min(limit / d85 * HAIR)))
 }
 
-/// The finest base of this shape that practice allows with a filter of this size: that, and every coarser one,
+/// The finest base of this shape that practice allows with a filter of this size: that, and every
+/// coarser one,
 /// keeps every rule of retention. `None` where the base is not scaled, sizes have no unit, or no rule is ever
 /// broken.
 ///

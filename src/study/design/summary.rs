@@ -9,7 +9,7 @@ use super::steadiness;
 use crate::outcome::design::band::Band;
 use crate::outcome::design::products::fits;
 use crate::outcome::design::{
-    DesignAnswer, BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignRow, NetworkBoundaries, WalkRow,
+    BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignAnswer, DesignRow, NetworkBoundaries, WalkRow,
     spread,
 };
 use crate::outcome::leaves_out;
