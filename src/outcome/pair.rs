@@ -128,7 +128,7 @@ impl PairRules {
     /// # Panics
     /// Where either has no curve.
     pub fn of_envelopes(bases: &[NamedCurve], filters: &[NamedCurve], options: PairOptions) -> Self {
-        let sides = Sides::of(filters, bases);
+        let sides = Sides::of(bases, filters);
         let (curve, filter) = &filters[sides.coarsest_filter];
         let (base_curve, base) = &bases[sides.finest_base];
         let BaseSoil { gradation, regraded, regraded_at_mm, why, fines_percent, category, .. } =
@@ -149,7 +149,7 @@ impl PairRules {
                 ));
             }
         }
-        let rules = apply_to_envelopes(filters, bases, options.dispersive, options.joint_mm);
+        let rules = apply_to_envelopes(bases, filters, options.dispersive, options.joint_mm);
         warnings.extend(stricter(filters, bases, options, sides, &rules));
         Self {
             filter: FilterSizes {
@@ -199,7 +199,7 @@ fn stricter(
     let of_finest = limit(rules)?;
     let filter = std::slice::from_ref(&filters[sides.coarsest_filter]);
     let of_curve = |curve: &NamedCurve| {
-        let alone = apply_to_envelopes(filter, std::slice::from_ref(curve), options.dispersive, None);
+        let alone = apply_to_envelopes(std::slice::from_ref(curve), filter, options.dispersive, None);
         Some((curve.0.clone(), limit(&alone)?))
     };
     let (name, least) = bases.iter().filter_map(of_curve).min_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -255,10 +255,9 @@ impl Bounds {
 impl Mistake {
     /// Looks for exchanged tables, and for micrometres where mm are meant.
     ///
-    /// The D15 of both are compared as sampled, as for permeability: a broad till has a D50 above that
-    /// of many
-    /// filters which hold it, and a D15 far below. Where a finest tail is open its bounds are compared. Two
-    /// soils that are close are told apart by the D50 of the regraded base, with a warning only. Sizes
+    /// The D15 of both are compared as sampled, as for permeability: a broad till has a D50 above that of
+    /// many filters which hold it, and a D15 far below. Where a finest tail is open its bounds are compared.
+    /// Two soils that are close are told apart by the D50 of the regraded base, with a warning only. Sizes
     /// that are multiples of D0F (`scale_free`) have no unit that could be wrong.
     ///
     /// ```
@@ -283,8 +282,7 @@ impl Mistake {
         if d50b.least > HOPELESS * d50f.most && d15b.most > d15f.least && !scale_free {
             let sentence = format!(
                 "the base (D50 {}) is {:.0} times as coarse as the filter (D50 {}): are its sizes \
-                 micrometres \
-                 under a header in mm, or are the two files exchanged?",
+                 micrometres under a header in mm, or are the two files exchanged?",
                 d50b.words(),
                 d50b.least / d50f.most,
                 d50f.words()
@@ -293,13 +291,15 @@ impl Mistake {
         }
         let BaseSoil { gradation, regraded_at_mm, .. } = BaseSoil::of(base, scale_free);
         let regraded = Bounds::of(&gradation, 50.0);
-        let is_far = d15b.least > FINER * d15f.most;
+        // Of a base that is regraded at a gap the part that practice looks at may be far finer than its D15.
+        let looked_at = Bounds::of(&gradation, 85.0);
+        let is_fine = regraded_at_mm.is_some() && looked_at.most < d15f.least;
+        let is_far = d15b.least > FINER * d15f.most && !is_fine;
         if is_far || (d15b.least > d15f.most && regraded.least > d50f.most) {
             let how = regraded_at_mm.map_or(String::new(), |at| format!(" regraded on {at:.3} mm"));
             let sentence = format!(
                 "the base is coarser than the filter (D15 {} against {}, D50 {}{how} against {}): are \
-                 the two \
-                 files exchanged? Or its sizes micrometres under a header in mm?",
+                 the two files exchanged? Or its sizes micrometres under a header in mm?",
                 d15b.words(),
                 d15f.words(),
                 regraded.words(),
@@ -320,7 +320,7 @@ impl Mistake {
     /// The same of two envelopes: of the finest base and the coarsest filter, so that nothing is refused
     /// which one pair of their curves makes sensible.
     pub fn of_envelopes(bases: &[NamedCurve], filters: &[NamedCurve]) -> Option<Self> {
-        let sides = Sides::of(filters, bases);
+        let sides = Sides::of(bases, filters);
         Self::find(&bases.get(sides.finest_base)?.1, &filters.get(sides.coarsest_filter)?.1, false)
     }
 
@@ -449,6 +449,19 @@ mod tests {
         let close = Mistake::find(&sand(0.3), &sand(0.18), false).unwrap();
         assert!(close.kind == MistakeKind::Coarser && !close.is_refused());
         assert!(Mistake::find(&sand(0.37), &sand(0.18), false).unwrap().is_refused());
+    }
+
+    /// A gravel with a gap, regraded on it: practice looks at the silt, which no filter is exchanged with.
+    #[test]
+    fn a_base_that_is_regraded_at_a_gap_is_no_exchange() {
+        let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
+        let gravel = soil(&[(0.01, 0.0), (0.05, 9.0), (0.06, 12.0), (2.0, 12.0), (8.0, 60.0), (20.0, 100.0)]);
+        let filter = soil(&[(0.15, 0.0), (0.2, 15.0), (0.6, 60.0), (2.0, 100.0)]);
+        let BaseSoil { regraded_at_mm, gradation, .. } = BaseSoil::of(&gravel, false);
+        assert!(
+            regraded_at_mm.is_some() && gradation.d(85.0).unwrap() < 0.2 && gravel.d(15.0).unwrap() > 0.4
+        );
+        assert_eq!(Mistake::find(&gravel, &filter, false), None);
     }
 
     /// A till whose D50 is above that of the sand that filters it.

@@ -185,7 +185,7 @@ mod tests {
     fn of(filter: &[(f64, f64)], base: &[(f64, f64)], dispersive: bool) -> Vec<AppliedRule> {
         let one = |points| vec![("soil".to_owned(), Gradation::from_points(points, None).unwrap())];
         let options = PairOptions { dispersive, ..PairOptions::default() };
-        PairRules::of_envelopes(&one(filter), &one(base), options).rules
+        PairRules::of_envelopes(&one(base), &one(filter), options).rules
     }
 
     fn said(filter: &[(f64, f64)], base: &[(f64, f64)], verdict: Verdict) -> String {

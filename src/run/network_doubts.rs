@@ -45,10 +45,10 @@ impl NetworkOutcome {
             rules::apply(&RuleInputs {
                 filter_is_measured: filter.is_measured,
                 largest_eroded_over_d15f: (!largest.is_empty()).then(|| Statistic::of(&largest).mean),
-                ..RuleInputs::of_soils(&filter.gradation, &plan.base)
+                ..RuleInputs::of_soils(&plan.base, &filter.gradation)
             })
         });
-        let mistake = plan.filter.as_ref().and_then(|f| Mistake::find(&f.gradation, &plan.base, false));
+        let mistake = plan.filter.as_ref().and_then(|f| Mistake::find(&plan.base, &f.gradation, false));
         let mut warnings: Vec<String> = mistake.map(|mistake| mistake.sentence).into_iter().collect();
         warnings.extend(doubts.iter().map(|doubt| doubt.said.clone()));
         if networks == 1 && self.replicates.len() > 1 {

@@ -6,7 +6,7 @@ use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use voidwalk::case;
-use voidwalk::outcome::{Recorded, Wanted};
+use voidwalk::outcome::{Mistake, Recorded, Wanted};
 use voidwalk::run::machine::threads as pool;
 use voidwalk::run::{GivenFilter, NetworkWalk, walk_networks};
 use voidwalk::walk::{Engine, Sampling};
@@ -27,7 +27,7 @@ pub fn replicate_seed(seed: u64, replicate: u64) -> u64 {
 #[pyfunction]
 #[pyo3(signature = (
     networks, base, n_base, increments, engine, sampling, seed, runs, replicates, series_every, size_curves,
-    size_classes, filter, grains_per_void, mass_ratio, threads, progress
+    size_classes, filter, grains_per_void, mass_ratio, as_given, threads, progress
 ))]
 #[allow(clippy::too_many_arguments)]
 pub fn walk<'py>(
@@ -47,6 +47,7 @@ pub fn walk<'py>(
     filter: Option<(PyRef<'py, Gradation>, bool)>,
     grains_per_void: Option<f64>,
     mass_ratio: f64,
+    as_given: bool,
     threads: Option<usize>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<(String, Bound<'py, PyDict>, Bound<'py, PyAny>)> {
@@ -73,6 +74,13 @@ pub fn walk<'py>(
         mass_ratio,
     };
     let given: Vec<Arc<voidwalk::Network>> = networks.iter().map(|network| network.inner.clone()).collect();
+    // A filter that the network knows by itself is no table that could be exchanged.
+    let exchanged = |filter: &GivenFilter| {
+        Mistake::find(&plan.base, &filter.gradation, false).filter(|_| filter.is_measured && !as_given)
+    };
+    if let Some(mistake) = plan.filter.as_ref().and_then(exchanged).filter(Mistake::is_refused) {
+        return Err(refused(mistake.refusal_unless("as_given=True")));
+    }
     if n_base.is_none() {
         let eq2 = given.first().map_or(Ok(None), |network| plan.eq2(network, mass_ratio)).map_err(refused)?;
         plan.n_base = eq2.ok_or_else(|| refused("n_base is missing"))?;

@@ -29,7 +29,7 @@ pub struct Sides {
 
 impl Sides {
     /// Of these curves, of which there is at least one each. A size in a finest tail is finer than any.
-    pub fn of(filters: &[NamedCurve], bases: &[NamedCurve]) -> Self {
+    pub fn of(bases: &[NamedCurve], filters: &[NamedCurve]) -> Self {
         let sizes = |curves: &[NamedCurve], size: &dyn Fn(&Gradation) -> Option<f64>| -> Vec<f64> {
             curves.iter().map(|(_, curve)| size(curve).unwrap_or(0.0)).collect()
         };
@@ -51,18 +51,18 @@ impl Sides {
 /// Applies every rule to the curves of a filter and of a base: each to those that it is for, named by
 /// them.
 pub fn apply_to_envelopes(
-    filters: &[NamedCurve],
     bases: &[NamedCurve],
+    filters: &[NamedCurve],
     dispersive: bool,
     joint_mm: Option<f64>,
 ) -> Vec<AppliedRule> {
-    let sides = Sides::of(filters, bases);
+    let sides = Sides::of(bases, filters);
     let every: Vec<&Gradation> = filters.iter().map(|(_, curve)| curve).collect();
     let inputs = |filter: usize, base: usize| RuleInputs {
         filter_curves: if filters.len() > 1 { every.clone() } else { Vec::new() },
         dispersive,
         joint_mm,
-        ..RuleInputs::of_soils(&filters[filter].1, &bases[base].1)
+        ..RuleInputs::of_soils(&bases[base].1, &filters[filter].1)
     };
     let name = |curves: &[NamedCurve], at: usize| match curves.len() {
         1 => String::new(),

@@ -132,7 +132,7 @@ pub struct RuleInputs<'a> {
 
 impl<'a> RuleInputs<'a> {
     /// Two sieve curves in mm, without a walk.
-    pub fn of_soils(filter: &'a Gradation, base: &'a Gradation) -> Self {
+    pub fn of_soils(base: &'a Gradation, filter: &'a Gradation) -> Self {
         Self {
             filter,
             filter_is_measured: true,

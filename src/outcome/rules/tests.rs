@@ -9,7 +9,7 @@ fn sieve(points: &[(f64, f64)]) -> Gradation {
 }
 
 fn of(id: &str, filter: &Gradation, base: &Gradation) -> AppliedRule {
-    let rules = apply(&RuleInputs::of_soils(filter, base));
+    let rules = apply(&RuleInputs::of_soils(base, filter));
     rules.into_iter().find(|rule| rule.id == id).unwrap()
 }
 
@@ -149,7 +149,7 @@ fn internal_stability_by_hand() {
 #[test]
 fn a_linear_filter_is_an_assumption_and_has_no_stability() {
     let (filter, base) = (filter(1.0), base(5.0, 0.5));
-    let inputs = RuleInputs { filter_is_measured: false, ..RuleInputs::of_soils(&filter, &base) };
+    let inputs = RuleInputs { filter_is_measured: false, ..RuleInputs::of_soils(&base, &filter) };
     for rule in apply(&inputs).iter().filter(|rule| rule.role == RuleRole::Stability) {
         assert_eq!(
             (rule.value, rule.met, rule.needs.as_str()),
@@ -167,7 +167,7 @@ fn sizes_without_a_unit_are_those_of_a_sand() {
         base_soil: BaseSoil::of(&base, true),
         largest_eroded_over_d15f: Some(0.19),
         filter_is_measured: false,
-        ..RuleInputs::of_soils(&filter, &base)
+        ..RuleInputs::of_soils(&base, &filter)
     };
     let all = apply(&inputs);
     let find = |id: &str| all.iter().find(|rule| rule.id == id).unwrap();
@@ -254,7 +254,7 @@ fn a_gap_above_unknown_fines_is_no_reason_to_judge_the_coarse_part() {
 fn dispersive_bases_have_limits_of_their_own() {
     let of = |id: &str, d15: f64, fines: f64, d85: f64| {
         let (filter, base) = (filter(d15), base(fines, d85));
-        let rules = apply(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(&filter, &base) });
+        let rules = apply(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(&base, &filter) });
         rules.into_iter().find(|rule| rule.id == id).unwrap()
     };
     for (id, fines, d85, limit) in [
@@ -352,7 +352,7 @@ fn envelopes_pair_the_worst_sides() {
     let straight = |d15: f64, cu: f64| Gradation::linear_from_dx(15.0, d15, cu).unwrap();
     let filters = named(&[("fine", straight(0.6, 2.0)), ("coarse", straight(1.2, 3.0))]);
     let bases = named(&[("coarse side", base(5.0, 0.5)), ("fine side", base(10.0, 0.2))]);
-    let rules = apply_to_envelopes(&filters, &bases, false, Some(0.3));
+    let rules = apply_to_envelopes(&bases, &filters, false, Some(0.3));
     let find = |id: &str| rules.iter().find(|rule| rule.id == id).unwrap();
     let retains = find("sherard-dunnigan");
     assert!(close(retains.value, 1.2) && close(retains.limit, 0.8) && retains.met == Some(false));
@@ -369,14 +369,14 @@ fn envelopes_pair_the_worst_sides() {
     let joint = find("constricted-exit");
     assert!(close(joint.value, 0.0) && joint.met.is_none() && joint.note.contains("JOS/D95B = 0.20"));
     // One curve each is what it always was, and asks for neither.
-    let one = apply_to_envelopes(&filters[..1], &bases[..1], false, None);
-    assert_eq!(one, apply(&RuleInputs::of_soils(&filters[0].1, &bases[0].1)));
+    let one = apply_to_envelopes(&bases[..1], &filters[..1], false, None);
+    assert_eq!(one, apply(&RuleInputs::of_soils(&bases[0].1, &filters[0].1)));
     assert!(!one.iter().any(|rule| ["filter-band", "constricted-exit"].contains(&rule.id.as_str())));
 }
 
 #[test]
 fn every_role_says_what_it_speaks_against() {
-    let rules = apply(&RuleInputs::of_soils(&filter(0.4), &base(5.0, 0.5)));
+    let rules = apply(&RuleInputs::of_soils(&base(5.0, 0.5), &filter(0.4)));
     for rule in rules {
         assert_eq!(rule.speaks_against, rule.role.speaks_against());
     }

@@ -68,7 +68,7 @@ fn soil(points: &[(f64, f64)]) -> Option<Gradation> {
 }
 
 fn rules(filter: &Gradation, base: &Gradation, dispersive: bool, joint_mm: Option<f64>) -> Vec<AppliedRule> {
-    apply(&RuleInputs { dispersive, joint_mm, ..RuleInputs::of_soils(filter, base) })
+    apply(&RuleInputs { dispersive, joint_mm, ..RuleInputs::of_soils(base, filter) })
 }
 
 fn broken(rules: &[AppliedRule]) -> Vec<&str> {

@@ -156,8 +156,8 @@ fn write(folder: &Folder, comparison: &Comparison) -> Result<(), RunError> {
     let number = |value: Option<f64>| value.map_or(String::new(), |v| format!("{:.4}", 100.0 * v));
     let of = |s: Option<&Statistic>| [s.map(|s| s.mean), s.and_then(|s| s.low), s.and_then(|s| s.high)];
     let header = "case,verdict,confidence,rules_not_kept,replicates,n_base,d15f_over_d85b,d15f_over_d95b,\
-        d85b_of,first_eroded_mass_percent,first_low,first_high,second_eroded_mass_percent,second_low,second_high,\
-        grains_per_void,thickness_mm,folder";
+        d85b_of,first_eroded_mass_percent,first_low,first_high,second_eroded_mass_percent,second_low,\
+        second_high,grains_per_void,thickness_mm,folder";
     let rows = comparison.cases.iter().map(|case| {
         let words = [case.name.clone(), case.verdict.words().into(), case.confidence.words().into()];
         let counts = [case.rules_not_kept.len() as u64, case.replicates, case.n_base].map(|n| n.to_string());

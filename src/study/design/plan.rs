@@ -166,7 +166,8 @@ fn one(
     Ok(Wanted { scene, of_filter, density, thickness, states_d0 })
 }
 
-/// Has a base with a size of its own walked as practice regrades it, where nothing says otherwise. A base that
+/// Has a base with a size of its own walked as practice regrades it, where nothing says otherwise. A
+/// base that
 /// is scaled has none: practice would regrade each of its sizes elsewhere.
 fn regrade(scene: &mut Scene, options: &DesignOptions) -> Result<(), RunError> {
     if let (Some(said), true) = (scene.base.regrade, options.as_sampled) {

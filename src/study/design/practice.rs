@@ -27,7 +27,8 @@ pub(super) fn allowed(row: &Row, held: f64, finest: Option<&FinestBase>) -> Resu
     Ok(retention(&rules, held * d85).map_or(held, |(_, limit)| held.min(limit / d85 * HAIR)))
 }
 
-/// The finest base of this shape that practice allows with a filter of this size: that, and every coarser one,
+/// The finest base of this shape that practice allows with a filter of this size: that, and every
+/// coarser one,
 /// keeps every rule of retention. `None` where the base is not scaled, sizes have no unit, or no rule is ever
 /// broken.
 ///
@@ -46,7 +47,7 @@ pub(super) fn finest_base(row: &Row) -> Result<Option<FinestBase>, RunError> {
         let inputs = RuleInputs {
             base_soil: BaseSoil::of(&base, false),
             dispersive: row.stated.scene.base.dispersive == Some(true),
-            ..RuleInputs::of_soils(&row.case.filter, &base)
+            ..RuleInputs::of_soils(&base, &row.case.filter)
         };
         let is_broken = |rule: &AppliedRule| rule.role == RuleRole::Retention && rule.is_broken();
         if let Some(rule) = apply(&inputs).into_iter().find(is_broken) {

@@ -188,6 +188,7 @@ def walk(
     filter: Optional[Tuple[Gradation, bool]],
     grains_per_void: Optional[float],
     mass_ratio: float,
+    as_given: bool,
     threads: Optional[int],
     progress: _Callback,
 ) -> Tuple[str, _Tables, NDArray[np.bool_]]: ...

@@ -39,6 +39,7 @@ def walk(
     filter: Optional[Gradation] = None,
     grains_per_void: Optional[float] = None,
     mass_ratio: float = 0.05,
+    as_given: bool = False,
     engine: str = "auto",
     sampling: str = "independent",
     seed: int = 1,
@@ -70,6 +71,8 @@ def walk(
         shipped or measured curve, and of packings.
     mass_ratio : float
         Mass of the base over that of the filter, of Eq. (2), see :meth:`Gradation.base_particles`.
+    as_given : bool
+        Walk a `filter` that is so much finer than the base that the two look exchanged.
     engine : {"auto", "particles", "counts", "expected"}
         How passive particles, which can block nothing, are walked; "expected" follows their expectation only.
     sampling : {"independent", "stratified"}
@@ -168,6 +171,7 @@ def walk(
             None if of is None else (of._native, is_measured),
             grains,
             float(mass_ratio),
+            bool(as_given),
             threads_or_none(threads),
             callback,
         )
