@@ -83,11 +83,13 @@ fn write(folder: &Path, filter: &str, base: &str, how: &str) {
 }
 
 #[test]
-fn check_and_run_agree_on_300_random_pairs_of_soils() {
+fn check_and_run_agree_on_random_pairs_of_soils() {
+    // More by VOIDWALK_PAIRS, as `.ci/run full` has it.
+    let pairs = std::env::var("VOIDWALK_PAIRS").map_or(90, |pairs| pairs.parse::<u32>().unwrap());
     let root = tempfile::tempdir().unwrap();
     let mut numbers = Numbers(20_261_122);
     let (mut accepted, mut refused) = (0, 0);
-    for number in 0..300 {
+    for number in 0..pairs {
         let coarsest = numbers.size(0.3, 80.0);
         let (filter, finer) = (numbers.table(coarsest), numbers.size(0.5, 60.0));
         let base = numbers.table(coarsest / finer);
@@ -108,7 +110,7 @@ fn check_and_run_agree_on_300_random_pairs_of_soils() {
             }
         }
     }
-    assert!(accepted > 80 && refused > 40, "{accepted} accepted, {refused} refused");
+    assert!(accepted > pairs / 4 && refused > pairs / 8, "{accepted} accepted, {refused} refused");
 }
 
 #[test]
