@@ -89,7 +89,7 @@ fn check_and_run_agree_on_random_pairs_of_soils() {
     let root = tempfile::tempdir().unwrap();
     let mut numbers = Numbers(20_261_122);
     let (mut accepted, mut refused) = (0, 0);
-    for number in 0..pairs {
+    for number in 0..u64::from(pairs) {
         let coarsest = numbers.size(0.3, 80.0);
         let (filter, finer) = (numbers.table(coarsest), numbers.size(0.5, 60.0));
         let base = numbers.table(coarsest / finer);

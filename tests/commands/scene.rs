@@ -673,7 +673,7 @@ fn filter_rules_and_equation_one_stand_in_the_outcome() {
         value["reasons"].as_array().unwrap().iter().map(|reason| reason.as_str().unwrap()).collect();
     assert!(reasons.iter().any(|reason| reason.contains("20 % of the base is finer")), "{reasons:?}");
     let stdout = String::from_utf8(output.stdout).unwrap();
-    assert!(stdout.contains(" in the model; ") && stdout.contains(reasons[0]), "{stdout}");
+    assert!(stdout.contains(" in the model\nPractice: not met: ") && stdout.contains(reasons[0]), "{stdout}");
     let found = &value["infiltration"];
     assert_eq!(found["layers"], 10);
     let run = &value["replicates"][0]["runs"][0];

@@ -2,6 +2,7 @@
 
 use super::tests::{found, of_base, options, tiny};
 use super::*;
+use crate::outcome::design::band::SetBy;
 use crate::outcome::record::Confidence;
 
 #[test]
@@ -54,8 +55,10 @@ fn products_are_judged_at_what_walk_and_practice_both_allow() {
     let of = |name: &str, more: &[&str]| found(&tiny(&folder.path().join(name), &[&WIDE[..], more].concat()));
     let design = of("sand", &[]);
     let band = design.boundaries[0].band.as_ref().unwrap();
-    assert!(band.practice.unwrap() < band.greatest && !band.is_empty, "{band:?}");
-    assert_eq!((design.confidence, design.may_fit()), (Confidence::Contradicted, true), "{design:?}");
+    let walked = design.boundaries[0].no_erosion.as_ref().unwrap().d15f_mm.unwrap().median;
+    assert!(band.practice == Some(band.greatest) && band.greatest < walked && !band.is_empty, "{band:?}");
+    assert_eq!((band.set_by, design.answer.as_ref().unwrap().d15f_max_mm), (Some(SetBy::Practice), band.practice));
+    assert_eq!((design.confidence, design.may_fit()), (Confidence::Within, true), "{:?}", design.reasons);
     let doubted = of("few", &["replicates=4"]);
     assert!(!doubted.may_fit() && doubted.products_that_fit().is_empty(), "{:?}", doubted.reasons);
 }
