@@ -1,32 +1,7 @@
 //! What filter practice says of a pair, in a line that stands below every verdict, whatever it is.
 
-use serde::{Deserialize, Serialize};
-
-use super::record::{AppliedRule, Outcome, RuleRole, Verdict};
+use super::record::{AppliedRule, LimitOfDesign, Outcome, Practice, RuleRole, Verdict};
 use super::rule_words::{against, listed, said_of_all, whose};
-
-/// What filter practice says of a pair, for programs.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Practice {
-    /// The limit of design.
-    pub design: LimitOfDesign,
-}
-
-/// A limit of D15F, and whether the filter keeps it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LimitOfDesign {
-    /// The name of its rule for programs.
-    pub rule: String,
-    /// The most that D15F may be; `None` where that is not known.
-    pub limit_mm: Option<f64>,
-    /// Whether the true limit is not known, and is at most `limit_mm`.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub limit_at_most: bool,
-    /// D15F.
-    pub value_mm: Option<f64>,
-    /// Whether the filter keeps it; `None` where that is not known.
-    pub met: Option<bool>,
-}
 
 /// The rule of design.
 const DESIGN: &str = "sherard-dunnigan";

@@ -16,6 +16,7 @@
 mod answer;
 mod inputs;
 mod manifest;
+mod practice;
 mod rows;
 mod varied;
 mod voids;
@@ -27,13 +28,13 @@ pub use inputs::{
     BaseRecord, FilterRecord, Inputs, NetworkKind, NetworkRecord, NetworkSummary, Ratios, SampledBase,
 };
 pub use manifest::{InputFile, Manifest};
+pub use practice::{LimitOfDesign, Practice};
 pub use rows::{FlowRow, LayerRow, SeriesRow, SizeRow};
 pub use varied::{CurveEnd, CurveRange, OfThickness, Sensitivity};
 pub use voids::{BlockedRow, ConstrictionRow, RetainedRow, VoidRow};
 
 pub use super::applied::{AppliedRule, Confidence, RuleRole};
 pub use super::pan::{PanBounds, PanReading, PanSize};
-pub use super::practice::{LimitOfDesign, Practice};
 
 /// The whole of `outcome.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

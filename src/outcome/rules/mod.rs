@@ -17,7 +17,7 @@ mod walk;
 pub use all::RULES;
 pub use apply::{NamedCurve, Sides, apply, apply_to_envelopes};
 pub use base::BaseSoil;
-pub use rule::{BaseSize, FilterRule, Fines, Judged, Pairing, RuleInputs, RuleUnit};
+pub use rule::{FilterRule, Fines, Judged, Pairing, RuleInputs, RuleUnit, SizeBound};
 
 #[cfg(doc)]
 use super::applied::RuleRole;

@@ -154,12 +154,12 @@ impl<'a> RuleInputs<'a> {
 
     /// A size of the base after regrading; where it lies in the finest tail, or what practice looks at does,
     /// the most that it can be.
-    pub fn size_of_base(&self, percent: f64) -> BaseSize {
+    pub fn size_of_base(&self, percent: f64) -> SizeBound {
         let soil = &self.base_soil;
         match (soil.hidden_below_mm, soil.gradation.d(percent)) {
-            (Some(most), _) => BaseSize { most, is_known: false },
-            (None, Some(size)) => BaseSize { most: size, is_known: true },
-            (None, None) => BaseSize { most: soil.gradation.smallest_mm(), is_known: false },
+            (Some(most), _) => SizeBound { most, is_known: false },
+            (None, Some(size)) => SizeBound { most: size, is_known: true },
+            (None, None) => SizeBound { most: soil.gradation.smallest_mm(), is_known: false },
         }
     }
 
@@ -174,9 +174,9 @@ impl<'a> RuleInputs<'a> {
     }
 }
 
-/// A size of a base.
+/// A size of a base, or the most that it can be.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BaseSize {
+pub struct SizeBound {
     /// The size, or the most that it can be.
     pub most: f64,
     /// Whether it is that size.

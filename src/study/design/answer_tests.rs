@@ -57,7 +57,10 @@ fn products_are_judged_at_what_walk_and_practice_both_allow() {
     let band = design.boundaries[0].band.as_ref().unwrap();
     let walked = design.boundaries[0].no_erosion.as_ref().unwrap().d15f_mm.unwrap().median;
     assert!(band.practice == Some(band.greatest) && band.greatest < walked && !band.is_empty, "{band:?}");
-    assert_eq!((band.set_by, design.answer.as_ref().unwrap().d15f_max_mm), (Some(SetBy::Practice), band.practice));
+    assert_eq!(
+        (band.set_by, design.answer.as_ref().unwrap().d15f_max_mm),
+        (Some(SetBy::Practice), band.practice)
+    );
     assert_eq!((design.confidence, design.may_fit()), (Confidence::Within, true), "{:?}", design.reasons);
     let doubted = of("few", &["replicates=4"]);
     assert!(!doubted.may_fit() && doubted.products_that_fit().is_empty(), "{:?}", doubted.reasons);
