@@ -191,7 +191,7 @@ set = { filter = { density = "dense", cu = 1.5 }, packing = { grains = 300, stif
 
 WORDS = {"verdict", "engine", "kind", "counted_facets"}  # their text is a result
 DROPPED = {"seconds", "settings", "rules", "confidence", "reasons", "notes", "practice"}
-LABELS = {"confidence", "reason", "rules_not_met", "warnings"}  # columns of a campaign's table that are no result of a walk
+LABELS = {"confidence", "reason", "rules_not_met", "warnings", "d85b_of"}  # columns of a campaign's table that are no result of a walk
 ROWS = 12
 
 
