@@ -26,6 +26,8 @@ import urllib.request
 # A server keeps at most 200 sheets.
 PAIRS_A_SERVER = 95
 SIEVES = [75, 37.5, 19, 9.5, 4.75, 2.36, 1.18, 0.6, 0.3, 0.15, 0.075, 0.02, 0.005, 0.002]
+# Seconds for a walk: a lattice of four voids across may have loops whose way out is very narrow, of which the program warns.
+PATIENCE = 20
 SMALL = ["replicates=1", "network.nx=4", "network.ny=4", "network.nz=4", "base.n_base=50", "record.sensitivity=[]", "filter.grains_per_void=0.6"]
 
 
@@ -41,7 +43,7 @@ def soil(draw, top, bottom):
     tail = draw.choice([0, 0, draw.uniform(0, 5), draw.uniform(0, 40)])
     passed, rows = 100.0, []
     for size, share in zip(sieves, shares[:-1] + [0]):
-        rows.append((size, round(passed, 1)))
+        rows.append((size, abs(round(passed, 1))))
         passed -= (100 - tail) * share / sum(shares[:-1])
     return rows
 
@@ -66,8 +68,10 @@ def told(rules):
 
 
 def plain(words):
-    """A refusal without the folder and without what leads it."""
+    """A refusal without the names of the files and of the flag, which differ by face, and without what leads it."""
     words = re.sub(r"^(error|refused): ", "", words.strip())
+    words = re.sub(r"^base \S+, filter \S+: ", "", words)
+    words = re.sub(r",? or say that they are as given.*$", "", words)
     return re.sub(r"\s+", " ", words)
 
 
@@ -76,11 +80,14 @@ def by_command(binary, folder, at, flags, command="rules", more=()):
     words += ["--json"] * (command == "rules") + ["--dispersive"] * flags["dispersive"] + ["--as-given"] * flags["as_given"]
     words += ["--joint-mm", str(flags["joint_mm"])] if "joint_mm" in flags else []
     before = set(os.listdir(folder))
-    done = subprocess.run(words, cwd=folder, capture_output=True, text=True)
+    try:
+        done = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=PATIENCE)
+    except subprocess.TimeoutExpired:
+        return None
     if done.returncode == 2:
         assert set(os.listdir(folder)) == before, f"{command} refused and left something"
         return {"refused": plain(done.stderr)}
-    assert done.returncode == 0, done.stderr
+    assert done.returncode == 0, f"{' '.join(words)}: exit code {done.returncode}\n{done.stderr}"
     return told(json.loads(done.stdout)) if command == "rules" else {}
 
 
@@ -102,7 +109,7 @@ class Server:
             with urllib.request.urlopen(urllib.request.Request(self.url + path, data=body)) as answer:
                 return json.load(answer)
         except urllib.error.HTTPError as error:
-            return {"refused": plain(json.load(error).get("error", ""))}
+            return {"refused": plain(json.load(error)["problem"])}
 
     def rules(self, folder, at, flags):
         ids = {}
@@ -142,7 +149,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     counted = {"the same rules": 0, "the same refusal": 0, "different": 0}
-    regraded = broken = judged = 0
+    regraded = broken = judged = unfinished = 0
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         python = subprocess.Popen([options.python, "-c", PYTHON], cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
@@ -166,7 +173,9 @@ def main():
                 for face, said in faces.items():
                     print(f"  {face}: {json.dumps(said)[:600]}")
             walked = by_command(options.binary, folder, at, flags, "judge", ["--quick", "-q", "--out", f"out-{at}", *[w for s in SMALL for w in ("--set", s)]])
-            if ("refused" in walked) and "refused" not in first:
+            if walked is None:
+                unfinished += 1
+            elif "refused" in walked and "refused" not in first:
                 # What has no walk may have rules all the same: a base of one size, a filter that is too broad to guess.
                 print(f"pair {at}: rules answer, judge refuses: {walked['refused'][:200]}")
             elif "refused" in first and "refused" not in walked:
@@ -185,7 +194,7 @@ def main():
                 broken += any(rule["met"] is False and rule["role"] == "retention" for rule in first["rules"])
         server.stop()
         python.stdin.close()
-    print(", ".join(f"{count} {what}" for what, count in counted.items()) + f"; {judged} judged, {regraded} regraded, {broken} break a rule of retention")
+    print(", ".join(f"{count} {what}" for what, count in counted.items()) + f"; {judged} judged, {unfinished} not walked to the end in {PATIENCE} s, {regraded} regraded, {broken} break a rule of retention")
     return 1 if counted["different"] else 0
 
 

@@ -74,7 +74,7 @@ impl Case {
 
     /// How many of all 2^64 words draw a particle no coarser than the finest constriction.
     fn passive_words(&self) -> u128 {
-        let finest = self.finest_of_fixed.unwrap_or_else(|| (self.curve.smallest() / self.unit_mm) as f32);
+        let finest = self.finest_of_fixed.unwrap_or_else(|| (self.finest_mm / self.unit_mm) as f32);
         self.sampler.word_limit(finest)
     }
 

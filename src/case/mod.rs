@@ -121,6 +121,9 @@ pub struct Case {
     pub filter: Gradation,
     /// The filter's constriction curve (mm).
     pub curve: Curve,
+    /// The finest constriction (mm) of every curve that is walked, the ends of its range included: what is
+    /// finer blocks nothing in any of them.
+    pub finest_mm: f64,
     /// The shipped filter that the curve is, if it is one.
     pub shipped: Option<&'static ShippedFilter>,
     /// The packing that the curve was measured on, if the program made it.
@@ -305,10 +308,15 @@ impl Case {
         let of_packing = packed.as_ref().map(|packed| packed.grains_per_void).or(of_shipped);
         let guessed = guesses_grains_per_void(&scene).then_some(GUESSED_GRAINS_PER_VOID);
         let grains_per_void = scene.filter.grains_per_void.or(of_graph).or(of_packing).or(guessed);
+        let ends = match fixed_network {
+            Some(_) => Vec::new(),
+            None => curve_ends::of(&curve, &filter, packed.as_ref(), scene.filter.estimate),
+        };
+        let finest_mm = ends.iter().map(|end| end.curve.smallest()).fold(curve.smallest(), f64::min);
         let against = Against {
             scene: &scene,
             filter: &filter,
-            curve: &curve,
+            finest_mm,
             unit_mm,
             grains_per_void,
             voids: counts[0],
@@ -331,6 +339,7 @@ impl Case {
             packed,
             filter,
             curve,
+            finest_mm,
             shipped,
             base,
             regraded_from,

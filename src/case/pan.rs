@@ -6,7 +6,6 @@
 //! sieve's size.
 
 use super::Case;
-use crate::constrictions::Curve;
 use crate::gradation::{Gradation, GradationError};
 use crate::outcome::record::PanSize;
 
@@ -18,17 +17,17 @@ const FINER: f64 = 0.99;
 const NEARLY: f64 = 0.999;
 
 /// Whether a pan fraction need not be passive.
-pub(super) fn may_block(base: &Gradation, curve: &Curve) -> bool {
-    base.pan_fraction() > 0.0 && base.smallest_mm() > curve.smallest()
+pub(super) fn may_block(base: &Gradation, finest_mm: f64) -> bool {
+    base.pan_fraction() > 0.0 && base.smallest_mm() > finest_mm
 }
 
 /// The base with its pan fraction of a size.
-pub(super) fn taken_as(base: &Gradation, size: PanSize, curve: &Curve) -> Result<Gradation, GradationError> {
+pub(super) fn taken_as(base: &Gradation, size: PanSize, finest_mm: f64) -> Result<Gradation, GradationError> {
     let mut points = base.points();
     let (sieve, percent) = points[0];
     match size {
         PanSize::Passive => {
-            let passive = FINER * curve.smallest();
+            let passive = FINER * finest_mm;
             points.splice(0..0, [(FINER * passive, 0.0), (passive, percent)]);
         }
         PanSize::FinestSieve => points.insert(0, (NEARLY * sieve, 0.0)),
@@ -43,7 +42,7 @@ impl Case {
         if self.base.pan_fraction() == 0.0 {
             return None;
         }
-        let read = |size| taken_as(&self.base, size, &self.curve).ok();
+        let read = |size| taken_as(&self.base, size, self.finest_mm).ok();
         let coarse = read(PanSize::FinestSieve)?;
         let fine = if self.pan_size.is_some() { read(PanSize::Passive)? } else { coarse.clone() };
         Some([fine, coarse])
@@ -53,17 +52,14 @@ impl Case {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::constrictions::CurveUnit;
     use crate::gradation::SizeSampler;
 
     #[test]
     fn both_readings_keep_the_mass_and_lie_where_they_must() {
         let base = Gradation::from_points(&[(0.075, 35.0), (0.5, 80.0), (2.0, 100.0)], None).unwrap();
-        let curve = |finest| Curve::from_points(&[(0.0, finest), (100.0, 1.0)], CurveUnit::Mm).unwrap();
-        assert!(!may_block(&base, &curve(0.075)) && may_block(&base, &curve(0.0749)));
-        let curve = curve(0.04);
-        let fine = taken_as(&base, PanSize::Passive, &curve).unwrap();
-        let coarse = taken_as(&base, PanSize::FinestSieve, &curve).unwrap();
+        assert!(!may_block(&base, 0.075) && may_block(&base, 0.0749));
+        let fine = taken_as(&base, PanSize::Passive, 0.04).unwrap();
+        let coarse = taken_as(&base, PanSize::FinestSieve, 0.04).unwrap();
         for reading in [&fine, &coarse] {
             assert_eq!(reading.pan_fraction(), 0.0);
             for percent in [36.0, 80.0, 99.0] {

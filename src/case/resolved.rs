@@ -12,6 +12,9 @@ const PROTOCOL: u32 = 2;
 /// The same of cases in which water flows.
 const WATER_PROTOCOL: u32 = 4;
 
+/// What is added to either where a base with a pan fraction is walked on a curve that is a guess.
+const GUESSED_PAN_PROTOCOL: u32 = 100;
+
 impl Case {
     /// The scene with what its files and its filter's packing say of it, and with its files' names in a run
     /// folder: run again from there, it gives the same bits.
@@ -50,7 +53,10 @@ impl Case {
     pub fn fingerprint(&self) -> String {
         // Nothing follows from what is only said of it.
         let scene = Scene { about: About::default(), ..self.resolved() };
-        let protocol = if scene.exit_rule().needs_flow() { WATER_PROTOCOL } else { PROTOCOL };
+        let mut protocol = if scene.exit_rule().needs_flow() { WATER_PROTOCOL } else { PROTOCOL };
+        if self.finest_mm < self.curve.smallest() && self.base.pan_fraction() > 0.0 {
+            protocol += GUESSED_PAN_PROTOCOL;
+        }
         let mut text = format!("{protocol}\n{}", scene.to_toml()).into_bytes();
         text.extend_from_slice(self.shipped.map_or("", |shipped| shipped.curve_csv).as_bytes());
         for input in self.inputs.iter().filter(|input| input.setting != "filter.density") {

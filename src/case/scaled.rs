@@ -52,7 +52,7 @@ impl Case {
         let against = Against {
             scene: &case.scene,
             filter: &case.filter,
-            curve: &case.curve,
+            finest_mm: case.finest_mm,
             unit_mm: case.unit_mm,
             grains_per_void: case.grains_per_void,
             voids: case.counts[0],
@@ -72,7 +72,7 @@ impl Case {
     pub fn enlarged(&self, factor: f64, base: &StatedBase) -> Result<Self, CaseError> {
         let mut case = self.clone();
         (case.filter, case.curve) = (self.filter.scaled(factor)?, self.curve.scaled(factor)?);
-        case.unit_mm = case.filter.smallest_mm();
+        (case.finest_mm, case.unit_mm) = (factor * self.finest_mm, case.filter.smallest_mm());
         if case.scene.filter.sieve.is_none() {
             // Its sizes are no longer multiples of D0F.
             case.scene.filter.d0_mm = Some(case.unit_mm);

@@ -1,7 +1,6 @@
 //! The base as it is walked: its sizes, and how many particles of them.
 
 use super::{Case, CaseError, pan};
-use crate::constrictions::Curve;
 use crate::gradation::{BaseSupply, Gradation, SizeSampler, base_particles};
 use crate::outcome::record::PanSize;
 use crate::scene::{Amount, Scene};
@@ -34,7 +33,8 @@ impl WalkedBase {
 pub(super) struct Against<'a> {
     pub scene: &'a Scene,
     pub filter: &'a Gradation,
-    pub curve: &'a Curve,
+    /// The finest constriction (mm) of every curve that is walked.
+    pub finest_mm: f64,
     /// The reference length (mm).
     pub unit_mm: f64,
     pub grains_per_void: Option<f64>,
@@ -46,7 +46,7 @@ pub(super) struct Against<'a> {
 impl Against<'_> {
     /// The base as it is walked: once, or with both readings of a pan fraction that need not be passive.
     pub fn readings(&self, base: &Gradation) -> Result<(WalkedBase, Option<WalkedBase>), CaseError> {
-        if !pan::may_block(base, self.curve) {
+        if !pan::may_block(base, self.finest_mm) {
             return Ok((self.walked(base, None)?, None));
         }
         let [passive, coarse] =
@@ -56,7 +56,7 @@ impl Against<'_> {
 
     fn walked(&self, base: &Gradation, pan_size: Option<PanSize>) -> Result<WalkedBase, CaseError> {
         let taken = match pan_size {
-            Some(size) => &pan::taken_as(base, size, self.curve)?,
+            Some(size) => &pan::taken_as(base, size, self.finest_mm)?,
             None => base,
         };
         // A number that the user gives is of particles whose sizes are known; the mass stays the same. A cap

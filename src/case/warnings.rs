@@ -234,7 +234,7 @@ impl Case {
                  the finest constriction, {:.3} mm: walked twice, as finer than every constriction and as \
                  all of that sieve's size",
                 self.base.smallest_mm(),
-                self.curve.smallest()
+                self.finest_mm
             ));
         }
         (percent > 0.0).then(|| {

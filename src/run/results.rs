@@ -138,7 +138,7 @@ fn pan_bounds(case: &Case, walked: [&[ReplicateResult]; 2]) -> Option<PanBounds>
     Some(PanBounds {
         mass_fraction: case.base.pan_fraction(),
         finest_sieve_mm: case.base.smallest_mm(),
-        finest_constriction_mm: case.curve.smallest(),
+        finest_constriction_mm: case.finest_mm,
         readings: [reading(case, walked[0])?, reading(other, walked[1])?],
     })
 }

@@ -54,7 +54,9 @@ impl<T: Pod> Column<T> {
                 let (map, file) = map_zeros(folder, bytes)?;
                 Values::Mapped(map, file)
             }
-            _ => Values::Owned(bytemuck::zeroed_vec(len)),
+            _ => Values::Owned(
+                bytemuck::allocation::try_zeroed_vec(len).map_err(|()| io::ErrorKind::OutOfMemory)?,
+            ),
         };
         Ok(Self { values })
     }
