@@ -35,14 +35,14 @@ def beside_practice(shown, usual):
     lines = ["## Practice and tests", "",
              paragraph("D15F/D85B for bases with less than 15 % fines and straight on a sieve diagram."),
              f"| | as stated | {' | '.join(f'base Cu {base:g}' for base in bases)} |", "|---|---|" + "---|" * len(bases),
-             same("limit of design: Terzaghi; Sherard & Dunnigan (1989; NRCS, USBR)", "D15F <= 4 D85B", f"{PRACTICE['design']:g}"),
-             same("uniform sand filters, \"conservative, not excessively\": Sherard et al. (1984)", "D15F <= 5 D85B", f"{PRACTICE['uniform']:g}"),
+             same("limit of design: Terzaghi; Sherard & Dunnigan (1989)", "D15F <= 4 D85B", f"{PRACTICE['design']:g}"),
+             same("uniform sand filters: Sherard et al. (1984)", "D15F <= 5 D85B", f"{PRACTICE['uniform']:g}"),
              same("no erosion: Foster & Fell (2001)", "D15F <= 7 D85B", f"{PRACTICE['no_erosion']:g}"),
-             same("boundary of no erosion in tests: Foster & Fell (2001)", f"{range_tested} D85B", range_tested),
+             same("the same in tests", f"{range_tested} D85B", range_tested),
              row("continuing erosion: Foster & Fell (2001)", "D15F > 9 D95B", [f"{PRACTICE['continuing_d95'] * base**0.2:.1f}" for base in bases])]
-    lines += [row(f"largest particle that passed a filter of Cu {cu:g}: Kenney et al. (1985) \\*", f"{share:g} D15F", ends(share))
+    lines += [row(f"largest particle through a filter of Cu {cu:g}: Kenney et al. (1985) \\*", f"{share:g} D15F", ends(share))
               for cu, share in KENNEY.items()]
-    stopped = "particles in suspension that uniform sand filters stopped: Sherard et al. (1984) \\*"
+    stopped = "suspended particles stopped by uniform sand: Sherard et al. (1984) \\*"
     lines.append(row(stopped, f"about {SUSPENDED:g} D15F", ends(SUSPENDED)))
     for what, which in [("s_NE", "s_ne"), ("s_CE", "s_ce")]:
         for model in MODELS:

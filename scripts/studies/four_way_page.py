@@ -271,19 +271,6 @@ def left_out(planned, arches):
              f"| model | {' | '.join(f'{n:,} layers' for n in layers)} |", "|---|" + "---|" * len(layers)]
     of = lambda model, n: str(sum((cell.model, cell.layers) == (model, n) for cell in ran))
     lines += [f"| {SHOWN[model]} | {' | '.join(of(model, n) for n in layers)} |" for model in models] + [""]
-    for kind, values, part in [("Base Cu", bases, lambda c: c.base), ("Filter", names, lambda c: c.name)]:
-        for reached, some in grouped(values, lambda one: tuple(sorted({c.layers for c in ran if part(c) == one}))):
-            if len(reached) < len(layers):
-                which = listed(f"{one:g}" if kind == "Base Cu" else one for one in some)
-                lines.append(bullet(f"{kind} {which}: {listed(f'{n:,}' for n in reached) or 'no'} layers only."))
     if arches:
-        lines.append(bullet(f"Arches: only {'; '.join(cell.where() for cell in arches)}; nothing between beta 1 and {ARCH}."))
+        lines.append(paragraph(f"Arches: only {'; '.join(cell.where() for cell in arches)}."))
     return lines
-
-
-def grouped(values, key):
-    """The values under each key, in the order in which they come."""
-    found = {}
-    for one in values:
-        found.setdefault(key(one), []).append(one)
-    return list(found.items())
