@@ -1,6 +1,6 @@
 """What the page of scripts/studies/four_way.py compares its cells with: practice, tests, and earlier walks."""
 
-from four_way_cells import ARCH, MODELS, SHOWN, USUAL_MASS_RATIO, alike, cannot_be_told, pairs
+from four_way_cells import ARCH, MODELS, SHOWN, USUAL_MASS_RATIO, pairs
 from four_way_words import bullet, counted, down, factors, listed, paragraph, span
 
 # D15F/D85B of bases with less than 15 % fines; the last is by D95B (results/rules.md).
@@ -110,7 +110,7 @@ def expected(rows, usual):
     for key, values in found.items():
         lines.append(f"| {SHOWN[key[0]]} | {key[1]:g} | {EXPECTED[key]} | {percents(EARLIER[key])} | {percents(values) or 'not run'} |")
     walked = {key: mean(values) for key, values in found.items() if values}
-    findings = [*off(walked), *raised(usual), *interval(usual), *density(usual)]
+    findings = [*off(walked), *raised(usual)]
     return [*lines, "", *map(bullet, findings), ""]
 
 
@@ -140,25 +140,3 @@ def raised(usual):
     yield (f"**Flow does not lower every s_NE**: it is larger with flow for {each}."
            + (" s_CE is smaller in each." if less else "") + (" k/k0 is 0.0000 on both sides of these s_NE: the filter seals." if shut else "")
            + (f" In {vague} of the {len(found)} the loss by area is flat." if vague else ""))
-
-
-def is_first(cell, layers):
-    return (cell.name, cell.model, cell.base, cell.layers) == ("Cu 1.5 loose", "lattice, area", 1.5, layers)
-
-
-def interval(usual):
-    """Whether the interval over replicates holds what the same case lost on another lattice."""
-    model, ratio = "lattice, area", 4.4
-    for cell in usual:
-        values = [boundary.value for boundary in cell.begins]
-        if is_first(cell, 60) and len(values) > 1 and min(values) > ratio and max(EARLIER[model, ratio]) >= 7.5:
-            yield (f"**The one interval ({min(values):.2f} to {max(values):.2f}, {len(values)} replicates) misses the earlier result**, "
-                   f"an s_NE of {ratio:g}: it spans packings, not lattices or constriction curves.")
-
-
-def density(usual):
-    """Pairs of dense and loose that cannot be told apart."""
-    found = pairs(usual, lambda c: "dense" in c.name, name=lambda c: c.name.replace("dense", "loose"))
-    if vague := [pair for pair in found if cannot_be_told(*pair)]:
-        each = listed(f"base Cu {c.base:g}, {SHOWN[c.model]} (s_NE {down(c.s_ne)} for {c.name}, {down(t.s_ne)} for {t.name})" for c, t in vague)
-        yield (f"That a dense filter holds coarser ratios is not shown for {each}: the loss is flat there.")

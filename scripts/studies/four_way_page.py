@@ -168,11 +168,11 @@ def how_to_read(shown, name):
 def unlike(shown):
     """Thickness in layers is not like for like, and thick graphs repeat one packing."""
     graphs = [cell for cell in shown if cell.model == "graph, flux" and not cell.arches]
-    apart, lines = {}, []
+    lines, apart = [], {}
     for cell in graphs:
         twin = alike(shown, cell, model="lattice, flux") or alike(shown, cell, model="lattice, area")
-        if twin and abs(cell.mm / twin.mm - 1) > 0.15:
-            apart[cell.name, cell.layers] = f"{cell.mm:.1f} and {twin.mm:.1f} mm for {cell.name}, {cell.layers} layers"
+        if twin and cell.mm / twin.mm > 1.15:
+            apart[cell.name, cell.layers] = f"{cell.mm / twin.mm:.2f} times for {cell.name}"
     if apart:
         lines.append(bullet("A packing is repeated whole, so a graph may be thicker than its lattice of as many layers: "
                             f"{listed(apart.values())}."))
