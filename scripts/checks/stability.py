@@ -445,7 +445,7 @@ by_tests("Machine", "kill at any instant, also during a resume", "final results 
          ("commands", "checkpoints::a_run_goes_on_after_stops_and_kills_with_the_same_bits"),
          ("commands", "pack::a_packing_goes_on_after_stops_and_kills_with_the_same_bits"),
          ("commands", "campaign::a_campaign_that_is_killed_again_and_again_gives_the_same_ledger"))
-by_tests("Machine", "checkpoint cut, flipped, newer, of another program or scene", "refused, or the older slot taken and said",
+by_tests("Machine", "checkpoint cut, flipped, newer, of another program or scene", "refused, or the older slot taken, with a warning",
          ("files", "torn_checkpoints::no_corruption_goes_unnoticed"),
          ("commands", "checkpoints::a_corrupt_checkpoint_is_passed_over_or_refused_and_never_lost"))
 by_tests("Machine", "disk full at the start or in between; read-only disk", "clear error, last checkpoint intact, no SIGBUS; refused",

@@ -35,9 +35,9 @@ def write_page(out, plan, rows, refused, version, date):
     shown = [cell for cell in cells if cell.walks]
     usual = [cell for cell in shown if cell.whole and not cell.arches]
     name = pathlib.Path(out).name
-    text = [f"# How coarse may the filter be: models beside practice and tests ({date})", ""]
+    text = [f"# How coarse may the filter be: models against practice and tests ({date})", ""]
     text += [paragraph(words) for words in (practice_first(shown), sealed(rows), explained(shown, usual)) if words]
-    text += [f"![Boundaries of models beside practice and tests]({name}.svg)\n"]
+    text += [f"![Boundaries of models against practice and tests]({name}.svg)\n"]
     text += [*how_to_read(shown, name), *beside_practice(shown, usual), *expected(rows, usual), *time_taken(name, rows, version, shown)]
     text += not_run(cells, refused)
     write_cells(pathlib.Path(f"{out}-cells.csv"), shown)
