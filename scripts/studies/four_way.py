@@ -4,7 +4,7 @@
     scripts/studies/four_way.py --binary target/release/voidwalk --work FOLDER --out results/four-way --minutes 120
 
 Packs each filter with several seeds into FOLDER (once), walks the cells of PLAN in their order until the time is over, and writes
-OUT.csv (every walk), OUT.svg and OUT.md. What is in OUT.csv is not walked again, so that a study that was stopped goes on; with
+OUT.csv (every walk), OUT-cells.csv, OUT.svg and OUT.md. What is in OUT.csv is not walked again, so that a study that was stopped goes on; with
 --minutes 0 the page alone is written anew, with the version that it names. Replicate r is packing r with seed r.
 
 A replicate's boundary is the smallest D15F/D85B at which its first run (no erosion turns to some) or its second (some turns to
@@ -14,6 +14,7 @@ that erosion that comes and goes is seen. Particles that can block nothing are m
 
 import argparse
 import csv
+import datetime
 import json
 import math
 import pathlib
@@ -27,7 +28,7 @@ import time
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from four_way_beside import EXPECTED  # noqa: E402
 from four_way_cells import FILTERS, THRESHOLD, d50_by_number  # noqa: E402
-from four_way_page import version_of_page, write_page  # noqa: E402
+from four_way_page import date_of_page, version_of_page, write_page  # noqa: E402
 
 RUNG, TOP = 1.06, 47  # D15F/D85B from 1 to 15.5
 MODELS = {
@@ -259,10 +260,11 @@ def main():
             refused[cell] = str(problem).strip().splitlines()[-1]
             print("!!", *cell, problem, flush=True)
     version = version_of_page(options.out) if options.minutes <= 0 else None
+    date = date_of_page(options.out) if options.minutes <= 0 else None
     if version is None:
         version = subprocess.run([options.binary, "--version"], capture_output=True, text=True).stdout.strip()
         version = f"`{version}`, {platform.machine()}"
-    write_page(options.out, plan(), list(study.known.values()), refused, version)
+    write_page(options.out, plan(), list(study.known.values()), refused, version, date or str(datetime.date.today()))
 
 
 if __name__ == "__main__":

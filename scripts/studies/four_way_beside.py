@@ -1,20 +1,18 @@
-"""What the page of scripts/studies/four_way.py sets beside its cells: practice, tests, and what was expected beforehand."""
+"""What the page of scripts/studies/four_way.py compares its cells with: practice, tests, and earlier walks."""
 
-from four_way_cells import ARCH, MODELS, SHOWN, USUAL_MASS_RATIO, alike, cannot_be_told, pairs
+from four_way_cells import ARCH, MODELS, SHOWN, USUAL_MASS_RATIO, pairs
 from four_way_words import bullet, counted, down, factors, listed, paragraph, span
 
-# D15F/D85B of bases with less than 15 % fines, but the last, by D95B (shared/practice.md, sections 3 and 4; frontier.md, section 4).
+# D15F/D85B of bases with less than 15 % fines; the last is by D95B (results/rules.md).
 PRACTICE = dict(design=4.0, uniform=5.0, no_erosion=7.0, tested=(6.8, 10.0), continuing_d95=9.0)
 # Largest particle that passed in tests, by D15F: Kenney et al. (1985) by Cu of the filter; stopped: Sherard et al. (1984), suspensions.
 KENNEY, SUSPENDED = {1.2: 0.167, 3.0: 0.182, 6.0: 0.146}, 0.11
-# Percent eroded in the first run: filter Cu 1.5 loose, base Cu 1.5, 60 layers. A prototype (frontier.md, "What to expect").
+# Percent eroded in the first run by a prototype: filter Cu 1.5 loose, base Cu 1.5, 60 layers.
 EXPECTED = {("lattice, area", 5.5): 60, ("lattice, area", 4.4): 8, ("lattice, flux", 5.5): 93,
             ("lattice, flux", 4.4): 50, ("graph, flux", 5.5): 78, ("graph, flux", 4.4): 28}
 # The same in results/graph.md: lattices 40 x 40 voids wide with a published curve, graph of a larger packing.
 EARLIER = {("lattice, area", 5.5): (58.8, 61.6), ("lattice, area", 4.4): (7.4, 7.5), ("lattice, flux", 5.5): (95.7, 95.7),
            ("lattice, flux", 4.4): (80.5, 80.6), ("graph, flux", 5.5): (94.5, 94.6), ("graph, flux", 4.4): (76.9,)}
-# No erosion by lattice and area at 60 and at 600 layers (frontier.md, section 1).
-EXPECTED_THICKNESS = {60: 4.4, 600: 5.5}
 ARCHED = f"the upper end of the band, with particles retained as if {ARCH} times as large"
 
 
@@ -34,19 +32,17 @@ def beside_practice(shown, usual):
     same = lambda what, stated, number: row(what, stated, [number] * len(bases))
     ends = lambda share: ["{:.1f} to {:.1f}".format(*by_particle(share, base)) for base in bases]
     range_tested = f"{tested[0]:g} to {tested[1]:g}"
-    lines = ["## Beside practice and tests", "",
-             paragraph("D15F/D85B for bases with less than 15 % fines and straight on a sieve diagram, so that D95B and the largest particle follow "
-                       f"from D85B. In tests the boundary of no erosion lay between {listed(f'{end:g}' for end in tested)}: some filters eroded from "
-                       f"{tested[0]:g} on, and some held to {tested[1]:g}."),
+    lines = ["## Practice and tests", "",
+             paragraph("D15F/D85B for bases with less than 15 % fines and straight on a sieve diagram."),
              f"| | as stated | {' | '.join(f'base Cu {base:g}' for base in bases)} |", "|---|---|" + "---|" * len(bases),
-             same("limit of design: Terzaghi; Sherard & Dunnigan (1989; NRCS, USBR)", "D15F <= 4 D85B", f"{PRACTICE['design']:g}"),
-             same("uniform sand filters, \"conservative, not excessively\": Sherard et al. (1984)", "D15F <= 5 D85B", f"{PRACTICE['uniform']:g}"),
+             same("limit of design: Terzaghi; Sherard & Dunnigan (1989)", "D15F <= 4 D85B", f"{PRACTICE['design']:g}"),
+             same("uniform sand filters: Sherard et al. (1984)", "D15F <= 5 D85B", f"{PRACTICE['uniform']:g}"),
              same("no erosion: Foster & Fell (2001)", "D15F <= 7 D85B", f"{PRACTICE['no_erosion']:g}"),
-             same("boundary of no erosion in tests: Foster & Fell (2001)", f"{range_tested} D85B", range_tested),
+             same("the same in tests", f"{range_tested} D85B", range_tested),
              row("continuing erosion: Foster & Fell (2001)", "D15F > 9 D95B", [f"{PRACTICE['continuing_d95'] * base**0.2:.1f}" for base in bases])]
-    lines += [row(f"largest particle that passed a filter of Cu {cu:g}: Kenney et al. (1985) \\*", f"{share:g} D15F", ends(share))
+    lines += [row(f"largest particle through a filter of Cu {cu:g}: Kenney et al. (1985) \\*", f"{share:g} D15F", ends(share))
               for cu, share in KENNEY.items()]
-    stopped = "particles in suspension that uniform sand filters stopped: Sherard et al. (1984) \\*"
+    stopped = "suspended particles stopped by uniform sand: Sherard et al. (1984) \\*"
     lines.append(row(stopped, f"about {SUSPENDED:g} D15F", ends(SUSPENDED)))
     for what, which in [("s_NE", "s_ne"), ("s_CE", "s_ce")]:
         for model in MODELS:
@@ -54,10 +50,8 @@ def beside_practice(shown, usual):
             if any(of):
                 values = [f"{span(found)} ({counted(len(found), 'cell')})" if found else "not run" for found in of]
                 lines.append(row(f"**model: {SHOWN[model]}**", what, values))
-    return lines + ["", paragraph("\\* First number: 15 % of the base's mass is coarser than that particle (D85B equals it). Second: none of it is, "
-                                  "so that nothing of the base is too coarse to pass. Neither is a limit of its source, and Kenney's base had Cu "
-                                  "1.2. In the figure these are the brackets over filters of that Cu, dense or loose. Models: bracketed cells of all "
-                                  "filters and thicknesses, without arches."), *compared(shown, usual), ""]
+    return lines + ["", paragraph("\\* First number: 15 % of the base's mass is coarser than that particle. Second: none of it is. Neither is a limit "
+                                  "of its source; Kenney's base had Cu 1.2. Models: bracketed cells of all filters and thicknesses, without arches."), *compared(shown, usual), ""]
 
 
 def compared(shown, usual):
@@ -72,8 +66,8 @@ def compared(shown, usual):
     if begin:
         lines = [bullet(f"s_NE from {low:g} on, where some tests eroded: {named(begin, 's_ne')}.")]
     else:
-        lines = [bullet(f"s_NE of the {len(usual)} bracketed cells without arches, {span([cell.s_ne for cell in usual])}: every one below {low:g}, "
-                        "the smallest boundary seen in tests.")]
+        lines = [bullet(f"s_NE of the {len(usual)} bracketed cells without arches is {span([cell.s_ne for cell in usual])}, below {low:g}, the smallest "
+                        "boundary in tests.")]
     if go_on:
         lines.append(bullet(f"s_CE from {low:g} on, where some tests eroded: {named(go_on, 's_ce')}."))
     place = lambda number: "below the tests" if number < low else "above the tests" if number > high else "within the tests"
@@ -86,7 +80,7 @@ def compared(shown, usual):
         lines.append(bullet(f"s_CE beyond 9 D95B: {named(beyond, 's_ce')}; the other {len(usual) - len(beyond)} lie below it."))
     else:
         share = factors([cell.s_ce / limit(cell) for cell in usual])
-        lines.append(bullet(f"s_CE beside 9 D95B: every one without arches lies below it, at {share} times it."))
+        lines.append(bullet(f"s_CE without arches is {share} times 9 D95B."))
     return lines
 
 
@@ -107,46 +101,31 @@ def percents(values):
 
 
 def expected(rows, usual):
-    """What a prototype was said to erode beside these walks, and what differs."""
+    """What a prototype and earlier walks eroded, and what differs."""
     found = {key: here(rows, *key) for key in EXPECTED}
-    lines = ["## Beside \"What to expect\"", "",
-             paragraph("Percent of the base eroded in the first run; filter Cu 1.5 loose, base Cu 1.5, 60 layers. Expected: a prototype. Earlier: "
-                       "`graph.md`, with wider lattices, a published constriction curve and a larger packing."),
-             "| model | D15F/D85B | expected | earlier | here |", "|---|---|---|---|---|"]
+    lines = ["## Earlier walks", "",
+             paragraph("Percent of the base eroded in the first run; filter Cu 1.5 loose, base Cu 1.5, 60 layers. Earlier: `graph.md`, with wider "
+                       "lattices, a published constriction curve and a larger packing."),
+             "| model | D15F/D85B | prototype | earlier | here |", "|---|---|---|---|---|"]
     for key, values in found.items():
         lines.append(f"| {SHOWN[key[0]]} | {key[1]:g} | {EXPECTED[key]} | {percents(EARLIER[key])} | {percents(values) or 'not run'} |")
     walked = {key: mean(values) for key, values in found.items() if values}
-    findings = [*off(walked), *gap(walked), *raised(usual), *thickness(usual), *interval(usual), *density(usual)]
-    return [*lines, "", "Findings:", "", *map(bullet, findings), ""]
+    findings = [*off(walked), *raised(usual)]
+    return [*lines, "", *map(bullet, findings), ""]
 
 
 def off(walked):
     """Where these walks lie more than five points from what was expected."""
     far = [key for key in walked if abs(walked[key] - EXPECTED[key]) > 5]
     again = [key for key in far if abs(walked[key] - mean(EARLIER[key])) < 5]
-    one = lambda key: f"{SHOWN[key[0]]} at {key[1]:g}, {walked[key]:.0f} % for {EXPECTED[key]} expected"
-    each = lambda keys: "; ".join(map(one, keys))
+    one = lambda key: f"{SHOWN[key[0]]} at {key[1]:g}"
     if again:
-        yield (f"**Other than expected by more than 5 points, and the same in `graph.md`**: {each(again)}. That page has no explanation "
-               "yet. It names two known differences from the prototype: here particles come in with the water, on the lattice mostly by wide ways "
-               "in; and a void whose exits are all blocked passes its particles on when the flow is solved again, where the prototype holds many "
-               "back. Neither was tested.")
+        yield (f"**More than 5 points from the prototype, but as in `graph.md`**: {'; '.join(map(one, again))}. Here particles enter with the water, "
+               "and a void whose exits are all blocked passes its particles on when the flow is solved again. Whether that is the cause was not "
+               "tested.")
     if alone := [key for key in far if key not in again]:
-        yield (f"**Other than expected, and than in `graph.md`**: {each(alone)}. Here the lattice is narrower and its constrictions are "
-               "those of the packing; what causes it was not tested.")
-
-
-def gap(walked):
-    """The difference between lattice and graph with flow."""
-    small = []
-    for ratio in sorted({ratio for _, ratio in walked}, reverse=True):
-        keys = [("lattice, flux", ratio), ("graph, flux", ratio)]
-        if all(key in walked for key in keys):
-            was, now = EXPECTED[keys[0]] - EXPECTED[keys[1]], walked[keys[0]] - walked[keys[1]]
-            if abs(now) < was / 3:
-                small.append(f"{now:.1f} points at {ratio:g}, for {was} expected")
-    if small:
-        yield f"**The gap between lattice and graph with flow nearly vanishes**: {listed(small)}."
+        yield (f"**Unlike both**: {'; '.join(map(one, alone))}. Here the lattice is narrower and its constrictions are those of the packing; the "
+               "cause was not tested.")
 
 
 def raised(usual):
@@ -158,40 +137,6 @@ def raised(usual):
     shut = all(walk and walk.k[0] == 0 for cell, _ in found for boundary in cell.begins for walk in (boundary.below, boundary.above))
     vague = sum(twin.flat((0, 1)) is not None for _, twin in found)
     less = all(cell.s_ce < twin.s_ce for cell, twin in found)
-    yield (f"**\"Flow erodes more\" does not hold of every s_NE**: s_NE is larger with flow for {each}."
-           + (" s_CE is smaller in each of them." if less else "")
-           + (" k/k0 is 0.0000 on both sides of these s_NE: the filter seals, and what can no longer enter is not lost. That this is the cause was "
-              "not tested."
-              if shut else "") + (f" In {vague} of the {len(found)} the loss by area is flat there." if vague else ""))
-
-
-def thickness(usual):
-    cells = {layers: next((cell for cell in usual if is_first(cell, layers)), None) for layers in EXPECTED_THICKNESS}
-    if all(cells.values()):
-        near = all(abs(cell.s_ne - EXPECTED_THICKNESS[layers]) < 0.15 for layers, cell in cells.items())
-        each = listed(f"s_NE {down(cell.s_ne)} at {layers} layers for about {EXPECTED_THICKNESS[layers]} expected" for layers, cell in cells.items())
-        yield f"Thickness, lattice by area: {'as expected' if near else 'not as expected'}, {each}."
-
-
-def is_first(cell, layers):
-    return (cell.name, cell.model, cell.base, cell.layers) == ("Cu 1.5 loose", "lattice, area", 1.5, layers)
-
-
-def interval(usual):
-    """Whether the interval over replicates holds what the same case lost on another lattice."""
-    model, ratio = "lattice, area", 4.4
-    for cell in usual:
-        values = [boundary.value for boundary in cell.begins]
-        if is_first(cell, 60) and len(values) > 1 and min(values) > ratio and max(EARLIER[model, ratio]) >= 7.5:
-            yield (f"**The one interval ({min(values):.2f} to {max(values):.2f}, {len(values)} replicates) misses the earlier result**, "
-                   f"{percents(EARLIER[model, ratio])} % lost at {ratio:g}, so an s_NE of {ratio:g}: it spans packings of this program, not other "
-                   "lattices and constriction curves.")
-
-
-def density(usual):
-    """Pairs of dense and loose that cannot be told apart."""
-    found = pairs(usual, lambda c: "dense" in c.name, name=lambda c: c.name.replace("dense", "loose"))
-    if vague := [pair for pair in found if cannot_be_told(*pair)]:
-        each = listed(f"base Cu {c.base:g}, {SHOWN[c.model]} (s_NE {down(c.s_ne)} for {c.name}, {down(t.s_ne)} for {t.name})" for c, t in vague)
-        yield (f"That a dense filter holds coarser ratios is not shown for {each}: the loss is flat there, and 7.5 % give or take one point spans "
-               "both.")
+    yield (f"**Flow does not lower every s_NE**: it is larger with flow for {each}."
+           + (" s_CE is smaller in each." if less else "") + (" k/k0 is 0.0000 on both sides of these s_NE: the filter seals." if shut else "")
+           + (f" In {vague} of the {len(found)} the loss by area is flat." if vague else ""))

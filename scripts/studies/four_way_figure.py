@@ -42,7 +42,7 @@ def figure(shown, practice, kenney):
             f'<rect width="{WIDTH}" height="{y:.0f}" fill="white"/>',
             '<pattern id="arches" width="6" height="6" patternUnits="userSpaceOnUse" patternTransform="rotate(45)">'
             f'<rect width="6" height="6" fill="#e3f0e6"/><rect width="2" height="6" fill="{GREEN}"/></pattern>',
-            words(20, 26, "How coarse may the filter be? Models beside practice and tests", font_size=17),
+            words(20, 26, "How coarse may the filter be? Models against practice and tests", font_size=17),
             words(20, 46, "Boundaries of models, not limits to design by. k/k0: permeability left at the largest walked ratio that holds; "
                   "0: sealed, it does not drain.")]
     return "\n".join(head + legend() + parts + ["</svg>\n"])

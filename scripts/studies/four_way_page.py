@@ -1,5 +1,6 @@
-"""The page of scripts/studies/four_way.py: every number in it is worked out from the csv, and a sentence that does not hold of it is left out."""
+"""The page of scripts/studies/four_way.py: every number comes from the csv, and a sentence that does not hold for it is left out."""
 
+import csv
 import math
 import pathlib
 import re
@@ -22,17 +23,24 @@ def version_of_page(out):
     return named and named.group()
 
 
-def write_page(out, plan, rows, refused, version):
+def date_of_page(out):
+    """The date of the walks, as the page names it; None where there is no page."""
+    page = pathlib.Path(f"{out}.md")
+    named = page.exists() and re.match(r"# .*\((\d{4}-\d\d-\d\d)\)", page.read_text())
+    return named and named[1]
+
+
+def write_page(out, plan, rows, refused, version, date):
     cells = cells_of(plan, rows)
     shown = [cell for cell in cells if cell.walks]
     usual = [cell for cell in shown if cell.whole and not cell.arches]
     name = pathlib.Path(out).name
-    date = re.search(r"\d{4}-\d\d-\d\d", name)
-    text = [f"# How coarse may the filter be: models beside practice and tests{f' ({date.group()})' if date else ''}", ""]
+    text = [f"# How coarse may the filter be: models against practice and tests ({date})", ""]
     text += [paragraph(words) for words in (practice_first(shown), sealed(rows), explained(shown, usual)) if words]
-    text += [f"![Boundaries of models beside practice and tests]({name}.svg)\n"]
-    text += [*how_to_read(shown), *beside_practice(shown, usual), *expected(rows, usual), *table(shown), *time_taken(name, rows, version, shown)]
+    text += [f"![Boundaries of models against practice and tests]({name}.svg)\n"]
+    text += [*how_to_read(shown, name), *beside_practice(shown, usual), *expected(rows, usual), *time_taken(name, rows, version, shown)]
     text += not_run(cells, refused)
+    write_cells(pathlib.Path(f"{out}-cells.csv"), shown)
     pathlib.Path(f"{out}.md").write_text("\n".join(text).rstrip("\n") + "\n")
     pathlib.Path(f"{out}.svg").write_text(figure(shown, PRACTICE, kenney))
 
@@ -41,17 +49,16 @@ def practice_first(shown):
     found = [cell for cell in shown if cell.s_ne < math.inf]
     above = sum(cell.s_ne > PRACTICE["design"] for cell in found)
     marked = [cell for cell in shown if cell.second_first]
-    words = ("**Practice goes first. These are boundaries of models, not limits to design by.** A ratio that a model holds is not allowed by it: "
-             f"filter rules decide, and {above} of the {len(found)} boundaries of no erosion below lie above {PRACTICE['design']:g}, the limit of "
-             "design. The models have no cohesion, no particle shapes and no forces on particles.")
+    words = (f"**Practice goes first. These are boundaries of models, not design limits.** {above} of the {len(found)} boundaries of no erosion below "
+             f"lie above {PRACTICE['design']:g}, the limit of design. The models have no cohesion, no particle shapes and no forces on particles.")
     if marked:
         passed = [walk for cell in shown for walks in cell.walks.values() for walk in walks if walk.lost[0] < THRESHOLD <= walk.lost[1]]
         worst = max(passed, key=lambda walk: walk.lost[1], default=None)
-        words += (f" In {len(marked)} cells fresh base on the clogged filter (the second run) is lost at a smaller ratio than the base of the first "
-                  "run; erosion is said to begin there, at the smaller of the two.")
+        words += (f" In {len(marked)} cells the second run (fresh base on the clogged filter) erodes at a smaller ratio than the first; that smaller "
+                  "ratio counts.")
         if worst:
-            words += (f" The program's verdict, which asks the first run first, reads \"no erosion\" in the {counted(len(passed), 'walk')} between: "
-                      f"at worst the first run lost {100 * worst.lost[0]:.1f} % and the second {100 * worst.lost[1]:.1f} %.")
+            words += (f" The program's verdict follows the first run and reads \"no erosion\" in the {counted(len(passed), 'walk')} between; at worst "
+                      f"the first run lost {100 * worst.lost[0]:.1f} % and the second {100 * worst.lost[1]:.1f} %.")
     return words
 
 
@@ -66,141 +73,128 @@ def sealed(rows):
     if not closed:
         return ""
     often = "mostly" if 2 * len(closed) > len(holds) else "often"
-    words = (f"**With flow, \"holds\" {often} means \"sealed\", and a sealed filter does not drain.** k/k0 is the filter's permeability at the end "
-             f"of a run over that of the clean filter. Of {len(holds)} walks with flow whose first run loses less than 7.5 %, {len(closed)} end it "
-             "with k/k0 = 0.0000: no water passes any more, and base that can no longer enter counts as held.")
+    words = (f"**With flow, \"holds\" {often} means \"sealed\", and a sealed filter does not drain.** k/k0 is the permeability at the end of a run "
+             f"over that of the clean filter. Of {len(holds)} walks with flow whose first run loses less than 7.5 %, {len(closed)} end with k/k0 = "
+             "0.0000: base that can no longer enter counts as held.")
     if closed_later:
         which = "All" if len(closed_later) == len(some) else f"{len(closed_later)} of"
         words += (f" {which} {counted(len(some), 'walk')} of \"some erosion\" end the second run with k/k0 = 0.0000, after the first lost up to "
                   f"{100 * max(lost(row, 1) for row in closed_later):.0f} %.")
-    return words + " A blocked constriction carries no water in these models; what water that is held back does to the base is not in them."
+    return words
 
 
 def explained(shown, usual):
     """The one paragraph: what spheres, sieving and flow explain, and what not; each sentence where its cells were walked."""
     design, uniform, tested = PRACTICE["design"], PRACTICE["uniform"], PRACTICE["tested"]
     several = sum(len(cell.walks) > 1 for cell in usual)
-    says = ["**What spheres, sieving and flow explain, and what not.** (Factors are of cells that have one replicate"
-            + (f", but for {several}.)" if several else ".)")]
+    says = ["**What spheres, sieving and flow explain.** (Cells have one replicate" + (f", except {several}.)" if several else ".)")]
     area = [cell.s_ne for cell in usual if cell.model == "lattice, area"]
     if area:
         below, above = sum(value < design for value in area), sum(value > uniform for value in area)
-        says.append(f"Sieving of spheres alone (lattice, area; {len(area)} cells) puts the beginning of erosion at D15F/D85B {span(area)}: {below} "
-                    f"below {design:g}, {len(area) - below - above} from {design:g} to {uniform:g}, the limits of Terzaghi and of Sherard et al., "
-                    f"and {above} above.")
+        says.append(f"Sieving of spheres alone (lattice, area; {len(area)} cells): erosion begins at D15F/D85B {span(area)}, {below} below "
+                    f"{design:g}, {len(area) - below - above} from {design:g} to {uniform:g} (the limits of Terzaghi and of Sherard et al.), {above} "
+                    "above.")
     dense = pairs(usual, lambda c: "dense" in c.name, name=lambda c: c.name.replace("dense", "loose"))
     if dense:
         found = [cell.s_ne / twin.s_ne for cell, twin in dense]
         unsure = sum(cannot_be_told(cell, twin) for cell, twin in dense)
         says.append(f"Dense filters hold coarser ratios than loose ones in {sum(value > 1 for value in found)} of {len(dense)} pairs (s_NE x "
                     f"{factors(found)}"
-                    + (f"; {unsure} of them within a flat range of the loss, see below)." if unsure else ")."))
+                    + (f"; {unsure} within a flat range of the loss)." if unsure else ")."))
     thick = pairs(usual, lambda c: c.layers == 600, layers=60)
     if thick:
-        says.append(f"600 layers for 60, with ten times the base, change s_NE x {factors([c.s_ne / t.s_ne for c, t in thick])} ({len(thick)} pairs).")
+        says.append(f"600 layers instead of 60, with ten times the base, change s_NE x {factors([c.s_ne / t.s_ne for c, t in thick])} ({len(thick)} pairs).")
     flow = pairs(usual, lambda c: c.model == "lattice, flux", model="lattice, area")
     if flow:
         begins = {base: factors([c.s_ne / t.s_ne for c, t in flow if c.base == base]) for base in sorted({c.base for c, _ in flow})}
         by_base = listed(f"{found} for base Cu {base:g}" for base, found in begins.items())
         continues = [c.s_ce / t.s_ce for c, t in flow]
         says.append(f"Water, on the same lattice ({len(flow)} pairs of flow and area), changes s_NE x {by_base}, and s_CE x {factors(continues)}"
-                    + (": with flow, erosion continues from smaller ratios in every pair." if max(continues) < 1 else "."))
+                    + (" in every pair." if max(continues) < 1 else "."))
     network = pairs(usual, lambda c: c.model == "graph, flux", model="lattice, flux")
     if network:
-        says.append("The packing's own voids in place of the lattice, with flow in both, change s_NE x "
+        says.append("The packing's own voids instead of the lattice, with flow, change s_NE x "
                     f"{factors([c.s_ne / t.s_ne for c, t in network])} ({len(network)} pairs).")
     if usual and max(cell.s_ne for cell in usual) < tested[0]:
-        says.append(f"None of the {len(usual)} bracketed cells without arches comes to the {tested[0]:g} to {tested[1]:g} of tests.")
-    says.append("Grains that are no spheres, arches, deposition, forces, cohesion, and a base that is carried as a mass are in none of them; they "
-                "could make a filter hold more or less, and this study cannot tell them apart. None is put in to meet a table.")
+        says.append(f"None of the {len(usual)} bracketed cells without arches reaches the {tested[0]:g} to {tested[1]:g} of tests.")
+    says.append("Particle shapes, arches, deposition, forces, cohesion and mass transport are in none of them. They could make a filter hold more or "
+                "less, and this study cannot separate them.")
     narrow = [0.154701 / cu**0.3 for cu, _, _ in FILTERS.values() if cu < 2]
     if min(narrow) > SUSPENDED:
-        says.append(f"Uniform sand filters stopped particles in suspension of about {SUSPENDED:g} D15F (Sherard et al. 1984); three touching grains "
-                    f"of the uniform filters here leave {span(narrow, '{:.3f}'.format)} D15F at least, so that sieving by spheres alone cannot do "
-                    "that.")
+        says.append(f"Uniform sand filters stopped suspended particles of about {SUSPENDED:g} D15F (Sherard et al. 1984). Three touching grains of the "
+                    f"uniform filters here leave at least {span(narrow, '{:.3f}'.format)} D15F, so sieving by spheres cannot do that.")
     arches = [(cell, twin) for cell in shown if cell.arches and cell.whole and (twin := alike(usual, cell))]
     if arches:
         bands = "; ".join(f"{SHOWN[cell.model]}: s_NE {down(twin.s_ne)} to {down(cell.s_ne)}" for cell, twin in arches)
-        says.append(f"Arches enter as a bound only: particles retained as if beta times as large, beta 1 to {ARCH} (an arch of three), with both "
-                    f"ends walked, give a band ({bands}).")
+        says.append(f"Arches enter as a bound: particles retained as if up to {ARCH} times as large (an arch of three) give a band ({bands}).")
         beyond = [SHOWN[cell.model] for cell, _ in arches if cell.s_ne > PRACTICE["continuing_d95"] * cell.base**0.2]
         if beyond:
-            says.append(f"Its upper end for {listed(beyond)} lies beyond 9 D95B, where Foster & Fell put continuing erosion: no prediction.")
+            says.append(f"Its upper end for {listed(beyond)} lies beyond 9 D95B, where Foster & Fell place continuing erosion.")
     return " ".join(says)
 
 
-def how_to_read(shown):
+def how_to_read(shown, name):
     several, layers = [cell for cell in shown if len(cell.walks) > 1], sorted({cell.layers for cell in shown})
     flat = [cell for cell in shown if cell.flat((0, 1)) or cell.flat((1,))]
     lines = ["## How to read it", "",
-             bullet("First run: base is washed onto the clean filter. Second run: as much fresh base onto the filter that the first clogged."),
-             bullet("**s_NE**: D15F/D85B at which erosion begins, the smallest at which either run loses 7.5 % of the base's mass. **s_CE**: at "
-                    "which it continues, the smallest at which the second run does. \"Some erosion\" lies between."),
-             bullet("Lattice: a regular network, 20 x 20 voids wide, with the constrictions measured in the packing. Graph: the packing's own voids "
-                    "and constrictions. Area: a particle takes an exit in proportion to its area (on the graph, among those down the pressure). "
-                    "Flow: in proportion to the water, which is solved for as the filter clogs."),
-             bullet(f"{len(shown) - len(several)} of the {len(shown)} cells have one replicate (one packing, one seed): **no interval, and nothing "
-                    "is known of their scatter**. They have one decimal, rounded down, and beside it the two walked ratios between which the "
-                    "boundary lies."
-                    + (f" {counted(len(several), 'cell')} with more: the median, and the smallest and largest in the notes." if several else ""))]
+             bullet("**s_NE**: the smallest D15F/D85B at which either run loses 7.5 % of the base's mass. **s_CE**: the smallest at which the second "
+                    "run does. \"Some erosion\" lies between."),
+             bullet("Lattice: 20 x 20 voids wide, with the constrictions of the packing. Graph: the packing's own voids and constrictions. Area: a "
+                    "particle takes an exit in proportion to its area (on the graph, among those down the pressure). Flow: in proportion to the "
+                    "water, solved as the filter clogs."),
+             bullet(f"{len(shown) - len(several)} of the {len(shown)} cells have one replicate: **no interval, and their scatter is unknown**. They "
+                    f"have one decimal, rounded down. `{name}-cells.csv` has the two walked ratios around each boundary."
+                    + (f" {counted(len(several), 'cell')} has more: the median." if several else ""))]
     if flat:
         lines.append(bullet("Flat: the loss stays within one percentage point of 7.5 % over a range of ratios wider than 0.3 "
-                            f"({counted(len(flat), 'cell')}). The notes name the range; the boundary is known no better."))
+                            f"({counted(len(flat), 'cell')}). The boundary is then known only to that range."))
     thickest = max(layers, default=60)
-    lines.append(bullet(f"**The base's mass is {100 * USUAL_MASS_RATIO:g} % of the filter's, so it grows with the thickness**: 7.5 % of it is "
-                        f"{7.5 * USUAL_MASS_RATIO:.3f} % of the filter's mass, and at {thickest:,} layers {thickest / 60:g} times the mass lost at "
-                        "60. How much of the rise of s_NE with thickness is due to that was not measured. **Practice gives thickness no credit.**"))
-    lines.append(bullet("mm: the thickness of a filter whose finest grain (D0F) is 1 mm; it scales with the grain. D15F is then "
-                        + listed(f"{cu**0.3:.2f} mm (Cu {cu:g})" for cu in sorted({FILTERS[cell.name][0] for cell in shown})) + "."))
+    lines.append(bullet(f"**The base has {100 * USUAL_MASS_RATIO:g} % of the filter's mass, so it grows with the thickness**: at {thickest:,} layers "
+                        f"7.5 % of it is {thickest / 60:g} times the mass at 60. How much of the rise of s_NE with thickness this causes was not "
+                        "measured. **Practice gives thickness no credit.**"))
     lines += unlike(shown)
     grains = {FILTERS[name][0]: FILTERS[name][2] for name in BY_NAME}
     if any(grains[cu] < TABLE_2[cu] for cu in grains):
-        least = min(grains, key=lambda cu: grains[cu] / TABLE_2[cu])
         lines.append(bullet("The packings are smaller than those of the paper's Table 2: "
-                            + listed(f"{grains[cu]:,} grains for {TABLE_2[cu]:,} (Cu {cu:g})" for cu in sorted(grains))
-                            + f". The fewest for their number are at Cu {least:g}. What that changes was not measured."))
+                            + listed(f"{grains[cu]:,} grains for {TABLE_2[cu]:,} (Cu {cu:g})" for cu in sorted(grains)) + "."))
     if any(cell.arches for cell in shown):
-        lines.append(bullet(f"Arches: {ARCHED}. The particles are as many, so that the base's mass is beta cubed times as large."))
+        lines.append(bullet(f"Arches: {ARCHED}, at the same number of particles."))
     goes, replicates = come_and_go(shown)
-    lines.append(bullet(f"Erosion that comes and goes: in {goes} of {replicates} replicates a larger walked ratio holds above one that does not. "
-                        "That is no proof that it does not occur: each was walked at a few ratios some 6 % apart, and close together only at its "
-                        "boundaries."))
+    lines.append(bullet(f"In {goes} of {replicates} replicates a larger walked ratio holds above one that does not. Ratios are some 6 % apart except "
+                        "at boundaries."))
     return lines + [""]
 
 
 def unlike(shown):
     """Thickness in layers is not like for like, and thick graphs repeat one packing."""
     graphs = [cell for cell in shown if cell.model == "graph, flux" and not cell.arches]
-    apart, lines = {}, []
+    lines, apart = [], {}
     for cell in graphs:
         twin = alike(shown, cell, model="lattice, flux") or alike(shown, cell, model="lattice, area")
-        if twin and abs(cell.mm / twin.mm - 1) > 0.15:
-            apart[cell.name, cell.layers] = f"{cell.mm:.1f} and {twin.mm:.1f} mm for {cell.name}, {cell.layers} layers"
+        if twin and cell.mm / twin.mm > 1.15:
+            apart[cell.name, cell.layers] = f"{cell.mm / twin.mm:.2f} times for {cell.name}"
     if apart:
-        lines.append(bullet("Thickness in layers is not like for like. A packing is repeated whole, so that a graph is thicker than its lattice: "
+        lines.append(bullet("A packing is repeated whole, so a graph may be thicker than its lattice of as many layers: "
                             f"{listed(apart.values())}."))
     thick = [(cell, twin) for cell in graphs if cell.layers > 60 and (twin := alike(shown, cell, layers=60))]
     if thick:
         times = span([cell.voids / twin.voids for cell, twin in thick], "{:.3g}".format)
-        lines.append(bullet(f"Graphs of {listed(f'{n:,}' for n in sorted({c.layers for c, _ in thick}))} layers repeat one packing along the flow: "
-                            f"they are the voids of the 60 layers {times} times over, not a larger sample."))
+        lines.append(bullet(f"Graphs of {listed(f'{n:,}' for n in sorted({c.layers for c, _ in thick}))} layers repeat the voids of 60 layers {times} "
+                            "times: they are no larger sample."))
     return lines
 
 
-def table(shown):
-    lines = ["## Every cell", "",
-             paragraph("Walked: the largest ratio that holds, and the next, which does not. k/k0: at these two (one number: the same at both), at "
-                       "the end of the run that fails there (for s_CE the second). 0 is sealed. More replicates than one: the widest of each. Empty: "
-                       "by area on the lattice no flow is solved."),
-             "| filter | base Cu | model | layers | mm | s_NE | walked | k/k0 | s_CE | walked | k/k0 | notes |",
-             "|" + "---|" * 12]
-    for cell in shown:
-        model = SHOWN[cell.model] + (", arches" if cell.arches else "")
-        mm = f"{cell.mm:.1f}" if cell.mm < 1000 else f"{cell.mm:,.0f}"
-        boundaries = [part for found, middle in [(cell.begins, cell.s_ne), (cell.continues, cell.s_ce)]
-                      for part in (value(found, middle), walked(found), permeability(found))]
-        lines.append(f"| {cell.name} | {cell.base:g} | {model} | {cell.layers:,} | {mm} | {' | '.join(boundaries)} | {notes(cell)} |")
-    return lines + [""]
+def write_cells(path, shown):
+    """Every cell: its boundaries, the walked ratios around them, and k/k0 at these, at the end of the run that fails there."""
+    with path.open("w", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(["filter", "base_cu", "model", "layers", "thickness_mm", "s_ne", "s_ne_walked", "s_ne_k_over_k0", "s_ce", "s_ce_walked",
+                         "s_ce_k_over_k0", "notes"])
+        for cell in shown:
+            model = SHOWN[cell.model] + (", arches" if cell.arches else "")
+            boundaries = [part for found, middle in [(cell.begins, cell.s_ne), (cell.continues, cell.s_ce)]
+                          for part in (value(found, middle), walked(found), permeability(found))]
+            writer.writerow([cell.name, f"{cell.base:g}", model, cell.layers, f"{cell.mm:.1f}", *boundaries, notes(cell)])
 
 
 def walked(found):
@@ -242,8 +236,8 @@ def time_taken(name, rows, version, shown):
     each = "; ".join(f"{SHOWN[model]}, {layers:,} layers: {minutes(cells):.1f} in {counted(len(walks(cells)), 'walk')}"
                      for (model, layers), cells in costly)
     return ["## Time", "", paragraph(f"{version}; {len(rows)} walks, every one in `{name}.csv`; made by `scripts/studies/four_way.py`. They took "
-                                     f"{minutes(shown):.1f} minutes of processor time, of which {each}. The time that passed was not recorded. The "
-                                     "packings, and walks that were given up, left no row and are not in it.")]
+                                     f"{minutes(shown):.1f} minutes of processor time, of which {each}. Packings, and walks that were given up, are "
+                                     "not included.")]
 
 
 def not_run(cells, refused):
@@ -270,39 +264,13 @@ def left_out(planned, arches):
     bases, layers = sorted({cell.base for cell in planned}), sorted({cell.layers for cell in planned})
     ran, arched = [cell for cell in planned if cell.whole], [cell for cell in arches if cell.whole]
     product = len(names) * len(models) * len(layers) * len(bases)
-    lines = [paragraph(f"The plan is a selection. {len(names)} filters x {len(models)} models x {len(layers)} thicknesses x {len(bases)} bases are "
-                       f"{product} cells, of which {len(planned)} were planned and {len(ran)} have both boundaries: **{product - len(ran)} have "
-                       f"not**. As many again would be those with arches, of which {len(arches)} were planned and {len(arched)} have both. Cells "
-                       f"with both boundaries, of {len(names) * len(bases)} (filters x bases) in each place:"),
+    lines = [paragraph(f"{len(names)} filters x {len(models)} models x {len(layers)} thicknesses x {len(bases)} bases are {product} cells. "
+                       f"{len(planned)} were planned and {len(ran)} have both boundaries: **{product - len(ran)} have not**. Of those with arches "
+                       f"{len(arches)} were planned and {len(arched)} have both. Cells with both boundaries, of {len(names) * len(bases)} (filters "
+                       "x bases) in each place:"),
              f"| model | {' | '.join(f'{n:,} layers' for n in layers)} |", "|---|" + "---|" * len(layers)]
     of = lambda model, n: str(sum((cell.model, cell.layers) == (model, n) for cell in ran))
     lines += [f"| {SHOWN[model]} | {' | '.join(of(model, n) for n in layers)} |" for model in models] + [""]
-    few = lambda cells: 0 < len(cells) <= 2
-    by_model = [(SHOWN[model], [cell for cell in ran if cell.model == model]) for model in models]
-    for what, cells in by_model + [(f"{n:,} layers", [cell for cell in ran if cell.layers == n]) for n in layers]:
-        if few(cells):
-            lines.append(bullet(f"{what}: only {'; '.join(cell.where() for cell in cells)}."))
-    for kind, values, part in [("Base Cu", bases, lambda c: c.base), ("Filter", names, lambda c: c.name)]:
-        for reached, some in grouped(values, lambda one: tuple(sorted({c.layers for c in ran if part(c) == one}))):
-            if len(reached) < len(layers):
-                which = listed(f"{one:g}" if kind == "Base Cu" else one for one in some)
-                lines.append(bullet(f"{kind} {which}: {listed(f'{n:,}' for n in reached) or 'no'} layers only."))
-    lacks = lambda name, model: tuple(b for b in bases if not any((c.name, c.model, c.base) == (name, model, b) for c in ran))
-    many = [model for model in models if not few([c for c in ran if c.model == model])]
-    for missing, some in grouped([(name, model) for name in names for model in many], lambda pair: lacks(*pair)):
-        if missing:
-            for on, by in grouped(list(dict.fromkeys(name for name, _ in some)), lambda name: tuple(model for one, model in some if one == name)):
-                without, bare = listed((SHOWN[model] for model in on), "nor"), listed((f"{base:g}" for base in missing), "or")
-                lines.append(bullet(f"Filter {listed(by)} with base Cu {bare}: not by {without}."))
     if arches:
-        lines.append(bullet(f"Arches: only {'; '.join(cell.where() for cell in arches)}; nothing between beta 1 and {ARCH}."))
-    single = sum(cell.asked == 1 for cell in planned + arches)
-    return lines + [bullet(f"Replicates: {single} of the {len(planned + arches)} cells of the plan were given one.")]
-
-
-def grouped(values, key):
-    """The values under each key, in the order in which they come."""
-    found = {}
-    for one in values:
-        found.setdefault(key(one), []).append(one)
-    return list(found.items())
+        lines.append(paragraph(f"Arches: only {'; '.join(cell.where() for cell in arches)}."))
+    return lines

@@ -54,19 +54,26 @@ for slope in first["exact"]["slopes"]:
     lines.append(f"| {slope['quantity']}, {slope['engine']} | {row['particles']:.0e} | {row['error']:.2e} | {row['expected_error']:.2e} | {slope['slope']:.3f} | {z} |")
 failed = [row["what"] for row in first["exact"]["closed"] if not row["holds"]]
 lines += ["", f"{first['exact']['networks']} networks a line. Integers and closed forms: {len(first['exact']['closed'])}, failed: {len(failed)}.", ""]
-lines += ["## Scatter of a scene", "", "| study | line | replicates | eroded, % | replicate SD, points | times the binomial | s a replicate | 1/(error^2 time) |", "|---|---|---|---|---|---|---|---|"]
-for name, study in studies.items():
-    for line in study["sampling"]["lines"]:
-        merit = "" if line["merit"] is None else f"{line['merit']:.2e}"
-        lines.append(f"| {name} | {line['variant']}, {line['networks']} | {line['replicates']} | {100 * line['mean']:.2f} | {100 * line['sd']:.3f} ({100 * line['sd_low']:.3f} to {100 * line['sd_high']:.3f}) | {line['sd'] / line['binomial']:.1f} | {line['core_seconds']:.3f} | {merit} |")
-lines += ["", "## Biases of the eroded mass, percentage points", "", "| study | setting | replicates | bias | 95 % | s a replicate |", "|---|---|---|---|---|---|"]
-for name, study in studies.items():
-    for row in study["bias"]:
-        if row["reference"]:
-            continue
-        interval = "" if row["bias_low"] is None else f"{100 * row['bias_low']:+.3f} to {100 * row['bias_high']:+.3f}"
-        lines.append(f"| {name} | {row['factor']}: {row['level']} | {row['replicates']} | {100 * row['bias']:+.3f} | {interval} | {row['core_seconds']:.3f} |")
-lines += ["", "Packings: `built-in/packing.csv`; the study of 21 November 2026 with more grains and settings is `results/packing.md`.", ""]
+names = list(studies)
+columns = lambda each: " | ".join(f"{name}: {what}" for name in names for what in each)
+lines += ["## Scatter of a scene", "", "Eroded mass in percent, and the standard deviation of replicates in points. Time and merit: `sampling.csv`.", "",
+          f"| line | {columns(['eroded', 'standard deviation'])} |", "|---|" + "---|---|" * len(names)]
+scatter = {name: {f"{line['variant']}, {line['networks']}": line for line in study["sampling"]["lines"]} for name, study in studies.items()}
+for key in dict.fromkeys(key for rows in scatter.values() for key in rows):
+    cells = []
+    for line in (rows.get(key) for rows in scatter.values()):
+        cells += [f"{100 * line['mean']:.2f}", f"{100 * line['sd']:.3f} ({100 * line['sd_low']:.3f} to {100 * line['sd_high']:.3f})"] if line else ["", ""]
+    lines.append(f"| {key} | {' | '.join(cells)} |")
+lines += ["", "## Biases of the eroded mass", "", "Percentage points, with the 95 % interval. Replicates and time: `bias.csv`.", "",
+          f"| setting | {' | '.join(names)} |", "|---|" + "---|" * len(names)]
+biases = {name: {f"{row['factor']}: {row['level']}": row for row in study["bias"] if not row["reference"]} for name, study in studies.items()}
+for key in dict.fromkeys(key for rows in biases.values() for key in rows):
+    cells = []
+    for row in (rows.get(key) for rows in biases.values()):
+        interval = "" if row is None or row["bias_low"] is None else f" ({100 * row['bias_low']:+.2f} to {100 * row['bias_high']:+.2f})"
+        cells.append(f"{100 * row['bias']:+.2f}{interval}" if row else "")
+    lines.append(f"| {key} | {' | '.join(cells)} |")
+lines += ["", "Packings: `built-in/packing.csv`; more grains and settings: `results/packing.md`.", ""]
 (results / "README.md").write_text("\n".join(lines))
 PY
 du -sh "$results"

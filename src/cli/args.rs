@@ -30,34 +30,34 @@ pub struct Arguments {
 /// What the program can do.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Walk a scene's base through its filter, and judge
+    /// Walk the base of a scene through its filter, and judge it
     Run(RunArgs),
-    /// Judge a base and a filter by their two sieve tables: pack or guess, walk, and write the page
+    /// Judge a base and a filter by their sieve tables: pack or guess, walk, and write the page
     Judge(JudgeArgs),
-    /// Compare filters on one base, bases on one filter, or scenes: verdicts and differences
+    /// Compare filters on one base, bases on one filter, or scenes
     Compare(CompareArgs),
-    /// Open a page in the browser of this machine: drop two sheets, see curves, rules, walks and verdict
+    /// Open a page in the browser of this machine: curves, rules, walks and verdicts of dropped sheets
     #[cfg(feature = "serve")]
     Serve(ServeArgs),
     /// Continue a run that was stopped or killed, with the same bits
     Resume(ResumeArgs),
-    /// Say what a run would do: number of base particles, memory, parts that are needed
+    /// Estimate a run: number of base particles, memory, time, needed parts
     Check(SceneArgs),
     /// Apply every rule of filter practice to two sieve tables, without a walk
     Rules(RulesArgs),
-    /// Show what is understood of a file of soils: tables, sizes, class
+    /// Show what voidwalk reads from a file of soils: tables, sizes, class
     Soil(SoilArgs),
-    /// Write the built-in scene, commented, as a start for your own
+    /// Write the built-in scene, commented, to start your own from
     Init {
-        /// File to write; the scene goes to stdout without one
+        /// File to write [default: stdout]
         path: Option<PathBuf>,
-        /// Print every setting as JSON instead: type, default, what is allowed, what it means
+        /// Print every setting as JSON instead: type, default, allowed values, meaning
         #[arg(long, conflicts_with = "path")]
         json: bool,
     },
-    /// Find how coarse a filter may be for a base: where erosion begins, where it continues, and the band
+    /// Find how coarse a filter may be for a base: both boundaries of erosion, and the specification band
     Design(DesignArgs),
-    /// Walk every case of a plan that is not done, and compare them
+    /// Walk the cases of a plan that are not finished, and compare them all
     Campaign(CampaignArgs),
     /// Pack a filter's grains from its gradation and density, and measure the constrictions
     Pack(PackArgs),
@@ -65,8 +65,8 @@ pub enum Command {
     Constrictions(ConstrictionsArgs),
     /// Find the percolation threshold of cubic lattices of several sizes
     Percolation(PercolationArgs),
-    /// Measure error against run time for a scene: exact answers, scatter, bias of settings, wrong verdicts,
-    /// scaling, packings
+    /// Measure error against run time for a scene: exact answers, scatter, bias, wrong verdicts, scaling,
+    /// packings
     Precision(PrecisionArgs),
     /// Write report.html and the figures of a finished run folder again
     Report {
@@ -78,7 +78,7 @@ pub enum Command {
         /// The folder
         folder: PathBuf,
     },
-    /// Print a script by which a shell completes commands and options
+    /// Print the completion script of a shell
     Completions {
         /// The shell
         shell: clap_complete::Shell,
@@ -93,18 +93,17 @@ pub enum Command {
 /// Which two soils.
 #[derive(Debug, Args)]
 pub struct RulesArgs {
-    /// The base: a sieve table, as base.sieve in a scene; several soils in it are the curves of its envelope
+    /// The base: a sieve table, as base.sieve in a scene; several soils are the curves of an envelope
     pub base: PathBuf,
-    /// The filter: a sieve table, as filter.sieve in a scene; several soils in it are the curves of its
-    /// envelope
+    /// The filter: a sieve table, as filter.sieve in a scene; several soils are the curves of an envelope
     pub filter: PathBuf,
-    /// The base is dispersive: stricter limits where it has many fines
+    /// The base is dispersive: stricter limits if it has many fines
     #[arg(long)]
     pub dispersive: bool,
-    /// Width of an open joint beside the base: the probability of continuing erosion into it
+    /// Width of an open joint at the exit: adds the probability of continuing erosion into it
     #[arg(long, value_name = "MM", value_parser = millimetres, allow_hyphen_values = true)]
     pub joint_mm: Option<f64>,
-    /// Take base and filter as they are given, though they look exchanged
+    /// Accept base and filter as named, even if they look exchanged
     #[arg(long)]
     pub as_given: bool,
     /// Print JSON
@@ -115,12 +114,11 @@ pub struct RulesArgs {
 /// How a walk is done.
 #[derive(Debug, Args)]
 pub struct WalkArgs {
-    /// Worker threads [default: one per core]; they change no bit of the result
+    /// Worker threads; the result is the same for any number [default: one per core]
     #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,
-    /// Save the walks this often, as 10min or 50increments, so that a run that is killed continues from
-    /// there; a stop (Ctrl-C, SIGTERM) always saves them [default: 10min; for a run that is continued,
-    /// what it was told first]
+    /// Save a checkpoint this often, as 10min or 50increments; a stop (Ctrl-C, SIGTERM) always saves one
+    /// [default: 10min; for a resumed run, its first setting]
     #[arg(long, value_name = "TIME")]
     pub checkpoint_every: Option<CheckpointInterval>,
     /// No progress and no summary
@@ -146,7 +144,7 @@ pub struct ResultArgs {
 /// Which scene.
 #[derive(Debug, Args)]
 pub struct SceneArgs {
-    /// Scene (TOML); without one the built-in scene: the loose Cu 1.5 filter, a base with Cu 1.5 at Dc5
+    /// Scene (TOML) [default: the built-in scene, a loose filter of Cu 1.5 and a base of Cu 1.5 at Dc5]
     pub scene: Option<PathBuf>,
     /// What is set in it, and how it is prepared.
     #[command(flatten)]
@@ -156,24 +154,24 @@ pub struct SceneArgs {
 /// What is set in a scene, and how it is prepared.
 #[derive(Debug, Args)]
 pub struct SettingArgs {
-    /// Replace a setting, as in --set base.cu=3; can be given again
+    /// Replace a setting, as in --set base.cu=3; can be repeated
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
     pub settings: Vec<String>,
-    /// Seed; the same seed gives the same bits
+    /// Seed: the same seed gives the same bits
     #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
     pub seed: Option<u64>,
-    /// Add replicates until the 95 % interval of the eroded mass reaches no further than this to either side,
-    /// as 0.1pp (percentage points)
+    /// Add replicates until the 95 % interval of the eroded mass is this wide to either side, as 0.1pp
+    /// (percentage points)
     #[arg(long, value_name = "ERROR", value_parser = target_error, allow_hyphen_values = true)]
     pub target_error: Option<f64>,
     /// Add replicates until the verdict is right with this probability, as 99.9%
     #[arg(long, value_name = "PERCENT", value_parser = decide, allow_hyphen_values = true)]
     pub decide: Option<f64>,
-    /// Folder in which packings that scenes ask for are kept, so that each is made once
+    /// Folder that keeps packings, so that each is made once
     #[arg(long, value_name = "DIR", default_value = "voidwalk-packings")]
     pub packings: PathBuf,
-    /// Memory that the walks may take, as 4GB: base particles that do not fit live in files in the run
-    /// folder, mapped into memory [default: 80 % of what is available]; it changes no bit of the result
+    /// Memory limit, as 4GB: base particles beyond it are kept in mapped files in the run folder; the result
+    /// is the same [default: 80 % of what is available]
     #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
     pub memory: Option<u64>,
     /// Print JSON
@@ -186,10 +184,10 @@ pub struct SettingArgs {
 pub struct SoilArgs {
     /// Sieve tables: CSV, .xlsx, .ods or AGS4; FILE#NAME for one of several soils
     pub file: PathBuf,
-    /// Where an open finest tail ends (mm)
+    /// Finest size (mm) of a table whose finest percent is not 0
     #[arg(long, value_name = "MM")]
     pub d0_mm: Option<f64>,
-    /// Draw their curves into this file, which is not there yet
+    /// Draw the curves into this new file
     #[arg(long, value_name = "FILE.svg")]
     pub figure: Option<PathBuf>,
     /// Coarse sizes on the left of the figure, as in the United States
@@ -214,24 +212,23 @@ pub struct RunArgs {
 /// How two sieve tables become a scene.
 #[derive(Debug, Args)]
 pub struct TableArgs {
-    /// How densely the filter lies, loose, medium (or intermediate) or dense: its grains are packed so.
-    /// Without it the constrictions are guessed from the gradation, and the verdict is that of the whole
-    /// range of the guess
+    /// Density of the filter: loose, medium (or intermediate) or dense. The grains are packed first. Without
+    /// it the constrictions are guessed, and the verdict covers the range of the guess
     #[arg(long, value_name = "WORD", value_parser = density)]
     pub density: Option<Density>,
-    /// A first look: four replicates, and no studies of the amount of base and of the thickness
+    /// A first look: four replicates, no studies of the amount of base and of the thickness
     #[arg(long)]
     pub quick: bool,
-    /// Walk the base as it was sampled: without it, as filter practice regrades it (base.regrade)
+    /// Walk the base as sampled, not as filter practice regrades it (base.regrade)
     #[arg(long)]
     pub as_sampled: bool,
-    /// Take base and filter as they are given, though they look exchanged
+    /// Accept base and filter as named, even if they look exchanged
     #[arg(long)]
     pub as_given: bool,
-    /// The base is dispersive: stricter limits where it has many fines (base.dispersive)
+    /// The base is dispersive: stricter limits if it has many fines (base.dispersive)
     #[arg(long)]
     pub dispersive: bool,
-    /// Width of an open joint beside the base: the probability of continuing erosion into it
+    /// Width of an open joint at the exit: adds the probability of continuing erosion into it
     /// (filter.joint_mm)
     #[arg(long, value_name = "MM", value_parser = millimetres, allow_hyphen_values = true)]
     pub joint_mm: Option<f64>,
@@ -245,7 +242,7 @@ pub struct TableArgs {
 pub struct JudgeArgs {
     /// The base soil: CSV, .xlsx, .ods or AGS4; FILE#NAME for one of several soils
     pub base: PathBuf,
-    /// The filter, likewise
+    /// The filter, in the same form
     pub filter: PathBuf,
     /// How the two become a scene.
     #[command(flatten)]
@@ -261,19 +258,19 @@ pub struct CompareArgs {
     /// Two to six filters with --base, bases with --filter, or scenes (TOML) with neither
     #[arg(required = true)]
     pub files: Vec<PathBuf>,
-    /// The base that all filters are to hold: CSV, .xlsx, .ods or AGS4; FILE#NAME for one of several soils
+    /// The base of all filters: CSV, .xlsx, .ods or AGS4; FILE#NAME for one of several soils
     #[arg(long, value_name = "FILE", conflicts_with = "filter")]
     pub base: Option<PathBuf>,
-    /// The filter that is to hold all bases, likewise
+    /// The filter of all bases, in the same form
     #[arg(long, value_name = "FILE")]
     pub filter: Option<PathBuf>,
     /// How tables become scenes.
     #[command(flatten)]
     pub tables: TableArgs,
-    /// Folder for the results: new, empty, or with a comparison that was stopped, which continues
+    /// Folder for the results: new, empty, or with a stopped comparison, which continues
     #[arg(long, value_name = "DIR", default_value = "voidwalk-compare")]
     pub out: PathBuf,
-    /// Replace an earlier comparison in --out; cases that are asked for again are kept
+    /// Replace an earlier comparison in --out; shared cases are kept
     #[arg(long)]
     pub overwrite: bool,
     /// How it is walked.
@@ -292,14 +289,14 @@ pub struct ServeArgs {
     /// voidwalk-serve-2, ...]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Folder in which packings of filters are kept, so that each is made once
+    /// Folder that keeps packings, so that each is made once
     #[arg(long, value_name = "DIR", default_value = "voidwalk-packings")]
     pub packings: PathBuf,
-    /// Memory that the walks may take, as 4GB: base particles that do not fit live in files in the run
-    /// folder, mapped into memory [default: 80 % of what is available]; it changes no bit of the result
+    /// Memory limit, as 4GB: base particles beyond it are kept in mapped files in the run folder; the result
+    /// is the same [default: 80 % of what is available]
     #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
     pub memory: Option<u64>,
-    /// Worker threads [default: one per core]; they change no bit of the result
+    /// Worker threads; the result is the same for any number [default: one per core]
     #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,
 }
@@ -309,8 +306,8 @@ pub struct ServeArgs {
 pub struct ResumeArgs {
     /// The run's folder
     pub folder: PathBuf,
-    /// Memory that the walks may take, as 4GB: base particles that do not fit live in files in the run
-    /// folder, mapped into memory [default: 80 % of what is available]; it changes no bit of the result
+    /// Memory limit, as 4GB: base particles beyond it are kept in mapped files in the run folder; the result
+    /// is the same [default: 80 % of what is available]
     #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
     pub memory: Option<u64>,
     /// How it is walked.
@@ -324,40 +321,37 @@ pub struct ResumeArgs {
 /// Which base, and what shape of filter.
 #[derive(Debug, Args)]
 pub struct DesignArgs {
-    /// The base: a sieve table, as base.sieve in a scene (FILE#NAME for one of several soils); without one
-    /// the settings say it, as --set base.cu=3
+    /// The base: a sieve table, as base.sieve in a scene (FILE#NAME for one of several soils) [default: from
+    /// the settings, as --set base.cu=3]
     pub base: Option<PathBuf>,
-    /// The filter's shape, whose size is searched: a sieve table, a Cu, or a shipped curve's name [default:
-    /// shire2016-cu1.5-loose, or what --set says]
+    /// The shape of the filter, whose size is searched: a sieve table, a Cu, or a shipped curve [default:
+    /// shire2016-cu1.5-loose, or from --set]
     #[arg(long, value_name = "SHAPE", allow_hyphen_values = true)]
     pub filter: Option<String>,
-    /// How densely it is packed: dense, medium (or intermediate) or loose, friction=F, or estimate=D (a
-    /// relative density, without a packing); can be given again [default for a table or a Cu: loose]
+    /// Density of the filter: dense, medium (or intermediate), loose, friction=F, or estimate=D (a guess at
+    /// that relative density); can be repeated [default for a table or a Cu: loose]
     #[arg(long = "density", value_name = "DENSITY", value_delimiter = ',', allow_hyphen_values = true)]
     pub densities: Vec<String>,
-    /// How thick the filter is: 60layers, 500mm or 75D50F; can be given again [default: 60layers]
+    /// Thickness of the filter: 60layers, 500mm or 75D50F; can be repeated [default: 60layers]
     #[arg(long = "thickness", value_name = "THICKNESS", value_delimiter = ',', allow_hyphen_values = true)]
     pub thicknesses: Vec<Thickness>,
-    /// Walk the base as it was sampled: without it, as filter practice regrades it (base.regrade); the
-    /// base of
-    /// --inverse, which has no size of its own, is always taken so
+    /// Walk the base as sampled, not as filter practice regrades it (base.regrade); always so with --inverse
     #[arg(long)]
     pub as_sampled: bool,
-    /// Take base and filter as they are given, though they look exchanged
+    /// Accept base and filter as named, even if they look exchanged
     #[arg(long)]
     pub as_given: bool,
-    /// Find the finest base that the filter holds instead: the filter is as large as it is, the base's shape
-    /// is scaled
+    /// Find the finest base that the filter holds instead: the filter keeps its size, the base is scaled
     #[arg(long)]
     pub inverse: bool,
-    /// Set a key of a scene, as --set filter.grains_per_void=0.43 or --set replicates=20; can be given again
+    /// Replace a setting, as in --set filter.grains_per_void=0.43 or --set replicates=20; can be repeated
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
     pub settings: Vec<String>,
-    /// Seed; the same seed gives the same bits
+    /// Seed: the same seed gives the same bits
     #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
     pub seed: Option<u64>,
-    /// D15F/D85B between which boundaries are searched, outwards to steps of 8 %; beside an end a boundary
-    /// can go unseen
+    /// Range of D15F/D85B to search, rounded outwards to steps of 8 %; boundaries close to an end may be
+    /// missed
     #[arg(long, value_name = "LOW,HIGH", default_value = "0.5,100", value_parser = bracket,
           allow_hyphen_values = true)]
     pub bracket: (f64, f64),
@@ -367,14 +361,13 @@ pub struct DesignArgs {
     /// Replace the results of an earlier call in --out
     #[arg(long)]
     pub overwrite: bool,
-    /// Folder in which packings are kept, so that each is made once
+    /// Folder that keeps packings, so that each is made once
     #[arg(long, value_name = "DIR", default_value = "voidwalk-packings")]
     pub packings: PathBuf,
-    /// Memory that the walks may take, as 4GB [default: 80 % of what is available]; it changes no bit of the
-    /// result
+    /// Memory limit, as 4GB; the result is the same [default: 80 % of what is available]
     #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
     pub memory: Option<u64>,
-    /// Worker threads [default: one per core]; they change no bit of the result
+    /// Worker threads; the result is the same for any number [default: one per core]
     #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,
     /// Print design.json
@@ -388,28 +381,27 @@ pub struct DesignArgs {
 /// Which plan, and where its results go.
 #[derive(Debug, Args)]
 pub struct CampaignArgs {
-    /// Plan (TOML): factors that are crossed, and single cases
+    /// Plan (TOML): crossed factors, and single cases
     pub plan: PathBuf,
-    /// Folder for the results: new, empty, or with cases of this plan, which are not walked again. Several
-    /// processes may work on one folder
+    /// Folder for the results: new, empty, or with finished cases of this plan. Several processes may share
+    /// it
     #[arg(long, value_name = "DIR", default_value = "voidwalk-campaign")]
     pub out: PathBuf,
-    /// Walk this case only; the ledger is left to a call without it
+    /// Walk this case only, without the ledger
     #[arg(long, value_name = "NAME", group = "part")]
     pub case: Option<String>,
     /// Print the names of the cases and do nothing
     #[arg(long, group = "part")]
     pub list: bool,
-    /// Walk nothing: write job scripts for Slurm into --out, for the cases that are not done. Processors of a
-    /// task: --threads [default: 4]; its memory and time are estimated
+    /// Walk nothing: write Slurm job scripts for the unfinished cases into --out. Processors of a task:
+    /// --threads [default: 4]; memory and time are estimated
     #[arg(long, group = "part")]
     pub slurm: bool,
-    /// With --slurm: bundle the cases into this many tasks [default: so that a task takes some ten minutes]
+    /// With --slurm: number of tasks [default: a task takes some ten minutes]
     #[arg(long, value_name = "N", requires = "slurm",
           value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub tasks: Option<u16>,
-    /// Walk nothing: write the ledger, the table and the page of a campaign whose cases are all done; refused
-    /// while one is missing
+    /// Walk nothing: write ledger, table and page of a campaign whose cases are all finished
     #[arg(long, group = "part")]
     pub collect: bool,
     /// Walk the cases of task N of a list that --slurm wrote
@@ -418,11 +410,11 @@ pub struct CampaignArgs {
     /// Walk nothing: make the N-th packing that the plan needs
     #[arg(long, value_name = "N", group = "part", value_parser = clap::value_parser!(u64).range(1..))]
     pub make_packing: Option<u64>,
-    /// Folder in which the packings of filters are kept [default: packings in --out]
+    /// Folder that keeps packings [default: packings in --out]
     #[arg(long, value_name = "DIR")]
     pub packings: Option<PathBuf>,
-    /// Memory that the walks may take, as 4GB: base particles that do not fit live in files in the run
-    /// folder, mapped into memory [default: 80 % of what is available]; it changes no bit of the result
+    /// Memory limit, as 4GB: base particles beyond it are kept in mapped files in the run folder; the result
+    /// is the same [default: 80 % of what is available]
     #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
     pub memory: Option<u64>,
     /// How it is walked.
@@ -433,26 +425,26 @@ pub struct CampaignArgs {
 /// Which filter, and where its packing goes.
 #[derive(Debug, Args)]
 pub struct PackArgs {
-    /// The filter (TOML): [filter] with cu or sieve, d0_mm, and density or friction; settings of [packing] as
-    /// wanted. A scene will do
+    /// The filter (TOML): [filter] with cu or sieve, d0_mm, and density or friction; optionally [packing]. A
+    /// scene works too
     pub filter: PathBuf,
     /// Replace a setting, as in --set packing.grains=20000; can be given again
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
     pub settings: Vec<String>,
-    /// Seed of the grains' sizes and places
+    /// Seed of the sizes and places of the grains
     #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
     pub seed: Option<u64>,
-    /// Folder for the packing: new, empty, or with a packing that was stopped, which continues [default: one
-    /// of its own in voidwalk-packings]
+    /// Folder for the packing: new, empty, or with a stopped packing, which continues [default: one of its
+    /// own in voidwalk-packings]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Begin anew where --out holds a packing
+    /// Replace an earlier packing in --out
     #[arg(long)]
     pub overwrite: bool,
-    /// Worker threads [default: one per core]; they change no bit of the result
+    /// Worker threads; the result is the same for any number [default: one per core]
     #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,
-    /// Save the state this often, so that a packing that is killed continues from there
+    /// Save a checkpoint this often
     #[arg(long, value_name = "TIME", default_value = "1min", value_parser = time)]
     pub checkpoint_every: Duration,
     /// Print packing.json
@@ -470,19 +462,17 @@ pub struct ConstrictionsArgs {
     /// of ParaView and MFIX by their names), a text dump of LAMMPS or LIGGGHTS, Yade's export.text,
     /// MercuryDPM's .data
     pub packing: PathBuf,
-    /// Unit of the file's lengths, where it does not say it: m, cm, mm, um or nm
+    /// Unit of lengths, if the file does not state it: m, cm, mm, um or nm
     #[arg(long, value_name = "UNIT")]
     pub unit: Option<LengthUnit>,
-    /// Boundaries, where the file does not say them, none, bounds or Lx,Ly,Lz: none for free ones; Lx,Ly,Lz
-    /// for a periodic cell with a corner at the origin, in the file's unit; bounds for one between the bounds
-    /// in the file
+    /// Boundaries, if the file does not state them: none (free), Lx,Ly,Lz (a periodic cell with a corner at
+    /// the origin, in the file's unit) or bounds (a periodic cell between the bounds in the file)
     #[arg(long, value_name = "CELL")]
     pub cell: Option<CellOption>,
-    /// Overlap of two inscribed spheres from which their tetrahedra are one void
+    /// Overlap of two inscribed spheres above which their tetrahedra form one void
     #[arg(long, value_name = "F", default_value_t = DEFAULT_MERGE_OVERLAP)]
     pub merge_overlap: f64,
-    /// Which facets between voids the curve counts, all or on-both-hulls: the latter are those on the convex
-    /// hulls of the grains of both voids
+    /// Facets counted in the curve: all, or on-both-hulls (on the convex hulls of the grains of both voids)
     #[arg(long, value_name = "WHICH", default_value = "all", value_parser = facets)]
     pub facets: Facets,
     /// Folder for the results
@@ -499,8 +489,7 @@ pub struct ConstrictionsArgs {
 /// Which lattices, and how many.
 #[derive(Debug, Args)]
 pub struct PercolationArgs {
-    /// Voids along each side, one lattice size after another; of a lattice that is no cube along x, y and z,
-    /// as 40x40x60
+    /// Lattice sizes: voids along each side, or along x, y and z, as 40x40x60
     #[arg(long, value_name = "L,L,...", value_delimiter = ',', default_value = "10,20,40,80,160",
           value_parser = lattice_size, allow_hyphen_values = true)]
     pub sizes: Vec<[u32; 3]>,
@@ -508,7 +497,7 @@ pub struct PercolationArgs {
     #[arg(long, value_name = "N", default_value_t = 100,
           value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub realisations: u64,
-    /// Seed; the same seed gives the same bits
+    /// Seed: the same seed gives the same bits
     #[arg(long, value_name = "S", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub seed: u64,
     /// Folder for the results
@@ -517,7 +506,7 @@ pub struct PercolationArgs {
     /// Replace the results of an earlier call in --out
     #[arg(long)]
     pub overwrite: bool,
-    /// Worker threads [default: one per core]; they change no bit of the result
+    /// Worker threads; the result is the same for any number [default: one per core]
     #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,
     /// Print percolation.json
@@ -543,11 +532,11 @@ pub struct PrecisionArgs {
     /// Tiers to measure: exact, sampling, bias, decision, scaling, packing [default: all]
     #[arg(long = "tier", value_name = "NAME", num_args = 1..)]
     pub tiers: Vec<Tier>,
-    /// Processor time to spend, all cores together. It decides how many replicates are walked, by counted
-    /// work and not by the clock: the same seed and budget give the same errors everywhere
+    /// Processor time of all cores together. It sets the number of replicates by counted work: the same seed
+    /// and budget give the same errors everywhere
     #[arg(long, value_name = "TIME", default_value = "4min", value_parser = time)]
     pub budget: Duration,
-    /// Runs side by side [default: one per core]; they change no bit of the result
+    /// Runs side by side; the result is the same for any number [default: one per core]
     #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,
     /// No progress and no summary

@@ -17,25 +17,24 @@ section! {
     /// first. Sizes are diameters. Every setting can also be given on the command line, as `--set
     /// filter.cu=3`.
     pub struct WalkKeys in "" {
-        /// The same seed gives the same bits, for any number of threads.
+        /// Seed: the same seed gives the same bits, for any number of threads.
         pub seed: u64 = 1, set, whole(0..=u64::MAX);
-        /// How passive particles, which can block nothing, are walked: "counts" keeps exact counts of them
-        /// per void; "particles" walks every one by itself; "expected" keeps their expectation only; "auto"
-        /// is counts, but particles where fewer than 6.5 passive ones are inserted on a start node in an
-        /// increment, and expected in `voidwalk design`.
+        /// How passive particles, which can block nothing, move: "counts" (exact counts per void),
+        /// "particles" (one by one), "expected" (their expectation), or "auto": particles if fewer than 6.5
+        /// passive ones are inserted on a start node in an increment, else counts; expected in `voidwalk
+        /// design`.
         pub engine: Engine = Engine::Auto, set, words(&Engine::ALL.map(Engine::name));
-        /// 1, or 2: fresh base on the constrictions that the first run left blocked.
+        /// Number of runs: 1 or 2. The second offers fresh base to the filter as the first left it.
         pub runs: u64 = 2, set, whole(1..=2);
-        /// New network and new walk each; their spread is the verdict's uncertainty.
+        /// Number of replicates, each with a new network; their scatter is the uncertainty of the verdict.
         pub replicates: u64 = 10, set, whole(1..=100_000);
         /// Share of the base inserted in each increment (paper: 1 %).
         pub inject_share: f64 = 0.01, set, only(
             "one part of a whole number of equal parts, from 0.000001 to 1, as 0.01 or 0.02",
             |share| is_whole_part(*share),
         );
-        /// Sampling of sizes and start nodes: "independent" (the paper's), or "stratified": spread evenly
-        /// over both, so that replicates scatter less; the marginal distribution of each particle is
-        /// unchanged.
+        /// Sampling of sizes and start nodes: "independent" (the paper's) or "stratified" (spread evenly, so
+        /// that replicates scatter less). The distribution of each particle is the same.
         pub sampling: Sampling = Sampling::Independent, set, words(&Sampling::ALL.map(Sampling::name));
     }
 }
@@ -53,54 +52,49 @@ section! {
         /// and diameter_mm (or diameter_over_d0f). `voidwalk check` lists the shipped names.
         pub curve: Option<CurveSource> = None, set "\"shire2016-cu1.5-loose\"",
             any("a shipped curve or a file name, in quotes");
-        /// Instead of a curve: the grains are packed this densely first and the constrictions measured
-        /// (seconds to minutes, once).
+        /// Instead of a curve: density of the filter. Its grains are packed first and the constrictions
+        /// measured (seconds to minutes, once).
         pub density: Option<Density> = None, off "\"loose\"",
             any("\"dense\" (friction 0), \"medium\" or \"intermediate\" (0.1), or \"loose\" (0.3)");
-        /// Instead of a word for the density: friction between grains while they are compressed.
+        /// Instead of a density: friction between grains during compression.
         pub friction: Option<f64> = None, off "0.3", within(0.0..=10.0, "a number from 0 to 10");
-        /// Written by a run whose filter was packed: the constriction curve measured on that packing, so that
-        /// it is not packed again.
+        /// Written by a run whose filter was packed: its measured constriction curve.
         pub measured: Option<PathBuf> = None, off "\"inputs/filter-curve.csv\"", any("a file name in quotes");
-        /// Instead of a curve or a packing: constrictions estimated from the gradation by inscribed circles,
-        /// at a relative density from 0 (loose) to 1 (dense).
+        /// Instead of a curve or a density: constrictions guessed from the gradation by inscribed circles, at
+        /// a relative density from 0 (loose) to 1 (dense).
         pub estimate: Option<f64> = None, off "0.5", within(0.0..=1.0, "a relative density from 0 (loose) \
          to 1 (dense)");
-        /// The gradation by mass is linear on semi-log paper from this size (mm); 1 means lengths in units of
-        /// D0F. With a sieve table: where its open finest tail ends.
+        /// Finest size (mm) of a gradation that is linear on semi-log paper; 1 means lengths in units of D0F.
+        /// With a sieve table: its finest size, if its finest percent is not 0.
         pub d0_mm: Option<f64> = None, set "1.0", above_zero();
-        /// Cu of a linear gradation (a shipped curve knows its own).
+        /// Cu of a linear gradation (a shipped curve has its own).
         pub cu: Option<f64> = None, off "1.5", within(1.0..=1000.0, "a number from 1 to 1000");
         /// Instead of a linear gradation: a sieve table (CSV, .xlsx, .ods or AGS4: openings and percent finer
         /// by mass; FILE#NAME for one of several soils; see `voidwalk soil`).
         pub sieve: Option<PathBuf> = None, off "\"filter.csv\"", any("a file name in quotes");
-        /// Thickness of the real filter layer (mm): where the modelled one is thicker, that is said of the
-        /// verdict.
+        /// Thickness of the real filter layer (mm). A warning appears if the modelled one is thicker.
         pub thickness_mm: Option<f64> = None, off "500.0", above_zero();
-        /// Width of an open joint at the exit (mm) that is asked about: the rules of practice give the
-        /// probability of continuing erosion into it, and the verdict, which knows no joint, is in doubt.
+        /// Width of an open joint at the exit (mm). The rules of practice give the probability of continuing
+        /// erosion into it. The walk ignores joints, so the verdict is in doubt.
         pub joint_mm: Option<f64> = None, off "5.0", above_zero();
-        /// N_p / N_voids of Eq. (2): filter grains per void of the packing (a shipped curve or a packing
-        /// knows its own).
+        /// Filter grains per void, N_p / N_voids of Eq. (2) (a shipped curve or a packing has its own).
         pub grains_per_void: Option<f64> = None, off "0.61", above_zero();
     }
 }
 
 section! {
-    /// How the filter is packed, where filter.density or filter.friction asks for it: its grains, and its
-    /// voids.
+    /// How the filter is packed, with filter.density or filter.friction.
     pub struct FilterPacking in "packing" {
-        /// Grains: by default enough for a cell 5.4 times as wide as the largest one, 9,000 to 60,000.
+        /// Number of grains. Default: enough for a cell 5.4 times as wide as the largest grain, 9,000 to
+        /// 60,000.
         pub grains: Option<u64> = None, off "10000", whole(10..=10_000_000);
-        /// Height of the cell by its width, along the flow: 1, a cube, by default. A tall cell has as many
-        /// times the grains, unless packing.grains says how many; a filter as thick as it is needs no
-        /// copies.
+        /// Height of the cell along the flow over its width. Default: 1. A tall cell has as many times the
+        /// grains, unless packing.grains is set. A filter no thicker than the cell needs no copies.
         pub aspect: Option<f64> = None, off "4.0", within(1.0..=100.0, "a number from 1 to 100");
-        /// Percent of the filter's mass, from its finest grain on, that is packed; 100 is all of it. By
-        /// default all, or of a filter so broad that the whole would need more grains as much as they
-        /// suffice for; warnings and the verdict's range say what that leaves open.
+        /// Percent of the filter's mass to pack, from its finest grain on. Default: all, or for a broad
+        /// filter as much as packing.grains allow. Warnings and the range of the verdict show the error.
         pub coarsest: Option<f64> = None, off "90", within(1.0..=100.0, "a percentage from 1 to 100");
-        /// Overlap of two inscribed spheres from which their tetrahedra are one void.
+        /// Overlap of two inscribed spheres above which their tetrahedra form one void.
         pub merge_overlap: f64 = DEFAULT_MERGE_OVERLAP, off, only("a number from 0", |f| *f >= 0.0);
     }
 }
@@ -108,39 +102,38 @@ section! {
 section! {
     /// The base soil: its gradation by mass, and how much of it.
     pub struct Base in "base" {
-        /// Cu of a gradation that is linear on semi-log paper; one of the next three says how coarse it is.
+        /// Cu of a gradation that is linear on semi-log paper. One of d85_at_dc, d85_mm and d15f_over_d85b
+        /// sets its size.
         pub cu: Option<f64> = None, set "1.5", within(1.0..=1000.0, "a number from 1 to 1000");
-        /// D85B is the constriction size that this percent of the filter's constrictions are smaller than.
+        /// D85B equals the size that this percent of the filter's constrictions is smaller than.
         pub d85_at_dc: Option<f64> = None, set "5", within(0.0..=100.0, "a percentage from 0 to 100");
-        /// The constriction curve that d85_at_dc is read on, where it is not the filter's own.
+        /// Constriction curve for d85_at_dc. Default: the filter's own.
         pub dc_curve: Option<CurveSource> = None, off "\"cu3-loose\"", any("a shipped curve or a file name, \
          in quotes");
         /// D85B (mm).
         pub d85_mm: Option<f64> = None, off "0.2", above_zero();
-        /// D15F by D85B.
+        /// D15F over D85B.
         pub d15f_over_d85b: Option<f64> = None, off "6.5", above_zero();
         /// Instead of a linear gradation: a sieve table (CSV, .xlsx, .ods or AGS4: openings and percent finer
         /// by mass; FILE#NAME for one of several soils; see `voidwalk soil`).
         pub sieve: Option<PathBuf> = None, off "\"base.csv\"", any("a file name in quotes");
-        /// With a sieve table: where its open finest tail ends (mm).
+        /// With a sieve table: its finest size (mm), if its finest percent is not 0.
         pub d0_mm: Option<f64> = None, off "0.01", above_zero();
-        /// Whether the base is walked as filter practice regrades it ("practice": to 100 % finer than 4.75 mm
-        /// or a gap, where practice does), or as it was sampled ("no", the default of a scene). Needs
-        /// sizes in
-        /// mm. Of two tables (`voidwalk judge`, `compare`, `design`, `serve`) it is "practice" unless
-        /// --as-sampled is given.
+        /// "practice": walk the base as filter practice regrades it (to 100 % finer than 4.75 mm or a gap);
+        /// needs sizes in mm. "no": walk it as sampled. Default: "no" in a scene, "practice" for tables
+        /// (`voidwalk judge`, `compare`, `design`, `serve`) without --as-sampled.
         pub regrade: Option<Regrade> = None, off "\"practice\"", any("\"practice\" or \"no\"");
-        /// Whether the base is a dispersive clay or silt: the rules of practice take their limits for such
-        /// soils, and the verdict is in doubt.
+        /// Whether the base is a dispersive clay or silt. The rules of practice take stricter limits. The
+        /// walk ignores dispersion, so the verdict is in doubt.
         pub dispersive: Option<bool> = None, off "true", any("true or false");
         /// Instead of a gradation: one size (mm).
         pub single_mm: Option<f64> = None, off "0.18", above_zero();
-        /// How much base: mass of base over mass of filter, Eq. (2).
+        /// Amount of base: mass of base over mass of filter, Eq. (2).
         pub mass_ratio: Option<f64> = None, set "0.05", above_zero();
-        /// A cap on the number of base particles by Eq. (2): off unless set, and reported where it bites (the
-        /// paper's is 2e8).
+        /// Cap on the number of base particles by Eq. (2). Default: none (the paper's is 2e8). The report
+        /// says if it applies.
         pub cap: Option<u64> = None, off "2e8", whole(1..=u64::MAX);
-        /// Instead of a mass ratio: the number of base particles itself.
+        /// Instead of a mass ratio: the number of base particles.
         pub n_base: Option<u64> = None, off "1000000", whole(1..=u64::MAX);
     }
 }
@@ -148,15 +141,14 @@ section! {
 section! {
     /// How particles choose their way.
     pub struct ExitKeys in "walk" {
-        /// How a particle chooses among the open exits of its void: in proportion to "area" on a network
-        /// whose constrictions have a direction (the paper's); to the "flux" of water; to "area-along-flow",
-        /// among the exits that water leaves by; or by "height", to area among those that lead further along
-        /// the axis. Without it "area" on a lattice, "flux" on a graph and on an .npz of arrays.
+        /// How a particle chooses among the open exits of its void: in proportion to "area" (the paper's, on
+        /// a directed network), to the "flux" of water, to area among the exits with outflow
+        /// ("area-along-flow"), or to area among exits to voids further along ("height"). Default: "area" on
+        /// a lattice, "flux" on a graph and on an .npz of arrays.
         pub exit: Option<ExitRule> = None, off "\"flux\"", words(&ExitRule::ALL.map(ExitRule::name));
-        /// Part of its conductance that a blocked constriction keeps, where water flows.
+        /// Part of its conductance that a blocked constriction keeps, with water.
         pub rho: Option<f64> = None, off "0.0", within(0.0..=1.0, "a part from 0 to 1");
-        /// Power of its diameter that a lattice's constriction conducts water in proportion to; 4 unless it
-        /// is given.
+        /// On a lattice, conductance is proportional to this power of the diameter. Default: 4.
         pub conductance_exponent: Option<f64> = None, off "4.0", within(0.0..=10.0, "a number from 0 to 10");
     }
 }
@@ -168,24 +160,22 @@ section! {
         /// "lattice", or "graph": the voids of the filter's own packing and the constrictions between them.
         pub kind: Option<NetworkMadeOf> = None, off "\"graph\"",
             words(&NetworkMadeOf::ALL.map(NetworkMadeOf::name));
-        /// The packing whose voids are walked, where it is not made here: grains in a periodic cell (CSV, and
-        /// files of LAMMPS, LIGGGHTS, Yade, MercuryDPM).
+        /// A packing of your own whose voids are walked: grains in a periodic cell (CSV, and files of LAMMPS,
+        /// LIGGGHTS, Yade, MercuryDPM).
         pub packing: Option<PathBuf> = None, off "\"grains.csv\"", any("a file name in quotes");
-        /// The unit of lengths in network.packing, or of diameters in an .npz of network.file: files that do
-        /// not say theirs are refused without it.
+        /// Unit of lengths in network.packing, or of diameters in an .npz of network.file. Files that do not
+        /// state theirs need it.
         pub unit: Option<LengthUnit> = None, off "\"m\"", words(&LengthUnit::ALL.map(LengthUnit::name));
-        /// The periodic cell of network.packing, where the file does not say it: "Lx, Ly, Lz" in its unit,
-        /// with a corner at the origin, or "bounds" for one between the bounds that the file gives
-        /// (MercuryDPM).
+        /// Periodic cell of network.packing, if the file does not state it: "Lx, Ly, Lz" in its unit, with a
+        /// corner at the origin, or "bounds" for the bounds in the file (MercuryDPM).
         pub cell: Option<CellOption> = None, off "\"bounds\"",
             any("\"bounds\", or \"Lx, Ly, Lz\" in the unit of the file");
-        /// Equal copies of that packing one behind the other along the flow; as many as 60 layers of voids
-        /// need unless they or the thickness are given.
+        /// Equal copies of the packing along the flow. Default: as many as 60 layers of voids need.
         pub copies: Option<u64> = None, off "3", whole(1..=1_000_000);
-        /// Thickness of the filter (mm): layers of a lattice, each as thick as D50F by number, or copies of a
+        /// Thickness of the filter (mm): layers of a lattice, each D50F by number thick, or copies of a
         /// packing, rounded up.
         pub thickness_mm: Option<f64> = None, off "500.0", above_zero();
-        /// The same in multiples of D50F by mass.
+        /// Thickness of the filter in multiples of D50F by mass.
         pub thickness_d50f: Option<f64> = None, off "75.0", above_zero();
         /// Voids across.
         pub nx: Option<u64> = None, set "40", whole(1..=u64::from(u32::MAX));
@@ -193,60 +183,61 @@ section! {
         pub ny: Option<u64> = None, set "40", whole(1..=u64::from(u32::MAX));
         /// Voids along the flow: layers.
         pub nz: Option<u64> = None, set "60", whole(1..=u64::from(u32::MAX));
-        /// Diagonals are added and constrictions deleted until voids have 4 to 8 entrances and exits as in
-        /// Table 3 ("table3"), or the percent of the voids by connectivity that are given here, as { 5 = 25,
-        /// 6 = 50, 7 = 25 }.
+        /// Connectivity of the voids: as in Table 3 of the paper ("table3", 4 to 8 entrances and exits), or
+        /// percent of the voids by connectivity, as { 5 = 25, 6 = 50, 7 = 25 }. Diagonals are added and
+        /// constrictions deleted.
         pub connectivity: Option<VoidConnectivity> = None, off "\"table3\"", any(
             "\"table3\", or percentages that sum to 100 of the voids by connectivity, each a whole number \
              from 2 to 12, as { 4 = 10, 5 = 20, 6 = 40, 7 = 20, 8 = 10 }",
         );
-        /// Instead of a lattice, any directed network: CSV with from,to,diameter_mm, rows `start,ID,`, and
-        /// `to` = end. Or an .npz of arrays as OpenPNM and PoreSpy name them, whose constrictions can be
-        /// passed both ways: throat.conns, throat.diameter, pore.inlets, pore.outlets.
+        /// Instead of a lattice: a directed network (CSV with from,to,diameter_mm, rows `start,ID,`, and `to`
+        /// = end), or an .npz of arrays as OpenPNM and PoreSpy name them, whose constrictions can be passed
+        /// both ways (throat.conns, throat.diameter, pore.inlets, pore.outlets).
         pub file: Option<PathBuf> = None, off "\"network.csv\"", any("a file name in quotes");
     }
 }
 
 section! {
-    /// What to keep of the walks.
+    /// What to record of the walks.
     pub struct Record in "record" {
-        /// Keep the sums of every such increment; 0 keeps the last only.
+        /// Record the sums every so many increments; 0 records the last only.
         pub series_every: u64 = 1, set, whole(0..=u64::MAX);
-        /// Increments whose retained and eroded size curves are kept, besides the last.
+        /// Increments whose retained and eroded size curves are recorded, besides the last.
         pub size_curves: Vec<u64> = vec![1, 10, 50, 100], set,
             only("a list of increments, from 1", |list: &Vec<u64>| !list.contains(&0));
-        /// Size classes of those curves.
+        /// Number of size classes of those curves.
         pub size_classes: u64 = 64, set, whole(1..=4096);
-        /// Increments after which it is kept what each void of the first replicate holds, besides the last of
-        /// each run; with them its voids, its constrictions and when each was blocked are kept, which
-        /// `voidwalk export` shows in ParaView. [] keeps the last only; without it none of all that.
+        /// Increments after which the content of each void of the first replicate is recorded, besides the
+        /// last of each run, with its voids, its constrictions and when each was blocked, for `voidwalk
+        /// export` and ParaView. [] records the last only. Default: nothing.
         pub voids: Option<Vec<u64>> = None, off "[1, 10, 50, 100]",
             only(
                 format!("a list of at most {MOST_MOMENTS} increments, from 1"),
                 |list: &Vec<u64>| !list.contains(&0) && list.len() <= MOST_MOMENTS,
             );
-        /// Multiples of N_base that show how the verdict moves; [] leaves the study out.
+        /// Multiples of the number of base particles that are walked too, to show how the verdict changes; []
+        /// skips this study.
         pub sensitivity: Vec<f64> = vec![0.25, 0.5, 2.0, 4.0], set,
             only("a list of numbers above 0", |list: &Vec<f64>| list.iter().all(|factor| *factor > 0.0));
-        /// Multiples of the filter's thickness that show how the verdict moves; [] leaves the study out. By
-        /// default half and twice, where `sensitivity` is walked.
+        /// Multiples of the filter's thickness that are walked too, to show how the verdict changes; [] skips
+        /// this study. Default: half and twice, if `sensitivity` is walked.
         pub thickness: Option<Vec<f64>> = None, off "[0.5, 2.0]",
             only("a list of numbers above 0", |list: &Vec<f64>| list.iter().all(|factor| *factor > 0.0));
-        /// Replicates of each point of both, at the most: one that is clear stops after one or two.
+        /// Most replicates of each point of both studies; a clear point stops after one or two.
         pub sensitivity_replicates: u64 = 3, set, whole(1..=1000);
     }
 }
 
 section! {
-    /// What the first page of the report says besides: no result follows from it.
+    /// Names on the first page of the report. They change no result.
     pub struct About in "about" {
         /// The project.
         pub project: Option<String> = None, off "\"Main dam, zone 2B\"", line();
-        /// For whom.
+        /// The client.
         pub client: Option<String> = None, off "\"Water Board\"", line();
-        /// By whom.
+        /// The author.
         pub author: Option<String> = None, off "\"N. N.\"", line();
-        /// Whether the figure of the gradations has its coarse sizes on the left, as in the United States.
+        /// Coarse sizes on the left of the figure of the gradations, as in the United States.
         pub coarse_left: Option<bool> = None, off "true", any("true or false");
     }
 }
