@@ -84,8 +84,8 @@ fn write(folder: &Path, filter: &str, base: &str, how: &str) {
 
 #[test]
 fn check_and_run_agree_on_random_pairs_of_soils() {
-    // More by VOIDWALK_PAIRS, as `.ci/run full` has it.
-    let pairs = std::env::var("VOIDWALK_PAIRS").map_or(90, |pairs| pairs.parse::<u32>().unwrap());
+    // With 45, what goes wrong in one pair of fifteen is missed once in twenty times; `.ci/run full` has 300.
+    let pairs = std::env::var("VOIDWALK_PAIRS").map_or(45, |pairs| pairs.parse::<u32>().unwrap());
     let root = tempfile::tempdir().unwrap();
     let mut numbers = Numbers(20_261_122);
     let (mut accepted, mut refused) = (0, 0);
@@ -131,7 +131,7 @@ fn check_and_run_agree_on_filters_that_are_packed() {
         let scene = Scene::read(&root.path().join("scene.toml"), &[]).unwrap();
         let sound = check(scene, &prepare).is_ok_and(|check| check.refusal.is_none());
         // Packings take time: of those that are made a few are enough.
-        if sound && packed >= 6 {
+        if sound && packed >= 4 {
             continue;
         }
         let [checked, walked] = both(root.path(), number);

@@ -165,7 +165,7 @@ fn a_design_moves_the_expectation_of_what_blocks_nothing_unless_another_engine_i
     let folder = tempfile::tempdir().unwrap();
     let of = |engine: &[&str]| {
         let out = folder.path().join(engine.concat());
-        let design = found(&tiny(&out, &[&["base.cu=2.5"], engine].concat()));
+        let design = found(&tiny(&out, &[&["base.cu=2.5", "replicates=2"], engine].concat()));
         (design.engine, std::fs::read(out.join("design.csv")).unwrap())
     };
     let unsaid = of(&[]);
