@@ -1,6 +1,5 @@
 //! Runs a study of the percolation threshold and writes it into a folder.
 
-use std::fmt::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -8,6 +7,7 @@ use rayon::prelude::*;
 
 use crate::network::{Network, NetworkError, percolation_threshold};
 use crate::outcome::percolation::{PercolationStudy, is_cube, lattice_name};
+use crate::outcome::table::Columns;
 use crate::run::callbacks::Callbacks;
 use crate::run::error::RunError;
 use crate::run::folder::{FolderKind, claim, clear};
@@ -63,7 +63,7 @@ pub fn run(options: &PercolationOptions, callbacks: &Callbacks) -> Result<Percol
     let run = on_threads(options.threads, || Ok(plan.run()?))?;
     clear(&folder, kind)?;
     mark.begin(&folder)?;
-    folder.write("percolation.csv", run.csv().as_bytes())?;
+    folder.write("percolation.csv", &run.csv())?;
     folder.write(name, &json(name, &run.study)?)?;
     callbacks.finish(kind, &folder)?;
     Ok(run.study)
@@ -122,16 +122,17 @@ impl PercolationPlan {
 impl PercolationRun {
     /// One row a realisation: `size,realisation,threshold`; the size of a lattice that is no cube is written
     /// as 40x40x60.
-    pub fn csv(&self) -> String {
-        let mut text = String::from("size,realisation,threshold\n");
-        for (shape, all) in &self.thresholds {
-            let size = lattice_name(*shape);
-            for (index, threshold) in all.iter().enumerate() {
-                // Writing to a string cannot fail.
-                let _ = writeln!(text, "{size},{},{threshold}", index + 1);
-            }
-        }
-        text
+    pub fn csv(&self) -> Vec<u8> {
+        let of_lattice = |(shape, all): &'_ ([u32; 3], Vec<f64>)| {
+            let shape = *shape;
+            (1..).zip(all.clone()).map(move |(realisation, threshold)| (shape, realisation, threshold))
+        };
+        let rows: Vec<([u32; 3], u64, f64)> = self.thresholds.iter().flat_map(of_lattice).collect();
+        Columns::default()
+            .column("size", |row: &([u32; 3], u64, f64)| lattice_name(row.0))
+            .column("realisation", |row| row.1)
+            .column("threshold", |row| row.2)
+            .csv(&rows)
     }
 }
 
@@ -146,7 +147,7 @@ mod tests {
                 .unwrap();
         let on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| plan.run()).unwrap().csv()
+            String::from_utf8(pool.install(|| plan.run()).unwrap().csv()).unwrap()
         };
         let one = on(1);
         assert_eq!(one, on(3));

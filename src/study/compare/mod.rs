@@ -11,10 +11,10 @@ use std::path::{Path, PathBuf};
 pub use plan::{ComparePlan, Compared};
 
 use crate::campaign::cases::PreparedCase;
-use crate::campaign::ledger::inert;
 use crate::campaign::{self, CampaignCallbacks, CampaignOptions, CasePart, ReadyCases};
-use crate::outcome::comparison::Comparison;
-use crate::outcome::record::{Outcome, Statistic};
+use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
+use crate::outcome::record::Outcome;
+use crate::outcome::table::Columns;
 use crate::run::checkpoints::CheckpointInterval;
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, claim, clear, shown};
@@ -153,58 +153,44 @@ fn outcome(case: &Path) -> Result<Outcome, RunError> {
 }
 
 fn write(folder: &Folder, comparison: &Comparison) -> Result<(), RunError> {
-    let number = |value: Option<f64>| value.map_or(String::new(), |v| format!("{:.4}", 100.0 * v));
-    let of = |s: Option<&Statistic>| [s.map(|s| s.mean), s.and_then(|s| s.low), s.and_then(|s| s.high)];
-    let header = "case,verdict,confidence,rules_not_kept,replicates,n_base,d15f_over_d85b,d15f_over_d95b,\
-        d85b_of,first_eroded_mass_percent,first_low,first_high,second_eroded_mass_percent,second_low,\
-        second_high,grains_per_void,thickness_mm,folder";
-    let rows = comparison.cases.iter().map(|case| {
-        let words = [case.name.clone(), case.verdict.words().into(), case.confidence.words().into()];
-        let counts = [case.rules_not_kept.len() as u64, case.replicates, case.n_base].map(|n| n.to_string());
-        let ratios = [case.ratios.d15f_over_d85b, case.ratios.d15f_over_d95b].map(|r| format!("{r:.6}"));
-        let of_base = [case.base.map_or(String::new(), |base| base.grading())];
-        let eroded = [of(case.runs.first()), of(case.runs.get(1))].concat().into_iter().map(number);
-        let thickness_mm = case.thickness_mm.filter(|_| !case.scale_free);
-        let given = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:.5}"));
-        let sizes = [case.grains_per_void, thickness_mm].map(given);
-        let folder = [case.folder.clone()];
-        words
-            .into_iter()
-            .chain(counts)
-            .chain(ratios)
-            .chain(of_base)
-            .chain(eroded)
-            .chain(sizes)
-            .chain(folder)
-            .collect()
-    });
-    folder.write(CASES, &table(CASES, header, rows)?)?;
-    let header = "first,second,run,replicates,difference_percentage_points,low,high,joint_low,joint_high,\
-        differ";
-    let rows = comparison.pairs.iter().map(|pair| {
-        let words = [pair.first.clone(), pair.second.clone()];
-        let counts = [pair.run, pair.replicates].map(|n| n.to_string());
-        let joint = [pair.joint.map(|j| j[0]), pair.joint.map(|j| j[1])];
-        let numbers = of(Some(&pair.difference)).into_iter().chain(joint).map(number);
-        let differ = [pair.differ.map_or(String::new(), |differ| differ.to_string())];
-        words.into_iter().chain(counts).chain(numbers).chain(differ).collect()
-    });
-    folder.write(PAIRS, &table(PAIRS, header, rows)?)?;
+    folder.write(CASES, &cases().csv(&comparison.cases))?;
+    folder.write(PAIRS, &pairs().csv(&comparison.pairs))?;
     let name = FolderKind::Comparison.record();
     Ok(folder.write(name, &json(name, comparison)?)?)
 }
 
-/// A CSV file; no cell of it is a formula.
-fn table(
-    file: &'static str,
-    header: &str,
-    rows: impl Iterator<Item = Vec<String>>,
-) -> Result<Vec<u8>, RunError> {
-    let failed = |error: csv::Error| RunError::Format { file, source: error.into() };
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(header.split(',')).map_err(failed)?;
-    for row in rows {
-        writer.write_record(row.iter().map(|cell| inert(cell))).map_err(failed)?;
-    }
-    writer.into_inner().map_err(|error| RunError::Format { file, source: error.to_string().into() })
+/// `compare.csv`.
+fn cases() -> Columns<'static, ComparedCase> {
+    Columns::default()
+        .column("case", |case: &ComparedCase| case.name.clone())
+        .column("verdict", |case| case.verdict.words())
+        .column("confidence", |case| case.confidence.words())
+        .column("rules_not_kept", |case| case.rules_not_kept.len())
+        .column("replicates", |case| case.replicates)
+        .column("n_base", |case| case.n_base)
+        .digits("d15f_over_d85b", 6, |case| Some(case.ratios.d15f_over_d85b))
+        .digits("d15f_over_d95b", 6, |case| Some(case.ratios.d15f_over_d95b))
+        .column("d85b_of", |case| case.base.map(|base| base.grading()))
+        .statistic(["first_eroded_mass_percent", "first_low", "first_high"], |case| {
+            case.runs.first().copied()
+        })
+        .statistic(["second_eroded_mass_percent", "second_low", "second_high"], |case| {
+            case.runs.get(1).copied()
+        })
+        .digits("grains_per_void", 5, |case| case.grains_per_void)
+        .digits("thickness_mm", 5, |case| case.thickness_mm.filter(|_| !case.scale_free))
+        .column("folder", |case| case.folder.clone())
+}
+
+/// `compare_pairs.csv`.
+fn pairs() -> Columns<'static, ComparedPair> {
+    Columns::default()
+        .column("first", |pair: &ComparedPair| pair.first.clone())
+        .column("second", |pair| pair.second.clone())
+        .column("run", |pair| pair.run)
+        .column("replicates", |pair| pair.replicates)
+        .statistic(["difference_percentage_points", "low", "high"], |pair| Some(pair.difference))
+        .percent("joint_low", |pair| pair.joint.map(|joint| joint[0]))
+        .percent("joint_high", |pair| pair.joint.map(|joint| joint[1]))
+        .column("differ", |pair| pair.differ)
 }
