@@ -8,9 +8,10 @@ use super::error::ReportError;
 use super::figures::{Across, Axis, BLUE, Dash, Figure, GREY, Line, PURPLE, Point, Rule, Shape, Tick};
 use super::files::json;
 use super::numbers::{duration, significant, whole};
-use super::shell::{Drawn, figures, whole_page};
+use super::section::Sections;
+use super::shell::Drawn;
 use super::table::Table;
-use super::written::{Written, write_page};
+use super::written::Written;
 use crate::outcome::percolation::{NU_PARALLEL, PercolationStudy, Z};
 use crate::outcome::record::Statistic;
 
@@ -21,26 +22,23 @@ use crate::outcome::record::Statistic;
 /// What the folder says.
 pub fn write_percolation(folder: &Path) -> Result<Written, ReportError> {
     let study: &PercolationStudy = &json(&folder.join("percolation.json"))?;
-    // Without a cube there is no size to draw anything against.
-    let drawn = match study.sizes.is_empty() {
-        true => Vec::new(),
-        false => vec![percolation_spread(study), threshold(study)],
-    };
     let title = "Percolation threshold of the directed cubic lattice";
-    let header = html! { h1 { (title) } };
-    let main = html! {
-        p {
-            "Constrictions of an L × L × L lattice (or one of three lengths), periodic sideways, opened one \
-             by one at random until a path leads from "
-            "the start layer out of the last: the share that is then open. " (whole(study.realisations))
-            " realisations of each size, seed " (study.seed) ", each threshold exact."
-        }
-        (sizes(study))
-        (fits(study))
-        @if !drawn.is_empty() { (figures(&drawn)) }
-    };
+    let what = html! { p {
+        "Constrictions of an L × L × L lattice (or one of three lengths), periodic sideways, opened one by \
+         one at random until a path leads from the start layer out of the last: the share that is then \
+         open. " (whole(study.realisations)) " realisations of each size, seed " (study.seed)
+        ", each threshold exact."
+    } };
+    // Without a cube there is no size to draw anything against.
+    let draw: &[fn(&PercolationStudy) -> Drawn] =
+        if study.sizes.is_empty() { &[] } else { &[percolation_spread, threshold] };
     let footer = html! { p.small { "voidwalk " (study.version) ", " (duration(study.seconds)) "." } };
-    write_page(folder, &drawn, &whole_page(title, &header, &main, &footer))
+    Sections::new(title, title, &html! {})
+        .words(&what)
+        .words(&sizes(study))
+        .words(&fits(study))
+        .figures(draw.iter().map(|draw| draw(study)))
+        .write(folder, "report.html", &footer)
 }
 
 fn sizes(study: &PercolationStudy) -> Markup {
