@@ -6,16 +6,15 @@
 
 mod plan;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 pub use plan::{ComparePlan, Compared};
 
 use crate::campaign::cases::PreparedCase;
-use crate::campaign::{self, CampaignCallbacks, CampaignOptions, CasePart, ReadyCases};
+use crate::campaign::{self, CampaignCallbacks, CampaignOptions, ReadyCases};
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
 use crate::outcome::record::Outcome;
 use crate::outcome::table::Columns;
-use crate::run::checkpoints::CheckpointInterval;
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, claim, clear, shown};
 use crate::run::results::json;
@@ -31,41 +30,9 @@ const CASES: &str = "compare.csv";
 /// One row a difference.
 const PAIRS: &str = "compare_pairs.csv";
 
-/// How a comparison is walked; no setting changes a result.
-#[derive(Clone, Debug)]
-pub struct CompareOptions {
-    /// Folder for the results.
-    pub out: PathBuf,
-    /// Whether an earlier comparison there is replaced; its cases that are asked for again are kept.
-    pub overwrite: bool,
-    /// Folder in which the packings of filters are kept.
-    pub packings: PathBuf,
-    /// Memory that the walks may take (bytes); 80 % of what is available without it.
-    pub memory: Option<u64>,
-    /// Worker threads; without a number as many as a cluster's job has, else one per core.
-    pub threads: Option<usize>,
-    /// How often a case that is being walked is saved.
-    pub checkpoint_interval: CheckpointInterval,
-    /// What a case's `manifest.json` says that it was started with.
-    pub command: String,
-}
-
-impl Default for CompareOptions {
-    fn default() -> Self {
-        Self {
-            out: "voidwalk-compare".into(),
-            overwrite: false,
-            packings: "voidwalk-packings".into(),
-            memory: None,
-            threads: None,
-            checkpoint_interval: CheckpointInterval::default(),
-            command: String::new(),
-        }
-    }
-}
-
-/// Walks every case that is not done, and writes `compare.csv`, `compare_pairs.csv` and, last,
-/// `compare.json`.
+/// Walks every case that is not done, in a campaign inside the folder that the options name, and writes
+/// `compare.csv`, `compare_pairs.csv` and, last, `compare.json`. With `overwrite` an earlier comparison there is
+/// replaced; its cases that are asked for again are kept.
 ///
 /// # Errors
 /// A case that is wrong and a folder that cannot be claimed are refused before any work; then as
@@ -73,19 +40,12 @@ impl Default for CompareOptions {
 /// call continues.
 pub fn run(
     plan: &ComparePlan,
-    options: &CompareOptions,
+    options: &CampaignOptions,
+    overwrite: bool,
     callbacks: &CampaignCallbacks,
 ) -> Result<Comparison, RunError> {
     let kind = FolderKind::Comparison;
-    let of_campaign = CampaignOptions {
-        out: options.out.join(WALKS),
-        part: CasePart::All,
-        packings: Some(options.packings.clone()),
-        memory: options.memory,
-        threads: options.threads,
-        checkpoint_interval: options.checkpoint_interval,
-        command: options.command.clone(),
-    };
+    let of_campaign = CampaignOptions { out: options.out.join(WALKS), ..options.clone() };
     let stopped = |error: RunError| match error.exit() {
         Exit::Stopped => RunError::Stopped(format!(
             "progress saved; continue with the same command on {}",
@@ -94,9 +54,9 @@ pub fn run(
         _ => error,
     };
     campaign::check(&plan.campaign, &of_campaign)?;
-    let folder = claim(&options.out, kind, options.overwrite)?;
+    let folder = claim(&options.out, kind, overwrite)?;
     // What is there stays until every case is known to have what it needs.
-    let ready = |cases: ReadyCases| begin(&folder, plan, cases?, options.overwrite);
+    let ready = |cases: ReadyCases| begin(&folder, plan, cases?, overwrite);
     let of_campaign = CampaignOptions { out: folder.path().join(WALKS), ..of_campaign };
     let walked = campaign::run_after(&plan.campaign, &of_campaign, callbacks, ready).map_err(stopped)?;
     if let Some(problem) = walked.problem() {
