@@ -65,3 +65,26 @@ impl Sections {
         write_page_as(name, folder, &self.drawn, &self.text(footer))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::figures::{Axis, Figure};
+
+    #[test]
+    fn figures_are_numbered_through_the_page_and_a_section_without_words_has_no_heading() {
+        let drawn = |name| {
+            let axis = || Axis::linear("x", 0.0, 1.0);
+            Drawn::new(name, Figure::new("", "", "", axis(), axis()), "")
+        };
+        let page = Sections::new("a", "Heading", &html! {})
+            .figures([drawn("one")])
+            .section("Empty", &html! {})
+            .section("Full", &html! { p { "words" } })
+            .figures([drawn("two")])
+            .text(&html! {});
+        let at = |text: &str| page.find(text).unwrap();
+        assert!(at("Figure 1. ") < at("<h2>Full</h2><p>words</p>") && at("</p>") < at("Figure 2. "));
+        assert!(!page.contains("Empty") && !page.contains("<p class=\"names\""));
+    }
+}
