@@ -7,7 +7,8 @@ use std::path::Path;
 use super::cases::PreparedCase;
 use super::plan::{CampaignPlan, PlannedCase};
 use crate::outcome::ledger::{Campaign, LedgerLine};
-use crate::outcome::record::Statistic;
+use crate::outcome::record::Confidence;
+use crate::outcome::table::Columns;
 use crate::run::error::RunError;
 use crate::run::results::json;
 use crate::store::{read_whole, write_whole};
@@ -49,111 +50,44 @@ pub(super) fn collect(
     }
     write_whole(&out.join("ledger.jsonl"), &ledger)?;
     write_whole(&out.join("campaign.json"), &json("campaign.json", &about)?)?;
-    write_whole(&out.join("cases.csv"), &table(&about.factors, &lines)?)?;
+    write_whole(&out.join("cases.csv"), &columns(&about.factors).csv(&lines))?;
     Ok(lines)
 }
 
-/// Columns of `cases.csv` after the case and its levels.
-const COLUMNS: [&str; 29] = [
-    "verdict",
-    "confidence",
-    "reason",
-    "rules_not_met",
-    "warnings",
-    "layers",
-    "thickness_mm",
-    "replicates",
-    "n_base",
-    "capped",
-    "grains_per_void",
-    "d15f_over_d85b",
-    "d15f_over_d95b",
-    "d85b_of",
-    "first_eroded_mass_percent",
-    "first_low",
-    "first_high",
-    "second_eroded_mass_percent",
-    "second_low",
-    "second_high",
-    "first_largest_eroded_over_d15f",
-    "second_largest_eroded_over_d15f",
-    "first_blocked_percent",
-    "second_blocked_percent",
-    "replicates_no_erosion",
-    "replicates_some_erosion",
-    "replicates_continuing_erosion",
-    "seed",
-    "folder",
-];
-
-fn table(factors: &[String], lines: &[LedgerLine]) -> Result<Vec<u8>, RunError> {
-    let failed = |e: csv::Error| RunError::Format { file: "cases.csv", source: e.into() };
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let header = std::iter::once("case").chain(factors.iter().map(String::as_str)).chain(COLUMNS);
-    writer.write_record(header.map(inert)).map_err(failed)?;
-    for line in lines {
-        let percent = |run: usize, of: fn(&crate::outcome::record::RunSummary) -> Option<Statistic>| {
-            let statistic = line.runs.get(run).and_then(of);
-            let number = |value: Option<f64>| value.map_or(String::new(), |v| format!("{:.4}", 100.0 * v));
-            [
-                number(statistic.map(|s| s.mean)),
-                number(statistic.and_then(|s| s.low)),
-                number(statistic.and_then(|s| s.high)),
-            ]
-        };
-        let largest = |run: usize| {
-            let found = line.runs.get(run).and_then(|r| r.largest_eroded_over_d15f);
-            found.map_or(String::new(), |s| format!("{:.5}", s.mean))
-        };
-        let level = |factor: &String| match line.levels.get(factor) {
-            Some(serde_json::Value::String(level)) => level.clone(),
-            _ => String::new(),
-        };
-        let mut row = vec![line.case.clone()];
-        row.extend(factors.iter().map(level));
-        // What a line of an earlier version does not say stays empty.
-        let known = |value: Option<String>| value.unwrap_or_default();
-        let thickness = line.thickness;
-        row.extend([
-            line.verdict.words().to_string(),
-            known(line.confidence.map(|confidence| confidence.words().to_string())),
-            known(line.reason.clone()),
-            known(line.rules_not_met.as_ref().map(|rules| rules.len().to_string())),
-            line.warnings.len().to_string(),
-            known(thickness.map(|thickness| thickness.layers.to_string())),
-            known(thickness.filter(|t| !t.scale_free).and_then(|t| t.mm).map(|mm| format!("{mm:.3}"))),
-        ]);
-        row.extend([line.replicates.to_string(), line.n_base.to_string()]);
-        row.extend([
-            line.capped.to_string(),
-            line.grains_per_void.map_or(String::new(), |grains| format!("{grains:.5}")),
-            format!("{:.5}", line.ratios.d15f_over_d85b),
-            format!("{:.5}", line.ratios.d15f_over_d95b),
-            line.base.map_or(String::new(), |base| base.grading()),
-        ]);
-        row.extend(percent(0, |r| Some(r.eroded_mass_fraction)));
-        row.extend(percent(1, |r| Some(r.eroded_mass_fraction)));
-        row.extend([largest(0), largest(1)]);
-        row.extend([0, 1].map(|run| percent(run, |r| Some(r.blocked_fraction))[0].clone()));
-        row.extend(line.replicate_verdicts[..3].iter().map(u64::to_string));
-        row.extend([line.seed.to_string(), line.folder.clone()]);
-        writer.write_record(row.iter().map(|cell| inert(cell))).map_err(failed)?;
+/// `cases.csv`. What a line of an earlier version does not say stays empty.
+fn columns(factors: &[String]) -> Columns<'_, LedgerLine> {
+    let mut columns = Columns::default().column("case", |line: &LedgerLine| line.case.clone());
+    for factor in factors {
+        columns = columns.column(factor, move |line| line.levels.get(factor)?.as_str().map(String::from));
     }
-    writer.into_inner().map_err(|e| RunError::Format { file: "cases.csv", source: e.into_error().into() })
-}
-
-/// A cell that no spreadsheet takes for a formula.
-pub(crate) fn inert(cell: &str) -> String {
-    let formula = cell.starts_with(['=', '+', '-', '@', '\t', '\r']) && cell.parse::<f64>().is_err();
-    if formula { format!("'{cell}") } else { cell.to_owned() }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::inert;
-
-    #[test]
-    fn a_cell_is_no_formula() {
-        assert_eq!(["=1+1", "-3", "@x", "loose"].map(inert), ["'=1+1", "-3", "'@x", "loose"]);
-    }
+    let run = |line: &LedgerLine, run: usize| line.runs.get(run).cloned();
+    let eroded = move |line: &LedgerLine, of: usize| run(line, of).map(|run| run.eroded_mass_fraction);
+    let largest = move |line: &LedgerLine, of: usize| Some(run(line, of)?.largest_eroded_over_d15f?.mean);
+    let blocked = move |line: &LedgerLine, of: usize| Some(run(line, of)?.blocked_fraction.mean);
+    columns
+        .column("verdict", |line| line.verdict.words())
+        .column("confidence", |line| line.confidence.map(Confidence::words))
+        .column("reason", |line| line.reason.clone())
+        .column("rules_not_met", |line| line.rules_not_met.as_ref().map(Vec::len))
+        .column("warnings", |line| line.warnings.len())
+        .column("layers", |line| line.thickness.map(|thickness| thickness.layers))
+        .digits("thickness_mm", 3, |line| line.thickness.filter(|of| !of.scale_free)?.mm)
+        .column("replicates", |line| line.replicates)
+        .column("n_base", |line| line.n_base)
+        .column("capped", |line| line.capped)
+        .digits("grains_per_void", 5, |line| line.grains_per_void)
+        .digits("d15f_over_d85b", 5, |line| Some(line.ratios.d15f_over_d85b))
+        .digits("d15f_over_d95b", 5, |line| Some(line.ratios.d15f_over_d95b))
+        .column("d85b_of", |line| line.base.map(|base| base.grading()))
+        .statistic(["first_eroded_mass_percent", "first_low", "first_high"], move |line| eroded(line, 0))
+        .statistic(["second_eroded_mass_percent", "second_low", "second_high"], move |line| eroded(line, 1))
+        .digits("first_largest_eroded_over_d15f", 5, move |line| largest(line, 0))
+        .digits("second_largest_eroded_over_d15f", 5, move |line| largest(line, 1))
+        .percent("first_blocked_percent", move |line| blocked(line, 0))
+        .percent("second_blocked_percent", move |line| blocked(line, 1))
+        .column("replicates_no_erosion", |line| line.replicate_verdicts[0])
+        .column("replicates_some_erosion", |line| line.replicate_verdicts[1])
+        .column("replicates_continuing_erosion", |line| line.replicate_verdicts[2])
+        .column("seed", |line| line.seed)
+        .column("folder", |line| line.folder.clone())
 }

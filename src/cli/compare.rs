@@ -7,11 +7,11 @@ use super::case_progress::CaseProgress;
 use super::print::{grains_per_void, json, leaves_out, of_base, percent, plain, shown, to_stderr, to_stdout};
 use super::progress::followed;
 use super::run::command_line;
-use crate::campaign::CampaignCallbacks;
+use crate::campaign::{CampaignCallbacks, CampaignOptions, CasePart};
 use crate::outcome::comparison::Comparison;
 use crate::outcome::record::Statistic;
 use crate::run::RunError;
-use crate::study::compare::{self, CompareOptions, ComparePlan, Compared};
+use crate::study::compare::{self, ComparePlan, Compared};
 
 impl CompareArgs {
     fn compared(&self) -> Compared {
@@ -31,10 +31,10 @@ pub fn compare(args: &CompareArgs) -> Result<(), RunError> {
     if plan.seeds_differed && !quiet {
         to_stderr(&format!("the scenes' seeds differ; all are walked with seed {}\n", plan.seed));
     }
-    let options = CompareOptions {
+    let options = CampaignOptions {
         out: args.out.clone(),
-        overwrite: args.overwrite,
-        packings: tables.set.packings.clone(),
+        part: CasePart::All,
+        packings: Some(tables.set.packings.clone()),
         memory: tables.set.memory,
         threads: args.walk.threads,
         checkpoint_interval: args.walk.checkpoint_every.unwrap_or_default(),
@@ -47,7 +47,7 @@ pub fn compare(args: &CompareArgs) -> Result<(), RunError> {
             on_cases: &|total, done| progress.begin(total, done),
             on_case: &|case, event| progress.tell(case, event),
         };
-        let done = compare::run(&plan, &options, &callbacks);
+        let done = compare::run(&plan, &options, args.overwrite, &callbacks);
         progress.end();
         done
     })?;

@@ -5,14 +5,16 @@ use super::print::{json, shown, to_stdout};
 use super::progress::unfollowed;
 use crate::outcome::percolation::PercolationStudy;
 use crate::run::RunError;
-use crate::study::percolation::{self, PercolationOptions};
+use crate::study::percolation::{self, PercolationOptions, PercolationPlan};
 
 /// Finds the thresholds and writes them into a folder.
 pub fn percolation(args: &PercolationArgs) -> Result<(), RunError> {
     let options = PercolationOptions {
-        shapes: args.sizes.clone(),
-        realisations: args.realisations,
-        seed: args.seed,
+        plan: PercolationPlan {
+            shapes: args.sizes.clone(),
+            realisations: args.realisations,
+            seed: args.seed,
+        },
         out: args.out.clone(),
         overwrite: args.overwrite,
         threads: args.threads,

@@ -20,6 +20,7 @@
 //!   open.
 //! - [`precision`] is error against run time; [`comparison`] is several cases side by side.
 //! - [`design`] is how coarse a filter may be, and the band of a specification.
+//! - [`table`] describes the tables in which all of these are written.
 
 mod applied;
 mod base_size;
@@ -54,6 +55,7 @@ pub mod so_far;
 mod statistic;
 pub mod stopping;
 pub(crate) mod student;
+pub mod table;
 pub mod thickness;
 pub mod undecided;
 pub mod verdict;

@@ -4,15 +4,16 @@ use std::path::Path;
 
 use maud::{Markup, html};
 
-use super::campaign_cases as cases;
 use super::error::ReportError;
-use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, PURPLE, Point, Rule, Shape, shorten};
+use super::figures::{Across, Axis, BLACK, Dash, Figure, Point, Rule, Shape};
 use super::files::{json, json_of, lines, lines_of};
 use super::numbers::{duration, interval, interval_in_percent, whole};
 use super::run_figures::verdict_colour;
-use super::shell::{Drawn, citation, clean, contents, figures, leaves_out, whole_page};
+use super::section::Sections;
+use super::shell::{Drawn, citation, clean, leaves_out};
 use super::table::Table;
-use super::written::{Written, write_page};
+use super::written::Written;
+use super::{campaign_cases, cases};
 use crate::outcome::ledger::{Campaign, LedgerLine, leaves_out as of_ledger};
 use crate::outcome::record::{Statistic, Verdict};
 use crate::outcome::verdict::THRESHOLD;
@@ -30,9 +31,7 @@ const SHAPES: [Shape; 4] = [Shape::Circle, Shape::Diamond, Shape::Square, Shape:
 pub fn write_campaign(folder: &Path) -> Result<Written, ReportError> {
     let about: Campaign = json(&folder.join(ABOUT))?;
     let ledger: Vec<LedgerLine> = lines(&folder.join(LEDGER))?;
-    let figures = drawn(&ledger);
-    let cases = cases::cases(folder, &about, &ledger);
-    write_page(folder, &figures, &page(&about, &ledger, &figures, &cases))
+    page(folder, &about, &ledger).write(folder, "report.html", &citation())
 }
 
 /// The page of a campaign whose `campaign.json` and `ledger.jsonl` hold these texts; writes nothing.
@@ -43,8 +42,7 @@ pub fn campaign_page(about: &str, ledger: &str) -> Result<String, ReportError> {
     let about: Campaign = json_of(Path::new(ABOUT), about)?;
     let ledger: Vec<LedgerLine> = lines_of(Path::new(LEDGER), ledger)?;
     // Without a folder no case has a page of its own.
-    let cases = cases::cases(Path::new(""), &about, &ledger);
-    Ok(page(&about, &ledger, &drawn(&ledger), &cases))
+    Ok(page(Path::new(""), &about, &ledger).text(&citation()))
 }
 
 const ABOUT: &str = "campaign.json";
@@ -114,26 +112,9 @@ fn by_ratio(ledger: &[LedgerLine]) -> Drawn {
 
 /// First and second run of each case, one row a case.
 fn both_runs(ledger: &[LedgerLine]) -> Drawn {
-    let shown = &ledger[..ledger.len().min(DRAWN)];
-    let y = Axis::rows(shown.iter().map(|line| shorten(&line.case, 34)));
-    let x = Axis::percent("Base eroded, by mass (%)");
-    let height = 100.0 + 19.0 * shown.len() as f64;
-    let what =
-        "Percent of the base mass eroded in the first and second run of each case, with 95 % intervals";
-    let mut figure = Figure::new("Both runs of each case", what, "", x, y)
-        .sizes((720.0, height), (358.0, height))
-        .names_above();
-    figure.add(Rule::new(Across::X, 100.0 * THRESHOLD, BLACK).dash(Dash::Dashed).label("7.5 %"));
-    for (run, name, colour, shape) in
-        [(0, "first run", BLUE, Shape::Circle), (1, "second run", PURPLE, Shape::Square)]
-    {
-        let points = (1..).zip(shown).filter_map(|(row, line): (u32, _)| {
-            let statistic = eroded(line, run)?;
-            let point = Point::new(100.0 * statistic.mean, f64::from(row), colour, shape);
-            Some(point.x_interval(interval_in_percent(statistic)))
-        });
-        figure.add_points(name, points);
-    }
+    let shown = ledger.iter().take(DRAWN);
+    let shown: Vec<_> = shown.map(|line| (line.case.as_str(), [eroded(line, 0), eroded(line, 1)])).collect();
+    let figure = cases::both_runs(&shown, THRESHOLD, 100.0 + 19.0 * shown.len() as f64);
     let rest = ledger.len() - shown.len();
     let more = if rest > 0 { format!(" {rest} more cases are in the table.") } else { String::new() };
     let caption = format!("Base eroded in the first and in the second run, with 95 % intervals.{more}");
@@ -152,39 +133,34 @@ fn largest(ledger: &[LedgerLine]) -> Drawn {
     Drawn::new("largest-eroded", figure.sizes((720.0, 340.0), (358.0, 320.0)), caption)
 }
 
-fn page(about: &Campaign, ledger: &[LedgerLine], drawn: &[Drawn], cases: &Markup) -> String {
+fn page(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Sections {
     let title = if about.title.is_empty() { about.plan.as_str() } else { about.title.as_str() };
-    let header = html! {
-        h1 { "Which of these filters hold?" }
-        p.names { b { bdi { (clean(title)) } } }
-    };
     let count = |class| ledger.iter().filter(|line| line.verdict == class).count() as u64;
     let classes = Verdict::ALL.map(|class| (class, count(class)));
-    let main = html! {
-        div.first {
-            section {
-                p.lead { (whole(ledger.len() as u64)) " of " (whole(about.cases)) " cases are done." }
-                (Table::of(classes.iter().filter(|(_, count)| *count > 0))
-                    .name("Class", |(class, _)| class.words())
-                    .number("cases", |(_, count)| whole(*count)))
-                (cases::undecided(ledger))
-                (cases::doubted(ledger))
-            }
-            (leaves_out(&of_ledger(ledger), &html! {}))
+    let first = html! { div.first {
+        section {
+            p.lead { (whole(ledger.len() as u64)) " of " (whole(about.cases)) " cases are done." }
+            (Table::of(classes.iter().filter(|(_, count)| *count > 0))
+                .name("Class", |(class, _)| class.words())
+                .number("cases", |(_, count)| whole(*count)))
+            (campaign_cases::undecided(ledger))
+            (campaign_cases::doubted(ledger))
         }
-        (contents())
-        @if !about.missing.is_empty() {
-            h2 { "Not done" }
-            p { (whole(about.missing.len() as u64)) " cases are missing: continue with the same command." }
-            ul { @for name in about.missing.iter().take(50) { li { (clean(name)) } } }
-        }
-        h2 { "Cases" }
-        (cases)
-        h2 { "Figures" }
-        (figures(drawn))
-        (provenance(about, ledger))
-    };
-    whole_page(&clean(title), &header, &main, &citation())
+        (leaves_out(&of_ledger(ledger), &html! {}))
+    } };
+    let missing = html! { @if !about.missing.is_empty() {
+        p { (whole(about.missing.len() as u64)) " cases are missing: continue with the same command." }
+        ul { @for name in about.missing.iter().take(50) { li { (clean(name)) } } }
+    } };
+    let names = html! { b { bdi { (clean(title)) } } };
+    Sections::new(clean(title), "Which of these filters hold?", &names)
+        .words(&first)
+        .contents()
+        .section("Not done", &missing)
+        .section("Cases", &campaign_cases::all(folder, about, ledger))
+        .words(&html! { h2 { "Figures" } })
+        .figures(drawn(ledger))
+        .section("How this was made", &provenance(about, ledger))
 }
 
 fn provenance(about: &Campaign, ledger: &[LedgerLine]) -> Markup {
@@ -193,7 +169,6 @@ fn provenance(about: &Campaign, ledger: &[LedgerLine]) -> Markup {
     versions.sort_unstable();
     versions.dedup();
     html! {
-        h2 { "How this was made" }
         p {
             "Plan " bdi { (clean(&about.plan)) } ", voidwalk " (versions.join(", ")) ", " (duration(seconds))
             " of walks. Each case has a folder of its own with its report; " code { "ledger.jsonl" }

@@ -5,15 +5,15 @@ use std::path::Path;
 
 use maud::{Markup, Render, html};
 
+use super::cases;
 use super::figures::shorten;
-use super::numbers::{percent, percent_interval, significant, size, whole};
+use super::numbers::{significant, size, whole};
 use super::shell::{clean, of_base};
 use super::table::Table;
 use crate::outcome::ledger::{Campaign, LedgerLine, of_earlier_versions};
-use crate::outcome::record::{Confidence, Statistic, Verdict};
+use crate::outcome::record::{Confidence, Verdict};
 use crate::outcome::rules::RULES;
 use crate::outcome::undecided::UndecidedBy;
-use crate::text::is_plain_part;
 
 /// Cases listed in the page; all are in `cases.csv`.
 const LISTED: usize = 2000;
@@ -22,7 +22,7 @@ const LISTED: usize = 2000;
 const WARNINGS: usize = 40;
 
 /// The table of all cases, and below it what its counts count. Cases whose folder holds a page are linked.
-pub(super) fn cases(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Markup {
+pub(super) fn all(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Markup {
     html! {
         (table(folder, about, ledger))
         @if ledger.len() > LISTED { p.small { "The rest is in cases.csv." } }
@@ -69,13 +69,11 @@ pub(super) fn undecided(ledger: &[LedgerLine]) -> Markup {
 }
 
 fn table(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Markup {
-    let eroded = |line: &LedgerLine, run: usize| match line.runs.get(run) {
-        Some(run) => with_interval(&run.eroded_mass_fraction),
-        None => html! { "–" },
+    let eroded = |line: &LedgerLine, run: usize| {
+        cases::eroded(line.runs.get(run).map(|run| &run.eroded_mass_fraction), None)
     };
-    let mut table = Table::of(ledger.iter().take(LISTED))
-        .class("cases")
-        .name("Class", move |line| class(line, page_of(folder, line).as_deref()));
+    let mut table =
+        Table::of(ledger.iter().take(LISTED)).class("cases").name("Class", move |line| class(line, folder));
     for factor in &about.factors {
         table = table.text(clean(factor), move |line| match line.levels.get(factor) {
             Some(serde_json::Value::String(level)) => clean(&shorten(level, 40)),
@@ -89,7 +87,7 @@ fn table(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Markup {
     }
     table
         .text("Confidence", confidence)
-        .number("Rules not met", |line| known(line.rules_not_met.as_ref().map(Vec::len)))
+        .number("Rules not met", |line| cases::rules_not_kept(line.rules_not_met.as_ref().map(Vec::len)))
         .number("Warnings", |line| line.warnings.len())
         .number("Eroded, first run", move |line| eroded(line, 0))
         .number("second run", move |line| eroded(line, 1))
@@ -108,14 +106,10 @@ fn table(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Markup {
 }
 
 /// The class, with a link to the case's own page, and below it the replicates where they differ.
-fn class(line: &LedgerLine, page: Option<&str>) -> Markup {
-    let words = line.verdict.words();
+fn class(line: &LedgerLine, folder: &Path) -> Markup {
     let mixed = line.replicate_verdicts.iter().filter(|count| **count > 0).count() > 1;
     html! {
-        @match page {
-            Some(page) => a href=(page) { b { (words) } },
-            None => b { (words) },
-        }
+        (cases::class(line.verdict, folder, &line.folder))
         @if mixed { br; span.small { (replicates_by_class(line)) } }
     }
 }
@@ -129,29 +123,10 @@ fn replicates_by_class(line: &LedgerLine) -> String {
         .join(", ")
 }
 
-/// Where a case's own page is, as seen from the campaign's: nowhere else than in a folder inside it.
-fn page_of(folder: &Path, line: &LedgerLine) -> Option<String> {
-    let page = format!("{}/report.html", line.folder);
-    (page.split('/').all(is_plain_part) && folder.join(&page).is_file()).then_some(page)
-}
-
-fn with_interval(statistic: &Statistic) -> Markup {
-    html! {
-        (percent(statistic.mean))
-        @if let Some(interval) = percent_interval(statistic) { br; span.small { (interval) } }
-    }
-}
-
 /// The confidence, and below it the first reason why it is no more.
 fn confidence(line: &LedgerLine) -> Markup {
     html! {
-        @match line.confidence {
-            None => "–",
-            Some(Confidence::Within) => "within",
-            Some(Confidence::Outside) => span.amber { "outside" },
-            Some(Confidence::Contradicted) => span.amber { "contradicted" },
-            Some(doubt) => span.amber { (doubt.words()) },
-        }
+        @if let Some(label) = line.confidence { (cases::confidence(label)) } @else { "–" }
         @if let Some(reason) = &line.reason { br; span.small { (clean(&shorten(reason, 200))) } }
     }
 }
@@ -167,14 +142,6 @@ fn thickness(line: &LedgerLine) -> Markup {
             }
         }
     }
-}
-
-fn known(count: Option<usize>) -> Markup {
-    html! { @match count {
-        None => "–",
-        Some(0) => "0",
-        Some(count) => span.amber { (count) },
-    } }
 }
 
 /// The names of the rules that a case does not keep.

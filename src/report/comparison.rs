@@ -4,19 +4,18 @@ use std::path::Path;
 
 use maud::{Markup, Render, html};
 
+use super::cases;
 use super::error::ReportError;
 use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, PURPLE, Point, Rule, Shape, shorten};
 use super::files::json;
-use super::numbers::{
-    capital, interval_in_percent, known, percent, percent_interval, significant, size, threshold, whole,
-};
+use super::numbers::{capital, known, significant, size, threshold, whole};
 use super::run_figures::run_name;
-use super::shell::{Drawn, citation, clean, contents, figures, leaves_out, of_base, whole_page};
+use super::section::Sections;
+use super::shell::{Drawn, citation, clean, leaves_out, of_base};
 use super::table::Table;
-use super::written::{Written, write_page_as};
+use super::written::Written;
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
-use crate::outcome::record::{Confidence, Statistic, Verdict};
-use crate::text::is_plain_part;
+use crate::outcome::record::{Confidence, Verdict};
 
 const RECORD: &str = "compare.json";
 
@@ -31,44 +30,27 @@ pub fn write_comparison(folder: &Path) -> Result<Written, ReportError> {
         let (field, value, allowed) = ("cases".into(), "empty".into(), "two or more".into());
         return Err(ReportError::Value { path, field, value, allowed });
     }
-    let figures: Vec<Drawn> =
-        [Some(both_runs(&comparison)), differences(&comparison)].into_iter().flatten().collect();
-    write_page_as("compare.html", folder, &figures, &page(folder, &comparison, &figures))
+    page(folder, &comparison).write(folder, "compare.html", &citation())
 }
 
 fn name(name: &str) -> String {
     clean(&shorten(name, 60))
 }
 
-/// Rows of a figure, from the top, and its height.
-fn rows(names: impl ExactSizeIterator<Item = String>) -> (Axis, f64) {
-    let height = 110.0 + 26.0 * names.len() as f64;
-    (Axis::rows(names), height)
-}
-
 /// First and second run of each case.
 fn both_runs(comparison: &Comparison) -> Drawn {
-    let cases = &comparison.cases;
-    let (y, height) = rows(cases.iter().map(|case| shorten(&case.name, 34)));
-    let what =
-        "Percent of the base mass eroded in the first and second run of each case, with 95 % intervals";
-    let mut figure =
-        Figure::new("Both runs of each case", what, "", Axis::percent("Base eroded, by mass (%)"), y)
-            .sizes((720.0, height), (358.0, height))
-            .names_above();
-    let limit = 100.0 * comparison.threshold;
-    figure.add(Rule::new(Across::X, limit, BLACK).dash(Dash::Dashed).label(&format!("{limit} %")));
-    for (run, colour, shape) in [(0, BLUE, Shape::Circle), (1, PURPLE, Shape::Square)] {
-        let points = (1..).zip(cases).filter_map(|(row, case): (u32, _)| {
-            let statistic = case.runs.get(run)?;
-            let point = Point::new(100.0 * statistic.mean, f64::from(row), colour, shape);
-            Some(point.x_interval(interval_in_percent(statistic)))
-        });
-        figure.add_points(run_name(run as u64 + 1), points);
-    }
+    let cases = comparison.cases.iter();
+    let cases: Vec<_> =
+        cases.map(|case| (case.name.as_str(), [case.runs.first(), case.runs.get(1)])).collect();
     let caption = "Base eroded in the first and in the second run of each case, with 95 % intervals over its \
                    replicates.";
+    let figure = cases::both_runs(&cases, comparison.threshold, height(cases.len()));
     Drawn::new("compared-runs", figure, caption)
+}
+
+/// Height of a figure of so many rows.
+fn height(rows: usize) -> f64 {
+    110.0 + 26.0 * rows as f64
 }
 
 /// Every difference with its interval; none where no two cases share a run.
@@ -88,7 +70,7 @@ fn differences(comparison: &Comparison) -> Option<Drawn> {
     if pairs.is_empty() {
         return None;
     }
-    let (y, height) = rows(pairs.iter().map(label));
+    let (y, height) = (Axis::rows(pairs.iter().map(label)), height(pairs.len()));
     let x = Axis::linear("Difference of the mass eroded (percentage points)", low - margin, high + margin);
     let what = "Difference of the percent of base mass eroded between every two cases, with 95 % intervals";
     let mut figure =
@@ -108,36 +90,34 @@ fn differences(comparison: &Comparison) -> Option<Drawn> {
     Some(Drawn::new("compared-differences", figure, caption))
 }
 
-fn page(folder: &Path, comparison: &Comparison, drawn: &[Drawn]) -> String {
+fn page(folder: &Path, comparison: &Comparison) -> Sections {
     let (question, common) = match comparison.of.as_str() {
         "filters" => ("Which of these filters hold this base?", "base"),
         "bases" => ("Which of these bases does this filter hold?", "filter"),
         _ => ("Which of these filters hold?", ""),
     };
-    let header = html! {
-        h1 { (question) }
-        p.names { @if !common.is_empty() { (capital(common)) " " b { bdi { (name(&comparison.common)) } } } }
+    let names = match common.is_empty() {
+        true => html! {},
+        false => html! { (capital(common)) " " b { bdi { (name(&comparison.common)) } } },
     };
-    let main = html! {
-        div.first {
-            section {
-                p.lead { (lead(comparison)) }
-                @if comparison.cases.iter().any(|case| case.verdict == Verdict::Undecided) {
-                    p { "Undecided is no verdict: the page of the case says what would decide it." }
-                }
-                (practice(comparison))
-                (doubts(comparison))
+    let first = html! { div.first {
+        section {
+            p.lead { (lead(comparison)) }
+            @if comparison.cases.iter().any(|case| case.verdict == Verdict::Undecided) {
+                p { "Undecided is no verdict: the page of the case says what would decide it." }
             }
-            (leaves_out(&comparison.model_leaves_out, &html! {
-                @if comparison.model_leaves_out.is_empty() {
-                    p { "compare.json of this earlier version does not say; the page of each case does." }
-                }
-                p { "The verdicts are the model’s. They do not replace a filter test or a designer’s \
-                     judgement." }
-            }))
+            (practice(comparison))
+            (doubts(comparison))
         }
-        (contents())
-        h2 { "Cases" }
+        (leaves_out(&comparison.model_leaves_out, &html! {
+            @if comparison.model_leaves_out.is_empty() {
+                p { "compare.json of this earlier version does not say; the page of each case does." }
+            }
+            p { "The verdicts are the model’s. They do not replace a filter test or a designer’s \
+                 judgement." }
+        }))
+    } };
+    let table = html! {
         (cases(folder, comparison))
         p.small {
             "Class: with a link to the page of the case. Confidence: within or outside the range in which \
@@ -146,19 +126,21 @@ fn page(folder: &Path, comparison: &Comparison, drawn: &[Drawn]) -> String {
              classes is " (threshold(comparison.threshold))
             "."
         }
-        h2 { "Differences" }
-        (pairs(comparison))
-        h2 { "Figures" }
-        (figures(drawn))
-        (reasons(comparison))
-        h2 { "How this was made" }
-        p {
-            "voidwalk " (clean(&comparison.version)) ", seed " (comparison.seed) " for every case. Each case \
-             has a folder of its own with its report; " code { "compare.json" } " holds this page’s numbers, "
-            code { "compare.csv" } " and " code { "compare_pairs.csv" } " its tables."
-        }
     };
-    whole_page(&format!("Comparison of {}", clean(&comparison.of)), &header, &main, &citation())
+    let made = html! { p {
+        "voidwalk " (clean(&comparison.version)) ", seed " (comparison.seed) " for every case. Each case \
+         has a folder of its own with its report; " code { "compare.json" } " holds this page’s numbers, "
+        code { "compare.csv" } " and " code { "compare_pairs.csv" } " its tables."
+    } };
+    Sections::new(format!("Comparison of {}", clean(&comparison.of)), question, &names)
+        .words(&first)
+        .contents()
+        .section("Cases", &table)
+        .section("Differences", &pairs(comparison))
+        .words(&html! { h2 { "Figures" } })
+        .figures([both_runs(comparison)].into_iter().chain(differences(comparison)))
+        .words(&reasons(comparison))
+        .section("How this was made", &made)
 }
 
 /// How many verdicts of each class there are, and how many of them can be relied on.
@@ -200,45 +182,15 @@ fn doubts(comparison: &Comparison) -> Markup {
     } }
 }
 
-fn with_interval(statistic: Option<&Statistic>, range: Option<&[f64; 2]>) -> Markup {
-    html! {
-        @match statistic {
-            None => "–",
-            Some(statistic) => {
-                (percent(statistic.mean))
-                @if let Some(interval) = percent_interval(statistic) { br; span.small { (interval) } }
-                @if let Some([low, high]) = range {
-                    br; span.small { "curve: " (percent(*low)) " to " (percent(*high)) }
-                }
-            }
-        }
-    }
-}
-
 fn cases(folder: &Path, comparison: &Comparison) -> Markup {
-    let confidence = |case: &ComparedCase| match case.confidence {
-        Confidence::Within => html! { "within" },
-        Confidence::Outside => html! { span.amber { "outside" } },
-        Confidence::Contradicted => html! { span.amber { "contradicted" } },
-        doubt => html! { span.amber { (doubt.words()) } },
-    };
     Table::of(&comparison.cases)
         .class("cases")
         .name("Case", |case| html! { bdi { (name(&case.name)) } })
-        .text("Class", move |case| {
-            let words = case.verdict.words();
-            html! { @match page_of(folder, case) {
-                Some(page) => a href=(page) { b { (words) } },
-                None => b { (words) },
-            } }
-        })
-        .text("Confidence", confidence)
-        .number("Rules not kept", |case| match case.rules_not_kept.len() {
-            0 => html! { "0" },
-            count => html! { span.amber { (count) } },
-        })
-        .number("Eroded, first run", |case| with_interval(case.runs.first(), case.curve_range.first()))
-        .number("second run", |case| with_interval(case.runs.get(1), case.curve_range.get(1)))
+        .text("Class", move |case| cases::class(case.verdict, folder, &case.folder))
+        .text("Confidence", |case| cases::confidence(case.confidence))
+        .number("Rules not kept", |case| cases::rules_not_kept(Some(case.rules_not_kept.len())))
+        .number("Eroded, first run", |case| cases::eroded(case.runs.first(), case.curve_range.first()))
+        .number("second run", |case| cases::eroded(case.runs.get(1), case.curve_range.get(1)))
         .number("D15F/ D85B", |case| of_base(case.ratios.d15f_over_d85b, case.base))
         .number("D15F/ D95B", |case| significant(case.ratios.d15f_over_d95b))
         .number("Thickness", |case| {
@@ -248,12 +200,6 @@ fn cases(folder: &Path, comparison: &Comparison) -> Markup {
         .number("Replicates", |case| case.replicates)
         .number("Base particles", |case| whole(case.n_base))
         .render()
-}
-
-/// Where a case's own page is, as seen from the comparison's: nowhere else than in a folder inside it.
-fn page_of(folder: &Path, case: &ComparedCase) -> Option<String> {
-    let page = format!("{}/report.html", case.folder);
-    (page.split('/').all(is_plain_part) && folder.join(&page).is_file()).then_some(page)
 }
 
 fn pairs(comparison: &Comparison) -> Markup {

@@ -8,9 +8,10 @@ use super::error::ReportError;
 use super::figures::{Axis, BLUE, Dash, Disc, Figure, GREY, Line, Point, Shape, VERMILLION, ramp};
 use super::files::{json, rows};
 use super::numbers::{duration, known, percent, significant, whole};
-use super::shell::{Drawn, citation, clean, fact, figures, whole_page};
+use super::section::Sections;
+use super::shell::{Drawn, citation, clean, fact};
 use super::table::Table;
-use super::written::{Written, write_page};
+use super::written::Written;
 use crate::outcome::packing::{CurveRow, Measure, PackingRecord, Summary};
 use crate::outcome::paper;
 
@@ -35,8 +36,7 @@ pub fn write_packing(folder: &Path) -> Result<Written, ReportError> {
         summary: json(&folder.join("constrictions.json"))?,
         curve: rows(&folder.join("constrictions.csv"))?.into_iter().map(|(_, row)| row).collect(),
     };
-    let figures = [curves(&packed), slice(&packed.record), connectivity(&packed)];
-    write_page(folder, &figures, &page(&packed, &figures))
+    page(&packed).write(folder, "report.html", &citation())
 }
 
 /// A diameter (mm) of the summary.
@@ -130,26 +130,22 @@ fn connectivity(packed: &Packed) -> Drawn {
     Drawn::new("connectivity", figure, caption)
 }
 
-fn page(packed: &Packed, drawn: &[Drawn]) -> String {
+fn page(packed: &Packed) -> Sections {
     let (record, summary) = (&packed.record, &packed.summary);
-    let header = html! {
-        h1 { "A filter, packed" }
-        p.names {
-            b { bdi { (clean(&record.name)) } }
-            ", friction " (significant(record.friction)) " during compression"
-        }
+    let names = html! {
+        b { bdi { (clean(&record.name)) } }
+        ", friction " (significant(record.friction)) " during compression"
     };
     let at = |percent: f64| known(dc(summary, percent), |d| format!("{} mm", significant(d)));
-    let main = html! {
+    let lead = html! {
         p.lead {
             "Void ratio " b { (format!("{:.4}", record.after.void_ratio)) } ", "
             (whole(record.grains)) " grains, " (whole(summary.constrictions as u64)) " constrictions with Cu "
             b { (format!("{:.3}", summary.cu_csd)) } ", "
             b { (format!("{:.3}", summary.grains_per_void)) } " grains per void."
         }
-        (figures(drawn))
-        (beside_the_paper(packed))
-        h2 { "Constrictions and voids" }
+    };
+    let voids = html! {
         table.facts { tbody {
             (fact("Dc0, Dc5, Dc15", [0.0, 5.0, 15.0].map(at).join(", ")))
             (fact("Dc50, Dc75, Dc99", [50.0, 75.0, 99.0].map(at).join(", ")))
@@ -161,7 +157,8 @@ fn page(packed: &Packed, drawn: &[Drawn]) -> String {
             (fact("Overlap from which tetrahedra are merged into one \
                    void", significant(summary.merge_overlap)))
         } }
-        h2 { "Compression" }
+    };
+    let compression = html! {
         (states(record))
         table.facts { tbody {
             (fact("Mean pressure", format!("{} kPa", significant(record.pressure_kpa))))
@@ -180,7 +177,12 @@ fn page(packed: &Packed, drawn: &[Drawn]) -> String {
         p.small { "Spheres, Hertz-Mindlin contacts with Coulomb friction, no gravity, no cohesion, no \
                    breakage." }
     };
-    whole_page(&format!("Packing: {}", clean(&record.name)), &header, &main, &citation())
+    Sections::new(format!("Packing: {}", clean(&record.name)), "A filter, packed", &names)
+        .words(&lead)
+        .figures([curves(packed), slice(record), connectivity(packed)])
+        .section("Beside the paper’s Table 2", &beside_the_paper(packed))
+        .section("Constrictions and voids", &voids)
+        .section("Compression", &compression)
 }
 
 fn states(record: &PackingRecord) -> Markup {
@@ -212,13 +214,10 @@ fn beside_the_paper(packed: &Packed) -> Markup {
         rows.push(("Void ratio before the final friction", record.before.void_ratio, paper.void_ratio));
     }
     rows.push(("Cu of the constrictions", packed.summary.cu_csd, paper.cu_csd));
-    let table = Table::of(&rows)
+    Table::of(&rows)
         .name("", |row| row.0)
         .number("this packing", |row| format!("{:.3}", row.1))
         .number("paper", |row| format!("{:.3}", row.2))
-        .number("difference", |row| format!("{:+.3}", row.1 - row.2));
-    html! {
-        h2 { "Beside the paper’s Table 2" }
-        (table)
-    }
+        .number("difference", |row| format!("{:+.3}", row.1 - row.2))
+        .render()
 }

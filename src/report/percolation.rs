@@ -8,10 +8,11 @@ use super::error::ReportError;
 use super::figures::{Across, Axis, BLUE, Dash, Figure, GREY, Line, PURPLE, Point, Rule, Shape, Tick};
 use super::files::json;
 use super::numbers::{duration, significant, whole};
-use super::shell::{Drawn, figures, whole_page};
+use super::section::Sections;
+use super::shell::Drawn;
 use super::table::Table;
-use super::written::{Written, write_page};
-use crate::outcome::percolation::{NU_PARALLEL, PercolationStudy, Z};
+use super::written::Written;
+use crate::outcome::percolation::{NU_PARALLEL, PercolationStudy, SizeThreshold, Z};
 use crate::outcome::record::Statistic;
 
 /// Writes `report.html` and its figures into the folder of a percolation study, from `percolation.json`
@@ -21,26 +22,23 @@ use crate::outcome::record::Statistic;
 /// What the folder says.
 pub fn write_percolation(folder: &Path) -> Result<Written, ReportError> {
     let study: &PercolationStudy = &json(&folder.join("percolation.json"))?;
-    // Without a cube there is no size to draw anything against.
-    let drawn = match study.sizes.is_empty() {
-        true => Vec::new(),
-        false => vec![percolation_spread(study), threshold(study)],
-    };
     let title = "Percolation threshold of the directed cubic lattice";
-    let header = html! { h1 { (title) } };
-    let main = html! {
-        p {
-            "Constrictions of an L × L × L lattice (or one of three lengths), periodic sideways, opened one \
-             by one at random until a path leads from "
-            "the start layer out of the last: the share that is then open. " (whole(study.realisations))
-            " realisations of each size, seed " (study.seed) ", each threshold exact."
-        }
-        (sizes(study))
-        (fits(study))
-        @if !drawn.is_empty() { (figures(&drawn)) }
-    };
+    let what = html! { p {
+        "Constrictions of an L × L × L lattice (or one of three lengths), periodic sideways, opened one by \
+         one at random until a path leads from the start layer out of the last: the share that is then \
+         open. " (whole(study.realisations)) " realisations of each size, seed " (study.seed)
+        ", each threshold exact."
+    } };
+    // Without a cube there is no size to draw anything against.
+    let draw: &[fn(&PercolationStudy) -> Drawn] =
+        if study.sizes.is_empty() { &[] } else { &[percolation_spread, threshold] };
     let footer = html! { p.small { "voidwalk " (study.version) ", " (duration(study.seconds)) "." } };
-    write_page(folder, &drawn, &whole_page(title, &header, &main, &footer))
+    Sections::new(title, title, &html! {})
+        .words(&what)
+        .words(&sizes(study))
+        .words(&fits(study))
+        .figures(draw.iter().map(|draw| draw(study)))
+        .write(folder, "report.html", &footer)
 }
 
 fn sizes(study: &PercolationStudy) -> Markup {
@@ -89,22 +87,16 @@ fn fits(study: &PercolationStudy) -> Markup {
 
 /// Standard deviation of the threshold against the size of the lattice: Fig. 6 of the paper.
 pub fn percolation_spread(study: &PercolationStudy) -> Drawn {
-    let points: Vec<(f64, f64, f64)> = study
-        .sizes
-        .iter()
-        .filter_map(|s| Some((s.size as f64, s.threshold.sd?, s.sd_error.unwrap_or(0.0))))
-        .collect();
+    let of_size = |of: &SizeThreshold| Some((of.size as f64, of.threshold.sd?, of.sd_error.unwrap_or(0.0)));
+    let points: Vec<(f64, f64, f64)> = study.sizes.iter().filter_map(of_size).collect();
     let widest = points.iter().map(|(x, ..)| *x).fold(1.0, f64::max);
     let highest = points.iter().map(|(_, sd, error)| sd + 2.0 * error).fold(0.001, f64::max);
     let x = Axis::linear("Size of the lattice, L (voids along each side)", 0.0, widest);
     let y = Axis::linear("Standard deviation of the threshold (–)", 0.0, highest);
     let what = "Standard deviation of the percolation threshold against the size of the lattice";
     let mut figure = Figure::new("Scatter of the percolation threshold", what, "", x, y);
-    figure.add(Line::new(points.iter().map(|(x, sd, _)| (*x, *sd)).collect(), BLUE));
-    for (x, sd, error) in points {
-        let bar = Some((sd - 1.96 * error, sd + 1.96 * error));
-        figure.add(Point::new(x, sd, BLUE, Shape::Circle).y_interval(bar));
-    }
+    let with_bar = |&(x, sd, error): &_| (x, sd, Some((sd - 1.96 * error, sd + 1.96 * error)));
+    figure.add_series(Line::new(Vec::new(), BLUE), Shape::Circle, points.iter().map(with_bar));
     let caption = "Standard deviation of the percolation threshold over the realisations, as in Fig. 6 of \
                    the paper. Bars: 95 % intervals, for normal thresholds.";
     Drawn::new("percolation-sd", figure, caption)

@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use serde::de::DeserializeOwned;
+
 use super::error::ReportError;
 use super::files::rows;
 use crate::outcome::Recorded;
@@ -58,34 +60,18 @@ pub(super) enum RowSource<'a> {
     Memory(Recorded),
 }
 
-/// The rows of each table, unsorted.
-struct Unsorted {
-    series: Numbered<SeriesRow>,
-    layers: Numbered<LayerRow>,
-    retained: Numbered<SizeRow>,
-    eroded: Numbered<SizeRow>,
-}
-
 impl RowSource<'_> {
-    fn read(self) -> Result<Unsorted, ReportError> {
-        // The first line of a file is its header.
-        fn numbered<T>(rows: Vec<T>) -> Numbered<T> {
-            (2..).zip(rows).collect()
+    /// The rows of a table.
+    fn rows<T: DeserializeOwned>(
+        &mut self,
+        name: &str,
+        of: fn(&mut Recorded) -> &mut Vec<T>,
+    ) -> Result<Numbered<T>, ReportError> {
+        match self {
+            RowSource::Folder(folder) => rows(&folder.join(name)),
+            // The first line of a file is its header.
+            RowSource::Memory(recorded) => Ok((2..).zip(std::mem::take(of(recorded))).collect()),
         }
-        Ok(match self {
-            RowSource::Folder(folder) => Unsorted {
-                series: rows(&folder.join(SERIES))?,
-                layers: rows(&folder.join(LAYERS))?,
-                retained: rows(&folder.join(RETAINED))?,
-                eroded: rows(&folder.join(ERODED))?,
-            },
-            RowSource::Memory(recorded) => Unsorted {
-                series: numbered(recorded.series),
-                layers: numbered(recorded.layers),
-                retained: numbered(recorded.retained),
-                eroded: numbered(recorded.eroded),
-            },
-        })
     }
 }
 
@@ -101,11 +87,14 @@ impl RunRows {
     /// A file that cannot be read, and rows that do not fit together.
     pub(super) fn read(
         folder: &Path,
-        source: RowSource,
+        mut source: RowSource,
         replicates: usize,
         runs: usize,
     ) -> Result<Self, ReportError> {
-        let Unsorted { series, layers, retained, eroded } = source.read()?;
+        let series = source.rows(SERIES, |recorded| &mut recorded.series)?;
+        let layers = source.rows(LAYERS, |recorded| &mut recorded.layers)?;
+        let retained = source.rows(RETAINED, |recorded| &mut recorded.retained)?;
+        let eroded = source.rows(ERODED, |recorded| &mut recorded.eroded)?;
         let known = |path: &Path, line: u64, replicate: u64, run: u64| {
             let (replicates, runs) = (replicates as u64, runs as u64);
             if (1..=replicates).contains(&replicate) && (1..=runs).contains(&run) {
@@ -119,63 +108,70 @@ impl RunRows {
         };
         let curves = |name: &str, rows: Numbered<SizeRow>| {
             let path = folder.join(name);
-            let mut curves: BTreeMap<_, Vec<SizeRow>> = BTreeMap::new();
-            for (line, row) in rows {
+            let key = |row: &SizeRow| (row.run, row.replicate, row.increment);
+            sorted(rows, key, |line, row, _| {
                 known(&path, line, row.replicate, row.run)?;
                 in_range(&path, line, "diameter_mm", row.diameter_mm, f64::MAX)?;
                 in_range(&path, line, "percent_finer_by_mass", row.percent_finer_by_mass, 100.0)?;
-                in_range(&path, line, "percent_finer_by_number", row.percent_finer_by_number, 100.0)?;
-                curves.entry((row.run, row.replicate, row.increment)).or_default().push(row);
-            }
-            Ok::<_, ReportError>(curves)
+                in_range(&path, line, "percent_finer_by_number", row.percent_finer_by_number, 100.0)
+            })
         };
+        let (of_series, of_layers) = (folder.join(SERIES), folder.join(LAYERS));
+        let refuse =
+            |path: &Path, line, message| Err(ReportError::Form { path: path.to_owned(), line, message });
         Ok(Self {
-            series: sorted_series(&folder.join(SERIES), series, known)?,
-            layers: sorted_layers(&folder.join(LAYERS), layers, known)?,
+            series: sorted(
+                series,
+                |row| (row.run, row.replicate),
+                |line, row, last| {
+                    known(&of_series, line, row.replicate, row.run)?;
+                    in_range(&of_series, line, "eroded_mass_fraction", row.eroded_mass_fraction, 1.0)?;
+                    match last.map(|last| last.increment).filter(|last| row.increment <= *last) {
+                        Some(last) => {
+                            let at = row.increment;
+                            let message =
+                                format!("increment is {at}, allowed: more than {last}, the one before");
+                            refuse(&of_series, line, message)
+                        }
+                        None => Ok(()),
+                    }
+                },
+            )?,
+            layers: sorted(
+                layers,
+                |row| (row.run, row.replicate),
+                |line, row, _| {
+                    known(&of_layers, line, row.replicate, row.run)?;
+                    let (blocked, all) = (row.blocked, row.constrictions);
+                    if blocked <= all {
+                        return Ok(());
+                    }
+                    refuse(
+                        &of_layers,
+                        line,
+                        format!("blocked is {blocked}, allowed: at most constrictions, {all}"),
+                    )
+                },
+            )?,
             retained: curves(RETAINED, retained)?,
             eroded: curves(ERODED, eroded)?,
         })
     }
 }
 
-fn sorted_series(
-    path: &Path,
-    rows: Numbered<SeriesRow>,
-    known: impl Fn(&Path, u64, u64, u64) -> Result<(), ReportError>,
-) -> Result<BTreeMap<(u64, u64), Vec<SeriesRow>>, ReportError> {
-    let mut series: BTreeMap<_, Vec<SeriesRow>> = BTreeMap::new();
+/// Rows by their key, each checked with its line and the row of its key before it.
+fn sorted<K: Ord, T>(
+    rows: Numbered<T>,
+    key: impl Fn(&T) -> K,
+    check: impl Fn(u64, &T, Option<&T>) -> Result<(), ReportError>,
+) -> Result<BTreeMap<K, Vec<T>>, ReportError> {
+    let mut sorted: BTreeMap<K, Vec<T>> = BTreeMap::new();
     for (line, row) in rows {
-        known(path, line, row.replicate, row.run)?;
-        in_range(path, line, "eroded_mass_fraction", row.eroded_mass_fraction, 1.0)?;
-        let rows = series.entry((row.run, row.replicate)).or_default();
-        if let Some(last) = rows.last().map(|last| last.increment)
-            && row.increment <= last
-        {
-            let message =
-                format!("increment is {}, allowed: more than {last}, the one before", row.increment);
-            return Err(ReportError::Form { path: path.to_owned(), line, message });
-        }
-        rows.push(row);
+        let before = sorted.entry(key(&row)).or_default();
+        check(line, &row, before.last())?;
+        before.push(row);
     }
-    Ok(series)
-}
-
-fn sorted_layers(
-    path: &Path,
-    rows: Numbered<LayerRow>,
-    known: impl Fn(&Path, u64, u64, u64) -> Result<(), ReportError>,
-) -> Result<BTreeMap<(u64, u64), Vec<LayerRow>>, ReportError> {
-    let mut layers: BTreeMap<_, Vec<LayerRow>> = BTreeMap::new();
-    for (line, row) in rows {
-        known(path, line, row.replicate, row.run)?;
-        if row.blocked > row.constrictions {
-            let message =
-                format!("blocked is {}, allowed: at most constrictions, {}", row.blocked, row.constrictions);
-            return Err(ReportError::Form { path: path.to_owned(), line, message });
-        }
-        layers.entry((row.run, row.replicate)).or_default().push(row);
-    }
-    Ok(layers)
+    Ok(sorted)
 }
 
 /// Refuses what is not between 0 and `most` (Rust reads "nan" and "inf" as numbers).

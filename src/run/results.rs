@@ -17,6 +17,7 @@ use crate::outcome::record::{
     VoidRow,
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
+use crate::outcome::table::csv_of;
 use crate::outcome::{Recorded, by_void, infiltration, leaves_out, rules, verdict};
 use crate::store::{Folder, StoreError};
 
@@ -223,12 +224,12 @@ pub fn write(
     for walked in walked {
         recorded.append(walked.recorded.clone());
     }
-    folder.write("series.csv", &csv("series.csv", SERIES, &recorded.series)?)?;
-    folder.write("layers.csv", &csv("layers.csv", LAYERS, &recorded.layers)?)?;
-    folder.write("retained.csv", &csv("retained.csv", SIZES, &recorded.retained)?)?;
-    folder.write("eroded.csv", &csv("eroded.csv", SIZES, &recorded.eroded)?)?;
+    folder.write("series.csv", &csv_of(&recorded.series))?;
+    folder.write("layers.csv", &csv_of(&recorded.layers))?;
+    folder.write("retained.csv", &csv_of(&recorded.retained))?;
+    folder.write("eroded.csv", &csv_of(&recorded.eroded))?;
     if !recorded.flow.is_empty() {
-        folder.write("flow.csv", &csv("flow.csv", FLOW, &recorded.flow)?)?;
+        folder.write("flow.csv", &csv_of(&recorded.flow))?;
     }
     if case.scene.record.voids.is_some() {
         write_voids(folder, case, &recorded)?;
@@ -247,23 +248,12 @@ fn write_voids(folder: &Folder, case: &Case, recorded: &Recorded) -> Result<(), 
         .zip(places.point_mm.iter().zip(network.layer_of()))
         .map(|(void, (&[x_mm, y_mm, z_mm], &layer))| VoidRow { void, layer: layer.into(), x_mm, y_mm, z_mm })
         .collect();
-    folder.write("voids.csv", &csv("voids.csv", VOIDS, &rows)?)?;
+    folder.write("voids.csv", &csv_of(&rows))?;
     let rows = by_void::constrictions(&network, &places);
-    folder.write("constrictions_of_network.csv", &csv("constrictions_of_network.csv", NETWORK, &rows)?)?;
-    folder.write("blocked.csv", &csv("blocked.csv", BLOCKED, &recorded.blocked)?)?;
-    let bytes = csv("retained_by_void.csv", RETAINED_BY_VOID, &recorded.voids)?;
-    Ok(folder.write("retained_by_void.csv", &bytes)?)
+    folder.write("constrictions_of_network.csv", &csv_of(&rows))?;
+    folder.write("blocked.csv", &csv_of(&recorded.blocked))?;
+    Ok(folder.write("retained_by_void.csv", &csv_of(&recorded.voids))?)
 }
-
-const VOIDS: &str = "void,layer,x_mm,y_mm,z_mm";
-const NETWORK: &str = "constriction,from,to,dx_mm,dy_mm,dz_mm,diameter_mm,conductance";
-const BLOCKED: &str = "run,increment,constriction";
-const RETAINED_BY_VOID: &str = "run,increment,void,retained_in_constrictions,retained_in_voids";
-const SERIES: &str = "replicate,run,increment,inserted,moving,eroded,retained_in_constrictions,\
-    retained_in_voids,trapped,blocked,eroded_mass_fraction";
-const LAYERS: &str = "replicate,run,layer,constrictions,blocked,retained_in_constrictions,retained_in_voids";
-const FLOW: &str = "replicate,run,increment,k_over_k0";
-const SIZES: &str = "replicate,run,increment,diameter_mm,percent_finer_by_mass,percent_finer_by_number";
 
 /// A value as indented JSON with a newline at its end.
 ///
@@ -273,17 +263,5 @@ pub fn json(file: &'static str, value: &impl Serialize) -> Result<Vec<u8>, RunEr
     let mut bytes =
         serde_json::to_vec_pretty(value).map_err(|e| RunError::Format { file, source: e.into() })?;
     bytes.push(b'\n');
-    Ok(bytes)
-}
-
-/// The rows under their header, which is there even without rows.
-fn csv(file: &'static str, header: &str, rows: &[impl Serialize]) -> Result<Vec<u8>, RunError> {
-    let mut bytes = format!("{header}\n").into_bytes();
-    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(&mut bytes);
-    for row in rows {
-        writer.serialize(row).map_err(|e| RunError::Format { file, source: e.into() })?;
-    }
-    writer.flush().map_err(|e| RunError::Format { file, source: e.into() })?;
-    drop(writer);
     Ok(bytes)
 }

@@ -10,52 +10,91 @@ use xxhash_rust::xxh3::xxh3_128;
 
 use crate::run::callbacks::Callbacks;
 use crate::run::error::RunError;
-use crate::run::folder::shown;
+use crate::run::folder::{DESIGN, FolderKind, STUDY, clear, shown};
+use crate::run::results::json;
+use crate::run::unfinished::{self, Unfinished};
 use crate::store::Folder;
 use crate::store::checkpoint::{CheckpointError, Identity, Label, Section, newest, save};
 
-/// What a kind of study keeps, and the words for it.
-pub(super) struct KeptKind {
-    /// The checkpoint.
-    pub name: &'static str,
-    /// Its files.
-    pub files: [&'static str; 2],
-    /// The study.
-    pub study: &'static str,
-    /// What it does one after the other, and keeps when done.
-    pub parts: &'static str,
+/// Makes a study of this kind, which all these words describe, in its claimed folder: from what an earlier
+/// start of it found, and not at all where all but its page is there. `study` writes its tables; then come its
+/// record and its page, and nothing is left to continue.
+///
+/// # Errors
+/// What is there is of another study; what the study and the folder say.
+pub(super) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
+    (folder, kind, overwrite): (&Folder, FolderKind, bool),
+    work: String,
+    callbacks: &Callbacks,
+    study: impl FnOnce(&Kept, Option<F>) -> Result<R, RunError>,
+) -> Result<R, RunError> {
+    let mark = Unfinished { kind: kind.name().into(), work, ..Unfinished::default() };
+    let kept = Kept::new(kind, folder, &mark.work);
+    let whole = mark.whole(folder, kind.record())?.filter(|_| !overwrite);
+    let record = match whole {
+        Some(record) => record,
+        None => {
+            // What is to be replaced is other work: this very work that was stopped is gone on with.
+            let is_begun = Unfinished::read(folder)?.as_ref() == Some(&mark);
+            let found = match overwrite {
+                true if is_begun => kept.newest(callbacks).ok().flatten(),
+                true => None,
+                false => kept.newest(callbacks)?,
+            };
+            if found.is_none() {
+                clear(folder, kind)?;
+            }
+            mark.begin(folder)?;
+            let record = study(&kept, found)?;
+            // The page is made of it.
+            folder.write(kind.record(), &json(kind.record(), &record)?)?;
+            record
+        }
+    };
+    callbacks.results(kind, folder.path())?;
+    folder.remove_all(kept.files)?;
+    unfinished::end(folder)?;
+    Ok(record)
 }
 
 /// Keeps what is found in a folder.
 pub(super) struct Kept<'a> {
-    kind: &'static KeptKind,
+    kind: FolderKind,
     folder: &'a Folder,
     identity: Identity,
+    /// The checkpoint.
+    name: &'static str,
+    files: &'static [&'static str],
+    /// What the study does one after the other, and keeps when done.
+    parts: &'static str,
 }
 
 impl<'a> Kept<'a> {
     /// In a claimed folder, of the study that these words describe.
-    pub fn new(kind: &'static KeptKind, folder: &'a Folder, work: &str) -> Self {
+    pub fn new(kind: FolderKind, folder: &'a Folder, work: &str) -> Self {
         let scene = format!("{:032x}", xxh3_128(work.as_bytes()));
-        Self { kind, folder, identity: Identity { scene, ..Identity::default() } }
+        let (name, files, parts) = match kind {
+            FolderKind::Precision => ("study", &STUDY, "tiers"),
+            _ => ("networks", &DESIGN, "networks"),
+        };
+        Self { kind, folder, identity: Identity { scene, ..Identity::default() }, name, files, parts }
     }
 
     /// What an earlier start of this very study found.
     ///
     /// # Errors
     /// What is there is of another study, or cannot be read.
-    pub fn newest<T: DeserializeOwned>(&self, callbacks: &Callbacks) -> Result<Option<T>, RunError> {
+    fn newest<T: DeserializeOwned>(&self, callbacks: &Callbacks) -> Result<Option<T>, RunError> {
         let refused = |error: CheckpointError| match error.is_unreadable() {
             true => RunError::Checkpoint(error),
             false => RunError::Refused(format!(
                 "{}: the unfinished {} there cannot be continued: {error}; name another folder or add \
                  --overwrite",
                 shown(self.folder.path()),
-                self.kind.study
+                self.kind.name()
             )),
         };
-        let (saved, passed_over) =
-            newest(self.folder.path(), self.kind.name, &self.identity).map_err(refused)?;
+        let (saved, passed_over) = newest(self.folder.path(), self.name, &self.identity).map_err(refused)?;
         for error in passed_over {
             (callbacks.warn)(&format!("{error}; the checkpoint before it was taken"));
         }
@@ -70,20 +109,12 @@ impl<'a> Kept<'a> {
         let label = Label { identity: self.identity.clone(), generation: parts as u64, ..Label::default() };
         let record = serde_json::to_vec(found)?;
         let sections = [Section::new("found", &record)];
-        save(self.folder.path(), self.kind.name, &label, &sections).map_err(RunError::Save)
-    }
-
-    /// Removes it: the study is whole.
-    ///
-    /// # Errors
-    /// What the folder says.
-    pub fn discard(&self) -> Result<(), RunError> {
-        Ok(self.folder.remove_all(&self.kind.files)?)
+        save(self.folder.path(), self.name, &label, &sections).map_err(RunError::Save)
     }
 
     /// That the study was stopped with so many of its parts done.
     pub fn stopped(&self, done: usize, all: usize) -> RunError {
-        let (folder, parts) = (shown(self.folder.path()), self.kind.parts);
+        let (folder, parts) = (shown(self.folder.path()), self.parts);
         RunError::Stopped(format!(
             "after {done} of {all} {parts}, which are kept in {folder}; continue with the same command"
         ))

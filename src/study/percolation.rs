@@ -1,6 +1,5 @@
 //! Runs a study of the percolation threshold and writes it into a folder.
 
-use std::fmt::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -8,6 +7,7 @@ use rayon::prelude::*;
 
 use crate::network::{Network, NetworkError, percolation_threshold};
 use crate::outcome::percolation::{PercolationStudy, is_cube, lattice_name};
+use crate::outcome::table::Columns;
 use crate::run::callbacks::Callbacks;
 use crate::run::error::RunError;
 use crate::run::folder::{FolderKind, claim, clear};
@@ -15,15 +15,11 @@ use crate::run::machine::on_threads;
 use crate::run::results::json;
 use crate::run::unfinished::Unfinished;
 
-/// What a percolation study is asked for, and where it goes.
+/// Where a percolation study goes, and what it is asked for.
 #[derive(Clone, Debug)]
 pub struct PercolationOptions {
-    /// Voids along x and y, and layers, of one lattice after another.
-    pub shapes: Vec<[u32; 3]>,
-    /// Realisations of each size.
-    pub realisations: u64,
-    /// Seed; the same seed gives the same bits.
-    pub seed: u64,
+    /// What it is asked for.
+    pub plan: PercolationPlan,
     /// Folder for the results.
     pub out: PathBuf,
     /// Whether earlier results there are replaced.
@@ -34,16 +30,30 @@ pub struct PercolationOptions {
 
 impl Default for PercolationOptions {
     fn default() -> Self {
-        Self {
-            shapes: [10, 20, 40, 80, 160].map(|size| [size; 3]).to_vec(),
-            realisations: 100,
-            seed: 1,
-            out: "voidwalk-percolation".into(),
-            overwrite: false,
-            threads: None,
-        }
+        let plan = PercolationPlan::default();
+        Self { plan, out: "voidwalk-percolation".into(), overwrite: false, threads: None }
     }
 }
+
+/// What a study is asked for; the same seed gives the same bits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PercolationPlan {
+    /// Voids along x and y, and layers, of one lattice after another.
+    pub shapes: Vec<[u32; 3]>,
+    /// Realisations of each size.
+    pub realisations: u64,
+    /// Seed.
+    pub seed: u64,
+}
+
+impl Default for PercolationPlan {
+    fn default() -> Self {
+        Self { shapes: [10, 20, 40, 80, 160].map(|size| [size; 3]).to_vec(), realisations: 100, seed: 1 }
+    }
+}
+
+/// The lengths of a lattice, and the threshold of each of its realisations in order.
+type Thresholds = Vec<([u32; 3], Vec<f64>)>;
 
 /// Finds the thresholds and writes `percolation.csv` and, last, `percolation.json`.
 ///
@@ -51,8 +61,7 @@ impl Default for PercolationOptions {
 /// Sizes that no lattice can have and a folder that cannot be claimed are refused before any work; what the
 /// folder says.
 pub fn run(options: &PercolationOptions, callbacks: &Callbacks) -> Result<PercolationStudy, RunError> {
-    let plan = PercolationPlan::new(options.shapes.clone(), options.realisations, options.seed);
-    let plan = plan.map_err(RunError::refused)?;
+    let plan = options.plan.clone().checked().map_err(RunError::refused)?;
     let folder = claim(&options.out, FolderKind::Percolation, options.overwrite)?;
     let (kind, name) = (FolderKind::Percolation, FolderKind::Percolation.record());
     let mark = Unfinished { kind: kind.name().into(), work: format!("{plan:?}"), ..Unfinished::default() };
@@ -60,52 +69,34 @@ pub fn run(options: &PercolationOptions, callbacks: &Callbacks) -> Result<Percol
         callbacks.finish(kind, &folder)?;
         return Ok(study);
     }
-    let run = on_threads(options.threads, || Ok(plan.run()?))?;
+    let (study, thresholds) = on_threads(options.threads, || Ok(plan.run()?))?;
     clear(&folder, kind)?;
     mark.begin(&folder)?;
-    folder.write("percolation.csv", run.csv().as_bytes())?;
-    folder.write(name, &json(name, &run.study)?)?;
+    folder.write("percolation.csv", &csv(&thresholds))?;
+    folder.write(name, &json(name, &study)?)?;
     callbacks.finish(kind, &folder)?;
-    Ok(run.study)
-}
-
-/// Thresholds of several sizes of lattice.
-#[derive(Debug)]
-pub struct PercolationRun {
-    /// What `percolation.json` holds.
-    pub study: PercolationStudy,
-    /// Voids along x and y, and layers; and the threshold of each realisation in order.
-    pub thresholds: Vec<([u32; 3], Vec<f64>)>,
-}
-
-/// What a study is asked for, checked.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PercolationPlan {
-    /// Voids along x and y, and layers: cubes first, ascending, each lattice once.
-    shapes: Vec<[u32; 3]>,
-    realisations: u64,
-    seed: u64,
+    Ok(study)
 }
 
 impl PercolationPlan {
-    /// `realisations` lattices of each of these shapes.
+    /// Cubes first, ascending, each lattice once.
     ///
     /// # Errors
     /// A length of 0, or more constrictions than 32 bits can number.
-    pub fn new(mut shapes: Vec<[u32; 3]>, realisations: u64, seed: u64) -> Result<Self, NetworkError> {
-        shapes.sort_unstable_by_key(|&shape| (!is_cube(shape), shape));
-        shapes.dedup();
-        for &shape in &shapes {
+    pub fn checked(mut self) -> Result<Self, NetworkError> {
+        self.shapes.sort_unstable_by_key(|&shape| (!is_cube(shape), shape));
+        self.shapes.dedup();
+        for &shape in &self.shapes {
             Network::lattice_constrictions(shape)?;
         }
-        Ok(Self { shapes, realisations, seed })
+        Ok(self)
     }
 
     /// Finds every threshold, realisations side by side; the same bits for any number of threads.
     ///
     /// # Errors
-    /// None that [`PercolationPlan::new`] has not found.
-    pub fn run(&self) -> Result<PercolationRun, NetworkError> {
+    /// None that [`PercolationPlan::checked`] has not found.
+    fn run(&self) -> Result<(PercolationStudy, Thresholds), NetworkError> {
         let begun = Instant::now();
         let mut thresholds = Vec::new();
         for &shape in &self.shapes {
@@ -115,38 +106,38 @@ impl PercolationPlan {
             thresholds.push((shape, all?));
         }
         let study = PercolationStudy::new(self.seed, &thresholds, begun.elapsed().as_secs_f64());
-        Ok(PercolationRun { study, thresholds })
+        Ok((study, thresholds))
     }
 }
 
-impl PercolationRun {
-    /// One row a realisation: `size,realisation,threshold`; the size of a lattice that is no cube is written
-    /// as 40x40x60.
-    pub fn csv(&self) -> String {
-        let mut text = String::from("size,realisation,threshold\n");
-        for (shape, all) in &self.thresholds {
-            let size = lattice_name(*shape);
-            for (index, threshold) in all.iter().enumerate() {
-                // Writing to a string cannot fail.
-                let _ = writeln!(text, "{size},{},{threshold}", index + 1);
-            }
-        }
-        text
-    }
+/// `percolation.csv`: one row a realisation; the size of a lattice that is no cube is written as 40x40x60.
+fn csv(thresholds: &Thresholds) -> Vec<u8> {
+    let of_lattice = |(shape, all): &'_ ([u32; 3], Vec<f64>)| {
+        let shape = *shape;
+        (1..).zip(all.clone()).map(move |(realisation, threshold)| (shape, realisation, threshold))
+    };
+    let rows: Vec<([u32; 3], u64, f64)> = thresholds.iter().flat_map(of_lattice).collect();
+    Columns::default()
+        .column("size", |row: &([u32; 3], u64, f64)| lattice_name(row.0))
+        .column("realisation", |row| row.1)
+        .column("threshold", |row| row.2)
+        .csv(&rows)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn plan(shapes: Vec<[u32; 3]>, realisations: u64, seed: u64) -> Result<PercolationPlan, NetworkError> {
+        PercolationPlan { shapes, realisations, seed }.checked()
+    }
+
     #[test]
     fn threads_change_no_bit() {
-        let plan =
-            PercolationPlan::new(vec![[4, 5, 6], [12; 3], [6; 3], [4, 5, 6], [6; 3], [4, 3, 9]], 20, 3)
-                .unwrap();
+        let plan = plan(vec![[4, 5, 6], [12; 3], [6; 3], [4, 5, 6], [6; 3], [4, 3, 9]], 20, 3).unwrap();
         let on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| plan.run()).unwrap().csv()
+            String::from_utf8(csv(&pool.install(|| plan.run()).unwrap().1)).unwrap()
         };
         let one = on(1);
         assert_eq!(one, on(3));
@@ -159,7 +150,7 @@ mod tests {
 
     #[test]
     fn impossible_sizes_are_refused_before_any_work() {
-        assert!(PercolationPlan::new(vec![[10, 10, 0]], 1, 1).is_err());
-        assert!(PercolationPlan::new(vec![[2000; 3]], 1, 1).is_err());
+        assert!(plan(vec![[10, 10, 0]], 1, 1).is_err());
+        assert!(plan(vec![[2000; 3]], 1, 1).is_err());
     }
 }

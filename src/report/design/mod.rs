@@ -10,9 +10,10 @@ use super::error::ReportError;
 use super::files::{json, rows};
 use super::numbers::{capital, duration, significant, threshold, trimmed, whole};
 use super::rules;
-use super::shell::{self, clean, fact, leaves_out, whole_page};
+use super::section::Sections;
+use super::shell::{citation, clean, fact, leaves_out};
 use super::table::Table;
-use super::written::{Written, write_page_as};
+use super::written::Written;
 use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow};
 use crate::outcome::record::{AppliedRule, Confidence, RuleRole};
 
@@ -25,45 +26,41 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
     let design: Design = json(&folder.join("design.json"))?;
     let walks: Vec<(u64, WalkRow)> = rows(&folder.join("design.csv"))?;
     let walks: Vec<WalkRow> = walks.into_iter().map(|(_, row)| row).collect();
-    let drawn: Vec<shell::Drawn> = figure::erosion(&design, &walks).into_iter().collect();
     let title = match design.inverse {
         false => "How coarse may the filter be?",
         true => "How fine may the base be?",
     };
-    let header = html! {
-        h1 { (title) }
-        p.names {
-            "Base " b { bdi { (clean(&design.base.name)) } } ", filter of the shape "
-            b { bdi { (clean(&design.filter)) } }
-        }
+    let names = html! {
+        "Base " b { bdi { (clean(&design.base.name)) } } ", filter of the shape "
+        b { bdi { (clean(&design.filter)) } }
     };
-    let main = html! {
-        section.sheet {
-            div.first {
-                (answer(&design))
-                (leaves_out(&design.model_leaves_out, &html! {
-                    p { "The boundaries are the model’s. They do not replace a filter test or a designer’s \
-                         judgement." }
-                }))
-            }
-            (said("Why this is in doubt", &design.reasons, design.confidence))
-            (said("Before you rely on this", &design.warnings, Confidence::Outside))
+    let sheet = html! { section.sheet {
+        div.first {
+            (answer(&design))
+            (leaves_out(&design.model_leaves_out, &html! {
+                p { "The boundaries are the model’s. They do not replace a filter test or a designer’s \
+                     judgement." }
+            }))
         }
-        (shell::contents())
-        @for (number, drawn) in (1..).zip(&drawn) { (shell::figure(number, drawn)) }
-        (boundaries(&design))
-        (bands(&design))
-        (products(&design))
-        (practice(&design))
-        (networks(&design))
-        (made(&design, &walks))
-    };
+        (said("Why this is in doubt", &design.reasons, design.confidence))
+        (said("Before you rely on this", &design.warnings, Confidence::Outside))
+    } };
     let footer = html! {
-        (shell::citation())
+        (citation())
         p { "The classes: Foster and Fell, as that paper uses them." }
         p.small { "voidwalk " (design.version) ", " (duration(design.seconds)) "." }
     };
-    write_page_as("design.html", folder, &drawn, &whole_page(title, &header, &main, &footer))
+    Sections::new(title, title, &names)
+        .words(&sheet)
+        .contents()
+        .figures(figure::erosion(&design, &walks))
+        .section("Boundaries of the model", &boundaries(&design))
+        .section("The band of a specification", &bands(&design))
+        .section("Standard products", &products(&design))
+        .section("Rules of practice", &practice(&design))
+        .section("Network by network", &networks(&design))
+        .section("How this was made", &made(&design, &walks))
+        .write(folder, "design.html", &footer)
 }
 
 fn answer(design: &Design) -> Markup {
@@ -185,7 +182,6 @@ fn boundaries(design: &Design) -> Markup {
         format!("{} layers{mm}", whole(row.layers))
     };
     html! {
-        h2 { "Boundaries of the model" }
         p {
             "What the walks alone say, before practice: D15F/D85B" (of_base)
             ", median and 5 to 95 % of " (whole(design.replicates)) " networks; below it the "
@@ -231,7 +227,6 @@ fn bands(design: &Design) -> Markup {
     };
     html! {
         @if !rows.is_empty() {
-            h2 { "The band of a specification" }
             p {
                 "D15F from the least that drains the base to the greatest that both allow: the walk, in \
                  which \
@@ -266,7 +261,6 @@ fn products(design: &Design) -> Markup {
     };
     html! {
         @if !design.products.is_empty() {
-            h2 { "Standard products" }
             p {
                 "Which of them have the D15 of both their sides within the narrowest band, with practice \
                  agreeing. D15 is interpolated between sieves. Their own shapes were not walked: another \
@@ -302,7 +296,6 @@ fn practice(design: &Design) -> Markup {
     let rules: Vec<&AppliedRule> = design.rules.iter().filter(|rule| rule.role != RuleRole::Walk).collect();
     html! {
         @if !rules.is_empty() {
-            h2 { "Rules of practice" }
             p {
                 "Of a filter with D15F/D85B " (ratio(design.rules_at))
                 @if design.least_held().is_some() { ", the coarsest that is said to hold" } "."
@@ -315,7 +308,6 @@ fn practice(design: &Design) -> Markup {
 fn networks(design: &Design) -> Markup {
     let digits = |value: Option<f64>| value.map_or_else(|| "beyond".to_owned(), |v| format!("{v:.3}"));
     html! {
-        h2 { "Network by network" }
         @for row in &design.boundaries {
             h3 { (clean(&format!("{}, {}", row.density, row.thickness))) }
             (Table::of(&row.networks)
@@ -333,7 +325,6 @@ fn made(design: &Design, walks: &[WalkRow]) -> Markup {
     let grains = design.boundaries.iter().find_map(|row| row.grains_per_void);
     let asked = design.settings.join(" ");
     html! {
-        h2 { "How this was made" }
         table.facts { tbody {
             (fact("Base", &design.base.name))
             (fact("Cu of the base as walked; D15 as sampled, D85 as walked", format!(

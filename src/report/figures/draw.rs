@@ -1,57 +1,18 @@
-//! From a [`Figure`] to SVG: margins, grid, marks, names.
+//! From a [`Figure`] to SVG: marks, and their names where there is room.
 
-use super::axis::{Axis, Tick};
 use super::colour::Colour;
 use super::curves;
 use super::figure::{Figure, Naming, Size};
+use super::frame::{Frame, LABEL_TEXT, LINE_HEIGHT, TICK_TEXT, axis_labels, grid, roomy};
 use super::hover;
 use super::marks::{Across, Dash, Line, Mark, Point, Shape};
-use super::path::{along, simplify};
+use super::path::along;
 use super::place::{Canvas, GAP, Rect};
 use super::sieves;
 use super::svg::{Anchor, FONT, Svg, escape, short, width_of, wrap};
 
-const TICK_TEXT: f64 = 13.0;
-const LABEL_TEXT: f64 = 14.0;
-const LINE_HEIGHT: f64 = 17.0;
+/// Half the width of a symbol.
 const SYMBOL: f64 = 4.5;
-/// The narrowest and lowest frame.
-const LEAST: f64 = 60.0;
-
-/// Where values fall in pixels.
-struct Frame<'a> {
-    x: &'a Axis,
-    y: &'a Axis,
-    area: Rect,
-}
-
-impl Frame<'_> {
-    fn x_at(&self, value: f64) -> Option<f64> {
-        let share = self.x.position(value)?;
-        let share = if self.x.downward { 1.0 - share } else { share };
-        Some(self.area.left + share * (self.area.right - self.area.left))
-    }
-
-    fn y_at(&self, value: f64) -> Option<f64> {
-        let share = self.y.position(value)?;
-        let share = if self.y.downward { share } else { 1.0 - share };
-        Some(self.area.top + share * (self.area.bottom - self.area.top))
-    }
-
-    fn at(&self, point: (f64, f64)) -> Option<(f64, f64)> {
-        Some((self.x_at(point.0)?, self.y_at(point.1)?))
-    }
-
-    fn path(&self, points: &[(f64, f64)]) -> Vec<(f64, f64)> {
-        simplify(points.iter().filter_map(|point| self.at(*point)))
-    }
-
-    /// A path kept inside the frame, for finding room: what the clip hides needs none.
-    fn seen(&self, path: &[(f64, f64)]) -> Vec<(f64, f64)> {
-        let area = &self.area;
-        path.iter().map(|(x, y)| (x.clamp(area.left, area.right), y.clamp(area.top, area.bottom))).collect()
-    }
-}
 
 impl Figure {
     /// A file of its own.
@@ -277,120 +238,6 @@ fn key(svg: &mut Svg, figure: &Figure, above: &[usize], width: f64, top: f64) ->
     if above.is_empty() { top } else { row + LINE_HEIGHT + 8.0 }
 }
 
-/// A frame that is not too low for anything to be seen, whatever stands above and below it: the figure grows.
-fn roomy(figure: &Figure, width: f64, height: f64, top: f64) -> (Frame<'_>, f64) {
-    let first = frame(figure, width, height, top);
-    let high = first.area.bottom - first.area.top;
-    if high >= LEAST {
-        return (first, height);
-    }
-    // The label beside the frame breaks into fewer lines where the frame is higher, which makes it wider: at
-    // most the labels below then need fewer lines.
-    let height = height + LEAST - high;
-    (frame(figure, width, height, top), height)
-}
-
-fn frame(figure: &Figure, width: f64, height: f64, top: f64) -> Frame<'_> {
-    let widest = |axis: &Axis| {
-        let texts = axis.ticks.iter().flat_map(|tick| &tick.text);
-        texts.map(|text| width_of(text, TICK_TEXT)).fold(0.0, f64::max)
-    };
-    let rows = figure.x.ticks.iter().map(|tick| tick.text.len()).max().unwrap_or(0) as f64;
-    let right = width - 20.0;
-    let y_lines = if figure.y.label.is_empty() {
-        0
-    } else {
-        wrap(&figure.y.label, LABEL_TEXT, height - top - 90.0).len()
-    };
-    // What is too long to stand beside the frame is cut off at the figure's edge.
-    let left = (12.0 + y_lines as f64 * LINE_HEIGHT + widest(&figure.y) + 12.0).min(right - LEAST);
-    let x_lines = wrap(&figure.x.label, LABEL_TEXT, right - left).len() as f64;
-    let bottom = height - 10.0 - (x_lines + rows) * LINE_HEIGHT - 6.0;
-    let top = top + 4.0;
-    let side = if figure.square { (right - left).min(bottom - top).max(0.0) } else { f64::INFINITY };
-    let (right, bottom) = (right.min(left + side), bottom.min(top + side));
-    Frame { x: &figure.x, y: &figure.y, area: Rect { left, top, right, bottom } }
-}
-
-fn grid(svg: &mut Svg, frame: &Frame<'_>) {
-    let Rect { left, top, right, bottom } = frame.area;
-    let minor = r##"stroke="#e6e6e6" stroke-width="0.8""##;
-    let major = r##"stroke="#bdbdbd" stroke-width="1""##;
-    for strong in [false, true] {
-        let paint = if strong { major } else { minor };
-        let drawn = |tick: &&Tick| (!tick.text.is_empty() && tick.rank == 0) == strong;
-        for x in frame.x.ticks.iter().filter(drawn).filter_map(|tick| frame.x_at(tick.at)) {
-            svg.line((x, top), (x, bottom), paint);
-        }
-        for y in frame.y.ticks.iter().filter(drawn).filter_map(|tick| frame.y_at(tick.at)) {
-            svg.line((left, y), (right, y), paint);
-        }
-    }
-    for (tick, x) in labelled(frame.x, |tick| {
-        let wide = tick.text.iter().map(|text| width_of(text, TICK_TEXT)).fold(0.0, f64::max);
-        frame.x_at(tick.at).map(|x| (x, wide / 2.0 + 4.0))
-    }) {
-        for (row, text) in tick.text.iter().enumerate() {
-            svg.text((x, bottom + 17.0 + row as f64 * LINE_HEIGHT), Anchor::Middle, text, "");
-        }
-    }
-    for (tick, y) in
-        labelled(frame.y, |tick| frame.y_at(tick.at).map(|y| (y, LINE_HEIGHT * tick.text.len() as f64 / 2.0)))
-    {
-        let first = y + 4.5 - (tick.text.len() as f64 - 1.0) * LINE_HEIGHT / 2.0;
-        for (row, text) in tick.text.iter().enumerate() {
-            svg.text((left - 7.0, first + row as f64 * LINE_HEIGHT), Anchor::End, text, "");
-        }
-    }
-}
-
-/// The ticks whose labels fit beside one another, the important ones first, each with its place. `room` gives
-/// the place of a tick and half the room of its label.
-fn labelled(axis: &Axis, room: impl Fn(&Tick) -> Option<(f64, f64)>) -> Vec<(&Tick, f64)> {
-    let mut kept: Vec<(&Tick, f64, f64)> = Vec::new();
-    let highest = axis.ticks.iter().map(|tick| tick.rank).max().unwrap_or(0);
-    for rank in 0..=highest {
-        let group: Vec<_> = axis
-            .ticks
-            .iter()
-            .filter(|tick| tick.rank == rank && !tick.text.is_empty())
-            .filter_map(|tick| room(tick).map(|(at, half)| (tick, at, half)))
-            .collect();
-        // the first rank is thinned evenly until it fits; a lower one comes whole or not at all
-        let fits = |stride: usize| {
-            let mut all = kept.clone();
-            all.extend(group.iter().step_by(stride));
-            all.sort_by(|a, b| a.1.total_cmp(&b.1));
-            all.windows(2).all(|pair| pair[1].1 - pair[0].1 >= pair[0].2 + pair[1].2)
-        };
-        if group.is_empty() {
-            continue;
-        }
-        let most = if kept.is_empty() { group.len() } else { 1 };
-        match (1..=most).find(|stride| fits(*stride)) {
-            Some(stride) => kept.extend(group.into_iter().step_by(stride)),
-            None => break,
-        }
-    }
-    kept.into_iter().map(|(tick, at, _)| (tick, at)).collect()
-}
-
-fn axis_labels(svg: &mut Svg, frame: &Frame<'_>, height: f64) {
-    let Rect { left, top, right, bottom } = frame.area;
-    let size = format!("font-size=\"{LABEL_TEXT}\"");
-    let lines = wrap(&frame.x.label, LABEL_TEXT, right - left);
-    let first = height - 12.0 - (lines.len() as f64 - 1.0) * LINE_HEIGHT;
-    for (row, line) in lines.iter().enumerate() {
-        svg.text(((left + right) / 2.0, first + row as f64 * LINE_HEIGHT), Anchor::Middle, line, &size);
-    }
-    let middle = (top + bottom) / 2.0;
-    for (row, line) in wrap(&frame.y.label, LABEL_TEXT, height - top - 90.0).iter().enumerate() {
-        let x = 20.0 + row as f64 * LINE_HEIGHT;
-        let turned = format!("{size} transform=\"rotate(-90 {} {})\"", short(x), short(middle));
-        svg.text((x, middle), Anchor::Middle, line, &turned);
-    }
-}
-
 fn draw_mark(svg: &mut Svg, canvas: &mut Canvas, frame: &Frame<'_>, mark: &Mark, index: usize) {
     match mark {
         Mark::Area(area) => {
@@ -536,22 +383,4 @@ fn anchors(frame: &Frame<'_>, mark: &Mark) -> Vec<(f64, f64)> {
 fn reach(frame: &Frame<'_>, outline: &[(f64, f64)]) -> (f64, f64) {
     let seen = frame.seen(&frame.path(outline));
     seen.iter().fold((f64::MAX, f64::MIN), |(least, most), (x, _)| (least.min(*x), most.max(*x)))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn crowded_tick_labels_are_thinned_and_the_important_kept() {
-        let axis = Axis::log("x", 0.11, 8.5);
-        let kept = |half: f64| {
-            let found = labelled(&axis, |tick| axis.position(tick.at).map(|share| (share * 300.0, half)));
-            let mut texts: Vec<_> = found.into_iter().map(|(tick, _)| tick.text[0].clone()).collect();
-            texts.sort();
-            texts
-        };
-        assert_eq!(kept(10.0), ["0.1", "0.2", "0.5", "1", "2", "5"]);
-        assert_eq!(kept(40.0), ["0.1", "1"]);
-    }
 }

@@ -21,6 +21,7 @@ mod colour;
 mod curves;
 mod draw;
 mod figure;
+mod frame;
 mod hover;
 mod marks;
 mod path;

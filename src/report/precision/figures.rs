@@ -2,8 +2,8 @@
 //! samples.
 
 use crate::outcome::precision::{
-    BiasRow, DecisionTier, ExactRow, ExactTier, PackingTier, SamplingLine, SamplingTier, ScalingRow,
-    TriangulationRow,
+    BiasRow, DecisionRow, DecisionTier, ExactRow, ExactTier, PackingTier, SamplingLine, SamplingTier,
+    ScalingRow, TriangulationRow,
 };
 use crate::report::figures::{
     Across, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Point, Rule, Shape,
@@ -32,6 +32,11 @@ fn look(name: &str) -> (Colour, Shape) {
 /// An empty figure with room for names above its frame, on a page and on a telephone.
 fn figure(title: &str, what: &str, x: Axis, y: Axis) -> Figure {
     Figure::new(title, what, "", x, y).names_above().sizes((720.0, 500.0), (358.0, 600.0))
+}
+
+/// A thin line with a name, still without points.
+fn curve(colour: Colour, name: &str) -> Line {
+    Line::new(Vec::new(), colour).width(1.5).label(name)
 }
 
 /// A logarithmic axis around positive values.
@@ -154,12 +159,9 @@ fn scatter(sampling: &SamplingTier, name: &'static str, caption: &str, lines: &[
     for line in lines {
         let (colour, shape) = look(&line.variant);
         let of_line = || rows().filter(|row| row.variant == line.variant);
-        let path = of_line().map(|row| (row.core_seconds, PP * row.error)).collect();
-        figure.add(Line::new(path, colour).width(1.5).label(&line.variant));
-        for row in of_line() {
-            let bar = Some((PP * row.error_low, PP * row.error_high));
-            figure.add(Point::new(row.core_seconds, PP * row.error, colour, shape).y_interval(bar));
-        }
+        let points = of_line()
+            .map(|row| (row.core_seconds, PP * row.error, Some((PP * row.error_low, PP * row.error_high))));
+        figure.add_series(curve(colour, &line.variant), shape, points);
     }
     figure.add(guide((first.core_seconds, PP * first.sd), seconds()));
     if let (true, Some(floor)) = (kind == "new networks", between_networks(sampling, first)) {
@@ -313,13 +315,12 @@ pub(super) fn decision(decision: &DecisionTier) -> Vec<Drawn> {
         let of = |fixed: bool| {
             decision.rows.iter().filter(move |row| row.case == case.name && (row.rule == "fixed") == fixed)
         };
-        let path = of(true).map(|row| (row.core_seconds, PP * row.wrong)).collect();
-        figure.add(Line::new(path, colour).width(1.5).label(&case.name));
-        for (fixed, colour, shape) in [(true, colour, Shape::Circle), (false, VERMILLION, Shape::Diamond)] {
-            for row in of(fixed) {
-                let bar = Some((PP * row.wrong_low, PP * row.wrong_high));
-                figure.add(Point::new(row.core_seconds, PP * row.wrong, colour, shape).y_interval(bar));
-            }
+        let point = |row: &DecisionRow| {
+            (row.core_seconds, PP * row.wrong, Some((PP * row.wrong_low, PP * row.wrong_high)))
+        };
+        figure.add_series(curve(colour, &case.name), Shape::Circle, of(true).map(point));
+        for (x, y, bar) in of(false).map(point) {
+            figure.add(Point::new(x, y, VERMILLION, Shape::Diamond).y_interval(bar));
         }
     }
     let caption = "Share of trials whose class is not that of all replicates together, against their \
@@ -360,9 +361,11 @@ pub(super) fn scaling(rows: &[ScalingRow]) -> Vec<Drawn> {
         for engine in distinct(of.iter().copied(), |row| &row.engine) {
             let (colour, shape) = look(engine);
             let of_engine = of.iter().filter(|row| row.engine == engine);
-            let points: Vec<(f64, f64)> = of_engine.map(|row| (x(row), row.core_seconds)).collect();
-            points.iter().for_each(|&(x, y)| figure.add(Point::new(x, y, colour, shape)));
-            figure.add(Line::new(points, colour).width(1.5).label(engine));
+            figure.add_series(
+                curve(colour, engine),
+                shape,
+                of_engine.map(|row| (x(row), row.core_seconds, None)),
+            );
         }
         let end = of.iter().rfind(|row| row.engine == "particles").or(of.first())?;
         figure.add(power((x(end), end.core_seconds), 1.0, all_x(), GREY).label("slope 1"));

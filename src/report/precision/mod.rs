@@ -11,14 +11,15 @@ use maud::{Markup, html};
 use super::error::ReportError;
 use super::files::json;
 use super::numbers::{duration, whole};
-use super::shell::{self, Drawn, clean, fact, figure, whole_page};
-use super::written::{Written, write_page_as};
+use super::section::Sections;
+use super::shell::{Drawn, clean, fact};
+use super::written::Written;
 use crate::outcome::precision::Precision;
 
 pub use judgements::precision_judgements;
 
 /// A tier on the page.
-struct Section {
+struct Tier {
     name: &'static str,
     heading: &'static str,
     question: String,
@@ -32,46 +33,33 @@ struct Section {
 /// `precision.json` is missing or malformed, or a file cannot be written.
 pub fn write_precision(folder: &Path) -> Result<Written, ReportError> {
     let study: Precision = json(&folder.join("precision.json"))?;
-    let sections = sections(&study);
     let judgements = precision_judgements(&study);
     let title = "Error against run time";
-    let header = html! {
-        h1 { (title) }
-        p.names { (clean(&study.scene)) }
-    };
-    let mut number = 0;
-    let main = html! {
-        p {
-            "How much accuracy a second of processor time buys. Errors are standard deviations over \
-             replicates, never worked "
-            "out from the number of particles; bars are 95 % intervals. The figure of merit is 1 / (error² \
-             × time): it does not "
-            "depend on how many replicates were walked, and of two settings the one with the larger figure \
-             of merit gives "
-            "the same accuracy in less time."
-        }
-        (tables::merits(&study))
-        (shell::contents())
-        @for section in &sections {
-            h2 { (section.heading) }
-            p { (clean(&section.question)) }
-            @for (_, sentence) in judgements.iter().filter(|(tier, _)| *tier == section.name) {
+    let lead = html! { p {
+        "How much accuracy a second of processor time buys. Errors are standard deviations over replicates, \
+         never worked out from the number of particles; bars are 95 % intervals. The figure of merit is 1 / \
+         (error² × time): it does not depend on how many replicates were walked, and of two settings the one \
+         with the larger figure of merit gives the same accuracy in less time."
+    } };
+    let mut page = Sections::new(title, title, &html! { (clean(&study.scene)) })
+        .words(&lead)
+        .words(&tables::merits(&study))
+        .contents();
+    for tier in tiers(&study) {
+        let words = html! {
+            p { (clean(&tier.question)) }
+            @for (_, sentence) in judgements.iter().filter(|(name, _)| *name == tier.name) {
                 p { b { (clean(sentence)) } }
             }
-            @for drawn in &section.figures { ({ number += 1; figure(number, drawn) }) }
-            (section.tables)
-        }
-        (made(&study))
-    };
-    let footer = html! {
-        p.small { "voidwalk " (study.version) ", " (duration(study.seconds)) "." }
-    };
-    let drawn: Vec<Drawn> = sections.into_iter().flat_map(|section| section.figures).collect();
-    write_page_as("precision.html", folder, &drawn, &whole_page(title, &header, &main, &footer))
+        };
+        page = page.section(tier.heading, &words).figures(tier.figures).words(&tier.tables);
+    }
+    let footer = html! { p.small { "voidwalk " (study.version) ", " (duration(study.seconds)) "." } };
+    page.section("How this was made", &made(&study)).write(folder, "precision.html", &footer)
 }
 
-fn sections(study: &Precision) -> Vec<Section> {
-    let exact = study.exact.as_ref().map(|exact| Section {
+fn tiers(study: &Precision) -> Vec<Tier> {
+    let exact = study.exact.as_ref().map(|exact| Tier {
         name: "exact",
         heading: "Against exact answers",
         question: "On a given network the probability that a first particle leaves is known by a linear \
@@ -81,7 +69,7 @@ fn sections(study: &Precision) -> Vec<Section> {
         figures: figures::exact(exact),
         tables: tables::exact(exact),
     });
-    let sampling = study.sampling.as_ref().map(|sampling| Section {
+    let sampling = study.sampling.as_ref().map(|sampling| Tier {
         name: "sampling",
         heading: "Scatter of this scene",
         question: format!(
@@ -93,7 +81,7 @@ fn sections(study: &Precision) -> Vec<Section> {
         figures: figures::sampling(sampling),
         tables: tables::sampling(sampling),
     });
-    let bias = study.bias.as_ref().map(|bias| Section {
+    let bias = study.bias.as_ref().map(|bias| Tier {
         name: "bias",
         heading: "What settings do to the answer",
         question:
@@ -103,7 +91,7 @@ fn sections(study: &Precision) -> Vec<Section> {
         figures: figures::bias(bias),
         tables: tables::bias(bias),
     });
-    let decision = study.decision.as_ref().map(|decision| Section {
+    let decision = study.decision.as_ref().map(|decision| Tier {
         name: "decision",
         heading: "Wrong verdicts",
         question: format!(
@@ -114,14 +102,14 @@ fn sections(study: &Precision) -> Vec<Section> {
         figures: figures::decision(decision),
         tables: tables::decision(decision),
     });
-    let scaling = study.scaling.as_ref().map(|scaling| Section {
+    let scaling = study.scaling.as_ref().map(|scaling| Tier {
         name: "scaling",
         heading: "What a larger problem costs",
         question: "Processor time of one first run.".into(),
         figures: figures::scaling(scaling),
         tables: tables::scaling(scaling),
     });
-    let packing = study.packing.as_ref().map(|packing| Section {
+    let packing = study.packing.as_ref().map(|packing| Tier {
         name: "packing",
         heading: "Packing and triangulation",
         question: "Void ratio and constriction curve of small packings of this scene's filter, one setting \
@@ -135,7 +123,6 @@ fn sections(study: &Precision) -> Vec<Section> {
 
 fn made(study: &Precision) -> Markup {
     html! {
-        h2 { "How this was made" }
         div.scroll { table.facts { tbody {
             (fact("Started (UTC)", &study.started))
             (fact("Machine", &study.machine))
@@ -150,10 +137,8 @@ fn made(study: &Precision) -> Markup {
         } } }
         p.small {
             "The same seed and budget give the same numbers on every machine; only times differ. Each run is \
-             walked by one "
-            "thread and its time is that thread's processor time. The numbers of every figure are in the CSV \
-             files beside "
-            "this page."
+             walked by one thread and its time is that thread's processor time. The numbers of every figure \
+             are in the CSV files beside this page."
         }
     }
 }

@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 
 use serde_json::{Value, json};
 
-use crate::campaign::CampaignCallbacks;
+use crate::campaign::{CampaignCallbacks, CampaignOptions, CasePart};
 use crate::outcome::record::Outcome;
 use crate::run::callbacks::Callbacks;
 use crate::run::checkpoints::CheckpointInterval;
@@ -15,7 +15,7 @@ use crate::run::{self, FolderKind, PrepareOptions, RunError, RunOptions};
 use crate::scene::Scene;
 use crate::serve::designs::{KeptDesign, of_design};
 use crate::serve::live::Live;
-use crate::study::compare::{self, CompareOptions, ComparePlan};
+use crate::study::compare::{self, ComparePlan};
 use crate::study::design;
 
 /// What is done with results that are whole.
@@ -98,10 +98,10 @@ impl WorkContext {
             }
             Work::Resume => run::resume(folder, &options, &callbacks).map(|run| of_run(&run.outcome)),
             Work::Compare(plan) => {
-                let options = CompareOptions {
+                let options = CampaignOptions {
                     out: folder.to_owned(),
-                    overwrite: false,
-                    packings: self.prepare.packings.clone(),
+                    part: CasePart::All,
+                    packings: Some(self.prepare.packings.clone()),
                     memory: self.prepare.memory,
                     threads: self.prepare.threads,
                     checkpoint_interval: often(),
@@ -112,7 +112,7 @@ impl WorkContext {
                     on_cases: &|all, done| live().cases(all, done),
                     on_case: &|case, event| live().tell_case(case, event),
                 };
-                Ok(serde_json::to_value(compare::run(plan, &options, &callbacks)?)?)
+                Ok(serde_json::to_value(compare::run(plan, &options, false, &callbacks)?)?)
             }
             Work::Design(kept) => {
                 let options = kept.options(&self.root, folder, &self.prepare)?;

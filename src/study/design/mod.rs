@@ -15,7 +15,6 @@
 #[cfg(test)]
 mod answer_tests;
 mod judged;
-mod kept;
 mod options;
 mod plan;
 mod practice;
@@ -33,23 +32,19 @@ use rayon::prelude::*;
 
 pub use options::{DesignOptions, Thickness};
 
-use super::kept::Kept;
+use super::kept::{self, Kept};
 use crate::outcome::design::Design;
 use crate::run::callbacks::{Callbacks, Event};
 use crate::run::error::{Exit, RunError};
-use crate::run::folder::{FolderKind, claim, clear};
+use crate::run::folder::{FolderKind, claim};
 use crate::run::machine::on_threads;
 use crate::run::pack::provide;
 use crate::run::prepare::Draft;
 use crate::run::replicates::have_networks;
-use crate::run::results::json;
-use crate::run::unfinished::{self, Unfinished};
 use crate::scene::{BaseGradation, D85};
-use crate::store::Folder;
-use kept::{Done, KEPT};
 use plan::{Wanted, wanted};
 use row::Row;
-use search::{BRACKETS, METHOD, NARROWEST, Start};
+use search::{BRACKETS, Done, METHOD, NARROWEST, Start};
 
 /// A base coarser than this (D85, mm) is none: its sizes are in another unit.
 const NO_BASE_MM: f64 = 100.0;
@@ -80,37 +75,11 @@ fn run_here(options: &DesignOptions, callbacks: &Callbacks) -> Result<Design, Ru
     let rows = drafts.into_iter().map(|draft| draft.packed(options, callbacks));
     let rows = with_curve_ends(rows.collect::<Result<_, _>>()?);
     let work = work(&rows, options.bracket);
-    let mark = Unfinished { kind: kind.name().into(), work, ..Unfinished::default() };
-    let kept = Kept::new(&KEPT, &folder, &mark.work);
-    if let Some(design) = mark.whole(&folder, kind.record())?.filter(|_| !options.overwrite) {
-        whole(&folder, &kept, callbacks)?;
-        return Ok(design);
-    }
-    // What is to be replaced is other work: networks of this very work that was stopped are gone on with.
-    let is_begun = Unfinished::read(&folder)?.as_ref() == Some(&mark);
-    let done = match options.overwrite {
-        true if is_begun => kept.newest(callbacks).ok().flatten().unwrap_or_default(),
-        true => Vec::new(),
-        false => kept.newest(callbacks)?.unwrap_or_default(),
-    };
-    if done.is_empty() {
-        clear(&folder, kind)?;
-    }
-    mark.begin(&folder)?;
-    let done = searched(&rows, options.bracket, done, &kept, callbacks)?;
-    let design = summary::design(&rows, &done, options, begun.elapsed().as_secs_f64())?;
-    folder.write("design.csv", &summary::csv(&rows, &done)?)?;
-    // The page is made of both.
-    folder.write(kind.record(), &json(kind.record(), &design)?)?;
-    whole(&folder, &kept, callbacks)?;
-    Ok(design)
-}
-
-/// The page is written, and nothing is left to continue.
-fn whole(folder: &Folder, kept: &Kept, callbacks: &Callbacks) -> Result<(), RunError> {
-    callbacks.results(FolderKind::Design, folder.path())?;
-    kept.discard()?;
-    Ok(unfinished::end(folder)?)
+    kept::study((&folder, kind, options.overwrite), work, callbacks, |kept, done| {
+        let done = searched(&rows, options.bracket, done.unwrap_or_default(), kept, callbacks)?;
+        folder.write("design.csv", &summary::csv(&rows, &done))?;
+        summary::design(&rows, &done, options, begun.elapsed().as_secs_f64())
+    })
 }
 
 /// A density and thickness that has been found sound.

@@ -2,7 +2,7 @@
 
 use crate::outcome::verdict::THRESHOLD;
 
-use super::kept::Done;
+use super::search::Done;
 
 /// Why the no-erosion boundary of these networks is in doubt: half of those that erode, or more, hold a ratio
 /// above one at which they do.

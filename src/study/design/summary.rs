@@ -1,10 +1,10 @@
 //! Puts what the networks say together: the record and the table of a design.
 
 use super::judged::{Judged, Said};
-use super::kept::Done;
 use super::options::{DesignOptions, Thickness};
 use super::practice::{allowed, finest_base};
 use super::row::Row;
+use super::search::Done;
 use super::steadiness;
 use crate::outcome::design::band::Band;
 use crate::outcome::design::products::fits;
@@ -14,6 +14,7 @@ use crate::outcome::design::{
 };
 use crate::outcome::leaves_out;
 use crate::outcome::record::Confidence;
+use crate::outcome::table::csv_of;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
 
@@ -243,29 +244,22 @@ fn judged_at(Asked { row, of, unsteady, .. }: &Asked, ratio: f64) -> Result<Said
 }
 
 /// `design.csv`.
-///
-/// # Errors
-/// None that a writer to memory has.
-pub(super) fn csv(rows: &[Row], done: &[Done]) -> Result<Vec<u8>, RunError> {
-    let format = |e: csv::Error| RunError::Format { file: "design.csv", source: e.into() };
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for done in done {
-        let wanted = &rows[done.row].wanted;
-        let of_base = base(&rows[done.row], "").size().map_or(String::new(), |size| size.grading());
-        for &(ratio, first, second) in &done.found.walks {
-            let row = WalkRow {
-                density: wanted.density.clone(),
-                thickness: wanted.thickness.to_string(),
-                network: done.network,
-                d15f_over_d85b: ratio,
-                eroded_first: first,
-                eroded_second: second,
-                d85b_of: of_base.clone(),
-            };
-            writer.serialize(row).map_err(format)?;
-        }
-    }
-    writer.into_inner().map_err(|e| RunError::Format { file: "design.csv", source: e.to_string().into() })
+pub(super) fn csv(rows: &[Row], done: &[Done]) -> Vec<u8> {
+    let of_network = |done: &Done| {
+        let (wanted, network) = (&rows[done.row].wanted, done.network);
+        let d85b_of = base(&rows[done.row], "").size().map_or(String::new(), |size| size.grading());
+        let row = |&(d15f_over_d85b, eroded_first, eroded_second): &(f64, f64, Option<f64>)| WalkRow {
+            density: wanted.density.clone(),
+            thickness: wanted.thickness.to_string(),
+            network,
+            d15f_over_d85b,
+            eroded_first,
+            eroded_second,
+            d85b_of: d85b_of.clone(),
+        };
+        done.found.walks.iter().map(row).collect::<Vec<_>>()
+    };
+    csv_of(&done.iter().flat_map(of_network).collect::<Vec<_>>())
 }
 
 fn settings(options: &DesignOptions) -> Vec<String> {

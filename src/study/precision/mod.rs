@@ -25,7 +25,6 @@ mod comparison;
 mod decision;
 mod exact;
 mod first_run;
-mod kept;
 mod networks;
 mod packing;
 mod sampling;
@@ -35,8 +34,7 @@ mod tables;
 mod twin;
 mod work;
 
-use super::kept::Kept;
-use kept::{Found, KEPT};
+use super::kept::{self, Kept};
 pub use study::{PrecisionStudy, Tier};
 use tables::tables;
 
@@ -44,15 +42,15 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
-use crate::outcome::precision::Precision;
+use serde::{Deserialize, Serialize};
+
+use crate::outcome::precision::{NetworkRow, Precision};
 use crate::packing::is_wide;
 use crate::run::callbacks::Callbacks;
 use crate::run::error::{Exit, RunError};
-use crate::run::folder::{FolderKind, claim, clear};
+use crate::run::folder::{FolderKind, claim};
 use crate::run::machine::{Machine, threads};
 use crate::run::prepare::{PrepareOptions, prepare_into};
-use crate::run::results::json;
-use crate::run::unfinished::{self, Unfinished};
 use crate::scene::Scene;
 
 /// Processor time that may be asked for (s).
@@ -101,28 +99,12 @@ pub fn run(scene: Scene, options: &PrecisionOptions, callbacks: &Callbacks) -> R
     let (case, folder) = pool.install(|| prepare_into(scene, &options.prepare, here, claim, callbacks))?;
     let is_wanted = |tier: &Tier| options.tiers.is_empty() || options.tiers.contains(tier);
     let tiers: Vec<Tier> = Tier::ALL.into_iter().filter(is_wanted).collect();
-    let (kind, name) = (FolderKind::Precision, FolderKind::Precision.record());
+    let kind = FolderKind::Precision;
     let mut work = format!("{} {tiers:?} {:?}", case.fingerprint(), options.budget);
     if is_wide(&case.filter) {
         // Earlier versions packed such filters otherwise.
         work += " heavier grains";
     }
-    let mark = Unfinished { kind: kind.name().into(), work, ..Unfinished::default() };
-    let kept = Kept::new(&KEPT, &folder, &mark.work);
-    let whole = || {
-        callbacks.results(kind, folder.path())?;
-        kept.discard()?;
-        Ok::<_, RunError>(unfinished::end(&folder)?)
-    };
-    if let Some(precision) = mark.whole(&folder, name)?.filter(|_| !options.overwrite) {
-        whole()?;
-        return Ok(precision);
-    }
-    let found = if options.overwrite { None } else { kept.newest(callbacks)? };
-    if found.is_none() {
-        clear(&folder, kind)?;
-    }
-    mark.begin(&folder)?;
     let study = PrecisionStudy {
         case: &case,
         tiers: &tiers,
@@ -130,14 +112,22 @@ pub fn run(scene: Scene, options: &PrecisionOptions, callbacks: &Callbacks) -> R
         threads: pool.current_num_threads(),
         callbacks,
     };
-    let Found { precision, networks } = study.run(&kept, found)?;
-    for (name, content) in tables(&precision, &networks)? {
-        folder.write(name, &content)?;
-    }
-    // The page is made of it.
-    folder.write(name, &json(name, &precision)?)?;
-    whole()?;
-    Ok(precision)
+    kept::study((&folder, kind, options.overwrite), work, callbacks, |kept, found| {
+        let Found { precision, networks } = study.run(kept, found)?;
+        for (name, content) in tables(&precision, &networks) {
+            folder.write(name, &content)?;
+        }
+        Ok(precision)
+    })
+}
+
+/// What has been found so far. Its numbers follow from seed and budget alone.
+#[derive(Default, Serialize, Deserialize)]
+struct Found {
+    /// The record, with the tiers that are done.
+    precision: Precision,
+    /// The networks of the tier of exact answers, at the most particles of each line.
+    networks: Vec<NetworkRow>,
 }
 
 impl PrecisionStudy<'_> {

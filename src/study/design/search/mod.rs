@@ -64,6 +64,17 @@ pub(super) struct Found {
     pub walks: Vec<(f64, f64, Option<f64>)>,
 }
 
+/// A network that is done.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Done {
+    /// Row, counted from 0.
+    pub row: usize,
+    /// Network, counted from 1.
+    pub network: u64,
+    /// What it says.
+    pub found: Found,
+}
+
 /// The stop nearest to a ratio, in steps.
 fn stop_near(ratio: f64) -> i64 {
     (libm::log(ratio) / BETWEEN_STEPS / STOP as f64).round() as i64 * STOP
