@@ -14,7 +14,7 @@
 use super::*;
 use crate::gradation::Gradation;
 use crate::outcome::applied::{AppliedRule, RuleRole};
-use crate::outcome::confidence::judge;
+use crate::verdict::judge;
 use crate::outcome::record::Verdict;
 
 /// Pairs of soils that are drawn.
