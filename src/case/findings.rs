@@ -5,7 +5,7 @@ use super::packed_filter::GUESSED_GRAINS_PER_VOID;
 use super::{Case, Input, PackingPlan, guesses_grains_per_void, replicate_seed};
 use crate::gradation::{FEW_FINES, FINES_MM, Gradation};
 use crate::network::ExitRule;
-use crate::outcome::Mistake;
+use crate::verdict::Mistake;
 use crate::verdict::beside::packed_part;
 use crate::verdict::{Finding, finding};
 
@@ -44,7 +44,7 @@ impl Case {
     pub fn findings(&self) -> Vec<Finding> {
         let mut all = Vec::new();
         let mistake = Mistake::find(self.base_as_given(), &self.filter, self.is_scale_free());
-        all.extend(mistake.map(|mistake| finding::doubtful_tables(&mistake.sentence)));
+        all.extend(mistake.as_ref().map(Mistake::finding));
         all.extend(self.fines());
         all.extend(self.broad_base());
         all.extend((self.scene.base.dispersive == Some(true)).then(finding::dispersive_base));

@@ -41,12 +41,12 @@ use crate::constrictions::{Curve, CurveError, CurveUnit, ShippedFilter, inscribe
 use crate::gradation::{Gradation, GradationError, NumberError, SizeSampler};
 use crate::network::{CONDUCTANCE_EXPONENT, ExitRule, Network, NetworkError, WIDE};
 use crate::outcome::record::{PanSize, Ratios};
-use crate::outcome::{Mistake, MistakeKind};
 use crate::scene::{
     Amount, BaseGradation, D85, Extent, FilterGradation, NetworkSource, Scene, SceneError, USUAL_LAYERS,
 };
 use crate::store::Placement;
 use crate::stream::{Key, Purpose};
+use crate::verdict::{Mistake, MistakeKind};
 use rand::Rng;
 use std::sync::Arc;
 

@@ -9,7 +9,7 @@
 //!   [`early_stop`] how many of a study.
 //! - [`so_far`] is a look at the replicates of a run that is under way.
 //! - [`paper`] holds what the paper states.
-//! - [`rules`] applies the rules of filter practice to the same two curves; [`PairRules`] without a walk.
+//! - [`rules`] applies the rules of filter practice to the same two curves.
 //! - [`infiltration()`] is Eq. (1) beside the walk.
 //! - [`network_walk`] is what comes of walks on given networks, without a scene.
 //! - [`percolation`] fits percolation thresholds of several lattice sizes.
@@ -32,7 +32,6 @@ pub mod ledger;
 mod metrics;
 pub mod network_walk;
 pub mod packing;
-mod pair;
 mod pan;
 pub mod paper;
 pub mod percolation;
@@ -53,7 +52,6 @@ pub use infiltration::infiltration;
 pub(crate) use least_squares::log_log_slope;
 pub(crate) use metrics::eroded_mass_fraction;
 pub use metrics::{Eroded, Recorded, RunId, RunMetrics};
-pub use pair::{BaseSizes, FilterSizes, Mistake, MistakeKind, PairOptions, PairRules};
 pub use recorder::{Recorder, Wanted};
 
 use crate::network::ExitRule;

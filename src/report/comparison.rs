@@ -8,7 +8,7 @@ use super::error::ReportError;
 use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, PURPLE, Point, Rule, Shape, shorten};
 use super::files::json;
 use super::numbers::{
-    capital, interval_in_percent, known, percent, percent_interval, significant, size, threshold, whole,
+    interval_in_percent, known, percent, percent_interval, significant, size, threshold, whole,
 };
 use super::run_figures::run_name;
 use super::shell::{Drawn, citation, clean, contents, figures, leaves_out, of_base, whole_page};
@@ -17,6 +17,7 @@ use super::written::{Written, write_page_as};
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
 use crate::outcome::record::{Confidence, Statistic, Verdict};
 use crate::text::is_plain_part;
+use crate::verdict::words::capital;
 
 const RECORD: &str = "compare.json";
 

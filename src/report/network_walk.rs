@@ -8,7 +8,7 @@ use super::connectivity::by_connectivity;
 use super::error::ReportError;
 use super::figures::{Axis, BLUE, Dash, Figure, Line, VERMILLION};
 use super::files::json_of;
-use super::numbers::{capital, known, percent, significant, size, whole};
+use super::numbers::{known, percent, significant, size, whole};
 use super::results::{replicates, results};
 use super::run_figures::{self, size_axis};
 use super::shell::{self, Drawn, citation, clean, drawing, fact, leaves_out, whole_page};
@@ -17,6 +17,7 @@ use super::walks::{RowSource, RunRows, Walks, check_curve, check_results};
 use crate::outcome::Recorded;
 use crate::outcome::network_walk::NetworkWalkRecord;
 use crate::outcome::record::{Confidence, Verdict};
+use crate::verdict::words::capital;
 
 /// What errors call the record.
 const RECORD: &str = "outcome";

@@ -12,7 +12,7 @@ use super::first_page::{self, in_short};
 use super::folder::{RunFolder, RunTexts, checked, walks};
 use super::infiltration::infiltration;
 use super::names::soil_name;
-use super::numbers::{capital, duration, known, percent, significant, size, whole};
+use super::numbers::{duration, known, percent, significant, size, whole};
 use super::results::{fraction, replicates, results, sensitivity, thickness};
 use super::rules::rules;
 use super::run_figures::{self, run_name};
@@ -28,6 +28,7 @@ use crate::outcome::record::{
     Confidence, FindingRecord, NetworkKind, Outcome, PanBounds, PanReading, Stopping, Verdict,
 };
 use crate::outcome::undecided::UndecidedBy;
+use crate::verdict::words::capital;
 
 /// Characters of `scene.toml` that are shown.
 const SCENE: usize = 100_000;

@@ -4,14 +4,14 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use maud::{Markup, html};
 
-use super::numbers::{capital, percent, percent_interval, threshold};
+use super::numbers::{percent, percent_interval, threshold};
 use super::results::{fraction, run_heading};
 use super::run_figures;
 use super::shell::clean;
 use super::table::Table;
 use super::walks::Walks;
 use crate::outcome::record::{RunSummary, Verdict};
-use crate::verdict::words::meaning;
+use crate::verdict::words::{capital, meaning};
 
 /// Eroded mass by run, with its interval.
 pub(super) fn eroded_table<'a>(walks: &Walks<'a>) -> Table<'a, RunSummary> {

@@ -6,9 +6,9 @@ use super::network_walk::{NetworkOutcome, NetworkWalk};
 use super::replicates::said_by_walks;
 use crate::case::{PAPER_MASS_RATIO, all_on_its_way, few, fines_of, narrow_lattice, not_as_uniform};
 use crate::network::Network;
-use crate::outcome::Mistake;
 use crate::outcome::record::Statistic;
 use crate::outcome::rules::{self, RuleInputs};
+use crate::verdict::Mistake;
 use crate::verdict::{Answer, Finding, finding, judge};
 
 impl NetworkOutcome {
@@ -48,7 +48,7 @@ impl NetworkWalk {
         let pan = self.base.pan_fraction();
         let mistake = filter.and_then(|filter| Mistake::find(&self.base, filter, false));
         [
-            mistake.map(|mistake| finding::doubtful_tables(&mistake.sentence)),
+            mistake.as_ref().map(Mistake::finding),
             fines_of(&self.base),
             self.amount(network),
             Some(finding::given_network(network.filter_voids() as u64)),

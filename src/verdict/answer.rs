@@ -75,7 +75,7 @@ mod tests {
     use super::*;
     use crate::gradation::Gradation;
     use crate::outcome::record::{Direction, Weight};
-    use crate::outcome::{PairOptions, PairRules};
+    use crate::verdict::{PairOptions, PairRules};
 
     fn rules(filter: &[(f64, f64)], base: &[(f64, f64)]) -> Vec<AppliedRule> {
         let soil = |points| Gradation::from_points(points, None).unwrap();
@@ -109,7 +109,10 @@ mod tests {
         let found = judge(Verdict::None, &all, vec![open()]);
         assert_eq!(found.confidence, Confidence::Contradicted);
         assert!(found.reasons()[0].starts_with("Practice allows D15F 1.1 mm, this is 6.5 mm"), "{found:?}");
-        assert_eq!(found.reasons().last().unwrap(), "The base has 35 % fines (finer than 0.075 mm). The model ignores cohesion.");
+        assert_eq!(
+            found.reasons().last().unwrap(),
+            "The base has 35 % fines (finer than 0.075 mm). The model ignores cohesion."
+        );
         assert!(!found.reasons().iter().any(|reason| reason.contains("nothing of retention")), "{found:?}");
         // The same rules share an unfavourable one.
         is_within(&judge(Verdict::Continuing, &all, Vec::new()), &[]);

@@ -108,6 +108,8 @@ impl Finding {
             text += &at.and_then(|at| self.values.get(at)).map_or(String::new(), |value| value.shown(noun));
             rest = after;
         }
-        text + rest
+        text += rest;
+        // A text may be empty.
+        text.split(' ').filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
     }
 }

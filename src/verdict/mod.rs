@@ -5,11 +5,13 @@
 //! - [`judge()`] takes class, rules and findings, and gives the answer with its label and ordered findings.
 //! - [`practice`] is what the rules of filter practice say of a pair.
 //! - [`walks`] is what walks say themselves, [`beside`] what their results say beside the verdict.
+//! - [`PairRules`] are two soils as practice sees them, without a walk.
 //! - [`words`] are what a class means, and the headline.
 
 mod answer;
 pub mod beside;
 mod entry;
+mod pair;
 pub mod practice;
 mod table;
 mod thickness;
@@ -24,4 +26,5 @@ pub mod finding {
 
 pub use answer::{Answer, judge};
 pub use entry::{Entry, Finding};
+pub use pair::{BaseSizes, FilterSizes, Mistake, MistakeKind, PairOptions, PairRules};
 pub use value::Value;

@@ -3,6 +3,7 @@
 
 use super::entry::Finding;
 use super::finding;
+use super::words::within;
 use crate::outcome::record::{AppliedRule, LimitOfDesign, Outcome, Practice, RuleRole, Verdict};
 
 /// The rule of design.
@@ -131,8 +132,9 @@ pub fn practice_in_words(rules: &[AppliedRule], verdict: Verdict) -> String {
         said.push(format!("the filter may lose its own fines ({})", listed(&unstable)));
     }
     for finding in drainage(rules) {
-        let clause = finding.sentence();
-        said.push(clause.trim_end_matches(" This says nothing of retention.").trim_end_matches('.').into());
+        let sentence = finding.sentence();
+        let sentence = sentence.trim_end_matches(" This says nothing of retention.").replace(". ", "; ");
+        said.push(within(&sentence));
     }
     said.extend(agreement(rules, verdict).map(String::from));
     let result = match design.and_then(|rule| rule.met) {
@@ -275,7 +277,7 @@ fn digits_of(value: f64, digits: i32) -> String {
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
-    use crate::outcome::{PairOptions, PairRules};
+    use crate::verdict::{PairOptions, PairRules};
 
     fn of(filter: &[(f64, f64)], base: &[(f64, f64)], dispersive: bool) -> Vec<AppliedRule> {
         let one = |points| vec![("soil".to_owned(), Gradation::from_points(points, None).unwrap())];

@@ -62,8 +62,18 @@ impl Outcome {
 /// The first clause of a sentence, as it stands behind a semicolon; the rest stands where all findings do.
 pub fn clause(sentence: &str) -> String {
     let ends = ["; ", ". "].into_iter().filter_map(|end| sentence.find(end));
-    let first = sentence[..ends.min().unwrap_or(sentence.len())].trim_end_matches('.');
-    let mut chars = first.chars();
+    within(&sentence[..ends.min().unwrap_or(sentence.len())])
+}
+
+/// A text with a capital letter at its beginning.
+pub fn capital(text: &str) -> String {
+    let mut chars = text.chars();
+    chars.next().map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
+}
+
+/// A sentence as it stands within another.
+pub fn within(sentence: &str) -> String {
+    let mut chars = sentence.trim_end_matches('.').chars();
     chars.next().map_or(String::new(), |c| c.to_lowercase().chain(chars).collect())
 }
 

@@ -16,6 +16,7 @@ use crate::outcome::leaves_out;
 use crate::outcome::record::Confidence;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
+use crate::verdict::words::capital;
 use crate::verdict::{Answer, Finding, finding};
 
 /// Ratio at which the rules are read where no boundary is known.
@@ -232,11 +233,9 @@ fn judged_at(Asked { row, of, unsteady, .. }: &Asked, ratio: f64) -> Result<Answ
     Ok(judged.answer(row, &judged.rules(), found.collect()))
 }
 
-/// What a search found, with a capital letter and without a full stop.
+/// What a search found in its own words.
 fn of_search(said: &str) -> Finding {
-    let mut chars = said.trim_end_matches('.').chars();
-    let said: String = chars.next().into_iter().flat_map(char::to_uppercase).chain(chars).collect();
-    finding::of_search(&said)
+    finding::of_search(&capital(said.trim_end_matches('.')))
 }
 
 /// `design.csv`.
