@@ -50,6 +50,8 @@ pub mod walk;
 
 pub mod outcome;
 
+pub mod verdict;
+
 pub mod scene;
 
 pub mod case;

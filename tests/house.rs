@@ -11,7 +11,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms in the order in which data flows; a room uses only those before it.
-const ORDER: [&str; 19] = [
+const ORDER: [&str; 20] = [
     "text",
     "stream",
     "store",
@@ -22,6 +22,7 @@ const ORDER: [&str; 19] = [
     "network",
     "walk",
     "outcome",
+    "verdict",
     "scene",
     "case",
     "run",

@@ -1,9 +1,10 @@
 //! A case: a scene with its files read and every number worked out, before any work is done.
 
+mod amount;
 mod curve_ends;
 mod cut;
-mod doubts;
 mod files;
+mod findings;
 mod left_out;
 mod memory;
 mod network_key;
@@ -20,11 +21,12 @@ mod sizes;
 mod supply;
 mod thickness;
 mod void_graph;
-mod warnings;
 
+pub use amount::{all_on_its_way, narrow_lattice};
 pub use curve_ends::OtherCurve;
 use files::Files;
 pub use files::{INPUT_FILES, INPUT_NAMES, Input};
+pub use findings::{few, fines_of, not_as_uniform};
 pub use memory::{ResourceLimits, in_words};
 use packed_filter::GUESSED_GRAINS_PER_VOID;
 pub use packed_filter::{GRAINS, PackedError, PackedFilter, RECORD};
@@ -34,18 +36,17 @@ pub use scaled::StatedBase;
 use supply::Against;
 pub use supply::PAPER_MASS_RATIO;
 use void_graph::GraphPacking;
-pub use warnings::NOT_STUDIED;
 
 use crate::constrictions::{Curve, CurveError, CurveUnit, ShippedFilter, inscribed};
 use crate::gradation::{Gradation, GradationError, NumberError, SizeSampler};
 use crate::network::{CONDUCTANCE_EXPONENT, ExitRule, Network, NetworkError, WIDE};
 use crate::outcome::record::{PanSize, Ratios};
-use crate::outcome::{Mistake, MistakeKind};
 use crate::scene::{
     Amount, BaseGradation, D85, Extent, FilterGradation, NetworkSource, Scene, SceneError, USUAL_LAYERS,
 };
 use crate::store::Placement;
 use crate::stream::{Key, Purpose};
+use crate::verdict::{Mistake, MistakeKind};
 use rand::Rng;
 use std::sync::Arc;
 

@@ -3,6 +3,7 @@
 use super::{Case, CaseError};
 use crate::gradation::{GRAVEL_MM, Gradation};
 use crate::scene::{BaseGradation, D85, FilterGradation, Regrade, Scene};
+use crate::verdict::{Finding, finding};
 
 /// Cu from which a base counts as broadly graded: that of well-graded sands by ASTM D2487.
 const BROAD_CU: f64 = 6.0;
@@ -41,38 +42,25 @@ impl Case {
         self.regraded_from.as_ref().map_or(&self.base, |(given, _)| given)
     }
 
-    /// Which way the model errs on a base that is broadly graded and walked as it is.
-    pub(super) fn errs_unsafe(&self) -> Option<String> {
+    /// A base that is broadly graded and walked as it is.
+    pub(super) fn broad_base(&self) -> Option<Finding> {
         if self.regraded_from.is_some() || self.is_scale_free() {
             return None;
         }
         let regraded = self.base.regraded();
-        let why = match (regraded.at_mm, self.base.cu().filter(|cu| *cu >= BROAD_CU)) {
-            (Some(at), _) => format!(
-                "practice regrades it on {at:.3} mm ({}), and it is walked as it is, so that a few coarse \
-                 grains block for all the rest. base.regrade = \"practice\" walks the part that practice \
-                 looks at",
-                regraded.why
-            ),
-            (None, Some(cu)) => {
-                format!("it is broadly graded (Cu {cu:.1}), and a few coarse grains block for all the rest")
-            }
-            (None, None) => return None,
-        };
-        Some(format!("the model errs on the unsafe side for this base; {why}"))
+        match (regraded.at_mm, self.base.cu().filter(|cu| *cu >= BROAD_CU)) {
+            (Some(at), _) => Some(finding::not_regraded(at, &regraded.why)),
+            (None, cu) => cu.map(finding::broadly_graded),
+        }
     }
 
-    /// What is said of a base that is walked regraded, or that was to be.
-    pub(super) fn regrading(&self) -> Option<String> {
+    /// A base that is walked regraded, or that was to be.
+    pub(super) fn regrading(&self) -> Option<Finding> {
         match (&self.regraded_from, self.scene.base.regrade) {
-            (Some((given, at)), _) => Some(format!(
-                "the base is walked as practice regrades it: the {:.1} % of it that are finer than {at:.3} \
-                 mm",
-                given.percent_finer_by_mass(*at)
-            )),
+            (Some((given, at)), _) => Some(finding::regraded(given.percent_finer_by_mass(*at), *at)),
             // Of a base without gravel nobody expects it.
             (None, Some(Regrade::Practice)) if self.base.largest_mm() > GRAVEL_MM => {
-                Some(format!("practice does not regrade this base: {}", self.base.regraded().why))
+                Some(finding::regrading_not_needed(&self.base.regraded().why))
             }
             _ => None,
         }

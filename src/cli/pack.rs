@@ -6,6 +6,7 @@ use super::progress::followed;
 use super::values::with_options;
 use crate::run::{self, FinishedPacking, PackOptions, RunError};
 use crate::scene::Scene;
+use crate::verdict::beside::packed_part;
 
 /// Packs a filter into a folder.
 pub fn pack(args: &PackArgs) -> Result<(), RunError> {
@@ -56,6 +57,6 @@ fn summary(packing: &FinishedPacking) -> String {
         format!("{:.1} s; report: {}", record.seconds, out.join("report.html").display()),
         format!("for a scene: filter.curve = \"{}\"", out.join("constrictions.csv").display()),
     ];
-    let part = filter.part.iter().map(|part| format!("  {}", part.sentence()));
+    let part = filter.part.iter().map(|part| format!("  {}", packed_part(part).sentence()));
     lines.into_iter().chain(part).map(|line| plain(&line) + "\n").collect()
 }

@@ -4,8 +4,8 @@ use super::args::RulesArgs;
 use super::print::{json, plain, shown, to_stdout};
 use crate::gradation::{curves_in_file, notes_in_file};
 use crate::outcome::record::{AppliedRule, RuleRole};
-use crate::outcome::{PairOptions, PairRules};
 use crate::run::RunError;
+use crate::verdict::{PairOptions, PairRules};
 use std::fmt::Write;
 
 /// Widest line (characters).

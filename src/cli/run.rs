@@ -74,13 +74,13 @@ fn summary(run: &FinishedRun) -> String {
         line(format!("  Confidence: {}", outcome.confidence.words()));
     }
     for reason in outcome.reasons_below() {
-        line(format!("  also: {reason}"));
+        line(format!("  also: {}", plain(&reason.with_to_do())));
     }
     for run in &outcome.summary {
         line(format!("  {}", run_line(run)));
     }
     for said in outcome.beside_the_verdict() {
-        line(format!("  {said}"));
+        line(format!("  {}", plain(&said)));
     }
     line(format!(
         "  {} of {} base particles, {} voids; D15F/D85B {:.2}{}, D15F/D95B {:.2}, {}",

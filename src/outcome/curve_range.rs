@@ -28,27 +28,6 @@ impl CurveRange {
     pub fn agrees(&self) -> bool {
         self.ends.iter().all(|end| end.verdict == self.verdict)
     }
-
-    /// What the range comes to, in a sentence.
-    pub fn sentence(&self) -> String {
-        let end = |end: &CurveEnd| {
-            let runs: Vec<String> = end.runs.iter().map(|s| format!("{:.2} %", 100.0 * s.mean)).collect();
-            format!("{}: {}, {} eroded", end.curve, end.verdict.words(), runs.join(" then "))
-        };
-        let ends: Vec<String> = self.ends.iter().map(end).collect();
-        let [low, high] = self.eroded_mass_fraction.first().copied().unwrap_or([f64::NAN; 2]);
-        let agree = match self.agrees() {
-            true => "the verdict is the same over the whole range of the constriction curve",
-            false => "the verdict is not the same over the whole range of the constriction curve",
-        };
-        format!(
-            "{agree}; {:.2} to {:.2} % of the mass eroded in the first run ({}; by the curve itself: {})",
-            100.0 * low,
-            100.0 * high,
-            ends.join("; "),
-            self.verdict.words()
-        )
-    }
 }
 
 #[cfg(test)]
@@ -75,13 +54,8 @@ mod tests {
         for (found, wanted) in agreed.eroded_mass_fraction.iter().flatten().zip([0.04, 0.10, 0.01, 0.05]) {
             assert!((found - wanted).abs() < 1e-12, "{agreed:?}");
         }
-        assert!(agreed.sentence().starts_with("the verdict is the same"));
         let open = range(Verdict::None, Verdict::Some);
         assert_eq!(open.whole(), Verdict::Undecided);
-        let said = range(Verdict::Undecided, Verdict::None).sentence();
-        assert!(said.starts_with("the verdict is not the same"), "{said}");
-        assert!(open.sentence().contains("4.00 to 10.00 % of the mass eroded in the first run"));
-        assert!(open.sentence().contains("2 % coarser: some erosion, 9.00 % then 2.00 % eroded"));
         assert_eq!(CurveRange::new(Verdict::None, &[], Vec::new()), None);
     }
 }

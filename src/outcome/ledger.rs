@@ -164,7 +164,7 @@ impl LedgerLine {
             ratios: outcome.ratios,
             base: outcome.inputs.base_size(),
             runs: outcome.summary.clone(),
-            warnings: outcome.warnings.clone(),
+            warnings: outcome.known().map(|of| of.sentence.clone()).collect(),
             made,
         }
     }

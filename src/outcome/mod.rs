@@ -9,57 +9,44 @@
 //!   [`early_stop`] how many of a study.
 //! - [`so_far`] is a look at the replicates of a run that is under way.
 //! - [`paper`] holds what the paper states.
-//! - [`rules`] applies the rules of filter practice to the same two curves; [`PairRules`] without a walk.
-//! - [`confidence`] is the label of a verdict and what sets it, by each [`doubt`] and rule; [`practice`] is
-//!   what practice says of the pair, whatever the verdict.
-//! - [`walk_doubts`] are what a walk itself says against its verdict.
+//! - [`rules`] applies the rules of filter practice to the same two curves.
 //! - [`infiltration()`] is Eq. (1) beside the walk.
 //! - [`network_walk`] is what comes of walks on given networks, without a scene.
 //! - [`percolation`] fits percolation thresholds of several lattice sizes.
-//! - [`thickness`] is how the verdict moves with the thickness of the filter, [`undecided`] what leaves it
-//!   open.
+//! - [`undecided`] is what leaves a verdict open.
 //! - [`precision`] is error against run time; [`comparison`] is several cases side by side.
 //! - [`design`] is how coarse a filter may be, and the band of a specification.
 //! - [`table`] describes the tables in which all of these are written.
 
 mod applied;
 mod base_size;
-mod beside;
 pub mod by_connectivity;
 pub mod by_void;
 pub mod comparison;
-pub mod confidence;
 mod curve_range;
 pub mod design;
 pub(crate) mod digits;
-pub mod doubt;
 pub mod early_stop;
-mod flow_words;
 mod infiltration;
 mod least_squares;
 pub mod ledger;
 mod metrics;
 pub mod network_walk;
 pub mod packing;
-mod pair;
 mod pan;
 pub mod paper;
 pub mod percolation;
-pub mod practice;
 pub mod precision;
 pub mod record;
 mod recorder;
-mod rule_words;
 pub mod rules;
 pub mod so_far;
 mod statistic;
 pub mod stopping;
 pub(crate) mod student;
 pub mod table;
-pub mod thickness;
 pub mod undecided;
 pub mod verdict;
-pub mod walk_doubts;
 
 pub use base_size::BaseSize;
 pub(crate) use base_size::three;
@@ -67,7 +54,6 @@ pub use infiltration::infiltration;
 pub(crate) use least_squares::log_log_slope;
 pub(crate) use metrics::eroded_mass_fraction;
 pub use metrics::{Eroded, Recorded, RunId, RunMetrics};
-pub use pair::{BaseSizes, FilterSizes, Mistake, MistakeKind, PairOptions, PairRules};
 pub use recorder::{Recorder, Wanted};
 
 use crate::network::ExitRule;

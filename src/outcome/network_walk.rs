@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::record::{BaseRecord, Confidence, Replicate, RunSummary, Verdict};
+use super::record::{BaseRecord, Confidence, FindingRecord, Replicate, RunSummary, Verdict};
 
 /// The results of [`crate::run::walk_networks`]; the names are those of `outcome.json` where both have them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -11,9 +11,13 @@ pub struct NetworkWalkRecord {
     pub verdict: Verdict,
     /// How far the verdict can be relied on.
     pub confidence: Confidence,
-    /// Why no further, the weightiest first, and what else rules of practice say.
+    /// What was found about the verdict: what speaks against it first, of which the first sets the label.
+    #[serde(default)]
+    pub findings: Vec<FindingRecord>,
+    /// The sentences of those that speak against it, in the same order.
     pub reasons: Vec<String>,
-    /// What a reader must know.
+    /// What records of earlier versions say besides; now in `findings`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
     /// The user's seed.
     pub seed: u64,

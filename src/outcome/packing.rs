@@ -33,31 +33,6 @@ pub struct PackedPart {
     pub sizes_missing_above: bool,
 }
 
-impl PackedPart {
-    /// What a reader must know of a filter of which this part was packed.
-    pub fn sentence(&self) -> String {
-        let Self { percent, largest_mm, finer_by, .. } = self;
-        let floating = match (self.sizes_missing_above, *percent >= FLOATING_PERCENT) {
-            (true, true) => {
-                "; the coarse grains of this gap-graded filter are taken to float in it, as they do where it \
-                 is 35 % of the mass or more (Skempton and Brogan 1994)"
-            }
-            (_, false) => {
-                "; that is less than the 35 % of the mass in which coarse grains float (Skempton and Brogan \
-                 1994): the coarse grains carry each other, the finer ones may lie loose between them, and \
-                 wider constrictions than those that were walked may be open"
-            }
-            (false, true) => "",
-        };
-        format!(
-            "only the finer part of the filter is packed: {percent:.1} % of its mass, up to {largest_mm:.3} \
-             mm. Its constrictions are up to {:.1} % finer than those of the whole (measured on filters that \
-             can be packed whole), and both ends of that range are walked{floating}",
-            100.0 * finer_by
-        )
-    }
-}
-
 /// Where a packing was taken from that another scene's filter of the same shape had been packed into.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SameShape {

@@ -67,31 +67,6 @@ impl PanBounds {
             PanSize::FinestSieve => format!("all {} mm", self.finest_sieve_mm),
         }
     }
-
-    /// What the two readings say together, and what would tell more.
-    pub fn sentence(&self) -> String {
-        let (percent, sieve) = (100.0 * self.mass_fraction, self.finest_sieve_mm);
-        let finest = self.finest_constriction_mm;
-        let said = self.readings.each_ref().map(|reading| match reading.verdict {
-            Verdict::Undecided => format!("taken as {} it stays open", self.words(reading)),
-            verdict => format!("taken as {} it gives {}", self.words(reading), verdict.words()),
-        });
-        if self.differ() {
-            format!(
-                "the answer hangs on the {percent:.1} % of the base that is finer than its finest sieve, \
-                 {sieve} mm; the finest constriction is {finest:.3} mm: {}, {}. A hydrometer test, a finer \
-                 sieve or base.d0_mm would decide",
-                said[0], said[1]
-            )
-        } else {
-            format!(
-                "{percent:.1} % of the base is finer than its finest sieve, {sieve} mm, and may be coarser \
-                 than the finest constriction, {finest:.3} mm: taken as finer than every constriction or as \
-                 all {sieve} mm, it gives {}",
-                self.readings[0].verdict.words()
-            )
-        }
-    }
 }
 
 #[cfg(test)]
@@ -119,23 +94,10 @@ mod tests {
     fn what_both_readings_give_is_the_verdict_and_else_it_is_open() {
         let both = bounds([Verdict::Some; 2]);
         assert_eq!((both.verdict(), both.differ()), (Verdict::Some, false));
-        assert!(
-            both.sentence().ends_with("or as all 0.075 mm, it gives some erosion"),
-            "{}",
-            both.sentence()
-        );
         let open = bounds([Verdict::Continuing, Verdict::None]);
         assert_eq!((open.verdict(), open.differ()), (Verdict::Undecided, true));
-        let sentence = open.sentence();
-        assert!(sentence.starts_with("the answer hangs on the 35.0 % of the base"), "{sentence}");
-        assert!(
-            sentence.contains(
-                "constriction it gives continuing erosion, taken as all 0.075 mm it gives no erosion"
-            )
-        );
         // One that is open itself agrees with nothing but another that is.
         let half = bounds([Verdict::Undecided, Verdict::None]);
         assert_eq!(half.verdict(), Verdict::Undecided);
-        assert!(half.sentence().contains("taken as finer than every constriction it stays open, "));
     }
 }

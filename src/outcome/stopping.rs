@@ -15,7 +15,7 @@
 //! Met when the 95 % interval of the mean reaches no further than the target to either side, in every run
 //! (Chow and Robbins). Its coverage is measured in the tests.
 
-use super::record::{Statistic, Stopping, Verdict};
+use super::record::{ShortOf, Statistic, Stopping, Verdict};
 use super::student;
 use super::verdict::{BelowThreshold, THRESHOLD, below_by_interval, classify};
 use crate::schema::{only, section, whole, within};
@@ -105,7 +105,8 @@ impl StopRule {
             met,
             verdict,
             half_width_pp: half_width.map(|half| 100.0 * half),
-            sentence: match verdict {
+            sentence: None,
+            short_of: match verdict {
                 Some(Verdict::Undecided) => Some(self.undecided(error.unwrap_or(1.0), &below, runs)),
                 _ => self.too_wide(replicates, half_width, close),
             },
@@ -130,32 +131,23 @@ impl StopRule {
         Some((1.0 - 0.01 * percent) / (look * (look + 1)) as f64 / runs.max(1) as f64)
     }
 
-    /// What to say where the verdict is open.
-    fn undecided(&self, error: f64, below: &[BelowThreshold], runs: &[ReplicateValues]) -> String {
+    /// Why the verdict is open.
+    fn undecided(&self, error: f64, below: &[BelowThreshold], runs: &[ReplicateValues]) -> ShortOf {
         if below == [Some(false)] {
-            return "The first run alone does not separate some erosion from continuing erosion: ask for two \
-                    runs."
-                .into();
+            return ShortOf::SecondRun;
         }
         let open = below.iter().position(Option::is_none).unwrap_or(0);
         let Statistic { mean, sd, .. } = statistic(&runs[open], error);
         let sd = sd.unwrap_or(0.0);
-        let which = if open == 0 { "first" } else { "second" };
         let distance = (mean - THRESHOLD).abs();
-        let needed = match needed(runs[open].len() as f64, sd / distance, error) {
-            n if n < 1e9 => {
-                format!("about {} replicates would decide, if the mean stayed where it is", two_digits(n))
-            }
-            _ => "no number of replicates will decide".into(),
-        };
-        format!(
-            "Inconclusive at the {} % confidence level: the mean of the {which} run, {:.3} %, lies {:.3} \
-             percentage points from 7.5 %, and the replicate SD is {:.3}; {needed}.",
-            self.decide_percent.unwrap_or(0.0),
-            100.0 * mean,
-            100.0 * distance,
-            100.0 * sd
-        )
+        let needed = needed(runs[open].len() as f64, sd / distance, error);
+        ShortOf::Decision {
+            run: open as u64 + 1,
+            mean_percent: 100.0 * mean,
+            distance_pp: 100.0 * distance,
+            sd_pp: 100.0 * sd,
+            needed: (needed < 1e9).then(|| two_digits(needed)),
+        }
     }
 
     /// Whether no replicate can decide what is open: a first run that is clear, and no second.
@@ -169,30 +161,21 @@ impl StopRule {
             && runs.iter().all(clear)
     }
 
-    fn too_wide(&self, replicates: u64, half_width: Option<f64>, close: bool) -> Option<String> {
+    fn too_wide(&self, replicates: u64, half_width: Option<f64>, close: bool) -> Option<ShortOf> {
         let target = self.target_error_pp.filter(|_| !close)?;
-        let half_width = 100.0 * half_width?;
-        let needed = replicates as f64 * (half_width / target) * (half_width / target);
-        Some(format!(
-            "The target error, {target} percentage points, was not reached: the 95 % interval reaches \
-             {half_width:.4} to either side after {replicates} replicates; about {} would do.",
-            two_digits(needed)
-        ))
+        let half_width_pp = 100.0 * half_width?;
+        let needed = replicates as f64 * (half_width_pp / target) * (half_width_pp / target);
+        Some(ShortOf::Target { half_width_pp, replicates, needed: two_digits(needed) })
     }
 }
 
 impl Stopping {
-    /// That the verdict was decided at a lower level than that of all intervals, where it is open at that
-    /// one: `usual` is the verdict of the 95 % intervals.
-    pub fn less_than_usual(&self, usual: Verdict) -> Option<String> {
+    /// The level at which the verdict was decided, where that is lower than that of all intervals, and the
+    /// verdict is open at that one: `usual` is the verdict of the 95 % intervals.
+    pub fn less_than_usual(&self, usual: Verdict) -> Option<f64> {
         let percent = self.decide_percent.filter(|percent| *percent < 95.0)?;
         let is_decided = self.verdict.is_some_and(|verdict| verdict != Verdict::Undecided);
-        (is_decided && self.verdict != Some(usual)).then(|| {
-            format!(
-                "the verdict is decided at the {percent} % confidence level, as asked; at 95 % these \
-                 replicates leave it open"
-            )
-        })
+        (is_decided && self.verdict != Some(usual)).then_some(percent)
     }
 }
 
@@ -290,20 +273,15 @@ mod tests {
             values((0..10).map(|k| 0.01 + 0.001 * f64::from(k))),
         ];
         let Look::Stop(stopping) = rule.look(10, &far) else { panic!("clear") };
-        assert!(stopping.met && stopping.verdict == Some(Verdict::Some) && stopping.sentence.is_none());
+        assert!(stopping.met && stopping.verdict == Some(Verdict::Some) && stopping.short_of.is_none());
         let near = values((0..10).map(|k| THRESHOLD + 0.01 * (f64::from(k) - 4.6)));
         assert_eq!(rule.look(10, &[near.clone(), near]), Look::Until(15));
         let (stopping, runs) = until_stop(rule.clone(), &[0.0751, 0.01], 0.02, false, 3);
         assert!(!stopping.met && stopping.verdict == Some(Verdict::Undecided) && runs[0].len() == 60);
-        let sentence = stopping.sentence.unwrap();
-        assert!(
-            sentence.contains("Inconclusive at the 99.9 % confidence level")
-                && sentence.contains("first run"),
-            "{sentence}"
-        );
+        assert!(matches!(stopping.short_of, Some(ShortOf::Decision { run: 1, .. })), "{stopping:?}");
         // A first run that is clearly above, and no second: more replicates cannot help.
         let Look::Stop(stopping) = rule.look(10, &far[..1]) else { panic!("hopeless") };
-        assert!(!stopping.met && stopping.sentence.unwrap().contains("two runs"));
+        assert!(!stopping.met && stopping.short_of == Some(ShortOf::SecondRun));
     }
 
     #[test]
@@ -312,7 +290,8 @@ mod tests {
         assert!(stopping.met && stopping.half_width_pp.unwrap() <= 0.2 && runs[0].len() > 60, "{stopping:?}");
         let (stopping, runs) = until_stop(close(0.2, 40), &[0.3, 0.1], 0.01, false, 5);
         assert!(!stopping.met && runs[0].len() == 40);
-        assert!(stopping.sentence.unwrap().contains("about 1"));
+        let Some(ShortOf::Target { needed, .. }) = stopping.short_of else { panic!("{stopping:?}") };
+        assert!(needed.to_string().starts_with('1'), "{needed}");
     }
 
     /// 1,500 runs with a first-run mean a fifth of the standard deviation beside the threshold, 2 % allowed

@@ -8,7 +8,7 @@ use super::cases;
 use super::error::ReportError;
 use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, PURPLE, Point, Rule, Shape, shorten};
 use super::files::json;
-use super::numbers::{capital, known, significant, size, threshold, whole};
+use super::numbers::{known, significant, size, threshold, whole};
 use super::run_figures::run_name;
 use super::section::Sections;
 use super::shell::{Drawn, citation, clean, leaves_out, of_base};
@@ -16,6 +16,7 @@ use super::table::Table;
 use super::written::Written;
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
 use crate::outcome::record::{Confidence, Verdict};
+use crate::verdict::words::capital;
 
 const RECORD: &str = "compare.json";
 

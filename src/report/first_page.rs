@@ -125,8 +125,14 @@ fn thickness(outcome: &Outcome) -> Markup {
             p.thickness {
                 "Thickness modelled: " b { (size(thickness, outcome.inputs.scale_free)) } " along the flow, "
                 (whole(network.layers)) " layers of voids. "
-                @if let Some(sentence) = outcome.with_thickness() { (clean(&sentence)) }
+                @if let Some(sentence) = thickness_moves(outcome) { (clean(&sentence)) }
             }
         }
     }
+}
+
+/// How the verdict moves with the thickness.
+fn thickness_moves(outcome: &Outcome) -> Option<String> {
+    let ids = ["stays_with_thickness", "moves_with_thickness", "open_with_thickness"];
+    ids.into_iter().find_map(|id| outcome.sentence_of(id))
 }

@@ -8,7 +8,7 @@ use super::connectivity::by_connectivity;
 use super::error::ReportError;
 use super::figures::{Axis, BLUE, Dash, Figure, Line, VERMILLION};
 use super::files::json_of;
-use super::numbers::{capital, known, percent, significant, size, whole};
+use super::numbers::{known, percent, significant, size, whole};
 use super::results::{replicates, results};
 use super::run_figures::{self, size_axis};
 use super::shell::{self, Drawn, citation, clean, drawing, fact, leaves_out, whole_page};
@@ -17,6 +17,7 @@ use super::walks::{RowSource, RunRows, Walks, check_curve, check_results};
 use crate::outcome::Recorded;
 use crate::outcome::network_walk::NetworkWalkRecord;
 use crate::outcome::record::{Confidence, Verdict};
+use crate::verdict::words::capital;
 
 /// What errors call the record.
 const RECORD: &str = "outcome";
@@ -156,29 +157,31 @@ fn headline(record: &NetworkWalkRecord) -> String {
 
 /// How far it can be relied on and why no further, and what else there is to know.
 fn doubt(record: &NetworkWalkRecord) -> String {
-    let sentences = record.reasons.iter().chain(besides(record)).map(|said| format!(" {}.", capital(said)));
+    let sentences = record.reasons.iter().cloned().chain(besides(record)).map(|said| format!(" {said}"));
     format!("Confidence: {}.{}", record.confidence.words(), sentences.collect::<String>())
 }
 
-/// Warnings that are no reasons.
-fn besides(record: &NetworkWalkRecord) -> impl Iterator<Item = &String> {
-    record.warnings.iter().filter(|warning| !record.reasons.contains(warning))
+/// What does not speak against the verdict.
+fn besides(record: &NetworkWalkRecord) -> Vec<String> {
+    let found = record.findings.iter().filter(|finding| !finding.against).map(|of| &of.sentence);
+    let earlier = record.warnings.iter().filter(|warning| !record.reasons.contains(warning));
+    found.chain(earlier).cloned().collect()
 }
 
 fn doubts(record: &NetworkWalkRecord) -> Markup {
+    let list = |heading: &str, said: &[String]| {
+        html! {
+            @if !said.is_empty() {
+                section.sheet {
+                    h2 { (heading) }
+                    ul { @for said in said { li { (clean(&capital(said))) } } }
+                }
+            }
+        }
+    };
     html! {
-        @if !record.reasons.is_empty() {
-            section.sheet {
-                h2 { "Why this is in doubt" }
-                ul { @for reason in &record.reasons { li { (clean(&capital(reason))) "." } } }
-            }
-        }
-        @if besides(record).next().is_some() {
-            section.sheet {
-                h2 { "What else to know" }
-                ul { @for warning in besides(record) { li { (clean(&capital(warning))) "." } } }
-            }
-        }
+        (list("Why this is in doubt", &record.reasons))
+        (list("What else to know", &besides(record)))
     }
 }
 

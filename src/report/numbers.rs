@@ -105,12 +105,6 @@ pub(super) fn in_digits(value: f64, digits: u8) -> String {
     format!("{}", (value * scale).round() / scale)
 }
 
-/// The text with its first letter a capital.
-pub(super) fn capital(text: &str) -> String {
-    let mut characters = text.chars();
-    characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
-}
-
 /// A size with its unit: mm, or multiples of D0F when nothing has a scale.
 pub(super) fn size(value: f64, scale_free: bool) -> String {
     format!("{}{THIN}{}", significant(value), size_unit(scale_free))

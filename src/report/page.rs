@@ -12,7 +12,7 @@ use super::first_page::{self, in_short};
 use super::folder::{RunFolder, RunTexts, checked, walks};
 use super::infiltration::infiltration;
 use super::names::soil_name;
-use super::numbers::{capital, duration, known, percent, significant, size, whole};
+use super::numbers::{duration, known, percent, significant, size, whole};
 use super::results::{fraction, replicates, results, sensitivity, thickness};
 use super::rules::rules;
 use super::run_figures::{self, run_name};
@@ -24,8 +24,11 @@ use super::walks::{RunRows, Walks};
 use super::written::{Written, write_page};
 use super::{appendix, packing, shell::leaves_out};
 use crate::outcome::packing::PackingRecord;
-use crate::outcome::record::{Confidence, NetworkKind, Outcome, PanBounds, PanReading, Stopping, Verdict};
+use crate::outcome::record::{
+    Confidence, FindingRecord, NetworkKind, Outcome, PanBounds, PanReading, Stopping, Verdict,
+};
 use crate::outcome::undecided::UndecidedBy;
+use crate::verdict::words::capital;
 
 /// Characters of `scene.toml` that are shown.
 const SCENE: usize = 100_000;
@@ -116,16 +119,14 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
                 (shell::figure(1, gradations))
                 (in_short(outcome))
             }
-            (reasons(outcome))
-            (notes(outcome))
-            (warnings(outcome))
+            (findings(outcome))
         }
         (shell::contents())
         h2 { "Figures" }
         @for (number, drawn) in (2..).zip(figures) { (shell::figure(number, drawn)) }
         (missing(folder, figures))
         (rules(outcome))
-        (results(&folder.walks(), &[outcome.flow_sentence(), outcome.overfull_sentence()]))
+        (results(&folder.walks(), &[outcome.sentence_of("permeability"), outcome.sentence_of("overfull")]))
         (infiltration(outcome))
         (by_connectivity(&folder.walks()))
         (replicates(&folder.walks()))
@@ -158,9 +159,10 @@ fn verdict_section(folder: &RunFolder, verdict: &Drawn) -> Markup {
             div { (drawing(verdict)) }
             (verdict_box::eroded_table(walks))
             @if let Some(bounds) = &outcome.pan_bounds { (both_readings(bounds)) }
-            @if let Some(stopping) = &outcome.stopping { p { (stopped(stopping)) } }
-            @if let Some(trapped) = outcome.trapped_sentence() { p { (trapped) "." } }
-            @if let Some(next) = outcome.what_would_decide() { p { (capital(next)) "." } }
+            @if let Some(stopping) = &outcome.stopping { p { (stopped(outcome, stopping)) } }
+            @for id in ["trapped", "second_run_missing", "replicates_leave_open"] {
+                @if let Some(said) = outcome.sentence_of(id) { p { (clean(&said)) } }
+            }
             (verdict_box::replicates_in_words(walks, REPLICATE))
         }
     }
@@ -187,7 +189,7 @@ fn both_readings(bounds: &PanBounds) -> Markup {
 }
 
 /// What the rule that added replicates arrived at.
-fn stopped(stopping: &Stopping) -> String {
+fn stopped(outcome: &Outcome, stopping: &Stopping) -> String {
     let mut text = String::new();
     if let Some(percent) = stopping.decide_percent {
         text += &format!(
@@ -198,7 +200,10 @@ fn stopped(stopping: &Stopping) -> String {
     if let Some(pp) = stopping.target_error_pp {
         text += &format!("Replicates were added to reach an error of {pp} percentage points. ");
     }
-    text += match (&stopping.sentence, stopping.met) {
+    let short = ["level_missed", "target_missed", "second_run_missing"];
+    let short =
+        short.into_iter().find_map(|id| outcome.sentence_of(id)).or_else(|| stopping.sentence.clone());
+    text += match (&short, stopping.met) {
         (_, true) => "That was reached.",
         (Some(sentence), _) => sentence,
         (None, false) => "That was not reached.",
@@ -214,51 +219,21 @@ fn in_words(outcome: &Outcome, walks: &Walks) -> String {
     }
 }
 
-/// Why the verdict cannot be relied on as it stands.
-fn reasons(outcome: &Outcome) -> Markup {
-    html! {
-        @if !outcome.reasons.is_empty() {
-            section.warnings {
-                @if outcome.confidence == Confidence::Within { h2 { "What else to know of this pair" } }
-                @else { h2 { "Why this verdict is in doubt" } }
-                ul { @for reason in &outcome.reasons { li { (clean(reason)) } } }
-            }
-        }
-    }
-}
-
-/// What else is to be known, none of which speaks against the verdict.
-fn notes(outcome: &Outcome) -> Markup {
-    html! {
-        @if !outcome.notes.is_empty() {
-            section.warnings {
-                h2 { "What else to know of this pair" }
-                ul { @for note in &outcome.notes { li { (clean(note)) } } }
-            }
-        }
-    }
-}
-
-fn warnings(outcome: &Outcome) -> Markup {
-    let said = |warning: &&String| !outcome.reasons.contains(warning) && !outcome.notes.contains(warning);
-    let warnings: Vec<&String> = outcome.warnings.iter().filter(said).collect();
-    let all = || outcome.warnings.iter().chain(&outcome.reasons);
-    let is_capped = outcome.capped && !all().any(|said| said.starts_with("capped at"));
-    html! {
-        @if !warnings.is_empty() || is_capped {
-            section.warnings {
-                h2 { "Before you rely on this" }
-                ul {
-                    @if is_capped {
-                        li {
-                            "Capped: " (whole(outcome.n_base)) " base particles were walked; "
-                            "Eq. (2) requires " (known(outcome.n_base_eq2, whole)) "."
-                        }
-                    }
-                    @for warning in warnings { li { (clean(warning)) } }
+/// What was found about the verdict: what speaks against it, and what else is to be known.
+fn findings(outcome: &Outcome) -> Markup {
+    let list = |heading: &str, found: &[FindingRecord]| {
+        html! {
+            @if !found.is_empty() {
+                section.warnings {
+                    h2 { (heading) }
+                    ul { @for finding in found { li { (clean(&finding.sentence)) } } }
                 }
             }
         }
+    };
+    html! {
+        (list("Why this verdict is in doubt", &outcome.against()))
+        (list("What else to know of this pair", &outcome.besides()))
     }
 }
 

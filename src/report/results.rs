@@ -3,13 +3,14 @@
 use maud::{Markup, html};
 
 use super::numbers::{
-    capital, duration, known, percent, percent_interval, significant, size, size_unit, trimmed, whole,
+    duration, known, percent, percent_interval, significant, size, size_unit, trimmed, whole,
 };
 use super::run_figures::run_name;
 use super::table::Table;
 use super::varied::{HELD, STOPPED_WHEN_CLEAR, classes_of_points};
 use super::walks::Walks;
 use crate::outcome::record::{OfThickness, Outcome, Replicate, Run, RunSummary, Sensitivity, Statistic};
+use crate::verdict::words::capital;
 
 /// Replicates listed one by one; all are in `outcome.json`.
 const LISTED: usize = 100;

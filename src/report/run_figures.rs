@@ -10,10 +10,11 @@ use super::figures::{
 use super::first_page::coarse_left;
 use super::folder::RunFolder;
 use super::names::soil_name;
-use super::numbers::{capital, interval, interval_in_percent, percent, significant, size, threshold, whole};
+use super::numbers::{interval, interval_in_percent, percent, significant, size, threshold, whole};
 use super::shell::Drawn;
 use super::walks::Walks;
 use crate::outcome::record::{LayerRow, SeriesRow, SizeRow, Statistic, Verdict};
+use crate::verdict::words::capital;
 
 /// Replicates drawn one by one; with more, the mean and the first ones are drawn.
 const DRAWN: usize = 40;

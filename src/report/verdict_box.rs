@@ -4,13 +4,14 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use maud::{Markup, html};
 
-use super::numbers::{capital, interval, percent, percent_interval, threshold};
+use super::numbers::{percent, percent_interval, threshold};
 use super::results::{fraction, run_heading};
-use super::run_figures::{self, run_name};
+use super::run_figures;
 use super::shell::clean;
 use super::table::Table;
 use super::walks::Walks;
 use crate::outcome::record::{RunSummary, Verdict};
+use crate::verdict::words::{capital, meaning};
 
 /// Eroded mass by run, with its interval.
 pub(super) fn eroded_table<'a>(walks: &Walks<'a>) -> Table<'a, RunSummary> {
@@ -24,40 +25,7 @@ pub(super) fn eroded_table<'a>(walks: &Walks<'a>) -> Table<'a, RunSummary> {
 
 /// What the class means, in a sentence.
 pub(super) fn in_words(walks: &Walks) -> String {
-    let limit = threshold(walks.threshold);
-    match walks.verdict {
-        Verdict::None => format!(
-            "In the model the filter holds this base: less than {limit} of its mass passes in the first run."
-        ),
-        Verdict::Some => format!(
-            "In the model the filter seals after some erosion: {limit} or more of the base passes in the \
-             first run, less in the second, on the constrictions that the first left blocked."
-        ),
-        Verdict::Continuing => format!(
-            "In the model the filter does not hold this base: {limit} or more of its mass passes in the \
-             first run and again in the second."
-        ),
-        Verdict::Undecided => undecided(walks, &limit),
-    }
-}
-
-fn undecided(walks: &Walks, limit: &str) -> String {
-    let straddles = |run: &&RunSummary| {
-        interval(&run.eroded_mass_fraction)
-            .is_some_and(|(low, high)| low < walks.threshold && walks.threshold <= high)
-    };
-    let runs: Vec<&str> = walks.summary.iter().filter(straddles).map(|run| run_name(run.run)).collect();
-    if !runs.is_empty() {
-        let plural = if runs.len() > 1 { "intervals of the " } else { "interval of the " };
-        format!("Inconclusive: the {plural}{} includes {limit}.", runs.join(" and the "))
-    } else if let [first] = walks.summary
-        && first.eroded_mass_fraction.mean >= walks.threshold
-    {
-        "Inconclusive: some and continuing erosion differ by the second run, and only a first was asked for."
-            .to_owned()
-    } else {
-        "Inconclusive: these replicates do not separate the classes.".to_owned()
-    }
+    meaning(walks.verdict, walks.summary, walks.threshold)
 }
 
 /// The classes of the replicates, counted; what one replicate is, and what each of several is.

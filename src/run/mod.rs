@@ -21,7 +21,7 @@ pub mod erosion;
 pub mod error;
 pub mod folder;
 pub mod machine;
-mod network_doubts;
+mod network_answer;
 mod network_record;
 mod network_walk;
 pub mod other_walks;

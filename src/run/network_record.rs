@@ -2,7 +2,6 @@
 
 use rayon::slice::ParallelSliceMut;
 
-use super::network_doubts::Said;
 use super::network_walk::{NetworkOutcome, NetworkWalk};
 use crate::case::base_record;
 use crate::gradation::Gradation;
@@ -17,12 +16,13 @@ impl NetworkOutcome {
     /// The record of these walks by a plan, on so many networks of which this is the first.
     pub fn record(&self, plan: &NetworkWalk, network: &Network, networks: usize) -> NetworkWalkRecord {
         let first = self.replicates.first().map(|walked| &walked.result);
-        let Said { confidence, reasons, warnings } = self.said(plan, network, networks);
+        let answer = self.answer(plan, network, networks);
         NetworkWalkRecord {
             verdict: self.verdict,
-            confidence,
-            reasons,
-            warnings,
+            confidence: answer.confidence,
+            reasons: answer.reasons(),
+            findings: answer.findings,
+            warnings: Vec::new(),
             seed: plan.seed,
             n_base: plan.n_base,
             n_base_eq2: plan.eq2(network, plan.mass_ratio).ok().flatten(),
@@ -106,10 +106,6 @@ mod tests {
         assert_eq!((record.n_base, record.replicates.len(), record.summary.len()), (1000, 2, 2));
         assert!(record.model_leaves_out[0].starts_with("hydraulics but for"));
         assert_eq!((record.n_base_eq2, record.grains_per_void), (None, None));
-        assert!(
-            record.reasons[0].contains("Eq. (2) cannot say whether they are enough"),
-            "{:?}",
-            record.reasons
-        );
+        assert!(record.reasons[0].contains("nothing says how many are needed"), "{:?}", record.reasons);
     }
 }

@@ -20,10 +20,12 @@ use crate::network::{Network, NetworkError};
 use crate::outcome::record::{Replicate, Run, RunSummary, Statistic, Stopping, Verdict};
 use crate::outcome::stopping::{Look, ReplicateValues};
 use crate::outcome::verdict::{below_by_interval, classify};
-use crate::outcome::walk_doubts::{Walked, is_clogged, walk_doubts};
+
 use crate::outcome::{Recorded, RunId, RunMetrics};
 use crate::scene::NetworkSource;
 use crate::store::checkpoint::{Checkpoint, CheckpointError};
+use crate::verdict::Finding;
+use crate::verdict::walks::{self, Walked, is_clogged};
 use crate::walk::{Engine, FlowRecord, RunPlan, SizeClasses, State, Walk, WalkControl, from_words};
 
 /// How replicates are walked: who follows them, and what saves them.
@@ -348,7 +350,7 @@ pub fn said_by_walks<'a>(
     base: &Gradation,
     increments: u64,
     layers: u64,
-) -> Vec<String> {
+) -> Vec<Finding> {
     let walked = walked.into_iter();
     let mut clogged: Vec<[u64; 3]> = Vec::new();
     for row in walked.clone().flat_map(|w| &w.recorded.flow).filter(|row| is_clogged(row.k_over_k0)) {
@@ -359,7 +361,7 @@ pub fn said_by_walks<'a>(
     }
     let replicates = walked.map(|w| &w.replicate).collect();
     let share = 1.0 / increments as f64;
-    walk_doubts(verdict, &Walked { replicates, clogged, base, share, layers })
+    walks::findings(verdict, &Walked { replicates, clogged, base, share, layers })
 }
 
 /// The verdict that the replicates support together, and their statistics by run.

@@ -10,16 +10,14 @@ use super::other_walks::OtherWalks;
 use super::replicates::{ReplicateResult, said_by_walks, stopping, summarise};
 use super::studies::Studies;
 use crate::case::{Case, INPUT_NAMES, replicate_seed};
-use crate::outcome::confidence::{self, Judgement};
-use crate::outcome::doubt::{Doubt, Way};
 use crate::outcome::record::{
-    CurveRange, Manifest, Outcome, PanBounds, PanReading, Practice, RunSummary, Statistic, Stopping, Verdict,
-    VoidRow,
+    Confidence, Manifest, Outcome, PanBounds, PanReading, RunSummary, Statistic, Stopping, Verdict, VoidRow,
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
 use crate::outcome::table::csv_of;
 use crate::outcome::{Recorded, by_void, infiltration, leaves_out, rules, verdict};
 use crate::store::{Folder, StoreError};
+use crate::verdict::{Finding, beside, finding, judge, practice};
 
 /// The outcome of a case that has been walked; with what was walked besides, and its studies, none so far
 /// where they are to come.
@@ -35,49 +33,26 @@ pub fn outcome(
     let pan_bounds = pan_bounds(case, [walked, &other.reading]);
     let verdict = pan_bounds.as_ref().map_or(verdict, PanBounds::verdict);
     let rules = rules::apply(&rule_inputs(case, walked));
-    // What was to be walked twice has been.
-    let to_be_walked = case.pan_doubt().zip(pan_bounds.as_ref());
-    let told = |said: String| match &to_be_walked {
-        Some((doubt, bounds)) if said == *doubt => bounds.sentence(),
-        _ => said,
-    };
-    let settled = |doubt: Doubt| match &to_be_walked {
-        Some((said, bounds)) if doubt.said == *said => {
-            Doubt { said: bounds.sentence(), way: if bounds.differ() { Way::Open } else { Way::Settled } }
-        }
-        _ => doubt,
-    };
-    let agreed = match &other.range {
+    let verdict = match &other.range {
         Some(range) if range.whole() != verdict => Verdict::Undecided,
         _ => verdict,
     };
-    let way_of_range =
-        if other.range.as_ref().is_some_and(CurveRange::agrees) { Way::Settled } else { Way::Open };
-    let of_range = Doubt::all(way_of_range, other.range.iter().map(CurveRange::sentence));
-    let mut of_walk = doubts_of_walk(case, agreed, walked);
+    let mut found = findings_of_walk(case, verdict, walked);
     if let Some(second) = &case.other_reading {
-        of_walk.extend(doubts_of_walk(second, agreed, &other.reading));
+        found.extend(findings_of_walk(second, verdict, &other.reading));
     }
-    let of_walk = Doubt::all(Way::Open, unsure).chain(Doubt::all(Way::Unsafe, of_walk));
-    let mut doubts: Vec<Doubt> =
-        of_walk.chain(case.doubts().into_iter().map(settled)).chain(of_range).collect();
-    // What leaves the verdict undecided comes first.
-    let decides = |said: &str| match &pan_bounds {
-        Some(bounds) if bounds.differ() && said == bounds.sentence() => 0,
-        _ if agreed != verdict && other.range.as_ref().is_some_and(|range| said == range.sentence()) => 1,
-        _ => 2,
-    };
-    doubts.sort_by_cached_key(|doubt| decides(&doubt.said));
-    let verdict = agreed;
-    let Judgement { confidence, reasons, mut notes } = confidence::judge(verdict, &rules, doubts);
-    notes.extend(case.not_studied().map(String::from));
-    let warnings = case.warnings().into_iter().map(told).collect();
-    Outcome {
+    found.extend(unsure.map(finding::decided_below_95));
+    found.extend(case.findings());
+    // What was to be walked twice has been.
+    found.extend(pan_bounds.as_ref().map(beside::pan).or_else(|| case.to_be_walked()));
+    found.extend(other.range.as_ref().map(beside::curve_range));
+    let mut outcome = Outcome {
         verdict,
-        confidence,
-        reasons,
-        notes,
-        practice: Practice::of(&rules),
+        confidence: Confidence::default(),
+        findings: Vec::new(),
+        reasons: Vec::new(),
+        notes: Vec::new(),
+        practice: practice::record(&rules),
         seed: case.scene.walk.seed,
         n_base: case.n_base,
         n_base_eq2: case.n_base_eq2,
@@ -89,7 +64,7 @@ pub fn outcome(
         stopping,
         pan_bounds,
         threshold: verdict::THRESHOLD,
-        warnings,
+        warnings: Vec::new(),
         left_out: left_out(case, walked),
         model_leaves_out: leaves_out(case.scene.exit_rule()),
         inputs: case.record(),
@@ -105,11 +80,16 @@ pub fn outcome(
         thickness: studies.thickness,
         studies_to_come: false,
         seconds,
-    }
+    };
+    found.extend(outcome.found());
+    let answer = judge(verdict, &outcome.rules, found);
+    (outcome.confidence, outcome.reasons) = (answer.confidence, answer.reasons());
+    outcome.findings = answer.findings;
+    outcome
 }
 
 /// What these walks say themselves against the verdict.
-fn doubts_of_walk(case: &Case, verdict: Verdict, walked: &[ReplicateResult]) -> Vec<String> {
+fn findings_of_walk(case: &Case, verdict: Verdict, walked: &[ReplicateResult]) -> Vec<Finding> {
     said_by_walks(verdict, walked, &case.base, case.increments(), case.counts[3])
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::keys::Density;
 use super::{Origin, Scene, SceneError};
 use crate::gradation::curves_in_file;
-use crate::outcome::Mistake;
+use crate::verdict::Mistake;
 
 /// What a scene of two tables is given besides them.
 #[derive(Clone, Debug, Default, PartialEq)]

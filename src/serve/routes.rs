@@ -17,7 +17,6 @@ use super::jobs::{JobQueue, Work};
 use super::sheets::Sheets;
 use crate::constrictions::shipped;
 use crate::gradation::{curves_in_file, soils_in_file};
-use crate::outcome::{PairOptions, PairRules};
 use crate::report;
 use crate::run::error::Exit;
 use crate::run::{self, PrepareOptions, RunError};
@@ -26,6 +25,7 @@ use crate::store::open_regular;
 use crate::study::compare::{ComparePlan, Compared};
 use crate::study::design;
 use crate::text::is_plain_part;
+use crate::verdict::{PairOptions, PairRules};
 
 const PAGE: &str = include_str!("page.html");
 const SCRIPT: &str = include_str!("page.js");

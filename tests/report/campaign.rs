@@ -136,6 +136,7 @@ fn what_would_decide_is_said_after_a_target_error_was_met() {
         verdict: None,
         half_width_pp: Some(4.0),
         sentence: None,
+        short_of: None,
     };
     outcome.stopping = Some(met.clone());
     assert!(outcome.beside_the_verdict().iter().any(|said| said.contains("--decide 99%")));

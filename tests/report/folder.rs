@@ -126,6 +126,7 @@ pub fn outcome(replicates: u64) -> Outcome {
     Outcome {
         verdict: Verdict::Some,
         confidence: Confidence::Within,
+        findings: Vec::new(),
         reasons: Vec::new(),
         notes: Vec::new(),
         practice: None,
@@ -146,6 +147,7 @@ pub fn outcome(replicates: u64) -> Outcome {
             verdict: Some(Verdict::Some),
             half_width_pp: Some(1.2),
             sentence: None,
+            short_of: None,
         }),
         pan_bounds: None,
         threshold: 0.075,

@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 use voidwalk::outcome::rules::NamedCurve;
-use voidwalk::outcome::{PairOptions, PairRules};
+use voidwalk::verdict::{PairOptions, PairRules};
 
 use crate::problem::{failed, refused};
 use crate::soil::Gradation;

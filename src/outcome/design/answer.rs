@@ -200,8 +200,8 @@ impl Design {
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
-    use crate::outcome::PairRules;
     use crate::outcome::design::Boundary;
+    use crate::verdict::PairRules;
 
     /// A design in which the walk holds to this D15F/D85B, `None` where it holds nothing, as its file has it.
     fn design(base: &Gradation, held: Option<f64>) -> Design {

@@ -144,7 +144,7 @@ impl Band {
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
-    use crate::outcome::PairRules;
+    use crate::verdict::PairRules;
 
     /// D15F of the filter that is judged.
     const D15F: f64 = 1.6;

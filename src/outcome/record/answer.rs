@@ -52,8 +52,42 @@ pub struct Stopping {
     pub verdict: Option<Verdict>,
     /// Widest half of the 95 % intervals of the eroded mass (percentage points); `None` with one replicate.
     pub half_width_pp: Option<f64>,
-    /// Why it is not reached.
+    /// Why it is not reached, in folders of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sentence: Option<String>,
+    /// Why it is not reached.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub short_of: Option<ShortOf>,
+}
+
+/// Why replicates do not reach what was asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ShortOf {
+    /// The first run alone does not separate two classes.
+    SecondRun,
+    /// The class is open.
+    Decision {
+        /// The run that leaves it open.
+        run: u64,
+        /// Its mean (%).
+        mean_percent: f64,
+        /// How far that lies from the threshold (percentage points).
+        distance_pp: f64,
+        /// The scatter of its replicates (percentage points).
+        sd_pp: f64,
+        /// About how many replicates would decide it; `None` where none will.
+        needed: Option<u64>,
+    },
+    /// The interval is too wide.
+    Target {
+        /// Half of it (percentage points).
+        half_width_pp: f64,
+        /// Replicates.
+        replicates: u64,
+        /// About how many would do.
+        needed: u64,
+    },
 }
 
 /// A mean, and with two or more replicates its standard deviation and interval.

@@ -14,6 +14,7 @@
 //!   second begins.
 
 mod answer;
+mod finding;
 mod inputs;
 mod manifest;
 mod practice;
@@ -23,7 +24,8 @@ mod voids;
 
 use serde::{Deserialize, Serialize};
 
-pub use answer::{Statistic, Stopping, Verdict};
+pub use answer::{ShortOf, Statistic, Stopping, Verdict};
+pub use finding::{About, Direction, FindingRecord, Weight};
 pub use inputs::{
     BaseRecord, FilterRecord, Inputs, NetworkKind, NetworkRecord, NetworkSummary, Ratios, SampledBase,
 };
@@ -44,11 +46,13 @@ pub struct Outcome {
     /// How far it can be relied on; folders of earlier versions do not say, and are outside.
     #[serde(default)]
     pub confidence: Confidence,
-    /// Why no further: sentences, the weightiest first, which sets the label; none within the checked range,
-    /// but for folders of earlier versions, which have here what is now in `notes`.
+    /// What was found about the verdict: what speaks against it first, of which the first sets the label.
+    #[serde(default)]
+    pub findings: Vec<FindingRecord>,
+    /// The sentences of those that speak against it, in the same order.
     #[serde(default)]
     pub reasons: Vec<String>,
-    /// What else is to be known of the pair; none of it speaks against the verdict.
+    /// What folders of earlier versions say besides; now in `findings`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
     /// What filter practice says of the pair; folders of earlier versions have it in `rules` alone.
@@ -79,7 +83,8 @@ pub struct Outcome {
     pub pan_bounds: Option<PanBounds>,
     /// Eroded mass fraction that divides the classes: 0.075.
     pub threshold: f64,
-    /// Where the inputs leave the range in which the model was checked, and what else a reader must know.
+    /// What folders of earlier versions say of their inputs; now in `findings`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
     /// Parts of the program that this scene did not need.
     pub left_out: Vec<String>,
@@ -112,6 +117,13 @@ pub struct Outcome {
     pub studies_to_come: bool,
     /// Wall time of everything, s.
     pub seconds: f64,
+}
+
+impl Outcome {
+    /// The findings that can do something to the verdict, or were looked at for that.
+    pub fn known(&self) -> impl Iterator<Item = &FindingRecord> {
+        self.findings.iter().filter(|finding| finding.weight != Weight::Note)
+    }
 }
 
 /// One new network, walked once or twice.

@@ -14,8 +14,8 @@
 use super::*;
 use crate::gradation::Gradation;
 use crate::outcome::applied::{AppliedRule, RuleRole};
-use crate::outcome::confidence::judge;
 use crate::outcome::record::Verdict;
+use crate::verdict::judge;
 
 /// Pairs of soils that are drawn.
 const PAIRS: u64 = 4000;

@@ -8,7 +8,7 @@ use maud::{Markup, Render, html};
 
 use super::error::ReportError;
 use super::files::{json, rows};
-use super::numbers::{capital, duration, significant, threshold, trimmed, whole};
+use super::numbers::{duration, significant, threshold, trimmed, whole};
 use super::rules;
 use super::section::Sections;
 use super::shell::{citation, clean, fact, leaves_out};
@@ -16,6 +16,7 @@ use super::table::Table;
 use super::written::Written;
 use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow};
 use crate::outcome::record::{AppliedRule, Confidence, RuleRole};
+use crate::verdict::words::capital;
 
 /// Writes `design.html` and its figure into the folder of a design, from `design.json` and `design.csv`
 /// there.
@@ -354,8 +355,8 @@ fn made(design: &Design, walks: &[WalkRow]) -> Markup {
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
-    use crate::outcome::PairRules;
     use crate::outcome::design::BaseStated;
+    use crate::verdict::PairRules;
 
     fn written(design: &Design, csv: &str) -> String {
         let folder = tempfile::tempdir().unwrap();

@@ -68,7 +68,10 @@ pub fn run(
         let outcome = outcome(&folder.path().join(&case))?;
         outcomes.push((line.case.clone(), case, outcome));
     }
-    let comparison = Comparison::new(plan.of, &plan.common, plan.seed, &outcomes);
+    let mut comparison = Comparison::new(plan.of, &plan.common, plan.seed, &outcomes);
+    for (case, (.., outcome)) in comparison.cases.iter_mut().zip(&outcomes) {
+        (case.practice, case.beside) = (outcome.practice_in_words(), outcome.beside_the_verdict());
+    }
     write(&folder, &comparison)?;
     callbacks.run.finish(kind, &folder)?;
     Ok(comparison)

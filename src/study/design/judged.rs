@@ -2,12 +2,11 @@
 
 use super::row::Row;
 use crate::case::{Case, StatedBase};
-use crate::outcome::confidence::{self, Judgement};
-use crate::outcome::doubt::{Doubt, Way};
-use crate::outcome::record::{AppliedRule, Confidence, Verdict};
+use crate::outcome::record::{AppliedRule, Verdict};
 use crate::outcome::rules::{BaseSoil, RuleInputs, apply};
 use crate::run::error::RunError;
 use crate::scene::{Amount, BaseGradation, D85};
+use crate::verdict::{Answer, Finding, finding, judge};
 
 /// Fewer networks than these give no percentiles.
 const FEW_NETWORKS: u64 = 5;
@@ -15,43 +14,22 @@ const FEW_NETWORKS: u64 = 5;
 /// A base coarser than this (D85, mm) is worth a word.
 const COARSE_BASE_MM: f64 = 10.0;
 
-/// How far a row can be relied on, why no further, and what else is to be said.
-pub(super) type Said = (Confidence, Vec<String>, Vec<String>);
-
-/// That a band over so few networks says little.
-fn few_networks(row: &Row) -> Option<String> {
+/// What the search itself finds of a row: a band over so few networks says little, a number of base particles
+/// may not be that of Eq. (2) at every ratio, and a base that is regraded and then scaled is not the one that
+/// practice regrades in that size.
+fn of_search(row: &Row) -> Vec<Finding> {
     let networks = row.case.scene.walk.replicates;
-    let counted = if networks == 1 { "1 network".to_owned() } else { format!("{networks} networks") };
-    (networks < FEW_NETWORKS).then(|| {
-        format!(
-            "only {counted}: a band of 5 to 95 % needs {FEW_NETWORKS} at least, better 20 \
-             (--set replicates=20)"
-        )
-    })
+    let few = (networks < FEW_NETWORKS).then(|| finding::few_networks(networks));
+    let recut = row.stated.regraded_from.as_ref().filter(|_| row.inverse);
+    let recut = recut.map(|(_, at)| finding::regraded_elsewhere(*at));
+    few.into_iter().chain(of_amount(row)).chain(recut).collect()
 }
 
-/// That the number of base particles is not that of Eq. (2) at every ratio.
-fn of_amount(row: &Row) -> Option<String> {
-    let what = match row.case.scene.base.amount() {
-        Amount::Number(n) => format!("base.n_base holds the number of base particles at {n}"),
-        Amount::MassRatio(_, Some(cap)) => {
-            format!("base.cap holds the number of base particles at {cap} or less")
-        }
-        Amount::MassRatio(_, None) => return None,
-    };
-    Some(format!(
-        "{what}, which is not the base that Eq. (2) asks for at every ratio: where there is less, more \
-         filters seem to hold"
-    ))
-}
-
-/// That a base that is regraded and then scaled is not the one that practice regrades in that size.
-fn recut(row: &Row) -> Option<String> {
-    let (_, at) = row.stated.regraded_from.as_ref().filter(|_| row.inverse)?;
-    Some(format!(
-        "the base was regraded on {at:.3} mm in the size in which it is stated, and then scaled: practice \
-         regrades the scaled base elsewhere, or not at all"
-    ))
+fn of_amount(row: &Row) -> Option<Finding> {
+    match row.case.scene.base.amount() {
+        Amount::Number(n) | Amount::MassRatio(_, Some(n)) => Some(finding::amount_held(n)),
+        Amount::MassRatio(_, None) => None,
+    }
 }
 
 /// A row at one ratio, as what knows millimetres judges it.
@@ -133,23 +111,15 @@ impl Judged {
         rules
     }
 
-    /// How far "no erosion" can be relied on, why no further, and what else is to be said.
-    pub fn confidence(&self, row: &Row, rules: &[AppliedRule]) -> Said {
+    /// What "no erosion" is worth, with what else was found about it.
+    pub fn answer(&self, row: &Row, rules: &[AppliedRule], others: Vec<Finding>) -> Answer {
         // Said of every ratio below.
         let of_one = self.case.too_little_base().filter(|_| of_amount(row).is_some());
-        let doubts = self.case.doubts().into_iter();
-        let doubts = doubts.filter(|doubt| Some(&doubt.said) != of_one.as_ref());
-        let coarse = self.d85_mm.filter(|d85| *d85 > COARSE_BASE_MM).map(|d85| {
-            format!("the base's D85 is {d85:.1} mm: are its sizes micrometres under a header in mm?")
-        });
-        let not_compared = self.real_thickness.map(|real| Case::thickness_without_unit(real, self.unit()));
-        let of_search = [not_compared, recut(row), few_networks(row), of_amount(row)].into_iter().flatten();
-        let coarse = Doubt::all(Way::Open, coarse);
-        let doubts = coarse.chain(doubts).chain(Doubt::all(Way::Open, of_search)).collect();
-        let Judgement { confidence, reasons, notes } = confidence::judge(Verdict::None, rules, doubts);
-        let is_new =
-            |said: &String| !reasons.contains(said) && !notes.contains(said) && Some(said) != of_one.as_ref();
-        let warnings: Vec<String> = self.case.warnings().into_iter().filter(is_new).collect();
-        (confidence, reasons, notes.into_iter().chain(warnings).collect())
+        let of_case = self.case.to_be_walked().into_iter().chain(self.case.findings());
+        let coarse = self.d85_mm.filter(|d85| *d85 > COARSE_BASE_MM).map(finding::coarse_base);
+        let not_compared = self.real_thickness.map(|real| finding::thickness_without_unit(real, self.unit()));
+        let found = of_case.filter(|finding| Some(finding) != of_one.as_ref());
+        let found = found.chain(coarse).chain(not_compared).chain(of_search(row)).chain(others);
+        judge(Verdict::None, rules, found.collect())
     }
 }

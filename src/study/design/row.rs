@@ -17,6 +17,7 @@ use crate::run::callbacks::Callbacks;
 use crate::run::erosion::eroded;
 use crate::run::error::RunError;
 use crate::scene::Amount;
+use crate::verdict::{Finding, finding};
 
 /// Ratio at which a first guess takes the layers of a thickness in mm.
 const USUAL_RATIO: f64 = 5.0;
@@ -100,14 +101,10 @@ impl Row {
         ((mm / layer).round() < 1.0).then_some(layer)
     }
 
-    /// The same in words.
-    pub fn thicker_in_words(&self, ratio: f64) -> Option<String> {
+    /// The same as a finding.
+    pub fn thicker(&self, ratio: f64) -> Option<Finding> {
         let layer = self.thicker_than_asked(ratio)?;
-        Some(format!(
-            "at D15F/D85B {ratio:.2} one layer of voids, the least that can be walked, is {layer:.3} mm \
-             thick: a filter of {} holds less",
-            self.wanted.thickness
-        ))
+        Some(finding::layer_thicker(ratio, layer, &self.wanted.thickness.to_string()))
     }
 
     /// The case at a ratio.

@@ -1,6 +1,6 @@
 //! Puts what the networks say together: the record and the table of a design.
 
-use super::judged::{Judged, Said};
+use super::judged::Judged;
 use super::options::{DesignOptions, Thickness};
 use super::practice::{allowed, finest_base};
 use super::row::Row;
@@ -17,6 +17,8 @@ use crate::outcome::record::Confidence;
 use crate::outcome::table::csv_of;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
+use crate::verdict::words::capital;
+use crate::verdict::{Answer, Finding, finding};
 
 /// Ratio at which the rules are read where no boundary is known.
 const USUAL_RATIO: f64 = 4.0;
@@ -174,8 +176,8 @@ fn named(row: &Row, of: &DesignRow, note: String) -> String {
     if of.density == row.wanted.density { note } else { format!("{}: {note}", of.density) }
 }
 
-/// How far the answers of all rows can be relied on: as far as the worst of them. Why no further, and what
-/// else is to be said, of every row: what not all of them say with the row's name.
+/// What the answers of all rows are worth: as much as the worst of them. The sentences that speak against them,
+/// and all others, of every row: what not all of them say with the row's name.
 fn all_judged(
     asked: &[Asked],
     boundaries: &[DesignRow],
@@ -186,14 +188,14 @@ fn all_judged(
         each.push((name, judged(asked)?));
     }
     // The weightiest first.
-    each.sort_by_key(|(_, (confidence, ..))| std::cmp::Reverse(*confidence));
-    let worst = each.first().map_or(Confidence::Outside, |(_, (confidence, ..))| *confidence);
-    let said = |of: fn(&Said) -> &Vec<String>| -> Vec<String> {
+    each.sort_by_key(|(_, answer)| std::cmp::Reverse(answer.confidence));
+    let worst = each.first().map_or(Confidence::Outside, |(_, answer)| answer.confidence);
+    let said = |of: fn(&Answer) -> Vec<String>| -> Vec<String> {
         let mut all: Vec<String> = Vec::new();
-        for (name, judged) in &each {
-            for sentence in of(judged) {
-                let by_all = each.iter().all(|(_, other)| of(other).contains(sentence));
-                let sentence = if by_all { sentence.clone() } else { format!("{name}: {sentence}") };
+        for (name, answer) in &each {
+            for sentence in of(answer) {
+                let by_all = each.iter().all(|(_, other)| of(other).contains(&sentence));
+                let sentence = if by_all { sentence } else { format!("{name}: {sentence}") };
                 if !all.contains(&sentence) {
                     all.push(sentence);
                 }
@@ -201,46 +203,40 @@ fn all_judged(
         }
         all
     };
-    let mut warnings = said(|(.., warnings)| warnings);
+    let mut notes = said(Answer::notes);
     let not_monotone: u64 = boundaries.iter().map(|of| of.not_monotone).sum();
-    if not_monotone > 0 {
-        warnings.push(format!(
-            "on {not_monotone} of the networks some larger ratio was seen to hold in the first run or the \
-             second: there the smallest ratio that was seen to erode counts"
-        ));
-    }
-    Ok((worst, said(|(_, reasons, _)| reasons), warnings))
+    notes.extend((not_monotone > 0).then(|| finding::not_monotone(not_monotone).sentence()));
+    Ok((worst, said(Answer::reasons), notes))
 }
 
-fn judged(asked: &Asked) -> Result<Said, RunError> {
+fn judged(asked: &Asked) -> Result<Answer, RunError> {
     let &Asked { row, of, held, .. } = asked;
     if let Some(ratio) = held {
         return judged_at(asked, ratio);
     }
     // No filter is said to hold, and no rule speaks against one.
-    let (_, reasons, warnings) = Judged::new(row, USUAL_RATIO)?.confidence(row, &[]);
-    let why = [&of.band_note, &of.no_erosion_note].into_iter().flatten().cloned();
-    Ok((Confidence::Outside, why.chain(reasons).collect(), warnings))
+    let why = [&of.band_note, &of.no_erosion_note].into_iter().flatten();
+    let mut found: Vec<Finding> = why.map(|said| of_search(said)).collect();
+    if found.is_empty() {
+        found.push(of_search("no ratio is known that holds"));
+    }
+    Ok(Judged::new(row, USUAL_RATIO)?.answer(row, &[], found))
 }
 
-/// How far it can be relied on that a filter with this ratio holds.
-fn judged_at(Asked { row, of, unsteady, .. }: &Asked, ratio: f64) -> Result<Said, RunError> {
+/// What it is worth that a filter with this ratio holds.
+fn judged_at(Asked { row, of, unsteady, .. }: &Asked, ratio: f64) -> Result<Answer, RunError> {
     let judged = Judged::new(row, ratio)?;
-    let (mut confidence, reasons, warnings) = judged.confidence(row, &judged.rules());
     let greatest = of.no_erosion.as_ref().map_or(ratio, |of| of.high.unwrap_or(of.median).max(ratio));
     let empty = of.band.as_ref().filter(|band| band.is_empty).map(|band| band.said.clone());
     let unknown = of.no_erosion_note.clone().filter(|_| of.no_erosion.is_none());
-    let why = [row.thicker_in_words(greatest), unsteady.clone(), empty, of.band_note.clone(), unknown];
-    let why: Vec<String> = why.into_iter().flatten().collect();
-    // The first reason is the one that sets the label.
-    let said = match confidence > Confidence::Outside {
-        true => [reasons, why.clone()].concat(),
-        false => [why.clone(), reasons].concat(),
-    };
-    if !why.is_empty() {
-        confidence = confidence.max(Confidence::Outside);
-    }
-    Ok((confidence, said, warnings))
+    let why = [unsteady.clone(), empty, of.band_note.clone(), unknown].into_iter().flatten();
+    let found = why.map(|said| of_search(&said)).chain(row.thicker(greatest));
+    Ok(judged.answer(row, &judged.rules(), found.collect()))
+}
+
+/// What a search found in its own words.
+fn of_search(said: &str) -> Finding {
+    finding::of_search(&capital(said.trim_end_matches('.')))
 }
 
 /// `design.csv`.
@@ -343,7 +339,7 @@ fn of(row: &Row, done: &[&Done]) -> Result<DesignRow, RunError> {
     // Of a filter that is as thin as one layer, or thinner, the layer itself.
     let thicker = |boundary: &Option<Boundary>| {
         let greatest = boundary.as_ref().map(|of| of.high.unwrap_or(of.median));
-        row.thicker_in_words(greatest.or(holds_to)?)
+        Some(row.thicker(greatest.or(holds_to)?)?.sentence())
     };
     let (first_thicker, second_thicker) = (thicker(&no_erosion), thicker(&continuing));
     let of_first = words(|done| done.found.no_erosion_beyond.as_ref().map(|(_, why)| why));

@@ -2,9 +2,12 @@
 
 use serde::Serialize;
 
-use super::applied::AppliedRule;
-use super::rules::{BaseSoil, NamedCurve, Sides, apply_to_envelopes};
+use super::entry::Finding;
+use super::finding;
+use super::words::capital;
 use crate::gradation::Gradation;
+use crate::outcome::record::AppliedRule;
+use crate::outcome::rules::{BaseSoil, NamedCurve, Sides, apply_to_envelopes};
 
 /// What is said of two sieve curves by the rules of practice alone.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -90,7 +93,7 @@ impl PairRules {
     /// Every rule on a base and a filter of one curve each, both in mm.
     ///
     /// ```
-    /// use voidwalk::{Gradation, outcome::PairRules};
+    /// use voidwalk::{Gradation, verdict::PairRules};
     /// let filter = Gradation::from_points(&[(0.5, 0.0), (2.0, 100.0)], None)?;
     /// let base = Gradation::from_points(&[(0.08, 0.0), (0.3, 100.0)], None)?;
     /// let pair = PairRules::of(&base, &filter);
@@ -137,20 +140,15 @@ impl PairRules {
             1 => Vec::new(),
             _ => curves.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>(),
         };
-        let mut warnings: Vec<String> =
-            Mistake::of_envelopes(bases, filters).into_iter().map(|mistake| mistake.sentence).collect();
+        let mistake = Mistake::of_envelopes(bases, filters);
+        let mut found: Vec<Finding> = mistake.iter().map(Mistake::finding).collect();
         for (whose, curves) in [("filter", filters), ("base", bases)] {
             if curves.len() > 1 {
-                warnings.push(format!(
-                    "the {whose} has {} curves ({}): taken as the envelope of one soil; FILE#NAME takes one \
-                     of them",
-                    curves.len(),
-                    names(curves).join(", ")
-                ));
+                found.push(finding::envelope(whose, curves.len() as u64, &names(curves).join(", ")));
             }
         }
         let rules = apply_to_envelopes(bases, filters, options.dispersive, options.joint_mm);
-        warnings.extend(stricter(filters, bases, options, sides, &rules));
+        found.extend(stricter(filters, bases, options, sides, &rules));
         Self {
             filter: FilterSizes {
                 curves: names(filters),
@@ -178,7 +176,7 @@ impl PairRules {
                 cc: base.cc(),
             },
             rules,
-            warnings,
+            warnings: found.iter().map(Finding::with_to_do).collect(),
         }
     }
 }
@@ -191,7 +189,7 @@ fn stricter(
     options: PairOptions,
     sides: Sides,
     rules: &[AppliedRule],
-) -> Option<String> {
+) -> Option<Finding> {
     let limit = |rules: &[AppliedRule]| {
         let rule = rules.iter().find(|rule| rule.id == "sherard-dunnigan")?;
         rule.limit.filter(|_| !rule.limit_at_most)
@@ -203,12 +201,8 @@ fn stricter(
         Some((curve.0.clone(), limit(&alone)?))
     };
     let (name, least) = bases.iter().filter_map(of_curve).min_by(|a, b| a.1.total_cmp(&b.1))?;
-    (bases.len() > 1 && least < of_finest * (1.0 - 1e-9)).then(|| {
-        format!(
-            "the base curve {name} allows a D15F of {least:.3} mm, less than the {of_finest:.3} mm of the \
-             finest curve, as its fines put it into another category"
-        )
-    })
+    (bases.len() > 1 && least < of_finest * (1.0 - 1e-9))
+        .then(|| finding::stricter_curve(&name, least, of_finest))
 }
 
 /// Two tables that can hardly be a base and its filter.
@@ -261,7 +255,7 @@ impl Mistake {
     /// that are multiples of D0F (`scale_free`) have no unit that could be wrong.
     ///
     /// ```
-    /// use voidwalk::{Gradation, outcome::Mistake};
+    /// use voidwalk::{Gradation, verdict::Mistake};
     /// let base = Gradation::from_points(&[(0.08, 0.0), (0.3, 100.0)], None)?;
     /// let filter = Gradation::from_points(&[(0.5, 0.0), (2.0, 100.0)], None)?;
     /// assert_eq!(Mistake::find(&base, &filter, false), None);
@@ -327,6 +321,11 @@ impl Mistake {
     /// Whether two tables are refused for it, unless whoever names them says that they are as given.
     pub fn is_refused(&self) -> bool {
         matches!(self.kind, MistakeKind::Unit | MistakeKind::Exchanged)
+    }
+
+    /// The same where the two are not refused.
+    pub fn finding(&self) -> Finding {
+        finding::doubtful_tables(&capital(&self.sentence))
     }
 
     /// What is said where the two are refused, on the command line.

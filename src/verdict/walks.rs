@@ -1,10 +1,12 @@
 //! What a walk itself says against its verdict: a filter that clogged, particles that circle, a second run
 //! that erodes more than the first.
 
-use super::digits::{count, percent};
-use super::record::{Replicate, Run, Verdict};
-use super::verdict::THRESHOLD;
+use super::entry::Finding;
+use super::finding;
 use crate::gradation::Gradation;
+use crate::outcome::digits::percent;
+use crate::outcome::record::{Replicate, Run, Verdict};
+use crate::outcome::verdict::THRESHOLD;
 
 /// Less than this part of the clean filter's permeability is none: 0.0 % where it is shown.
 const CLOGGED: f64 = 5e-4;
@@ -28,9 +30,8 @@ pub fn is_clogged(k_over_k0: f64) -> bool {
     k_over_k0 <= CLOGGED
 }
 
-/// Why a class that does not erode for ever cannot be relied on, for what happened in its walk; the
-/// weightiest first.
-pub fn walk_doubts(verdict: Verdict, walked: &Walked) -> Vec<String> {
+/// Why a class that does not erode for ever cannot be relied on, for what happened in its walk.
+pub fn findings(verdict: Verdict, walked: &Walked) -> Vec<Finding> {
     // The first run tells "no erosion" from the others, the second "some" from "continuing".
     let run = match verdict {
         Verdict::None => 1,
@@ -54,7 +55,7 @@ impl Walked<'_> {
     ///
     /// From then on nothing moves: all that is on its way, at least what the last increments inserted, as
     /// many as there are layers, counts as retained.
-    fn clogging(&self, run: u64) -> Option<String> {
+    fn clogging(&self, run: u64) -> Option<Finding> {
         let all = self.of_run(run).count();
         let clogged = self.of_run(run).filter(|run| run.k_over_k0.is_some_and(is_clogged)).count();
         if clogged == 0 {
@@ -66,12 +67,7 @@ impl Walked<'_> {
         // The second run goes on with what the first left.
         let from_start = run == 2 && self.clogged.iter().any(|found| found[1] == 2 && found[2] == 0);
         if from_start {
-            return Some(format!(
-                "no water flows in the second run{of}, as the filter clogged wholly in the first; nothing \
-                 can erode then, and what was on its way when it clogged counts as retained. Walk it with a \
-                 smaller inject_share, {:.0e} say, and see whether the class stays",
-                self.share / 10.0
-            ));
+            return Some(finding::clogged_before(&of));
         }
         let after: Vec<f64> =
             self.clogged.iter().filter(|found| found[1] == run).map(|found| inserted(found[2])).collect();
@@ -83,30 +79,19 @@ impl Walked<'_> {
             least => format!(", after {} to {} of the base", percent(least), percent(most)),
         };
         let on_its_way = inserted(self.layers).min(least);
-        Some(format!(
-            "the filter clogged wholly in the {which} run{of}{after}; no water flows then, and what was on \
-             its way, {} of the base at the least, counts as retained and might have left. Walk it with a \
-             smaller inject_share, {:.0e} say, until the eroded mass stays",
-            percent(on_its_way),
-            self.share / 10.0
-        ))
+        Some(finding::clogged(which, &of, &after, 100.0 * on_its_way))
     }
 
     /// That the particles trapped could turn the class if they were not retained.
-    fn trapping(&self, run: u64) -> Option<String> {
+    fn trapping(&self, run: u64) -> Option<Finding> {
         let could_leave = |run: &&Run| {
             let share = run.trapped as f64 / run.inserted.max(1) as f64;
             run.trapped > 0 && (run.eroded_mass_fraction + self.mass_of(share)).max(share) >= THRESHOLD
         };
         let worst = self.of_run(run).filter(could_leave).max_by_key(|run| run.trapped)?;
         let share = worst.trapped as f64 / worst.inserted.max(1) as f64;
-        Some(format!(
-            "{} of {} particles of a run are trapped in closed loops, up to {} of the base by mass; they \
-             count as retained, and if they found a way out the class might be another",
-            count(worst.trapped),
-            count(worst.inserted),
-            percent(self.mass_of(share))
-        ))
+        let mass = 100.0 * self.mass_of(share);
+        Some(finding::trapped_could_turn(worst.trapped, worst.inserted, mass))
     }
 
     /// The most mass that such a share of the particles, by number, can have: that of the coarsest.
@@ -117,17 +102,10 @@ impl Walked<'_> {
     }
 
     /// That the second run erodes what the first did not.
-    fn more_in_the_second(&self) -> Option<String> {
+    fn more_in_the_second(&self) -> Option<Finding> {
         let eroded: Vec<f64> = self.of_run(2).map(|run| run.eroded_mass_fraction).collect();
         let mean = eroded.iter().sum::<f64>() / eroded.len().max(1) as f64;
-        (mean >= THRESHOLD).then(|| {
-            format!(
-                "the second run erodes {} of its base, more than {}; the class looks at the first alone, and \
-                 more base may well erode further",
-                percent(mean),
-                percent(THRESHOLD)
-            )
-        })
+        (mean >= THRESHOLD).then(|| finding::second_run_erodes(100.0 * mean, 100.0 * THRESHOLD))
     }
 }
 
@@ -154,7 +132,8 @@ mod tests {
     fn of(verdict: Verdict, runs: &[(f64, u64, Option<f64>)], clogged: &[[u64; 3]]) -> Vec<String> {
         let (base, replicate) = (Gradation::linear_from_d0(0.1, 3.0).unwrap(), replicate(runs));
         let (replicates, clogged) = (vec![&replicate], clogged.to_vec());
-        walk_doubts(verdict, &Walked { replicates, clogged, base: &base, share: 0.01, layers: 30 })
+        let walked = Walked { replicates, clogged, base: &base, share: 0.01, layers: 30 };
+        findings(verdict, &walked).iter().map(Finding::sentence).collect()
     }
 
     #[test]
@@ -163,18 +142,18 @@ mod tests {
         let found = of(Verdict::None, &closed, &[[1, 1, 41], [1, 2, 0]]);
         assert_eq!(found.len(), 1);
         let begin =
-            "the filter clogged wholly in the first run, after 41.0 % of the base; no water flows then";
-        assert!(
-            found[0].starts_with(begin) && found[0].contains("30.0 % of the base at the least"),
-            "{found:?}"
-        );
+            "The filter clogged wholly in the first run, after 41.0 % of the base. No water flows then";
+        assert!(found[0].starts_with(begin) && found[0].contains("at least 30 % of the base"), "{found:?}");
         let found = of(Verdict::Some, &closed, &[[1, 1, 41], [1, 2, 0]]);
-        assert!(found[0].starts_with("no water flows in the second run, as the filter clogged"), "{found:?}");
+        assert!(found[0].starts_with("No water flows in the second run, as the filter clogged"), "{found:?}");
         // Less than has been inserted cannot be on its way.
         let found = of(Verdict::None, &closed, &[[1, 1, 10], [1, 2, 0]]);
-        assert!(found[0].contains("its way, 10.0 % of"), "{found:?}");
+        assert!(found[0].contains("its way, at least 10 % of"), "{found:?}");
         let found = of(Verdict::None, &closed, &[[1, 1, 24], [2, 1, 32], [1, 2, 0]]);
-        assert!(found[0].contains("24.0 % to 32.0 % of the base") && found[0].contains("its way, 24.0 % of"));
+        assert!(
+            found[0].contains("24.0 % to 32.0 % of the base")
+                && found[0].contains("its way, at least 24 % of")
+        );
         assert_eq!(of(Verdict::Continuing, &closed, &[[1, 1, 41]]), Vec::<String>::new());
         for open in [Some(0.01), None] {
             assert_eq!(of(Verdict::None, &[(0.02, 0, open), (0.0, 0, open)], &[]), Vec::<String>::new());
@@ -184,7 +163,7 @@ mod tests {
     #[test]
     fn trapped_particles_that_could_turn_the_class_are_a_doubt() {
         let found = of(Verdict::None, &[(0.0, 9985, None), (0.0, 0, None)], &[]);
-        assert!(found[0].starts_with("9 985 of 10 000 particles of a run are trapped"), "{found:?}");
+        assert!(found[0].contains("They are 9 985 of 10 000 particles of a run"), "{found:?}");
         // A few, but perhaps the coarsest.
         assert_eq!(of(Verdict::None, &[(0.06, 30, None)], &[]).len(), 1);
         assert_eq!(of(Verdict::None, &[(0.0, 1, None)], &[]), Vec::<String>::new());
@@ -193,10 +172,7 @@ mod tests {
     #[test]
     fn no_erosion_whose_second_run_erodes_is_a_doubt() {
         let found = of(Verdict::None, &[(0.07, 0, None), (0.2, 0, None)], &[]);
-        assert!(
-            found[0].starts_with("the second run erodes 20.0 % of its base, more than 7.50 %"),
-            "{found:?}"
-        );
+        assert!(found[0].starts_with("The second run erodes 20 % of its base, more than 7.5 %"), "{found:?}");
         assert_eq!(of(Verdict::None, &[(0.05, 0, None), (0.07, 0, None)], &[]), Vec::<String>::new());
     }
 }

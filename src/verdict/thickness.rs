@@ -1,14 +1,15 @@
-//! How the verdict moves with the thickness of the filter, in a sentence.
+//! How the verdict moves with the thickness of the filter.
 
-use super::record::{OfThickness, Outcome, Statistic, Verdict};
+use super::entry::Finding;
+use super::finding as found;
+use crate::outcome::record::{OfThickness, Outcome, Statistic, Verdict};
+
+/// How the verdict moves with the thickness of the filter; `None` without another thickness.
+pub fn finding(outcome: &Outcome) -> Option<Finding> {
+    of_rows(&outcome.thickness, outcome.verdict, outcome.points_are())
+}
 
 impl Outcome {
-    /// How the verdict moves with the thickness of the filter, in a sentence; `None` without another
-    /// thickness.
-    pub fn with_thickness(&self) -> Option<String> {
-        sentence(&self.thickness, self.verdict, self.points_are())
-    }
-
     /// Whether a row has as many times the base particles of the scene itself as it is thick.
     pub fn has_its_base(&self, row: &OfThickness) -> bool {
         own(&self.thickness).is_none_or(|own| row.has_its_base(own))
@@ -20,9 +21,9 @@ fn own(rows: &[OfThickness]) -> Option<&OfThickness> {
     rows.iter().find(|row| row.factor == 1.0)
 }
 
-/// What the rows say beside a verdict, in a sentence: whether it stays, and how much erodes; `None` without
+/// What the rows say beside a verdict: whether it stays, and how much erodes; `None` without
 /// another thickness. What is undecided neither stays nor moves.
-fn sentence(rows: &[OfThickness], verdict: Verdict, points: Option<&str>) -> Option<String> {
+fn of_rows(rows: &[OfThickness], verdict: Verdict, points: Option<&str>) -> Option<Finding> {
     let others: Vec<&OfThickness> = rows.iter().filter(|row| row.factor != 1.0).collect();
     if others.is_empty() {
         return None;
@@ -43,15 +44,15 @@ fn sentence(rows: &[OfThickness], verdict: Verdict, points: Option<&str>) -> Opt
         )
     };
     let each: Vec<String> = others.iter().map(of_row).collect();
-    let said = match (verdict, stays) {
+    let each = each.join("; ");
+    Some(match (verdict, stays) {
         (Verdict::Undecided, _) => {
             let points = points.map_or(String::new(), |points| format!(", {points}"));
-            format!("The verdict is undecided; at other thicknesses{points}")
+            found::open_with_thickness(&points, &each)
         }
-        (_, true) => "The verdict stays with thickness".into(),
-        (_, false) => "The verdict moves with thickness".into(),
-    };
-    Some(format!("{said} ({}).", each.join("; ")))
+        (_, true) => found::stays_with_thickness(&each),
+        (_, false) => found::moves_with_thickness(&each),
+    })
 }
 
 /// The eroded mass; of a point that stopped early its interval, as one replicate has no digits to show.
@@ -65,6 +66,10 @@ fn percent(eroded: &Statistic, stopped: bool) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn sentence(rows: &[OfThickness], verdict: Verdict, points: Option<&str>) -> Option<String> {
+        of_rows(rows, verdict, points).map(|finding| finding.sentence())
+    }
 
     fn row(factor: f64, verdict: Verdict, mean: f64) -> OfThickness {
         let runs = vec![Statistic { mean, sd: None, low: None, high: None }];

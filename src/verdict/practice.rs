@@ -1,25 +1,103 @@
-//! What filter practice says of a pair, in a line that stands below every verdict, whatever it is.
+//! What the rules of filter practice say of a pair: findings where they speak against its class, and a line
+//! that stands below every verdict, whatever it is.
 
-use super::record::{AppliedRule, LimitOfDesign, Outcome, Practice, RuleRole, Verdict};
-use super::rule_words::{against, listed, said_of_all, whose};
+use super::entry::Finding;
+use super::finding;
+use super::words::within;
+use crate::outcome::record::{AppliedRule, LimitOfDesign, Outcome, Practice, RuleRole, Verdict};
 
 /// The rule of design.
 const DESIGN: &str = "sherard-dunnigan";
 
-impl Practice {
-    /// From the rules that were applied; `None` where the rule of design is not among them.
-    pub fn of(rules: &[AppliedRule]) -> Option<Self> {
-        let rule = rules.iter().find(|rule| rule.id == DESIGN)?;
-        Some(Self {
-            design: LimitOfDesign {
-                rule: rule.id.clone(),
-                limit_mm: rule.limit,
-                limit_at_most: rule.limit_at_most,
-                value_mm: rule.value,
-                met: rule.met,
-            },
-        })
+/// The rules of a role that were made for these soils and are not kept.
+fn broken(rules: &[AppliedRule], role: RuleRole) -> Vec<&AppliedRule> {
+    rules.iter().filter(|rule| rule.is_broken() && rule.role == role).collect()
+}
+
+/// What rules that are not kept say of a class. What several authors say alike is one finding, and rules of
+/// retention that agree with the class say nothing: the line of practice has them.
+pub fn findings(verdict: Verdict, rules: &[AppliedRule]) -> Vec<Finding> {
+    let each = [RuleRole::Retention, RuleRole::Continuation].into_iter().flat_map(|role| broken(rules, role));
+    let mut all: Vec<Finding> = each.map(of_rule).filter(|of| of.is_against(verdict)).collect();
+    let list = |rules: &[&AppliedRule], one: fn(&AppliedRule) -> String| {
+        listed(&rules.iter().map(|rule| one(rule)).collect::<Vec<_>>())
+    };
+    let unstable = broken(rules, RuleRole::Stability);
+    if !unstable.is_empty() {
+        all.push(finding::loses_fines(&list(&unstable, |rule| {
+            let [value, limit] = against(rule, 2);
+            format!("{} ({} {value}, limit {limit})", whose(rule), rule.quantity)
+        })));
     }
+    all.extend(drainage(rules));
+    let placing = broken(rules, RuleRole::Placing);
+    if !placing.is_empty() {
+        all.push(finding::may_segregate(&list(&placing, asked)));
+    }
+    all.extend(stricter(verdict, rules));
+    all
+}
+
+fn of_rule(rule: &AppliedRule) -> Finding {
+    let [value, limit] = against(rule, 2);
+    let limit = limit + if rule.limit_at_most { " at most" } else { "" };
+    match (rule.id.as_str(), rule.role) {
+        (DESIGN, _) => finding::limit_of_design(&limit, &value),
+        ("foster-fell-no-erosion", _) => finding::tests_no_erosion(&limit, &value),
+        ("foster-fell-continuing", _) => finding::tests_continuing(&limit, &value),
+        (_, RuleRole::Continuation) => {
+            finding::rule_of_continuation(&rule.quantity, &limit, &value, whose(rule))
+        }
+        _ => finding::rule_of_retention(&rule.quantity, &limit, &value, whose(rule)),
+    }
+}
+
+/// A quantity, and what practice asks for.
+fn asked(rule: &AppliedRule) -> String {
+    let [value, limit] = against(rule, 2);
+    let allowed = if rule.at_least { "at least" } else { "up to" };
+    format!("{} is {value}, and practice asks for {allowed} {limit}", rule.quantity)
+}
+
+fn drainage(rules: &[AppliedRule]) -> Vec<Finding> {
+    let (permeability, fines): (Vec<_>, Vec<_>) =
+        broken(rules, RuleRole::Drainage).into_iter().partition(|rule| rule.quantity == "D15F");
+    let too_fine = permeability.first().map(|first| {
+        let [value, limit] = against(first, 2);
+        let least = permeability.get(1).map_or(String::new(), |least| {
+            format!(", and EM 1110-2-1901 for {} at the least", against(least, 2)[1])
+        });
+        finding::too_fine_to_drain(&value, &format!("USBR and NRCS ask for {limit} or more{least}"))
+    });
+    let of_fines = (!fines.is_empty()).then(|| {
+        finding::fines_of_filter(&listed(&fines.iter().map(|rule| asked(rule)).collect::<Vec<_>>()))
+    });
+    too_fine.into_iter().chain(of_fines).collect()
+}
+
+/// Whether the walk is stricter than tests for this pair: they found no erosion where it has some.
+fn stricter(verdict: Verdict, rules: &[AppliedRule]) -> Option<Finding> {
+    let find = |id: &str| rules.iter().find(|rule| rule.id == id && rule.applies);
+    let tests = find("foster-fell-no-erosion").filter(|rule| rule.met == Some(true))?;
+    let ratio = find("paper-no-erosion").filter(|rule| rule.met == Some(false))?;
+    matches!(verdict, Verdict::Some | Verdict::Continuing).then(|| {
+        let [value, holds] = [ratio.value, ratio.limit].map(|number| size(number, ""));
+        finding::stricter_than_tests(&value, &size(tests.limit, &tests.unit), &holds)
+    })
+}
+
+/// The limit of design of a pair, for programs; `None` where its rule is not among them.
+pub fn record(rules: &[AppliedRule]) -> Option<Practice> {
+    let rule = rules.iter().find(|rule| rule.id == DESIGN)?;
+    Some(Practice {
+        design: LimitOfDesign {
+            rule: rule.id.clone(),
+            limit_mm: rule.limit,
+            limit_at_most: rule.limit_at_most,
+            value_mm: rule.value,
+            met: rule.met,
+        },
+    })
 }
 
 impl Outcome {
@@ -33,10 +111,7 @@ impl Outcome {
 /// the filter is stable and drains, and whether the verdict agrees.
 pub fn practice_in_words(rules: &[AppliedRule], verdict: Verdict) -> String {
     let find = |id: &str| rules.iter().find(|rule| rule.id == id && rule.applies);
-    let broken = |role: RuleRole| -> Vec<&AppliedRule> {
-        rules.iter().filter(|rule| rule.is_broken() && rule.role == role).collect()
-    };
-    let (design, retention) = (find(DESIGN), broken(RuleRole::Retention));
+    let (design, retention) = (find(DESIGN), broken(rules, RuleRole::Retention));
     let mut said = Vec::new();
     said.push(match design {
         Some(rule) => of_design(rule),
@@ -52,13 +127,14 @@ pub fn practice_in_words(rules: &[AppliedRule], verdict: Verdict) -> String {
         }
     }
     let unstable: Vec<String> =
-        broken(RuleRole::Stability).into_iter().map(|rule| whose(rule).to_owned()).collect();
+        broken(rules, RuleRole::Stability).into_iter().map(|rule| whose(rule).to_owned()).collect();
     if !unstable.is_empty() {
         said.push(format!("the filter may lose its own fines ({})", listed(&unstable)));
     }
-    if let Some(drains) = said_of_all(RuleRole::Drainage, &broken(RuleRole::Drainage)) {
-        let clause = drains.strip_suffix("; that says nothing of retention").unwrap_or(&drains);
-        said.push(clause.to_owned());
+    for finding in drainage(rules) {
+        let sentence = finding.sentence();
+        let sentence = sentence.trim_end_matches(" This says nothing of retention.").replace(". ", "; ");
+        said.push(within(&sentence));
     }
     said.extend(agreement(rules, verdict).map(String::from));
     let result = match design.and_then(|rule| rule.met) {
@@ -151,11 +227,57 @@ fn agreement(rules: &[AppliedRule], verdict: Verdict) -> Option<&'static str> {
     })
 }
 
+/// `a`, `a and b`, `a, b and c`.
+fn listed(items: &[String]) -> String {
+    match items {
+        [] => String::new(),
+        [one] => one.clone(),
+        [all @ .., last] => format!("{} and {last}", all.join(", ")),
+    }
+}
+
+/// Whose rule it is.
+fn whose(rule: &AppliedRule) -> &str {
+    rule.name.split(':').next().unwrap_or_default()
+}
+
+/// A value and its limit, with as many digits as tell them apart, and this many at the least.
+fn against(rule: &AppliedRule, digits: i32) -> [String; 2] {
+    let (Some(value), Some(limit)) = (rule.value, rule.limit) else {
+        return [size(rule.value, &rule.unit), size(rule.limit, &rule.unit)];
+    };
+    let pair = |digits| [value, limit].map(|number| digits_of(number, digits));
+    let apart = (digits..9).map(pair).find(|[value, limit]| value != limit);
+    apart.unwrap_or_else(|| pair(digits)).map(|number| with_unit(number, &rule.unit))
+}
+
+/// A value with its unit.
+fn size(value: Option<f64>, unit: &str) -> String {
+    with_unit(value.map_or("unknown".into(), short), unit)
+}
+
+fn with_unit(number: String, unit: &str) -> String {
+    if unit.is_empty() { number } else { format!("{number} {unit}") }
+}
+
+/// Two digits that mean something, or three from 100 on.
+fn short(value: f64) -> String {
+    digits_of(value, 2)
+}
+
+fn digits_of(value: f64, digits: i32) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let decimals = (digits - 1 - value.abs().log10().floor() as i32).clamp(0, digits + 4);
+    format!("{value:.*}", decimals as usize)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
-    use crate::outcome::{PairOptions, PairRules};
+    use crate::verdict::{PairOptions, PairRules};
 
     fn of(filter: &[(f64, f64)], base: &[(f64, f64)], dispersive: bool) -> Vec<AppliedRule> {
         let one = |points| vec![("soil".to_owned(), Gradation::from_points(points, None).unwrap())];
@@ -240,8 +362,8 @@ mod tests {
             coarse.starts_with("not met: D15F 3.33 mm is more than the 1.06 mm at most that"),
             "{coarse}"
         );
-        let design = Practice::of(&all).unwrap().design;
+        let design = record(&all).unwrap().design;
         assert_eq!((design.rule.as_str(), design.met, design.limit_at_most), (DESIGN, Some(false), true));
-        assert_eq!(Practice::of(&[]), None);
+        assert_eq!(record(&[]), None);
     }
 }

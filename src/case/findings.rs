@@ -1,0 +1,257 @@
+//! What a case finds about its verdict before it is walked: where it leaves the range in which the model was
+//! checked, and what else a reader must know.
+
+use super::packed_filter::GUESSED_GRAINS_PER_VOID;
+use super::{Case, Input, PackingPlan, guesses_grains_per_void, replicate_seed};
+use crate::gradation::{FEW_FINES, FINES_MM, Gradation};
+use crate::network::ExitRule;
+use crate::verdict::Mistake;
+use crate::verdict::beside::packed_part;
+use crate::verdict::{Finding, finding};
+
+/// More moves than these of a particle that nothing stops are worth a word.
+const MANY_MOVES: f64 = 1e5;
+
+/// A larger share of grains without load is worth a word ...
+const MANY_LOOSE: f64 = 0.5;
+/// ... and where it is as large as this, coarse grains carry each other: of two sizes far apart 98 % were
+/// without load with 30 % of the mass in the finer one, 19 % with 40 % (`results/cuts.md`).
+const SKELETON: f64 = 0.9;
+
+/// With fewer replicates than these their number is said beside the verdict: their scatter is hardly known.
+const FEW_REPLICATES: u64 = 5;
+
+/// Ranges of Cu that the model was checked for, of filter and base.
+const CHECKED_CU: [(&str, [f64; 2]); 2] = [("filter", [1.2, 6.0]), ("base", [1.2, 4.5])];
+
+/// Constrictions that are looked at to find that out, each as often as it is looked at.
+const LOOKED_AT: u64 = 50_000_000;
+
+impl Case {
+    /// What is known of its verdict before the walk, in sentences: what `check` says.
+    pub fn warnings(&self) -> Vec<String> {
+        self.to_be_walked().iter().chain(&self.findings()).map(Finding::with_to_do).collect()
+    }
+
+    /// What is not known before the walk, and what the walk itself will say.
+    pub fn to_be_walked(&self) -> Option<Finding> {
+        self.pan_size?;
+        let (base, finest) = (&self.base, self.finest_mm);
+        Some(finding::pan_walked_twice(100.0 * base.pan_fraction(), base.smallest_mm(), finest))
+    }
+
+    /// What is known of its verdict before the walk, but for what the walk itself will say.
+    pub fn findings(&self) -> Vec<Finding> {
+        let mut all = Vec::new();
+        let mistake = Mistake::find(self.base_as_given(), &self.filter, self.is_scale_free());
+        all.extend(mistake.as_ref().map(Mistake::finding));
+        all.extend(self.fines());
+        all.extend(self.broad_base());
+        all.extend((self.scene.base.dispersive == Some(true)).then(finding::dispersive_base));
+        all.extend(self.scene.filter.joint_mm.map(finding::open_joint));
+        all.extend(self.too_thick());
+        all.extend(self.too_little_base());
+        all.extend(self.of_network());
+        all.extend(not_as_uniform([self.filter.cu().map(|cu| [cu, cu]), self.cu_of_base()]));
+        if let Some(gap) = self.filter.gap(0.0).filter(|_| self.filter_is_measured()) {
+            all.push(finding::gap_graded(gap.within, gap.from_mm));
+        }
+        if self.pan_size.is_none() && self.base.pan_fraction() > 0.0 {
+            all.push(finding::pan_passive(100.0 * self.base.pan_fraction()));
+        }
+        all.extend(self.other_filter());
+        all.extend(self.guesses());
+        // The grains that were left out can only make constrictions coarser than those that were walked.
+        all.extend(self.packed.as_ref().and_then(|packed| packed.part.as_ref()).map(packed_part));
+        let loose = self.packed.as_ref().and_then(|packed| packed.rattlers);
+        match loose.filter(|loose| *loose >= MANY_LOOSE).map(|loose| 100.0 * loose) {
+            Some(loose) if loose > 100.0 * SKELETON => all.push(finding::skeleton(loose)),
+            loose => all.extend(loose.map(finding::loose_grains)),
+        }
+        all.extend(self.few_replicates());
+        all.extend(self.not_studied());
+        all.extend(self.regrading());
+        let of_file = |input: &Input| -> Vec<Finding> {
+            input.notes.iter().map(|note| finding::read_as(&input.name, note)).collect()
+        };
+        all.extend(self.inputs.iter().flat_map(of_file));
+        if self.filter.pan_fraction() > 0.0 {
+            all.push(finding::pan_of_filter(100.0 * self.filter.pan_fraction()));
+        }
+        all.extend(self.narrow_cell());
+        all.extend(self.copies.map(|(copies, _)| finding::one_packing(copies.into())));
+        if let Some(moves) = self.moves_to_an_end().filter(|moves| *moves > MANY_MOVES) {
+            let about = if moves < 1e15 { format!("about {moves:.1e}") } else { "more than 1e15".into() };
+            all.push(finding::long_way_out(&about));
+        }
+        all
+    }
+
+    /// Cu of the base between its two readings where D10 lies in an open tail.
+    fn cu_of_base(&self) -> Option<[f64; 2]> {
+        if let Some(cu) = self.base.cu() {
+            return Some([cu, cu]);
+        }
+        let [fine, coarse] = self.tail_as()?.map(|reading| reading.cu());
+        Some([coarse?, fine?])
+    }
+
+    /// A shipped constriction curve of another filter.
+    fn other_filter(&self) -> Option<Finding> {
+        let shipped = self.shipped.filter(|_| self.fixed_network.is_none())?;
+        let cu = self.filter.cu().filter(|cu| (cu / shipped.cu - 1.0).abs() > 0.05)?;
+        Some(finding::other_curve(cu, &shipped.name, shipped.cu))
+    }
+
+    /// What is guessed where nobody packed the filter.
+    fn guesses(&self) -> Vec<Finding> {
+        if self.scene.filter.estimate.is_none() {
+            return Vec::new();
+        }
+        let grains = guesses_grains_per_void(&self.scene);
+        let grains = grains.then(|| finding::guessed_grains(GUESSED_GRAINS_PER_VOID));
+        std::iter::once(finding::guessed_constrictions()).chain(grains).collect()
+    }
+
+    /// That the replicates say little of their own scatter.
+    fn few_replicates(&self) -> Option<Finding> {
+        let walk = &self.scene.walk;
+        // Where a rule adds replicates, it says itself whether they are enough, unless it may add none.
+        few(match self.scene.stop.is_set() {
+            true => self.scene.stop.replicates_at(walk.replicates, 1),
+            false => walk.replicates,
+        })
+    }
+
+    /// That neither study was asked for.
+    fn not_studied(&self) -> Option<Finding> {
+        let record = &self.scene.record;
+        // Without a list of its own the study of the thickness goes with the other.
+        let studied = |list: &[f64]| list.iter().any(|factor| *factor != 1.0);
+        let is_studied =
+            studied(&record.sensitivity) || studied(record.thickness.as_deref().unwrap_or_default());
+        (!is_studied).then(finding::not_studied)
+    }
+
+    /// A real filter layer that is thinner than the modelled one by more than half a layer of voids, to which
+    /// a thickness is rounded.
+    fn too_thick(&self) -> Option<Finding> {
+        let real = self.scene.filter.thickness_mm?;
+        if self.is_scale_free() {
+            return Some(finding::thickness_without_unit(real, "D0F"));
+        }
+        let Some(modelled) = self.thickness() else { return Some(finding::thickness_of_file(real)) };
+        let half = 0.5 * self.filter.d_by_number(50.0).unwrap_or(0.0);
+        (modelled > real + half * (1.0 + 1e-9)).then(|| match self.copies {
+            Some((copies, _)) => finding::copies_thicker(copies.into(), modelled, real),
+            None => finding::layers_thicker(self.counts[3], modelled, real),
+        })
+    }
+
+    /// Fines of the base that may be cohesive, or that are not known.
+    fn fines(&self) -> Option<Finding> {
+        if self.is_scale_free() { None } else { fines_of(&self.base) }
+    }
+
+    /// A tall cell whose number of grains leaves it narrow.
+    fn narrow_cell(&self) -> Option<Finding> {
+        let plan = PackingPlan::new(&self.scene.packing_spec().ok()??).ok()?;
+        let (width, usual) = plan.narrow_and_tall()?;
+        Some(finding::narrow_cell(plan.compression.grains as u64, plan.aspect.into(), width, usual.into()))
+    }
+
+    /// About how many moves a particle makes that nothing stops, where loops may hold it for long: on a given
+    /// network, or where one constriction is very much wider than another.
+    fn moves_to_an_end(&self) -> Option<f64> {
+        let widest = self.curve.largest() / self.curve.smallest();
+        match &self.fixed_network {
+            // Down the pressure there are no loops.
+            Some(network) if network.reservoir().is_some() => None,
+            Some(network) => Some(network.moves_to_an_end(LOOKED_AT)),
+            None if widest * widest > MANY_MOVES && self.scene.exit_rule() == ExitRule::Area => {
+                let network = self.network(replicate_seed(self.scene.walk.seed, 1)).ok()?;
+                Some(network.moves_to_an_end(LOOKED_AT))
+            }
+            None => None,
+        }
+    }
+}
+
+/// Fines of a base in mm that may be cohesive, or that are not known.
+pub fn fines_of(base: &Gradation) -> Option<Finding> {
+    let fines = base.percent_finer_by_mass(FINES_MM);
+    if fines <= FEW_FINES {
+        return None;
+    }
+    let sieve = base.smallest_mm();
+    Some(match sieve <= FINES_MM || base.pan_fraction() == 0.0 {
+        true => finding::cohesive_fines(fines),
+        false => finding::fines_not_sieved(fines, sieve),
+    })
+}
+
+/// That so few replicates say little of their own scatter.
+pub fn few(replicates: u64) -> Option<Finding> {
+    match replicates {
+        1 => Some(finding::one_replicate()),
+        few if few < FEW_REPLICATES => Some(finding::few_replicates(few)),
+        _ => None,
+    }
+}
+
+/// That a filter or base is more or less uniform than those for which the model was checked; each between two
+/// bounds of its Cu.
+pub fn not_as_uniform(cu: [Option<[f64; 2]>; 2]) -> Vec<Finding> {
+    let of_soil = |((soil, [low, high]), cu): ((&str, [f64; 2]), Option<[f64; 2]>)| {
+        let is_within = |cu: f64| (low - 1e-9..=high + 1e-9).contains(&cu);
+        match cu {
+            Some([least, most]) if is_within(least) && is_within(most) => None,
+            Some([least, most]) if most - least < 0.005 => {
+                Some(finding::cu_unchecked(soil, least, low, high))
+            }
+            Some([least, most]) => Some(finding::cu_in_doubt(soil, least, most, low, high)),
+            None => Some(finding::cu_unknown(soil, low, high)),
+        }
+    };
+    CHECKED_CU.into_iter().zip(cu).filter_map(of_soil).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::outcome::record::About;
+    use crate::scene::Scene;
+
+    fn case(changes: &[&str]) -> Result<Case, String> {
+        let changes: Vec<String> = changes.iter().map(|c| c.to_string()).collect();
+        Case::new(Scene::built_in(&changes).unwrap()).map_err(|error| error.to_string())
+    }
+
+    fn said(changes: &[&str]) -> String {
+        let found = case(changes).unwrap().findings();
+        let of_thickness = found.iter().filter(|finding| finding.entry.about == About::Thickness);
+        of_thickness.map(Finding::with_to_do).collect()
+    }
+
+    #[test]
+    fn a_real_thickness_is_compared_in_mm_and_to_half_a_layer() {
+        let said_of = said(&["filter.thickness_mm=50"]);
+        assert!(said_of.contains("is 50 mm, but sizes are multiples of D0F"), "{said_of}");
+        let sized = |real: &str| said(&["filter.d0_mm=2.1", "network.thickness_mm=100", real]);
+        let case = case(&["filter.d0_mm=2.1", "network.thickness_mm=100"]).unwrap();
+        let (layer, modelled) = (case.filter.d_by_number(50.0).unwrap(), case.thickness().unwrap());
+        assert!(modelled != 100.0 && sized("filter.thickness_mm=100").is_empty());
+        assert!(sized(&format!("filter.thickness_mm={}", modelled - 0.49 * layer)).is_empty());
+        let thinner = sized(&format!("filter.thickness_mm={}", modelled - 0.51 * layer));
+        assert!(thinner.contains("layers of voids are") && thinner.contains("network.nz"), "{thinner}");
+    }
+
+    #[test]
+    fn a_network_is_no_thinner_than_half_a_layer() {
+        for thin in ["network.thickness_mm=0.5", "network.thickness_d50f=0.3"] {
+            let error = case(&["filter.d0_mm=2.1", thin]).err().unwrap();
+            assert!(error.contains("allowed: half a layer or more"), "{error}");
+        }
+        assert_eq!(case(&["filter.d0_mm=2.1", "network.thickness_mm=1.5"]).unwrap().counts[3], 1);
+    }
+}

@@ -1,0 +1,170 @@
+//! What is found about walks on given networks: what nobody has checked, and what the caller left open.
+
+use std::cmp::Ordering;
+
+use super::network_walk::{NetworkOutcome, NetworkWalk};
+use super::replicates::said_by_walks;
+use crate::case::{PAPER_MASS_RATIO, all_on_its_way, few, fines_of, narrow_lattice, not_as_uniform};
+use crate::network::Network;
+use crate::outcome::record::Statistic;
+use crate::outcome::rules::{self, RuleInputs};
+use crate::verdict::Mistake;
+use crate::verdict::{Answer, Finding, finding, judge};
+
+impl NetworkOutcome {
+    /// What the verdict is worth, on so many networks of which this is the first.
+    pub fn answer(&self, plan: &NetworkWalk, network: &Network, networks: usize) -> Answer {
+        let walked = || self.replicates.iter().map(|walked| &walked.result);
+        let layers = network.layers() as u64;
+        let mut found = said_by_walks(self.verdict, walked(), &plan.base, plan.increments, layers);
+        found.extend(plan.findings(network, self.replicates.len() as u64));
+        if networks == 1 && self.replicates.len() > 1 {
+            found.push(finding::one_network());
+        }
+        let rules = plan.filter.as_ref().map_or(Vec::new(), |filter| {
+            let largest: Vec<f64> =
+                walked().filter_map(|w| w.replicate.runs.first()?.largest_eroded_over_d15f).collect();
+            rules::apply(&RuleInputs {
+                filter_is_measured: filter.is_measured,
+                largest_eroded_over_d15f: (!largest.is_empty()).then(|| Statistic::of(&largest).mean),
+                ..RuleInputs::of_soils(&plan.base, &filter.gradation)
+            })
+        });
+        let mut answer = judge(self.verdict, &rules, found);
+        // Settings are those of a scene, and there is none.
+        answer.findings.iter_mut().for_each(|finding| finding.to_do.clear());
+        answer
+    }
+}
+
+impl NetworkWalk {
+    /// What was not checked, or is not known, whatever comes of the walk.
+    fn findings(&self, network: &Network, replicates: u64) -> Vec<Finding> {
+        let filter = self.filter.as_ref().map(|filter| &filter.gradation);
+        let cu = |cu: Option<f64>| cu.map(|cu| [cu, cu]);
+        // Of a filter that was not given nothing is said but that.
+        let of_filter = filter.map_or(Some([1.2, 1.2]), |filter| cu(filter.cu()));
+        let flows = network.exit_rule().needs_flow();
+        let pan = self.base.pan_fraction();
+        let mistake = filter.and_then(|filter| Mistake::find(&self.base, filter, false));
+        [
+            mistake.as_ref().map(Mistake::finding),
+            fines_of(&self.base),
+            self.amount(network),
+            Some(finding::given_network(network.filter_voids() as u64)),
+            filter.is_none().then(finding::no_filter),
+            narrow_lattice(network.shape()),
+            all_on_its_way(flows, self.increments, network.layers() as u64),
+            (pan > 0.0).then(|| finding::pan_passive(100.0 * pan)),
+            few(replicates),
+            Some(finding::not_studied()),
+        ]
+        .into_iter()
+        .flatten()
+        .chain(not_as_uniform([of_filter, cu(self.base.cu())]))
+        .collect()
+    }
+
+    /// That the class follows from a number of base particles that is not the one of Eq. (2), or that nobody
+    /// can compare with it.
+    fn amount(&self, network: &Network) -> Option<Finding> {
+        let n = self.n_base;
+        let Some(eq2) = self.eq2(network, PAPER_MASS_RATIO).ok().flatten() else {
+            return Some(finding::amount_unknown(n));
+        };
+        match n.cmp(&eq2) {
+            Ordering::Less => Some(finding::few_particles(n, eq2)),
+            Ordering::Equal => None,
+            Ordering::Greater => Some(finding::more_particles(n, eq2)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::constrictions::find;
+    use crate::gradation::Gradation;
+    use crate::network::{ExitRule, NetworkColumns};
+    use crate::outcome::record::Confidence;
+    use crate::run::{Callbacks, GivenFilter, walk_networks};
+
+    fn said(n_base: Option<u64>, filter: Option<Gradation>, grains_per_void: Option<f64>) -> (u64, Answer) {
+        let curve = find("cu1.5-loose").unwrap().curve().unwrap().in_mm(1.0).unwrap();
+        let network = Arc::new(Network::cubic([10, 10, 12], &curve, 1.0, 5).unwrap());
+        let filter = filter.map(|gradation| GivenFilter { gradation, is_measured: true, grains_per_void });
+        let base = Gradation::linear_from_dx(85.0, 0.25, 1.5).unwrap();
+        let mut plan = NetworkWalk { replicates: 6, filter, ..NetworkWalk::new(base, 1) };
+        let eq2 = plan.eq2(&network, 0.05).unwrap();
+        plan.n_base = n_base.or(eq2).unwrap();
+        let outcome = walk_networks(&[Arc::clone(&network)], &plan, &Callbacks::default()).unwrap();
+        (plan.n_base, outcome.answer(&plan, &network, 1))
+    }
+
+    /// What nobody can compare with Eq. (2), what falls short of it, and what exceeds it are doubts; its own
+    /// number is none.
+    #[test]
+    fn a_number_of_particles_that_is_not_that_of_equation_two_is_a_doubt() {
+        let filter = || Gradation::linear_from_d0(1.0, 1.5).ok();
+        let has = |said: &Answer, part: &str| said.reasons().iter().any(|reason| reason.contains(part));
+        let (n, of_eq2) = said(None, filter(), Some(0.6));
+        assert!(n > 1000 && !has(&of_eq2, "The base has"), "{n} {:?}", of_eq2.reasons());
+        assert!(has(
+            &said(Some(1000), filter(), Some(0.6)).1,
+            "The base has 1 000 particles; the model was checked with"
+        ));
+        assert!(has(&said(Some(n + 1), filter(), Some(0.6)).1, "a smaller share passes"));
+        for filter in [None, filter()] {
+            let unknown = said(Some(n), filter, None).1;
+            assert!(has(&unknown, "nothing says how many are needed"), "{:?}", unknown.reasons());
+        }
+        assert!(has(&said(Some(n), None, None).1, "no rule of practice was applied"));
+    }
+
+    /// D15F 1.13 mm and D85B 0.25 mm: practice accepts the pair. A filter ten times as coarse is refused by
+    /// its rules, whatever is walked; without a filter nobody is asked.
+    #[test]
+    fn rules_of_practice_are_asked_where_the_filter_is_known() {
+        let fine = said(Some(2000), Gradation::linear_from_d0(1.0, 1.5).ok(), Some(0.6)).1;
+        assert_eq!(fine.confidence, Confidence::Outside, "{:?}", fine.reasons());
+        let curve = find("cu1.5-loose").unwrap().curve().unwrap().in_mm(1.0).unwrap();
+        let network = Arc::new(Network::cubic([10, 10, 12], &curve, 1.0, 5).unwrap());
+        let coarse = GivenFilter {
+            gradation: Gradation::linear_from_d0(10.0, 1.5).unwrap(),
+            is_measured: true,
+            grains_per_void: None,
+        };
+        // Coarser than every constriction: nothing passes in the model.
+        let base = Gradation::linear_from_dx(85.0, 0.9, 1.5).unwrap();
+        let plan = NetworkWalk { filter: Some(coarse), ..NetworkWalk::new(base, 500) };
+        let outcome = walk_networks(&[Arc::clone(&network)], &plan, &Callbacks::default()).unwrap();
+        let said = outcome.answer(&plan, &network, 1);
+        assert_eq!(said.confidence, Confidence::Contradicted, "{:?}", said.reasons());
+        assert!(said.reasons()[0].contains("Practice allows D15F"), "{:?}", said.reasons());
+    }
+
+    /// The one constriction is closed by the first particle: what to try is said in the words of a walk
+    /// without a scene.
+    #[test]
+    fn a_network_that_clogs_is_a_doubt() {
+        let columns = NetworkColumns {
+            voids: 2,
+            conns: &[[0, 1]],
+            diameter_mm: &[0.1],
+            conductance: None,
+            inlets: &[0],
+            outlets: &[1],
+            rule: ExitRule::Flux,
+            rho: 0.0,
+            unit_mm: 1.0,
+        };
+        let network = Arc::new(Network::from_columns(&columns).unwrap().0);
+        let plan = NetworkWalk { replicates: 2, ..NetworkWalk::new(Gradation::single(0.2).unwrap(), 1000) };
+        let outcome = walk_networks(&[Arc::clone(&network)], &plan, &Callbacks::default()).unwrap();
+        let reasons = outcome.answer(&plan, &network, 1).reasons().join("\n");
+        assert!(reasons.contains("clogged wholly") && reasons.contains("More and smaller increments"));
+        assert!(!reasons.contains("inject_share"), "{reasons}");
+    }
+}

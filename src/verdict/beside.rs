@@ -1,0 +1,186 @@
+//! What the results of a run say beside its verdict, and the findings of an outcome as they are shown.
+
+use super::entry::Finding;
+use super::{finding, thickness};
+use crate::outcome::digits::percent;
+use crate::outcome::packing::{FLOATING_PERCENT, PackedPart};
+use crate::outcome::record::{
+    CurveEnd, CurveRange, FindingRecord, Outcome, PanBounds, Run, ShortOf, Stopping, Verdict,
+};
+use crate::outcome::undecided::UndecidedBy;
+
+/// Above this part of its volume a void holds more than any packing of particles would.
+const ROOM: f64 = 0.6;
+
+impl Outcome {
+    /// What its results say: both readings of the base's finest part, the range of the constriction curve,
+    /// what the replicates leave open, what was trapped, the thickness, and what water and voids came to.
+    pub fn found(&self) -> Vec<Finding> {
+        let trapped: u64 = self.replicates.iter().flat_map(|r| &r.runs).map(|r| r.trapped).sum();
+        let unit = if self.inputs.scale_free { "D0F" } else { "mm" };
+        let of_thickness = |thick: f64| finding::modelled_thickness(&format!("{thick:.1} {unit}"));
+        [
+            self.pan_bounds.as_ref().map(readings),
+            self.stopping.as_ref().and_then(short_of),
+            self.replicates_leave_open(),
+            (trapped > 0).then(|| finding::trapped(trapped)),
+            self.inputs.network.thickness_mm.map(of_thickness),
+            thickness::finding(self),
+            self.permeability(),
+            self.overfull(),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
+    }
+
+    /// What speaks against the verdict, in order; of folders of earlier versions the sentences alone.
+    pub fn against(&self) -> Vec<FindingRecord> {
+        if self.findings.is_empty() {
+            return self.reasons.iter().map(|said| FindingRecord::of_earlier(said)).collect();
+        }
+        self.findings.iter().filter(|finding| finding.against).cloned().collect()
+    }
+
+    /// What else is to be known, in order; of folders of earlier versions what they say and what their
+    /// results do.
+    pub fn besides(&self) -> Vec<FindingRecord> {
+        if !self.findings.is_empty() {
+            return self.findings.iter().filter(|finding| !finding.against).cloned().collect();
+        }
+        let mut said: Vec<&String> = Vec::new();
+        let of_stopping = self.stopping.as_ref().and_then(|stopping| stopping.sentence.as_ref());
+        for sentence in self.notes.iter().chain(&self.warnings).chain(of_stopping) {
+            if !self.reasons.contains(sentence) && !said.contains(&sentence) {
+                said.push(sentence);
+            }
+        }
+        let of_earlier = said.into_iter().map(|said| FindingRecord::of_earlier(said));
+        of_earlier.chain(self.found().iter().map(|finding| finding.record(false))).collect()
+    }
+
+    /// The sentence of a finding; `None` without it.
+    pub fn sentence_of(&self, id: &str) -> Option<String> {
+        self.besides().into_iter().find(|finding| finding.id == id).map(|finding| finding.sentence)
+    }
+
+    /// The sentences of what else is to be known, each with the setting that changes it.
+    pub fn beside_the_verdict(&self) -> Vec<String> {
+        self.besides().iter().map(FindingRecord::with_to_do).collect()
+    }
+
+    /// What leaves a class open that the replicates do not separate, where nothing else says it.
+    fn replicates_leave_open(&self) -> Option<Finding> {
+        // A target error that was met says nothing of the class.
+        let said = |stopping: &Stopping| {
+            stopping.short_of.is_some() || stopping.sentence.is_some() || stopping.decide_percent.is_some()
+        };
+        if self.stopping.as_ref().is_some_and(said) {
+            return None;
+        }
+        match self.undecided_by()? {
+            UndecidedBy::Pan | UndecidedBy::Curve => None,
+            UndecidedBy::SecondRun => Some(finding::second_run_missing()),
+            UndecidedBy::Replicates => Some(finding::replicates_leave_open()),
+        }
+    }
+
+    /// How far the permeability fell, run by run: means over the replicates; `None` where no water flowed.
+    fn permeability(&self) -> Option<Finding> {
+        let falls: Vec<String> = (0..self.summary.len())
+            .map(|run| Some(format!("{:.1} %", 100.0 * self.mean_of(run, |run| run.k_over_k0)?)))
+            .collect::<Option<_>>()?;
+        let clean = self.network.as_ref().and_then(|network| network.k0_m_per_s);
+        let clean = clean.map_or(String::new(), |k| format!(" ({k:.1e} m/s for water of 10 °C)"));
+        let of = if falls.len() > 1 { "first and second run" } else { "run" };
+        (!falls.is_empty()).then(|| finding::permeability(of, &falls.join(" and "), &clean))
+    }
+
+    /// That a void holds more than it has room for; `None` where none does, or volumes are not known.
+    fn overfull(&self) -> Option<Finding> {
+        let runs = || self.replicates.iter().flat_map(|replicate| &replicate.runs);
+        let share = 100.0 * runs().filter_map(|run| run.overfull_fraction).reduce(f64::max)?;
+        let fullest = runs().filter_map(|run| run.fullness_max).reduce(f64::max);
+        match fullest.filter(|&fullest| fullest > ROOM) {
+            Some(fullest) => Some(finding::overfull(fullest, share)),
+            None => (share > 0.0).then(|| finding::no_room(share)),
+        }
+    }
+
+    /// Mean of a figure of one run over the replicates that have it.
+    fn mean_of(&self, run: usize, of: impl Fn(&Run) -> Option<f64>) -> Option<f64> {
+        let values: Vec<f64> = self.replicates.iter().filter_map(|r| of(r.runs.get(run)?)).collect();
+        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+    }
+}
+
+/// What both readings of the base's finest part say of its verdict.
+pub fn pan(bounds: &PanBounds) -> Finding {
+    let (share, sieve) = (100.0 * bounds.mass_fraction, bounds.finest_sieve_mm);
+    let finest = bounds.finest_constriction_mm;
+    let [fine, coarse] = bounds.readings.each_ref().map(|reading| match reading.verdict {
+        Verdict::Undecided => "it stays open".to_owned(),
+        verdict => format!("it is {}", verdict.words()),
+    });
+    match bounds.differ() {
+        true => finding::pan_decides(share, sieve, finest, &fine, &coarse),
+        false => finding::pan_agrees(share, sieve, finest, bounds.readings[0].verdict.words()),
+    }
+}
+
+/// What the range of a constriction curve says of its verdict.
+pub fn curve_range(range: &CurveRange) -> Finding {
+    let end = |end: &CurveEnd| {
+        let runs: Vec<String> = end.runs.iter().map(|s| format!("{:.2} %", 100.0 * s.mean)).collect();
+        format!("{}: {}, {} eroded", end.curve, end.verdict.words(), runs.join(" then "))
+    };
+    let ends: Vec<String> = range.ends.iter().map(end).collect();
+    let each = format!("{}; by the curve itself: {}", ends.join("; "), range.verdict.words());
+    let [low, high] =
+        range.eroded_mass_fraction.first().copied().unwrap_or([f64::NAN; 2]).map(|of| 100.0 * of);
+    match range.agrees() {
+        true => finding::curve_range_agrees(low, high, &each),
+        false => finding::curve_range_decides(low, high, &each),
+    }
+}
+
+/// What a reader must know of a filter of which this part was packed.
+pub fn packed_part(part: &PackedPart) -> Finding {
+    let PackedPart { percent, largest_mm, finer_by, sizes_missing_above, .. } = *part;
+    let of_part = match (sizes_missing_above, percent >= FLOATING_PERCENT) {
+        (_, false) => finding::loose_part_packed,
+        (true, true) => finding::floating_part_packed,
+        (false, true) => finding::part_packed,
+    };
+    of_part(percent, largest_mm, 100.0 * finer_by)
+}
+
+/// What either reading of the base's finest part came to.
+fn readings(bounds: &PanBounds) -> Finding {
+    let each = bounds.readings.each_ref().map(|reading| {
+        let runs: Vec<String> = reading.runs.iter().map(|run| percent(run.mean)).collect();
+        let (words, verdict) = (bounds.words(reading), reading.verdict.words());
+        format!("{words}: {verdict}, {} eroded", runs.join(" and "))
+    });
+    finding::pan_readings(&each.join("; "))
+}
+
+/// Why replicates do not reach what was asked for.
+fn short_of(stopping: &Stopping) -> Option<Finding> {
+    Some(match stopping.short_of? {
+        ShortOf::SecondRun => finding::second_run_missing(),
+        ShortOf::Decision { run, mean_percent, distance_pp, sd_pp, needed } => {
+            let which = if run == 1 { "first" } else { "second" };
+            let more = match needed {
+                Some(n) => format!("About {n} replicates would decide, if the mean stayed where it is"),
+                None => "No number of replicates will decide".into(),
+            };
+            let level = stopping.decide_percent.unwrap_or(0.0);
+            finding::level_missed(level, which, mean_percent, distance_pp, sd_pp, &more)
+        }
+        ShortOf::Target { half_width_pp, replicates, needed } => {
+            let target = stopping.target_error_pp.unwrap_or(0.0);
+            finding::target_missed(target, half_width_pp, replicates, needed)
+        }
+    })
+}

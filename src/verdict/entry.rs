@@ -1,0 +1,115 @@
+//! A finding: an entry of the table with its numbers.
+
+use serde_json::Map;
+
+use super::value::Value;
+use crate::outcome::record::{About, Confidence, Direction, FindingRecord, Verdict, Weight};
+
+/// What the table declares of a finding.
+#[derive(Debug)]
+pub struct Entry {
+    /// Its name for programs.
+    pub id: &'static str,
+    /// What it is about.
+    pub about: About,
+    /// Which way the walk errs for it.
+    pub direction: Direction,
+    /// What it can do to a verdict.
+    pub weight: Weight,
+    /// The label that it sets where it speaks against the verdict.
+    pub sets: Confidence,
+    /// The verdicts that it speaks against, where its direction does not say them.
+    pub against: Option<&'static [Verdict]>,
+    /// Its name in a word or two.
+    pub label: &'static str,
+    /// The names of its numbers, in order.
+    pub names: &'static [&'static str],
+    /// Its sentences, with the names of its numbers in braces. The first may stand in a headline.
+    pub sentence: &'static str,
+    /// Which setting changes it; may be empty.
+    pub to_do: &'static str,
+    /// The page of `src/docs` that explains it.
+    pub page: &'static str,
+}
+
+/// An entry of the table with its numbers.
+#[derive(Clone, Debug)]
+pub struct Finding {
+    /// Its entry.
+    pub entry: &'static Entry,
+    /// Its numbers, in the order of the entry's names.
+    pub values: Vec<Value>,
+}
+
+impl PartialEq for Finding {
+    fn eq(&self, other: &Self) -> bool {
+        self.entry.id == other.entry.id && self.values == other.values
+    }
+}
+
+impl Finding {
+    /// Its name for programs.
+    pub fn id(&self) -> &'static str {
+        self.entry.id
+    }
+
+    /// What it says.
+    pub fn sentence(&self) -> String {
+        self.filled(self.entry.sentence)
+    }
+
+    /// The sentence, and which setting changes it.
+    pub fn with_to_do(&self) -> String {
+        self.record(false).with_to_do()
+    }
+
+    /// Whether it speaks against this verdict: what makes a verdict surer is no doubt of it.
+    pub fn is_against(&self, verdict: Verdict) -> bool {
+        if self.entry.weight == Weight::Note {
+            return false;
+        }
+        match (self.entry.against, self.entry.direction) {
+            (Some(verdicts), _) => verdicts.contains(&verdict),
+            (None, Direction::Settled) => false,
+            (None, Direction::Unsafe) => verdict != Verdict::Continuing,
+            (None, Direction::Safe) => verdict != Verdict::None,
+            (None, Direction::Open) => true,
+        }
+    }
+
+    /// As it is written beside a verdict.
+    pub fn record(&self, against: bool) -> FindingRecord {
+        let Entry { about, direction, weight, .. } = *self.entry;
+        let names = self.entry.names.iter().zip(&self.values);
+        let numbers: Map<_, _> =
+            names.map(|(name, value)| (format!("{name}{}", value.suffix()), value.json())).collect();
+        FindingRecord {
+            id: self.entry.id.into(),
+            about,
+            label: self.entry.label.into(),
+            direction,
+            weight,
+            against,
+            numbers,
+            sentence: self.sentence(),
+            to_do: self.filled(self.entry.to_do),
+        }
+    }
+
+    /// A template with the numbers in the place of their names: `{name}`, or `{name:noun}` of a count.
+    fn filled(&self, template: &str) -> String {
+        let mut text = String::new();
+        let mut rest = template;
+        while let Some((before, after)) = rest.split_once('{') {
+            let (field, after) = after.split_once('}').unwrap_or((after, ""));
+            let (name, noun) = field.split_once(':').map_or((field, None), |(name, noun)| (name, Some(noun)));
+            let at = self.entry.names.iter().position(|of| *of == name);
+            text += before;
+            text += &at.and_then(|at| self.values.get(at)).map_or(String::new(), |value| value.shown(noun));
+            rest = after;
+        }
+        text += rest;
+        // A text may be empty.
+        text.split(' ').filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
+    }
+}

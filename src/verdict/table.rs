@@ -1,0 +1,621 @@
+//! The table of all findings: each is declared here once.
+//!
+//! An entry makes a function of its name that takes its numbers. Within one label and weight the findings of
+//! a verdict stand in the order of this table, the most important first.
+
+use super::entry::{Entry, Finding};
+use super::value::Value;
+use crate::outcome::record::{About, Confidence, Direction, Verdict, Weight};
+
+/// Rules that say something of a filter that holds alone.
+const HELD: &[Verdict] = &[Verdict::None];
+/// Rules that say something of a filter that seals, too.
+const HELD_OR_SEALED: &[Verdict] = &[Verdict::None, Verdict::Some];
+
+macro_rules! raw {
+    (Percent) => {
+        f64
+    };
+    (Mm) => {
+        f64
+    };
+    (Ratio) => {
+        f64
+    };
+    (Count) => {
+        u64
+    };
+    (Text) => {
+        &str
+    };
+}
+
+macro_rules! or {
+    ($default:expr) => {
+        $default
+    };
+    ($default:expr, $given:expr) => {
+        $given
+    };
+}
+
+macro_rules! findings {
+    ($(
+        $(#[$doc:meta])*
+        $id:ident($($name:ident: $unit:ident),*): $about:ident, $direction:ident, $weight:ident
+            $(, sets $sets:ident)? $(, against $against:ident)?;
+            $label:literal, $page:literal, $sentence:literal $(, to do $to_do:literal)?;
+    )*) => {
+        #[allow(non_upper_case_globals)]
+        mod entries {
+            use super::*;
+            $(pub static $id: Entry = Entry {
+                id: stringify!($id),
+                about: About::$about,
+                direction: Direction::$direction,
+                weight: Weight::$weight,
+                sets: or!(Confidence::Outside $(, Confidence::$sets)?),
+                against: or!(None $(, Some($against))?),
+                label: $label,
+                names: &[$(stringify!($name)),*],
+                sentence: $sentence,
+                to_do: or!("" $(, $to_do)?),
+                page: $page,
+            };)*
+        }
+
+        /// Every entry, the most important first.
+        pub static ALL: &[&Entry] = &[$(&entries::$id),*];
+
+        $(
+            $(#[$doc])*
+            pub fn $id($($name: raw!($unit)),*) -> Finding {
+                Finding { entry: &entries::$id, values: vec![$(Value::$unit($name.into())),*] }
+            }
+        )*
+
+        /// Every finding with numbers of this size and this text.
+        #[cfg(test)]
+        pub fn all_with(size: f64, n: u64, text: &str) -> Vec<Finding> {
+            let of = |unit: &str| match unit {
+                "Percent" => Value::Percent(size),
+                "Mm" => Value::Mm(size),
+                "Ratio" => Value::Ratio(size),
+                "Count" => Value::Count(n),
+                _ => Value::Text(text.into()),
+            };
+            vec![$(Finding { entry: &entries::$id, values: vec![$(of(stringify!($unit))),*] }),*]
+        }
+    };
+}
+
+findings! {
+    // Rules of practice that are not kept. Limits and values have as many digits as tell them apart.
+    /// A filter coarser than the limit of design.
+    limit_of_design(limit: Text, value: Text): Practice, Unsafe, Limits, sets Contradicted, against HELD;
+        "limit of design", "rules.md",
+        "Practice allows D15F {limit}, this is {value} (Sherard and Dunnigan's limit of design).";
+    /// A filter coarser than those of which tests found no erosion.
+    tests_no_erosion(limit: Text, value: Text): Practice, Unsafe, Limits, sets Contradicted, against HELD;
+        "tests", "rules.md",
+        "Tests found no erosion up to D15F {limit}, this is {value} (Foster and Fell).";
+    /// Another rule of retention.
+    rule_of_retention(quantity: Text, limit: Text, value: Text, author: Text):
+        Practice, Unsafe, Limits, sets Contradicted, against HELD;
+        "retention", "rules.md",
+        "Practice allows {quantity} up to {limit}, this is {value} ({author}).";
+    /// A filter so coarse that tests found continuing erosion.
+    tests_continuing(limit: Text, value: Text):
+        Practice, Unsafe, Limits, sets Contradicted, against HELD_OR_SEALED;
+        "tests", "rules.md",
+        "Tests found continuing erosion beyond D15F {limit}, this is {value} (Foster and Fell).";
+    /// Another rule of filters that seal.
+    rule_of_continuation(quantity: Text, limit: Text, value: Text, author: Text):
+        Practice, Unsafe, Limits, sets Contradicted, against HELD_OR_SEALED;
+        "continuation", "rules.md",
+        "Practice allows {quantity} up to {limit}, this is {value} ({author}).";
+    /// An unstable filter.
+    loses_fines(rules: Text): Practice, Unsafe, Limits, sets Unstable;
+        "own fines", "rules.md",
+        "The filter may lose its own fines, and with them the constrictions that were walked. Rules that are \
+         not met: {rules}.";
+    /// A filter too fine to drain.
+    too_fine_to_drain(value: Text, asked: Text): Practice, Open, Limits, sets MayNotDrain, against HELD;
+        "drainage", "rules.md",
+        "The filter may be too fine to drain the base. D15F is {value}; {asked}. This says nothing of \
+         retention.";
+    /// A filter with too many fines to drain.
+    fines_of_filter(rules: Text): Practice, Open, Limits, sets MayNotDrain, against HELD;
+        "drainage", "rules.md",
+        "The filter has fines and may not drain. {rules}. This says nothing of retention.";
+    /// A filter that may segregate.
+    may_segregate(rules: Text): Practice, Open, Limits, sets MaySegregate, against HELD;
+        "segregation", "rules.md",
+        "The filter may segregate when it is placed. {rules}.";
+
+    // What leaves a class open.
+    /// Both readings of the base's finest part, which differ.
+    pan_decides(share: Percent, sieve: Mm, constriction: Mm, fine: Text, coarse: Text): Base, Open, Decides;
+        "finest part", "soils.md",
+        "The answer depends on the {share} of the base that is finer than its finest sieve. With all of it \
+         finer than every constriction {fine}, with all of it {sieve} in size {coarse}; the finest \
+         constriction is {constriction}. A hydrometer test or a finer sieve would decide.",
+        to do "Or base.d0_mm.";
+    /// A range of constriction curves that do not give one class.
+    curve_range_decides(low: Percent, high: Percent, each: Text): Constrictions, Open, Decides;
+        "constrictions", "uncertainty.md",
+        "The filter's constrictions are known too roughly for one verdict. Over the range of the constriction \
+         curve {low} to {high} of the mass eroded in the first run ({each}).",
+        to do "A filter that is packed whole (filter.density) has one measured curve.";
+
+    // What a design's search says against its answer.
+    /// A layer that is thicker than what was asked for.
+    layer_thicker(ratio: Ratio, layer: Mm, asked: Text): Thickness, Unsafe, Limits;
+        "thickness", "design.md",
+        "One layer of voids is thicker than the filter asked for. At D15F/D85B {ratio} it is {layer}, and no \
+         less can be walked: a filter of {asked} holds less.";
+    /// What a search found in its own words.
+    of_search(said: Text): Study, Open, Limits;
+        "search", "design.md", "{said}.";
+
+    // What walks say themselves.
+    /// A verdict at a lower level than 95 %.
+    decided_below_95(level: Percent): Walk, Open, Limits;
+        "level", "uncertainty.md",
+        "The verdict is decided at the {level} confidence level, as asked. At 95 % these replicates leave it \
+         open.";
+    /// A filter that was closed before the second run.
+    clogged_before(replicates: Text): Flow, Unsafe, Limits;
+        "clogging", "uncertainty.md",
+        "No water flows in the second run{replicates}, as the filter clogged wholly in the first. Nothing can \
+         erode then, and what was on its way when it clogged counts as retained. More and smaller increments \
+         show whether the class stays.",
+        to do "Try a smaller inject_share.";
+    /// A filter that closed during a run.
+    clogged(run: Text, replicates: Text, after: Text, on_its_way: Percent): Flow, Unsafe, Limits;
+        "clogging", "uncertainty.md",
+        "The filter clogged wholly in the {run} run{replicates}{after}. No water flows then, and what was on \
+         its way, at least {on_its_way} of the base, counts as retained and might have left. More and smaller \
+         increments show whether the class stays.",
+        to do "Try a smaller inject_share.";
+    /// Trapped particles that could turn the class.
+    trapped_could_turn(trapped: Count, inserted: Count, mass: Percent): Walk, Unsafe, Limits;
+        "trapped", "uncertainty.md",
+        "Particles trapped in closed loops could change the class. They are {trapped} of {inserted} particles \
+         of a run, up to {mass} of the base by mass, and count as retained.";
+    /// A second run that erodes though the first does not.
+    second_run_erodes(eroded: Percent, threshold: Percent): Walk, Unsafe, Limits;
+        "second run", "uncertainty.md",
+        "The second run erodes {eroded} of its base, more than {threshold}. The class follows from the first \
+         run alone, and more base may erode further.";
+
+    // What goes in.
+    /// A base whose sizes may be micrometres.
+    coarse_base(d85: Mm): Base, Open, Limits;
+        "unit", "soils.md",
+        "The D85 of the base is {d85}: are its sizes micrometres under a header in mm?";
+    /// Fines that may be cohesive.
+    cohesive_fines(fines: Percent): Base, Open, Limits;
+        "fines", "soils.md",
+        "The base has {fines} fines (finer than 0.075 mm). The model ignores cohesion.";
+    /// Fines that nobody sieved.
+    fines_not_sieved(fines: Percent, sieve: Mm): Base, Open, Limits;
+        "fines", "soils.md",
+        "Up to {fines} of the base may be fines (finer than 0.075 mm), as its finest sieve is {sieve}. The \
+         model ignores cohesion.";
+    /// A base that practice would regrade.
+    not_regraded(at: Mm, why: Text): Base, Unsafe, Limits;
+        "grading", "soils.md",
+        "The model errs on the unsafe side for this base. Practice regrades it on {at} ({why}), but it is \
+         walked as sampled, so that a few coarse grains block for all the rest.",
+        to do "base.regrade = \"practice\" walks the part that practice looks at.";
+    /// A base that is broadly graded.
+    broadly_graded(cu: Ratio): Base, Unsafe, Limits;
+        "grading", "soils.md",
+        "The model errs on the unsafe side for this base. It is broadly graded (Cu {cu}), so that a few \
+         coarse grains block for all the rest.";
+    /// A base that was regraded in another size.
+    regraded_elsewhere(at: Mm): Base, Open, Limits;
+        "grading", "design.md",
+        "The base was regraded on {at} in the size in which it is stated, and then scaled. Practice regrades \
+         the scaled base elsewhere, or not at all.";
+    /// A dispersive base.
+    dispersive_base(): Base, Unsafe, Limits;
+        "dispersion", "rules.md",
+        "The base is dispersive. The model knows its sizes alone; the rules of practice take their limits for \
+         dispersive soils.";
+    /// An open joint.
+    open_joint(width: Mm): Base, Unsafe, Limits;
+        "joint", "rules.md",
+        "An open joint of {width} was not walked. The rules of practice say how likely erosion continues into \
+         it.";
+    /// A thickness that sizes without unit cannot be compared with.
+    thickness_without_unit(real: Mm, unit: Text): Thickness, Open, Limits;
+        "thickness", "uncertainty.md",
+        "The thickness of the filter cannot be compared. The real one is {real}, but sizes are multiples of \
+         {unit}.",
+        to do "Give sizes in mm, or leave filter.thickness_mm out.";
+    /// A network from a file, which has no known thickness.
+    thickness_of_file(real: Mm): Thickness, Open, Limits;
+        "thickness", "uncertainty.md",
+        "The thickness of a network from a file is not known. The real filter is {real} thick, and is \
+         compared with nothing.";
+    /// A lattice thicker than the filter.
+    layers_thicker(layers: Count, modelled: Mm, real: Mm): Thickness, Unsafe, Limits;
+        "thickness", "uncertainty.md",
+        "The modelled filter is thicker than the real one. Its {layers:layer} of voids are {modelled} thick, \
+         the real filter is {real}.",
+        to do "network.nz says how many layers.";
+    /// Copies of a packing thicker than the filter.
+    copies_thicker(copies: Count, modelled: Mm, real: Mm): Thickness, Unsafe, Limits;
+        "thickness", "uncertainty.md",
+        "The modelled filter is thicker than the real one. With {copies:copy|copies} of the packing it is \
+         {modelled} thick, the real filter is {real}.",
+        to do "network.copies, or network.thickness_mm, says how thick it is.";
+    /// A cap on the base.
+    capped_base(n: Count, needed: Count): Amount, Open, Limits;
+        "amount of base", "uncertainty.md",
+        "The base is capped at {n} particles; the model was checked with {needed}. Fewer particles are a bias \
+         of unknown sign, and a filter that was offered too few to fill it seems to hold.",
+        to do "base.cap is the cap.";
+    /// Fewer particles than asked for.
+    few_particles(n: Count, needed: Count): Amount, Open, Limits;
+        "amount of base", "uncertainty.md",
+        "The base has {n} particles; the model was checked with {needed} (5 % of the filter's mass). Fewer \
+         particles are a bias of unknown sign, and a filter that was offered too few to fill it seems to \
+         hold.";
+    /// More particles than asked for.
+    more_particles(n: Count, needed: Count): Amount, Open, Limits;
+        "amount of base", "uncertainty.md",
+        "The base has {n} particles; the model was checked with {needed} (5 % of the filter's mass). Of more \
+         base a smaller share passes once the filter has filled, so that a filter may seem to hold.";
+    /// A small mass of base.
+    low_mass_ratio(ratio: Percent): Amount, Open, Limits;
+        "amount of base", "uncertainty.md",
+        "The mass of the base is {ratio} of the filter's; the model was checked with 5 %. Fewer particles are \
+         a bias of unknown sign, and a filter that was offered too few to fill it seems to hold.",
+        to do "base.mass_ratio says how much.";
+    /// A number of particles that is compared with nothing.
+    amount_unknown(n: Count): Amount, Open, Limits;
+        "amount of base", "uncertainty.md",
+        "Whether {n} base particles are enough is not known. The class follows from their number, and \
+         without the filter and its grains per void nothing says how many are needed.",
+        to do "filter.grains_per_void says how many grains the filter has for each void.";
+    /// A number of particles that does not follow a search.
+    amount_held(n: Count): Amount, Open, Limits;
+        "amount of base", "design.md",
+        "The number of base particles is held at {n} or less at every ratio. Where the model asks for more, \
+         more filters seem to hold.",
+        to do "base.n_base and base.cap hold it.";
+    /// A network that was given.
+    given_network(voids: Count): Network, Open, Limits;
+        "network", "graph.md",
+        "The network was given, with {voids:void}; nothing of it was checked against tests.";
+    /// A network without its filter.
+    no_filter(): Practice, Open, Limits;
+        "filter", "rules.md",
+        "The filter was not given, so no rule of practice was applied.";
+    /// A narrow lattice.
+    narrow_lattice(nx: Count, ny: Count): Network, Unsafe, Limits;
+        "network", "uncertainty.md",
+        "The lattice is only {nx} x {ny} voids across. A narrow one seals by chance, so that filters seem to \
+         hold; 10 x 10 is the least, 40 x 40 is better.",
+        to do "network.nx and network.ny say how wide it is.";
+    /// A base that is all inserted before any can be through.
+    all_on_its_way(increments: Count, layers: Count): Flow, Unsafe, Limits;
+        "increments", "uncertainty.md",
+        "The whole base is inserted before any of it can be through the filter. There are \
+         {increments:increment} for {layers:layer}, and where water flows, all that is on its way when the \
+         filter clogs counts as retained. Ten increments a layer are enough.",
+        to do "A smaller inject_share makes more increments.";
+    /// A Cu out of the checked range.
+    cu_unchecked(soil: Text, cu: Ratio, low: Ratio, high: Ratio): Base, Open, Limits;
+        "uniformity", "soils.md",
+        "The Cu of the {soil} is {cu}; the model was checked for {low} to {high}.";
+    /// A Cu between two bounds, of which one is out of the checked range.
+    cu_in_doubt(soil: Text, least: Ratio, most: Ratio, low: Ratio, high: Ratio): Base, Open, Limits;
+        "uniformity", "soils.md",
+        "The Cu of the {soil} is between {least} and {most}, as its D10 is finer than its finest sieve. The \
+         model was checked for {low} to {high}.";
+    /// A Cu that is not known.
+    cu_unknown(soil: Text, low: Ratio, high: Ratio): Base, Open, Limits;
+        "uniformity", "soils.md",
+        "The Cu of the {soil} is not known, as its D10 is finer than its finest sieve. The model was checked \
+         for {low} to {high}.";
+    /// A filter with a gap.
+    gap_graded(within: Percent, from: Mm): Filter, Unsafe, Limits;
+        "gap", "soils.md",
+        "The filter is gap-graded: only {within} of it is between {from} and four times that. The \
+         constrictions between its fines, which it may lose, were walked.";
+    /// A finest part of the base that will be walked twice.
+    pan_walked_twice(share: Percent, sieve: Mm, constriction: Mm): Base, Open, Limits;
+        "finest part", "soils.md",
+        "The finest {share} of the base may block constrictions. It is finer than the finest sieve, {sieve}, \
+         but may be coarser than the finest constriction, {constriction}; it is walked twice, as finer than \
+         every constriction and as all of that sieve's size.";
+    /// The constriction curve of another filter.
+    other_curve(cu: Ratio, curve: Text, of_cu: Ratio): Constrictions, Open, Limits;
+        "constrictions", "uncertainty.md",
+        "The constrictions are those of another filter. The filter's Cu is {cu}, but its curve {curve} \
+         belongs to Cu {of_cu}.";
+    /// A guess of the constrictions.
+    guessed_constrictions(): Constrictions, Open, Limits;
+        "constrictions", "uncertainty.md",
+        "The constriction curve is a guess from circles inscribed between three or four grains. On packed \
+         filters its median was 0.65 to 0.82 times the measured one at its dense end and 1.6 to 1.9 times at \
+         its loose end, and both ends are walked, too.",
+        to do "filter.density packs the grains and measures it, of a broad filter on its finer part.";
+    /// A guess of the grains per void.
+    guessed_grains(grains: Ratio): Amount, Open, Limits;
+        "amount of base", "uncertainty.md",
+        "The number of filter grains per void is a guess: {grains}, as of loose packings (0.43 to 0.69 were \
+         measured). The amount of base follows from it.",
+        to do "filter.grains_per_void gives it.";
+    /// A finer part that was packed.
+    part_packed(percent: Percent, largest: Mm, finer_by: Percent): Filter, Unsafe, Limits;
+        "finer part", "uncertainty.md",
+        "Only the finer part of the filter is packed: {percent} of its mass, up to {largest}. Its \
+         constrictions are up to {finer_by} finer than those of the whole (measured on filters that can be \
+         packed whole), and both ends of that range are walked.";
+    /// A finer part in which the coarse grains float.
+    floating_part_packed(percent: Percent, largest: Mm, finer_by: Percent): Filter, Unsafe, Limits;
+        "finer part", "uncertainty.md",
+        "Only the finer part of the filter is packed: {percent} of its mass, up to {largest}. Its \
+         constrictions are up to {finer_by} finer than those of the whole, and both ends of that range are \
+         walked; the coarse grains of this gap-graded filter are taken to float in it, as they do where it is \
+         35 % of the mass or more (Skempton and Brogan 1994).";
+    /// A finer part between coarse grains that carry each other.
+    loose_part_packed(percent: Percent, largest: Mm, finer_by: Percent): Filter, Unsafe, Limits;
+        "finer part", "uncertainty.md",
+        "Only the finer part of the filter is packed: {percent} of its mass, up to {largest}. Its \
+         constrictions are up to {finer_by} finer than those of the whole, and both ends of that range are \
+         walked. Coarse grains float in 35 % of the mass or more (Skempton and Brogan 1994); here they carry \
+         each other, the finer ones may lie loose between them, and wider constrictions than those that were \
+         walked may be open.";
+    /// Nearly all grains loose.
+    skeleton(loose: Percent): Filter, Unsafe, Limits;
+        "loose grains", "uncertainty.md",
+        "The coarse grains of the filter carry each other. Nearly all finer grains ({loose} by number) lie \
+         loose between them; water may wash those out, and with them the constrictions that were walked.";
+    /// One replicate.
+    one_replicate(): Walk, Open, Limits;
+        "replicates", "uncertainty.md",
+        "There is one replicate, so the scatter is unknown. Walk more before relying on this.",
+        to do "replicates = 10, say.";
+    /// Few replicates.
+    few_replicates(replicates: Count): Walk, Open, Limits;
+        "replicates", "uncertainty.md",
+        "There are only {replicates:replicate}, whose scatter is hardly known.",
+        to do "replicates = 10, say.";
+    /// Few networks of a design.
+    few_networks(networks: Count): Study, Open, Limits;
+        "networks", "design.md",
+        "There are only {networks:network}. A band of 5 to 95 % needs 5 at least; 20 are better.",
+        to do "--set replicates=20.";
+
+    // What was looked at and does no harm.
+    /// A finest part that blocks nothing.
+    pan_passive(share: Percent): Base, Settled, Limits;
+        "finest part", "soils.md",
+        "{share} of the base is finer than its finest sieve and than every constriction; it counts by mass \
+         only.";
+    /// Both readings of the base's finest part, which agree.
+    pan_agrees(share: Percent, sieve: Mm, constriction: Mm, class: Text): Base, Settled, Limits;
+        "finest part", "soils.md",
+        "The finest {share} of the base, finer than {sieve}, may be coarser than the finest constriction, \
+         {constriction}, but decides nothing. With all of it finer than every constriction and with all of it \
+         {sieve} in size, the verdict is {class}.";
+    /// A range of constriction curves that all give one class.
+    curve_range_agrees(low: Percent, high: Percent, each: Text): Constrictions, Settled, Limits;
+        "constrictions", "uncertainty.md",
+        "The verdict is the same over the whole range of the constriction curve. Over it {low} to {high} of \
+         the mass eroded in the first run ({each}).";
+
+    // What else is to be known.
+    /// Tables that may be exchanged, or in another unit.
+    doubtful_tables(question: Text): Files, Open, Note;
+        "tables", "soils.md", "{question}";
+    /// A pair for which the walk is stricter than tests.
+    stricter_than_tests(ratio: Text, limit: Text, holds: Text): Practice, Safe, Note;
+        "tests", "rules.md",
+        "The walk errs on the safe side for this pair. D15F/D85B is {ratio}, tests found no erosion up to \
+         D15F {limit} (Foster and Fell), and this network retains uniform sands up to a ratio near {holds}.";
+    /// Which class the replicates leave open.
+    replicates_leave_open(): Walk, Open, Note;
+        "replicates", "uncertainty.md",
+        "The replicates do not separate the classes; more replicates may decide it.",
+        to do "--decide 99% adds them until the class is that certain.";
+    /// A second run that was not asked for.
+    second_run_missing(): Walk, Open, Note;
+        "second run", "uncertainty.md",
+        "Some and continuing erosion differ by the second run, and only a first was asked for.",
+        to do "runs = 2 walks both.";
+    /// A confidence level that was not reached.
+    level_missed(level: Percent, run: Text, mean: Percent, distance: Percent, sd: Percent, more: Text):
+        Walk, Open, Note;
+        "level", "uncertainty.md",
+        "Inconclusive at the {level} confidence level: the mean of the {run} run, {mean}, lies {distance} of \
+         the base from 7.5 %, and the replicates scatter by {sd}. {more}.";
+    /// A target error that was not reached.
+    target_missed(target: Percent, half_width: Percent, replicates: Count, needed: Count): Walk, Open, Note;
+        "target error", "uncertainty.md",
+        "The target error, {target} of the base, was not reached. The 95 % interval reaches {half_width} to \
+         either side after {replicates:replicate}; about {needed} would do.";
+    /// A base that is walked regraded.
+    regraded(part: Percent, at: Mm): Base, Settled, Note;
+        "grading", "soils.md",
+        "The base is walked as practice regrades it: the {part} of it that is finer than {at}.";
+    /// A base that was to be regraded.
+    regrading_not_needed(why: Text): Base, Settled, Note;
+        "grading", "soils.md", "Practice does not regrade this base ({why}).";
+    /// How a file was read.
+    read_as(file: Text, note: Text): Files, Settled, Note;
+        "file", "soils.md", "{file}: {note}.";
+    /// Files of one soil with several curves.
+    envelope(soil: Text, curves: Count, names: Text): Files, Settled, Note;
+        "envelope", "rules.md",
+        "The {soil} has {curves:curve} ({names}), taken as the envelope of one soil.",
+        to do "FILE#NAME takes one of them.";
+    /// A base curve with a stricter limit than the finest.
+    stricter_curve(curve: Text, limit: Mm, of_finest: Mm): Practice, Unsafe, Note;
+        "envelope", "rules.md",
+        "The base curve {curve} allows a D15F of {limit}, less than the {of_finest} of the finest curve, as \
+         its fines put it into another category.";
+    /// A finest part of the filter that is not counted.
+    pan_of_filter(share: Percent): Filter, Safe, Note;
+        "finest part", "soils.md",
+        "The finest {share} of the filter is not counted. The base offered is therefore slightly too large, \
+         which is on the safe side.",
+        to do "filter.d0_mm says where that part ends.";
+    /// Many loose grains.
+    loose_grains(loose: Percent): Filter, Open, Note;
+        "loose grains", "uncertainty.md",
+        "Most of the filter's small grains lie loose between the large ones ({loose} of all grains by \
+         number). Water may move them; the model does not.";
+    /// A tall cell that is narrow.
+    narrow_cell(grains: Count, aspect: Ratio, width: Ratio, usual: Ratio): Filter, Open, Note;
+        "cell", "uncertainty.md",
+        "The packed cell is narrow: its {grains} grains, {aspect} times as tall as wide, leave it {width} \
+         times as wide as the largest grain, where {usual} times is usual. Its voids repeat across, and every \
+         layer has few of them.",
+        to do "packing.grains says how many grains.";
+    /// Replicates on one network.
+    one_network(): Network, Open, Note;
+        "network", "graph.md",
+        "All replicates walk one network. Their spread is that of the walks, and says nothing of other \
+         networks of the same filter.";
+    /// Replicates on one packing.
+    one_packing(copies: Count): Network, Open, Note;
+        "packing", "graph.md",
+        "All replicates walk the voids of one packing ({copies:copy|equal copies}), so that their spread is \
+         that of the walk alone, not that between packings.";
+    /// Loops whose way out is narrow.
+    long_way_out(moves: Text): Network, Open, Note;
+        "loops", "graph.md",
+        "A base particle that nothing stops makes {moves} moves before it leaves. The network has loops whose \
+         way out is very narrow, and a walk makes one move an increment, so it may not end in a lifetime. Give \
+         those ways out a diameter of 0, so that what circles counts as trapped, or a wider one.";
+    /// Studies that were not asked for.
+    not_studied(): Study, Open, Note;
+        "studies", "uncertainty.md",
+        "How the verdict moves with the amount of base and with the thickness was not studied.";
+    /// Ratios that hold above one that erodes.
+    not_monotone(networks: Count): Study, Open, Note;
+        "search", "design.md",
+        "On {networks:network} some larger ratio was seen to hold in the first run or the second. There the \
+         smallest ratio that was seen to erode counts.";
+    /// What both readings came to.
+    pan_readings(each: Text): Base, Settled, Note;
+        "finest part", "soils.md",
+        "The numbers are of the base with its finest part finer than every constriction. Both readings: \
+         {each}.";
+    /// Particles that circle.
+    trapped(particles: Count): Walk, Settled, Note;
+        "trapped", "uncertainty.md",
+        "{particles:particle} trapped in closed loops; trapped particles count as retained.";
+    /// The thickness that was walked.
+    modelled_thickness(thickness: Text): Thickness, Settled, Note;
+        "thickness", "uncertainty.md", "The modelled filter is {thickness} thick along the flow.";
+    /// A verdict that other thicknesses share.
+    stays_with_thickness(each: Text): Thickness, Settled, Note;
+        "thickness", "uncertainty.md", "The verdict stays with thickness ({each}).";
+    /// A verdict that other thicknesses do not share.
+    moves_with_thickness(each: Text): Thickness, Open, Note;
+        "thickness", "uncertainty.md", "The verdict moves with thickness ({each}).";
+    /// Other thicknesses of a verdict that is undecided.
+    open_with_thickness(points: Text, each: Text): Thickness, Open, Note;
+        "thickness", "uncertainty.md",
+        "The verdict is undecided; at other thicknesses{points} ({each}).";
+    /// How far the permeability fell.
+    permeability(run: Text, falls: Text, clean: Text): Flow, Settled, Note;
+        "permeability", "graph.md",
+        "The permeability at the end of the {run} is {falls} of the clean filter's{clean}.";
+    /// Voids that hold more than they have room for.
+    overfull(fullest: Ratio, share: Percent): Flow, Open, Note;
+        "full voids", "graph.md",
+        "The fullest void holds {fullest} times the volume that it has between the grains, and up to {share} \
+         of the voids hold more than 0.6 times: more than there is room for, which the model does not know.";
+    /// Particles in voids without volume.
+    no_room(share: Percent): Flow, Open, Note;
+        "full voids", "graph.md",
+        "Particles rest in up to {share} of the voids that have no volume between the grains: more than there \
+         is room for, which the model does not know.";
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+    use std::fs;
+    use std::path::Path;
+
+    use super::*;
+
+    /// Nothing that a number can be spoils a sentence.
+    #[test]
+    fn every_finding_reads_well_with_any_numbers() {
+        let long = "a name ".repeat(200);
+        for size in [0.0, 1e-300, -1.0, 12.345, 1e300, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for (n, text) in [(0, ""), (1, "x"), (u64::MAX, &*long), (2, "two\nlines {and} braces")] {
+                for finding in all_with(size, n, text) {
+                    let (id, record) = (finding.id(), finding.record(true));
+                    for said in [&record.sentence, &record.to_do] {
+                        assert!(!said.contains("NaN") && !said.contains("inf "), "{id}: {said}");
+                        assert!(!said.contains("  "), "{id}: {said}");
+                        assert!(text.contains('{') || !said.contains(['{', '}']), "{id}: {said}");
+                    }
+                    assert_eq!(record.numbers.len(), finding.values.len(), "{id}: names are unique");
+                    serde_json::to_string(&record).unwrap();
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_sentence_is_whole_and_every_number_is_used() {
+        let mut ids = BTreeSet::new();
+        for finding in all_with(12.5, 3, "some text") {
+            let Entry { id, sentence, to_do, label, page, names, .. } = *finding.entry;
+            assert!(ids.insert(id), "{id} is there twice");
+            assert!(!label.is_empty() && Path::new("src/docs").join(page).exists(), "{id}: {page}");
+            let first = sentence.chars().next().unwrap();
+            assert!(first.is_uppercase() || first == '{', "{id}: {sentence}");
+            // A file's note and a question end as they are written.
+            assert!(sentence.ends_with(['.', '?', '}']), "{id}: {sentence}");
+            for name in names {
+                let used = [format!("{{{name}}}"), format!("{{{name}:")];
+                assert!(used.iter().any(|used| sentence.contains(used)), "{id} does not say {name}");
+            }
+            // No words of the program where a client reads.
+            for word in ["Eq. (", "base.", "filter.", "network.", "walk.", "inject_share", "--", "rattler"] {
+                let said = finding.sentence();
+                let is_key = |(at, _)| said[at + word.len()..].starts_with(|c: char| c.is_ascii_lowercase());
+                let stands =
+                    said.match_indices(word).any(is_key) || !word.ends_with('.') && said.contains(word);
+                assert!(!stands, "{id}: {said}");
+            }
+            assert!(to_do.is_empty() || to_do.ends_with('.'), "{id}: {to_do}");
+        }
+        assert_eq!(ids.len(), ALL.len());
+    }
+
+    /// A dead entry would be a sentence that nobody ever reads.
+    #[test]
+    fn every_finding_is_reported_somewhere() {
+        let mut code = String::new();
+        let mut folders = vec![Path::new("src").to_owned()];
+        while let Some(folder) = folders.pop() {
+            for entry in fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    folders.push(path);
+                } else if path.extension().is_some_and(|e| e == "rs") && !path.ends_with("table.rs") {
+                    code += &fs::read_to_string(path).unwrap();
+                }
+            }
+        }
+        for entry in ALL {
+            let is_used = ["finding", "found"].iter().any(|of| code.contains(&format!("{of}::{}", entry.id)));
+            assert!(is_used, "{} is reported nowhere", entry.id);
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! Numbers of findings, each with its unit, and how a sentence shows them.
+
+use serde_json::Value as Json;
+
+use crate::outcome::digits::count;
+
+/// A number or text of a finding.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// Of 100.
+    Percent(f64),
+    /// A length (mm).
+    Mm(f64),
+    /// A number without unit.
+    Ratio(f64),
+    /// So many.
+    Count(u64),
+    /// Anything else.
+    Text(String),
+}
+
+impl Value {
+    /// How its name ends in a record.
+    pub fn suffix(&self) -> &'static str {
+        match self {
+            Self::Percent(_) => "_percent",
+            Self::Mm(_) => "_mm",
+            Self::Ratio(_) | Self::Count(_) | Self::Text(_) => "",
+        }
+    }
+
+    /// As it stands in a record; `null` where it is no number.
+    pub fn json(&self) -> Json {
+        match self {
+            Self::Percent(value) | Self::Mm(value) | Self::Ratio(value) => (*value).into(),
+            Self::Count(count) => (*count).into(),
+            Self::Text(text) => text.as_str().into(),
+        }
+    }
+
+    /// As it stands in a sentence; a count with what is counted, as `replicate` or `copy|copies`.
+    pub fn shown(&self, noun: Option<&str>) -> String {
+        match self {
+            Self::Percent(value) => number(*value) + " %",
+            Self::Mm(value) => number(*value) + " mm",
+            Self::Ratio(value) => number(*value),
+            Self::Count(n) => {
+                let Some(noun) = noun else { return count(*n) };
+                let (one, many) = noun.split_once('|').unwrap_or((noun, ""));
+                match (*n, many) {
+                    (1, _) => format!("1 {one}"),
+                    (_, "") => format!("{} {one}s", count(*n)),
+                    (_, many) => format!("{} {many}", count(*n)),
+                }
+            }
+            // One line, whatever a name holds.
+            Self::Text(text) => text.split_whitespace().collect::<Vec<_>>().join(" "),
+        }
+    }
+}
+
+/// Three significant digits, or all before the point, without zeros at the end.
+fn number(value: f64) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
+    if !value.is_finite() {
+        return "an unknown number of".into();
+    }
+    if !(1e-4..1e7).contains(&value.abs()) {
+        return format!("{value:.1e}");
+    }
+    let decimals = (2 - value.abs().log10().floor() as i32).max(0) as usize;
+    let text = format!("{value:.decimals$}");
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_three_digits_and_their_unit() {
+        let shown = |value: Value| value.shown(None);
+        assert_eq!(shown(Value::Percent(35.24)), "35.2 %");
+        assert_eq!(shown(Value::Percent(7.5)), "7.5 %");
+        assert_eq!(shown(Value::Percent(100.0)), "100 %");
+        assert_eq!(shown(Value::Mm(0.075)), "0.075 mm");
+        assert_eq!(shown(Value::Mm(1234.6)), "1235 mm");
+        assert_eq!(shown(Value::Mm(1e-9)), "1.0e-9 mm");
+        assert_eq!(shown(Value::Ratio(0.0)), "0");
+        assert_eq!(Value::Count(1).shown(Some("copy|copies")), "1 copy");
+        assert_eq!(Value::Count(1200).shown(Some("copy|copies")), "1 200 copies");
+        assert_eq!(Value::Count(2).shown(Some("replicate")), "2 replicates");
+        assert_eq!(shown(Value::Text(" a\n b".into())), "a b");
+    }
+}
