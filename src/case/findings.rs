@@ -30,7 +30,9 @@ const LOOKED_AT: u64 = 50_000_000;
 impl Case {
     /// What is known of its verdict before the walk, in sentences: what `check` says.
     pub fn warnings(&self) -> Vec<String> {
-        self.to_be_walked().iter().chain(&self.findings()).map(Finding::with_to_do).collect()
+        let mut all: Vec<Finding> = self.to_be_walked().into_iter().chain(self.findings()).collect();
+        all.sort_by_key(Finding::rank);
+        all.iter().map(Finding::with_to_do).collect()
     }
 
     /// What is not known before the walk, and what the walk itself will say.

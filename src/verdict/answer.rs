@@ -4,7 +4,6 @@ use std::cmp::Reverse;
 
 use super::entry::Finding;
 use super::practice;
-use super::table::ALL;
 use crate::outcome::record::{AppliedRule, Confidence, FindingRecord, Verdict};
 
 /// A class and what it is worth.
@@ -56,10 +55,9 @@ pub fn judge(verdict: Verdict, rules: &[AppliedRule], findings: Vec<Finding>) ->
             all.push(finding);
         }
     }
-    let rank = |finding: &Finding| ALL.iter().position(|entry| entry.id == finding.id());
     all.sort_by_cached_key(|finding| {
         let sets = finding.is_against(verdict).then_some(finding.entry.sets);
-        (Reverse(sets), finding.entry.weight, rank(finding))
+        (Reverse(sets), finding.rank())
     });
     let confidence = all.first().filter(|of| of.is_against(verdict)).map(|of| of.entry.sets);
     Answer {
@@ -71,7 +69,7 @@ pub fn judge(verdict: Verdict, rules: &[AppliedRule], findings: Vec<Finding>) ->
 
 #[cfg(test)]
 mod tests {
-    use super::super::finding;
+    use super::super::finding::{self, ALL};
     use super::*;
     use crate::gradation::Gradation;
     use crate::outcome::record::{Direction, Weight};

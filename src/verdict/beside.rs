@@ -55,8 +55,12 @@ impl Outcome {
                 said.push(sentence);
             }
         }
+        let is_said =
+            self.reasons.iter().chain(said.iter().copied()).any(|said| said.starts_with("capped at"));
+        let capped = self.n_base_eq2.filter(|_| self.capped && !is_said);
+        let capped = capped.map(|eq2| finding::capped_base(self.n_base, eq2));
         let of_earlier = said.into_iter().map(|said| FindingRecord::of_earlier(said));
-        of_earlier.chain(self.found().iter().map(|finding| finding.record(false))).collect()
+        of_earlier.chain(capped.iter().chain(&self.found()).map(|finding| finding.record(false))).collect()
     }
 
     /// The sentence of a finding; `None` without it.

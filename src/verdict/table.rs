@@ -336,7 +336,7 @@ findings! {
     /// The constriction curve of another filter.
     other_curve(cu: Ratio, curve: Text, of_cu: Ratio): Constrictions, Open, Limits;
         "constrictions", "uncertainty.md",
-        "The constrictions are those of another filter. The filter's Cu is {cu}, but its curve {curve} \
+        "The filter is walked with the constrictions of another filter. Its Cu is {cu}, but its curve {curve} \
          belongs to Cu {of_cu}.";
     /// A guess of the constrictions.
     guessed_constrictions(): Constrictions, Open, Limits;
@@ -390,7 +390,7 @@ findings! {
     /// Few networks of a design.
     few_networks(networks: Count): Study, Open, Limits;
         "networks", "design.md",
-        "There are only {networks:network}. A band of 5 to 95 % needs 5 at least; 20 are better.",
+        "The search has only {networks:network}. A band of 5 to 95 % needs 5 at least; 20 are better.",
         to do "--set replicates=20.";
 
     // What was looked at and does no harm.
@@ -512,7 +512,7 @@ findings! {
     /// Particles that circle.
     trapped(particles: Count): Walk, Settled, Note;
         "trapped", "uncertainty.md",
-        "{particles:particle} trapped in closed loops; trapped particles count as retained.";
+        "{particles:particle} trapped in closed loops; they count as retained.";
     /// The thickness that was walked.
     modelled_thickness(thickness: Text): Thickness, Settled, Note;
         "thickness", "uncertainty.md", "The modelled filter is {thickness} thick along the flow.";

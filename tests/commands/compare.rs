@@ -112,7 +112,7 @@ fn what_stands_beside_a_verdict_stands_beside_it_here() {
     let (text, page, record) = compare("replicates=5");
     assert!(page.contains(all) && page.contains("Thickness"), "{text}");
     for face in [&text, &page, &record["cases"][1]["beside"].to_string()] {
-        assert!(face.contains("modelled filter thickness: ") && face.contains(" times as thick: "), "{face}");
+        assert!(face.contains("The modelled filter is ") && face.contains(" times as thick: "), "{face}");
     }
     for face in [&text, &page, &record["cases"][1]["practice"].to_string()] {
         assert!(face.contains("Sherard and Dunnigan allow (design)"), "{face}");
@@ -120,7 +120,7 @@ fn what_stands_beside_a_verdict_stands_beside_it_here() {
     assert!(text.contains("  Practice: met: ") && page.contains("<b>Practice</b>: met: "), "{text}");
     let (text, page, record) = compare("replicates=1");
     assert!(!page.contains(all) && page.contains("None of these verdicts is within"));
-    let doubt = "one replicate: the scatter is unknown";
+    let doubt = "one replicate, so the scatter is unknown";
     for face in [&text, &page, &record["cases"][0]["reasons"].to_string()] {
         assert!(face.contains(doubt), "{face}");
     }

@@ -132,7 +132,7 @@ fn one_replicate_is_said_to_have_no_scatter() {
     let one = voidwalk(root.path(), &["run", "small.toml", "--out", "one"]);
     let text = String::from_utf8_lossy(&one.stdout);
     assert!(
-        text.contains("one replicate: the scatter is unknown") && text.contains(" 1 replicate of 500"),
+        text.contains("one replicate, so the scatter is unknown") && text.contains(" 1 replicate of 500"),
         "{text}"
     );
     // One run of two, undecided, says what would decide it.

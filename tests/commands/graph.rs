@@ -77,7 +77,7 @@ fn the_graph_is_walked_and_its_folder_says_what_it_is() {
     let run = call(root.path(), &["run", "scene.toml", "--out", "one", "--threads", "1"]);
     done(&run);
     let said = String::from_utf8_lossy(&run.stdout).into_owned();
-    assert!(said.contains("permeability at the end of the first and second run: "), "{said}");
+    assert!(said.contains("The permeability at the end of the first and second run is "), "{said}");
     let page = fs::read_to_string(root.path().join("one/report.html")).unwrap();
     assert!(page.contains("Permeability at the end of the first and second run: "));
     let outcome = json(&root.path().join("one/outcome.json"));
@@ -200,12 +200,12 @@ fn thickness_is_layers_or_copies() {
     let args = ["scene.toml", "--set", "network.thickness_mm=13", "--set", "filter.thickness_mm=13"];
     // Of a verdict that this makes the surer it stands among the notes.
     let outcome = of(&args);
-    let reasons = format!("{}{}", outcome["reasons"], outcome["notes"]);
+    let reasons = outcome["findings"].to_string();
     assert!(
-        reasons.contains("3 copies of the packing are 18.0 mm, filter.thickness_mm is 13: "),
+        reasons.contains("With 3 copies of the packing it is 18 mm thick, the real filter is 13 mm."),
         "{reasons}"
     );
-    assert!(reasons.contains("whole copies") && !reasons.contains("network.nz"), "{reasons}");
+    assert!(reasons.contains("network.copies") && !reasons.contains("network.nz"), "{reasons}");
     let flowing = of(&["--set", "walk.exit=flux", "--set", "network.nx=5", "--set", "network.ny=5"]);
     assert_eq!(flowing["network"]["kind"], "lattice");
     assert!(flowing["replicates"][0]["runs"][0]["k_over_k0"].as_f64().unwrap() <= 1.0);

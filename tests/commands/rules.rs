@@ -151,7 +151,7 @@ fn the_base_is_walked_regraded_where_the_scene_says_so() {
     assert!(base["d100_mm"] == 4.75 && base["regraded_at_mm"] == 4.75, "{base}");
     assert!((base["d85_mm"].as_f64().unwrap() - 1.5305).abs() < 1e-3);
     assert!(base["name"].as_str().unwrap().ends_with("till.csv, regraded on 4.750 mm"), "{base}");
-    assert!(warned(&regraded, "walked as practice regrades it: the 92.0 % of it"), "{regraded}");
+    assert!(warned(&regraded, "walked as practice regrades it: the 92 % of it"), "{regraded}");
     assert!(!warned(&regraded, "errs on the unsafe side"), "{regraded}");
     // A broad sand that practice leaves as it is: Cu 9.8.
     let broad = format!("base.sieve={}", sieve("broad.csv", "0.03,0\n0.1,20\n0.6,60\n4,100\n"));
@@ -164,18 +164,18 @@ fn the_base_is_walked_regraded_where_the_scene_says_so() {
     let sand = format!("base.sieve={}", sieve("sand.csv", "0.1,0\n0.5,85\n1,100\n"));
     let left = check(&["--set", &sand, "--set", "base.regrade=practice"]);
     assert!(
-        !warned(&left, "practice does not regrade") && left["inputs"]["base"]["d100_mm"] == 1.0,
+        !warned(&left, "Practice does not regrade") && left["inputs"]["base"]["d100_mm"] == 1.0,
         "{left}"
     );
     let stone = format!("base.sieve={}", sieve("stone.csv", "2,0\n4,60\n5.5,100\n"));
     let left = check(&["--set", &stone, "--set", "base.regrade=practice"]);
-    assert!(warned(&left, "practice does not regrade this base: less than 15 % fines"), "{left}");
+    assert!(warned(&left, "Practice does not regrade this base (less than 15 % fines"), "{left}");
     let output = voidwalk(&["check", "--set", "base.regrade=practice"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("needs sizes in mm"));
     // The modelled layer and the real one.
     let thin = check(&["--set", "filter.thickness_mm=300"]);
-    assert!(warned(&thin, "the modelled filter is thicker than the real one; 60 layers"), "{thin}");
+    assert!(warned(&thin, "The modelled filter is thicker than the real one. Its 60 layers"), "{thin}");
     assert!(!warned(&check(&["--set", "filter.thickness_mm=3000"]), "thicker"));
 }
 

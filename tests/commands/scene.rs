@@ -381,7 +381,7 @@ fn a_network_from_a_file_is_walked_and_kept() {
     assert_eq!(run["eroded"].as_u64().unwrap() + run["retained_in_constrictions"].as_u64().unwrap(), 1000);
     // Its five ways are nobody's filter.
     assert_ne!(outcome["confidence"], "within checked range");
-    assert!(outcome["reasons"].to_string().contains("the network is that of the file, 3 voids"));
+    assert!(outcome["reasons"].to_string().contains("The network was given, with 3 voids"));
     // One that nothing leaves holds everything.
     for rows in ["start,0,\n0,1,2\n1,0,2\n2,end,3\n2,0,1", "start,0,\n0,1,2", "start,0,\n0,end,0"] {
         let network = root.path().join("noway.csv");
@@ -401,7 +401,7 @@ fn a_network_from_a_file_is_walked_and_kept() {
     assert!(voidwalk(&args).status.success());
     let page = fs::read_to_string(out.join("report.html")).unwrap();
     assert!(page.contains("particles trapped in closed loops; they count as retained."), "no word of them");
-    assert!(page.contains("are trapped in closed loops, up to"));
+    assert!(page.contains("Particles trapped in closed loops could change the class. They are"));
     // The kept scene runs again from its own folder.
     let again = root.path().join("again");
     let scene = folder.join("scene.toml");

@@ -384,9 +384,9 @@ fn what_no_answer_can_rest_on_takes_the_green_away() {
     assert_eq!((plain.confidence, &plain.reasons[..]), (Confidence::Within, &[][..]));
     for (setting, words) in [
         ("replicates=4", "only 4 networks"),
-        ("replicates=1", "only 1 network:"),
-        ("base.cap=100000000", "base.cap holds the number of base particles at 100000000 or less"),
-        ("base.n_base=3000", "base.n_base holds the number of base particles at 3000"),
+        ("replicates=1", "only 1 network."),
+        ("base.cap=100000000", "base particles is held at 100 000 000 or less"),
+        ("base.n_base=3000", "base particles is held at 3 000 or less"),
     ] {
         let design = of(&[setting]);
         assert_ne!(design.confidence, Confidence::Within, "{setting}");

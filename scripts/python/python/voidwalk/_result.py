@@ -98,14 +98,22 @@ class Result:
         return str(self.outcome["confidence"])
 
     @property
+    def findings(self) -> List[Dict[str, Any]]:
+        """What was found about the verdict, what speaks against it first: each a dict of id, about, direction, weight,
+        against (whether it speaks against the verdict), numbers (with the unit in the name) and sentence."""
+        findings: List[Dict[str, Any]] = self.outcome.get("findings", [])
+        return findings
+
+    @property
     def reasons(self) -> List[str]:
-        """Why it cannot be relied on further, the weightiest first, and what else rules of practice say."""
+        """The sentences of the findings that speak against the verdict, the weightiest first."""
         return [str(reason) for reason in self.outcome["reasons"]]
 
     @property
     def warnings(self) -> List[str]:
-        """What a reader must know of the walk."""
-        return [str(warning) for warning in self.outcome["warnings"]]
+        """The sentences of all other findings: what else a reader must know."""
+        earlier = [str(warning) for warning in self.outcome.get("warnings", []) if warning not in self.reasons]
+        return [str(finding["sentence"]) for finding in self.findings if not finding["against"]] + earlier
 
     @property
     def summary(self) -> List[Dict[str, Any]]:
@@ -191,7 +199,7 @@ class Result:
         rows = "; ".join(f"run {run}: {mean:.2f} % of the mass eroded" for run, mean in means)
         count = len(self.replicates)
         said = f"{self.verdict}, {self.confidence}: {rows}; {count} {'replicate' if count == 1 else 'replicates'}"
-        reasons, warnings = self.reasons, [said for said in self.warnings if said not in self.reasons]
+        reasons, warnings = self.reasons, self.warnings
         if reasons:
             said += f"; {reasons[0]}"
         more = len(reasons[1:]) + len(warnings)
