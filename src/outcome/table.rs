@@ -70,7 +70,7 @@ impl<T> Default for Columns<'_, T> {
 
 impl<'a, T> Columns<'a, T> {
     /// With a column of texts and whole numbers.
-    pub fn column<C: Cell>(mut self, name: impl Into<String>, cell: impl Fn(&T) -> C + 'a) -> Self {
+    pub fn column<C: TableCell>(mut self, name: impl Into<String>, cell: impl Fn(&T) -> C + 'a) -> Self {
         self.0.push((name.into(), Box::new(move |row| cell(row).text())));
         self
     }
@@ -107,12 +107,12 @@ impl<'a, T> Columns<'a, T> {
 }
 
 /// What stands in a cell; nothing where there is no value.
-pub trait Cell {
+pub trait TableCell {
     /// As text.
     fn text(self) -> String;
 }
 
-impl<C: Cell> Cell for Option<C> {
+impl<C: TableCell> TableCell for Option<C> {
     fn text(self) -> String {
         self.map_or(String::new(), C::text)
     }
@@ -120,7 +120,7 @@ impl<C: Cell> Cell for Option<C> {
 
 macro_rules! cells {
     ($($kind:ty),*) => {
-        $(impl Cell for $kind {
+        $(impl TableCell for $kind {
             fn text(self) -> String {
                 self.to_string()
             }

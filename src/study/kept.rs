@@ -17,8 +17,8 @@ use crate::store::Folder;
 use crate::store::checkpoint::{CheckpointError, Identity, Label, Section, newest, save};
 
 /// Makes a study of this kind, which all these words describe, in its claimed folder: from what an earlier
-/// start of it found, and not at all where all but its page is there. `study` writes its tables; then come its
-/// record and its page, and nothing is left to continue.
+/// start of it found, and not at all where all but its page is there. `study` writes its tables; then come
+/// its record and its page, and nothing is left to continue.
 ///
 /// # Errors
 /// What is there is of another study; what the study and the folder say.

@@ -31,8 +31,8 @@ const CASES: &str = "compare.csv";
 const PAIRS: &str = "compare_pairs.csv";
 
 /// Walks every case that is not done, in a campaign inside the folder that the options name, and writes
-/// `compare.csv`, `compare_pairs.csv` and, last, `compare.json`. With `overwrite` an earlier comparison there is
-/// replaced; its cases that are asked for again are kept.
+/// `compare.csv`, `compare_pairs.csv` and, last, `compare.json`. With `overwrite` an earlier comparison there
+/// is replaced; its cases that are asked for again are kept.
 ///
 /// # Errors
 /// A case that is wrong and a folder that cannot be claimed are refused before any work; then as
