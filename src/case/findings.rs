@@ -7,7 +7,7 @@ use crate::gradation::{FEW_FINES, FINES_MM, Gradation};
 use crate::network::ExitRule;
 use crate::verdict::Mistake;
 use crate::verdict::beside::packed_part;
-use crate::verdict::{Finding, finding};
+use crate::verdict::{Finding, finding, rank};
 
 /// More moves than these of a particle that nothing stops are worth a word.
 const MANY_MOVES: f64 = 1e5;
@@ -31,7 +31,7 @@ impl Case {
     /// What is known of its verdict before the walk, in sentences: what `check` says.
     pub fn warnings(&self) -> Vec<String> {
         let mut all: Vec<Finding> = self.to_be_walked().into_iter().chain(self.findings()).collect();
-        all.sort_by_key(Finding::rank);
+        all.sort_by_key(rank);
         all.iter().map(Finding::with_to_do).collect()
     }
 

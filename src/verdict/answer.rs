@@ -3,8 +3,9 @@
 use std::cmp::Reverse;
 
 use super::entry::Finding;
+use super::finding::ALL;
 use super::practice;
-use crate::outcome::record::{AppliedRule, Confidence, FindingRecord, Verdict};
+use crate::outcome::record::{AppliedRule, Confidence, FindingRecord, Verdict, Weight};
 
 /// A class and what it is worth.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +40,11 @@ impl Answer {
     }
 }
 
+/// The place of a finding among others of its label: by weight, and in the order of the table.
+pub fn rank(finding: &Finding) -> (Weight, Option<usize>) {
+    (finding.entry.weight, ALL.iter().position(|entry| entry.id == finding.id()))
+}
+
 /// What a class is worth, by rules of practice and by what was found.
 ///
 /// Each finding that speaks against the class has a label that it would set alone, and the worst comes first:
@@ -57,7 +63,7 @@ pub fn judge(verdict: Verdict, rules: &[AppliedRule], findings: Vec<Finding>) ->
     }
     all.sort_by_cached_key(|finding| {
         let sets = finding.is_against(verdict).then_some(finding.entry.sets);
-        (Reverse(sets), finding.rank())
+        (Reverse(sets), rank(finding))
     });
     let confidence = all.first().filter(|of| of.is_against(verdict)).map(|of| of.entry.sets);
     Answer {
@@ -69,10 +75,10 @@ pub fn judge(verdict: Verdict, rules: &[AppliedRule], findings: Vec<Finding>) ->
 
 #[cfg(test)]
 mod tests {
-    use super::super::finding::{self, ALL};
+    use super::super::finding;
     use super::*;
     use crate::gradation::Gradation;
-    use crate::outcome::record::{Direction, Weight};
+    use crate::outcome::record::Direction;
     use crate::verdict::{PairOptions, PairRules};
 
     fn rules(filter: &[(f64, f64)], base: &[(f64, f64)]) -> Vec<AppliedRule> {

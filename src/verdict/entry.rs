@@ -2,7 +2,6 @@
 
 use serde_json::Map;
 
-use super::table::ALL;
 use super::value::Value;
 use crate::outcome::record::{About, Confidence, Direction, FindingRecord, Verdict, Weight};
 
@@ -52,11 +51,6 @@ impl Finding {
     /// Its name for programs.
     pub fn id(&self) -> &'static str {
         self.entry.id
-    }
-
-    /// Its place among others of its label: by weight, and in the order of the table.
-    pub fn rank(&self) -> (Weight, Option<usize>) {
-        (self.entry.weight, ALL.iter().position(|entry| entry.id == self.entry.id))
     }
 
     /// What it says.

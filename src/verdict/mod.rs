@@ -11,20 +11,15 @@
 mod answer;
 pub mod beside;
 mod entry;
+pub mod finding;
 mod pair;
 pub mod practice;
-mod table;
 mod thickness;
 mod value;
 pub mod walks;
 pub mod words;
 
-/// The findings: a function for each.
-pub mod finding {
-    pub use super::table::*;
-}
-
-pub use answer::{Answer, judge};
+pub use answer::{Answer, judge, rank};
 pub use entry::{Entry, Finding};
 pub use pair::{BaseSizes, FilterSizes, Mistake, MistakeKind, PairOptions, PairRules};
 pub use value::Value;
