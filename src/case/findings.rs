@@ -162,7 +162,7 @@ impl Case {
         Some(finding::narrow_cell(plan.compression.grains as u64, plan.aspect.into(), width, usual.into()))
     }
 
-    /// About how many moves a particle makes that nothing stops, where loops may hold it for long: on a given
+    /// Topic how many moves a particle makes that nothing stops, where loops may hold it for long: on a given
     /// network, or where one constriction is very much wider than another.
     fn moves_to_an_end(&self) -> Option<f64> {
         let widest = self.curve.largest() / self.curve.smallest();
@@ -221,7 +221,7 @@ pub fn not_as_uniform(cu: [Option<[f64; 2]>; 2]) -> Vec<Finding> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::record::About;
+    use crate::outcome::record::Topic;
     use crate::scene::Scene;
 
     fn case(changes: &[&str]) -> Result<Case, String> {
@@ -231,7 +231,7 @@ mod tests {
 
     fn said(changes: &[&str]) -> String {
         let found = case(changes).unwrap().findings();
-        let of_thickness = found.iter().filter(|finding| finding.entry.about == About::Thickness);
+        let of_thickness = found.iter().filter(|finding| finding.entry.about == Topic::Thickness);
         of_thickness.map(Finding::with_to_do).collect()
     }
 

@@ -9,7 +9,7 @@ use crate::outcome::record::{AppliedRule, Confidence, FindingRecord, Verdict, We
 
 /// A class and what it is worth.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Answer {
+pub struct Judgement {
     /// The class.
     pub verdict: Verdict,
     /// How far it can be relied on: the label that the first finding sets.
@@ -18,7 +18,7 @@ pub struct Answer {
     pub findings: Vec<FindingRecord>,
 }
 
-impl Answer {
+impl Judgement {
     /// The finding that set the label; none within the checked range.
     pub fn set_by(&self) -> Option<&FindingRecord> {
         self.findings.first().filter(|finding| finding.against)
@@ -54,7 +54,7 @@ pub fn rank(finding: &Finding) -> (Weight, Option<usize>) {
 /// drainage or placing says nothing of retention, but practice would not build a filter that breaks it: "no
 /// erosion" does not stand in green there. What makes a verdict surer is no doubt of it
 /// ([`Finding::is_against`]).
-pub fn judge(verdict: Verdict, rules: &[AppliedRule], findings: Vec<Finding>) -> Answer {
+pub fn judge(verdict: Verdict, rules: &[AppliedRule], findings: Vec<Finding>) -> Judgement {
     let mut all: Vec<Finding> = Vec::new();
     for finding in practice::findings(verdict, rules).into_iter().chain(findings) {
         if !all.contains(&finding) {
@@ -66,7 +66,7 @@ pub fn judge(verdict: Verdict, rules: &[AppliedRule], findings: Vec<Finding>) ->
         (Reverse(sets), rank(finding))
     });
     let confidence = all.first().filter(|of| of.is_against(verdict)).map(|of| of.entry.sets);
-    Answer {
+    Judgement {
         verdict,
         confidence: confidence.unwrap_or(Confidence::Within),
         findings: all.iter().map(|finding| finding.record(finding.is_against(verdict))).collect(),
@@ -95,7 +95,7 @@ mod tests {
         finding::broadly_graded(9.0)
     }
 
-    fn is_within(answer: &Answer, notes: &[&str]) {
+    fn is_within(answer: &Judgement, notes: &[&str]) {
         assert_eq!((answer.confidence, answer.set_by()), (Confidence::Within, None), "{answer:?}");
         let ids: Vec<&str> = answer.findings.iter().map(|finding| finding.id.as_str()).collect();
         assert_eq!(ids, notes);

@@ -2,8 +2,8 @@
 
 use serde_json::Map;
 
-use super::value::Value;
-use crate::outcome::record::{About, Confidence, Direction, FindingRecord, Verdict, Weight};
+use super::quantity::FindingValue;
+use crate::outcome::record::{Confidence, Direction, FindingRecord, Topic, Verdict, Weight};
 
 /// What the table declares of a finding.
 #[derive(Debug)]
@@ -11,7 +11,7 @@ pub struct Entry {
     /// Its name for programs.
     pub id: &'static str,
     /// What it is about.
-    pub about: About,
+    pub about: Topic,
     /// Which way the walk errs for it.
     pub direction: Direction,
     /// What it can do to a verdict.
@@ -38,7 +38,7 @@ pub struct Finding {
     /// Its entry.
     pub entry: &'static Entry,
     /// Its numbers, in the order of the entry's names.
-    pub values: Vec<Value>,
+    pub values: Vec<FindingValue>,
 }
 
 impl PartialEq for Finding {

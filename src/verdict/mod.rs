@@ -1,4 +1,4 @@
-//! What an answer is worth: findings about a verdict, the label that they set, and the only sentences about it.
+//! What an answer is worth: findings about a verdict, the label that they set, and all sentences about it.
 //!
 //! - [`finding`] is the table of all findings: direction, weight, label, sentence and page of each, and a
 //!   function of its name that reports it. A translation is another table of sentences.
@@ -14,12 +14,12 @@ mod entry;
 pub mod finding;
 mod pair;
 pub mod practice;
+mod quantity;
 mod thickness;
-mod value;
 pub mod walks;
 pub mod words;
 
-pub use answer::{Answer, judge, rank};
+pub use answer::{Judgement, judge, rank};
 pub use entry::{Entry, Finding};
 pub use pair::{BaseSizes, FilterSizes, Mistake, MistakeKind, PairOptions, PairRules};
-pub use value::Value;
+pub use quantity::FindingValue;
