@@ -159,7 +159,7 @@ impl Case {
     fn narrow_cell(&self) -> Option<Finding> {
         let plan = PackingPlan::new(&self.scene.packing_spec().ok()??).ok()?;
         let (width, usual) = plan.narrow_and_tall()?;
-        Some(finding::narrow_cell(plan.compression.grains as u64, plan.aspect.into(), width, usual.into()))
+        Some(finding::narrow_cell(plan.compression.grains as u64, plan.aspect, width, usual))
     }
 
     /// Topic how many moves a particle makes that nothing stops, where loops may hold it for long: on a given
