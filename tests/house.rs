@@ -159,7 +159,7 @@ fn walk_and_report_know_what_they_may() {
     for source in sources() {
         let may: &[&str] = match room(&source.module) {
             "walk" => &["stream", "store", "gradation", "network", "walk"],
-            "report" => &["outcome", "store", "text", "report"],
+            "report" => &["outcome", "verdict", "store", "text", "report"],
             _ => continue,
         };
         for name in ORDER.iter().filter(|name| !may.contains(name)) {

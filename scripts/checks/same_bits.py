@@ -190,7 +190,7 @@ set = { filter = { density = "dense", cu = 1.5 }, packing = { grains = 300, stif
 """
 
 WORDS = {"verdict", "engine", "kind", "counted_facets"}  # their text is a result
-DROPPED = {"seconds", "settings", "rules", "confidence", "reasons", "notes", "practice"}
+DROPPED = {"seconds", "settings", "rules", "confidence", "reasons", "notes", "warnings", "findings", "short_of", "sentence", "practice"}
 LABELS = {"confidence", "reason", "rules_not_met", "warnings", "d85b_of"}  # columns of a campaign's table that are no result of a walk
 ROWS = 12
 
@@ -427,7 +427,10 @@ def compared(was, now):
             continue
         one, other = was.get(name, "missing"), now.get(name, "missing")
         if isinstance(one, dict) and isinstance(other, dict):
-            found = list(differences(one["numbers"], other["numbers"]))
+            # What is dropped now may have been recorded.
+            found = list(differences(numbers_of(one["numbers"]), numbers_of(other["numbers"])))
+            if not found and one["numbers"] != other["numbers"]:
+                continue
             more = f"; and {len(found) - 4} more" if len(found) > 4 else ""
             words.append(f"{name} ({'; '.join(found[:4])}{more})")
         else:

@@ -7,7 +7,7 @@ use crate::gradation::{FEW_FINES, FINES_MM, Gradation};
 use crate::network::ExitRule;
 use crate::verdict::Mistake;
 use crate::verdict::beside::packed_part;
-use crate::verdict::{Finding, finding};
+use crate::verdict::{Finding, finding, rank};
 
 /// More moves than these of a particle that nothing stops are worth a word.
 const MANY_MOVES: f64 = 1e5;
@@ -31,7 +31,7 @@ impl Case {
     /// What is known of its verdict before the walk, in sentences: what `check` says.
     pub fn warnings(&self) -> Vec<String> {
         let mut all: Vec<Finding> = self.to_be_walked().into_iter().chain(self.findings()).collect();
-        all.sort_by_key(Finding::rank);
+        all.sort_by_key(rank);
         all.iter().map(Finding::with_to_do).collect()
     }
 
@@ -159,10 +159,10 @@ impl Case {
     fn narrow_cell(&self) -> Option<Finding> {
         let plan = PackingPlan::new(&self.scene.packing_spec().ok()??).ok()?;
         let (width, usual) = plan.narrow_and_tall()?;
-        Some(finding::narrow_cell(plan.compression.grains as u64, plan.aspect.into(), width, usual.into()))
+        Some(finding::narrow_cell(plan.compression.grains as u64, plan.aspect, width, usual))
     }
 
-    /// About how many moves a particle makes that nothing stops, where loops may hold it for long: on a given
+    /// Topic how many moves a particle makes that nothing stops, where loops may hold it for long: on a given
     /// network, or where one constriction is very much wider than another.
     fn moves_to_an_end(&self) -> Option<f64> {
         let widest = self.curve.largest() / self.curve.smallest();
@@ -221,7 +221,7 @@ pub fn not_as_uniform(cu: [Option<[f64; 2]>; 2]) -> Vec<Finding> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::record::About;
+    use crate::outcome::record::Topic;
     use crate::scene::Scene;
 
     fn case(changes: &[&str]) -> Result<Case, String> {
@@ -231,7 +231,7 @@ mod tests {
 
     fn said(changes: &[&str]) -> String {
         let found = case(changes).unwrap().findings();
-        let of_thickness = found.iter().filter(|finding| finding.entry.about == About::Thickness);
+        let of_thickness = found.iter().filter(|finding| finding.entry.about == Topic::Thickness);
         of_thickness.map(Finding::with_to_do).collect()
     }
 

@@ -126,7 +126,7 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
         @for (number, drawn) in (2..).zip(figures) { (shell::figure(number, drawn)) }
         (missing(folder, figures))
         (rules(outcome))
-        (results(&folder.walks(), &[outcome.sentence_of("permeability"), outcome.sentence_of("overfull")]))
+        (results(&folder.walks(), &["permeability", "overfull", "no_room"].map(|id| outcome.sentence_of(id))))
         (infiltration(outcome))
         (by_connectivity(&folder.walks()))
         (replicates(&folder.walks()))
@@ -142,6 +142,7 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
 fn verdict_section(folder: &RunFolder, verdict: &Drawn) -> Markup {
     let (outcome, walks) = (&folder.outcome, &folder.walks());
     let doubted = outcome.confidence != Confidence::Within;
+    let falls_short = outcome.stopping.as_ref().is_some_and(|stopping| !stopping.met);
     let class = match outcome.verdict {
         // Never in green where the model was not checked, or practice does not agree.
         Verdict::None if doubted => "doubted",
@@ -161,7 +162,10 @@ fn verdict_section(folder: &RunFolder, verdict: &Drawn) -> Markup {
             @if let Some(bounds) = &outcome.pan_bounds { (both_readings(bounds)) }
             @if let Some(stopping) = &outcome.stopping { p { (stopped(outcome, stopping)) } }
             @for id in ["trapped", "second_run_missing", "replicates_leave_open"] {
-                @if let Some(said) = outcome.sentence_of(id) { p { (clean(&said)) } }
+                // What a rule that adds replicates says is said above.
+                @if let Some(said) = outcome.sentence_of(id).filter(|_| id == "trapped" || !falls_short) {
+                    p { (clean(&said)) }
+                }
             }
             (verdict_box::replicates_in_words(walks, REPLICATE))
         }

@@ -9,11 +9,11 @@ use crate::network::Network;
 use crate::outcome::record::Statistic;
 use crate::outcome::rules::{self, RuleInputs};
 use crate::verdict::Mistake;
-use crate::verdict::{Answer, Finding, finding, judge};
+use crate::verdict::{Finding, Judgement, finding, judge};
 
 impl NetworkOutcome {
     /// What the verdict is worth, on so many networks of which this is the first.
-    pub fn answer(&self, plan: &NetworkWalk, network: &Network, networks: usize) -> Answer {
+    pub fn answer(&self, plan: &NetworkWalk, network: &Network, networks: usize) -> Judgement {
         let walked = || self.replicates.iter().map(|walked| &walked.result);
         let layers = network.layers() as u64;
         let mut found = said_by_walks(self.verdict, walked(), &plan.base, plan.increments, layers);
@@ -91,7 +91,11 @@ mod tests {
     use crate::outcome::record::Confidence;
     use crate::run::{Callbacks, GivenFilter, walk_networks};
 
-    fn said(n_base: Option<u64>, filter: Option<Gradation>, grains_per_void: Option<f64>) -> (u64, Answer) {
+    fn said(
+        n_base: Option<u64>,
+        filter: Option<Gradation>,
+        grains_per_void: Option<f64>,
+    ) -> (u64, Judgement) {
         let curve = find("cu1.5-loose").unwrap().curve().unwrap().in_mm(1.0).unwrap();
         let network = Arc::new(Network::cubic([10, 10, 12], &curve, 1.0, 5).unwrap());
         let filter = filter.map(|gradation| GivenFilter { gradation, is_measured: true, grains_per_void });
@@ -108,7 +112,7 @@ mod tests {
     #[test]
     fn a_number_of_particles_that_is_not_that_of_equation_two_is_a_doubt() {
         let filter = || Gradation::linear_from_d0(1.0, 1.5).ok();
-        let has = |said: &Answer, part: &str| said.reasons().iter().any(|reason| reason.contains(part));
+        let has = |said: &Judgement, part: &str| said.reasons().iter().any(|reason| reason.contains(part));
         let (n, of_eq2) = said(None, filter(), Some(0.6));
         assert!(n > 1000 && !has(&of_eq2, "The base has"), "{n} {:?}", of_eq2.reasons());
         assert!(has(

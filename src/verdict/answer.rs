@@ -3,12 +3,13 @@
 use std::cmp::Reverse;
 
 use super::entry::Finding;
+use super::finding::ALL;
 use super::practice;
-use crate::outcome::record::{AppliedRule, Confidence, FindingRecord, Verdict};
+use crate::outcome::record::{AppliedRule, Confidence, FindingRecord, Verdict, Weight};
 
 /// A class and what it is worth.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Answer {
+pub struct Judgement {
     /// The class.
     pub verdict: Verdict,
     /// How far it can be relied on: the label that the first finding sets.
@@ -17,7 +18,7 @@ pub struct Answer {
     pub findings: Vec<FindingRecord>,
 }
 
-impl Answer {
+impl Judgement {
     /// The finding that set the label; none within the checked range.
     pub fn set_by(&self) -> Option<&FindingRecord> {
         self.findings.first().filter(|finding| finding.against)
@@ -39,6 +40,11 @@ impl Answer {
     }
 }
 
+/// The place of a finding among others of its label: by weight, and in the order of the table.
+pub fn rank(finding: &Finding) -> (Weight, Option<usize>) {
+    (finding.entry.weight, ALL.iter().position(|entry| entry.id == finding.id()))
+}
+
 /// What a class is worth, by rules of practice and by what was found.
 ///
 /// Each finding that speaks against the class has a label that it would set alone, and the worst comes first:
@@ -48,7 +54,7 @@ impl Answer {
 /// drainage or placing says nothing of retention, but practice would not build a filter that breaks it: "no
 /// erosion" does not stand in green there. What makes a verdict surer is no doubt of it
 /// ([`Finding::is_against`]).
-pub fn judge(verdict: Verdict, rules: &[AppliedRule], findings: Vec<Finding>) -> Answer {
+pub fn judge(verdict: Verdict, rules: &[AppliedRule], findings: Vec<Finding>) -> Judgement {
     let mut all: Vec<Finding> = Vec::new();
     for finding in practice::findings(verdict, rules).into_iter().chain(findings) {
         if !all.contains(&finding) {
@@ -57,10 +63,10 @@ pub fn judge(verdict: Verdict, rules: &[AppliedRule], findings: Vec<Finding>) ->
     }
     all.sort_by_cached_key(|finding| {
         let sets = finding.is_against(verdict).then_some(finding.entry.sets);
-        (Reverse(sets), finding.rank())
+        (Reverse(sets), rank(finding))
     });
     let confidence = all.first().filter(|of| of.is_against(verdict)).map(|of| of.entry.sets);
-    Answer {
+    Judgement {
         verdict,
         confidence: confidence.unwrap_or(Confidence::Within),
         findings: all.iter().map(|finding| finding.record(finding.is_against(verdict))).collect(),
@@ -69,10 +75,10 @@ pub fn judge(verdict: Verdict, rules: &[AppliedRule], findings: Vec<Finding>) ->
 
 #[cfg(test)]
 mod tests {
-    use super::super::finding::{self, ALL};
+    use super::super::finding;
     use super::*;
     use crate::gradation::Gradation;
-    use crate::outcome::record::{Direction, Weight};
+    use crate::outcome::record::Direction;
     use crate::verdict::{PairOptions, PairRules};
 
     fn rules(filter: &[(f64, f64)], base: &[(f64, f64)]) -> Vec<AppliedRule> {
@@ -89,7 +95,7 @@ mod tests {
         finding::broadly_graded(9.0)
     }
 
-    fn is_within(answer: &Answer, notes: &[&str]) {
+    fn is_within(answer: &Judgement, notes: &[&str]) {
         assert_eq!((answer.confidence, answer.set_by()), (Confidence::Within, None), "{answer:?}");
         let ids: Vec<&str> = answer.findings.iter().map(|finding| finding.id.as_str()).collect();
         assert_eq!(ids, notes);

@@ -176,7 +176,7 @@ fn short_of(stopping: &Stopping) -> Option<Finding> {
         ShortOf::Decision { run, mean_percent, distance_pp, sd_pp, needed } => {
             let which = if run == 1 { "first" } else { "second" };
             let more = match needed {
-                Some(n) => format!("About {n} replicates would decide, if the mean stayed where it is"),
+                Some(n) => format!("Topic {n} replicates would decide, if the mean stayed where it is"),
                 None => "No number of replicates will decide".into(),
             };
             let level = stopping.decide_percent.unwrap_or(0.0);

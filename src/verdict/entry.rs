@@ -2,9 +2,8 @@
 
 use serde_json::Map;
 
-use super::table::ALL;
-use super::value::Value;
-use crate::outcome::record::{About, Confidence, Direction, FindingRecord, Verdict, Weight};
+use super::quantity::FindingValue;
+use crate::outcome::record::{Confidence, Direction, FindingRecord, Topic, Verdict, Weight};
 
 /// What the table declares of a finding.
 #[derive(Debug)]
@@ -12,7 +11,7 @@ pub struct Entry {
     /// Its name for programs.
     pub id: &'static str,
     /// What it is about.
-    pub about: About,
+    pub about: Topic,
     /// Which way the walk errs for it.
     pub direction: Direction,
     /// What it can do to a verdict.
@@ -39,7 +38,7 @@ pub struct Finding {
     /// Its entry.
     pub entry: &'static Entry,
     /// Its numbers, in the order of the entry's names.
-    pub values: Vec<Value>,
+    pub values: Vec<FindingValue>,
 }
 
 impl PartialEq for Finding {
@@ -52,11 +51,6 @@ impl Finding {
     /// Its name for programs.
     pub fn id(&self) -> &'static str {
         self.entry.id
-    }
-
-    /// Its place among others of its label: by weight, and in the order of the table.
-    pub fn rank(&self) -> (Weight, Option<usize>) {
-        (self.entry.weight, ALL.iter().position(|entry| entry.id == self.entry.id))
     }
 
     /// What it says.

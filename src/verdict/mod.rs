@@ -1,4 +1,4 @@
-//! What an answer is worth: findings about a verdict, the label that they set, and the only sentences about it.
+//! What an answer is worth: findings about a verdict, the label that they set, and all sentences about it.
 //!
 //! - [`finding`] is the table of all findings: direction, weight, label, sentence and page of each, and a
 //!   function of its name that reports it. A translation is another table of sentences.
@@ -11,20 +11,15 @@
 mod answer;
 pub mod beside;
 mod entry;
+pub mod finding;
 mod pair;
 pub mod practice;
-mod table;
+mod quantity;
 mod thickness;
-mod value;
 pub mod walks;
 pub mod words;
 
-/// The findings: a function for each.
-pub mod finding {
-    pub use super::table::*;
-}
-
-pub use answer::{Answer, judge};
+pub use answer::{Judgement, judge, rank};
 pub use entry::{Entry, Finding};
 pub use pair::{BaseSizes, FilterSizes, Mistake, MistakeKind, PairOptions, PairRules};
-pub use value::Value;
+pub use quantity::FindingValue;

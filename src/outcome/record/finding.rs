@@ -10,7 +10,7 @@ pub struct FindingRecord {
     #[serde(default)]
     pub id: String,
     /// What it is about.
-    pub about: About,
+    pub about: Topic,
     /// Its name in a word or two.
     #[serde(default)]
     pub label: String,
@@ -44,7 +44,7 @@ impl FindingRecord {
     pub fn of_earlier(sentence: &str) -> Self {
         Self {
             id: String::new(),
-            about: About::Walk,
+            about: Topic::Walk,
             label: String::new(),
             direction: Direction::Open,
             weight: Weight::Note,
@@ -59,7 +59,7 @@ impl FindingRecord {
 /// What a finding is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum About {
+pub enum Topic {
     /// The soil to be retained.
     Base,
     /// The filter's grains.

@@ -25,7 +25,7 @@ mod voids;
 use serde::{Deserialize, Serialize};
 
 pub use answer::{ShortOf, Statistic, Stopping, Verdict};
-pub use finding::{About, Direction, FindingRecord, Weight};
+pub use finding::{Direction, FindingRecord, Topic, Weight};
 pub use inputs::{
     BaseRecord, FilterRecord, Inputs, NetworkKind, NetworkRecord, NetworkSummary, Ratios, SampledBase,
 };

@@ -6,7 +6,7 @@ use crate::outcome::record::{AppliedRule, Verdict};
 use crate::outcome::rules::{BaseSoil, RuleInputs, apply};
 use crate::run::error::RunError;
 use crate::scene::{Amount, BaseGradation, D85};
-use crate::verdict::{Answer, Finding, finding, judge};
+use crate::verdict::{Finding, Judgement, finding, judge};
 
 /// Fewer networks than these give no percentiles.
 const FEW_NETWORKS: u64 = 5;
@@ -112,7 +112,7 @@ impl Judged {
     }
 
     /// What "no erosion" is worth, with what else was found about it.
-    pub fn answer(&self, row: &Row, rules: &[AppliedRule], others: Vec<Finding>) -> Answer {
+    pub fn answer(&self, row: &Row, rules: &[AppliedRule], others: Vec<Finding>) -> Judgement {
         // Said of every ratio below.
         let of_one = self.case.too_little_base().filter(|_| of_amount(row).is_some());
         let of_case = self.case.to_be_walked().into_iter().chain(self.case.findings());

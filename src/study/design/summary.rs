@@ -18,7 +18,7 @@ use crate::outcome::table::csv_of;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
 use crate::verdict::words::capital;
-use crate::verdict::{Answer, Finding, finding};
+use crate::verdict::{Finding, Judgement, finding};
 
 /// Ratio at which the rules are read where no boundary is known.
 const USUAL_RATIO: f64 = 4.0;
@@ -176,8 +176,8 @@ fn named(row: &Row, of: &DesignRow, note: String) -> String {
     if of.density == row.wanted.density { note } else { format!("{}: {note}", of.density) }
 }
 
-/// What the answers of all rows are worth: as much as the worst of them. The sentences that speak against them,
-/// and all others, of every row: what not all of them say with the row's name.
+/// What the answers of all rows are worth: as much as the worst of them. The sentences that speak against
+/// them, and all others, of every row: what not all of them say with the row's name.
 fn all_judged(
     asked: &[Asked],
     boundaries: &[DesignRow],
@@ -190,7 +190,7 @@ fn all_judged(
     // The weightiest first.
     each.sort_by_key(|(_, answer)| std::cmp::Reverse(answer.confidence));
     let worst = each.first().map_or(Confidence::Outside, |(_, answer)| answer.confidence);
-    let said = |of: fn(&Answer) -> Vec<String>| -> Vec<String> {
+    let said = |of: fn(&Judgement) -> Vec<String>| -> Vec<String> {
         let mut all: Vec<String> = Vec::new();
         for (name, answer) in &each {
             for sentence in of(answer) {
@@ -203,13 +203,13 @@ fn all_judged(
         }
         all
     };
-    let mut notes = said(Answer::notes);
+    let mut notes = said(Judgement::notes);
     let not_monotone: u64 = boundaries.iter().map(|of| of.not_monotone).sum();
     notes.extend((not_monotone > 0).then(|| finding::not_monotone(not_monotone).sentence()));
-    Ok((worst, said(Answer::reasons), notes))
+    Ok((worst, said(Judgement::reasons), notes))
 }
 
-fn judged(asked: &Asked) -> Result<Answer, RunError> {
+fn judged(asked: &Asked) -> Result<Judgement, RunError> {
     let &Asked { row, of, held, .. } = asked;
     if let Some(ratio) = held {
         return judged_at(asked, ratio);
@@ -224,7 +224,7 @@ fn judged(asked: &Asked) -> Result<Answer, RunError> {
 }
 
 /// What it is worth that a filter with this ratio holds.
-fn judged_at(Asked { row, of, unsteady, .. }: &Asked, ratio: f64) -> Result<Answer, RunError> {
+fn judged_at(Asked { row, of, unsteady, .. }: &Asked, ratio: f64) -> Result<Judgement, RunError> {
     let judged = Judged::new(row, ratio)?;
     let greatest = of.no_erosion.as_ref().map_or(ratio, |of| of.high.unwrap_or(of.median).max(ratio));
     let empty = of.band.as_ref().filter(|band| band.is_empty).map(|band| band.said.clone());

@@ -6,7 +6,7 @@ use crate::outcome::digits::count;
 
 /// A number or text of a finding.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Value {
+pub enum FindingValue {
     /// Of 100.
     Percent(f64),
     /// A length (mm).
@@ -19,7 +19,7 @@ pub enum Value {
     Text(String),
 }
 
-impl Value {
+impl FindingValue {
     /// How its name ends in a record.
     pub fn suffix(&self) -> &'static str {
         match self {
@@ -84,17 +84,17 @@ mod tests {
 
     #[test]
     fn numbers_have_three_digits_and_their_unit() {
-        let shown = |value: Value| value.shown(None);
-        assert_eq!(shown(Value::Percent(35.24)), "35.2 %");
-        assert_eq!(shown(Value::Percent(7.5)), "7.5 %");
-        assert_eq!(shown(Value::Percent(100.0)), "100 %");
-        assert_eq!(shown(Value::Mm(0.075)), "0.075 mm");
-        assert_eq!(shown(Value::Mm(1234.6)), "1235 mm");
-        assert_eq!(shown(Value::Mm(1e-9)), "1.0e-9 mm");
-        assert_eq!(shown(Value::Ratio(0.0)), "0");
-        assert_eq!(Value::Count(1).shown(Some("copy|copies")), "1 copy");
-        assert_eq!(Value::Count(1200).shown(Some("copy|copies")), "1 200 copies");
-        assert_eq!(Value::Count(2).shown(Some("replicate")), "2 replicates");
-        assert_eq!(shown(Value::Text(" a\n b".into())), "a b");
+        let shown = |value: FindingValue| value.shown(None);
+        assert_eq!(shown(FindingValue::Percent(35.24)), "35.2 %");
+        assert_eq!(shown(FindingValue::Percent(7.5)), "7.5 %");
+        assert_eq!(shown(FindingValue::Percent(100.0)), "100 %");
+        assert_eq!(shown(FindingValue::Mm(0.075)), "0.075 mm");
+        assert_eq!(shown(FindingValue::Mm(1234.6)), "1235 mm");
+        assert_eq!(shown(FindingValue::Mm(1e-9)), "1.0e-9 mm");
+        assert_eq!(shown(FindingValue::Ratio(0.0)), "0");
+        assert_eq!(FindingValue::Count(1).shown(Some("copy|copies")), "1 copy");
+        assert_eq!(FindingValue::Count(1200).shown(Some("copy|copies")), "1 200 copies");
+        assert_eq!(FindingValue::Count(2).shown(Some("replicate")), "2 replicates");
+        assert_eq!(shown(FindingValue::Text(" a\n b".into())), "a b");
     }
 }

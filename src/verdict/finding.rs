@@ -4,8 +4,8 @@
 //! a verdict stand in the order of this table, the most important first.
 
 use super::entry::{Entry, Finding};
-use super::value::Value;
-use crate::outcome::record::{About, Confidence, Direction, Verdict, Weight};
+use super::quantity::FindingValue;
+use crate::outcome::record::{Confidence, Direction, Topic, Verdict, Weight};
 
 /// Rules that say something of a filter that holds alone.
 const HELD: &[Verdict] = &[Verdict::None];
@@ -51,7 +51,7 @@ macro_rules! findings {
             use super::*;
             $(pub static $id: Entry = Entry {
                 id: stringify!($id),
-                about: About::$about,
+                about: Topic::$about,
                 direction: Direction::$direction,
                 weight: Weight::$weight,
                 sets: or!(Confidence::Outside $(, Confidence::$sets)?),
@@ -70,7 +70,7 @@ macro_rules! findings {
         $(
             $(#[$doc])*
             pub fn $id($($name: raw!($unit)),*) -> Finding {
-                Finding { entry: &entries::$id, values: vec![$(Value::$unit($name.into())),*] }
+                Finding { entry: &entries::$id, values: vec![$(FindingValue::$unit($name.into())),*] }
             }
         )*
 
@@ -78,11 +78,11 @@ macro_rules! findings {
         #[cfg(test)]
         pub fn all_with(size: f64, n: u64, text: &str) -> Vec<Finding> {
             let of = |unit: &str| match unit {
-                "Percent" => Value::Percent(size),
-                "Mm" => Value::Mm(size),
-                "Ratio" => Value::Ratio(size),
-                "Count" => Value::Count(n),
-                _ => Value::Text(text.into()),
+                "Percent" => FindingValue::Percent(size),
+                "Mm" => FindingValue::Mm(size),
+                "Ratio" => FindingValue::Ratio(size),
+                "Count" => FindingValue::Count(n),
+                _ => FindingValue::Text(text.into()),
             };
             vec![$(Finding { entry: &entries::$id, values: vec![$(of(stringify!($unit))),*] }),*]
         }
@@ -144,8 +144,8 @@ findings! {
     /// A range of constriction curves that do not give one class.
     curve_range_decides(low: Percent, high: Percent, each: Text): Constrictions, Open, Decides;
         "constrictions", "uncertainty.md",
-        "The filter's constrictions are known too roughly for one verdict. Over the range of the constriction \
-         curve {low} to {high} of the mass eroded in the first run ({each}).",
+        "The filter's constrictions are known too roughly for one verdict. Over the range of the \
+         constriction curve {low} to {high} of the mass eroded in the first run ({each}).",
         to do "A filter that is packed whole (filter.density) has one measured curve.";
 
     // What a design's search says against its answer.
@@ -167,22 +167,22 @@ findings! {
     /// A filter that was closed before the second run.
     clogged_before(replicates: Text): Flow, Unsafe, Limits;
         "clogging", "uncertainty.md",
-        "No water flows in the second run{replicates}, as the filter clogged wholly in the first. Nothing can \
-         erode then, and what was on its way when it clogged counts as retained. More and smaller increments \
-         show whether the class stays.",
+        "No water flows in the second run{replicates}, as the filter clogged wholly in the first. Nothing \
+         can erode then, and what was on its way when it clogged counts as retained. More and smaller \
+         increments show whether the class stays.",
         to do "Try a smaller inject_share.";
     /// A filter that closed during a run.
     clogged(run: Text, replicates: Text, after: Text, on_its_way: Percent): Flow, Unsafe, Limits;
         "clogging", "uncertainty.md",
         "The filter clogged wholly in the {run} run{replicates}{after}. No water flows then, and what was on \
-         its way, at least {on_its_way} of the base, counts as retained and might have left. More and smaller \
-         increments show whether the class stays.",
+         its way, at least {on_its_way} of the base, counts as retained and might have left. More and \
+         smaller increments show whether the class stays.",
         to do "Try a smaller inject_share.";
     /// Trapped particles that could turn the class.
     trapped_could_turn(trapped: Count, inserted: Count, mass: Percent): Walk, Unsafe, Limits;
         "trapped", "uncertainty.md",
-        "Particles trapped in closed loops could change the class. They are {trapped} of {inserted} particles \
-         of a run, up to {mass} of the base by mass, and count as retained.";
+        "Particles trapped in closed loops could change the class. They are {trapped} of {inserted} \
+         particles of a run, up to {mass} of the base by mass, and count as retained.";
     /// A second run that erodes though the first does not.
     second_run_erodes(eroded: Percent, threshold: Percent): Walk, Unsafe, Limits;
         "second run", "uncertainty.md",
@@ -222,13 +222,13 @@ findings! {
     /// A dispersive base.
     dispersive_base(): Base, Unsafe, Limits;
         "dispersion", "rules.md",
-        "The base is dispersive. The model knows its sizes alone; the rules of practice take their limits for \
-         dispersive soils.";
+        "The base is dispersive. The model knows its sizes alone; the rules of practice take their limits \
+         for dispersive soils.";
     /// An open joint.
     open_joint(width: Mm): Base, Unsafe, Limits;
         "joint", "rules.md",
-        "An open joint of {width} was not walked. The rules of practice say how likely erosion continues into \
-         it.";
+        "An open joint of {width} was not walked. The rules of practice say how likely erosion continues \
+         into it.";
     /// A thickness that sizes without unit cannot be compared with.
     thickness_without_unit(real: Mm, unit: Text): Thickness, Open, Limits;
         "thickness", "uncertainty.md",
@@ -255,8 +255,8 @@ findings! {
     /// A cap on the base.
     capped_base(n: Count, needed: Count): Amount, Open, Limits;
         "amount of base", "uncertainty.md",
-        "The base is capped at {n} particles; the model was checked with {needed}. Fewer particles are a bias \
-         of unknown sign, and a filter that was offered too few to fill it seems to hold.",
+        "The base is capped at {n} particles; the model was checked with {needed}. Fewer particles are a \
+         bias of unknown sign, and a filter that was offered too few to fill it seems to hold.",
         to do "base.cap is the cap.";
     /// Fewer particles than asked for.
     few_particles(n: Count, needed: Count): Amount, Open, Limits;
@@ -272,8 +272,8 @@ findings! {
     /// A small mass of base.
     low_mass_ratio(ratio: Percent): Amount, Open, Limits;
         "amount of base", "uncertainty.md",
-        "The mass of the base is {ratio} of the filter's; the model was checked with 5 %. Fewer particles are \
-         a bias of unknown sign, and a filter that was offered too few to fill it seems to hold.",
+        "The mass of the base is {ratio} of the filter's; the model was checked with 5 %. Fewer particles \
+         are a bias of unknown sign, and a filter that was offered too few to fill it seems to hold.",
         to do "base.mass_ratio says how much.";
     /// A number of particles that is compared with nothing.
     amount_unknown(n: Count): Amount, Open, Limits;
@@ -336,8 +336,8 @@ findings! {
     /// The constriction curve of another filter.
     other_curve(cu: Ratio, curve: Text, of_cu: Ratio): Constrictions, Open, Limits;
         "constrictions", "uncertainty.md",
-        "The filter is walked with the constrictions of another filter. Its Cu is {cu}, but its curve {curve} \
-         belongs to Cu {of_cu}.";
+        "The filter is walked with the constrictions of another filter. Its Cu is {cu}, but its curve \
+         {curve} belongs to Cu {of_cu}.";
     /// A guess of the constrictions.
     guessed_constrictions(): Constrictions, Open, Limits;
         "constrictions", "uncertainty.md",
@@ -362,8 +362,8 @@ findings! {
         "finer part", "uncertainty.md",
         "Only the finer part of the filter is packed: {percent} of its mass, up to {largest}. Its \
          constrictions are up to {finer_by} finer than those of the whole, and both ends of that range are \
-         walked; the coarse grains of this gap-graded filter are taken to float in it, as they do where it is \
-         35 % of the mass or more (Skempton and Brogan 1994).";
+         walked; the coarse grains of this gap-graded filter are taken to float in it, as they do where it \
+         is 35 % of the mass or more (Skempton and Brogan 1994).";
     /// A finer part between coarse grains that carry each other.
     loose_part_packed(percent: Percent, largest: Mm, finer_by: Percent): Filter, Unsafe, Limits;
         "finer part", "uncertainty.md",
@@ -403,8 +403,8 @@ findings! {
     pan_agrees(share: Percent, sieve: Mm, constriction: Mm, class: Text): Base, Settled, Limits;
         "finest part", "soils.md",
         "The finest {share} of the base, finer than {sieve}, may be coarser than the finest constriction, \
-         {constriction}, but decides nothing. With all of it finer than every constriction and with all of it \
-         {sieve} in size, the verdict is {class}.";
+         {constriction}, but decides nothing. With all of it finer than every constriction and with all of \
+         it {sieve} in size, the verdict is {class}.";
     /// A range of constriction curves that all give one class.
     curve_range_agrees(low: Percent, high: Percent, each: Text): Constrictions, Settled, Limits;
         "constrictions", "uncertainty.md",
@@ -419,7 +419,8 @@ findings! {
     stricter_than_tests(ratio: Text, limit: Text, holds: Text): Practice, Safe, Note;
         "tests", "rules.md",
         "The walk errs on the safe side for this pair. D15F/D85B is {ratio}, tests found no erosion up to \
-         D15F {limit} (Foster and Fell), and this network retains uniform sands up to a ratio near {holds}.";
+         D15F {limit} (Foster and Fell), and this network retains uniform sands up to a ratio near \
+         {holds}.";
     /// Which class the replicates leave open.
     replicates_leave_open(): Walk, Open, Note;
         "replicates", "uncertainty.md",
@@ -476,8 +477,8 @@ findings! {
     narrow_cell(grains: Count, aspect: Ratio, width: Ratio, usual: Ratio): Filter, Open, Note;
         "cell", "uncertainty.md",
         "The packed cell is narrow: its {grains} grains, {aspect} times as tall as wide, leave it {width} \
-         times as wide as the largest grain, where {usual} times is usual. Its voids repeat across, and every \
-         layer has few of them.",
+         times as wide as the largest grain, where {usual} times is usual. Its voids repeat across, and \
+         every layer has few of them.",
         to do "packing.grains says how many grains.";
     /// Replicates on one network.
     one_network(): Network, Open, Note;
@@ -492,9 +493,10 @@ findings! {
     /// Loops whose way out is narrow.
     long_way_out(moves: Text): Network, Open, Note;
         "loops", "graph.md",
-        "A base particle that nothing stops makes {moves} moves before it leaves. The network has loops whose \
-         way out is very narrow, and a walk makes one move an increment, so it may not end in a lifetime. Give \
-         those ways out a diameter of 0, so that what circles counts as trapped, or a wider one.";
+        "A base particle that nothing stops makes {moves} moves before it leaves. The network has loops \
+         whose way out is very narrow, and a walk makes one move an increment, so it may not end in a \
+         lifetime. Give those ways out a diameter of 0, so that what circles counts as trapped, or a wider \
+         one.";
     /// Studies that were not asked for.
     not_studied(): Study, Open, Note;
         "studies", "uncertainty.md",
@@ -534,12 +536,13 @@ findings! {
     overfull(fullest: Ratio, share: Percent): Flow, Open, Note;
         "full voids", "graph.md",
         "The fullest void holds {fullest} times the volume that it has between the grains, and up to {share} \
-         of the voids hold more than 0.6 times: more than there is room for, which the model does not know.";
+         of the voids hold more than 0.6 times: more than there is room for, which the model does not \
+         know.";
     /// Particles in voids without volume.
     no_room(share: Percent): Flow, Open, Note;
         "full voids", "graph.md",
-        "Particles rest in up to {share} of the voids that have no volume between the grains: more than there \
-         is room for, which the model does not know.";
+        "Particles rest in up to {share} of the voids that have no volume between the grains: more than \
+         there is room for, which the model does not know.";
 }
 
 #[cfg(test)]
@@ -608,7 +611,8 @@ mod tests {
                 let path = entry.unwrap().path();
                 if path.is_dir() {
                     folders.push(path);
-                } else if path.extension().is_some_and(|e| e == "rs") && !path.ends_with("table.rs") {
+                } else if path.extension().is_some_and(|e| e == "rs") && !path.ends_with("verdict/finding.rs")
+                {
                     code += &fs::read_to_string(path).unwrap();
                 }
             }
