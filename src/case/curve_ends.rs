@@ -48,7 +48,8 @@ impl Case {
 
     /// The same case with another constriction curve: the same base, as much of it.
     pub fn with_curve(&self, curve: Curve) -> Self {
-        Self { curve, ..self.clone() }
+        let finest_mm = self.finest_mm.min(curve.smallest());
+        Self { curve, finest_mm, ..self.clone() }
     }
 }
 
@@ -77,6 +78,6 @@ mod tests {
         for end in ends {
             assert!(case.sampler.smallest() < (end.curve.smallest() / case.unit_mm) as f32, "{}", end.name);
         }
-        assert!(case.bytes(case.n_base, 1) < 1_000_000, "{}", case.bytes(case.n_base, 1));
+        assert!(case.bytes(case.n_base, 1) < 10_000_000, "{}", case.bytes(case.n_base, 1));
     }
 }

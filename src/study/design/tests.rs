@@ -470,7 +470,7 @@ fn a_guess_at_the_constrictions_is_found_at_both_ends_of_its_range() {
     assert!(guess.band_of(&guess.boundaries[2]) == guess.boundaries[0].band.as_ref());
     assert!((guess.rules_at / least - 1.0).abs() < 1e-9, "{}", guess.rules_at);
     let said = guess.reasons.iter().find(|reason| reason.contains("is a guess from circles"));
-    assert!(said.unwrap().contains("so both are walked besides"), "{said:?}");
+    assert!(said.unwrap().contains("both ends are walked, too"), "{said:?}");
     // An end that is asked for itself is found once, with the same bits.
     let asked = rows(&of("all", &["estimate=0", "estimate=1"]));
     assert_eq!(asked.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ["estimate 0", "estimate 1"]);
