@@ -24,6 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for run in &outcome.summary {
         println!("run {}: {:.2} % of the mass eroded", run.run, 100.0 * run.eroded_mass_fraction.mean);
     }
-    outcome.warnings.iter().for_each(|warning| println!("warning: {warning}"));
+    println!("confidence: {}", outcome.confidence.words());
+    outcome.findings.iter().for_each(|finding| println!("- {}", finding.sentence));
     Ok(())
 }

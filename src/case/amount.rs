@@ -72,8 +72,8 @@ mod tests {
     #[test]
     fn less_base_than_eq_2_gives_is_a_doubt() {
         assert_eq!(doubts(&[]), Vec::<String>::new());
-        says(&["base.cap=500"], "The base is capped at 500 particles; the model was checked with");
-        says(&["base.n_base=500"], "The base has 500 particles; the model was checked with");
+        says(&["base.cap=500"], "The base is capped at 500 of the");
+        says(&["base.n_base=500"], "The base has 500 of the");
         says(&["base.mass_ratio=0.01"], "The mass of the base is 1 % of the filter's");
         for enough in ["base.n_base=1e9", "base.cap=1e12", "base.mass_ratio=0.1"] {
             assert_eq!(doubts(&[enough]), Vec::<String>::new(), "{enough}");

@@ -31,7 +31,8 @@ impl Case {
     /// What is known of its verdict before the walk, in sentences: what `check` says.
     pub fn warnings(&self) -> Vec<String> {
         let mut all: Vec<Finding> = self.to_be_walked().into_iter().chain(self.findings()).collect();
-        all.sort_by_key(rank);
+        // Whether these are the right tables at all comes first.
+        all.sort_by_key(|finding| (finding.id() != "doubtful_tables", rank(finding)));
         all.iter().map(Finding::with_to_do).collect()
     }
 
@@ -144,9 +145,10 @@ impl Case {
         }
         let Some(modelled) = self.thickness() else { return Some(finding::thickness_of_file(real)) };
         let half = 0.5 * self.filter.d_by_number(50.0).unwrap_or(0.0);
+        let shown = format!("{modelled:.1} mm");
         (modelled > real + half * (1.0 + 1e-9)).then(|| match self.copies {
-            Some((copies, _)) => finding::copies_thicker(copies.into(), modelled, real),
-            None => finding::layers_thicker(self.counts[3], modelled, real),
+            Some((copies, _)) => finding::copies_thicker(copies.into(), &shown, real),
+            None => finding::layers_thicker(self.counts[3], &shown, real),
         })
     }
 
@@ -162,7 +164,7 @@ impl Case {
         Some(finding::narrow_cell(plan.compression.grains as u64, plan.aspect, width, usual))
     }
 
-    /// Topic how many moves a particle makes that nothing stops, where loops may hold it for long: on a given
+    /// About how many moves a particle makes that nothing stops, where loops may hold it for long: on a given
     /// network, or where one constriction is very much wider than another.
     fn moves_to_an_end(&self) -> Option<f64> {
         let widest = self.curve.largest() / self.curve.smallest();

@@ -311,7 +311,12 @@ impl Case {
         let grains_per_void = scene.filter.grains_per_void.or(of_graph).or(of_packing).or(guessed);
         let ends = match fixed_network {
             Some(_) => Vec::new(),
-            None => curve_ends::of(&curve, &filter, packed.as_ref(), scene.filter.estimate),
+            None => curve_ends::of(
+                &curve,
+                &filter,
+                packed.as_ref().and_then(|of| of.part.as_ref()),
+                scene.filter.estimate,
+            ),
         };
         let finest_mm = ends.iter().map(|end| end.curve.smallest()).fold(curve.smallest(), f64::min);
         let against = Against {

@@ -1,4 +1,5 @@
-//! A case in other sizes: its filter against a base that is scaled, as a design tries many of.
+//! A case with another constriction curve, or in other sizes: its filter against a base that is scaled, as
+//! a design tries many of.
 //!
 //! A walk knows sizes as multiples of the finest filter grain alone. So a filter that is s times as large is
 //! walked as a base 1/s times as large: its network stays the same to the bit, and with it every random
@@ -6,7 +7,8 @@
 
 use super::files::Files;
 use super::supply::Against;
-use super::{Case, CaseError, base_gradation, regrade, sizes};
+use super::{Case, CaseError, OtherCurve, base_gradation, curve_ends, regrade, sizes};
+use crate::constrictions::Curve;
 use crate::gradation::Gradation;
 use crate::network::{Network, NetworkError};
 use crate::scene::{NetworkSource, Scene};
@@ -25,6 +27,21 @@ pub struct StatedBase {
 }
 
 impl Case {
+    /// The other curves that are walked besides the case's own: the ends of the range in which it is known.
+    pub fn curve_ends(&self) -> Vec<OtherCurve> {
+        if self.fixed_network.is_some() {
+            return Vec::new();
+        }
+        let part = self.packed.as_ref().and_then(|packed| packed.part.as_ref());
+        curve_ends::of(&self.curve, &self.filter, part, self.scene.filter.estimate)
+    }
+
+    /// The same case with another constriction curve: the same base, as much of it.
+    pub fn with_curve(&self, curve: Curve) -> Self {
+        let finest_mm = self.finest_mm.min(curve.smallest());
+        Self { curve, finest_mm, ..self.clone() }
+    }
+
     /// The base that another scene states, read beside this case's filter.
     ///
     /// # Errors
@@ -99,6 +116,7 @@ impl Case {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::outcome::record::PanSize;
 
     fn built_in(set: &[&str]) -> Scene {
         Scene::built_in(&set.iter().map(ToString::to_string).collect::<Vec<_>>()).unwrap()
@@ -126,5 +144,27 @@ mod tests {
         let kept = case.network(7).unwrap();
         assert_eq!(case.network_unless(Some(kept.clone()), 7).unwrap(), kept);
         assert_eq!(thick.network_unless(Some(kept), 7).unwrap().layers(), 120);
+    }
+
+    /// The pan fraction of the first reading blocks nothing at either end of a guess, so that a walk there
+    /// follows numbers and asks for no column of billions of particles.
+    #[test]
+    fn a_passive_pan_fraction_is_passive_at_the_ends_of_a_guess_too() {
+        let folder = tempfile::tempdir().unwrap();
+        let (base, filter) = (folder.path().join("base.csv"), folder.path().join("filter.csv"));
+        std::fs::write(&base, "opening_mm,percent_finer\n19,100\n9.5,76\n4.75,27.2\n2.36,16.4\n").unwrap();
+        let sieves = "19,100\n9.5,77.5\n4.75,61.3\n1.18,52\n0.3,15.7\n0.075,8\n0.02,6.5\n";
+        std::fs::write(&filter, format!("opening_mm,percent_finer\n{sieves}")).unwrap();
+        let path = |name: &str, file: &std::path::Path| format!("{name}.sieve={}", file.display());
+        let set = [path("base", &base), path("filter", &filter)].into_iter();
+        let set = set.chain(["filter.estimate=0.5", "base.n_base=50", "network.nx=4"].map(String::from));
+        let case = Case::new(Scene::built_in(&set.collect::<Vec<_>>()).unwrap()).unwrap();
+        assert_eq!(case.pan_size, Some(PanSize::Passive));
+        let ends = case.curve_ends();
+        assert!(ends.iter().any(|end| end.curve.smallest() < case.curve.smallest()));
+        for end in ends {
+            assert!(case.sampler.smallest() < (end.curve.smallest() / case.unit_mm) as f32, "{}", end.name);
+        }
+        assert!(case.bytes(case.n_base, 1) < 10_000_000, "{}", case.bytes(case.n_base, 1));
     }
 }

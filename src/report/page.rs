@@ -25,7 +25,7 @@ use super::written::{Written, write_page};
 use super::{appendix, packing, shell::leaves_out};
 use crate::outcome::packing::PackingRecord;
 use crate::outcome::record::{
-    Confidence, FindingRecord, NetworkKind, Outcome, PanBounds, PanReading, Stopping, Verdict,
+    Confidence, Direction, FindingRecord, NetworkKind, Outcome, PanBounds, PanReading, Stopping, Verdict,
 };
 use crate::outcome::undecided::UndecidedBy;
 use crate::verdict::words::capital;
@@ -223,21 +223,30 @@ fn in_words(outcome: &Outcome, walks: &Walks) -> String {
     }
 }
 
-/// What was found about the verdict: what speaks against it, and what else is to be known.
+/// What was found about the verdict: what speaks against it, what else may be wrong, and what was looked at.
 fn findings(outcome: &Outcome) -> Markup {
-    let list = |heading: &str, found: &[FindingRecord]| {
+    let list = |class: &str, heading: &str, found: &[FindingRecord]| {
         html! {
             @if !found.is_empty() {
-                section.warnings {
+                section class=(class) {
                     h2 { (heading) }
                     ul { @for finding in found { li { (clean(&finding.sentence)) } } }
                 }
             }
         }
     };
+    let may_be_wrong =
+        |finding: &FindingRecord| matches!(finding.direction, Direction::Open | Direction::Unsafe);
+    let (open, mut looked_at): (Vec<_>, Vec<_>) = outcome.besides().into_iter().partition(may_be_wrong);
+    // Folders of earlier versions have reasons of verdicts within the checked range.
+    let mut against = outcome.against();
+    if outcome.confidence == Confidence::Within {
+        looked_at.splice(0..0, std::mem::take(&mut against));
+    }
     html! {
-        (list("Why this verdict is in doubt", &outcome.against()))
-        (list("What else to know of this pair", &outcome.besides()))
+        (list("warnings", "Why this verdict is in doubt", &against))
+        (list("warnings", "Before you rely on this", &open))
+        (list("known", "What else to know of this pair", &looked_at))
     }
 }
 

@@ -115,10 +115,7 @@ mod tests {
         let has = |said: &Judgement, part: &str| said.reasons().iter().any(|reason| reason.contains(part));
         let (n, of_eq2) = said(None, filter(), Some(0.6));
         assert!(n > 1000 && !has(&of_eq2, "The base has"), "{n} {:?}", of_eq2.reasons());
-        assert!(has(
-            &said(Some(1000), filter(), Some(0.6)).1,
-            "The base has 1 000 particles; the model was checked with"
-        ));
+        assert!(has(&said(Some(1000), filter(), Some(0.6)).1, "The base has 1 000 of the"));
         assert!(has(&said(Some(n + 1), filter(), Some(0.6)).1, "a smaller share passes"));
         for filter in [None, filter()] {
             let unknown = said(Some(n), filter, None).1;

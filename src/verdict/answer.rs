@@ -26,17 +26,21 @@ impl Judgement {
 
     /// The sentences that speak against the class, in order.
     pub fn reasons(&self) -> Vec<String> {
-        self.sentences(true)
+        self.of_kind(true).map(|finding| finding.sentence.clone()).collect()
     }
 
-    /// The sentences of all other findings, in order.
-    pub fn notes(&self) -> Vec<String> {
-        self.sentences(false)
+    /// The same, each with the setting that changes it.
+    pub fn reasons_to_do(&self) -> Vec<String> {
+        self.of_kind(true).map(FindingRecord::with_to_do).collect()
     }
 
-    fn sentences(&self, against: bool) -> Vec<String> {
-        let of_kind = self.findings.iter().filter(|finding| finding.against == against);
-        of_kind.map(|finding| finding.sentence.clone()).collect()
+    /// The sentences of all other findings, in order, each with the setting that changes it.
+    pub fn notes_to_do(&self) -> Vec<String> {
+        self.of_kind(false).map(FindingRecord::with_to_do).collect()
+    }
+
+    fn of_kind(&self, against: bool) -> impl Iterator<Item = &FindingRecord> {
+        self.findings.iter().filter(move |finding| finding.against == against)
     }
 }
 
@@ -115,7 +119,7 @@ mod tests {
         assert!(found.reasons()[0].starts_with("Practice allows D15F 1.1 mm, this is 6.5 mm"), "{found:?}");
         assert_eq!(
             found.reasons().last().unwrap(),
-            "The base has 35 % fines (finer than 0.075 mm). The model ignores cohesion."
+            "The base has 35 % fines (finer than 0.075 mm), and the model ignores cohesion."
         );
         assert!(!found.reasons().iter().any(|reason| reason.contains("nothing of retention")), "{found:?}");
         // The same rules share an unfavourable one.
@@ -197,7 +201,10 @@ mod tests {
         // A filter that loses its fines is only coarser.
         let unstable = judge(Verdict::Continuing, &rules(&GAP, &SAND), Vec::new());
         assert_eq!(unstable.confidence, Confidence::Within);
-        assert!(unstable.notes().iter().any(|note| note.contains("lose its own fines")), "{unstable:?}");
+        assert!(
+            unstable.notes_to_do().iter().any(|note| note.contains("lose its own fines")),
+            "{unstable:?}"
+        );
     }
 
     /// D15F 0.6 mm on a silt: 0.7 mm is allowed, 0.5 mm where it is dispersive.
@@ -246,9 +253,9 @@ mod tests {
         let all = rules(&[(2.5, 0.0), (5.0, 100.0)], &SAND);
         for verdict in [Verdict::Some, Verdict::Continuing] {
             let found = judge(verdict, &all, Vec::new());
-            assert_eq!((found.confidence, found.notes().len()), (Confidence::Within, 1), "{found:?}");
+            assert_eq!((found.confidence, found.notes_to_do().len()), (Confidence::Within, 1), "{found:?}");
             let begin = "The walk errs on the safe side for this pair. D15F/D85B is 5.5";
-            assert!(found.notes()[0].starts_with(begin), "{found:?}");
+            assert!(found.notes_to_do()[0].starts_with(begin), "{found:?}");
         }
         let found = judge(Verdict::None, &all, Vec::new());
         assert!(!found.findings.iter().any(|of| of.sentence.contains("safe side")), "{found:?}");

@@ -123,8 +123,8 @@ pub fn pan(bounds: &PanBounds) -> Finding {
     let (share, sieve) = (100.0 * bounds.mass_fraction, bounds.finest_sieve_mm);
     let finest = bounds.finest_constriction_mm;
     let [fine, coarse] = bounds.readings.each_ref().map(|reading| match reading.verdict {
-        Verdict::Undecided => "it stays open".to_owned(),
-        verdict => format!("it is {}", verdict.words()),
+        Verdict::Undecided => "stays open".to_owned(),
+        verdict => format!("is {}", verdict.words()),
     });
     match bounds.differ() {
         true => finding::pan_decides(share, sieve, finest, &fine, &coarse),
@@ -144,6 +144,8 @@ pub fn curve_range(range: &CurveRange) -> Finding {
         range.eroded_mass_fraction.first().copied().unwrap_or([f64::NAN; 2]).map(|of| 100.0 * of);
     match range.agrees() {
         true => finding::curve_range_agrees(low, high, &each),
+        // What the curve itself leaves open, its range does not decide.
+        false if range.verdict == Verdict::Undecided => finding::curve_range_open(low, high, &each),
         false => finding::curve_range_decides(low, high, &each),
     }
 }
@@ -176,11 +178,11 @@ fn short_of(stopping: &Stopping) -> Option<Finding> {
         ShortOf::Decision { run, mean_percent, distance_pp, sd_pp, needed } => {
             let which = if run == 1 { "first" } else { "second" };
             let more = match needed {
-                Some(n) => format!("Topic {n} replicates would decide, if the mean stayed where it is"),
+                Some(n) => format!("About {n} replicates would decide, if the mean stayed where it is"),
                 None => "No number of replicates will decide".into(),
             };
             let level = stopping.decide_percent.unwrap_or(0.0);
-            finding::level_missed(level, which, mean_percent, distance_pp, sd_pp, &more)
+            finding::level_missed(level, which, &format!("{mean_percent:.3} %"), distance_pp, sd_pp, &more)
         }
         ShortOf::Target { half_width_pp, replicates, needed } => {
             let target = stopping.target_error_pp.unwrap_or(0.0);

@@ -22,6 +22,9 @@ macro_rules! raw {
     (Ratio) => {
         f64
     };
+    (Points) => {
+        f64
+    };
     (Count) => {
         u64
     };
@@ -81,6 +84,7 @@ macro_rules! findings {
                 "Percent" => FindingValue::Percent(size),
                 "Mm" => FindingValue::Mm(size),
                 "Ratio" => FindingValue::Ratio(size),
+                "Points" => FindingValue::Points(size),
                 "Count" => FindingValue::Count(n),
                 _ => FindingValue::Text(text.into()),
             };
@@ -127,25 +131,31 @@ findings! {
     /// A filter with too many fines to drain.
     fines_of_filter(rules: Text): Practice, Open, Limits, sets MayNotDrain, against HELD;
         "drainage", "rules.md",
-        "The filter has fines and may not drain. {rules}. This says nothing of retention.";
+        "The filter has fines and may not drain: {rules}. This says nothing of retention.";
     /// A filter that may segregate.
     may_segregate(rules: Text): Practice, Open, Limits, sets MaySegregate, against HELD;
         "segregation", "rules.md",
-        "The filter may segregate when it is placed. {rules}.";
+        "The filter may segregate when it is placed: {rules}.";
 
     // What leaves a class open.
     /// Both readings of the base's finest part, which differ.
     pan_decides(share: Percent, sieve: Mm, constriction: Mm, fine: Text, coarse: Text): Base, Open, Decides;
         "finest part", "soils.md",
         "The answer depends on the {share} of the base that is finer than its finest sieve. With all of it \
-         finer than every constriction {fine}, with all of it {sieve} in size {coarse}; the finest \
-         constriction is {constriction}. A hydrometer test or a finer sieve would decide.",
+         finer than every constriction the verdict {fine}, with all of it {sieve} in size it {coarse}; the \
+         finest constriction is {constriction}. A hydrometer test or a finer sieve would decide.",
         to do "Or base.d0_mm.";
     /// A range of constriction curves that do not give one class.
     curve_range_decides(low: Percent, high: Percent, each: Text): Constrictions, Open, Decides;
         "constrictions", "uncertainty.md",
         "The filter's constrictions are known too roughly for one verdict. Over the range of the \
          constriction curve {low} to {high} of the mass eroded in the first run ({each}).",
+        to do "A filter that is packed whole (filter.density) has one measured curve.";
+    /// The same where the curve itself gives no class.
+    curve_range_open(low: Percent, high: Percent, each: Text): Constrictions, Open, Limits;
+        "constrictions", "uncertainty.md",
+        "The verdict is not the same over the whole range of the constriction curve. Over it {low} to {high} \
+         of the mass eroded in the first run ({each}).",
         to do "A filter that is packed whole (filter.density) has one measured curve.";
 
     // What a design's search says against its answer.
@@ -197,12 +207,12 @@ findings! {
     /// Fines that may be cohesive.
     cohesive_fines(fines: Percent): Base, Open, Limits;
         "fines", "soils.md",
-        "The base has {fines} fines (finer than 0.075 mm). The model ignores cohesion.";
+        "The base has {fines} fines (finer than 0.075 mm), and the model ignores cohesion.";
     /// Fines that nobody sieved.
     fines_not_sieved(fines: Percent, sieve: Mm): Base, Open, Limits;
         "fines", "soils.md",
-        "Up to {fines} of the base may be fines (finer than 0.075 mm), as its finest sieve is {sieve}. The \
-         model ignores cohesion.";
+        "Up to {fines} of the base may be fines (finer than 0.075 mm), and the model ignores cohesion. The \
+         finest sieve of the base is {sieve}.";
     /// A base that practice would regrade.
     not_regraded(at: Mm, why: Text): Base, Unsafe, Limits;
         "grading", "soils.md",
@@ -222,8 +232,8 @@ findings! {
     /// A dispersive base.
     dispersive_base(): Base, Unsafe, Limits;
         "dispersion", "rules.md",
-        "The base is dispersive. The model knows its sizes alone; the rules of practice take their limits \
-         for dispersive soils.";
+        "The base is dispersive, and the model knows its sizes alone. The rules of practice take their \
+         limits for dispersive soils.";
     /// An open joint.
     open_joint(width: Mm): Base, Unsafe, Limits;
         "joint", "rules.md",
@@ -241,34 +251,34 @@ findings! {
         "The thickness of a network from a file is not known. The real filter is {real} thick, and is \
          compared with nothing.";
     /// A lattice thicker than the filter.
-    layers_thicker(layers: Count, modelled: Mm, real: Mm): Thickness, Unsafe, Limits;
+    layers_thicker(layers: Count, modelled: Text, real: Mm): Thickness, Unsafe, Limits;
         "thickness", "uncertainty.md",
         "The modelled filter is thicker than the real one. Its {layers:layer} of voids are {modelled} thick, \
          the real filter is {real}.",
         to do "network.nz says how many layers.";
     /// Copies of a packing thicker than the filter.
-    copies_thicker(copies: Count, modelled: Mm, real: Mm): Thickness, Unsafe, Limits;
+    copies_thicker(copies: Count, modelled: Text, real: Mm): Thickness, Unsafe, Limits;
         "thickness", "uncertainty.md",
         "The modelled filter is thicker than the real one. With {copies:copy|copies} of the packing it is \
          {modelled} thick, the real filter is {real}.",
-        to do "network.copies, or network.thickness_mm, says how thick it is.";
+        to do "network.copies, or network.thickness_mm, rounded up to whole copies, says how thick it is.";
     /// A cap on the base.
     capped_base(n: Count, needed: Count): Amount, Open, Limits;
         "amount of base", "uncertainty.md",
-        "The base is capped at {n} particles; the model was checked with {needed}. Fewer particles are a \
+        "The base is capped at {n} of the {needed} particles that its mass asks for. Fewer particles are a \
          bias of unknown sign, and a filter that was offered too few to fill it seems to hold.",
         to do "base.cap is the cap.";
     /// Fewer particles than asked for.
     few_particles(n: Count, needed: Count): Amount, Open, Limits;
         "amount of base", "uncertainty.md",
-        "The base has {n} particles; the model was checked with {needed} (5 % of the filter's mass). Fewer \
-         particles are a bias of unknown sign, and a filter that was offered too few to fill it seems to \
-         hold.";
+        "The base has {n} of the {needed} particles with which the model was checked (5 % of the filter's \
+         mass). Fewer particles are a bias of unknown sign, and a filter that was offered too few to fill it \
+         seems to hold.";
     /// More particles than asked for.
     more_particles(n: Count, needed: Count): Amount, Open, Limits;
         "amount of base", "uncertainty.md",
-        "The base has {n} particles; the model was checked with {needed} (5 % of the filter's mass). Of more \
-         base a smaller share passes once the filter has filled, so that a filter may seem to hold.";
+        "The base has {n} particles, and the model was checked with {needed} (5 % of the filter's mass). Of \
+         more base a smaller share passes once the filter has filled, so that a filter may seem to hold.";
     /// A small mass of base.
     low_mass_ratio(ratio: Percent): Amount, Open, Limits;
         "amount of base", "uncertainty.md",
@@ -306,22 +316,23 @@ findings! {
         "increments", "uncertainty.md",
         "The whole base is inserted before any of it can be through the filter. There are \
          {increments:increment} for {layers:layer}, and where water flows, all that is on its way when the \
-         filter clogs counts as retained. Ten increments a layer are enough.",
+         filter clogs counts as retained. With ten increments a layer at most a tenth of the base is on its \
+         way.",
         to do "A smaller inject_share makes more increments.";
     /// A Cu out of the checked range.
     cu_unchecked(soil: Text, cu: Ratio, low: Ratio, high: Ratio): Base, Open, Limits;
         "uniformity", "soils.md",
-        "The Cu of the {soil} is {cu}; the model was checked for {low} to {high}.";
+        "The Cu of the {soil} is {cu}, and the model was checked for {low} to {high}.";
     /// A Cu between two bounds, of which one is out of the checked range.
     cu_in_doubt(soil: Text, least: Ratio, most: Ratio, low: Ratio, high: Ratio): Base, Open, Limits;
         "uniformity", "soils.md",
-        "The Cu of the {soil} is between {least} and {most}, as its D10 is finer than its finest sieve. The \
-         model was checked for {low} to {high}.";
+        "The Cu of the {soil} is between {least} and {most}, and the model was checked for {low} to {high}. \
+         The D10 of the {soil} is finer than its finest sieve.";
     /// A Cu that is not known.
     cu_unknown(soil: Text, low: Ratio, high: Ratio): Base, Open, Limits;
         "uniformity", "soils.md",
-        "The Cu of the {soil} is not known, as its D10 is finer than its finest sieve. The model was checked \
-         for {low} to {high}.";
+        "The Cu of the {soil} is not known, and the model was checked for {low} to {high}. The D10 of the \
+         {soil} is finer than its finest sieve.";
     /// A filter with a gap.
     gap_graded(within: Percent, from: Mm): Filter, Unsafe, Limits;
         "gap", "soils.md",
@@ -341,9 +352,9 @@ findings! {
     /// A guess of the constrictions.
     guessed_constrictions(): Constrictions, Open, Limits;
         "constrictions", "uncertainty.md",
-        "The constriction curve is a guess from circles inscribed between three or four grains. On packed \
-         filters its median was 0.65 to 0.82 times the measured one at its dense end and 1.6 to 1.9 times at \
-         its loose end, and both ends are walked, too.",
+        "The constriction curve is a guess from circles inscribed between three or four grains, with 0.65 to \
+         1.9 times the median that was measured on packed filters. As the densest packing it gave 0.65 to \
+         0.82 times that median, as the loosest 1.6 to 1.9 times; both ends are walked, too.",
         to do "filter.density packs the grains and measures it, of a broad filter on its finer part.";
     /// A guess of the grains per void.
     guessed_grains(grains: Ratio): Amount, Open, Limits;
@@ -432,15 +443,15 @@ findings! {
         "Some and continuing erosion differ by the second run, and only a first was asked for.",
         to do "runs = 2 walks both.";
     /// A confidence level that was not reached.
-    level_missed(level: Percent, run: Text, mean: Percent, distance: Percent, sd: Percent, more: Text):
+    level_missed(level: Percent, run: Text, mean: Text, distance: Points, sd: Points, more: Text):
         Walk, Open, Note;
         "level", "uncertainty.md",
-        "Inconclusive at the {level} confidence level: the mean of the {run} run, {mean}, lies {distance} of \
-         the base from 7.5 %, and the replicates scatter by {sd}. {more}.";
+        "Inconclusive at the {level} confidence level: the mean of the {run} run, {mean}, lies {distance} \
+         from 7.5 %, and the replicates scatter by {sd}. {more}.";
     /// A target error that was not reached.
-    target_missed(target: Percent, half_width: Percent, replicates: Count, needed: Count): Walk, Open, Note;
+    target_missed(target: Points, half_width: Points, replicates: Count, needed: Count): Walk, Open, Note;
         "target error", "uncertainty.md",
-        "The target error, {target} of the base, was not reached. The 95 % interval reaches {half_width} to \
+        "The target error, {target}, was not reached. The 95 % interval reaches {half_width} to \
          either side after {replicates:replicate}; about {needed} would do.";
     /// A base that is walked regraded.
     regraded(part: Percent, at: Mm): Base, Settled, Note;
@@ -463,10 +474,10 @@ findings! {
         "The base curve {curve} allows a D15F of {limit}, less than the {of_finest} of the finest curve, as \
          its fines put it into another category.";
     /// A finest part of the filter that is not counted.
-    pan_of_filter(share: Percent): Filter, Safe, Note;
+    pan_of_filter(share: Percent): Filter, Open, Note;
         "finest part", "soils.md",
-        "The finest {share} of the filter is not counted. The base offered is therefore slightly too large, \
-         which is on the safe side.",
+        "The finest {share} of the filter is not counted, so that too much base is offered. Of more base a \
+         smaller share passes.",
         to do "filter.d0_mm says where that part ends.";
     /// Many loose grains.
     loose_grains(loose: Percent): Filter, Open, Note;
@@ -495,8 +506,8 @@ findings! {
         "loops", "graph.md",
         "A base particle that nothing stops makes {moves} moves before it leaves. The network has loops \
          whose way out is very narrow, and a walk makes one move an increment, so it may not end in a \
-         lifetime. Give those ways out a diameter of 0, so that what circles counts as trapped, or a wider \
-         one.";
+         lifetime.",
+        to do "Give those ways out a diameter of 0, so that what circles counts as trapped, or a wider one.";
     /// Studies that were not asked for.
     not_studied(): Study, Open, Note;
         "studies", "uncertainty.md",

@@ -11,6 +11,8 @@ pub enum FindingValue {
     Percent(f64),
     /// A length (mm).
     Mm(f64),
+    /// A difference of two percents, which may be small: with three decimals.
+    Points(f64),
     /// A number without unit.
     Ratio(f64),
     /// So many.
@@ -25,6 +27,7 @@ impl FindingValue {
         match self {
             Self::Percent(_) => "_percent",
             Self::Mm(_) => "_mm",
+            Self::Points(_) => "_pp",
             Self::Ratio(_) | Self::Count(_) | Self::Text(_) => "",
         }
     }
@@ -32,7 +35,9 @@ impl FindingValue {
     /// As it stands in a record; `null` where it is no number.
     pub fn json(&self) -> Json {
         match self {
-            Self::Percent(value) | Self::Mm(value) | Self::Ratio(value) => (*value).into(),
+            Self::Percent(value) | Self::Points(value) | Self::Mm(value) | Self::Ratio(value) => {
+                (*value).into()
+            }
             Self::Count(count) => (*count).into(),
             Self::Text(text) => text.as_str().into(),
         }
@@ -43,6 +48,8 @@ impl FindingValue {
         match self {
             Self::Percent(value) => number(*value) + " %",
             Self::Mm(value) => number(*value) + " mm",
+            Self::Points(value) if value.abs() < 1e6 => format!("{value:.3} percentage points"),
+            Self::Points(value) => number(*value) + " percentage points",
             Self::Ratio(value) => number(*value),
             Self::Count(n) => {
                 let Some(noun) = noun else { return count(*n) };

@@ -79,7 +79,7 @@ fn the_graph_is_walked_and_its_folder_says_what_it_is() {
     let said = String::from_utf8_lossy(&run.stdout).into_owned();
     assert!(said.contains("The permeability at the end of the first and second run is "), "{said}");
     let page = fs::read_to_string(root.path().join("one/report.html")).unwrap();
-    assert!(page.contains("Permeability at the end of the first and second run: "));
+    assert!(page.contains("The permeability at the end of the first and second run is "));
     let outcome = json(&root.path().join("one/outcome.json"));
     let network = &outcome["network"];
     assert_eq!((&network["kind"], &network["exit"]), (&"graph".into(), &"flux".into()));

@@ -64,7 +64,7 @@ fn a_pan_fraction_that_may_block_gives_two_verdicts_and_their_common_one() {
     let said = String::from_utf8_lossy(&run.stdout).into_owned();
     for words in [
         "Verdict: undecided in the model; the answer depends on the 30 % of the base",
-        "; both readings: finer than every constriction: some erosion, ",
+        "Both readings: finer than every constriction: some erosion, ",
         "eroded; all 0.15 mm: no erosion, ",
     ] {
         assert!(said.contains(words), "{said}");
@@ -99,9 +99,9 @@ fn a_pan_fraction_that_may_block_gives_two_verdicts_and_their_common_one() {
 #[test]
 fn cu_of_an_open_tail_comes_from_its_two_readings() {
     let root = tempfile::tempdir().unwrap();
-    let said = |finest: &str| {
+    let said = |finest: &str, d85: &str| {
         files(root.path(), 12);
-        let base = format!("opening_mm,percent_finer\n0.3,100\n0.2,85\n{finest},12\n");
+        let base = format!("opening_mm,percent_finer\n0.3,100\n{d85},85\n{finest},12\n");
         fs::write(root.path().join("base.csv"), base).unwrap();
         let words = ["check", "scene.toml", "--json"];
         let check = call(root.path(), &words);
@@ -109,15 +109,15 @@ fn cu_of_an_open_tail_comes_from_its_two_readings() {
         let value: Value = serde_json::from_slice(&check.stdout).unwrap();
         value["warnings"].to_string()
     };
-    // 0.124 mm over 0.05 mm: finer than every constriction, and passive of whatever size.
-    let fine = said("0.05");
+    // 0.115 mm over 0.04 mm: finer than every constriction, and passive of whatever size.
+    let fine = said("0.04", "0.2");
     assert!(!fine.contains("Cu of the base") && fine.contains("counts by mass only"), "{fine}");
-    // 0.181 mm over 0.15 mm, or over the finest constriction, 0.074 mm: 1.21 to 2.5.
-    let coarse = said("0.15");
+    // 0.163 mm over 0.15 mm, or over the finest constriction of the densest guess, 0.040 mm: 1.09 to 4.1.
+    let coarse = said("0.15", "0.17");
     assert!(!coarse.contains("Cu of the base") && coarse.contains("walked twice"), "{coarse}");
     // 0.091 mm over 0.02 mm is more than 4.5 however it is read.
-    let broad = said("0.02");
-    assert!(broad.contains("Cu of the base is 4.55; the model was checked for 1.2 to 4.5"), "{broad}");
+    let broad = said("0.02", "0.2");
+    assert!(broad.contains("Cu of the base is 4.55, and the model was checked for 1.2 to 4.5"), "{broad}");
 }
 
 #[test]

@@ -156,7 +156,7 @@ fn the_base_is_walked_regraded_where_the_scene_says_so() {
     // A broad sand that practice leaves as it is: Cu 9.8.
     let broad = format!("base.sieve={}", sieve("broad.csv", "0.03,0\n0.1,20\n0.6,60\n4,100\n"));
     assert!(
-        warned(&check(&["--set", &broad]), "it is broadly graded (Cu 11"),
+        warned(&check(&["--set", &broad]), "It is broadly graded (Cu 11"),
         "{}",
         check(&["--set", &broad])
     );

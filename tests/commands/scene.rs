@@ -671,7 +671,7 @@ fn filter_rules_and_equation_one_stand_in_the_outcome() {
     assert_ne!(value["confidence"], "within checked range");
     let reasons: Vec<&str> =
         value["reasons"].as_array().unwrap().iter().map(|reason| reason.as_str().unwrap()).collect();
-    assert!(reasons.iter().any(|reason| reason.contains("20 % of the base is finer")), "{reasons:?}");
+    assert!(reasons.iter().any(|reason| reason.contains("The base has 20 % fines")), "{reasons:?}");
     let stdout = String::from_utf8(output.stdout).unwrap();
     assert!(stdout.contains(" in the model\nPractice: not met: ") && stdout.contains(reasons[0]), "{stdout}");
     let found = &value["infiltration"];

@@ -5,7 +5,9 @@ use std::path::Path;
 
 use tempfile::TempDir;
 use voidwalk::outcome::ledger::{Campaign, LedgerLine, Made};
-use voidwalk::outcome::record::{Confidence, CurveEnd, CurveRange, Outcome, Stopping, Verdict};
+use voidwalk::outcome::record::{
+    Confidence, CurveEnd, CurveRange, FindingRecord, Outcome, Stopping, Verdict, Weight,
+};
 use voidwalk::outcome::undecided::UndecidedBy;
 use voidwalk::report;
 
@@ -64,7 +66,8 @@ fn the_class_comes_first_and_leads_to_the_page_of_its_case() {
 fn doubts_are_counted_and_said_once() {
     let root = TempDir::new().unwrap();
     let mut outcome = folder::outcome(3);
-    outcome.warnings = vec!["the base is <i>odd</i>".into()];
+    let odd = FindingRecord { weight: Weight::Limits, ..FindingRecord::of_earlier("the base is <i>odd</i>") };
+    outcome.findings = vec![odd];
     outcome.confidence = Confidence::Contradicted;
     outcome.rules[0].id = "terzaghi".into();
     (outcome.rules[0].applies, outcome.rules[0].met) = (true, Some(false));

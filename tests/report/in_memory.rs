@@ -112,7 +112,7 @@ fn walks_on_a_given_network_have_a_page() {
         "What the model leaves out",
         "3 replicates, each a new walk on the same network",
         "Confidence: outside checked range.",
-        "The filter was not given; no rule of practice was asked.",
+        "The filter was not given, so no rule of practice was applied.",
         "20 000, as given",
         "Blocked constrictions by layer",
         "Progress of erosion",

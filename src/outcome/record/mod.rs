@@ -120,9 +120,16 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// The findings that can do something to the verdict, or were looked at for that.
+    /// What a reader of one line must know: all findings but those on rules, which have a column of their
+    /// own, and what results say elsewhere.
     pub fn known(&self) -> impl Iterator<Item = &FindingRecord> {
-        self.findings.iter().filter(|finding| finding.weight != Weight::Note)
+        let is_of_inputs = |topic| {
+            matches!(topic, Topic::Files | Topic::Base | Topic::Filter | Topic::Network | Topic::Amount)
+        };
+        self.findings.iter().filter(move |finding| {
+            finding.about != Topic::Practice
+                && (finding.weight != Weight::Note || is_of_inputs(finding.about))
+        })
     }
 }
 

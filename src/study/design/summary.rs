@@ -17,7 +17,7 @@ use crate::outcome::record::Confidence;
 use crate::outcome::table::csv_of;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
-use crate::verdict::words::capital;
+use crate::verdict::words::{capital, within};
 use crate::verdict::{Finding, Judgement, finding};
 
 /// Ratio at which the rules are read where no boundary is known.
@@ -203,10 +203,10 @@ fn all_judged(
         }
         all
     };
-    let mut notes = said(Judgement::notes);
+    let mut notes = said(Judgement::notes_to_do);
     let not_monotone: u64 = boundaries.iter().map(|of| of.not_monotone).sum();
     notes.extend((not_monotone > 0).then(|| finding::not_monotone(not_monotone).sentence()));
-    Ok((worst, said(Judgement::reasons), notes))
+    Ok((worst, said(Judgement::reasons_to_do), notes))
 }
 
 fn judged(asked: &Asked) -> Result<Judgement, RunError> {
@@ -339,7 +339,7 @@ fn of(row: &Row, done: &[&Done]) -> Result<DesignRow, RunError> {
     // Of a filter that is as thin as one layer, or thinner, the layer itself.
     let thicker = |boundary: &Option<Boundary>| {
         let greatest = boundary.as_ref().map(|of| of.high.unwrap_or(of.median));
-        Some(row.thicker(greatest.or(holds_to)?)?.sentence())
+        Some(within(&row.thicker(greatest.or(holds_to)?)?.sentence()))
     };
     let (first_thicker, second_thicker) = (thicker(&no_erosion), thicker(&continuing));
     let of_first = words(|done| done.found.no_erosion_beyond.as_ref().map(|(_, why)| why));
