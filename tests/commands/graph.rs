@@ -202,7 +202,7 @@ fn thickness_is_layers_or_copies() {
     let outcome = of(&args);
     let reasons = outcome["findings"].to_string();
     assert!(
-        reasons.contains("With 3 copies of the packing it is 18 mm thick, the real filter is 13 mm."),
+        reasons.contains("With 3 copies of the packing it is 18.0 mm thick, the real filter is 13 mm."),
         "{reasons}"
     );
     assert!(reasons.contains("network.copies") && !reasons.contains("network.nz"), "{reasons}");

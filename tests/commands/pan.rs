@@ -76,7 +76,7 @@ fn a_pan_fraction_that_may_block_gives_two_verdicts_and_their_common_one() {
     // The size where it ends leaves one reading, and so does a finer sieve.
     done(&call(root.path(), &["run", "scene.toml", "--set", "base.d0_mm=0.01", "--out", "one"]));
     assert!(outcome(&root.path().join("one"))["pan_bounds"].is_null());
-    fs::write(root.path().join("base.csv"), "opening_mm,percent_finer\n0.3,100\n0.2,85\n0.15,30\n0.05,5\n")
+    fs::write(root.path().join("base.csv"), "opening_mm,percent_finer\n0.3,100\n0.2,85\n0.15,30\n0.04,5\n")
         .unwrap();
     done(&call(root.path(), &["run", "scene.toml", "--out", "fine"]));
     assert!(outcome(&root.path().join("fine"))["pan_bounds"].is_null());
