@@ -131,7 +131,7 @@ fn walks_on_a_given_network_have_a_page() {
     let (brief, at) = (words(&brief), words(&brief).find("In the model the filter ").unwrap());
     for doubt in [
         "Confidence: outside checked range.",
-        "The filter was not given; no rule of practice was asked.",
+        "The filter was not given, so no rule of practice was applied.",
         "20000 base particles, and the class follows from their number; without the filter and its grains per void",
         "All replicates walk one network",
     ] {
