@@ -132,7 +132,7 @@ fn walks_on_a_given_network_have_a_page() {
     for doubt in [
         "Confidence: outside checked range.",
         "The filter was not given, so no rule of practice was applied.",
-        "20000 base particles, and the class follows from their number; without the filter and its grains per void",
+        "are enough is not known. The class follows from their number, and without the filter and its grains per void",
         "All replicates walk one network",
     ] {
         assert!(brief.contains(doubt) && said.contains(doubt), "{doubt}: {brief}");
