@@ -30,7 +30,9 @@ const LOOKED_AT: u64 = 50_000_000;
 impl Case {
     /// What is known of its verdict before the walk, in sentences: what `check` says.
     pub fn warnings(&self) -> Vec<String> {
-        let mut all: Vec<Finding> = self.to_be_walked().into_iter().chain(self.findings()).collect();
+        let all = self.to_be_walked().into_iter().chain(self.findings());
+        // A study that nobody asked for is worth a word beside a verdict, and no warning.
+        let mut all: Vec<Finding> = all.filter(|finding| finding.id() != "not_studied").collect();
         // Whether these are the right tables at all comes first.
         all.sort_by_key(|finding| (finding.id() != "doubtful_tables", rank(finding)));
         all.iter().map(Finding::with_to_do).collect()
