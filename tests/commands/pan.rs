@@ -83,14 +83,18 @@ fn a_pan_fraction_that_may_block_gives_two_verdicts_and_their_common_one() {
 
     // Where there is hardly any, both readings give the same.
     files(root.path(), 1);
-    let run = call(root.path(), &["run", "scene.toml", "--out", "few"]);
+    let run = call(root.path(), &["run", "scene.toml", "--set", "replicates=6", "--out", "few"]);
     done(&run);
     let found = outcome(&root.path().join("few"));
     assert_eq!(found["pan_bounds"]["readings"][0]["verdict"], found["pan_bounds"]["readings"][1]["verdict"]);
     assert_eq!(found["verdict"], found["pan_bounds"]["readings"][0]["verdict"]);
     // What both agree on is no doubt, and nor is a Cu that both put within the range: D10 is known here.
-    let [reasons, notes] = ["reasons", "notes"].map(|key| found[key].to_string());
-    let agreed = "or as all 0.15 mm, it gives no erosion";
+    let found_of = |against: bool| -> String {
+        let all = found["findings"].as_array().unwrap().iter().filter(|of| of["against"] == against);
+        all.map(|of| of["sentence"].as_str().unwrap()).collect()
+    };
+    let (reasons, notes) = (found_of(true), found_of(false));
+    let agreed = "with all of it 0.15 mm in size, the verdict is no erosion";
     assert!(notes.contains(agreed) && !reasons.contains(agreed), "{reasons} {notes}");
     assert!(!reasons.contains("finest sieve"), "{reasons}");
 }
