@@ -3,12 +3,14 @@
 //! ```text
 //! Packing -> Triangulation -> voids, discs -> Constrictions -> Curve
 //! ```
-//! [`inscribed()`] guesses a curve from the gradation alone.
+//! [`from_library()`] finds a curve between those of packings that were made before, and [`inscribed()`] guesses one
+//! from the gradation alone.
 
 mod curve;
 mod discs;
 mod graph;
 mod inscribed;
+mod library;
 mod measure;
 mod shipped;
 mod summary;
@@ -20,6 +22,7 @@ mod voids;
 pub use curve::{Curve, CurveError, CurveUnit};
 pub use graph::VoidGraph;
 pub use inscribed::inscribed;
+pub use library::{FromLibrary, from_library, library_version};
 pub use measure::{Constrictions, ConstrictionsError, DEFAULT_MERGE_OVERLAP, Facets};
 pub use shipped::{ShippedFilter, find, shipped};
 pub use summary::{SUMMARY_PERCENT, Summary};

@@ -18,6 +18,7 @@ pub(super) const GROUPS: &[Group] = &[
             Alternative::by(&["filter.curve"]),
             Alternative::by(&["filter.density"]),
             Alternative::by(&["filter.friction"]),
+            Alternative::by(&["filter.library"]),
             Alternative::by(&["filter.estimate"]),
         ],
     },
@@ -25,7 +26,7 @@ pub(super) const GROUPS: &[Group] = &[
     Group {
         says: "say what the filter's constrictions are",
         alternatives: &[
-            Alternative::by(&["filter.density", "filter.friction", "filter.estimate"]),
+            Alternative::by(&["filter.density", "filter.friction", "filter.library", "filter.estimate"]),
             Alternative::by(&["network.file"]),
         ],
     },
@@ -74,7 +75,7 @@ pub(super) const GROUPS: &[Group] = &[
             Alternative::by(&["network.nx", "network.ny", "network.nz", "network.connectivity"]),
             Alternative::by(&["network.file"]),
             Alternative {
-                resets: &["filter.curve", "filter.estimate"],
+                resets: &["filter.curve", "filter.library", "filter.estimate"],
                 ..Alternative::by(&["network.packing", "network.copies"])
             },
         ],

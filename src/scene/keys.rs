@@ -60,6 +60,11 @@ section! {
         pub friction: Option<f64> = None, off "0.3", within(0.0..=10.0, "a number from 0 to 10");
         /// Written by a run whose filter was packed: its measured constriction curve.
         pub measured: Option<PathBuf> = None, off "\"inputs/filter-curve.csv\"", any("a file name in quotes");
+        /// Instead of a density: constrictions from the library of packings, which takes no time, as dense as
+        /// said. Where it is unknown, loose and dense are walked besides. A gradation like none of the library
+        /// has its constrictions guessed.
+        pub library: Option<LibraryDensity> = None, off "\"unknown\"",
+            any("\"dense\", \"medium\" or \"intermediate\", \"loose\", or \"unknown\"");
         /// Instead of a curve or a density: constrictions guessed from the gradation by inscribed circles, at
         /// a relative density from 0 (loose) to 1 (dense).
         pub estimate: Option<f64> = None, off "0.5", within(0.0..=1.0, "a relative density from 0 (loose) \
@@ -338,6 +343,52 @@ impl Density {
             Self::Dense => 0.0,
             Self::Intermediate => 0.1,
             Self::Loose => 0.3,
+        }
+    }
+}
+
+/// How densely a filter lies whose constrictions come from the library of packings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LibraryDensity {
+    /// As dense as it gets.
+    Dense,
+    /// Between the two. "medium" is read as this too.
+    #[serde(alias = "medium")]
+    Intermediate,
+    /// Loose.
+    Loose,
+    /// Not known: anything from loose to dense.
+    Unknown,
+}
+
+impl LibraryDensity {
+    /// From 0, loose, to 1, dense; the middle where it is unknown.
+    pub fn relative(self) -> f64 {
+        match self {
+            Self::Loose => 0.0,
+            Self::Intermediate | Self::Unknown => 0.5,
+            Self::Dense => 1.0,
+        }
+    }
+
+    /// The word that a scene says.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Dense => Density::Dense.name(),
+            Self::Intermediate => Density::Intermediate.name(),
+            Self::Loose => Density::Loose.name(),
+            Self::Unknown => "unknown",
+        }
+    }
+}
+
+impl From<Density> for LibraryDensity {
+    fn from(density: Density) -> Self {
+        match density {
+            Density::Dense => Self::Dense,
+            Density::Intermediate => Self::Intermediate,
+            Density::Loose => Self::Loose,
         }
     }
 }

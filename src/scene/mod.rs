@@ -207,6 +207,7 @@ impl Scene {
     fn check_what_is_missing(&self, s: &GivenSettings) -> Result<(), SceneError> {
         let filter = &self.filter;
         if filter.curve.is_none()
+            && filter.library.is_none()
             && filter.estimate.is_none()
             && self.packing.is_none()
             && self.network.file.is_none()
@@ -214,8 +215,8 @@ impl Scene {
         {
             return Err(s.clash(
                 "the filter's constrictions are missing: filter.density = \"loose\" (or \"intermediate\", \
-                 \"dense\") packs its grains; filter.estimate = 0.5 guesses from its gradation; filter.curve \
-                 names a shipped curve, or a CSV file with percent_smaller,diameter_mm",
+                 \"dense\") packs its grains; filter.library = \"loose\" takes them from the library of packings; \
+                 filter.curve names a shipped curve, or a CSV file with percent_smaller,diameter_mm",
             ));
         }
         if filter.measured.is_some() && (self.packing.is_none() || filter.grains_per_void.is_none()) {
@@ -256,7 +257,7 @@ impl Scene {
             wrong(&["walk.conductance_exponent"], "is for a lattice: a packing's voids conduct as they do")?;
             if self.network.packing.is_some() {
                 let own = "says what the constrictions are, but network.packing brings its own: keep one";
-                wrong(&["filter.curve", "filter.estimate"], own)?;
+                wrong(&["filter.curve", "filter.library", "filter.estimate"], own)?;
                 // A run keeps the grains of the filter that it packed, and says both.
                 if self.filter.measured.is_none() {
                     wrong(&["filter.density", "filter.friction"], own)?;

@@ -1,0 +1,49 @@
+#!/usr/bin/env python3
+"""Makes src/data/library.csv of the packings of `library_of_packings.py`, without a length: sizes by S50.
+
+    scripts/studies/fit_library.py FOLDER
+"""
+
+import json
+import math
+import sys
+from pathlib import Path
+
+from library_of_packings import PERCENT
+
+TABLE = Path(__file__).parents[2] / "src/data/library.csv"
+SHAPE = [5, 20, 80, 95]
+DENSITY = {"loose": 0, "medium": 0.5, "dense": 1}
+HEAD = """\
+# Constrictions of packings, by number: made by scripts/studies/library_of_packings.py and fit_library.py.
+# Sizes are in units of the size below which half of the grains' surface lies; density is relative, 0 loose to 1 dense.
+"""
+
+
+def by_surface(points, percent):
+    """The size below which this share of the surface lies; mass is even over the logarithm of size between points."""
+    rows = [(a, b, (q - p) / math.log(b / a)) for (a, p), (b, q) in zip(points, points[1:]) if b > a and q > p]
+    wanted = percent / 100 * sum(mass * (1 / a - 1 / b) for a, b, mass in rows)
+    for a, b, mass in rows:
+        of_row = mass * (1 / a - 1 / b)
+        if wanted <= of_row:
+            return 1 / (1 / a - wanted / mass)
+        wanted -= of_row
+    return rows[-1][1]
+
+
+def main():
+    lines = [json.loads(line) for line in (Path(sys.argv[1]) / "packings.jsonl").read_text().splitlines()]
+    names = ["shape", "density", "grains_per_void", "void_ratio", *(f"s{p}" for p in SHAPE), *(f"dc{p}" for p in PERCENT)]
+    rows = [",".join(names)]
+    for of in sorted((of for of in lines if "dc" in of), key=lambda of: of["key"]):
+        half = by_surface(of["points"], 50)
+        sizes = [by_surface(of["points"], percent) / half for percent in SHAPE] + [size / half for size in of["dc"]]
+        numbers = [of["grains_per_void"], of["void_ratio"], *sizes]
+        rows.append(",".join([str(int(of["key"][:3])), str(DENSITY[of["density"]]), *(f"{n:.5g}" for n in numbers)]))
+    TABLE.write_text(HEAD + "\n".join(rows) + "\n")
+    print(f"{TABLE}: {len(rows) - 1} packings, {TABLE.stat().st_size / 1000:.0f} kB; refused: {len(lines) + 1 - len(rows)}")
+
+
+if __name__ == "__main__":
+    main()

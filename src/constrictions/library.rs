@@ -1,0 +1,306 @@
+//! A filter's constrictions from a library of packings: a gradation's curve lies between those of its like.
+//!
+//! `src/data/library.csv` holds packings of many shapes of gradation, each dense (friction 0), medium (0.1) and loose
+//! (0.3), made by `scripts/studies/library_of_packings.py`. Nothing in it has a length: sizes are in units of the size
+//! that halves the surface of the grains, `S50`.
+//!
+//! Constrictions are made by grains that touch, and grains meet by surface. So a shape is known by four numbers,
+//! `ln(S5/S50)`, `ln(S20/S50)`, `ln(S80/S50)` and `ln(S95/S50)`, and a place in the library by these and the relative
+//! density. Each percentile of the curve is `ln(Dc/S50)`: a quadratic trend, and beside it a Gaussian process that
+//! draws it to what was measured nearby (universal kriging; Rasmussen & Williams 2006, section 2.7). Grains per void
+//! and void ratio are found likewise.
+
+use std::sync::OnceLock;
+
+use libm::{exp, log, sqrt};
+
+use super::curve::{Curve, CurveError, CurveUnit};
+use crate::gradation::Gradation;
+
+const TABLE: &str = include_str!("../data/library.csv");
+
+/// Shares of the surface (%) whose sizes tell a shape, beside the half.
+const SHAPE: [f64; 4] = [5.0, 20.0, 80.0, 95.0];
+/// Numbers that tell a place: those of the shape, and the relative density.
+const PLACE: usize = SHAPE.len() + 1;
+/// Terms of the trend: 1, each number, the square of the density, its product with each of the shape.
+const TREND: usize = 1 + PLACE + 1 + SHAPE.len();
+/// Distance at which two places still say much of each other.
+const REACH: f64 = 1.0;
+/// Variance of a packing's own scatter, by that of the process.
+const SCATTER: f64 = 0.05;
+/// Keeps the trend from being singular where the library is small.
+const RIDGE: f64 = 1e-6;
+/// A shape as far as this from all of the library is none of its like.
+const FAR: f64 = 0.7;
+/// The constrictions of nine in ten packings lie as near as this, relative, from Dc5 to Dc95, where no packing of
+/// their shape is in the library: `results/library.md`.
+const OFF_BY: f64 = 0.04;
+
+/// What the library says of a filter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FromLibrary {
+    /// The constriction curve (mm), by number.
+    pub curve: Curve,
+    /// Grains of the filter per void.
+    pub grains_per_void: f64,
+    /// Volume of the voids by that of the grains.
+    pub void_ratio: f64,
+    /// How far the curve may be off, relative: the library's error at shapes that it did not hold.
+    pub off_by: f64,
+}
+
+/// The constrictions of a filter by its gradation, at a relative density from 0, loose, to 1, dense. A pan fraction is
+/// left out. `None` for a shape that is like none of the library.
+///
+/// ```
+/// use voidwalk::{constrictions::from_library, gradation::Gradation};
+/// let filter = Gradation::linear_from_d0(1.0, 1.5)?;
+/// let [loose, dense] = [0.0, 1.0].map(|density| from_library(&filter, density).unwrap().unwrap());
+/// assert!(loose.curve.dc(50.0) > dense.curve.dc(50.0));
+/// # Ok::<(), voidwalk::gradation::GradationError>(())
+/// ```
+///
+/// # Errors
+/// None for a gradation with a known size.
+pub fn from_library(gradation: &Gradation, relative_density: f64) -> Result<Option<FromLibrary>, CurveError> {
+    static LIBRARY: OnceLock<Library> = OnceLock::new();
+    LIBRARY.get_or_init(|| Library::of(packings(TABLE))).filter(gradation, relative_density)
+}
+
+/// Which library this is: another one gives other curves.
+pub fn library_version() -> String {
+    format!("{:016x}", xxhash_rust::xxh3::xxh3_64(TABLE.as_bytes()))
+}
+
+/// A packing of the library.
+#[derive(Clone, Debug)]
+struct Shipped {
+    shape: u32,
+    place: [f64; PLACE],
+    /// Logarithms: of the curve's percentiles by `S50`, of grains per void, of the void ratio.
+    measured: Vec<f64>,
+}
+
+/// Percentages of the curve, from the head of the table.
+fn percentages() -> Vec<f64> {
+    let head = TABLE.lines().find(|line| !line.starts_with('#')).unwrap_or_default();
+    head.split(',').filter_map(|name| name.strip_prefix("dc")?.parse().ok()).collect()
+}
+
+/// Reads the table: shape, relative density, grains per void, void ratio, s5, s20, s80, s95, and the curve.
+fn packings(table: &str) -> Vec<Shipped> {
+    let rows = table.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_digit()));
+    rows.map(|line| {
+        let numbers: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
+        let place = std::array::from_fn(|k| if k == SHAPE.len() { numbers[1] } else { log(numbers[4 + k]) });
+        let curve = numbers[4 + SHAPE.len()..].iter().chain(&numbers[2..4]).map(|value| log(*value));
+        Shipped { shape: numbers[0] as u32, place, measured: curve.collect() }
+    })
+    .collect()
+}
+
+/// The library, ready to be asked.
+struct Library {
+    places: Vec<[f64; PLACE]>,
+    /// Factors of the trend, for each measured number.
+    trend: Vec<[f64; TREND]>,
+    /// Weights of the places, for each measured number.
+    weights: Vec<Vec<f64>>,
+}
+
+impl Library {
+    fn of(packings: Vec<Shipped>) -> Self {
+        let places: Vec<_> = packings.iter().map(|packing| packing.place).collect();
+        let n = places.len();
+        let covariance: Vec<Vec<f64>> = (0..n)
+            .map(|i| (0..=i).map(|j| near(&places[i], &places[j]) + if i == j { SCATTER } else { 0.0 }).collect())
+            .collect();
+        let root = root_of(covariance);
+        let solved = |column: Vec<f64>| back(&root, forward(&root, column));
+        let terms: Vec<[f64; TREND]> = places.iter().map(terms).collect();
+        let by_term: Vec<Vec<f64>> =
+            (0..TREND).map(|t| solved(terms.iter().map(|of| of[t]).collect())).collect();
+        let normal: Vec<Vec<f64>> = (0..TREND)
+            .map(|t| (0..=t).map(|u| column(&terms, t, &by_term[u]) + if t == u { RIDGE } else { 0.0 }).collect())
+            .collect();
+        let normal = root_of(normal);
+        let (mut trend, mut weights) = (Vec::new(), Vec::new());
+        for k in 0..packings.first().map_or(0, |packing| packing.measured.len()) {
+            let mut values: Vec<f64> = packings.iter().map(|packing| packing.measured[k]).collect();
+            let right = by_term.iter().map(|of| of.iter().zip(&values).map(|(a, b)| a * b).sum()).collect();
+            let factors = back(&normal, forward(&normal, right));
+            let factors: [f64; TREND] = std::array::from_fn(|t| factors[t]);
+            for (value, terms) in values.iter_mut().zip(&terms) {
+                *value -= product(terms, &factors);
+            }
+            trend.push(factors);
+            weights.push(solved(values));
+        }
+        Self { places, trend, weights }
+    }
+
+    fn filter(&self, gradation: &Gradation, density: f64) -> Result<Option<FromLibrary>, CurveError> {
+        let half_mm = by_surface(gradation, 50.0);
+        let place = std::array::from_fn(|k| match SHAPE.get(k) {
+            Some(share) => log(by_surface(gradation, *share) / half_mm),
+            None => density.clamp(0.0, 1.0),
+        });
+        let is_like = |other: &[f64; PLACE]| sqrt(square(&place[..SHAPE.len()], &other[..SHAPE.len()])) < FAR;
+        if !self.places.iter().any(is_like) {
+            return Ok(None);
+        }
+        let found = self.at(&place);
+        let (curve, rest) = found.split_at(found.len() - 2);
+        let mut size = 0.0f64;
+        let points: Vec<(f64, f64)> = percentages()
+            .into_iter()
+            .zip(curve)
+            .map(|(percent, value)| {
+                // Each percentile is found alone; the curve never falls.
+                size = size.max(half_mm * value);
+                (percent, size)
+            })
+            .collect();
+        Ok(Some(FromLibrary {
+            curve: Curve::from_points(&points, CurveUnit::Mm)?,
+            grains_per_void: rest[0],
+            void_ratio: rest[1],
+            off_by: OFF_BY,
+        }))
+    }
+
+    /// What would be measured at a place.
+    fn at(&self, place: &[f64; PLACE]) -> Vec<f64> {
+        let terms = terms(place);
+        let near: Vec<f64> = self.places.iter().map(|other| near(place, other)).collect();
+        let sums = self.trend.iter().zip(&self.weights);
+        sums.map(|(trend, weights)| {
+            exp(product(&terms, trend) + near.iter().zip(weights).map(|(a, b)| a * b).sum::<f64>())
+        })
+        .collect()
+    }
+}
+
+/// The size (mm) below which this share (%) of the grains' surface lies.
+fn by_surface(gradation: &Gradation, percent: f64) -> f64 {
+    let (mut low, mut high) = (log(gradation.smallest_mm()), log(gradation.largest_mm()));
+    for _ in 0..52 {
+        let middle = 0.5 * (low + high);
+        match 100.0 * (1.0 - gradation.surface_coarser_than(exp(middle))) < percent {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    exp(0.5 * (low + high))
+}
+
+fn square(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
+}
+
+fn near(a: &[f64; PLACE], b: &[f64; PLACE]) -> f64 {
+    exp(-0.5 * square(a, b) / (REACH * REACH))
+}
+
+fn terms(place: &[f64; PLACE]) -> [f64; TREND] {
+    let density = place[SHAPE.len()];
+    std::array::from_fn(|t| match t {
+        0 => 1.0,
+        t if t <= PLACE => place[t - 1],
+        t if t == PLACE + 1 => density * density,
+        t => density * place[t - PLACE - 2],
+    })
+}
+
+fn product(a: &[f64; TREND], b: &[f64; TREND]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn column(terms: &[[f64; TREND]], t: usize, of: &[f64]) -> f64 {
+    terms.iter().zip(of).map(|(terms, value)| terms[t] * value).sum()
+}
+
+/// Cholesky's root of a positive definite matrix, both by the rows of their lower halves.
+fn root_of(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    for i in 0..rows.len() {
+        let (above, below) = rows.split_at_mut(i);
+        let row = &mut below[0];
+        for j in 0..i {
+            let sum: f64 = row[..j].iter().zip(&above[j][..j]).map(|(a, b)| a * b).sum();
+            row[j] = (row[j] - sum) / above[j][j];
+        }
+        let sum: f64 = row[..i].iter().map(|a| a * a).sum();
+        row[i] = sqrt(row[i] - sum);
+    }
+    rows
+}
+
+fn forward(root: &[Vec<f64>], mut right: Vec<f64>) -> Vec<f64> {
+    for (i, row) in root.iter().enumerate() {
+        let sum: f64 = row[..i].iter().zip(&right[..i]).map(|(a, b)| a * b).sum();
+        right[i] = (right[i] - sum) / row[i];
+    }
+    right
+}
+
+fn back(root: &[Vec<f64>], mut right: Vec<f64>) -> Vec<f64> {
+    for i in (0..root.len()).rev() {
+        right[i] /= root[i][i];
+        for j in 0..i {
+            right[j] -= root[i][j] * right[i];
+        }
+    }
+    right
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Errors, relative, of every packing by a library that holds none of its shape: of the percentiles, grains per
+    /// void and void ratio.
+    fn left_out() -> Vec<Vec<f64>> {
+        let all = packings(TABLE);
+        let shapes: std::collections::BTreeSet<u32> = all.iter().map(|packing| packing.shape).collect();
+        let of_shape = |shape: u32| {
+            let (out, others): (Vec<_>, Vec<_>) =
+                all.iter().cloned().partition(|packing| packing.shape == shape);
+            let library = Library::of(others);
+            out.into_iter().map(move |packing| {
+                let found = library.at(&packing.place);
+                found.iter().zip(&packing.measured).map(|(found, of)| found / exp(*of) - 1.0).collect()
+            })
+        };
+        shapes.into_iter().flat_map(of_shape).collect()
+    }
+
+    #[test]
+    fn nine_in_ten_packings_whose_shape_is_not_in_the_library_lie_as_near_as_it_says() {
+        let errors = left_out();
+        let percent = percentages();
+        for wanted in [5.0, 15.0, 50.0, 75.0, 95.0] {
+            let k = percent.iter().position(|percent| *percent == wanted).unwrap();
+            let far = errors.iter().filter(|of| of[k].abs() > OFF_BY).count();
+            assert!(10 * far <= errors.len(), "Dc{wanted}: {far} of {}", errors.len());
+        }
+    }
+
+    #[test]
+    fn the_library_holds_enough_and_scales() {
+        assert!(packings(TABLE).len() >= 400);
+        let small = Gradation::linear_from_d0(0.5, 3.0).unwrap();
+        let [of_small, of_large] = [small.clone(), small.scaled(20.0).unwrap()]
+            .map(|filter| from_library(&filter, 0.5).unwrap().unwrap());
+        let by = |percent| of_large.curve.dc(percent).unwrap() / of_small.curve.dc(percent).unwrap();
+        assert!((by(5.0) - 20.0).abs() < 1e-9 && (by(95.0) - 20.0).abs() < 1e-9);
+        assert!((of_large.grains_per_void / of_small.grains_per_void - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_shape_like_no_other_is_not_answered() {
+        let fines_in_boulders = [(0.001, 0.0), (0.002, 20.0), (1000.0, 20.0), (2000.0, 100.0)];
+        let filter = Gradation::from_points(&fines_in_boulders, None).unwrap();
+        assert_eq!(from_library(&filter, 0.0).unwrap(), None);
+    }
+}
