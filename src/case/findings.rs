@@ -2,10 +2,10 @@
 //! checked, and what else a reader must know.
 
 use super::packed_filter::GUESSED_GRAINS_PER_VOID;
-use super::{Case, Input, PackingPlan, guesses_grains_per_void, replicate_seed};
+use super::{Case, Input, PackingPlan, needs_grains_per_void, replicate_seed};
 use crate::gradation::{FEW_FINES, FINES_MM, GRAVEL_MM, Gradation};
 use crate::network::ExitRule;
-use crate::scene::Regrade;
+use crate::scene::{LibraryDensity, Regrade};
 use crate::verdict::Mistake;
 use crate::verdict::beside::packed_part;
 use crate::verdict::{Finding, finding, rank};
@@ -109,14 +109,23 @@ impl Case {
         Some(finding::other_curve(cu, &shipped.name, shipped.cu))
     }
 
-    /// What is guessed where nobody packed the filter.
+    /// What is not measured where nobody packed the filter.
     fn guesses(&self) -> Vec<Finding> {
-        if self.scene.filter.estimate.is_none() {
+        if let Some(library) = &self.library {
+            let density = self.scene.filter.library.unwrap_or(LibraryDensity::Unknown);
+            let found = match density {
+                LibraryDensity::Unknown => finding::library_of_any_density(100.0 * library.found.off_by),
+                _ => finding::library_of_density(density.name(), 100.0 * library.found.off_by),
+            };
+            return std::iter::once(found).chain(library.part.as_ref().map(packed_part)).collect();
+        }
+        if self.guessed_density.is_none() {
             return Vec::new();
         }
-        let grains = guesses_grains_per_void(&self.scene);
+        let like_none = self.scene.filter.library.map(|_| finding::like_none_of_the_library());
+        let grains = needs_grains_per_void(&self.scene, self.guessed_density);
         let grains = grains.then(|| finding::guessed_grains(GUESSED_GRAINS_PER_VOID));
-        std::iter::once(finding::guessed_constrictions()).chain(grains).collect()
+        like_none.into_iter().chain([finding::guessed_constrictions()]).chain(grains).collect()
     }
 
     /// That the replicates say little of their own scatter.

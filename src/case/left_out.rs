@@ -14,7 +14,11 @@ impl Case {
             None if self.packed.is_some() => {
                 "a given constriction curve: it is measured on the packing".to_string()
             }
-            None if self.scene.filter.estimate.is_some() => {
+            None if self.library.is_some() => {
+                "packing and triangulation: the constriction curve is from the library of packings"
+                    .to_string()
+            }
+            None if self.guessed_density.is_some() => {
                 "packing and triangulation: the constriction curve is guessed from the gradation".to_string()
             }
             None => "packing and triangulation: the constriction curve is given".to_string(),

@@ -8,6 +8,7 @@ mod files;
 mod findings;
 mod input;
 mod left_out;
+mod library_filter;
 mod memory;
 mod network_key;
 mod packed_filter;
@@ -33,6 +34,7 @@ use files::Files;
 pub use files::{INPUT_FILES, INPUT_NAMES};
 pub use findings::{few, fines_of, not_as_uniform};
 pub use input::Input;
+pub use library_filter::LibraryFilter;
 pub use memory::{ResourceLimits, in_words};
 use packed_filter::GUESSED_GRAINS_PER_VOID;
 pub use packed_filter::{GRAINS, PackedError, PackedFilter, RECORD};
@@ -47,7 +49,9 @@ use crate::constrictions::{Curve, CurveUnit, ShippedFilter, inscribed};
 use crate::gradation::{Gradation, SizeSampler};
 use crate::network::{CONDUCTANCE_EXPONENT, ExitRule, Network, NetworkError, WIDE};
 use crate::outcome::record::{PanSize, Ratios};
-use crate::scene::{Amount, BaseGradation, D85, Extent, FilterGradation, NetworkSource, Scene, USUAL_LAYERS};
+use crate::scene::{
+    Amount, BaseGradation, D85, Extent, FilterGradation, LibraryDensity, NetworkSource, Scene, USUAL_LAYERS,
+};
 use crate::store::Placement;
 use crate::stream::{Key, Purpose};
 use crate::verdict::{Mistake, MistakeKind};
@@ -73,6 +77,10 @@ pub struct Case {
     pub finest_mm: f64,
     /// The other curves that are walked besides its own: the ends of the range in which it is known.
     pub curve_ends: Vec<OtherCurve>,
+    /// What the library of packings says of the filter, where its curve is taken from there.
+    pub library: Option<LibraryFilter>,
+    /// Relative density, 0 loose to 1 dense, of a curve that is guessed from the gradation.
+    pub guessed_density: Option<f64>,
     /// The shipped filter that the curve is, if it is one.
     pub shipped: Option<&'static ShippedFilter>,
     /// The packing that the curve was measured on, if the program made it.
@@ -183,9 +191,16 @@ impl Case {
                 files.sieve(path, *d0_mm, "filter.sieve", "filter-sieve.csv")?
             }
         };
-        let curve = match scene.filter.estimate {
-            Some(density) => Some((inscribed(&filter, density)?, None)),
-            None => curve,
+        let library = match scene.filter.library {
+            Some(density) => LibraryFilter::find(&filter, density)?,
+            None => None,
+        };
+        let of_library = scene.filter.library.filter(|_| library.is_none());
+        let guessed_density = scene.filter.estimate.or(of_library.map(LibraryDensity::relative));
+        let curve = match (&library, guessed_density) {
+            (Some(library), _) => Some((library.found.curve.clone(), None)),
+            (None, Some(density)) => Some((inscribed(&filter, density)?, None)),
+            (None, None) => curve,
         };
         let unit_mm = filter.smallest_mm();
         let d50f_mm = filter.d(50.0).unwrap_or(unit_mm);
@@ -255,16 +270,17 @@ impl Case {
         let of_shipped = shipped.filter(|_| fixed_network.is_none()).map(|s| s.grains_per_void);
         let of_graph = graph.as_ref().map(|graph| graph.grains_per_void(&filter));
         let of_packing = packed.as_ref().map(|packed| packed.grains_per_void).or(of_shipped);
-        let guessed = guesses_grains_per_void(&scene).then_some(GUESSED_GRAINS_PER_VOID);
-        let grains_per_void = scene.filter.grains_per_void.or(of_graph).or(of_packing).or(guessed);
-        let curve_ends = match fixed_network {
-            Some(_) => Vec::new(),
-            None => curve_ends::of(
-                &curve,
-                &filter,
-                packed.as_ref().and_then(|of| of.part.as_ref()),
-                scene.filter.estimate,
-            ),
+        let of_library = library.as_ref().map(|library| library.found.grains_per_void);
+        let guessed = needs_grains_per_void(&scene, guessed_density).then_some(GUESSED_GRAINS_PER_VOID);
+        let known = scene.filter.grains_per_void.or(of_graph).or(of_packing).or(of_library);
+        let grains_per_void = known.or(guessed);
+        let curve_ends = match (&fixed_network, &library) {
+            (Some(_), _) => Vec::new(),
+            (None, Some(library)) => library.ends.clone(),
+            (None, None) => {
+                let part = packed.as_ref().and_then(|of| of.part.as_ref());
+                curve_ends::of(&curve, &filter, part, guessed_density)
+            }
         };
         let finest_mm = curve_ends.iter().map(|end| end.curve.smallest()).fold(curve.smallest(), f64::min);
         let against = Against {
@@ -295,6 +311,8 @@ impl Case {
             curve,
             finest_mm,
             curve_ends,
+            library,
+            guessed_density,
             shipped,
             base,
             regraded_from,
@@ -376,10 +394,9 @@ impl Case {
 }
 
 /// Whether Eq. (2) needs grains per void that nobody gives: where the constrictions are a guess.
-fn guesses_grains_per_void(scene: &Scene) -> bool {
-    let filter = &scene.filter;
-    filter.estimate.is_some()
-        && filter.grains_per_void.is_none()
+fn needs_grains_per_void(scene: &Scene, guessed_density: Option<f64>) -> bool {
+    guessed_density.is_some()
+        && scene.filter.grains_per_void.is_none()
         && matches!(scene.base.amount(), Amount::MassRatio(..))
 }
 

@@ -134,7 +134,7 @@ fn grains_at_least(gradation: &Gradation) -> usize {
 }
 
 /// Width of the cell of this many grains, by the largest grain; the cell is `aspect` times as tall.
-fn width_by_largest(gradation: &Gradation, grains: usize, aspect: f64) -> f64 {
+pub(super) fn width_by_largest(gradation: &Gradation, grains: usize, aspect: f64) -> f64 {
     let largest = gradation.largest_mm();
     let grain_mm3 = 1.0 / gradation.particles_per_unit_volume();
     libm::cbrt(grains as f64 * grain_mm3 / FRACTION / aspect) / largest

@@ -62,7 +62,8 @@ impl Case {
                 "a guess, until the filter is packed".to_string()
             }
             (None, None) if self.packed.is_some() => "measured on its packing".to_string(),
-            (None, None) if self.scene.filter.estimate.is_some() => {
+            (None, None) if self.library.is_some() => "from the library of packings".to_string(),
+            (None, None) if self.guessed_density.is_some() => {
                 "guessed from the gradation by inscribed circles".to_string()
             }
             (Some(_), _) | (None, None) => "the network's own constrictions".to_string(),
@@ -181,10 +182,25 @@ impl Case {
         matches!(self.scene.filter.gradation(), FilterGradation::Sieve(..))
     }
 
+    /// Where the constrictions come from.
+    pub fn curve_origin(&self) -> record::CurveOrigin {
+        match (&self.library, self.guessed_density) {
+            _ if self.packed.is_some() => record::CurveOrigin::Packed,
+            (Some(_), _) => record::CurveOrigin::Library,
+            (None, Some(_)) => record::CurveOrigin::Guessed,
+            (None, None) => record::CurveOrigin::Given,
+        }
+    }
+
+    /// Whether the curve is from the library, or a guess.
+    fn is_without_packing(&self) -> bool {
+        self.library.is_some() || self.guessed_density.is_some()
+    }
+
     /// Whether lengths are in units of the smallest filter grain: a scale-free curve with d0_mm = 1.
     pub fn is_scale_free(&self) -> bool {
         matches!(self.scene.filter.gradation(), FilterGradation::Linear { d0_mm, .. } if d0_mm == 1.0)
-            && (self.shipped.is_some() || self.packed.is_some() || self.scene.filter.estimate.is_some())
+            && (self.shipped.is_some() || self.packed.is_some() || self.is_without_packing())
             && self.fixed_network.is_none()
             && matches!(
                 self.scene.base.gradation(),

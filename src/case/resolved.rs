@@ -3,7 +3,8 @@
 
 use std::path::PathBuf;
 
-use super::{Case, guesses_grains_per_void};
+use super::{Case, needs_grains_per_void};
+use crate::constrictions::library_version;
 use crate::scene::{About, CurveSource, Scene};
 
 /// Part of the fingerprint of every case: raised whenever the program gives other results for the same scene.
@@ -39,7 +40,7 @@ impl Case {
         if scene.filter.sieve.is_none() {
             scene.filter.cu = scene.filter.cu.or(self.shipped.map(|shipped| shipped.cu));
         }
-        if !guesses_grains_per_void(&scene) {
+        if !needs_grains_per_void(&scene, self.guessed_density) {
             scene.filter.grains_per_void = self.grains_per_void;
         }
         scene.base.sieve = kept("base.sieve");
@@ -58,6 +59,9 @@ impl Case {
             protocol += GUESSED_PAN_PROTOCOL;
         }
         let mut text = format!("{protocol}\n{}", scene.to_toml()).into_bytes();
+        if self.library.is_some() {
+            text.extend_from_slice(library_version().as_bytes());
+        }
         text.extend_from_slice(self.shipped.map_or("", |shipped| shipped.curve_csv).as_bytes());
         for input in self.inputs.iter().filter(|input| input.setting != "filter.density") {
             text.extend_from_slice(input.setting.as_bytes());

@@ -212,10 +212,13 @@ pub struct RunArgs {
 /// How two sieve tables become a scene.
 #[derive(Debug, Args)]
 pub struct TableArgs {
-    /// Density of the filter: loose, medium (or intermediate) or dense. The grains are packed first. Without
-    /// it the constrictions are guessed, and the verdict covers the range of the guess
+    /// Density of the filter: loose, medium (or intermediate) or dense. The constrictions come from the
+    /// library of packings. Without a density loose and dense are both walked
     #[arg(long, value_name = "WORD", value_parser = density)]
     pub density: Option<Density>,
+    /// Pack the grains of this very filter and measure its constrictions [density: loose]
+    #[arg(long)]
+    pub pack: bool,
     /// A first look: four replicates, no studies of the amount of base and of the thickness
     #[arg(long)]
     pub quick: bool,
@@ -328,10 +331,14 @@ pub struct DesignArgs {
     /// shire2016-cu1.5-loose, or from --set]
     #[arg(long, value_name = "SHAPE", allow_hyphen_values = true)]
     pub filter: Option<String>,
-    /// Density of the filter: dense, medium (or intermediate), loose, friction=F, or estimate=D (a guess at
-    /// that relative density); can be repeated [default for a table or a Cu: loose]
+    /// Density of the filter: dense, medium (or intermediate) or loose, from the library of packings, or
+    /// unknown, for anything from loose to dense; friction=F packs the grains so, estimate=D guesses at that
+    /// relative density; can be repeated [default for a table or a Cu: unknown]
     #[arg(long = "density", value_name = "DENSITY", value_delimiter = ',', allow_hyphen_values = true)]
     pub densities: Vec<String>,
+    /// Pack the grains of this very filter and measure its constrictions [density: loose]
+    #[arg(long)]
+    pub pack: bool,
     /// Thickness of the filter: 60layers, 500mm or 75D50F; can be repeated [default: 60layers]
     #[arg(long = "thickness", value_name = "THICKNESS", value_delimiter = ',', allow_hyphen_values = true)]
     pub thicknesses: Vec<Thickness>,

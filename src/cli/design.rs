@@ -18,6 +18,7 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
         base: args.base.clone(),
         filter: args.filter.clone(),
         densities: args.densities.clone(),
+        pack: args.pack,
         thicknesses: args.thicknesses.clone(),
         settings,
         as_sampled: args.as_sampled,

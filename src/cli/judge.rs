@@ -20,7 +20,14 @@ impl TableArgs {
         ];
         let changes = with_options(&self.set.settings()?, options)?;
         let (as_sampled, as_given) = (self.as_sampled, self.as_given);
-        Ok(TableOptions { density: self.density, quick: self.quick, as_sampled, as_given, changes })
+        Ok(TableOptions {
+            density: self.density,
+            pack: self.pack,
+            quick: self.quick,
+            as_sampled,
+            as_given,
+            changes,
+        })
     }
 }
 

@@ -76,7 +76,6 @@ pub fn library_version() -> String {
 /// A packing of the library.
 #[derive(Clone, Debug)]
 struct Shipped {
-    shape: u32,
     place: [f64; PLACE],
     /// Logarithms: of the curve's percentiles by `S50`, of grains per void, of the void ratio.
     measured: Vec<f64>,
@@ -88,14 +87,14 @@ fn percentages() -> Vec<f64> {
     head.split(',').filter_map(|name| name.strip_prefix("dc")?.parse().ok()).collect()
 }
 
-/// Reads the table: shape, relative density, grains per void, void ratio, s5, s20, s80, s95, and the curve.
+/// Reads the table: number of the shape, relative density, grains per void, void ratio, s5, s20, s80, s95, and the curve.
 fn packings(table: &str) -> Vec<Shipped> {
     let rows = table.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_digit()));
     rows.map(|line| {
         let numbers: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
         let place = std::array::from_fn(|k| if k == SHAPE.len() { numbers[1] } else { log(numbers[4 + k]) });
         let curve = numbers[4 + SHAPE.len()..].iter().chain(&numbers[2..4]).map(|value| log(*value));
-        Shipped { shape: numbers[0] as u32, place, measured: curve.collect() }
+        Shipped { place, measured: curve.collect() }
     })
     .collect()
 }
@@ -114,7 +113,9 @@ impl Library {
         let places: Vec<_> = packings.iter().map(|packing| packing.place).collect();
         let n = places.len();
         let covariance: Vec<Vec<f64>> = (0..n)
-            .map(|i| (0..=i).map(|j| near(&places[i], &places[j]) + if i == j { SCATTER } else { 0.0 }).collect())
+            .map(|i| {
+                (0..=i).map(|j| near(&places[i], &places[j]) + if i == j { SCATTER } else { 0.0 }).collect()
+            })
             .collect();
         let root = root_of(covariance);
         let solved = |column: Vec<f64>| back(&root, forward(&root, column));
@@ -122,7 +123,9 @@ impl Library {
         let by_term: Vec<Vec<f64>> =
             (0..TREND).map(|t| solved(terms.iter().map(|of| of[t]).collect())).collect();
         let normal: Vec<Vec<f64>> = (0..TREND)
-            .map(|t| (0..=t).map(|u| column(&terms, t, &by_term[u]) + if t == u { RIDGE } else { 0.0 }).collect())
+            .map(|t| {
+                (0..=t).map(|u| column(&terms, t, &by_term[u]) + if t == u { RIDGE } else { 0.0 }).collect()
+            })
             .collect();
         let normal = root_of(normal);
         let (mut trend, mut weights) = (Vec::new(), Vec::new());
@@ -262,10 +265,11 @@ mod tests {
     /// void and void ratio.
     fn left_out() -> Vec<Vec<f64>> {
         let all = packings(TABLE);
-        let shapes: std::collections::BTreeSet<u32> = all.iter().map(|packing| packing.shape).collect();
-        let of_shape = |shape: u32| {
+        let shape = |packing: &Shipped| -> [u64; 4] { std::array::from_fn(|k| packing.place[k].to_bits()) };
+        let shapes: std::collections::BTreeSet<[u64; 4]> = all.iter().map(shape).collect();
+        let of_shape = |wanted: [u64; 4]| {
             let (out, others): (Vec<_>, Vec<_>) =
-                all.iter().cloned().partition(|packing| packing.shape == shape);
+                all.iter().cloned().partition(|packing| shape(packing) == wanted);
             let library = Library::of(others);
             out.into_iter().map(move |packing| {
                 let found = library.at(&packing.place);

@@ -11,7 +11,8 @@ use super::replicates::{ReplicateResult, said_by_walks, stopping, summarise};
 use super::studies::Studies;
 use crate::case::{Case, INPUT_NAMES, replicate_seed};
 use crate::outcome::record::{
-    Confidence, Manifest, Outcome, PanBounds, PanReading, RunSummary, Statistic, Stopping, Verdict, VoidRow,
+    Confidence, ConstrictionsRecord, Manifest, Outcome, PanBounds, PanReading, RunSummary, Statistic,
+    Stopping, Verdict, VoidRow,
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
 use crate::outcome::table::csv_of;
@@ -53,6 +54,7 @@ pub fn outcome(
         reasons: Vec::new(),
         notes: Vec::new(),
         practice: practice::record(&rules),
+        constrictions: Some(ConstrictionsRecord { origin: case.curve_origin() }),
         seed: case.scene.walk.seed,
         n_base: case.n_base,
         n_base_eq2: case.n_base_eq2,

@@ -439,6 +439,7 @@ pub enum Regrade {
 
 impl Leaf for Regrade {}
 impl Leaf for Density {}
+impl Leaf for LibraryDensity {}
 impl Leaf for Engine {}
 impl Leaf for Sampling {}
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::keys::Density;
+use super::keys::{Density, LibraryDensity};
 use super::{Origin, Scene, SceneError};
 use crate::gradation::curves_in_file;
 use crate::verdict::Mistake;
@@ -10,9 +10,11 @@ use crate::verdict::Mistake;
 /// What a scene of two tables is given besides them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TableOptions {
-    /// How densely the filter lies: its grains are packed so. Without it, and where `changes` do not say what
-    /// the constrictions are, they are guessed from the gradation, over the whole range of the guess.
+    /// How densely the filter lies. Its constrictions come from the library of packings; without a density, and
+    /// where `changes` do not say what the constrictions are, loose and dense are both walked.
     pub density: Option<Density>,
+    /// This very filter is packed, loose where no density is given.
+    pub pack: bool,
     /// A first look: fewer replicates, and no studies of the amount of base and of the thickness.
     pub quick: bool,
     /// The base is walked as it was sampled. Without it a base in a table is walked as filter practice
@@ -25,17 +27,15 @@ pub struct TableOptions {
     pub changes: Vec<String>,
 }
 
-/// The middle of the range of the guess, both of whose ends are walked besides.
-const MIDDLE: f64 = 0.5;
-
 /// Replicates of a first look.
 const QUICK: u64 = 4;
 
 /// Settings that say what the filter's constrictions are.
-const CONSTRICTIONS: [&str; 6] = [
+const CONSTRICTIONS: [&str; 7] = [
     "filter.curve",
     "filter.density",
     "filter.friction",
+    "filter.library",
     "filter.estimate",
     "network.file",
     "network.packing",
@@ -68,7 +68,9 @@ impl TableOptions {
                 ),
             });
         }
-        let density = self.density.map(|density| format!("filter.density=\"{}\"", density.name()));
+        let density = self.density.or(self.pack.then_some(Density::Loose));
+        let from = if self.pack { "density" } else { "library" };
+        let density = density.map(|density| format!("filter.{from}=\"{}\"", density.name()));
         let mut settings: Vec<String> = density.into_iter().collect();
         if self.quick && !self.is_set(&REPLICATES) {
             settings.push(format!("replicates={QUICK}"));
@@ -117,8 +119,8 @@ impl Scene {
         for (name, path) in [("filter.sieve", filter), ("base.sieve", base)] {
             settings.push(format!("{name}={}", quoted(path)?));
         }
-        if options.density.is_none() && !options.is_set(&CONSTRICTIONS) {
-            settings.push(format!("filter.estimate={MIDDLE}"));
+        if options.density.is_none() && !options.pack && !options.is_set(&CONSTRICTIONS) {
+            settings.push("filter.library=\"unknown\"".into());
         }
         if !options.as_sampled && !options.is_set(&REGRADE) {
             settings.push(options.regrading()?);
@@ -139,6 +141,15 @@ impl Scene {
         }
         if let Some(density) = filter.density {
             return format!("The filter's grains are packed: {}.", density.name());
+        }
+        if let Some(density) = filter.library {
+            let density = match density {
+                LibraryDensity::Unknown => "loose and dense are both walked".into(),
+                density => format!("{}, and both ends of what is known of it are walked", density.name()),
+            };
+            return format!(
+                "The filter's constrictions are those of packings of filters like it: {density}."
+            );
         }
         match (&filter.estimate, &filter.curve) {
             (Some(estimate), _) => format!(

@@ -26,6 +26,9 @@ pub struct AskedDesign {
     /// Densities and thicknesses as on the command line, with commas between them.
     #[serde(default)]
     pub density: String,
+    /// This very filter is packed.
+    #[serde(default)]
+    pub pack: bool,
     #[serde(default)]
     pub thickness: String,
     #[serde(default)]
@@ -45,6 +48,8 @@ pub struct KeptDesign {
     base: PathBuf,
     filter: FilterShape,
     densities: Vec<String>,
+    #[serde(default)]
+    pack: bool,
     thicknesses: Vec<String>,
     inverse: bool,
     #[serde(default)]
@@ -92,6 +97,7 @@ impl AskedDesign {
             base: path(&self.base)?,
             filter,
             densities: listed(&self.density),
+            pack: self.pack,
             thicknesses: listed(&self.thickness),
             inverse: self.inverse,
             as_sampled: self.as_sampled,
@@ -122,6 +128,7 @@ impl KeptDesign {
             base: Some(root.join(&self.base)),
             filter,
             densities: self.densities.clone(),
+            pack: self.pack,
             thicknesses: thicknesses.collect::<Result<_, _>>().map_err(RunError::Refused)?,
             settings: self.settings.clone(),
             inverse: self.inverse,

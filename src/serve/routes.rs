@@ -55,6 +55,9 @@ struct Asked {
     bases: Vec<String>,
     #[serde(default)]
     density: String,
+    /// This very filter is packed.
+    #[serde(default)]
+    pack: bool,
     #[serde(default)]
     quick: bool,
     /// The base is walked as it was sampled, not as practice regrades it.
@@ -375,7 +378,14 @@ fn options(asked: &Asked) -> Result<TableOptions, Problem> {
     };
     bounded(&asked.changes)?;
     let Asked { quick, as_sampled, as_given, .. } = *asked;
-    Ok(TableOptions { density, quick, as_sampled, as_given, changes: asked.changes.clone() })
+    Ok(TableOptions {
+        density,
+        pack: asked.pack,
+        quick,
+        as_sampled,
+        as_given,
+        changes: asked.changes.clone(),
+    })
 }
 
 fn bounded(changes: &[String]) -> Result<(), Problem> {

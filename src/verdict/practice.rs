@@ -4,7 +4,7 @@
 use super::entry::Finding;
 use super::finding;
 use super::words::within;
-use crate::outcome::record::{AppliedRule, LimitOfDesign, Outcome, Practice, RuleRole, Verdict};
+use crate::outcome::record::{AppliedRule, LimitOfDesign, Outcome, Practice, RuleRole, TestedClass, Verdict};
 
 /// The rule of design.
 const DESIGN: &str = "sherard-dunnigan";
@@ -97,7 +97,19 @@ pub fn record(rules: &[AppliedRule]) -> Option<Practice> {
             value_mm: rule.value,
             met: rule.met,
         },
+        foster_fell: tested(rules),
     })
+}
+
+/// The class by the boundaries of Foster and Fell.
+fn tested(rules: &[AppliedRule]) -> TestedClass {
+    let met = |id: &str| rules.iter().find(|rule| rule.id == id && rule.applies).and_then(|rule| rule.met);
+    match (met("foster-fell-no-erosion"), met("foster-fell-continuing")) {
+        (_, Some(false)) => TestedClass::Continuing,
+        (Some(true), _) => TestedClass::None,
+        (Some(false), Some(true)) => TestedClass::Some,
+        _ => TestedClass::Unknown,
+    }
 }
 
 impl Outcome {

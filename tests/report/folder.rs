@@ -130,6 +130,7 @@ pub fn outcome(replicates: u64) -> Outcome {
         reasons: Vec::new(),
         notes: Vec::new(),
         practice: None,
+        constrictions: None,
         seed: 2016,
         n_base: 21_443_871,
         n_base_eq2: Some(21_443_871),

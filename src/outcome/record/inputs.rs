@@ -19,6 +19,27 @@ pub struct Inputs {
     pub scale_free: bool,
 }
 
+/// Where a filter's constrictions come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum CurveOrigin {
+    /// The library of packings.
+    Library,
+    /// This filter was packed, and its constrictions were measured.
+    Packed,
+    /// A curve, a network or a packing that was given.
+    Given,
+    /// The gradation alone.
+    Guessed,
+}
+
+/// What is known of a filter's constrictions besides their sizes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ConstrictionsRecord {
+    /// Where they come from.
+    pub origin: CurveOrigin,
+}
+
 /// The filter: its gradation by mass and its constrictions by number.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FilterRecord {

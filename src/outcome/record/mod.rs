@@ -27,10 +27,11 @@ use serde::{Deserialize, Serialize};
 pub use answer::{ShortOf, Statistic, Stopping, Verdict};
 pub use finding::{Direction, FindingRecord, Topic, Weight};
 pub use inputs::{
-    BaseRecord, FilterRecord, Inputs, NetworkKind, NetworkRecord, NetworkSummary, Ratios, SampledBase,
+    BaseRecord, ConstrictionsRecord, CurveOrigin, FilterRecord, Inputs, NetworkKind, NetworkRecord,
+    NetworkSummary, Ratios, SampledBase,
 };
 pub use manifest::{InputFile, Manifest};
-pub use practice::{LimitOfDesign, Practice};
+pub use practice::{LimitOfDesign, Practice, TestedClass};
 pub use rows::{FlowRow, LayerRow, SeriesRow, SizeRow};
 pub use varied::{CurveEnd, CurveRange, OfThickness, Sensitivity};
 pub use voids::{BlockedRow, ConstrictionRow, RetainedRow, VoidRow};
@@ -58,6 +59,9 @@ pub struct Outcome {
     /// What filter practice says of the pair; folders of earlier versions have it in `rules` alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub practice: Option<Practice>,
+    /// Where the constrictions come from; folders of earlier versions do not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub constrictions: Option<ConstrictionsRecord>,
     /// The user's seed.
     pub seed: u64,
     /// Base particles inserted in each run.

@@ -7,6 +7,33 @@ use serde::{Deserialize, Serialize};
 pub struct Practice {
     /// The limit of design.
     pub design: LimitOfDesign,
+    /// What tests of Foster and Fell showed for such a pair; folders of earlier versions do not say.
+    #[serde(default)]
+    pub foster_fell: TestedClass,
+}
+
+/// What filter tests showed, by the boundaries of Foster and Fell.
+///
+/// Their boundary of excessive erosion stands in figures whose numbers no text gives, so what lies between the
+/// boundaries of no and of continuing erosion is "some erosion" here, though it may be excessive.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum TestedClass {
+    /// Within the boundary of no erosion.
+    #[serde(rename = "no erosion")]
+    None,
+    /// Beyond that of no erosion, within that of continuing erosion.
+    #[serde(rename = "some erosion")]
+    Some,
+    /// Beyond that of excessive erosion: never said until its numbers can be read.
+    #[serde(rename = "excessive erosion")]
+    Excessive,
+    /// Beyond the boundary of continuing erosion.
+    #[serde(rename = "continuing erosion")]
+    Continuing,
+    /// A boundary that is needed is not known for these soils.
+    #[default]
+    #[serde(rename = "unknown")]
+    Unknown,
 }
 
 /// A limit of D15F, and whether the filter keeps it.

@@ -159,7 +159,7 @@ impl DraftedRow {
         };
         row.check_room(options.bracket)?;
         // Of a filter that is still to be packed the curve itself is not known yet.
-        if row.case.scene.filter.estimate.is_some() {
+        if row.case.packed.is_none() {
             row.at_curve_ends().iter().try_for_each(|end| end.check_room(options.bracket))?;
         }
         Ok(Self { draft, row })

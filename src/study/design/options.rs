@@ -16,6 +16,8 @@ pub struct DesignOptions {
     pub filter: Option<String>,
     /// Densities: a word, `friction=F` or `estimate=D`.
     pub densities: Vec<String>,
+    /// Whether this very filter is packed; the library of packings knows its constrictions otherwise.
+    pub pack: bool,
     /// Thicknesses.
     pub thicknesses: Vec<Thickness>,
     /// Settings of the built-in scene, as `base.cu=3`.
@@ -43,6 +45,7 @@ impl Default for DesignOptions {
             base: None,
             filter: None,
             densities: Vec::new(),
+            pack: false,
             thicknesses: Vec::new(),
             settings: Vec::new(),
             as_sampled: false,

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use crate::outcome::stopping::StopRule;
 use crate::run::error::RunError;
 use crate::scene::{
-    Base, BaseGradation, D85, Density, Extent, NetworkSource, Regrade, Scene, keep_soils, quoted,
-    refuse_exchanged,
+    Base, BaseGradation, D85, Density, Extent, LibraryDensity, NetworkSource, Regrade, Scene, keep_soils,
+    quoted, refuse_exchanged,
 };
 use crate::walk::Engine;
 
@@ -56,13 +56,18 @@ pub(super) fn wanted(options: &DesignOptions) -> Result<Vec<Wanted>, RunError> {
     Ok(all)
 }
 
-/// The density of a shape that has none of its own: loose, whose constrictions are the widest.
+/// The density of a shape that has none of its own: any, from loose to dense; loose where it is to be packed.
 fn default_density(options: &DesignOptions) -> Option<String> {
     let stated = |setting: &String| {
-        ["filter.density", "filter.friction", "filter.estimate", "filter.curve"].contains(&key_of(setting))
+        let names =
+            ["filter.density", "filter.friction", "filter.library", "filter.estimate", "filter.curve"];
+        names.contains(&key_of(setting))
     };
     let needs_one = options.filter.as_deref().is_some_and(|shape| !shape_setting(shape).0);
-    (needs_one && !options.settings.iter().any(stated)).then(|| Density::Loose.name().to_owned())
+    (needs_one && !options.settings.iter().any(stated)).then(|| match options.pack {
+        true => Density::Loose.name().to_owned(),
+        false => LibraryDensity::Unknown.name().to_owned(),
+    })
 }
 
 /// Whether a shape has its constrictions, and the setting that says it: a Cu, a sieve table or a shipped
@@ -82,16 +87,21 @@ fn shape_setting(shape: &str) -> (bool, String) {
 }
 
 /// The setting that says a density.
-fn density_setting(density: &str) -> Result<String, RunError> {
+fn density_setting(density: &str, pack: bool) -> Result<String, RunError> {
     if let Some((name @ ("friction" | "estimate"), value)) = density.split_once('=') {
         return Ok(format!("filter.{name}={value}"));
     }
-    if let Some(word) = Density::named(density) {
-        return Ok(format!("filter.density={}", word.name()));
+    match Density::named(density) {
+        Some(word) if pack => return Ok(format!("filter.density={}", word.name())),
+        Some(word) => return Ok(format!("filter.library={}", word.name())),
+        None if !pack && density == LibraryDensity::Unknown.name() => {
+            return Ok(format!("filter.library={density}"));
+        }
+        None => {}
     }
     Err(RunError::Refused(format!(
-        "--density {density}: allowed: dense, medium (or intermediate) or loose, friction=0.2 (0 to 10), or \
-         estimate=0.5 (a relative density from 0 to 1, without a packing)"
+        "--density {density}: allowed: dense, medium (or intermediate) or loose, unknown (without \
+         --pack), friction=0.2 (0 to 10), or estimate=0.5 (a relative density from 0 to 1, without a packing)"
     )))
 }
 
@@ -105,7 +115,7 @@ fn one(
     keep_soils(&settings, base.as_deref(), options.filter.as_deref())?;
     let of_base = options.base.as_deref().map(quoted).transpose()?.map(|base| format!("base.sieve={base}"));
     let of_filter = options.filter.as_deref().map(|shape| shape_setting(shape).1);
-    let of_density = density.map(density_setting).transpose()?;
+    let of_density = density.map(|density| density_setting(density, options.pack)).transpose()?;
     let of_thickness = thickness.map(|thickness| match thickness {
         Thickness::Layers(layers) => format!("network.nz={layers}"),
         Thickness::D50F(multiple) => format!("network.thickness_d50f={multiple:?}"),
@@ -233,6 +243,9 @@ fn refuse(scene: &Scene) -> Result<(), RunError> {
 /// How densely a scene's filter is packed, in words.
 fn density_words(scene: &Scene) -> String {
     let filter = &scene.filter;
+    if let Some(density) = filter.library {
+        return density.name().to_owned();
+    }
     match (filter.density, filter.friction, filter.estimate, &filter.curve) {
         (Some(word), ..) => word.name().to_owned(),
         (None, Some(friction), ..) => format!("friction {friction}"),

@@ -50,9 +50,10 @@ pub(super) struct Row {
 impl Row {
     /// The same at the ends of the range in which the constriction curve is known.
     pub fn at_curve_ends(&self) -> Vec<Self> {
-        let is_guess = self.case.scene.filter.estimate.is_some();
+        let case = &self.case;
+        let names_itself = case.guessed_density.is_some() || case.library.is_some();
         let of = |end: &OtherCurve| {
-            let density = match is_guess {
+            let density = match names_itself {
                 true => end.name.replace(" = ", " "),
                 false => format!("{}, {}", self.wanted.density, end.name),
             };

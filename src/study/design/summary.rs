@@ -264,7 +264,8 @@ fn settings(options: &DesignOptions) -> Vec<String> {
     let densities = options.densities.iter().map(|density| format!("--density {density}"));
     let thicknesses = options.thicknesses.iter().map(|thickness| format!("--thickness {thickness}"));
     let settings = options.settings.iter().map(|setting| format!("--set {setting}"));
-    let ticks = [("--as-sampled", options.as_sampled), ("--as-given", options.as_given)];
+    let ticks =
+        [("--pack", options.pack), ("--as-sampled", options.as_sampled), ("--as-given", options.as_given)];
     let ticks = ticks.into_iter().filter(|(_, is_given)| *is_given).map(|(name, _)| name.to_owned());
     base.chain(filter).chain(densities).chain(thicknesses).chain(ticks).chain(settings).collect()
 }

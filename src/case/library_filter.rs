@@ -1,0 +1,91 @@
+//! A filter's constrictions from the library of packings, and how far they may be off.
+
+use super::curve_ends::OtherCurve;
+use super::cut;
+use super::recipe::width_by_largest;
+use crate::constrictions::{CurveError, FromLibrary, from_library};
+use crate::gradation::Gradation;
+use crate::outcome::packing::PackedPart;
+use crate::scene::LibraryDensity;
+
+/// The packings of the library have so many grains at most, so a broad gradation has its finer part alone in it.
+const GRAINS: usize = 5000;
+/// The cells of the library are this many times as wide as the largest grain.
+const CELLS_WIDTH: f64 = 2.5;
+
+/// A filter as the library knows it.
+#[derive(Clone)]
+pub struct LibraryFilter {
+    /// Its constrictions; the middle of what is possible where its density is unknown.
+    pub found: FromLibrary,
+    /// The finer part that was looked up, where the whole is too broad.
+    pub part: Option<PackedPart>,
+    /// The ends of the range in which its curve is known.
+    pub ends: Vec<OtherCurve>,
+}
+
+impl LibraryFilter {
+    /// Looks a filter up; `None` where it is like none of the library.
+    ///
+    /// # Errors
+    /// None for a gradation with a known size.
+    pub fn find(filter: &Gradation, density: LibraryDensity) -> Result<Option<Self>, CurveError> {
+        let width = |gradation: &Gradation| width_by_largest(gradation, GRAINS, 1.0);
+        let cut = (width(filter) < CELLS_WIDTH).then(|| cut::that_can_be_packed(filter, width));
+        let (looked_up, part) = match cut {
+            None => (filter.clone(), None),
+            Some(Some((finer, part))) => (finer, Some(part)),
+            Some(None) => return Ok(None),
+        };
+        let Some(found) = from_library(&looked_up, density.relative())? else { return Ok(None) };
+        // Leaving the coarser grains out makes all constrictions finer.
+        let finer_by = part.as_ref().map_or(0.0, |part| part.finer_by);
+        let [loose, dense] = match density {
+            LibraryDensity::Unknown => {
+                let [loose, dense] = [LibraryDensity::Loose, LibraryDensity::Dense]
+                    .map(|end| from_library(&looked_up, end.relative()));
+                [(loose?, "loose"), (dense?, "dense")]
+            }
+            _ => [(Some(found.clone()), density.name()), (Some(found.clone()), density.name())],
+        };
+        let coarsest = (1.0 + found.off_by) / (1.0 - finer_by);
+        let end = |(of, name): (Option<FromLibrary>, &str), factor: f64| {
+            let [way, by] = match factor > 1.0 {
+                true => ["coarser", &format!("{:.0}", 100.0 * (factor - 1.0))],
+                false => ["finer", &format!("{:.0}", 100.0 * (1.0 - factor))],
+            };
+            let name = format!("{name}, constrictions {by} % {way}");
+            Some(OtherCurve { name, curve: of?.curve.scaled(factor).ok()? })
+        };
+        let ends = [end(loose, coarsest), end(dense, 1.0 - found.off_by)];
+        Ok(Some(Self { found, part, ends: ends.into_iter().flatten().collect() }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_filter_of_unknown_density_has_loose_and_dense_as_its_ends() {
+        let filter = Gradation::linear_from_d0(1.0, 3.0).unwrap();
+        let of = |density| LibraryFilter::find(&filter, density).unwrap().unwrap();
+        let unknown = of(LibraryDensity::Unknown);
+        let dc50 = |curve: &crate::constrictions::Curve| curve.dc(50.0).unwrap();
+        let [loose, dense] = [of(LibraryDensity::Loose), of(LibraryDensity::Dense)];
+        let [coarse, fine] = [&unknown.ends[0], &unknown.ends[1]].map(|end| dc50(&end.curve));
+        assert!(coarse > dc50(&loose.found.curve) && fine < dc50(&dense.found.curve));
+        assert!(fine < dc50(&unknown.found.curve) && dc50(&unknown.found.curve) < coarse);
+        assert!(unknown.ends[0].name.starts_with("loose, constrictions"), "{}", unknown.ends[0].name);
+    }
+
+    #[test]
+    fn of_a_broad_filter_the_finer_part_is_looked_up() {
+        // A processed gravel of Cu 27.
+        let points =
+            [(0.075, 2.0), (0.3, 12.0), (0.6, 18.0), (2.36, 35.0), (4.75, 47.0), (19.0, 80.0), (37.5, 100.0)];
+        let filter = Gradation::from_points(&points, Some(0.05)).unwrap();
+        let found = LibraryFilter::find(&filter, LibraryDensity::Loose).unwrap();
+        assert!(found.is_some_and(|of| of.part.is_some()));
+    }
+}
