@@ -56,6 +56,91 @@ impl<'de> Deserializer<'de> for Names<'_> {
     }
 }
 
+/// A column of a table of numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Numbers {
+    /// Counts.
+    Counts(Vec<u64>),
+    /// Whole numbers, of which some stand for what has no number.
+    Whole(Vec<i64>),
+    /// Numbers with a point.
+    Floats(Vec<f64>),
+}
+
+/// A row of a table of numbers, whose columns are the fields of its type; `rows!` declares it.
+pub trait NumberRow: Sized {
+    /// Every column with its name.
+    fn columns(rows: &[Self]) -> Vec<(&'static str, Numbers)>;
+
+    /// The rows of columns, each asked for by its name and with an empty column of its kind; `None` where
+    /// what is given differs in length or kind.
+    ///
+    /// # Errors
+    /// What `column` says.
+    fn rows<E>(
+        column: impl FnMut(&'static str, Numbers) -> Result<Numbers, E>,
+    ) -> Result<Option<Vec<Self>>, E>;
+}
+
+macro_rules! numbers {
+    ($($kind:ty: $variant:ident),*) => { $(
+        impl From<Vec<$kind>> for Numbers {
+            fn from(column: Vec<$kind>) -> Self {
+                Self::$variant(column)
+            }
+        }
+
+        impl TryFrom<Numbers> for Vec<$kind> {
+            type Error = Numbers;
+
+            fn try_from(column: Numbers) -> Result<Self, Numbers> {
+                if let Numbers::$variant(column) = column { Ok(column) } else { Err(column) }
+            }
+        }
+    )* };
+}
+
+numbers!(u64: Counts, i64: Whole, f64: Floats);
+
+/// Declares rows of a table of numbers: CSV, npz and Python take their columns from the fields.
+macro_rules! rows {
+    ($($(#[$about:meta])* pub struct $row:ident {
+        $($(#[$what:meta])* pub $field:ident: $kind:ty,)*
+    })*) => { $(
+        $(#[$about])*
+        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        pub struct $row {
+            $($(#[$what])* pub $field: $kind,)*
+        }
+
+        impl crate::outcome::table::NumberRow for $row {
+            fn columns(rows: &[Self]) -> Vec<(&'static str, crate::outcome::table::Numbers)> {
+                vec![$((
+                    stringify!($field),
+                    rows.iter().map(|row| row.$field).collect::<Vec<$kind>>().into(),
+                )),*]
+            }
+
+            fn rows<E>(
+                mut column: impl FnMut(
+                    &'static str,
+                    crate::outcome::table::Numbers,
+                ) -> Result<crate::outcome::table::Numbers, E>,
+            ) -> Result<Option<Vec<Self>>, E> {
+                $(let Ok($field): Result<Vec<$kind>, _> =
+                    column(stringify!($field), Vec::<$kind>::new().into())?.try_into()
+                else {
+                    return Ok(None);
+                };)*
+                let counts = [$($field.len()),*];
+                let differ = counts.iter().any(|count| *count != counts[0]);
+                Ok((!differ).then(|| (0..counts[0]).map(|at| Self { $($field: $field[at]),* }).collect()))
+            }
+        }
+    )* };
+}
+pub(crate) use rows;
+
 /// The columns of a table.
 pub struct Columns<'a, T>(Vec<Column<'a, T>>);
 
