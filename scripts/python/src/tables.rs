@@ -4,7 +4,7 @@ use numpy::{Element, IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use voidwalk::outcome::Recorded;
-use voidwalk::outcome::table::{NumberRow, Numbers};
+use voidwalk::outcome::number_rows::{NumberColumn, NumberRow};
 
 use crate::arrays::column;
 use crate::problem::refused;
@@ -14,9 +14,9 @@ fn of_rows<'py, R: NumberRow>(py: Python<'py>, rows: &[R]) -> PyResult<Bound<'py
     let table = PyDict::new(py);
     for (name, numbers) in R::columns(rows) {
         match numbers {
-            Numbers::Counts(column) => table.set_item(name, column.into_pyarray(py))?,
-            Numbers::Whole(column) => table.set_item(name, column.into_pyarray(py))?,
-            Numbers::Floats(column) => table.set_item(name, column.into_pyarray(py))?,
+            NumberColumn::Counts(column) => table.set_item(name, column.into_pyarray(py))?,
+            NumberColumn::Whole(column) => table.set_item(name, column.into_pyarray(py))?,
+            NumberColumn::Floats(column) => table.set_item(name, column.into_pyarray(py))?,
         }
     }
     Ok(table)
@@ -31,9 +31,9 @@ fn to_rows<R: NumberRow>(tables: &Bound<'_, PyDict>, name: &str, is_needed: bool
     };
     let rows = R::rows(|field, like| {
         Ok::<_, PyErr>(match like {
-            Numbers::Counts(_) => column_of::<u64>(name, &table, field)?.into(),
-            Numbers::Whole(_) => column_of::<i64>(name, &table, field)?.into(),
-            Numbers::Floats(_) => column_of::<f64>(name, &table, field)?.into(),
+            NumberColumn::Counts(_) => column_of::<u64>(name, &table, field)?.into(),
+            NumberColumn::Whole(_) => column_of::<i64>(name, &table, field)?.into(),
+            NumberColumn::Floats(_) => column_of::<f64>(name, &table, field)?.into(),
         })
     })?;
     rows.ok_or_else(|| refused(format!("the columns of {name} differ in length")))

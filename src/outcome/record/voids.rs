@@ -1,6 +1,6 @@
 //! The rows of the CSV files of a run folder that say what happened in each void of the first replicate.
 
-use crate::outcome::table::rows;
+use crate::outcome::number_rows::rows;
 
 rows! {
     /// One row of `voids.csv`: a void of the filter, and where it lies.
