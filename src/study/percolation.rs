@@ -148,6 +148,20 @@ mod tests {
         assert_eq!(one.lines().count(), 81);
     }
 
+    /// As a kill leaves it, or a folder whose lattices are all done.
+    #[test]
+    fn a_study_continues_with_the_lattices_that_are_left() {
+        let plan = plan(vec![[6; 3], [8; 3], [4, 5, 6]], 10, 3).unwrap();
+        let whole = plan.run(Found::default(), None).unwrap();
+        for done in 0..=whole.thresholds.len() {
+            let kept = Found { thresholds: whole.thresholds[..done].to_vec(), seconds: 1000.0 };
+            let kept: Found = serde_json::from_str(&serde_json::to_string(&kept).unwrap()).unwrap();
+            let again = plan.run(kept, None).unwrap();
+            assert_eq!(again.thresholds, whole.thresholds, "{done}");
+            assert!(again.seconds >= 1000.0);
+        }
+    }
+
     #[test]
     fn impossible_sizes_are_refused_before_any_work() {
         assert!(plan(vec![[10, 10, 0]], 1, 1).is_err());
