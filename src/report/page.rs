@@ -13,7 +13,7 @@ use super::folder::{RunFolder, RunTexts, checked, walks};
 use super::infiltration::infiltration;
 use super::names::soil_name;
 use super::numbers::{duration, known, percent, significant, size, whole};
-use super::results::{fraction, replicates, results, sensitivity, thickness};
+use super::results::{eroded, replicates, results, sensitivity, thickness};
 use super::rules::rules;
 use super::run_figures::{self, run_name};
 use super::shell::{self, Drawn, clean, drawing, fact, whole_page};
@@ -25,7 +25,7 @@ use super::written::{Written, write_page};
 use super::{appendix, packing, shell::leaves_out};
 use crate::outcome::packing::PackingRecord;
 use crate::outcome::record::{
-    Confidence, Direction, FindingRecord, NetworkKind, Outcome, PanBounds, PanReading, Stopping, Verdict,
+    Confidence, Direction, FindingRecord, NetworkKind, Outcome, PanBounds, Stopping, Verdict,
 };
 use crate::outcome::undecided::UndecidedBy;
 use crate::verdict::words::capital;
@@ -174,13 +174,11 @@ fn verdict_section(folder: &RunFolder, verdict: &Drawn) -> Markup {
 
 /// What came of either reading of a pan fraction that need not be passive.
 fn both_readings(bounds: &PanBounds) -> Markup {
-    let mut table = Table::of(&bounds.readings)
+    let table = Table::of(&bounds.readings)
         .name("The base’s finest part taken as", |reading| bounds.words(reading))
-        .text("verdict", |reading| reading.verdict.words());
-    for index in 0..bounds.readings[0].runs.len() {
-        let of = move |reading: &PanReading| reading.runs.get(index).map_or_else(|| html! { "–" }, fraction);
-        table = table.number(run_name(index as u64 + 1), of);
-    }
+        .text("verdict", |reading| reading.walked.verdict.words());
+    let runs = (1..).map(run_name).take(bounds.readings[0].walked.runs.len());
+    let table = eroded(table, runs, |reading| &reading.walked);
     html! {
         p {
             (percent(bounds.mass_fraction)) " of the base is finer than its finest sieve, "

@@ -6,7 +6,7 @@ use super::numbers::{interval_in_percent, known, percent, significant, size, tri
 use super::run_figures::{eroded_axis, run_look, run_name, threshold_rule, upper, verdict_colour};
 use super::shell::Drawn;
 use super::walks::Walks;
-use crate::outcome::record::{OfThickness, Outcome, Statistic, Verdict};
+use crate::outcome::record::{Classed, OfThickness, Outcome};
 
 /// What is said where points of a study stopped early.
 pub(super) const STOPPED_WHEN_CLEAR: &str = "A point stops after one or two replicates where its erosion \
@@ -30,10 +30,7 @@ struct Varied<'a> {
     factor: f64,
     /// What stands below the factor on the axis.
     below: String,
-    verdict: Verdict,
-    runs: &'a [Statistic],
-    replicates: u64,
-    stopped_when_clear: bool,
+    walked: &'a Classed,
 }
 
 /// Eroded mass against the number of base particles, and the class that each number gives.
@@ -42,10 +39,7 @@ pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
     let cases = cases.map(|case| Varied {
         factor: case.factor,
         below: known(case.grains_per_void, significant),
-        verdict: case.verdict,
-        runs: &case.runs,
-        replicates: case.replicates,
-        stopped_when_clear: case.stopped_when_clear,
+        walked: &case.walked,
     });
     let titles = [
         "How the verdict moves with the number of base particles",
@@ -72,14 +66,7 @@ pub(super) fn thickness(folder: &RunFolder) -> Option<Drawn> {
     let scale_free = folder.outcome.inputs.scale_free;
     let of_row = |row: &'_ OfThickness| known(row.thickness_mm, |thickness| size(thickness, scale_free));
     let rows = folder.outcome.thickness.iter().filter(|row| row.factor > 0.0);
-    let rows = rows.map(|row| Varied {
-        factor: row.factor,
-        below: of_row(row),
-        verdict: row.verdict,
-        runs: &row.runs,
-        replicates: row.replicates,
-        stopped_when_clear: row.stopped_when_clear,
-    });
+    let rows = rows.map(|row| Varied { factor: row.factor, below: of_row(row), walked: &row.walked });
     let titles = [
         "How the verdict moves with the thickness of the filter",
         "Percent of the base mass eroded in each run against multiples of the filter's thickness; the \
@@ -104,9 +91,9 @@ pub(super) fn thickness(folder: &RunFolder) -> Option<Drawn> {
 
 /// How many replicates stand behind each point, and of what its class is, in words.
 fn behind(outcome: &Outcome, cases: &[Varied]) -> String {
-    let each = cases.iter().map(|case| format!("×{} {}", trimmed(case.factor), case.replicates));
+    let each = cases.iter().map(|case| format!("×{} {}", trimmed(case.factor), case.walked.replicates));
     let each = each.collect::<Vec<_>>().join(", ");
-    let stopped = cases.iter().any(|case| case.stopped_when_clear);
+    let stopped = cases.iter().any(|case| case.walked.stopped_when_clear);
     let mut said = format!("Replicates: {each}.");
     if stopped {
         said += &format!(" {STOPPED_WHEN_CLEAR}");
@@ -129,18 +116,18 @@ fn varied(walks: &Walks, mut cases: Vec<Varied>, titles: [&str; 3]) -> Option<Fi
         tick
     });
     let x = Axis::log(axis, least, most).with_ticks(ticks.collect()).within(least / 1.25, most * 1.25);
-    let highest = 100.0 * cases.iter().flat_map(|case| case.runs).map(upper).fold(0.0, f64::max);
+    let highest = 100.0 * cases.iter().flat_map(|case| &case.walked.runs).map(upper).fold(0.0, f64::max);
     let y = eroded_axis("Base eroded, by mass (%)", walks, (highest * 1.3).min(100.0));
     let mut figure = Figure::new(title, what, "", x, y);
     let edge = |left: f64, right: f64| libm::sqrt(left * right);
     let mut left = least / 1.25;
-    for same in cases.chunk_by(|a, b| a.verdict == b.verdict) {
+    for same in cases.chunk_by(|a, b| a.walked.verdict == b.walked.verdict) {
         let (Some(first), Some(last)) = (same.first(), same.last()) else { continue };
         let next = cases.iter().find(|case| case.factor > last.factor);
         let right = next.map_or(most * 1.25, |next| edge(last.factor, next.factor));
         let outline = vec![(left, 0.0), (left, 100.0), (right, 100.0), (right, 0.0)];
-        let area = Area::new(outline, verdict_colour(first.verdict), 0.2);
-        figure.add(area.label(&first.verdict.words().replace(' ', "\n")));
+        let area = Area::new(outline, verdict_colour(first.walked.verdict), 0.2);
+        figure.add(area.label(&first.walked.verdict.words().replace(' ', "\n")));
         left = right;
     }
     figure.add(threshold_rule(walks, Across::Y));
@@ -148,7 +135,8 @@ fn varied(walks: &Walks, mut cases: Vec<Varied>, titles: [&str; 3]) -> Option<Fi
         let (colour, shape, dash) = run_look(run);
         // the runs stand a little apart, so that their bars do not overlap
         let apart = if run == 1 { 0.985 } else { 1.015 };
-        let found = || cases.iter().filter_map(|case| Some((case.factor, case.runs.get(run as usize - 1)?)));
+        let found =
+            || cases.iter().filter_map(|case| Some((case.factor, case.walked.runs.get(run as usize - 1)?)));
         let means = found().map(|(factor, statistic)| (factor * apart, statistic.mean * 100.0)).collect();
         let factors = found().map(|(factor, _)| factor).collect();
         figure.add(Line::new(means, colour).true_x(factors).dash(dash).label(run_name(run)));

@@ -122,21 +122,21 @@ impl Outcome {
 pub fn pan(bounds: &PanBounds) -> Finding {
     let (share, sieve) = (100.0 * bounds.mass_fraction, bounds.finest_sieve_mm);
     let finest = bounds.finest_constriction_mm;
-    let [fine, coarse] = bounds.readings.each_ref().map(|reading| match reading.verdict {
+    let [fine, coarse] = bounds.readings.each_ref().map(|reading| match reading.walked.verdict {
         Verdict::Undecided => "stays open".to_owned(),
         verdict => format!("is {}", verdict.words()),
     });
     match bounds.differ() {
         true => finding::pan_decides(share, sieve, finest, &fine, &coarse),
-        false => finding::pan_agrees(share, sieve, finest, bounds.readings[0].verdict.words()),
+        false => finding::pan_agrees(share, sieve, finest, bounds.readings[0].walked.verdict.words()),
     }
 }
 
 /// What the range of a constriction curve says of its verdict.
 pub fn curve_range(range: &CurveRange) -> Finding {
     let end = |end: &CurveEnd| {
-        let runs: Vec<String> = end.runs.iter().map(|s| format!("{:.2} %", 100.0 * s.mean)).collect();
-        format!("{}: {}, {} eroded", end.curve, end.verdict.words(), runs.join(" then "))
+        let runs: Vec<String> = end.walked.runs.iter().map(|s| format!("{:.2} %", 100.0 * s.mean)).collect();
+        format!("{}: {}, {} eroded", end.curve, end.walked.verdict.words(), runs.join(" then "))
     };
     let ends: Vec<String> = range.ends.iter().map(end).collect();
     let each = format!("{}; by the curve itself: {}", ends.join("; "), range.verdict.words());
@@ -164,8 +164,8 @@ pub fn packed_part(part: &PackedPart) -> Finding {
 /// What either reading of the base's finest part came to.
 fn readings(bounds: &PanBounds) -> Finding {
     let each = bounds.readings.each_ref().map(|reading| {
-        let runs: Vec<String> = reading.runs.iter().map(|run| percent(run.mean)).collect();
-        let (words, verdict) = (bounds.words(reading), reading.verdict.words());
+        let runs: Vec<String> = reading.walked.runs.iter().map(|run| percent(run.mean)).collect();
+        let (words, verdict) = (bounds.words(reading), reading.walked.verdict.words());
         format!("{words}: {verdict}, {} eroded", runs.join(" and "))
     });
     finding::pan_readings(&each.join("; "))
