@@ -118,12 +118,12 @@ findings! {
     /// A search that ends while the base erodes.
     erodes_to_end(ratio: Ratio, of: Text): Study, Open, Limits;
         "search", "design.md",
-        "7.5 % or more of the base erodes down to D15F/D85B {ratio}, where the search ends{of}.";
+        "At least 7.5 % of the base erodes down to D15F/D85B {ratio}, where the search ends{of}.";
     /// Ratios below which nothing can be walked.
     erodes_to(ratio: Ratio, of: Text, why: Text): Study, Open, Limits;
         "search", "design.md",
-        "7.5 % or more of the base erodes down to D15F/D85B {ratio}{of}, and no smaller ratio can be walked: \
-         {why}.";
+        "At least 7.5 % of the base erodes down to D15F/D85B {ratio}{of}, and no smaller ratio can be \
+         walked: {why}.";
     /// A search that ends while the filter holds.
     holds_to_end(run: Text, ratio: Ratio, of: Text): Study, Open, Limits;
         "search", "design.md",

@@ -420,7 +420,7 @@ fn equation_one_stands_beside_the_walk() {
         "no end",
         "If nothing were ever blocked, 87.3 % of the base’s mass would leave",
         "down to 59.0, 95 % of them down to 11.0 (first run)",
-        "The difference is what blocking holds",
+        "The difference is due to blocking",
     ] {
         assert!(text.contains(expected), "{expected}");
     }

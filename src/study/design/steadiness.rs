@@ -4,8 +4,8 @@ use crate::outcome::verdict::THRESHOLD;
 
 use super::search::Done;
 
-/// Of networks whose no-erosion boundary is in doubt how many hold a ratio above one at which they erode, half
-/// or more of them, and how many erode.
+/// Of networks whose no-erosion boundary is in doubt: how many hold a ratio above one at which they erode,
+/// half or more of them, and how many erode.
 pub(super) fn doubt(done: &[&Done]) -> Option<[u64; 2]> {
     let eroding: Vec<&&Done> = done.iter().filter(|of| of.found.no_erosion.is_some()).collect();
     let unsteady = eroding.iter().filter(|of| comes_and_goes(&of.found.walks)).count();
