@@ -393,19 +393,6 @@ fn arrows(sources: &[Source]) -> BTreeMap<usize, BTreeSet<usize>> {
     arrows
 }
 
-/// Files that lean on each other still: the case, what it is made of, and the error of all of them, which
-/// stands with the case. None may be added.
-const KNOWN_CIRCLE: [&str; 8] = [
-    "src/case/files.rs",
-    "src/case/mod.rs",
-    "src/case/packed_filter.rs",
-    "src/case/packing_plan.rs",
-    "src/case/pan.rs",
-    "src/case/regrade.rs",
-    "src/case/supply.rs",
-    "src/case/void_graph.rs",
-];
-
 /// A path and a name of each way to import, as the files of the library write them.
 #[test]
 fn the_reader_of_imports_sees_every_way_to_write_them() {
@@ -444,20 +431,15 @@ fn no_two_files_lean_on_each_other() {
     };
     let reached: Vec<BTreeSet<usize>> = (0..sources.len()).map(reach).collect();
     let mut circles = BTreeSet::new();
-    let mut round: BTreeSet<&str> = KNOWN_CIRCLE.into();
     for (one, others) in reached.iter().enumerate().filter(|(one, others)| others.contains(one)) {
         let circle: Vec<&str> = others
             .iter()
             .filter(|&&other| reached[other].contains(&one))
             .map(|&other| sources[other].path.to_str().unwrap())
             .collect();
-        round.remove(sources[one].path.to_str().unwrap());
-        if circle.iter().any(|file| !KNOWN_CIRCLE.contains(file)) {
-            circles.insert(circle.join(" <-> "));
-        }
+        circles.insert(circle.join(" <-> "));
     }
     assert!(circles.is_empty(), "{}", circles.into_iter().collect::<Vec<_>>().join("\n"));
-    assert!(round.is_empty(), "in no circle any more, take them off KNOWN_CIRCLE: {round:?}");
 }
 
 #[test]

@@ -5,6 +5,7 @@ use crate::gradation::Gradation;
 use crate::outcome::packing::PackedPart;
 
 /// Another curve that the filter may have.
+#[derive(Clone)]
 pub struct OtherCurve {
     /// Which it is, in words.
     pub name: String,

@@ -3,33 +3,15 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::CaseError;
-use super::packed_filter::PackedError;
-use super::packed_filter::{GRAINS, PackedFilter, RECORD};
+use super::error::CaseError;
+use super::input::Input;
+use super::packed_filter::{GRAINS, PackedError, PackedFilter, RECORD};
 use crate::constrictions::{Curve, ShippedFilter, find};
 use crate::gradation::{Gradation, Soil, file_and_soil};
 use crate::network::{ArrayOptions, Network, NetworkError};
 use crate::packing::{PACKING_FILE_LIMIT_BYTES, Packing};
 use crate::scene::{CurveSource, Scene, SceneError};
 use crate::store::read_regular;
-
-/// A file that was read, and the name under which a run folder keeps it.
-#[derive(Clone, Debug)]
-pub struct Input {
-    /// The setting that names it.
-    pub setting: &'static str,
-    /// Its path as the user gave it first: a run that continues from the files in its folder says what the
-    /// user called them.
-    pub name: String,
-    /// Name inside the run folder.
-    pub kept_as: String,
-    /// Its bytes.
-    pub bytes: Vec<u8>,
-    /// Which of its soils is meant, where it holds several.
-    pub soil: Option<String>,
-    /// What was assumed to understand it.
-    pub notes: Vec<String>,
-}
 
 /// A larger sieve table or curve is refused before it is read (bytes).
 const LARGEST_TABLE: u64 = 16 << 20;

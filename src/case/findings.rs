@@ -3,8 +3,9 @@
 
 use super::packed_filter::GUESSED_GRAINS_PER_VOID;
 use super::{Case, Input, PackingPlan, guesses_grains_per_void, replicate_seed};
-use crate::gradation::{FEW_FINES, FINES_MM, Gradation};
+use crate::gradation::{FEW_FINES, FINES_MM, GRAVEL_MM, Gradation};
 use crate::network::ExitRule;
+use crate::scene::Regrade;
 use crate::verdict::Mistake;
 use crate::verdict::beside::packed_part;
 use crate::verdict::{Finding, finding, rank};
@@ -24,15 +25,16 @@ const FEW_REPLICATES: u64 = 5;
 /// Ranges of Cu that the model was checked for, of filter and base.
 const CHECKED_CU: [(&str, [f64; 2]); 2] = [("filter", [1.2, 6.0]), ("base", [1.2, 4.5])];
 
+/// Cu from which a base counts as broadly graded: that of well-graded sands by ASTM D2487.
+const BROAD_CU: f64 = 6.0;
+
 /// Constrictions that are looked at to find that out, each as often as it is looked at.
 const LOOKED_AT: u64 = 50_000_000;
 
 impl Case {
     /// What is known of its verdict before the walk, in sentences: what `check` says.
     pub fn warnings(&self) -> Vec<String> {
-        let all = self.to_be_walked().into_iter().chain(self.findings());
-        // A study that nobody asked for is worth a word beside a verdict, and no warning.
-        let mut all: Vec<Finding> = all.filter(|finding| finding.id() != "not_studied").collect();
+        let mut all: Vec<Finding> = self.to_be_walked().into_iter().chain(self.findings()).collect();
         // Whether these are the right tables at all comes first.
         all.sort_by_key(|finding| (finding.id() != "doubtful_tables", rank(finding)));
         all.iter().map(Finding::with_to_do).collect()
@@ -74,7 +76,6 @@ impl Case {
             loose => all.extend(loose.map(finding::loose_grains)),
         }
         all.extend(self.few_replicates());
-        all.extend(self.not_studied());
         all.extend(self.regrading());
         let of_file = |input: &Input| -> Vec<Finding> {
             input.notes.iter().map(|note| finding::read_as(&input.name, note)).collect()
@@ -128,8 +129,8 @@ impl Case {
         })
     }
 
-    /// That neither study was asked for.
-    fn not_studied(&self) -> Option<Finding> {
+    /// That neither study was asked for: worth a word beside a verdict, and no warning before it.
+    pub fn not_studied(&self) -> Option<Finding> {
         let record = &self.scene.record;
         // Without a list of its own the study of the thickness goes with the other.
         let studied = |list: &[f64]| list.iter().any(|factor| *factor != 1.0);
@@ -157,6 +158,30 @@ impl Case {
     /// Fines of the base that may be cohesive, or that are not known.
     fn fines(&self) -> Option<Finding> {
         if self.is_scale_free() { None } else { fines_of(&self.base) }
+    }
+
+    /// A base that is broadly graded and walked as it is.
+    fn broad_base(&self) -> Option<Finding> {
+        if self.regraded_from.is_some() || self.is_scale_free() {
+            return None;
+        }
+        let regraded = self.base.regraded();
+        match (regraded.at_mm, self.base.cu().filter(|cu| *cu >= BROAD_CU)) {
+            (Some(at), _) => Some(finding::not_regraded(at, &regraded.why)),
+            (None, cu) => cu.map(finding::broadly_graded),
+        }
+    }
+
+    /// A base that is walked regraded, or that was to be.
+    fn regrading(&self) -> Option<Finding> {
+        match (&self.regraded_from, self.scene.base.regrade) {
+            (Some((given, at)), _) => Some(finding::regraded(given.percent_finer_by_mass(*at), *at)),
+            // Of a base without gravel nobody expects it.
+            (None, Some(Regrade::Practice)) if self.base.largest_mm() > GRAVEL_MM => {
+                Some(finding::regrading_not_needed(&self.base.regraded().why))
+            }
+            _ => None,
+        }
     }
 
     /// A tall cell whose number of grains leaves it narrow.

@@ -3,8 +3,10 @@
 mod amount;
 mod curve_ends;
 mod cut;
+mod error;
 mod files;
 mod findings;
+mod input;
 mod left_out;
 mod memory;
 mod network_key;
@@ -12,6 +14,8 @@ mod packed_filter;
 mod packing_plan;
 mod pan;
 mod places;
+mod readings;
+mod recipe;
 mod record;
 mod regrade;
 mod resolved;
@@ -24,9 +28,11 @@ mod void_graph;
 
 pub use amount::{all_on_its_way, narrow_lattice};
 pub use curve_ends::OtherCurve;
+pub use error::CaseError;
 use files::Files;
-pub use files::{INPUT_FILES, INPUT_NAMES, Input};
+pub use files::{INPUT_FILES, INPUT_NAMES};
 pub use findings::{few, fines_of, not_as_uniform};
+pub use input::Input;
 pub use memory::{ResourceLimits, in_words};
 use packed_filter::GUESSED_GRAINS_PER_VOID;
 pub use packed_filter::{GRAINS, PackedError, PackedFilter, RECORD};
@@ -37,76 +43,16 @@ use supply::Against;
 pub use supply::PAPER_MASS_RATIO;
 use void_graph::GraphPacking;
 
-use crate::constrictions::{Curve, CurveError, CurveUnit, ShippedFilter, inscribed};
-use crate::gradation::{Gradation, GradationError, NumberError, SizeSampler};
+use crate::constrictions::{Curve, CurveUnit, ShippedFilter, inscribed};
+use crate::gradation::{Gradation, SizeSampler};
 use crate::network::{CONDUCTANCE_EXPONENT, ExitRule, Network, NetworkError, WIDE};
 use crate::outcome::record::{PanSize, Ratios};
-use crate::scene::{
-    Amount, BaseGradation, D85, Extent, FilterGradation, NetworkSource, Scene, SceneError, USUAL_LAYERS,
-};
+use crate::scene::{Amount, BaseGradation, D85, Extent, FilterGradation, NetworkSource, Scene, USUAL_LAYERS};
 use crate::store::Placement;
 use crate::stream::{Key, Purpose};
 use crate::verdict::{Mistake, MistakeKind};
 use rand::Rng;
 use std::sync::Arc;
-
-/// Why a scene cannot be walked.
-#[derive(Debug, thiserror::Error)]
-pub enum CaseError {
-    /// The scene itself.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// A gradation.
-    #[error(transparent)]
-    Gradation(#[from] GradationError),
-    /// A constriction curve.
-    #[error(transparent)]
-    Curve(#[from] CurveError),
-    /// A number worked out from the scene.
-    #[error(transparent)]
-    Number(#[from] NumberError),
-    /// The network.
-    #[error(transparent)]
-    Network(#[from] NetworkError),
-    /// The packing.
-    #[error(transparent)]
-    Packed(#[from] PackedError),
-    /// The filter has to be packed first.
-    #[error("{file}: the filter has not been packed yet")]
-    NotPacked {
-        /// The scene.
-        file: String,
-    },
-    /// So few grains that the cell would be no wider than two of the largest.
-    #[error("{file}: {problem}")]
-    NarrowCell {
-        /// The scene.
-        file: String,
-        /// What is wrong.
-        problem: String,
-        /// The same plan with grains enough.
-        would_do: Box<PackingPlan>,
-    },
-    /// More memory, or more disk, than there is.
-    #[error(
-        "{n_base} base particles walked one by one{study} on {voids} voids need {needed} of memory, but \
-         {available} are available{disk}; set base.cap or base.n_base lower, or a smaller network"
-    )]
-    Memory {
-        /// Base particles.
-        n_base: u64,
-        /// The study that asks for them, where it is not the scene itself.
-        study: String,
-        /// Voids.
-        voids: u64,
-        /// Bytes needed, in words.
-        needed: String,
-        /// Bytes available, in words.
-        available: String,
-        /// What there is to say of the disk.
-        disk: String,
-    },
-}
 
 /// Seed of replicate `replicate`, counted from 1: a function of the user's seed and the replicate alone.
 pub fn replicate_seed(seed: u64, replicate: u64) -> u64 {
@@ -125,6 +71,8 @@ pub struct Case {
     /// The finest constriction (mm) of every curve that is walked, the ends of its range included: what is
     /// finer blocks nothing in any of them.
     pub finest_mm: f64,
+    /// The other curves that are walked besides its own: the ends of the range in which it is known.
+    pub curve_ends: Vec<OtherCurve>,
     /// The shipped filter that the curve is, if it is one.
     pub shipped: Option<&'static ShippedFilter>,
     /// The packing that the curve was measured on, if the program made it.
@@ -309,7 +257,7 @@ impl Case {
         let of_packing = packed.as_ref().map(|packed| packed.grains_per_void).or(of_shipped);
         let guessed = guesses_grains_per_void(&scene).then_some(GUESSED_GRAINS_PER_VOID);
         let grains_per_void = scene.filter.grains_per_void.or(of_graph).or(of_packing).or(guessed);
-        let ends = match fixed_network {
+        let curve_ends = match fixed_network {
             Some(_) => Vec::new(),
             None => curve_ends::of(
                 &curve,
@@ -318,7 +266,7 @@ impl Case {
                 scene.filter.estimate,
             ),
         };
-        let finest_mm = ends.iter().map(|end| end.curve.smallest()).fold(curve.smallest(), f64::min);
+        let finest_mm = curve_ends.iter().map(|end| end.curve.smallest()).fold(curve.smallest(), f64::min);
         let against = Against {
             scene: &scene,
             filter: &filter,
@@ -346,6 +294,7 @@ impl Case {
             filter,
             curve,
             finest_mm,
+            curve_ends,
             shipped,
             base,
             regraded_from,

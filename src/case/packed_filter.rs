@@ -6,7 +6,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::PackingPlan;
+use super::packing_plan::PackingPlan;
 use crate::constrictions::{Constrictions, ConstrictionsError, Curve, CurveError, CurveUnit, inscribed};
 use crate::outcome::packing::{PackedPart, PackingRecord, SameShape};
 use crate::packing::{ImportError, Packing};

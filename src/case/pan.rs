@@ -5,7 +5,6 @@
 //! twice, with the same mass: once with a pan fraction that is passive, and once with all of it of the finest
 //! sieve's size.
 
-use super::Case;
 use crate::gradation::{Gradation, GradationError};
 use crate::outcome::record::PanSize;
 
@@ -33,20 +32,6 @@ pub(super) fn taken_as(base: &Gradation, size: PanSize, finest_mm: f64) -> Resul
         PanSize::FinestSieve => points.insert(0, (NEARLY * sieve, 0.0)),
     }
     Gradation::from_points(&points, None)
-}
-
-impl Case {
-    /// The base with either end of the sizes that its pan fraction may have, the finest first, as they are
-    /// walked: what is passive is of no other size to a walk. `None` without a pan fraction.
-    pub(super) fn tail_as(&self) -> Option<[Gradation; 2]> {
-        if self.base.pan_fraction() == 0.0 {
-            return None;
-        }
-        let read = |size| taken_as(&self.base, size, self.finest_mm).ok();
-        let coarse = read(PanSize::FinestSieve)?;
-        let fine = if self.pan_size.is_some() { read(PanSize::Passive)? } else { coarse.clone() };
-        Some([fine, coarse])
-    }
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@
 
 use super::files::Files;
 use super::supply::Against;
-use super::{Case, CaseError, OtherCurve, base_gradation, curve_ends, regrade, sizes};
+use super::{Case, CaseError, base_gradation, regrade, sizes};
 use crate::constrictions::Curve;
 use crate::gradation::Gradation;
 use crate::network::{Network, NetworkError};
@@ -27,19 +27,10 @@ pub struct StatedBase {
 }
 
 impl Case {
-    /// The other curves that are walked besides the case's own: the ends of the range in which it is known.
-    pub fn curve_ends(&self) -> Vec<OtherCurve> {
-        if self.fixed_network.is_some() {
-            return Vec::new();
-        }
-        let part = self.packed.as_ref().and_then(|packed| packed.part.as_ref());
-        curve_ends::of(&self.curve, &self.filter, part, self.scene.filter.estimate)
-    }
-
-    /// The same case with another constriction curve: the same base, as much of it.
+    /// The same case with another constriction curve, and that alone: the same base, as much of it.
     pub fn with_curve(&self, curve: Curve) -> Self {
         let finest_mm = self.finest_mm.min(curve.smallest());
-        Self { curve, finest_mm, ..self.clone() }
+        Self { curve, finest_mm, curve_ends: Vec::new(), ..self.clone() }
     }
 
     /// The base that another scene states, read beside this case's filter.
@@ -90,6 +81,7 @@ impl Case {
         let mut case = self.clone();
         (case.filter, case.curve) = (self.filter.scaled(factor)?, self.curve.scaled(factor)?);
         (case.finest_mm, case.unit_mm) = (factor * self.finest_mm, case.filter.smallest_mm());
+        case.curve_ends.clear();
         if case.scene.filter.sieve.is_none() {
             // Its sizes are no longer multiples of D0F.
             case.scene.filter.d0_mm = Some(case.unit_mm);
@@ -160,7 +152,7 @@ mod tests {
         let set = set.chain(["filter.estimate=0.5", "base.n_base=50", "network.nx=4"].map(String::from));
         let case = Case::new(Scene::built_in(&set.collect::<Vec<_>>()).unwrap()).unwrap();
         assert_eq!(case.pan_size, Some(PanSize::Passive));
-        let ends = case.curve_ends();
+        let ends = &case.curve_ends;
         assert!(ends.iter().any(|end| end.curve.smallest() < case.curve.smallest()));
         for end in ends {
             assert!(case.sampler.smallest() < (end.curve.smallest() / case.unit_mm) as f32, "{}", end.name);

@@ -1,6 +1,7 @@
 //! The base as it is walked: its sizes, and how many particles of them.
 
-use super::{Case, CaseError, pan};
+use super::error::CaseError;
+use super::pan;
 use crate::gradation::{BaseSupply, Gradation, SizeSampler, base_particles};
 use crate::outcome::record::PanSize;
 use crate::scene::{Amount, Scene};
@@ -117,34 +118,5 @@ impl Against<'_> {
                 Err(self.scene.clash(problem).into())
             }
         }
-    }
-}
-
-impl Case {
-    /// The same case with another reading of its base, of which no other is studied.
-    pub(super) fn read_as(&self, walked: WalkedBase) -> Self {
-        let mut scene = self.scene.clone();
-        scene.record.sensitivity.clear();
-        scene.record.thickness = Some(Vec::new());
-        Self {
-            pan_size: walked.pan_size,
-            n_base_eq2: walked.n_base_eq2(),
-            sampler: walked.sampler,
-            n_base: walked.n_base.n_base,
-            capped: walked.n_base.capped,
-            mass_ratio: walked.mass_ratio,
-            scene,
-            ..self.clone()
-        }
-    }
-
-    /// The case itself and its other reading, where it has two.
-    pub fn readings(&self) -> impl Iterator<Item = &Case> {
-        std::iter::once(self).chain(self.other_reading.as_deref())
-    }
-
-    /// Share of the base's mass that is passive and counted by mass only.
-    pub fn pan_by_mass_only(&self) -> f64 {
-        if self.pan_size.is_some() { 0.0 } else { self.base.pan_fraction() }
     }
 }

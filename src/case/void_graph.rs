@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::CaseError;
+use super::error::CaseError;
 use super::files::{Files, KEPT_GRAINS};
 use super::packed_filter::PackedFilter;
 use crate::constrictions::{Curve, VoidGraph};

@@ -183,8 +183,9 @@ fn both_readings(bounds: &PanBounds) -> Markup {
         p {
             (percent(bounds.mass_fraction)) " of the base is finer than its finest sieve, "
             (size(bounds.finest_sieve_mm, false)) ", which is coarser than the finest constriction, "
-            (size(bounds.finest_constriction_mm, false)) ". The base was walked with either end of the sizes \
-             that this part may have; the verdict is what both give, the other numbers are of the first."
+            (size(bounds.finest_constriction_mm, false)) ". The base was walked twice, with this part at the \
+                finest and at the coarsest size that it may have. The verdict takes both; all other numbers \
+                are of the first."
         }
         (table)
     }
@@ -249,8 +250,8 @@ fn findings(outcome: &Outcome) -> Markup {
 }
 
 /// Of a page that was written before the studies were walked.
-const TO_COME: &str = "How the verdict moves with the thickness of the filter and the number of base \
-    particles is not walked yet, and nothing moves it more: voidwalk resume goes on with it.";
+const TO_COME: &str = "The thickness of the filter and the number of base particles move the verdict most. \
+    Their effect is not walked yet; voidwalk resume goes on with it.";
 
 /// How what is left out of a study begins: of the number of base particles, and of the thickness.
 const SENSITIVITY: &[&str] = &["sensitivity to the number of base particles"];
@@ -310,8 +311,8 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
     let kind = match (network.kind, network.nx, network.ny, network.nz) {
         (NetworkKind::Cubic, Some(nx), Some(ny), Some(nz)) if outcome.network.is_some() => {
             format!(
-                "cubic lattice, {nx} × {ny} × {nz} voids ({nz} along the flow), whose constrictions have the \
-                 direction that water gives them"
+                "cubic lattice, {nx} × {ny} × {nz} voids ({nz} along the flow), where the flow of water \
+                 gives each constriction its direction"
             )
         }
         (NetworkKind::Cubic, Some(nx), Some(ny), Some(nz)) => {

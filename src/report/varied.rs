@@ -9,20 +9,19 @@ use super::walks::Walks;
 use crate::outcome::record::{Classed, OfThickness, Outcome};
 
 /// What is said where points of a study stopped early.
-pub(super) const STOPPED_WHEN_CLEAR: &str = "A point stops after one or two replicates where its erosion \
-    clearly continues, as that of this scene does: its interval then takes twice the scatter of this scene’s \
-    own replicates, or its own where that is wider, because so few say nothing sure of theirs.";
+pub(super) const STOPPED_WHEN_CLEAR: &str = "A point stops after one or two replicates if its erosion \
+    clearly continues, as it does for this scene. Its interval then takes twice the scatter of this scene’s \
+    replicates, or its own if that is wider, because so few replicates do not show theirs.";
 
 /// What is said where not every thickness has its base.
-pub(super) const HELD: &str = "A cap or base.n_base holds the number of base particles (marked * in the \
-    table), so that a thicker filter is not offered as many times the base, as Eq. (2) asks: it seems to \
-    hold better than it would.";
+pub(super) const HELD: &str = "The number of base particles is fixed or capped (marked * in the table), so a \
+    thicker filter is not offered base in proportion. It seems to hold better than it would.";
 
 /// What is said of the classes of a study where the verdict is undecided and its other points know nothing of
 /// what leaves it so.
 pub(super) fn classes_of_points(outcome: &Outcome) -> Option<String> {
     let points = outcome.points_are()?;
-    Some(format!("×1 has the verdict of this page; the others are classed {points}."))
+    Some(format!("×1 has the verdict of this page; the other points are classed {points}."))
 }
 
 /// One of several filters or bases that differ in one thing: how many times that of this scene.
@@ -51,8 +50,8 @@ pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
     let behind = behind(&folder.outcome, &cases);
     let figure = varied(&folder.walks(), cases, titles)?;
     let caption = format!(
-        "How the verdict moves with the number of base particles, N_base. Grains per void and mass ratio \
-         enter N_base only as a product (Eq. 2), so this one axis answers for both: ×2 is twice the grains \
+        "How the verdict moves with the number of base particles. It is proportional to the grains per void \
+         and to the mass ratio, so this axis covers both: ×2 is twice the grains \
          per void or twice the mass ratio. ×1 is this scene: {} grains per void, mass ratio {}. Bars: 95 % \
          intervals. {behind}",
         known(folder.outcome.grains_per_void, significant),
@@ -78,7 +77,7 @@ pub(super) fn thickness(folder: &RunFolder) -> Option<Drawn> {
     let figure = varied(&folder.walks(), rows, titles)?;
     let outcome = &folder.outcome;
     let offered = match outcome.thickness.iter().all(|row| outcome.has_its_base(row)) {
-        true => "By Eq. (2) a thicker filter is offered as many times the base.",
+        true => "A thicker filter is offered base in proportion.",
         false => HELD,
     };
     let caption = format!(

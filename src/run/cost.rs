@@ -9,6 +9,7 @@
 use super::pilot::{WorkByVoid, pilot, small_packing_seconds};
 use super::planned::{first_replicates, likely_replicates};
 use crate::case::{Case, PackingPlan};
+use crate::constrictions::Curve;
 use crate::packing::is_wide;
 use crate::scene::NetworkSource;
 use crate::store::platform::THREAD_SECONDS_STEP;
@@ -130,7 +131,7 @@ impl Case {
     /// The same for one reading of its base, its files apart.
     fn reading_foreseen(&self) -> Foreseen {
         let (factors, thicknesses) = (self.sensitivity_factors(), self.thickness_factors());
-        let ends = self.curve_ends();
+        let ends = &self.curve_ends;
         let most_s = PILOT_S / (1 + factors.len() + thicknesses.len() + ends.len()) as f64;
         let own = self.of_replicate(self.n_base, most_s);
         let of_base = |f: f64| self.of_replicate((self.n_base as f64 * f) as u64, most_s);
@@ -152,8 +153,8 @@ impl Case {
             (likely_replicates(self, eroded), point)
         });
         let replicates = first_replicates(self);
-        let of_end = |curve| self.with_curve(curve).of_replicate(self.n_base, most_s);
-        let ends = ends.into_iter().map(|end| (replicates, of_end(end.curve)));
+        let of_end = |curve: &Curve| self.with_curve(curve.clone()).of_replicate(self.n_base, most_s);
+        let ends = ends.iter().map(|end| (replicates, of_end(&end.curve)));
         let first = Foreseen::default().and(replicates as f64, &own);
         studies.chain(ends).fold(first, |all, (replicates, point)| all.and(replicates as f64, &point))
     }

@@ -19,11 +19,11 @@ pub fn curve_range(
     let parts = case.sensitivity_factors().len() as u64 + 2..;
     let own = case.curve.dc(50.0).unwrap_or(f64::NAN);
     let mut ends = Vec::new();
-    for (part, end) in parts.zip(case.curve_ends()) {
+    for (part, end) in parts.zip(&case.curve_ends) {
         let dc50_factor = end.curve.dc(50.0).unwrap_or(f64::NAN) / own;
-        let other = case.with_curve(end.curve);
+        let other = case.with_curve(end.curve.clone());
         let of_end = some_replicates(&other, part, 1..=walked.len() as u64, case.n_base, context)?;
-        ends.push(CurveEnd { curve: end.name, dc50_factor, walked: classed(&of_end) });
+        ends.push(CurveEnd { curve: end.name.clone(), dc50_factor, walked: classed(&of_end) });
     }
     let (verdict, summaries) = summarise(walked);
     // A verdict that was to be certain is one at the level asked for, here too.

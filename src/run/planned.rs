@@ -9,7 +9,7 @@ use crate::outcome::verdict::{THRESHOLD, classify};
 /// studies, as far as it is known before.
 pub fn runs_to_walk(case: &Case) -> u64 {
     let first = first_replicates(case);
-    let of_verdict = first * (case.readings().count() + case.curve_ends().len()) as u64;
+    let of_verdict = first * (case.readings().count() + case.curve_ends.len()) as u64;
     let points = (case.sensitivity_factors().len() + case.thickness_factors().len()) as u64;
     case.scene.walk.runs * (of_verdict + points * replicates_at_least(case))
 }

@@ -94,7 +94,7 @@ fn all_replicates(
     let mut wanted = first_replicates(case);
     loop {
         if part == 0 {
-            let readings = case.other_reading.is_some() || !case.curve_ends().is_empty();
+            let readings = case.other_reading.is_some() || !case.curve_ends.is_empty();
             context.tell(Event::VerdictNeeds { replicates: wanted, runs: case.scene.walk.runs, readings });
         }
         let more = walked.len() as u64 + 1..=wanted;

@@ -43,7 +43,7 @@ pub fn outcome(
         found.extend(findings_of_walk(second, verdict, &other.reading));
     }
     found.extend(unsure.map(finding::decided_below_95));
-    found.extend(case.findings());
+    found.extend(case.findings().into_iter().chain(case.not_studied()));
     // What was to be walked twice has been.
     found.extend(pan_bounds.as_ref().map(beside::pan).or_else(|| case.to_be_walked()));
     found.extend(other.range.as_ref().map(beside::curve_range));

@@ -50,7 +50,7 @@ struct Walked {
 fn points(case: &Case) -> Vec<Point<'_>> {
     let factors = case.sensitivity_factors();
     // The parts between are those of the other reading and of the ends of the curve's range.
-    let thicknesses = (factors.len() + 2 + case.curve_ends().len()) as u64..;
+    let thicknesses = (factors.len() + 2 + case.curve_ends.len()) as u64..;
     let of_base = |(part, factor): (u64, f64)| Point {
         case: Cow::Borrowed(case),
         part,

@@ -32,6 +32,74 @@ pub struct Entry {
     pub page: &'static str,
 }
 
+/// The table of findings: of each entry a static, and a function of its name that takes its numbers.
+macro_rules! findings {
+    (@raw Count) => {
+        u64
+    };
+    (@raw Text) => {
+        &str
+    };
+    (@raw $unit:ident) => {
+        f64
+    };
+    (@or $default:expr) => {
+        $default
+    };
+    (@or $default:expr, $given:expr) => {
+        $given
+    };
+    ($(
+        $(#[$doc:meta])*
+        $id:ident($($name:ident: $unit:ident),*): $about:ident, $direction:ident, $weight:ident
+            $(, sets $sets:ident)? $(, against $against:ident)?;
+            $label:literal, $page:literal, $sentence:literal $(, to do $to_do:literal)?;
+    )*) => {
+        #[allow(non_upper_case_globals)]
+        mod entries {
+            use super::*;
+            $(pub static $id: Entry = Entry {
+                id: stringify!($id),
+                about: Topic::$about,
+                direction: Direction::$direction,
+                weight: Weight::$weight,
+                sets: findings!(@or Confidence::Outside $(, Confidence::$sets)?),
+                against: findings!(@or None $(, Some($against))?),
+                label: $label,
+                names: &[$(stringify!($name)),*],
+                sentence: $sentence,
+                to_do: findings!(@or "" $(, $to_do)?),
+                page: $page,
+            };)*
+        }
+
+        /// Every entry, the most important first.
+        pub static ALL: &[&Entry] = &[$(&entries::$id),*];
+
+        $(
+            $(#[$doc])*
+            pub fn $id($($name: findings!(@raw $unit)),*) -> Finding {
+                Finding { entry: &entries::$id, values: vec![$(FindingValue::$unit($name.into())),*] }
+            }
+        )*
+
+        /// Every finding with numbers of this size and this text.
+        #[cfg(test)]
+        pub fn all_with(size: f64, n: u64, text: &str) -> Vec<Finding> {
+            let of = |unit: &str| match unit {
+                "Percent" => FindingValue::Percent(size),
+                "Mm" => FindingValue::Mm(size),
+                "Ratio" => FindingValue::Ratio(size),
+                "Points" => FindingValue::Points(size),
+                "Count" => FindingValue::Count(n),
+                _ => FindingValue::Text(text.into()),
+            };
+            vec![$(Finding { entry: &entries::$id, values: vec![$(of(stringify!($unit))),*] }),*]
+        }
+    };
+}
+pub(super) use findings;
+
 /// An entry of the table with its numbers.
 #[derive(Clone, Debug)]
 pub struct Finding {

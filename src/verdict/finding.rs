@@ -3,7 +3,7 @@
 //! An entry makes a function of its name that takes its numbers. Within one label and weight the findings of
 //! a verdict stand in the order of this table, the most important first.
 
-use super::entry::{Entry, Finding};
+use super::entry::{Entry, Finding, findings};
 use super::quantity::FindingValue;
 use crate::outcome::record::{Confidence, Direction, Topic, Verdict, Weight};
 
@@ -11,87 +11,6 @@ use crate::outcome::record::{Confidence, Direction, Topic, Verdict, Weight};
 const HELD: &[Verdict] = &[Verdict::None];
 /// Rules that say something of a filter that seals, too.
 const HELD_OR_SEALED: &[Verdict] = &[Verdict::None, Verdict::Some];
-
-macro_rules! raw {
-    (Percent) => {
-        f64
-    };
-    (Mm) => {
-        f64
-    };
-    (Ratio) => {
-        f64
-    };
-    (Points) => {
-        f64
-    };
-    (Count) => {
-        u64
-    };
-    (Text) => {
-        &str
-    };
-}
-
-macro_rules! or {
-    ($default:expr) => {
-        $default
-    };
-    ($default:expr, $given:expr) => {
-        $given
-    };
-}
-
-macro_rules! findings {
-    ($(
-        $(#[$doc:meta])*
-        $id:ident($($name:ident: $unit:ident),*): $about:ident, $direction:ident, $weight:ident
-            $(, sets $sets:ident)? $(, against $against:ident)?;
-            $label:literal, $page:literal, $sentence:literal $(, to do $to_do:literal)?;
-    )*) => {
-        #[allow(non_upper_case_globals)]
-        mod entries {
-            use super::*;
-            $(pub static $id: Entry = Entry {
-                id: stringify!($id),
-                about: Topic::$about,
-                direction: Direction::$direction,
-                weight: Weight::$weight,
-                sets: or!(Confidence::Outside $(, Confidence::$sets)?),
-                against: or!(None $(, Some($against))?),
-                label: $label,
-                names: &[$(stringify!($name)),*],
-                sentence: $sentence,
-                to_do: or!("" $(, $to_do)?),
-                page: $page,
-            };)*
-        }
-
-        /// Every entry, the most important first.
-        pub static ALL: &[&Entry] = &[$(&entries::$id),*];
-
-        $(
-            $(#[$doc])*
-            pub fn $id($($name: raw!($unit)),*) -> Finding {
-                Finding { entry: &entries::$id, values: vec![$(FindingValue::$unit($name.into())),*] }
-            }
-        )*
-
-        /// Every finding with numbers of this size and this text.
-        #[cfg(test)]
-        pub fn all_with(size: f64, n: u64, text: &str) -> Vec<Finding> {
-            let of = |unit: &str| match unit {
-                "Percent" => FindingValue::Percent(size),
-                "Mm" => FindingValue::Mm(size),
-                "Ratio" => FindingValue::Ratio(size),
-                "Points" => FindingValue::Points(size),
-                "Count" => FindingValue::Count(n),
-                _ => FindingValue::Text(text.into()),
-            };
-            vec![$(Finding { entry: &entries::$id, values: vec![$(of(stringify!($unit))),*] }),*]
-        }
-    };
-}
 
 findings! {
     // Rules of practice that are not kept. Limits and values have as many digits as tell them apart.
@@ -164,9 +83,60 @@ findings! {
         "thickness", "design.md",
         "One layer of voids is thicker than the filter asked for. At D15F/D85B {ratio} it is {layer}, and no \
          less can be walked: a filter of {asked} holds less.";
-    /// What a search found in its own words.
-    of_search(said: Text): Study, Open, Limits;
-        "search", "design.md", "{said}.";
+    /// A boundary at which few particles decide.
+    unsteady(held: Count, eroding: Count, at: Text): Study, Open, Limits;
+        "scatter", "design.md",
+        "A few particles decide where the filter begins to erode{at}. Of {eroding:network} that erode, \
+         {held} held in the first run at a larger D15F/D85B than one at which they erode. With other random \
+         numbers a filter may erode at a smaller D15F/D85B than the one given; a wider network is steadier.";
+    /// A least D15F that drains above the greatest that holds.
+    empty_band(least: Text, greatest: Text, set_by: Text): Study, Open, Limits;
+        "band", "design.md",
+        "No filter of this shape both drains and holds this base. To drain it D15F must be at least {least}, \
+         but {set_by} allows at most {greatest}.";
+    /// A search in which nothing could be walked.
+    nothing_walked(at: Text): Study, Open, Limits;
+        "search", "design.md",
+        "No D15F/D85B of the search could be walked{at}, so that none is known to hold.";
+    /// Networks that erode at every ratio.
+    erodes_everywhere(eroding: Count, networks: Count, at: Text): Study, Open, Limits;
+        "search", "design.md",
+        "{eroding} of {networks:network} erode 7.5 % or more at every ratio that was searched{at}. No ratio \
+         is known that all but 5 % of the networks hold.";
+    /// Networks that hold every ratio.
+    holds_everywhere(ratio: Ratio, at: Text): Study, Open, Limits;
+        "search", "design.md",
+        "Nearly all networks hold as far as was searched, to D15F/D85B {ratio}{at}. The greatest D15F is \
+         therefore not known.",
+        to do "A higher end of --bracket may find it.";
+    /// A median beyond the search.
+    median_beyond(ratio: Ratio, eroding: Count, networks: Count, at: Text): Study, Open, Limits;
+        "search", "design.md",
+        "Nearly all networks hold to D15F/D85B {ratio}{at}; {eroding} of {networks} erode within the search, \
+         and the median lies beyond it. The greatest D15F is therefore not known.",
+        to do "A higher end of --bracket may find it.";
+    /// A search that ends while the base erodes.
+    erodes_to_end(ratio: Ratio, of: Text): Study, Open, Limits;
+        "search", "design.md",
+        "At least 7.5 % of the base erodes down to D15F/D85B {ratio}, where the search ends{of}.";
+    /// Ratios below which nothing can be walked.
+    erodes_to(ratio: Ratio, of: Text, why: Text): Study, Open, Limits;
+        "search", "design.md",
+        "At least 7.5 % of the base erodes down to D15F/D85B {ratio}{of}, and no smaller ratio can be \
+         walked: {why}.";
+    /// A search that ends while the filter holds.
+    holds_to_end(run: Text, ratio: Ratio, of: Text): Study, Open, Limits;
+        "search", "design.md",
+        "Less than 7.5 % of the base erodes{run} up to D15F/D85B {ratio}, where the search ends{of}.";
+    /// Ratios beyond which nothing can be walked.
+    not_walked(of: Text, why: Text): Study, Open, Limits;
+        "search", "design.md", "The search could go no further{of}: {why}.";
+    /// A finest part of the base that is enough to erode.
+    pan_erodes(share: Percent): Base, Open, Limits;
+        "finest part", "design.md",
+        "{share} of the base is finer than its finest sieve. Taken as finer than every constriction it is \
+         enough to count as erosion.",
+        to do "Finer sieves would tell, or base.d0_mm.";
 
     // What walks say themselves.
     /// A verdict at a lower level than 95 %.
@@ -175,19 +145,20 @@ findings! {
         "The verdict is decided at the {level} confidence level, as asked. At 95 % these replicates leave it \
          open.";
     /// A filter that was closed before the second run.
-    clogged_before(replicates: Text): Flow, Unsafe, Limits;
+    clogged_before(replicates: Text, smaller: Ratio): Flow, Unsafe, Limits;
         "clogging", "uncertainty.md",
         "No water flows in the second run{replicates}, as the filter clogged wholly in the first. Nothing \
          can erode then, and what was on its way when it clogged counts as retained. More and smaller \
          increments show whether the class stays.",
-        to do "Try a smaller inject_share.";
+        to do "Try inject_share = {smaller}.";
     /// A filter that closed during a run.
-    clogged(run: Text, replicates: Text, after: Text, on_its_way: Percent): Flow, Unsafe, Limits;
+    clogged(run: Text, replicates: Text, after: Text, on_its_way: Percent, smaller: Ratio):
+        Flow, Unsafe, Limits;
         "clogging", "uncertainty.md",
         "The filter clogged wholly in the {run} run{replicates}{after}. No water flows then, and what was on \
          its way, at least {on_its_way} of the base, counts as retained and might have left. More and \
          smaller increments show whether the class stays.",
-        to do "Try a smaller inject_share.";
+        to do "Try inject_share = {smaller}.";
     /// Trapped particles that could turn the class.
     trapped_could_turn(trapped: Count, inserted: Count, mass: Percent): Walk, Unsafe, Limits;
         "trapped", "uncertainty.md",
@@ -597,7 +568,8 @@ mod tests {
             assert!(sentence.ends_with(['.', '?', '}']), "{id}: {sentence}");
             for name in names {
                 let used = [format!("{{{name}}}"), format!("{{{name}:")];
-                assert!(used.iter().any(|used| sentence.contains(used)), "{id} does not say {name}");
+                let says = |text: &str| used.iter().any(|used| text.contains(used));
+                assert!(says(sentence) || says(to_do), "{id} does not say {name}");
             }
             // No words of the program where a client reads.
             for word in ["Eq. (", "base.", "filter.", "network.", "walk.", "inject_share", "--", "rattler"] {

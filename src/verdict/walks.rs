@@ -67,7 +67,7 @@ impl Walked<'_> {
         // The second run goes on with what the first left.
         let from_start = run == 2 && self.clogged.iter().any(|found| found[1] == 2 && found[2] == 0);
         if from_start {
-            return Some(finding::clogged_before(&of));
+            return Some(finding::clogged_before(&of, self.share / 10.0));
         }
         let after: Vec<f64> =
             self.clogged.iter().filter(|found| found[1] == run).map(|found| inserted(found[2])).collect();
@@ -79,7 +79,7 @@ impl Walked<'_> {
             least => format!(", after {} to {} of the base", percent(least), percent(most)),
         };
         let on_its_way = inserted(self.layers).min(least);
-        Some(finding::clogged(which, &of, &after, 100.0 * on_its_way))
+        Some(finding::clogged(which, &of, &after, 100.0 * on_its_way, self.share / 10.0))
     }
 
     /// That the particles trapped could turn the class if they were not retained.
@@ -133,7 +133,7 @@ mod tests {
         let (base, replicate) = (Gradation::linear_from_d0(0.1, 3.0).unwrap(), replicate(runs));
         let (replicates, clogged) = (vec![&replicate], clogged.to_vec());
         let walked = Walked { replicates, clogged, base: &base, share: 0.01, layers: 30 };
-        findings(verdict, &walked).iter().map(Finding::sentence).collect()
+        findings(verdict, &walked).iter().map(Finding::with_to_do).collect()
     }
 
     #[test]
@@ -144,6 +144,7 @@ mod tests {
         let begin =
             "The filter clogged wholly in the first run, after 41.0 % of the base. No water flows then";
         assert!(found[0].starts_with(begin) && found[0].contains("at least 30 % of the base"), "{found:?}");
+        assert!(found[0].ends_with("Try inject_share = 0.001."), "{found:?}");
         let found = of(Verdict::Some, &closed, &[[1, 1, 41], [1, 2, 0]]);
         assert!(found[0].starts_with("No water flows in the second run, as the filter clogged"), "{found:?}");
         // Less than has been inserted cannot be on its way.

@@ -118,9 +118,7 @@ impl Judged {
         let of_case = self.case.to_be_walked().into_iter().chain(self.case.findings());
         let coarse = self.d85_mm.filter(|d85| *d85 > COARSE_BASE_MM).map(finding::coarse_base);
         let not_compared = self.real_thickness.map(|real| finding::thickness_without_unit(real, self.unit()));
-        // A design searches thicknesses itself.
-        let found =
-            of_case.filter(|finding| Some(finding) != of_one.as_ref() && finding.id() != "not_studied");
+        let found = of_case.filter(|finding| Some(finding) != of_one.as_ref());
         let found = found.chain(coarse).chain(not_compared).chain(of_search(row)).chain(others);
         judge(Verdict::None, rules, found.collect())
     }

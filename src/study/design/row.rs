@@ -51,16 +51,16 @@ impl Row {
     /// The same at the ends of the range in which the constriction curve is known.
     pub fn at_curve_ends(&self) -> Vec<Self> {
         let is_guess = self.case.scene.filter.estimate.is_some();
-        let of = |end: OtherCurve| {
+        let of = |end: &OtherCurve| {
             let density = match is_guess {
                 true => end.name.replace(" = ", " "),
                 false => format!("{}, {}", self.wanted.density, end.name),
             };
             let wanted = Wanted { density, ..self.wanted.clone() };
             let end_of = Some(self.wanted.density.clone());
-            Self { case: self.case.with_curve(end.curve), wanted, end_of, ..self.clone() }
+            Self { case: self.case.with_curve(end.curve.clone()), wanted, end_of, ..self.clone() }
         };
-        self.case.curve_ends().into_iter().map(of).collect()
+        self.case.curve_ends.iter().map(of).collect()
     }
 
     /// Whether filter and base have sizes at a ratio.

@@ -1,0 +1,19 @@
+//! A file that went into a case.
+
+/// A file that was read, and the name under which a run folder keeps it.
+#[derive(Clone, Debug)]
+pub struct Input {
+    /// The setting that names it.
+    pub setting: &'static str,
+    /// Its path as the user gave it first: a run that continues from the files in its folder says what the
+    /// user called them.
+    pub name: String,
+    /// Name inside the run folder.
+    pub kept_as: String,
+    /// Its bytes.
+    pub bytes: Vec<u8>,
+    /// Which of its soils is meant, where it holds several.
+    pub soil: Option<String>,
+    /// What was assumed to understand it.
+    pub notes: Vec<String>,
+}
