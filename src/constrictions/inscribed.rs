@@ -65,8 +65,8 @@ struct Drawn {
     loose: Vec<f64>,
 }
 
-/// The filters that were asked for last. Drawing takes most of the time of a small case, and a check, a run or
-/// a design asks for the same filter at its own density and at both ends of the range, several times.
+/// The filters that were asked for last. Drawing takes most of the time of a small case, and a check, a run
+/// or a design asks for the same filter at its own density and at both ends of the range, several times.
 static KEPT: Mutex<VecDeque<Arc<Drawn>>> = Mutex::new(VecDeque::new());
 
 /// Filters that are kept, of 200 kB each: those of one comparison.
