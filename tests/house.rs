@@ -202,6 +202,31 @@ fn only_the_platform_names_a_system() {
     assert!(seen >= 8, "{seen} files name a system");
 }
 
+/// Columns are named where a table is described, never where it is written. Graphs, packings and networks have
+/// readers of their own, whose form their module states.
+#[test]
+fn a_table_is_written_from_its_description() {
+    let is_name =
+        |part: &str| !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    let is_header = |text: &str| {
+        let names = || text.trim_end_matches("\\n").split(',');
+        names().count() > 2 && names().all(is_name) && names().any(|name| name.ends_with("_mm"))
+    };
+    let (mut writers, mut headers) = (Vec::new(), Vec::new());
+    for source in sources() {
+        if source.code.contains("csv::Writer") || source.code.contains("write_record") {
+            writers.push(source.path.clone());
+        }
+        if source.code.split('"').any(is_header) {
+            headers.push(source.path);
+        }
+    }
+    assert_eq!(writers, [Path::new("src/outcome/table.rs")]);
+    headers.sort();
+    let own = ["src/constrictions/graph.rs", "src/network/file.rs", "src/packing/export.rs"];
+    assert_eq!(headers, own.map(Path::new));
+}
+
 #[test]
 fn only_the_command_line_prints() {
     for source in sources().iter().filter(|source| room(&source.module) != "cli") {

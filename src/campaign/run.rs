@@ -136,7 +136,7 @@ pub fn run(
     options: &CampaignOptions,
     callbacks: &CampaignCallbacks,
 ) -> Result<FinishedCampaign, RunError> {
-    run_after(plan, options, callbacks, |_| Ok(()))
+    run_around(plan, options, callbacks, |_, walk| walk())
 }
 
 /// Finds the cases sound and placed, as far as that is known before their filters are packed; claims and
@@ -166,13 +166,16 @@ pub fn check(plan: &CampaignPlan, options: &CampaignOptions) -> Result<(), RunEr
 /// The cases of a campaign when their filters are packed and before the first is walked: all, or why not.
 pub(crate) type ReadyCases<'a, 'b> = Result<&'b [PreparedCase<'a>], RunError>;
 
-/// As [`run()`], but for what is seen to when all cases are ready and nothing is walked yet.
-pub(crate) fn run_after(
+/// Walks the cases that are ready.
+pub(crate) type Walk<'a> = Box<dyn FnOnce() -> Result<FinishedCampaign, RunError> + 'a>;
+
+/// As [`run()`], but for what is done around the walk of the cases when all are ready.
+pub(crate) fn run_around<R>(
     plan: &CampaignPlan,
     options: &CampaignOptions,
     callbacks: &CampaignCallbacks,
-    ready: impl FnOnce(ReadyCases) -> Result<(), RunError>,
-) -> Result<FinishedCampaign, RunError> {
+    around: impl FnOnce(ReadyCases, Walk) -> Result<R, RunError>,
+) -> Result<R, RunError> {
     let wanted = wanted(plan, &options.part)?;
     let (count, share_networks) = (wanted.len(), have_common_seeds(&wanted));
     let drafts = Drafts::new(wanted)?;
@@ -183,7 +186,7 @@ pub(crate) fn run_after(
     let prepare = PrepareOptions { packings, memory: options.memory, threads: options.threads };
     let (limits, shared) = rooms(prepare.limits(out), share_networks);
     let mut has_room = true;
-    let (cases, mut failed) = drafts.finish(
+    let (cases, failed) = drafts.finish(
         |packing| pool.install(|| provide(packing, &prepare.packings, &callbacks.run)),
         |case| {
             let placed = case.place(&limits, threads as u64, out);
@@ -191,58 +194,62 @@ pub(crate) fn run_after(
             Ok(placed?)
         },
     )?;
-    ready(match (failed.is_empty(), has_room) {
-        (true, _) => Ok(&cases),
+    let ready = match (failed.is_empty(), has_room) {
+        (true, _) => Ok(&cases[..]),
         (false, true) => Err(RunError::failed(named(&failed))),
         (false, false) => Err(RunError::Refused(named(&failed))),
-    })?;
-    if cases.is_empty() && drafts.packings().is_empty() {
-        return Err(RunError::Refused(named(&failed)));
-    }
-    if options.part == CasePart::All {
-        changed::sentences(plan, &cases, out).iter().for_each(|sentence| (callbacks.run.warn)(sentence));
-    }
-    (callbacks.on_cases)(cases.len(), cases.iter().filter(|case| case.line(out).is_some()).count());
-    let runner = CaseRunner {
-        out,
-        threads,
-        callbacks,
-        checkpoint_interval: options.checkpoint_interval,
-        networks: shared.map(SharedNetworks::new),
-        job: Allocation::here().map(|allocation| allocation.job),
-        command: options.command.clone(),
     };
-    let result = runner.run(&cases);
-    if options.part != CasePart::All {
-        failed.extend(result?);
-        return Ok(FinishedCampaign { lines: None, failed, cases: count });
-    }
-    // The whole plan is collected, whichever of its cases this process was at, and whatever has ended it.
-    let mut lines = write_ledger(plan, &cases, out, &callbacks.run)?;
-    failed.extend(result?);
-    // Cases that were done, by this process or before, and are not there now.
-    let absent = |lines: &[LedgerLine], failed: &[FailedCase]| -> Vec<&PreparedCase> {
-        let is_absent = |case: &&PreparedCase| {
-            let name = &case.planned.name;
-            lines.iter().all(|line| line.case != *name) && failed.iter().all(|f| f.case != *name)
-        };
-        cases.iter().filter(is_absent).collect()
-    };
-    let mut gone = absent(&lines, &failed);
-    if !gone.is_empty() {
-        // Another process may be replacing their files with the same ones at this moment.
-        for case in gone {
-            runner.is_lost(case);
+    let walk = Box::new(|| {
+        if cases.is_empty() && drafts.packings().is_empty() {
+            return Err(RunError::Refused(named(&failed)));
         }
-        lines = write_ledger(plan, &cases, out, &callbacks.run)?;
-        gone = absent(&lines, &failed);
-    }
-    let lost =
-        gone.into_iter().map(|case| FailedCase { case: case.planned.name.clone(), problem: LOST.into() });
-    let lost: Vec<FailedCase> = lost.collect();
-    failed.extend(lost);
-    let lines = Some(lines);
-    Ok(FinishedCampaign { lines, failed, cases: count })
+        let mut failed = failed;
+        if options.part == CasePart::All {
+            changed::sentences(plan, &cases, out).iter().for_each(|sentence| (callbacks.run.warn)(sentence));
+        }
+        (callbacks.on_cases)(cases.len(), cases.iter().filter(|case| case.line(out).is_some()).count());
+        let runner = CaseRunner {
+            out,
+            threads,
+            callbacks,
+            checkpoint_interval: options.checkpoint_interval,
+            networks: shared.map(SharedNetworks::new),
+            job: Allocation::here().map(|allocation| allocation.job),
+            command: options.command.clone(),
+        };
+        let result = runner.run(&cases);
+        if options.part != CasePart::All {
+            failed.extend(result?);
+            return Ok(FinishedCampaign { lines: None, failed, cases: count });
+        }
+        // The whole plan is collected, whichever of its cases this process was at, and whatever has ended it.
+        let mut lines = write_ledger(plan, &cases, out, &callbacks.run)?;
+        failed.extend(result?);
+        // Cases that were done, by this process or before, and are not there now.
+        let absent = |lines: &[LedgerLine], failed: &[FailedCase]| -> Vec<&PreparedCase> {
+            let is_absent = |case: &&PreparedCase| {
+                let name = &case.planned.name;
+                lines.iter().all(|line| line.case != *name) && failed.iter().all(|f| f.case != *name)
+            };
+            cases.iter().filter(is_absent).collect()
+        };
+        let mut gone = absent(&lines, &failed);
+        if !gone.is_empty() {
+            // Another process may be replacing their files with the same ones at this moment.
+            for case in gone {
+                runner.is_lost(case);
+            }
+            lines = write_ledger(plan, &cases, out, &callbacks.run)?;
+            gone = absent(&lines, &failed);
+        }
+        let lost =
+            gone.into_iter().map(|case| FailedCase { case: case.planned.name.clone(), problem: LOST.into() });
+        let lost: Vec<FailedCase> = lost.collect();
+        failed.extend(lost);
+        let lines = Some(lines);
+        Ok(FinishedCampaign { lines, failed, cases: count })
+    });
+    around(ready, walk)
 }
 
 /// Collects finished cases into the campaign's folder.

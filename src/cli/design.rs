@@ -9,6 +9,7 @@ use crate::outcome::design::{Boundary, Design, DesignRow, Range};
 use crate::outcome::record::Confidence;
 use crate::run::{PrepareOptions, RunError};
 use crate::study::design::{self, DesignOptions};
+use crate::verdict::words::capital;
 
 /// Finds the boundaries and writes them into a folder.
 pub fn design(args: &DesignArgs) -> Result<(), RunError> {
@@ -90,10 +91,11 @@ fn of_row(row: &DesignRow, design: &Design) -> Vec<String> {
     for (what, (boundary, note)) in what.into_iter().zip(boundaries) {
         let said = boundary.as_ref().map(|boundary| ratio(boundary, design));
         lines.push(match (said, note) {
-            (Some(said), Some(note)) => format!("  {what} {said}; {note}"),
+            (Some(said), Some(note)) => format!("  {what} {said}. {}", capital(note)),
             (Some(said), None) => format!("  {what} {said}"),
             (None, note) => {
-                format!("  {what}: no number, {}", note.as_deref().unwrap_or("it lies beyond the search"))
+                let note = note.as_deref().unwrap_or("It lies beyond the search.");
+                format!("  {what}: no number. {}", capital(note))
             }
         });
     }
@@ -105,7 +107,7 @@ fn of_row(row: &DesignRow, design: &Design) -> Vec<String> {
         lines.push(format!("  {what}: {}{}", band.words(), practice.unwrap_or_default()));
     }
     if let Some(note) = &row.band_note {
-        lines.push(format!("  no band: {note}"));
+        lines.push(format!("  no band. {}", capital(note)));
     }
     if row.not_monotone > 0 {
         lines.push(format!(

@@ -17,7 +17,9 @@ use super::tangent::circle;
 use crate::gradation::Gradation;
 use crate::stream::{Key, Purpose, unit};
 use rand::Rng;
+use std::collections::VecDeque;
 use std::f64::consts::PI;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Constrictions that a curve is made of.
 const DRAWS: usize = 8_000;
@@ -42,17 +44,8 @@ const STEPS: usize = 34;
 /// # Errors
 /// None for a gradation with a known size.
 pub fn inscribed(gradation: &Gradation, relative_density: f64) -> Result<Curve, CurveError> {
-    let sizes = Sizes::new(gradation);
-    let mut generator =
-        Key { seed: 1, purpose: Purpose::Packing, run: 0, increment: 0, chunk: 2 }.generator();
-    let (mut dense, mut loose) = (Vec::with_capacity(DRAWS), Vec::with_capacity(DRAWS));
-    for _ in 0..DRAWS {
-        let radius: [f64; 4] = std::array::from_fn(|_| 0.5 * sizes.draw(unit(generator.next_u64())));
-        dense.push(2.0 * between_three([radius[0], radius[1], radius[2]]));
-        loose.push(2.0 * between_four(radius));
-    }
-    dense.sort_by(f64::total_cmp);
-    loose.sort_by(f64::total_cmp);
+    let drawn = Drawn::of(Sizes::new(gradation));
+    let (dense, loose) = (&drawn.dense, &drawn.loose);
     let density = relative_density.clamp(0.0, 1.0);
     let last = (DRAWS - 1) as f64;
     let points: Vec<(f64, f64)> = (0..=400)
@@ -65,7 +58,51 @@ pub fn inscribed(gradation: &Gradation, relative_density: f64) -> Result<Curve, 
     Curve::from_points(&points, CurveUnit::Mm)
 }
 
+/// Diameters of the constrictions that were drawn for a gradation, ascending: of every density the same.
+struct Drawn {
+    sizes: Sizes,
+    dense: Vec<f64>,
+    loose: Vec<f64>,
+}
+
+/// The filters that were asked for last. Drawing takes most of the time of a small case, and a check, a run
+/// or a design asks for the same filter at its own density and at both ends of the range, several times.
+static KEPT: Mutex<VecDeque<Arc<Drawn>>> = Mutex::new(VecDeque::new());
+
+/// Filters that are kept, of 200 kB each: those of one comparison.
+const KEPT_FILTERS: usize = 8;
+
+impl Drawn {
+    /// Those that are kept, or drawn anew; nobody waits for the drawing of another filter.
+    fn of(sizes: Sizes) -> Arc<Self> {
+        let kept = || KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = kept().iter().find(|drawn| drawn.sizes == sizes).cloned();
+        known.unwrap_or_else(|| {
+            let drawn = Arc::new(Self::new(sizes));
+            let mut kept = kept();
+            kept.push_front(Arc::clone(&drawn));
+            kept.truncate(KEPT_FILTERS);
+            drawn
+        })
+    }
+
+    fn new(sizes: Sizes) -> Self {
+        let mut generator =
+            Key { seed: 1, purpose: Purpose::Packing, run: 0, increment: 0, chunk: 2 }.generator();
+        let (mut dense, mut loose) = (Vec::with_capacity(DRAWS), Vec::with_capacity(DRAWS));
+        for _ in 0..DRAWS {
+            let radius: [f64; 4] = std::array::from_fn(|_| 0.5 * sizes.draw(unit(generator.next_u64())));
+            dense.push(2.0 * between_three([radius[0], radius[1], radius[2]]));
+            loose.push(2.0 * between_four(radius));
+        }
+        dense.sort_by(f64::total_cmp);
+        loose.sort_by(f64::total_cmp);
+        Self { sizes, dense, loose }
+    }
+}
+
 /// Sizes (mm) of a gradation, and the running sum of the surface of each.
+#[derive(PartialEq)]
 struct Sizes {
     diameter: Vec<f64>,
     surface: Vec<f64>,

@@ -10,7 +10,8 @@ impl CurveRange {
             return None;
         }
         let of_run = |run: usize| {
-            let all = ends.iter().map(|end| &end.runs).filter_map(|runs| runs.get(run)).chain([&runs[run]]);
+            let all =
+                ends.iter().map(|end| &end.walked.runs).filter_map(|runs| runs.get(run)).chain([&runs[run]]);
             all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], s| {
                 [low.min(s.low.unwrap_or(s.mean)), high.max(s.high.unwrap_or(s.mean))]
             })
@@ -26,13 +27,14 @@ impl CurveRange {
 
     /// Whether the ends have the class of the curve itself.
     pub fn agrees(&self) -> bool {
-        self.ends.iter().all(|end| end.verdict == self.verdict)
+        self.ends.iter().all(|end| end.walked.verdict == self.verdict)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::outcome::record::Classed;
 
     fn range(verdict: Verdict, end: Verdict) -> CurveRange {
         let (sd, low, high) = (Some(0.01), |mean: f64| Some(mean - 0.01), |mean: f64| Some(mean + 0.01));
@@ -40,9 +42,12 @@ mod tests {
         let end = CurveEnd {
             curve: "2 % coarser".into(),
             dc50_factor: 1.02,
-            replicates: 5,
-            verdict: end,
-            runs: vec![of(0.09), of(0.02)],
+            walked: Classed {
+                replicates: 5,
+                stopped_when_clear: false,
+                verdict: end,
+                runs: vec![of(0.09), of(0.02)],
+            },
         };
         CurveRange::new(verdict, &[of(0.05), of(0.04)], vec![end]).unwrap()
     }

@@ -16,7 +16,8 @@
 //! - [`undecided`] is what leaves a verdict open.
 //! - [`precision`] is error against run time; [`comparison`] is several cases side by side.
 //! - [`design`] is how coarse a filter may be, and the band of a specification.
-//! - [`table`] describes the tables in which all of these are written.
+//! - [`table`] describes the tables in which all of these are written, [`number_rows`] those of numbers
+//!   alone.
 
 mod applied;
 mod base_size;
@@ -32,6 +33,7 @@ mod least_squares;
 pub mod ledger;
 mod metrics;
 pub mod network_walk;
+pub mod number_rows;
 pub mod packing;
 mod pan;
 pub mod paper;

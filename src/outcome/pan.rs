@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::record::{Statistic, Stopping, Verdict};
+use super::record::{Classed, Stopping, Verdict};
 
 /// The two readings of a pan fraction that need not be passive: its sizes are not known, but they lie between
 /// these two.
@@ -26,12 +26,9 @@ pub struct PanReading {
     pub taken_as: PanSize,
     /// Base particles inserted in each run; both readings insert the same mass, where no cap bites.
     pub n_base: u64,
-    /// How many replicates were walked.
-    pub replicates: u64,
-    /// Their class.
-    pub verdict: Verdict,
-    /// Eroded mass fraction, one per run.
-    pub runs: Vec<Statistic>,
+    /// What was walked.
+    #[serde(flatten)]
+    pub walked: Classed,
     /// Why there are so many replicates, where a rule added them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stopping: Option<Stopping>,
@@ -51,13 +48,13 @@ pub enum PanSize {
 impl PanBounds {
     /// The verdict that both readings give; undecided where they differ.
     pub fn verdict(&self) -> Verdict {
-        let [fine, coarse] = self.readings.each_ref().map(|reading| reading.verdict);
+        let [fine, coarse] = self.readings.each_ref().map(|reading| reading.walked.verdict);
         if fine == coarse { fine } else { Verdict::Undecided }
     }
 
     /// Whether the readings give different verdicts.
     pub fn differ(&self) -> bool {
-        self.readings[0].verdict != self.readings[1].verdict
+        self.readings[0].walked.verdict != self.readings[1].walked.verdict
     }
 
     /// A reading in words, as `all 0.075 mm`.
@@ -77,9 +74,7 @@ mod tests {
         let reading = |taken_as, verdict| PanReading {
             taken_as,
             n_base: 100,
-            replicates: 2,
-            verdict,
-            runs: Vec::new(),
+            walked: Classed { replicates: 2, stopped_when_clear: false, verdict, runs: Vec::new() },
             stopping: None,
         };
         PanBounds {

@@ -156,7 +156,7 @@ fn page(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Sections {
     Sections::new(clean(title), "Which of these filters hold?", &names)
         .words(&first)
         .contents()
-        .section("Not done", &missing)
+        .section("Missing cases", &missing)
         .section("Cases", &campaign_cases::all(folder, about, ledger))
         .words(&html! { h2 { "Figures" } })
         .figures(drawn(ledger))
@@ -172,7 +172,7 @@ fn provenance(about: &Campaign, ledger: &[LedgerLine]) -> Markup {
         p {
             "Plan " bdi { (clean(&about.plan)) } ", voidwalk " (versions.join(", ")) ", " (duration(seconds))
             " of walks. Each case has a folder of its own with its report; " code { "ledger.jsonl" }
-            " holds a line a case, " code { "cases.csv" } " the table above."
+            " holds one line per case, " code { "cases.csv" } " the table above."
         }
     }
 }

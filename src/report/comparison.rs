@@ -105,7 +105,7 @@ fn page(folder: &Path, comparison: &Comparison) -> Sections {
         section {
             p.lead { (lead(comparison)) }
             @if comparison.cases.iter().any(|case| case.verdict == Verdict::Undecided) {
-                p { "Undecided is no verdict: the page of the case says what would decide it." }
+                p { "Undecided is not a verdict. The page of the case says what would decide it." }
             }
             (practice(comparison))
             (doubts(comparison))
@@ -215,11 +215,11 @@ fn pairs(comparison: &Comparison) -> Markup {
         ul { @for pair in &comparison.pairs { li { (clean(&capital(&pair.sentence()))) "." } } }
         p.small {
             "Mass eroded as a part of the base’s, replicate by replicate: replicates of the same number \
-             share their random numbers, so that what chance does to both cases alike is not in the \
+             share their random numbers, so scatter common to both cases drops out of the \
              difference (common random numbers; paired t interval). Each interval holds by itself at \
-             95 %; that two cases differ is said only where the interval that holds for all "
-            (comparison.pairs.len()) " differences at once leaves 0 out."
-            @if uncertain { " One replicate says nothing of chance." }
+             95 %; two cases are said to differ only if the interval that holds for all "
+            (comparison.pairs.len()) " differences at once excludes 0."
+            @if uncertain { " One replicate does not show the scatter." }
         }
         @if let Some(what) = comparison.not_in_intervals() {
             p {
@@ -228,8 +228,8 @@ fn pairs(comparison: &Comparison) -> Markup {
             }
         }
         @if any_doubted {
-            p { span.amber { "A difference is the model’s" } ": where the verdict of a case is in doubt, so \
-                is what the case is compared with." }
+            p { span.amber { "A difference is the model’s" } ": if the verdict of a case is in doubt, so is \
+                every comparison with it." }
         }
     }
 }

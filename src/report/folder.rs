@@ -7,7 +7,7 @@ use super::files::{json, json_of, text};
 use super::walks::{RowSource, RunRows, Walks, check_curve, check_results};
 use crate::outcome::Recorded;
 use crate::outcome::packing::PackingRecord;
-use crate::outcome::record::{Manifest, Outcome, Sensitivity};
+use crate::outcome::record::{Classed, Manifest, Outcome, Sensitivity};
 
 /// Everything that a finished run folder says.
 pub(super) struct RunFolder {
@@ -120,10 +120,12 @@ fn stand_among_its_variations(outcome: &mut Outcome) {
         n_base: outcome.n_base,
         grains_per_void: outcome.grains_per_void,
         mass_ratio: outcome.inputs.mass_ratio,
-        replicates: outcome.replicates.len() as u64,
-        stopped_when_clear: false,
-        verdict: outcome.verdict,
-        runs: outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect(),
+        walked: Classed {
+            replicates: outcome.replicates.len() as u64,
+            stopped_when_clear: false,
+            verdict: outcome.verdict,
+            runs: outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect(),
+        },
     };
     outcome.sensitivity.push(itself);
     outcome.sensitivity.sort_by(|a, b| a.factor.total_cmp(&b.factor));

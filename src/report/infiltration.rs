@@ -11,15 +11,15 @@ use crate::outcome::record::{Infiltration, Outcome, Run};
 /// Eq. (1) for single particles, what the walk found, and where the two part.
 pub(super) fn infiltration(outcome: &Outcome) -> Markup {
     html! {
-        h2 { "Infiltration depth, Eq. (1)" }
+        h2 { "Infiltration depth without blocking" }
         @match &outcome.infiltration {
             None => p {
-                "Not given: Eq. (1) speaks of a regular cubic lattice in which particles choose by area, and \
-                 this network is none."
+                "Not given: the closed form holds for a regular cubic lattice whose exits are chosen by \
+                 area, and this network is another."
             },
             Some(found) => {
                 p {
-                    "How far a particle comes that enters the clean filter alone: with a confidence P of \
+                    "How far a single particle gets in the clean filter: with a confidence P of \
                      95 % (or 99 %) it does not pass more than n = ln(1 − P) / ln(P(F)) layers, where P(F) \
                      is its chance to move one layer downstream in the directed lattice that is walked. \
                      Nothing is blocked here."
@@ -60,14 +60,14 @@ fn beside_the_walk(found: &Infiltration, outcome: &Outcome) -> Markup {
     html! {
         ul {
             li {
-                "By Eq. (1) particles up to " (size(found.coarsest_through_mm, scale_free))
+                "By the closed form particles up to " (size(found.coarsest_through_mm, scale_free))
                 " pass all layers with a probability of 5 % or more. The largest that left in the walk: "
                 @for (index, run) in outcome.summary.iter().enumerate() {
                     @if index > 0 { ", " }
                     (mean(run.run, |r| r.largest_eroded_mm, &in_unit))
                     " (" (run_name(run.run)) ")"
                 }
-                ", mean over the replicates; of many particles a few come further than one in twenty does."
+                ", mean over the replicates. Among many particles a few get farther than that."
             }
             li {
                 "Layers with retained particles, counted from 0: "
@@ -94,12 +94,12 @@ fn beside_the_walk(found: &Infiltration, outcome: &Outcome) -> Markup {
 /// What the difference between all that Eq. (1) lets through and what left says.
 fn what_blocking_does(held: f64) -> &'static str {
     if held > 0.01 {
-        "The difference is what blocking holds: coarser particles close constrictions, and finer ones, which \
-         Eq. (1) lets pass, stay behind them."
+        "The difference is due to blocking: coarser particles close constrictions, and finer ones that would \
+         pass a clean filter stay behind them."
     } else if held < -0.01 {
-        "More left than Eq. (1) lets pass: a constriction that stops one particle is closed to the next, \
-         which then takes a coarser exit."
+        "More left than a clean filter lets pass: a constriction that stops one particle is closed to the \
+         next, which then takes a coarser exit."
     } else {
-        "Here blocking changes little: what Eq. (1) lets pass leaves."
+        "Blocking changes little here: what a clean filter lets pass leaves."
     }
 }

@@ -193,8 +193,8 @@ fn amount(record: &NetworkWalkRecord) -> String {
             let of =
                 format!("{} grains per void and a mass ratio of {}", significant(grains), record.mass_ratio);
             match eq2 == record.n_base {
-                true => format!("{walked}, by Eq. (2) with {of}"),
-                false => format!("{walked}; Eq. (2) gives {} with {of}", whole(eq2)),
+                true => format!("{walked}, as the model requires with {of}"),
+                false => format!("{walked}; the model requires {} with {of}", whole(eq2)),
             }
         }
         _ => format!("{walked}, as given"),
@@ -238,7 +238,7 @@ fn inputs(record: &NetworkWalkRecord) -> Markup {
             }
             (fact("D15 of the filter, D15F", known(record.d15f_mm, mm)))
             (fact("Networks", match network.networks {
-                1 => "1, walked anew by each replicate".to_owned(),
+                1 => "1, walked again by each replicate".to_owned(),
                 n => format!("{}, of the first:", whole(n)),
             }))
             (fact("Voids, constrictions, layers",

@@ -152,7 +152,7 @@ fn page(packed: &Packed) -> Sections {
             (fact("Constrictions, tetrahedra",
                 format!("{}, {}", whole(summary.constrictions as u64), whole(summary.tetrahedra as u64))))
             (fact("Voids", whole(summary.voids as u64)))
-            (fact("Grains per void, N_p/N_voids of Eq. (2)", significant(summary.grains_per_void)))
+            (fact("Grains per void", significant(summary.grains_per_void)))
             (fact("Mean number of constrictions of a void", significant(summary.mean_connectivity)))
             (fact("Overlap from which tetrahedra are merged into one \
                    void", significant(summary.merge_overlap)))
@@ -177,7 +177,7 @@ fn page(packed: &Packed) -> Sections {
         p.small { "Spheres, Hertz-Mindlin contacts with Coulomb friction, no gravity, no cohesion, no \
                    breakage." }
     };
-    Sections::new(format!("Packing: {}", clean(&record.name)), "A filter, packed", &names)
+    Sections::new(format!("Packing: {}", clean(&record.name)), "The packed filter", &names)
         .words(&lead)
         .figures([curves(packed), slice(record), connectivity(packed)])
         .section("Beside the paper’s Table 2", &beside_the_paper(packed))
@@ -191,8 +191,8 @@ fn states(record: &PackingRecord) -> Markup {
         ("Void ratio", |s| format!("{:.4}", s.void_ratio)),
         ("Pressure (kPa)", |s| format!("{:.3}", s.pressure_kpa)),
         ("Mean coordination number (2 N_c / N_p)", |s| format!("{:.3}", s.coordination)),
-        ("Mean coordination number without rattlers", |s| format!("{:.3}", s.coordination_held)),
-        ("Rattler fraction", |s| percent(s.rattlers)),
+        ("Mean coordination number without loose grains", |s| format!("{:.3}", s.coordination_held)),
+        ("Loose grains (carry no load), by number", |s| percent(s.rattlers)),
         ("Kinetic over elastic energy", |s| format!("{:.1e}", s.kinetic_ratio)),
         ("Unbalanced force over mean contact force", |s| format!("{:.1e}", s.unbalanced)),
         ("Largest overlap over smaller diameter", |s| format!("{:.1e}", s.largest_overlap)),

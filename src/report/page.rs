@@ -13,7 +13,7 @@ use super::folder::{RunFolder, RunTexts, checked, walks};
 use super::infiltration::infiltration;
 use super::names::soil_name;
 use super::numbers::{duration, known, percent, significant, size, whole};
-use super::results::{fraction, replicates, results, sensitivity, thickness};
+use super::results::{eroded, replicates, results, sensitivity, thickness};
 use super::rules::rules;
 use super::run_figures::{self, run_name};
 use super::shell::{self, Drawn, clean, drawing, fact, whole_page};
@@ -25,7 +25,7 @@ use super::written::{Written, write_page};
 use super::{appendix, packing, shell::leaves_out};
 use crate::outcome::packing::PackingRecord;
 use crate::outcome::record::{
-    Confidence, Direction, FindingRecord, NetworkKind, Outcome, PanBounds, PanReading, Stopping, Verdict,
+    Confidence, Direction, FindingRecord, NetworkKind, Outcome, PanBounds, Stopping, Verdict,
 };
 use crate::outcome::undecided::UndecidedBy;
 use crate::verdict::words::capital;
@@ -174,19 +174,18 @@ fn verdict_section(folder: &RunFolder, verdict: &Drawn) -> Markup {
 
 /// What came of either reading of a pan fraction that need not be passive.
 fn both_readings(bounds: &PanBounds) -> Markup {
-    let mut table = Table::of(&bounds.readings)
+    let table = Table::of(&bounds.readings)
         .name("The base’s finest part taken as", |reading| bounds.words(reading))
-        .text("verdict", |reading| reading.verdict.words());
-    for index in 0..bounds.readings[0].runs.len() {
-        let of = move |reading: &PanReading| reading.runs.get(index).map_or_else(|| html! { "–" }, fraction);
-        table = table.number(run_name(index as u64 + 1), of);
-    }
+        .text("verdict", |reading| reading.walked.verdict.words());
+    let runs = (1..).map(run_name).take(bounds.readings[0].walked.runs.len());
+    let table = eroded(table, runs, |reading| &reading.walked);
     html! {
         p {
             (percent(bounds.mass_fraction)) " of the base is finer than its finest sieve, "
             (size(bounds.finest_sieve_mm, false)) ", which is coarser than the finest constriction, "
-            (size(bounds.finest_constriction_mm, false)) ". The base was walked with either end of the sizes \
-             that this part may have; the verdict is what both give, the other numbers are of the first."
+            (size(bounds.finest_constriction_mm, false)) ". The base was walked twice, with this part at the \
+                finest and at the coarsest size that it may have. The verdict takes both; all other numbers \
+                are of the first."
         }
         (table)
     }
@@ -251,8 +250,8 @@ fn findings(outcome: &Outcome) -> Markup {
 }
 
 /// Of a page that was written before the studies were walked.
-const TO_COME: &str = "How the verdict moves with the thickness of the filter and the number of base \
-    particles is not walked yet, and nothing moves it more: voidwalk resume goes on with it.";
+const TO_COME: &str = "The thickness of the filter and the number of base particles move the verdict most. \
+    Their effect is not walked yet; voidwalk resume goes on with it.";
 
 /// How what is left out of a study begins: of the number of base particles, and of the thickness.
 const SENSITIVITY: &[&str] = &["sensitivity to the number of base particles"];
@@ -312,8 +311,8 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
     let kind = match (network.kind, network.nx, network.ny, network.nz) {
         (NetworkKind::Cubic, Some(nx), Some(ny), Some(nz)) if outcome.network.is_some() => {
             format!(
-                "cubic lattice, {nx} × {ny} × {nz} voids ({nz} along the flow), whose constrictions have the \
-                 direction that water gives them"
+                "cubic lattice, {nx} × {ny} × {nz} voids ({nz} along the flow), where the flow of water \
+                 gives each constriction its direction"
             )
         }
         (NetworkKind::Cubic, Some(nx), Some(ny), Some(nz)) => {

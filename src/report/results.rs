@@ -1,6 +1,6 @@
 //! The tables of results of a report page.
 
-use maud::{Markup, html};
+use maud::{Markup, Render, html};
 
 use super::numbers::{
     duration, known, percent, percent_interval, significant, size, size_unit, trimmed, whole,
@@ -9,7 +9,7 @@ use super::run_figures::run_name;
 use super::table::Table;
 use super::varied::{HELD, STOPPED_WHEN_CLEAR, classes_of_points};
 use super::walks::Walks;
-use crate::outcome::record::{OfThickness, Outcome, Replicate, Run, RunSummary, Sensitivity, Statistic};
+use crate::outcome::record::{Classed, OfThickness, Outcome, Replicate, Run, RunSummary, Statistic};
 use crate::verdict::words::capital;
 
 /// Replicates listed one by one; all are in `outcome.json`.
@@ -144,49 +144,56 @@ fn below(outcome: &Outcome, stopped: bool) -> Markup {
     }
 }
 
+/// With a column a run of what eroded in each row.
+pub(super) fn eroded<'a, T>(
+    table: Table<'a, T>,
+    runs: impl IntoIterator<Item: Render>,
+    walked: fn(&T) -> &Classed,
+) -> Table<'a, T> {
+    let of =
+        |index: usize| move |row: &T| walked(row).runs.get(index).map_or_else(|| html! { "–" }, fraction);
+    runs.into_iter().enumerate().fold(table, |table, (index, run)| table.number(run, of(index)))
+}
+
 /// Filters of other thicknesses, collapsed.
 pub(super) fn thickness(outcome: &Outcome) -> Markup {
     let scale_free = outcome.inputs.scale_free;
     let is_held = |row: &OfThickness| !outcome.has_its_base(row);
-    let mut table = Table::of(&outcome.thickness)
+    let table = Table::of(&outcome.thickness)
         .number("Times the thickness", |row| format!("×{}", trimmed(row.factor)))
         .number("Layers of voids", |row| whole(row.layers))
         .number("Thickness", move |row| known(row.thickness_mm, |t| size(t, scale_free)))
         .number("Base particles, N_base", move |row| {
             format!("{}{}", whole(row.n_base), if is_held(row) { " *" } else { "" })
         })
-        .number("Replicates", |row| row.replicates);
-    for (index, run) in outcome.summary.iter().enumerate() {
-        let of = move |row: &OfThickness| row.runs.get(index).map_or_else(|| html! { "–" }, fraction);
-        table = table.number(capital(run_name(run.run)), of);
-    }
+        .number("Replicates", |row| row.walked.replicates);
+    let runs = outcome.summary.iter().map(|run| capital(run_name(run.run)));
+    let table = eroded(table, runs, |row| &row.walked);
     html! {
         @if !outcome.thickness.is_empty() { details {
             summary { "Filters of other thicknesses, in numbers" }
-            (table.text("Verdict", |row| row.verdict.words()))
+            (table.text("Verdict", |row| row.walked.verdict.words()))
             @if outcome.thickness.iter().any(is_held) { p.small { "* " (HELD) } }
-            (below(outcome, outcome.thickness.iter().any(|row| row.stopped_when_clear)))
+            (below(outcome, outcome.thickness.iter().any(|row| row.walked.stopped_when_clear)))
         } }
     }
 }
 
 /// Other numbers of base particles, collapsed.
 pub(super) fn sensitivity(outcome: &Outcome) -> Markup {
-    let mut table = Table::of(&outcome.sensitivity)
+    let table = Table::of(&outcome.sensitivity)
         .number("Times the base particles", |case| format!("×{}", trimmed(case.factor)))
         .number("Base particles, N_base", |case| whole(case.n_base))
         .number("Grains per void", |case| known(case.grains_per_void, significant))
         .number("or mass ratio", |case| known(case.mass_ratio, percent))
-        .number("Replicates", |case| case.replicates);
-    for (index, run) in outcome.summary.iter().enumerate() {
-        let of = move |case: &Sensitivity| case.runs.get(index).map_or_else(|| html! { "–" }, fraction);
-        table = table.number(capital(run_name(run.run)), of);
-    }
+        .number("Replicates", |case| case.walked.replicates);
+    let runs = outcome.summary.iter().map(|run| capital(run_name(run.run)));
+    let table = eroded(table, runs, |case| &case.walked);
     html! {
         @if !outcome.sensitivity.is_empty() { details {
             summary { "Sensitivity to the number of base particles, in numbers" }
-            (table.text("Verdict", |case| case.verdict.words()))
-            (below(outcome, outcome.sensitivity.iter().any(|case| case.stopped_when_clear)))
+            (table.text("Verdict", |case| case.walked.verdict.words()))
+            (below(outcome, outcome.sensitivity.iter().any(|case| case.walked.stopped_when_clear)))
         } }
     }
 }

@@ -17,9 +17,8 @@ pub(super) fn rules(outcome: &Outcome) -> Markup {
             p { (compared(outcome)) }
             (table(&practice))
             @if !walk.is_empty() {
-                h3 { "What the walk itself is compared with" }
-                p.small { "These say whether the walk agrees with tests and with the paper; no filter \
-                           fails by them." }
+                h3 { "Comparisons of the walk with tests and with the paper" }
+                p.small { "They show whether the walk agrees with both. No filter fails by them." }
                 (table(&walk))
             }
         }
@@ -35,7 +34,7 @@ pub(super) fn table(rules: &[&AppliedRule]) -> Markup {
                 (clean(&rule.name))
                 @if !rule.applies_to.is_empty() { br; span.small { "For " (clean(&rule.applies_to)) "." } }
                 @if !rule.speaks_against.is_empty() && rule.role != RuleRole::Walk {
-                    br; span.small { "Not kept, it speaks against " (clean(&rule.speaks_against)) "." }
+                    br; span.small { "If not met, it speaks against " (clean(&rule.speaks_against)) "." }
                 }
                 @for text in [&rule.note, &rule.needs] {
                     @if !text.is_empty() { br; span.small { b { (clean(text)) } } }
@@ -60,7 +59,7 @@ pub(super) fn table(rules: &[&AppliedRule]) -> Markup {
             (RuleRole::Walk, Some(false)) => html! { "beyond" },
             (_, Some(true)) => html! { span.keeps { "✓ met" } },
             (_, Some(false)) => html! { span.breaks { "✗ not met" } },
-            (_, None) if !rule.applies && rule.needs.is_empty() => html! { "not made for it" },
+            (_, None) if !rule.applies && rule.needs.is_empty() => html! { "does not apply" },
             (_, None) if rule.value.is_some() && rule.limit.is_none() && rule.needs.is_empty() => {
                 html! { "no limit" }
             }
@@ -90,18 +89,19 @@ fn compared(outcome: &Outcome) -> String {
         None => "The boundaries that Foster and Fell saw in tests give no class for this pair. ".into(),
     };
     text += match met("sherard-dunnigan") {
-        Some(true) => "The limit of design (Sherard and Dunnigan) is kept. ",
-        Some(false) => "The limit of design (Sherard and Dunnigan) is not kept. ",
-        None => "The limit of design (Sherard and Dunnigan) has no result. ",
+        Some(true) => "The limit of design (Sherard and Dunnigan) is met. ",
+        Some(false) => "The limit of design (Sherard and Dunnigan) is not met. ",
+        None => "The limit of design (Sherard and Dunnigan) gives no result. ",
     };
     text += match walked.zip(tests.map(|(class, _)| class)) {
         Some((walked, tests)) if walked > tests => {
-            "So the walk is stricter than the tests here: for uniform sands it errs on the safe side. "
+            "The walk is stricter than the tests here: for uniform sands it errs on the safe side. "
         }
         Some((walked, tests)) if walked < tests => {
-            "So the walk is more favourable than the tests here, on the unsafe side: rely on the tests. "
+            "The walk is more favourable than the tests here, which is on the unsafe side: rely on the \
+             tests. "
         }
-        Some(_) => "So walk and tests agree here. ",
+        Some(_) => "Walk and tests agree here. ",
         None => "",
     };
     text += "Which way each errs: for clean sands tests put the end of no erosion at a D15F/D85B of 6.8 \

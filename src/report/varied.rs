@@ -6,23 +6,22 @@ use super::numbers::{interval_in_percent, known, percent, significant, size, tri
 use super::run_figures::{eroded_axis, run_look, run_name, threshold_rule, upper, verdict_colour};
 use super::shell::Drawn;
 use super::walks::Walks;
-use crate::outcome::record::{OfThickness, Outcome, Statistic, Verdict};
+use crate::outcome::record::{Classed, OfThickness, Outcome};
 
 /// What is said where points of a study stopped early.
-pub(super) const STOPPED_WHEN_CLEAR: &str = "A point stops after one or two replicates where its erosion \
-    clearly continues, as that of this scene does: its interval then takes twice the scatter of this scene’s \
-    own replicates, or its own where that is wider, because so few say nothing sure of theirs.";
+pub(super) const STOPPED_WHEN_CLEAR: &str = "A point stops after one or two replicates if its erosion \
+    clearly continues, as it does for this scene. Its interval then takes twice the scatter of this scene’s \
+    replicates, or its own if that is wider, because so few replicates do not show theirs.";
 
 /// What is said where not every thickness has its base.
-pub(super) const HELD: &str = "A cap or base.n_base holds the number of base particles (marked * in the \
-    table), so that a thicker filter is not offered as many times the base, as Eq. (2) asks: it seems to \
-    hold better than it would.";
+pub(super) const HELD: &str = "The number of base particles is fixed or capped (marked * in the table), so a \
+    thicker filter is not offered base in proportion. It seems to hold better than it would.";
 
 /// What is said of the classes of a study where the verdict is undecided and its other points know nothing of
 /// what leaves it so.
 pub(super) fn classes_of_points(outcome: &Outcome) -> Option<String> {
     let points = outcome.points_are()?;
-    Some(format!("×1 has the verdict of this page; the others are classed {points}."))
+    Some(format!("×1 has the verdict of this page; the other points are classed {points}."))
 }
 
 /// One of several filters or bases that differ in one thing: how many times that of this scene.
@@ -30,10 +29,7 @@ struct Varied<'a> {
     factor: f64,
     /// What stands below the factor on the axis.
     below: String,
-    verdict: Verdict,
-    runs: &'a [Statistic],
-    replicates: u64,
-    stopped_when_clear: bool,
+    walked: &'a Classed,
 }
 
 /// Eroded mass against the number of base particles, and the class that each number gives.
@@ -42,10 +38,7 @@ pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
     let cases = cases.map(|case| Varied {
         factor: case.factor,
         below: known(case.grains_per_void, significant),
-        verdict: case.verdict,
-        runs: &case.runs,
-        replicates: case.replicates,
-        stopped_when_clear: case.stopped_when_clear,
+        walked: &case.walked,
     });
     let titles = [
         "How the verdict moves with the number of base particles",
@@ -57,8 +50,8 @@ pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
     let behind = behind(&folder.outcome, &cases);
     let figure = varied(&folder.walks(), cases, titles)?;
     let caption = format!(
-        "How the verdict moves with the number of base particles, N_base. Grains per void and mass ratio \
-         enter N_base only as a product (Eq. 2), so this one axis answers for both: ×2 is twice the grains \
+        "How the verdict moves with the number of base particles. It is proportional to the grains per void \
+         and to the mass ratio, so this axis covers both: ×2 is twice the grains \
          per void or twice the mass ratio. ×1 is this scene: {} grains per void, mass ratio {}. Bars: 95 % \
          intervals. {behind}",
         known(folder.outcome.grains_per_void, significant),
@@ -72,14 +65,7 @@ pub(super) fn thickness(folder: &RunFolder) -> Option<Drawn> {
     let scale_free = folder.outcome.inputs.scale_free;
     let of_row = |row: &'_ OfThickness| known(row.thickness_mm, |thickness| size(thickness, scale_free));
     let rows = folder.outcome.thickness.iter().filter(|row| row.factor > 0.0);
-    let rows = rows.map(|row| Varied {
-        factor: row.factor,
-        below: of_row(row),
-        verdict: row.verdict,
-        runs: &row.runs,
-        replicates: row.replicates,
-        stopped_when_clear: row.stopped_when_clear,
-    });
+    let rows = rows.map(|row| Varied { factor: row.factor, below: of_row(row), walked: &row.walked });
     let titles = [
         "How the verdict moves with the thickness of the filter",
         "Percent of the base mass eroded in each run against multiples of the filter's thickness; the \
@@ -91,7 +77,7 @@ pub(super) fn thickness(folder: &RunFolder) -> Option<Drawn> {
     let figure = varied(&folder.walks(), rows, titles)?;
     let outcome = &folder.outcome;
     let offered = match outcome.thickness.iter().all(|row| outcome.has_its_base(row)) {
-        true => "By Eq. (2) a thicker filter is offered as many times the base.",
+        true => "A thicker filter is offered base in proportion.",
         false => HELD,
     };
     let caption = format!(
@@ -104,9 +90,9 @@ pub(super) fn thickness(folder: &RunFolder) -> Option<Drawn> {
 
 /// How many replicates stand behind each point, and of what its class is, in words.
 fn behind(outcome: &Outcome, cases: &[Varied]) -> String {
-    let each = cases.iter().map(|case| format!("×{} {}", trimmed(case.factor), case.replicates));
+    let each = cases.iter().map(|case| format!("×{} {}", trimmed(case.factor), case.walked.replicates));
     let each = each.collect::<Vec<_>>().join(", ");
-    let stopped = cases.iter().any(|case| case.stopped_when_clear);
+    let stopped = cases.iter().any(|case| case.walked.stopped_when_clear);
     let mut said = format!("Replicates: {each}.");
     if stopped {
         said += &format!(" {STOPPED_WHEN_CLEAR}");
@@ -129,18 +115,18 @@ fn varied(walks: &Walks, mut cases: Vec<Varied>, titles: [&str; 3]) -> Option<Fi
         tick
     });
     let x = Axis::log(axis, least, most).with_ticks(ticks.collect()).within(least / 1.25, most * 1.25);
-    let highest = 100.0 * cases.iter().flat_map(|case| case.runs).map(upper).fold(0.0, f64::max);
+    let highest = 100.0 * cases.iter().flat_map(|case| &case.walked.runs).map(upper).fold(0.0, f64::max);
     let y = eroded_axis("Base eroded, by mass (%)", walks, (highest * 1.3).min(100.0));
     let mut figure = Figure::new(title, what, "", x, y);
     let edge = |left: f64, right: f64| libm::sqrt(left * right);
     let mut left = least / 1.25;
-    for same in cases.chunk_by(|a, b| a.verdict == b.verdict) {
+    for same in cases.chunk_by(|a, b| a.walked.verdict == b.walked.verdict) {
         let (Some(first), Some(last)) = (same.first(), same.last()) else { continue };
         let next = cases.iter().find(|case| case.factor > last.factor);
         let right = next.map_or(most * 1.25, |next| edge(last.factor, next.factor));
         let outline = vec![(left, 0.0), (left, 100.0), (right, 100.0), (right, 0.0)];
-        let area = Area::new(outline, verdict_colour(first.verdict), 0.2);
-        figure.add(area.label(&first.verdict.words().replace(' ', "\n")));
+        let area = Area::new(outline, verdict_colour(first.walked.verdict), 0.2);
+        figure.add(area.label(&first.walked.verdict.words().replace(' ', "\n")));
         left = right;
     }
     figure.add(threshold_rule(walks, Across::Y));
@@ -148,7 +134,8 @@ fn varied(walks: &Walks, mut cases: Vec<Varied>, titles: [&str; 3]) -> Option<Fi
         let (colour, shape, dash) = run_look(run);
         // the runs stand a little apart, so that their bars do not overlap
         let apart = if run == 1 { 0.985 } else { 1.015 };
-        let found = || cases.iter().filter_map(|case| Some((case.factor, case.runs.get(run as usize - 1)?)));
+        let found =
+            || cases.iter().filter_map(|case| Some((case.factor, case.walked.runs.get(run as usize - 1)?)));
         let means = found().map(|(factor, statistic)| (factor * apart, statistic.mean * 100.0)).collect();
         let factors = found().map(|(factor, _)| factor).collect();
         figure.add(Line::new(means, colour).true_x(factors).dash(dash).label(run_name(run)));

@@ -1,7 +1,7 @@
 //! Walks a case at the ends of the range in which its constriction curve is known.
 
 use super::error::RunError;
-use super::replicates::{ReplicateContext, ReplicateResult, some_replicates, stopping, summarise};
+use super::replicates::{ReplicateContext, ReplicateResult, classed, some_replicates, stopping, summarise};
 use crate::case::Case;
 use crate::outcome::record::{CurveEnd, CurveRange};
 
@@ -23,14 +23,7 @@ pub fn curve_range(
         let dc50_factor = end.curve.dc(50.0).unwrap_or(f64::NAN) / own;
         let other = case.with_curve(end.curve.clone());
         let of_end = some_replicates(&other, part, 1..=walked.len() as u64, case.n_base, context)?;
-        let (verdict, summaries) = summarise(&of_end);
-        ends.push(CurveEnd {
-            curve: end.name.clone(),
-            dc50_factor,
-            replicates: of_end.len() as u64,
-            verdict,
-            runs: summaries.iter().map(|s| s.eroded_mass_fraction).collect(),
-        });
+        ends.push(CurveEnd { curve: end.name.clone(), dc50_factor, walked: classed(&of_end) });
     }
     let (verdict, summaries) = summarise(walked);
     // A verdict that was to be certain is one at the level asked for, here too.

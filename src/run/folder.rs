@@ -18,6 +18,9 @@ pub(crate) const STUDY: [&str; 2] = ["study.0", "study.1"];
 /// The files of the checkpoint of a design that is not finished.
 pub(crate) const DESIGN: [&str; 2] = ["networks.0", "networks.1"];
 
+/// The files of the checkpoint of a percolation study that is not finished.
+pub(crate) const LATTICES: [&str; 2] = ["lattices.0", "lattices.1"];
+
 /// What `voidwalk export` writes into a folder of that name ...
 const EXPORTED: [&str; 5] = ["arrays.npz", "layers.vtu", "grains.vtu", "voids.pvd", "constrictions.pvd"];
 
@@ -102,6 +105,7 @@ impl FolderKind {
             Self::Run => &["scene.toml", "series.csv", super::checkpoints::FOLDER],
             Self::Packing => &STATES,
             Self::Campaign => &["cases"],
+            Self::Percolation => &LATTICES,
             Self::Precision => &STUDY,
             Self::Comparison => &["walks"],
             Self::Design => &DESIGN,
@@ -142,7 +146,9 @@ impl FolderKind {
                 STATES[1],
             ],
             Self::Campaign | Self::Serve => &[],
-            Self::Percolation => &["percolation.json", "report.html", "percolation.csv"],
+            Self::Percolation => {
+                &["percolation.json", "report.html", "percolation.csv", LATTICES[0], LATTICES[1]]
+            }
             Self::Precision => &[
                 "precision.json",
                 "precision.html",

@@ -17,7 +17,7 @@ use super::shared_networks::SharedNetworks;
 use crate::case::{Case, replicate_seed};
 use crate::gradation::Gradation;
 use crate::network::{Network, NetworkError};
-use crate::outcome::record::{Replicate, Run, RunSummary, Statistic, Stopping, Verdict};
+use crate::outcome::record::{Classed, Replicate, Run, RunSummary, Statistic, Stopping, Verdict};
 use crate::outcome::stopping::{Look, ReplicateValues};
 use crate::outcome::verdict::{below_by_interval, classify};
 
@@ -374,6 +374,13 @@ pub fn summarise(walked: &[ReplicateResult]) -> (Verdict, Vec<RunSummary>) {
         below_by_interval(&summary.eroded_mass_fraction, &each)
     };
     (classify(below(0), below(1)), summaries)
+}
+
+/// What the replicates are worth together, as a point of a study holds it.
+pub fn classed(walked: &[ReplicateResult]) -> Classed {
+    let (verdict, summaries) = summarise(walked);
+    let runs = summaries.iter().map(|run| run.eroded_mass_fraction).collect();
+    Classed { replicates: walked.len() as u64, stopped_when_clear: false, verdict, runs }
 }
 
 fn run_summary(walked: &[ReplicateResult], run: usize) -> RunSummary {

@@ -7,12 +7,12 @@ use serde::Serialize;
 use super::error::RunError;
 use super::machine::Machine;
 use super::other_walks::OtherWalks;
-use super::replicates::{ReplicateResult, said_by_walks, stopping, summarise};
+use super::replicates::{ReplicateResult, classed, said_by_walks, stopping, summarise};
 use super::studies::Studies;
 use crate::case::{Case, INPUT_NAMES, replicate_seed};
 use crate::outcome::record::{
-    Confidence, ConstrictionsRecord, Manifest, Outcome, PanBounds, PanReading, RunSummary, Statistic,
-    Stopping, Verdict, VoidRow,
+    Classed, Confidence, ConstrictionsRecord, Manifest, Outcome, PanBounds, PanReading, RunSummary,
+    Statistic, Stopping, Verdict, VoidRow,
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
 use crate::outcome::table::csv_of;
@@ -107,13 +107,11 @@ fn concluded(case: &Case, walked: &[ReplicateResult]) -> (Verdict, Vec<RunSummar
 /// What came of both readings of the base's pan fraction; `None` where there is only one.
 fn pan_bounds(case: &Case, walked: [&[ReplicateResult]; 2]) -> Option<PanBounds> {
     let reading = |case: &Case, walked: &[ReplicateResult]| -> Option<PanReading> {
-        let (verdict, summary, stopping) = concluded(case, walked);
+        let (verdict, _, stopping) = concluded(case, walked);
         Some(PanReading {
             taken_as: case.pan_size?,
             n_base: case.n_base,
-            replicates: walked.len() as u64,
-            verdict,
-            runs: summary.iter().map(|run| run.eroded_mass_fraction).collect(),
+            walked: Classed { verdict, ..classed(walked) },
             stopping,
         })
     };

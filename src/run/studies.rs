@@ -14,10 +14,10 @@ use rayon::prelude::*;
 use super::callbacks::Event;
 use super::error::RunError;
 use super::planned::replicates_at_least;
-use super::replicates::{ReplicateContext, ReplicateResult, summarise, values_by_run, walk_replicate};
+use super::replicates::{ReplicateContext, ReplicateResult, classed, values_by_run, walk_replicate};
 use crate::case::Case;
 use crate::outcome::early_stop::{clear, looks};
-use crate::outcome::record::{OfThickness, Sensitivity, Statistic, Verdict};
+use crate::outcome::record::{Classed, OfThickness, Sensitivity, Statistic, Verdict};
 
 /// What came of the studies; empty where they are left out.
 #[derive(Clone, Default)]
@@ -122,35 +122,26 @@ impl Studies {
     }
 
     fn add(&mut self, case: &Case, point: &Point, walked: &Walked, class: Verdict) {
-        let (verdict, summaries) = summarise(&walked.replicates);
-        let runs = || summaries.iter().map(|summary| summary.eroded_mass_fraction).collect();
-        let judged = Judged {
-            replicates: walked.replicates.len() as u64,
-            stopped_when_clear: walked.clear.is_some(),
-            verdict: if walked.clear.is_some() { class } else { verdict },
-            runs: walked.clear.clone().unwrap_or_else(runs),
+        let found = classed(&walked.replicates);
+        let judged = match &walked.clear {
+            Some(runs) => Classed { stopped_when_clear: true, verdict: class, runs: runs.clone(), ..found },
+            None => found,
         };
         match point.base_factor {
-            Some(factor) => self.sensitivity.push(judged.of_base(case, factor, point.n_base)),
-            None => self.thickness.push(judged.of_thickness(case, &point.case)),
+            Some(factor) => self.sensitivity.push(of_base(judged, case, factor, point.n_base)),
+            None => self.thickness.push(of_thickness(judged, case, &point.case)),
         }
     }
 
     /// The case itself, with its verdict, is a point of each of its studies.
     fn add_own(&mut self, case: &Case, own: &[ReplicateResult], verdict: Verdict) {
-        let (_, summaries) = summarise(own);
-        let judged = || Judged {
-            replicates: own.len() as u64,
-            stopped_when_clear: false,
-            verdict,
-            runs: summaries.iter().map(|summary| summary.eroded_mass_fraction).collect(),
-        };
+        let judged = || Classed { verdict, ..classed(own) };
         if !self.sensitivity.is_empty() {
-            self.sensitivity.push(judged().of_base(case, 1.0, case.n_base));
+            self.sensitivity.push(of_base(judged(), case, 1.0, case.n_base));
             self.sensitivity.sort_by(|a, b| a.factor.total_cmp(&b.factor));
         }
         if !self.thickness.is_empty() {
-            self.thickness.push(judged().of_thickness(case, case));
+            self.thickness.push(of_thickness(judged(), case, case));
             self.thickness.sort_by_key(|row| row.layers);
         }
     }
@@ -186,40 +177,17 @@ fn walk_all(
     Ok(walked)
 }
 
-/// What came of a point.
-struct Judged {
-    replicates: u64,
-    stopped_when_clear: bool,
-    verdict: Verdict,
-    runs: Vec<Statistic>,
+fn of_base(walked: Classed, case: &Case, factor: f64, n_base: u64) -> Sensitivity {
+    let [grains_per_void, mass_ratio] = [case.grains_per_void, case.mass_ratio].map(|of| Some(of? * factor));
+    Sensitivity { factor, n_base, grains_per_void, mass_ratio, walked }
 }
 
-impl Judged {
-    fn of_base(self, case: &Case, factor: f64, n_base: u64) -> Sensitivity {
-        let Self { replicates, stopped_when_clear, verdict, runs } = self;
-        Sensitivity {
-            factor,
-            n_base,
-            grains_per_void: case.grains_per_void.map(|g| g * factor),
-            mass_ratio: case.mass_ratio.map(|m| m * factor),
-            replicates,
-            stopped_when_clear,
-            verdict,
-            runs,
-        }
-    }
-
-    fn of_thickness(self, case: &Case, other: &Case) -> OfThickness {
-        let Self { replicates, stopped_when_clear, verdict, runs } = self;
-        OfThickness {
-            factor: other.counts[3] as f64 / case.counts[3] as f64,
-            layers: other.counts[3],
-            thickness_mm: other.thickness(),
-            n_base: other.n_base,
-            replicates,
-            stopped_when_clear,
-            verdict,
-            runs,
-        }
+fn of_thickness(walked: Classed, case: &Case, other: &Case) -> OfThickness {
+    OfThickness {
+        factor: other.counts[3] as f64 / case.counts[3] as f64,
+        layers: other.counts[3],
+        thickness_mm: other.thickness(),
+        n_base: other.n_base,
+        walked,
     }
 }

@@ -511,7 +511,7 @@ function boundariesOf(done) {
       el("thead", {}, el("tr", {}, ...["Density, thickness", ...head, "Band"].map((text) => el("th", {}, text)))), el("tbody", {}, ...rows))),
     done.compared ? el("p", {}, done.fit.length ? `Standard products with their D15 within the band (their own shapes were not walked): ${done.fit.join(", ")}.`
       : done.may_fit ? "None of the standard products fits within the band." : "No standard product is said to fit, as the answer is in doubt.") : null,
-    done.reasons.length ? el("details", { open: done.confidence !== "within checked range" }, el("summary", {}, "Why no further"), list(done.reasons)) : null,
+    done.reasons.length ? el("details", { open: done.confidence !== "within checked range" }, el("summary", {}, "Limits of this answer"), list(done.reasons)) : null,
     done.warnings.length ? el("details", {}, el("summary", {}, `${done.warnings.length} to know`), list(done.warnings)) : null,
     el("p", { class: "small" }, `The model leaves out: ${done.model_leaves_out.map((one) => one.split(":")[0]).join("; ")}.`)].filter(Boolean);
 }
@@ -543,7 +543,7 @@ function verdictOf(job) {
     ...plot(done.runs), list(done.runs.map((run, at) => `${RUNS[at]}: ${eroded(run)}`)),
     done.range ? el("p", {}, el("span", { class: "mark" }, "Over the range of the constriction curve"), `: ${percent(done.range[0][0])} to ${percent(done.range[0][1])} in the first run.`) : null,
     list(done.beside),
-    done.reasons.length ? el("details", { open: done.confidence !== "within checked range" }, el("summary", {}, "Why no further"), list(done.reasons)) : null];
+    done.reasons.length ? el("details", { open: done.confidence !== "within checked range" }, el("summary", {}, "Limits of this answer"), list(done.reasons)) : null];
 }
 
 function card(job) {

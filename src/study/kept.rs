@@ -2,7 +2,8 @@
 //!
 //! It is a checkpoint of the folder ([`crate::store::checkpoint`]): section `found`, a record, under a hash
 //! of everything that the study follows from. What was under way is begun again; what it says follows from
-//! its seed alone, so the whole is that of a study that nobody stopped.
+//! its seed alone, so the whole is that of a study that nobody stopped. A comparison keeps no such file: its
+//! cases are run folders, each of which continues by itself.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -10,7 +11,7 @@ use xxhash_rust::xxh3::xxh3_128;
 
 use crate::run::callbacks::Callbacks;
 use crate::run::error::RunError;
-use crate::run::folder::{DESIGN, FolderKind, STUDY, clear, shown};
+use crate::run::folder::{DESIGN, FolderKind, LATTICES, STUDY, clear, shown};
 use crate::run::results::json;
 use crate::run::unfinished::{self, Unfinished};
 use crate::store::Folder;
@@ -35,13 +36,25 @@ pub(super) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
         Some(record) => record,
         None => {
             // What is to be replaced is other work: this very work that was stopped is gone on with.
-            let is_begun = Unfinished::read(folder)?.as_ref() == Some(&mark);
+            let begun = Unfinished::read(folder)?;
+            let is_begun = begun.as_ref() == Some(&mark);
             let found = match overwrite {
                 true if is_begun => kept.newest(callbacks).ok().flatten(),
                 true => None,
                 false => kept.newest(callbacks)?,
             };
-            if found.is_none() {
+            let has_cases = kind == FolderKind::Comparison;
+            // Of a corrupt mark, or one of an earlier version, nothing is known.
+            if has_cases && !overwrite && !is_begun && begun.is_some_and(|begun| !begun.work.is_empty()) {
+                return Err(RunError::Refused(format!(
+                    "{}: holds another {} that is unfinished, or was begun by another version of voidwalk; \
+                     continue that one with its own command, name another folder or add --overwrite",
+                    shown(folder.path()),
+                    kind.name()
+                )));
+            }
+            // At no moment is one that goes on without its mark.
+            if found.is_none() && !(has_cases && is_begun) {
                 clear(folder, kind)?;
             }
             mark.begin(folder)?;
@@ -75,6 +88,7 @@ impl<'a> Kept<'a> {
         let scene = format!("{:032x}", xxh3_128(work.as_bytes()));
         let (name, files, parts) = match kind {
             FolderKind::Precision => ("study", &STUDY, "tiers"),
+            FolderKind::Percolation => ("lattices", &LATTICES, "lattices"),
             _ => ("networks", &DESIGN, "networks"),
         };
         Self { kind, folder, identity: Identity { scene, ..Identity::default() }, name, files, parts }

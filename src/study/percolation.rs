@@ -4,16 +4,16 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
+use super::kept::{self, Kept};
 use crate::network::{Network, NetworkError, percolation_threshold};
 use crate::outcome::percolation::{PercolationStudy, is_cube, lattice_name};
 use crate::outcome::table::Columns;
 use crate::run::callbacks::Callbacks;
 use crate::run::error::RunError;
-use crate::run::folder::{FolderKind, claim, clear};
+use crate::run::folder::{FolderKind, claim};
 use crate::run::machine::on_threads;
-use crate::run::results::json;
-use crate::run::unfinished::Unfinished;
 
 /// Where a percolation study goes, and what it is asked for.
 #[derive(Clone, Debug)]
@@ -52,30 +52,29 @@ impl Default for PercolationPlan {
     }
 }
 
-/// The lengths of a lattice, and the threshold of each of its realisations in order.
-type Thresholds = Vec<([u32; 3], Vec<f64>)>;
+/// What has been found so far.
+#[derive(Default, Serialize, Deserialize)]
+struct Found {
+    /// The lengths of a lattice, and the threshold of each of its realisations in order.
+    thresholds: Vec<([u32; 3], Vec<f64>)>,
+    /// Wall time (s).
+    seconds: f64,
+}
 
 /// Finds the thresholds and writes `percolation.csv` and, last, `percolation.json`.
 ///
 /// # Errors
 /// Sizes that no lattice can have and a folder that cannot be claimed are refused before any work; what the
-/// folder says.
+/// folder says. After a kill the same command continues with the lattice that was under way.
 pub fn run(options: &PercolationOptions, callbacks: &Callbacks) -> Result<PercolationStudy, RunError> {
     let plan = options.plan.clone().checked().map_err(RunError::refused)?;
-    let folder = claim(&options.out, FolderKind::Percolation, options.overwrite)?;
-    let (kind, name) = (FolderKind::Percolation, FolderKind::Percolation.record());
-    let mark = Unfinished { kind: kind.name().into(), work: format!("{plan:?}"), ..Unfinished::default() };
-    if let Some(study) = mark.whole(&folder, name)?.filter(|_| !options.overwrite) {
-        callbacks.finish(kind, &folder)?;
-        return Ok(study);
-    }
-    let (study, thresholds) = on_threads(options.threads, || Ok(plan.run()?))?;
-    clear(&folder, kind)?;
-    mark.begin(&folder)?;
-    folder.write("percolation.csv", &csv(&thresholds))?;
-    folder.write(name, &json(name, &study)?)?;
-    callbacks.finish(kind, &folder)?;
-    Ok(study)
+    let kind = FolderKind::Percolation;
+    let folder = claim(&options.out, kind, options.overwrite)?;
+    kept::study((&folder, kind, options.overwrite), format!("{plan:?}"), callbacks, |kept, found| {
+        let found = on_threads(options.threads, || plan.run(found.unwrap_or_default(), Some(kept)))?;
+        folder.write("percolation.csv", &csv(&found))?;
+        Ok(PercolationStudy::new(plan.seed, &found.thresholds, found.seconds))
+    })
 }
 
 impl PercolationPlan {
@@ -92,31 +91,32 @@ impl PercolationPlan {
         Ok(self)
     }
 
-    /// Finds every threshold, realisations side by side; the same bits for any number of threads.
+    /// Finds every threshold that was not found before, realisations side by side, and keeps each lattice as
+    /// soon as it is done; the same bits for any number of threads.
     ///
     /// # Errors
-    /// None that [`PercolationPlan::checked`] has not found.
-    fn run(&self) -> Result<(PercolationStudy, Thresholds), NetworkError> {
-        let begun = Instant::now();
-        let mut thresholds = Vec::new();
-        for &shape in &self.shapes {
+    /// What the folder says; else none that [`PercolationPlan::checked`] has not found.
+    fn run(&self, mut found: Found, kept: Option<&Kept>) -> Result<Found, RunError> {
+        let (begun, seconds_before) = (Instant::now(), found.seconds);
+        for &shape in &self.shapes[found.thresholds.len()..] {
             let one = |realisation| percolation_threshold(shape, self.seed, realisation);
             let all: Result<Vec<f64>, NetworkError> =
                 (1..=self.realisations).into_par_iter().map(one).collect();
-            thresholds.push((shape, all?));
+            found.thresholds.push((shape, all?));
+            found.seconds = seconds_before + begun.elapsed().as_secs_f64();
+            kept.map_or(Ok(()), |kept| kept.keep(found.thresholds.len(), &found))?;
         }
-        let study = PercolationStudy::new(self.seed, &thresholds, begun.elapsed().as_secs_f64());
-        Ok((study, thresholds))
+        Ok(found)
     }
 }
 
 /// `percolation.csv`: one row a realisation; the size of a lattice that is no cube is written as 40x40x60.
-fn csv(thresholds: &Thresholds) -> Vec<u8> {
+fn csv(found: &Found) -> Vec<u8> {
     let of_lattice = |(shape, all): &'_ ([u32; 3], Vec<f64>)| {
         let shape = *shape;
         (1..).zip(all.clone()).map(move |(realisation, threshold)| (shape, realisation, threshold))
     };
-    let rows: Vec<([u32; 3], u64, f64)> = thresholds.iter().flat_map(of_lattice).collect();
+    let rows: Vec<([u32; 3], u64, f64)> = found.thresholds.iter().flat_map(of_lattice).collect();
     Columns::default()
         .column("size", |row: &([u32; 3], u64, f64)| lattice_name(row.0))
         .column("realisation", |row| row.1)
@@ -137,7 +137,7 @@ mod tests {
         let plan = plan(vec![[4, 5, 6], [12; 3], [6; 3], [4, 5, 6], [6; 3], [4, 3, 9]], 20, 3).unwrap();
         let on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            String::from_utf8(csv(&pool.install(|| plan.run()).unwrap().1)).unwrap()
+            String::from_utf8(csv(&pool.install(|| plan.run(Found::default(), None)).unwrap())).unwrap()
         };
         let one = on(1);
         assert_eq!(one, on(3));
@@ -146,6 +146,20 @@ mod tests {
             one.lines().filter_map(|row| row.split_once(",1,")).map(|row| row.0).collect();
         assert_eq!(firsts, ["6", "12", "4x3x9", "4x5x6"]);
         assert_eq!(one.lines().count(), 81);
+    }
+
+    /// As a kill leaves it, or a folder whose lattices are all done.
+    #[test]
+    fn a_study_continues_with_the_lattices_that_are_left() {
+        let plan = plan(vec![[6; 3], [8; 3], [4, 5, 6]], 10, 3).unwrap();
+        let whole = plan.run(Found::default(), None).unwrap();
+        for done in 0..=whole.thresholds.len() {
+            let kept = Found { thresholds: whole.thresholds[..done].to_vec(), seconds: 1000.0 };
+            let kept: Found = serde_json::from_str(&serde_json::to_string(&kept).unwrap()).unwrap();
+            let again = plan.run(kept, None).unwrap();
+            assert_eq!(again.thresholds, whole.thresholds, "{done}");
+            assert!(again.seconds >= 1000.0);
+        }
     }
 
     #[test]

@@ -12,18 +12,13 @@ use crate::outcome::record::{AppliedRule, Confidence, FindingRecord, Verdict, We
 pub struct Judgement {
     /// The class.
     pub verdict: Verdict,
-    /// How far it can be relied on: the label that the first finding sets.
+    /// How far it can be relied on: the worst label that a finding against it sets.
     pub confidence: Confidence,
     /// The findings: those that speak against the class first, the weightiest of them before all.
     pub findings: Vec<FindingRecord>,
 }
 
 impl Judgement {
-    /// The finding that set the label; none within the checked range.
-    pub fn set_by(&self) -> Option<&FindingRecord> {
-        self.findings.first().filter(|finding| finding.against)
-    }
-
     /// The sentences that speak against the class, in order.
     pub fn reasons(&self) -> Vec<String> {
         self.of_kind(true).map(|finding| finding.sentence.clone()).collect()
@@ -52,12 +47,12 @@ pub fn rank(finding: &Finding) -> (Weight, Option<usize>) {
 /// What a class is worth, by rules of practice and by what was found.
 ///
 /// Each finding that speaks against the class has a label that it would set alone, and the worst comes first:
-/// so label and first finding agree. Rules of retention speak against "no erosion", the boundary of
-/// continuing erosion against "some erosion" too. A filter that does not hold its own fines is not the filter
-/// that was walked, but only coarser without them: that makes "continuing erosion" the surer. A rule of
-/// drainage or placing says nothing of retention, but practice would not build a filter that breaks it: "no
-/// erosion" does not stand in green there. What makes a verdict surer is no doubt of it
-/// ([`Finding::is_against`]).
+/// so label and first finding agree. Only an undecided verdict begins with what leaves it open. Rules of
+/// retention speak against "no erosion", the boundary of continuing erosion against "some erosion" too. A
+/// filter that does not hold its own fines is not the filter that was walked, but only coarser without them:
+/// that makes "continuing erosion" the surer. A rule of drainage or placing says nothing of retention, but
+/// practice would not build a filter that breaks it: "no erosion" does not stand in green there. What makes a
+/// verdict surer is no doubt of it ([`Finding::is_against`]).
 pub fn judge(verdict: Verdict, rules: &[AppliedRule], findings: Vec<Finding>) -> Judgement {
     let mut all: Vec<Finding> = Vec::new();
     for finding in practice::findings(verdict, rules).into_iter().chain(findings) {
@@ -67,9 +62,10 @@ pub fn judge(verdict: Verdict, rules: &[AppliedRule], findings: Vec<Finding>) ->
     }
     all.sort_by_cached_key(|finding| {
         let sets = finding.is_against(verdict).then_some(finding.entry.sets);
-        (Reverse(sets), rank(finding))
+        let leaves_open = verdict == Verdict::Undecided && finding.entry.weight == Weight::Decides;
+        (Reverse(leaves_open), Reverse(sets), rank(finding))
     });
-    let confidence = all.first().filter(|of| of.is_against(verdict)).map(|of| of.entry.sets);
+    let confidence = all.iter().filter(|of| of.is_against(verdict)).map(|of| of.entry.sets).max();
     Judgement {
         verdict,
         confidence: confidence.unwrap_or(Confidence::Within),
@@ -100,7 +96,7 @@ mod tests {
     }
 
     fn is_within(answer: &Judgement, notes: &[&str]) {
-        assert_eq!((answer.confidence, answer.set_by()), (Confidence::Within, None), "{answer:?}");
+        assert_eq!((answer.confidence, answer.reasons()), (Confidence::Within, Vec::new()), "{answer:?}");
         let ids: Vec<&str> = answer.findings.iter().map(|finding| finding.id.as_str()).collect();
         assert_eq!(ids, notes);
     }
@@ -286,6 +282,16 @@ mod tests {
         }
     }
 
+    /// The label is the worst all the same.
+    #[test]
+    fn an_undecided_verdict_of_an_unstable_filter_begins_with_what_leaves_it_open() {
+        let pan = finding::pan_decides(35.0, 0.075, 0.04, "it is continuing erosion", "it is no erosion");
+        let found = judge(Verdict::Undecided, &rules(&GAP, &SAND), vec![open(), pan]);
+        let ids: Vec<&str> = found.findings.iter().map(|finding| finding.id.as_str()).collect();
+        assert_eq!(ids[..3], ["pan_decides", "loses_fines", "cohesive_fines"]);
+        assert_eq!(found.confidence, Confidence::Unstable);
+    }
+
     /// What decides an undecided class comes before what only costs the checked range, notes come last, and
     /// nothing is said twice.
     #[test]
@@ -298,7 +304,7 @@ mod tests {
             let answer = judge(Verdict::Undecided, &[], all.clone());
             let ids: Vec<&str> = answer.findings.iter().map(|finding| finding.id.as_str()).collect();
             assert!(ids[..2] == wanted[..2] && ids.len() == 4, "{ids:?}");
-            assert_eq!(answer.set_by().unwrap().id, "pan_decides");
+            assert!(answer.findings[0].against && answer.confidence == Confidence::Outside, "{answer:?}");
         }
     }
 }

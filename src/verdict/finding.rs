@@ -83,9 +83,60 @@ findings! {
         "thickness", "design.md",
         "One layer of voids is thicker than the filter asked for. At D15F/D85B {ratio} it is {layer}, and no \
          less can be walked: a filter of {asked} holds less.";
-    /// What a search found in its own words.
-    of_search(said: Text): Study, Open, Limits;
-        "search", "design.md", "{said}.";
+    /// A boundary at which few particles decide.
+    unsteady(held: Count, eroding: Count, at: Text): Study, Open, Limits;
+        "scatter", "design.md",
+        "A few particles decide where the filter begins to erode{at}. Of {eroding:network} that erode, \
+         {held} held in the first run at a larger D15F/D85B than one at which they erode. With other random \
+         numbers a filter may erode at a smaller D15F/D85B than the one given; a wider network is steadier.";
+    /// A least D15F that drains above the greatest that holds.
+    empty_band(least: Text, greatest: Text, set_by: Text): Study, Open, Limits;
+        "band", "design.md",
+        "No filter of this shape both drains and holds this base. To drain it D15F must be at least {least}, \
+         but {set_by} allows at most {greatest}.";
+    /// A search in which nothing could be walked.
+    nothing_walked(at: Text): Study, Open, Limits;
+        "search", "design.md",
+        "No D15F/D85B of the search could be walked{at}, so that none is known to hold.";
+    /// Networks that erode at every ratio.
+    erodes_everywhere(eroding: Count, networks: Count, at: Text): Study, Open, Limits;
+        "search", "design.md",
+        "{eroding} of {networks:network} erode 7.5 % or more at every ratio that was searched{at}. No ratio \
+         is known that all but 5 % of the networks hold.";
+    /// Networks that hold every ratio.
+    holds_everywhere(ratio: Ratio, at: Text): Study, Open, Limits;
+        "search", "design.md",
+        "Nearly all networks hold as far as was searched, to D15F/D85B {ratio}{at}. The greatest D15F is \
+         therefore not known.",
+        to do "A higher end of --bracket may find it.";
+    /// A median beyond the search.
+    median_beyond(ratio: Ratio, eroding: Count, networks: Count, at: Text): Study, Open, Limits;
+        "search", "design.md",
+        "Nearly all networks hold to D15F/D85B {ratio}{at}; {eroding} of {networks} erode within the search, \
+         and the median lies beyond it. The greatest D15F is therefore not known.",
+        to do "A higher end of --bracket may find it.";
+    /// A search that ends while the base erodes.
+    erodes_to_end(ratio: Ratio, of: Text): Study, Open, Limits;
+        "search", "design.md",
+        "At least 7.5 % of the base erodes down to D15F/D85B {ratio}, where the search ends{of}.";
+    /// Ratios below which nothing can be walked.
+    erodes_to(ratio: Ratio, of: Text, why: Text): Study, Open, Limits;
+        "search", "design.md",
+        "At least 7.5 % of the base erodes down to D15F/D85B {ratio}{of}, and no smaller ratio can be \
+         walked: {why}.";
+    /// A search that ends while the filter holds.
+    holds_to_end(run: Text, ratio: Ratio, of: Text): Study, Open, Limits;
+        "search", "design.md",
+        "Less than 7.5 % of the base erodes{run} up to D15F/D85B {ratio}, where the search ends{of}.";
+    /// Ratios beyond which nothing can be walked.
+    not_walked(of: Text, why: Text): Study, Open, Limits;
+        "search", "design.md", "The search could go no further{of}: {why}.";
+    /// A finest part of the base that is enough to erode.
+    pan_erodes(share: Percent): Base, Open, Limits;
+        "finest part", "design.md",
+        "{share} of the base is finer than its finest sieve. Taken as finer than every constriction it is \
+         enough to count as erosion.",
+        to do "Finer sieves would tell, or base.d0_mm.";
 
     // What walks say themselves.
     /// A verdict at a lower level than 95 %.

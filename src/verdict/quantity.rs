@@ -60,8 +60,11 @@ impl FindingValue {
                     (_, many) => format!("{} {many}", count(*n)),
                 }
             }
-            // One line, whatever a name holds.
-            Self::Text(text) => text.split_whitespace().collect::<Vec<_>>().join(" "),
+            // One line, whatever a name holds; a blank before it sets it off from the word before.
+            Self::Text(text) => {
+                let blank = if text.starts_with(' ') { " " } else { "" };
+                blank.to_owned() + &text.split_whitespace().collect::<Vec<_>>().join(" ")
+            }
         }
     }
 }
@@ -102,6 +105,7 @@ mod tests {
         assert_eq!(FindingValue::Count(1).shown(Some("copy|copies")), "1 copy");
         assert_eq!(FindingValue::Count(1200).shown(Some("copy|copies")), "1 200 copies");
         assert_eq!(FindingValue::Count(2).shown(Some("replicate")), "2 replicates");
-        assert_eq!(shown(FindingValue::Text(" a\n b".into())), "a b");
+        assert_eq!(shown(FindingValue::Text(" a\n b".into())), " a b");
+        assert_eq!(shown(FindingValue::Text("\na b ".into())), "a b");
     }
 }

@@ -29,18 +29,19 @@ fn of_rows(rows: &[OfThickness], verdict: Verdict, points: Option<&str>) -> Opti
         return None;
     }
     let own = own(rows)?;
-    let stays = others.iter().all(|row| row.verdict == verdict);
+    let stays = others.iter().all(|row| row.walked.verdict == verdict);
     let of_row = |row: &&OfThickness| {
-        let eroded: Vec<String> = row.runs.iter().map(|s| percent(s, row.stopped_when_clear)).collect();
+        let eroded: Vec<String> =
+            row.walked.runs.iter().map(|s| percent(s, row.walked.stopped_when_clear)).collect();
         let times = format!("{:.3}", row.factor);
         let times = times.trim_end_matches('0').trim_end_matches('.');
-        let replicates = if row.replicates == 1 { "replicate" } else { "replicates" };
+        let replicates = if row.walked.replicates == 1 { "replicate" } else { "replicates" };
         let held = if row.has_its_base(own) { "" } else { ", not as many times the base" };
         format!(
             "{times} times as thick{held}: {}, {} eroded in {} {replicates}",
-            row.verdict.words(),
+            row.walked.verdict.words(),
             eroded.join(" then "),
-            row.replicates
+            row.walked.replicates
         )
     };
     let each: Vec<String> = others.iter().map(of_row).collect();
@@ -66,6 +67,7 @@ fn percent(eroded: &Statistic, stopped: bool) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::outcome::record::Classed;
 
     fn sentence(rows: &[OfThickness], verdict: Verdict, points: Option<&str>) -> Option<String> {
         of_rows(rows, verdict, points).map(|finding| finding.sentence())
@@ -79,10 +81,7 @@ mod tests {
             layers,
             thickness_mm: None,
             n_base: (100.0 * factor) as u64,
-            replicates: 1,
-            stopped_when_clear: false,
-            verdict,
-            runs,
+            walked: Classed { replicates: 1, stopped_when_clear: false, verdict, runs },
         }
     }
 
@@ -113,11 +112,9 @@ mod tests {
         };
         assert!(copies(1.9, 2000, 20.0).has_its_base(&copies(1.0, 1000, 10.0)));
         assert!(!copies(1.9, 1000, 20.0).has_its_base(&copies(1.0, 1000, 10.0)));
-        let clear = OfThickness {
-            stopped_when_clear: true,
-            runs: vec![Statistic { mean: 0.59, sd: None, low: Some(0.386), high: Some(0.797) }],
-            ..row(2.0, Verdict::Continuing, 0.59)
-        };
+        let mut clear = row(2.0, Verdict::Continuing, 0.59);
+        clear.walked.stopped_when_clear = true;
+        clear.walked.runs = vec![Statistic { mean: 0.59, sd: None, low: Some(0.386), high: Some(0.797) }];
         let said = sentence(&[row(1.0, Verdict::Continuing, 0.6), clear], Verdict::Continuing, None).unwrap();
         assert!(said.contains("continuing erosion, 39 to 80 % eroded in 1 replicate"), "{said}");
     }

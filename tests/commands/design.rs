@@ -103,6 +103,21 @@ fn a_base_that_was_not_checked_never_looks_reassuring() {
     let found = json(&out);
     assert_ne!(found["confidence"], "within checked range");
     assert!(found["reasons"].to_string().contains("finer than 0.075 mm"), "{}", found["reasons"]);
+    let findings = found["findings"].as_array().unwrap();
+    let against = findings.iter().filter(|one| one["against"] == true).count();
+    let others = found["warnings"].as_array().unwrap().len();
+    assert_eq!(against, found["reasons"].as_array().unwrap().len());
+    assert_eq!(findings.len() - against, others);
+    let fines = findings.iter().find(|one| one["id"] == "cohesive_fines").unwrap();
+    assert_eq!(
+        (&fines["numbers"]["fines_percent"], &fines["direction"]),
+        (&Value::from(90.0), &"open".into())
+    );
+    // A folder of an earlier version, without findings, is still read.
+    let mut earlier = found.clone();
+    earlier.as_object_mut().unwrap().remove("findings");
+    fs::write(out.join("design.json"), earlier.to_string()).unwrap();
+    done(&call(root.path(), &["report", "voidwalk-design"]));
     let page = fs::read_to_string(out.join("design.html")).unwrap();
     assert!(!page.contains("class=\"verdict none\"") && page.contains("Why this is in doubt"));
     let said = String::from_utf8(output.stdout).unwrap();

@@ -58,7 +58,7 @@ fn half_and_twice_come_with_the_study_of_the_base_and_nothing_else() {
     assert_eq!(layers, [6, 12, 24]);
     let page = fs::read_to_string(root.path().join("o/report.html")).unwrap();
     assert!(page.contains("3000 *"), "no mark");
-    assert!(!page.contains("is offered as many times the base. Bars"));
+    assert!(!page.contains("is offered base in proportion. Bars"));
     refused(
         &call(root.path(), &["check", "s.toml", "--set", "record.thickness=[0]"]),
         "a list of numbers above 0",

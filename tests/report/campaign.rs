@@ -6,7 +6,7 @@ use std::path::Path;
 use tempfile::TempDir;
 use voidwalk::outcome::ledger::{Campaign, LedgerLine, Made};
 use voidwalk::outcome::record::{
-    Confidence, CurveEnd, CurveRange, FindingRecord, Outcome, Stopping, Verdict, Weight,
+    Classed, Confidence, CurveEnd, CurveRange, FindingRecord, Outcome, Stopping, Verdict, Weight,
 };
 use voidwalk::outcome::undecided::UndecidedBy;
 use voidwalk::report;
@@ -106,9 +106,12 @@ fn why_cases_are_undecided_is_said_of_each() {
     let end = CurveEnd {
         curve: "the loosest".into(),
         dc50_factor: 1.6,
-        replicates: 3,
-        verdict: Verdict::Continuing,
-        runs: runs.clone(),
+        walked: Classed {
+            replicates: 3,
+            stopped_when_clear: false,
+            verdict: Verdict::Continuing,
+            runs: runs.clone(),
+        },
     };
     outcome.curve_range = CurveRange::new(Verdict::None, &runs, vec![end]);
     let by_curve = line("two", "cases/two", &outcome);

@@ -102,10 +102,12 @@ pub fn outcome(replicates: u64) -> Outcome {
             layers: (60.0 * factor) as u64,
             thickness_mm: Some(70.6 * factor),
             n_base: (21_443_871.0 * factor) as u64,
-            replicates: 4,
-            stopped_when_clear: false,
-            verdict: if first < 0.075 { Verdict::None } else { Verdict::Some },
-            runs: vec![statistic(first, 0.01, 4), statistic(0.25 * first, 0.005, 4)],
+            walked: Classed {
+                replicates: 4,
+                stopped_when_clear: false,
+                verdict: if first < 0.075 { Verdict::None } else { Verdict::Some },
+                runs: vec![statistic(first, 0.01, 4), statistic(0.25 * first, 0.005, 4)],
+            },
         });
     let verdicts = [Verdict::Continuing, Verdict::Continuing, Verdict::Some, Verdict::Some, Verdict::None];
     let sensitivity =
@@ -117,10 +119,12 @@ pub fn outcome(replicates: u64) -> Outcome {
                 n_base: (21_443_871.0 * factor) as u64,
                 grains_per_void: Some(0.61 * factor),
                 mass_ratio: Some(0.05 * factor),
-                replicates: 4,
-                stopped_when_clear: false,
-                verdict,
-                runs: vec![statistic(first, 0.012, 4), statistic(second, 0.006, 4)],
+                walked: Classed {
+                    replicates: 4,
+                    stopped_when_clear: false,
+                    verdict,
+                    runs: vec![statistic(first, 0.012, 4), statistic(second, 0.006, 4)],
+                },
             }
         });
     Outcome {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use voidwalk::constrictions::find;
 use voidwalk::outcome::Recorded;
-use voidwalk::outcome::record::{PanBounds, PanReading, PanSize, Verdict};
+use voidwalk::outcome::record::{Classed, PanBounds, PanReading, PanSize, Verdict};
 use voidwalk::report::files::rows;
 use voidwalk::report::{self, RunTexts, network_walk_brief, network_walk_page, run_brief, run_page};
 use voidwalk::run::{Callbacks, NetworkWalk, walk_networks};
@@ -68,9 +68,12 @@ fn a_verdict_that_the_pan_fraction_decides_is_explained_alike_on_the_page_and_in
     let reading = |taken_as, verdict| PanReading {
         taken_as,
         n_base: outcome.n_base,
-        replicates: 10,
-        verdict,
-        runs: outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect(),
+        walked: Classed {
+            replicates: 10,
+            stopped_when_clear: false,
+            verdict,
+            runs: outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect(),
+        },
         stopping: None,
     };
     outcome.pan_bounds = Some(PanBounds {

@@ -224,7 +224,7 @@ fn one_replicate_has_no_interval_and_says_so() {
     plan.outcome.thickness.clear();
     plan.outcome.studies_to_come = true;
     let text = words(&made(&plan).0);
-    assert!(text.contains("is not walked yet, and nothing moves it more: voidwalk resume goes on with it"));
+    assert!(text.contains("Their effect is not walked yet; voidwalk resume goes on with it"));
     assert!(!text.contains("not asked for"));
 }
 
@@ -414,25 +414,25 @@ fn equation_one_stands_beside_the_walk() {
     let mut plan = Plan::usual();
     let text = words(&made(&plan).0);
     for expected in [
-        "Infiltration depth, Eq. (1)",
+        "Infiltration depth without blocking",
         "D85B",
         "73.4",
         "no end",
         "If nothing were ever blocked, 87.3 % of the base’s mass would leave",
         "down to 59.0, 95 % of them down to 11.0 (first run)",
-        "The difference is what blocking holds",
+        "The difference is due to blocking",
     ] {
         assert!(text.contains(expected), "{expected}");
     }
     for (alone, expected) in
-        [(0.1, "More left than Eq. (1) lets pass"), (0.19, "Here blocking changes little")]
+        [(0.1, "More left than a clean filter lets pass"), (0.19, "Blocking changes little here")]
     {
         plan.outcome.infiltration.as_mut().unwrap().eroded_without_blocking = alone;
         plan.outcome.summary[0].eroded_mass_fraction.mean = 0.19;
         assert!(words(&made(&plan).0).contains(expected), "{expected}");
     }
     plan.outcome.infiltration = None;
-    assert!(words(&made(&plan).0).contains("Not given: Eq. (1) speaks of a regular cubic lattice"));
+    assert!(words(&made(&plan).0).contains("Not given: the closed form holds for a regular cubic lattice"));
 }
 
 #[test]

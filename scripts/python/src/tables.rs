@@ -4,55 +4,40 @@ use numpy::{Element, IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use voidwalk::outcome::Recorded;
-use voidwalk::outcome::record::{BlockedRow, FlowRow, LayerRow, RetainedRow, SeriesRow, SizeRow};
+use voidwalk::outcome::number_rows::{NumberColumn, NumberRow};
 
 use crate::arrays::column;
 use crate::problem::refused;
 
-/// The columns of a table, named once: rows to a dict of arrays, and back.
-macro_rules! table {
-    ($to:ident, $from:ident, $row:ident, $($field:ident: $kind:ty),*) => {
-        fn $to<'py>(py: Python<'py>, rows: &[$row]) -> PyResult<Bound<'py, PyDict>> {
-            let table = PyDict::new(py);
-            $(table.set_item(
-                stringify!($field),
-                rows.iter().map(|row| row.$field).collect::<Vec<$kind>>().into_pyarray(py),
-            )?;)*
-            Ok(table)
+/// Rows as a dict of arrays.
+fn of_rows<'py, R: NumberRow>(py: Python<'py>, rows: &[R]) -> PyResult<Bound<'py, PyDict>> {
+    let table = PyDict::new(py);
+    for (name, numbers) in R::columns(rows) {
+        match numbers {
+            NumberColumn::Counts(column) => table.set_item(name, column.into_pyarray(py))?,
+            NumberColumn::Whole(column) => table.set_item(name, column.into_pyarray(py))?,
+            NumberColumn::Floats(column) => table.set_item(name, column.into_pyarray(py))?,
         }
-
-        fn $from(name: &str, table: &Bound<'_, PyDict>) -> PyResult<Vec<$row>> {
-            $(let $field: Vec<$kind> = column_of(name, table, stringify!($field))?;)*
-            let count = [$($field.len()),*].into_iter().min().unwrap_or(0);
-            if [$($field.len()),*] != [$({ let _ = stringify!($field); count }),*] {
-                return Err(refused(format!("the columns of {name} differ in length")));
-            }
-            Ok((0..count).map(|i| $row { $($field: $field[i]),* }).collect())
-        }
-    };
+    }
+    Ok(table)
 }
 
-table!(
-    of_series, to_series, SeriesRow,
-    replicate: u64, run: u64, increment: u64, inserted: u64, moving: u64, eroded: u64,
-    retained_in_constrictions: u64, retained_in_voids: u64, trapped: u64, blocked: u64, eroded_mass_fraction: f64
-);
-table!(
-    of_layers, to_layers, LayerRow,
-    replicate: u64, run: u64, layer: u64, constrictions: u64, blocked: u64, retained_in_constrictions: u64,
-    retained_in_voids: u64
-);
-table!(
-    of_sizes, to_sizes, SizeRow,
-    replicate: u64, run: u64, increment: u64, diameter_mm: f64, percent_finer_by_mass: f64,
-    percent_finer_by_number: f64
-);
-table!(of_flow, to_flow, FlowRow, replicate: u64, run: u64, increment: u64, k_over_k0: f64);
-table!(
-    of_voids, to_voids, RetainedRow,
-    run: u64, increment: u64, void: i64, retained_in_constrictions: u64, retained_in_voids: u64
-);
-table!(of_blocked, to_blocked, BlockedRow, run: u64, increment: u64, constriction: u64);
+/// The rows of the table of this name; none where there is no such table and none is needed.
+fn to_rows<R: NumberRow>(tables: &Bound<'_, PyDict>, name: &str, is_needed: bool) -> PyResult<Vec<R>> {
+    let table: Bound<'_, PyDict> = match tables.get_item(name)? {
+        Some(table) => table.cast_into()?,
+        None if is_needed => return Err(refused(format!("there is no table {name}"))),
+        None => return Ok(Vec::new()),
+    };
+    let rows = R::rows(|field, like| {
+        Ok::<_, PyErr>(match like {
+            NumberColumn::Counts(_) => column_of::<u64>(name, &table, field)?.into(),
+            NumberColumn::Whole(_) => column_of::<i64>(name, &table, field)?.into(),
+            NumberColumn::Floats(_) => column_of::<f64>(name, &table, field)?.into(),
+        })
+    })?;
+    rows.ok_or_else(|| refused(format!("the columns of {name} differ in length")))
+}
 
 fn column_of<T: Element + Copy>(name: &str, table: &Bound<'_, PyDict>, field: &str) -> PyResult<Vec<T>> {
     let wrong = || refused(format!("{name}[{field:?}] is not the column that the walk gave"));
@@ -64,41 +49,36 @@ fn column_of<T: Element + Copy>(name: &str, table: &Bound<'_, PyDict>, field: &s
     }
 }
 
-/// The tables of a run, each a dict of columns.
+/// The tables of a run, each a dict of columns; those of flow, voids and blocked constrictions where they
+/// were kept.
 pub fn of_recorded<'py>(py: Python<'py>, recorded: &Recorded) -> PyResult<Bound<'py, PyDict>> {
     let Recorded { series, layers, retained, eroded, flow, voids, blocked } = recorded;
     let tables = PyDict::new(py);
-    tables.set_item("series", of_series(py, series)?)?;
-    tables.set_item("layers", of_layers(py, layers)?)?;
-    tables.set_item("retained", of_sizes(py, retained)?)?;
-    tables.set_item("eroded", of_sizes(py, eroded)?)?;
+    tables.set_item("series", of_rows(py, series)?)?;
+    tables.set_item("layers", of_rows(py, layers)?)?;
+    tables.set_item("retained", of_rows(py, retained)?)?;
+    tables.set_item("eroded", of_rows(py, eroded)?)?;
     if !flow.is_empty() {
-        tables.set_item("flow", of_flow(py, flow)?)?;
+        tables.set_item("flow", of_rows(py, flow)?)?;
     }
     if !voids.is_empty() {
-        tables.set_item("retained_by_void", of_voids(py, voids)?)?;
+        tables.set_item("retained_by_void", of_rows(py, voids)?)?;
     }
     if !blocked.is_empty() {
-        tables.set_item("blockings", of_blocked(py, blocked)?)?;
+        tables.set_item("blockings", of_rows(py, blocked)?)?;
     }
     Ok(tables)
 }
 
 /// The rows of the tables of a run; those of flow, voids and blocked constrictions where they were kept.
 pub fn to_recorded(tables: &Bound<'_, PyDict>) -> PyResult<Recorded> {
-    let table = |name: &str| -> PyResult<Bound<'_, PyDict>> {
-        let found = tables.get_item(name)?.ok_or_else(|| refused(format!("there is no table {name}")))?;
-        Ok(found.cast_into()?)
-    };
-    let kept = |name: &str| tables.contains(name)?.then(|| table(name)).transpose();
     Ok(Recorded {
-        series: to_series("series", &table("series")?)?,
-        layers: to_layers("layers", &table("layers")?)?,
-        retained: to_sizes("retained", &table("retained")?)?,
-        eroded: to_sizes("eroded", &table("eroded")?)?,
-        flow: kept("flow")?.map_or(Ok(Vec::new()), |table| to_flow("flow", &table))?,
-        voids: kept("retained_by_void")?
-            .map_or(Ok(Vec::new()), |table| to_voids("retained_by_void", &table))?,
-        blocked: kept("blockings")?.map_or(Ok(Vec::new()), |table| to_blocked("blockings", &table))?,
+        series: to_rows(tables, "series", true)?,
+        layers: to_rows(tables, "layers", true)?,
+        retained: to_rows(tables, "retained", true)?,
+        eroded: to_rows(tables, "eroded", true)?,
+        flow: to_rows(tables, "flow", false)?,
+        voids: to_rows(tables, "retained_by_void", false)?,
+        blocked: to_rows(tables, "blockings", false)?,
     })
 }

@@ -12,6 +12,7 @@ mod spread;
 
 pub use answer::FinestBase;
 pub use record::{
-    BETWEEN_STEPS, BaseStated, Boundary, Design, DesignAnswer, DesignRow, NetworkBoundaries, Range, WalkRow,
+    BETWEEN_STEPS, BaseStated, Boundary, Design, DesignAnswer, DesignFinding, DesignRow, NetworkBoundaries,
+    Range, WalkRow,
 };
 pub use spread::{Beyond, spread};

@@ -6,7 +6,7 @@ use super::band::{Band, SetBy};
 use super::products::Fit;
 use super::spread::{Beyond, spread};
 use crate::outcome::BaseSize;
-use crate::outcome::record::{AppliedRule, Confidence};
+use crate::outcome::record::{AppliedRule, Confidence, FindingRecord};
 use crate::walk::Engine;
 
 /// Steps of the scale of ratios on which boundaries are found: half a percent, in ln(D15F/D85B).
@@ -53,7 +53,10 @@ pub struct Design {
     /// How far "no erosion" at the coarsest filter that holds can be relied on, of the row that can be relied
     /// on least; never within the checked range where a row has no such filter, or an empty band.
     pub confidence: Confidence,
-    /// Why no further; the weightiest first.
+    /// What was found about "no erosion" there, the weightiest first; empty in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub findings: Vec<DesignFinding>,
+    /// The sentences of those that speak against it, in order.
     pub reasons: Vec<String>,
     /// Every rule of practice, of the coarsest filter that holds; of another where none is known.
     pub rules: Vec<AppliedRule>,
@@ -65,7 +68,7 @@ pub struct Design {
     /// and practice both allow; `None` without products.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub products_confidence: Option<Confidence>,
-    /// What else a reader must know.
+    /// The sentences of all others.
     pub warnings: Vec<String>,
     /// What the model does not contain.
     pub model_leaves_out: Vec<String>,
@@ -73,6 +76,25 @@ pub struct Design {
     pub settings: Vec<String>,
     /// Wall time (s).
     pub seconds: f64,
+}
+
+/// A finding about the rows of a design.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DesignFinding {
+    /// The row that it is of, in words; `None` where it is of all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub row: Option<String>,
+    /// The finding.
+    #[serde(flatten)]
+    pub finding: FindingRecord,
+}
+
+impl DesignFinding {
+    /// Its sentence, with the row's name and with the setting that changes it.
+    pub fn words(&self) -> String {
+        let said = self.finding.with_to_do();
+        self.row.as_ref().map_or(said.clone(), |row| format!("{row}: {said}"))
+    }
 }
 
 /// How coarse the filter may be; for the inverse, how fine the base.

@@ -33,7 +33,7 @@ pub use inputs::{
 pub use manifest::{InputFile, Manifest};
 pub use practice::{LimitOfDesign, Practice, TestedClass};
 pub use rows::{FlowRow, LayerRow, SeriesRow, SizeRow};
-pub use varied::{CurveEnd, CurveRange, OfThickness, Sensitivity};
+pub use varied::{Classed, CurveEnd, CurveRange, OfThickness, Sensitivity};
 pub use voids::{BlockedRow, ConstrictionRow, RetainedRow, VoidRow};
 
 pub use super::applied::{AppliedRule, Confidence, RuleRole};

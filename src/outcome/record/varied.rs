@@ -4,19 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{Statistic, Verdict};
 
-/// The outcome with another number of base particles.
-///
-/// `N_base` holds grains per void and mass ratio only as a product (Eq. 2), so one factor answers for both.
+/// The replicates of a case of which one thing was changed, and their class.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Sensitivity {
-    /// Multiple of the outcome's own `n_base`.
-    pub factor: f64,
-    /// Base particles inserted in each run.
-    pub n_base: u64,
-    /// Grains per void to which this factor corresponds at the scene's mass ratio.
-    pub grains_per_void: Option<f64>,
-    /// Mass ratio to which this factor corresponds at the scene's grains per void.
-    pub mass_ratio: Option<f64>,
+pub struct Classed {
     /// How many replicates were walked.
     pub replicates: u64,
     /// Whether it was clear before all replicates of a study were walked: its intervals then take twice the
@@ -30,6 +20,24 @@ pub struct Sensitivity {
     pub runs: Vec<Statistic>,
 }
 
+/// The outcome with another number of base particles.
+///
+/// `N_base` holds grains per void and mass ratio only as a product (Eq. 2), so one factor answers for both.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sensitivity {
+    /// Multiple of the outcome's own `n_base`.
+    pub factor: f64,
+    /// Base particles inserted in each run.
+    pub n_base: u64,
+    /// Grains per void to which this factor corresponds at the scene's mass ratio.
+    pub grains_per_void: Option<f64>,
+    /// Mass ratio to which this factor corresponds at the scene's grains per void.
+    pub mass_ratio: Option<f64>,
+    /// What was walked.
+    #[serde(flatten)]
+    pub walked: Classed,
+}
+
 /// The same case with a filter of this thickness.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OfThickness {
@@ -41,17 +49,9 @@ pub struct OfThickness {
     pub thickness_mm: Option<f64>,
     /// Base particles inserted in each run.
     pub n_base: u64,
-    /// How many replicates were walked.
-    pub replicates: u64,
-    /// Whether it was clear before all replicates of a study were walked: its intervals then take twice the
-    /// scatter of the scene's own replicates, or its own where that is wider
-    /// ([`crate::outcome::early_stop`]).
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub stopped_when_clear: bool,
-    /// Their class.
-    pub verdict: Verdict,
-    /// Eroded mass fraction, one per run.
-    pub runs: Vec<Statistic>,
+    /// What was walked.
+    #[serde(flatten)]
+    pub walked: Classed,
 }
 
 impl OfThickness {
@@ -86,10 +86,7 @@ pub struct CurveEnd {
     pub curve: String,
     /// Its median constriction by that of the curve itself.
     pub dc50_factor: f64,
-    /// How many replicates were walked.
-    pub replicates: u64,
-    /// Their class.
-    pub verdict: Verdict,
-    /// Eroded mass fraction, one per run.
-    pub runs: Vec<Statistic>,
+    /// What was walked.
+    #[serde(flatten)]
+    pub walked: Classed,
 }

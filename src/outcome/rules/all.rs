@@ -21,7 +21,7 @@ const BAND: &str = "Megech Dam, Appendix B-1, Design of Filter Gradation (scribd
                     the practice of one design";
 
 /// Every rule, in the order of a reader.
-pub const RULES: [FilterRule; 20] = [
+pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: "sherard-dunnigan",
         name: "Sherard and Dunnigan: the filter retains the base (design)",

@@ -8,13 +8,14 @@ use crate::outcome::record::RuleRole;
 pub struct FilterRule {
     /// Its name in `outcome.json` and in `voidwalk rules --json`.
     pub id: &'static str,
-    /// Its name for a reader: whose it is, and what it says.
+    /// Its name for a reader: whose it is, a colon, and what it says. Sentences quote what stands before the
+    /// colon.
     pub name: &'static str,
     /// What it is a rule of.
     pub role: RuleRole,
     /// What it was made for.
     pub applies_to: &'static str,
-    /// What it limits.
+    /// What it limits. A rule of retention of `D15F`, `D15F/D85B` or `D15F/D95B` also limits a design.
     pub quantity: &'static str,
     /// Its limit in words.
     pub formula: &'static str,

@@ -394,7 +394,7 @@ fn a_boundary_without_a_source_has_no_result() {
 fn every_rule_says_what_it_is() {
     let ids: std::collections::BTreeSet<&str> = RULES.iter().map(|rule| rule.id).collect();
     assert_eq!(ids.len(), RULES.len());
-    for rule in &RULES {
+    for rule in RULES {
         assert!(
             !rule.source.is_empty() && !rule.applies_to.is_empty() && !rule.quantity.is_empty(),
             "{}",

@@ -67,10 +67,10 @@ pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
     draw_runs(&mut figure, &walks, d85);
     let of_base = design.base.size().map_or(String::new(), |base| format!(" {}.", base.words()));
     let mut caption = format!(
-        "Base eroded against D15F: {}, {}. Each thin line is a network, blue its first run, purple its \
-         second where it was walked. Green: no erosion, as far as practice allows it, grey: beyond that; \
-         orange: some erosion, red: continuing; where colours run into each other are 5 to 95 % of \
-         networks.{of_base}",
+        "Base eroded against D15F: {}, {}. Each thin line is a network: blue its first run, purple its \
+         second where it was walked. Green: no erosion, as far as practice allows it; grey: no erosion \
+         beyond that; orange: some erosion; red: continuing erosion. The colours blend over the 5 to 95 % \
+         band of the networks.{of_base}",
         row.name(),
         row.thickness
     );

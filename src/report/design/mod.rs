@@ -122,8 +122,8 @@ fn answer(design: &Design) -> Markup {
             @for row in &design.boundaries {
                 @if let Some(note) = &row.band_note {
                     p {
-                        b { "No band: " } (clean(&row.density)) ", " (clean(&row.thickness)) ": "
-                        (clean(note)) "."
+                        b { "No band for " (clean(&row.density)) ", " (clean(&row.thickness)) ". " }
+                        (sentence(note))
                     }
                 }
             }
@@ -139,6 +139,11 @@ fn answer(design: &Design) -> Markup {
             }
         }
     }
+}
+
+/// A note as a sentence; in files of earlier versions it is a part of one.
+fn sentence(note: &str) -> String {
+    clean(&format!("{}.", capital(note.trim_end_matches('.'))))
 }
 
 fn ratio(value: f64) -> String {
@@ -175,7 +180,7 @@ fn boundaries(design: &Design) -> Markup {
                 },
                 None => "no number",
             }
-            @if let Some(note) = note { br; span.small { (clean(note)) } }
+            @if let Some(note) = note { br; span.small { (sentence(note)) } }
         }
     };
     let thick = |row: &DesignRow| {
@@ -184,7 +189,7 @@ fn boundaries(design: &Design) -> Markup {
     };
     html! {
         p {
-            "What the walks alone say, before practice: D15F/D85B" (of_base)
+            "Results of the walks alone, without the rules of practice: D15F/D85B" (of_base)
             ", median and 5 to 95 % of " (whole(design.replicates)) " networks; below it the "
             @if design.inverse { "finest D85B" } @else { "D15F" } " in mm where sizes have a unit."
         }
@@ -205,8 +210,8 @@ fn boundaries(design: &Design) -> Markup {
             .render())
         p.small {
             "No erosion: less than " (threshold(design.threshold)) " of the mass of the base erodes in the \
-             first run. Continuing: at least as much in the second run, too. Between the two lies some \
-             erosion. Thickness matters most: thicker filters hold more."
+             first run. Continuing: at least as much in the second run, too. Between the two is some \
+             erosion. The thickness matters most: thicker filters hold more."
             @if design.moves_expectation() {
                 " Base particles that can block nothing move as their expectation. A run with another engine \
                  draws other random numbers: on a small lattice it may lose " (threshold(design.threshold))
@@ -232,8 +237,8 @@ fn bands(design: &Design) -> Markup {
                 "D15F from the least that drains the base to the greatest that both allow: the walk, in \
                  which \
                  all but 5 % of networks show no erosion, and the strictest rule of retention. It is empty \
-                 where the least is more than that. Where the constriction curve is known within a range \
-                 only, all of the range must hold."
+                 if the least exceeds the greatest. If the constriction curve is known only within a range, \
+                 the whole range must hold."
             }
             (Table::of(rows.iter().copied()).class("study")
                 .name("Density, thickness", |row| clean(&format!("{}, {}", row.density, row.thickness)))
@@ -263,14 +268,14 @@ fn products(design: &Design) -> Markup {
     html! {
         @if !design.products.is_empty() {
             p {
-                "Which of them have the D15 of both their sides within the narrowest band, with practice \
-                 agreeing. D15 is interpolated between sieves. Their own shapes were not walked: another \
-                 shape holds to another D15."
+                "A product fits if the D15 of both sides of its specification lies within the narrowest band \
+                 and practice agrees. D15 is interpolated between sieves. The products’ own shapes were not \
+                 walked: another shape holds to another D15."
                 @if design.may_fit() {
                     " Judged at the greatest D15F that both walk and practice allow, as none that fits is \
                      coarser."
                 } @else {
-                    " Nothing is said to fit here, as the answer is in doubt."
+                    " No product is said to fit here, because the answer is in doubt."
                 }
             }
             (Table::of(&design.products)
@@ -298,8 +303,8 @@ fn practice(design: &Design) -> Markup {
     html! {
         @if !rules.is_empty() {
             p {
-                "Of a filter with D15F/D85B " (ratio(design.rules_at))
-                @if design.least_held().is_some() { ", the coarsest that is said to hold" } "."
+                "For a filter with D15F/D85B " (ratio(design.rules_at))
+                @if design.least_held().is_some() { ", the coarsest that holds in the model" } "."
             }
             (rules::table(&rules))
         }
@@ -337,7 +342,7 @@ fn made(design: &Design, walks: &[WalkRow]) -> Markup {
             @if let Some(base) = design.base.size() { (fact("D85B", base.words())) }
             (fact("Filter", &design.filter))
             (fact("Cu of the filter", design.filter_cu.map_or_else(|| "not known".to_owned(), trimmed)))
-            (fact("Grains per void, Eq. (2)", grains.map_or_else(|| "not given".to_owned(), trimmed)))
+            (fact("Grains per void", grains.map_or_else(|| "not given".to_owned(), trimmed)))
             @if !design.engine.is_empty() { (fact("Engine", &design.engine)) }
             (fact("Networks, seed", format!("{}, {}", whole(design.replicates), design.seed)))
             (fact("Searched", format!(
@@ -411,6 +416,7 @@ mod tests {
             bracket: [0.5, 100.0],
             step: 0.005,
             confidence,
+            findings: Vec::new(),
             reasons: vec!["a doubt".into()],
             rules: Vec::new(),
             rules_at: 4.0,
@@ -447,7 +453,7 @@ mod tests {
             assert!(page.contains("a doubt"));
         }
         let none = written(&design(None, Confidence::Outside), CSV);
-        assert!(none.contains("verdict undecided") && none.contains("nothing erodes"));
+        assert!(none.contains("verdict undecided") && none.contains("Nothing erodes."));
     }
 
     #[test]

@@ -295,7 +295,7 @@ fn amount(rows: &[BiasRow]) -> Option<Drawn> {
     }
     figure.add(Rule::new(Across::Y, 0.0, GREY).dash(Dash::Dashed));
     let caption = format!(
-        "Difference of the eroded mass when only a part of the base particles that Eq. (2) requires is \
+        "Difference of the eroded mass when only a part of the base particles that the model requires is \
          walked: a bias that no replicate takes away. With all of them {:.1} % erode. Bars: 95 % intervals.",
         PP * reference.value
     );

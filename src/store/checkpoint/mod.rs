@@ -39,7 +39,7 @@
 //! |---|---|
 //! | a run under way | `done`, and those that `walk::SavedState` names |
 //! | a finished replicate | `done`: a record of its figures and rows, `run::checkpoints::Done` |
-//! | a precision study | `found`: a record of its tiers that are done |
+//! | a study | `found`: a record of its tiers, networks or lattices that are done |
 //! | a packing | `state`, see `packing::Compression::to_bytes`, and `seconds` (f64), spent so far |
 //!
 //! Format 1 (until 2026-11-21) held its scalars as numbered words; it is refused as

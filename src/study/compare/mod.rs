@@ -10,15 +10,14 @@ use std::path::Path;
 
 pub use plan::{ComparePlan, Compared};
 
+use super::kept;
 use crate::campaign::cases::PreparedCase;
-use crate::campaign::{self, CampaignCallbacks, CampaignOptions, ReadyCases};
+use crate::campaign::{self, CampaignCallbacks, CampaignOptions, FinishedCampaign, ReadyCases, Walk};
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
 use crate::outcome::record::Outcome;
 use crate::outcome::table::Columns;
 use crate::run::error::{Exit, RunError};
-use crate::run::folder::{FolderKind, claim, clear, shown};
-use crate::run::results::json;
-use crate::run::unfinished::Unfinished;
+use crate::run::folder::{FolderKind, claim, shown};
 use crate::store::{Folder, read_whole};
 
 /// Folder of the campaign, inside the comparison's.
@@ -56,55 +55,45 @@ pub fn run(
     campaign::check(&plan.campaign, &of_campaign)?;
     let folder = claim(&options.out, kind, overwrite)?;
     // What is there stays until every case is known to have what it needs.
-    let ready = |cases: ReadyCases| begin(&folder, plan, cases?, overwrite);
+    let study = |cases: ReadyCases, walk: Walk| {
+        let place = (&folder, kind, overwrite);
+        kept::study(place, plan.work(cases?), &callbacks.run, |_, _: Option<()>| {
+            let walked = walk()?;
+            walked.problem().map_or(Ok(()), Err)?;
+            let comparison = plan.compared(&folder, &walked)?;
+            folder.write(CASES, &cases_table().csv(&comparison.cases))?;
+            folder.write(PAIRS, &pairs_table().csv(&comparison.pairs))?;
+            Ok(comparison)
+        })
+    };
     let of_campaign = CampaignOptions { out: folder.path().join(WALKS), ..of_campaign };
-    let walked = campaign::run_after(&plan.campaign, &of_campaign, callbacks, ready).map_err(stopped)?;
-    if let Some(problem) = walked.problem() {
-        return Err(problem);
-    }
-    let mut outcomes = Vec::new();
-    for line in walked.lines.iter().flatten() {
-        let case = format!("{WALKS}/{}", line.folder);
-        let outcome = outcome(&folder.path().join(&case))?;
-        outcomes.push((line.case.clone(), case, outcome));
-    }
-    let mut comparison = Comparison::new(plan.of, &plan.common, plan.seed, &outcomes);
-    for (case, (.., outcome)) in comparison.cases.iter_mut().zip(&outcomes) {
-        (case.practice, case.beside) = (outcome.practice_in_words(), outcome.beside_the_verdict());
-    }
-    write(&folder, &comparison)?;
-    callbacks.run.finish(kind, &folder)?;
-    Ok(comparison)
+    campaign::run_around(&plan.campaign, &of_campaign, callbacks, study).map_err(stopped)
 }
 
-/// Clears a claimed folder of an earlier comparison, and marks it as begun with this one.
-fn begin(
-    folder: &Folder,
-    plan: &ComparePlan,
-    cases: &[PreparedCase],
-    overwrite: bool,
-) -> Result<(), RunError> {
-    let kind = FolderKind::Comparison;
-    let of_case = |case: &PreparedCase| format!("{} {}", case.planned.name, case.fingerprint);
-    let all: Vec<String> = cases.iter().map(of_case).collect();
-    // Not the path of what is common: the cases know its bytes.
-    let text = format!("{} {all:?}", plan.of);
-    let work = format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes()));
-    match Unfinished::read(folder)? {
-        // Of a corrupt mark, or one of an earlier version, nothing is known.
-        Some(begun) if !overwrite && !begun.work.is_empty() && begun.work != work => {
-            return Err(RunError::Refused(format!(
-                "{}: holds another comparison that is unfinished, or was begun by another version of \
-                 voidwalk; continue that one with its own command, name another folder or add --overwrite",
-                shown(folder.path())
-            )));
-        }
-        // At no moment is this one without its mark.
-        Some(begun) if begun.work == work => return Ok(()),
-        _ => {}
+impl ComparePlan {
+    /// Everything that the results follow from.
+    fn work(&self, cases: &[PreparedCase]) -> String {
+        let of_case = |case: &PreparedCase| format!("{} {}", case.planned.name, case.fingerprint);
+        let all: Vec<String> = cases.iter().map(of_case).collect();
+        // Not the path of what is common: the cases know its bytes.
+        let text = format!("{} {all:?}", self.of);
+        format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes()))
     }
-    clear(folder, kind)?;
-    Ok(Unfinished { kind: kind.name().into(), work, ..Unfinished::default() }.begin(folder)?)
+
+    /// The cases that were walked, side by side.
+    fn compared(&self, folder: &Folder, walked: &FinishedCampaign) -> Result<Comparison, RunError> {
+        let mut outcomes = Vec::new();
+        for line in walked.lines.iter().flatten() {
+            let case = format!("{WALKS}/{}", line.folder);
+            let outcome = outcome(&folder.path().join(&case))?;
+            outcomes.push((line.case.clone(), case, outcome));
+        }
+        let mut comparison = Comparison::new(self.of, &self.common, self.seed, &outcomes);
+        for (case, (.., outcome)) in comparison.cases.iter_mut().zip(&outcomes) {
+            (case.practice, case.beside) = (outcome.practice_in_words(), outcome.beside_the_verdict());
+        }
+        Ok(comparison)
+    }
 }
 
 /// The outcome of a case that is done.
@@ -115,15 +104,8 @@ fn outcome(case: &Path) -> Result<Outcome, RunError> {
     serde_json::from_slice(&bytes).map_err(|error| failed(&error))
 }
 
-fn write(folder: &Folder, comparison: &Comparison) -> Result<(), RunError> {
-    folder.write(CASES, &cases().csv(&comparison.cases))?;
-    folder.write(PAIRS, &pairs().csv(&comparison.pairs))?;
-    let name = FolderKind::Comparison.record();
-    Ok(folder.write(name, &json(name, comparison)?)?)
-}
-
 /// `compare.csv`.
-fn cases() -> Columns<'static, ComparedCase> {
+fn cases_table() -> Columns<'static, ComparedCase> {
     Columns::default()
         .column("case", |case: &ComparedCase| case.name.clone())
         .column("verdict", |case| case.verdict.words())
@@ -146,7 +128,7 @@ fn cases() -> Columns<'static, ComparedCase> {
 }
 
 /// `compare_pairs.csv`.
-fn pairs() -> Columns<'static, ComparedPair> {
+fn pairs_table() -> Columns<'static, ComparedPair> {
     Columns::default()
         .column("first", |pair: &ComparedPair| pair.first.clone())
         .column("second", |pair| pair.second.clone())

@@ -43,7 +43,10 @@ fn an_end_that_holds_all_that_was_searched_limits_nothing() {
     assert_eq!(short.confidence, Confidence::Outside.max(short.confidence));
     let high = of("high", [1.1 * end(2).fold(0.0, f64::max), 30.0]);
     let row = &high.boundaries[0];
-    assert!(row.band.is_none() && row.band_note.as_ref().unwrap().contains("estimate 0: "), "{row:?}");
+    assert!(
+        row.band.is_none() && row.band_note.as_ref().unwrap().contains("searched (estimate 0)"),
+        "{row:?}"
+    );
 }
 
 /// What is delivered within both limits is no coarser than practice allows, however coarse the walk has it.

@@ -4,20 +4,21 @@ use super::judged::Judged;
 use super::options::{DesignOptions, Thickness};
 use super::practice::{allowed, finest_base};
 use super::row::Row;
-use super::search::Done;
+use super::search::{Beside, Done, Ended};
 use super::steadiness;
 use crate::outcome::design::band::Band;
 use crate::outcome::design::products::fits;
 use crate::outcome::design::{
-    BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignAnswer, DesignRow, NetworkBoundaries, WalkRow,
-    spread,
+    BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignAnswer, DesignFinding, DesignRow,
+    NetworkBoundaries, WalkRow, spread,
 };
 use crate::outcome::leaves_out;
-use crate::outcome::record::Confidence;
+use crate::outcome::record::{Confidence, FindingRecord};
 use crate::outcome::table::csv_of;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
-use crate::verdict::words::{capital, within};
+use crate::verdict::beside::empty_band;
+use crate::verdict::words::within;
 use crate::verdict::{Finding, Judgement, finding};
 
 /// Ratio at which the rules are read where no boundary is known.
@@ -33,22 +34,25 @@ pub(super) fn design(
     options: &DesignOptions,
     seconds: f64,
 ) -> Result<Design, RunError> {
-    let mut boundaries = Vec::new();
+    let mut found = Vec::new();
     for (index, row) in rows.iter().enumerate() {
         let of_row: Vec<&Done> = done.iter().filter(|done| done.row == index).collect();
-        boundaries.push(of(row, &of_row)?);
+        found.push(of(row, &of_row));
     }
-    let held: Vec<Option<f64>> = rows.iter().map(|row| held_over_range(row, rows, &boundaries)).collect();
+    let held: Vec<Option<f64>> = rows.iter().map(|row| held_over_range(row, rows, &found)).collect();
     // An end of a range is no filter that anybody offers: it is judged with the row that it is an end of.
     let asked = || (0..rows.len()).filter(|&at| rows[at].end_of.is_none());
+    let mut judgements = Vec::new();
     for at in asked() {
-        let note = no_band(&rows[at], rows, &boundaries);
-        let held = held[at].filter(|_| note.is_none());
-        (boundaries[at].band, boundaries[at].band_note) = (band(&rows[at], held)?, note);
+        let row = &rows[at];
+        let no_band = no_band(row, rows, &found);
+        let band = band(row, held[at].filter(|_| no_band.is_none()))?;
+        (found[at].of.band, found[at].of.band_note) = (band, no_band.as_ref().map(Finding::with_to_do));
+        let name = format!("{}, {}", row.wanted.density, row.wanted.thickness);
+        judgements.push((name, judged(row, (&found[at], rows, &found), held[at], no_band)?));
     }
-    let of_row = |at: usize| asked_for(at, rows, &boundaries, held[at]);
-    let each: Vec<Asked> = asked().map(of_row).collect::<Result<_, _>>()?;
-    let (confidence, reasons, warnings) = all_judged(&each, &boundaries)?;
+    let boundaries: Vec<DesignRow> = found.into_iter().map(|found| found.of).collect();
+    let (confidence, findings) = all_judged(judgements, &boundaries);
     let known = asked().filter_map(|at| Some((at, held[at]?)));
     // Rules are shown of the coarsest filter that is said to hold: there they fail first.
     let (at, ratio) = known.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, USUAL_RATIO));
@@ -63,6 +67,10 @@ pub(super) fn design(
     let products_confidence = (!products.is_empty()).then_some(confidence);
     let first = &rows[0];
     let record = judged.case.record();
+    let words = |against: bool| {
+        let of_kind = findings.iter().filter(|of| of.finding.against == against);
+        of_kind.map(DesignFinding::words).collect()
+    };
     let design = Design {
         answer: None,
         version: env!("CARGO_PKG_VERSION").into(),
@@ -79,12 +87,13 @@ pub(super) fn design(
         bracket: options.bracket,
         step: BETWEEN_STEPS,
         confidence,
-        reasons,
+        reasons: words(true),
         rules,
         rules_at: ratio,
         products,
         products_confidence,
-        warnings,
+        warnings: words(false),
+        findings,
         model_leaves_out: leaves_out(first.case.scene.exit_rule()),
         settings: settings(options),
         seconds,
@@ -93,48 +102,42 @@ pub(super) fn design(
     Ok(Design { answer: Some(DesignAnswer::of(&design, finest.as_ref())), ..design })
 }
 
-/// A row that was asked for, and the ratio that nearly all networks hold over the range of its curve.
-struct Asked<'a> {
-    row: &'a Row,
-    of: &'a DesignRow,
-    /// The same, no more than practice allows.
-    held: Option<f64>,
-    /// What the walks of the curve of that range that holds least say against its boundary.
-    unsteady: Option<String>,
+/// A row as its networks have it, and what they say against it.
+struct FoundRow {
+    of: DesignRow,
+    /// How many of how many networks that erode put its boundary in doubt.
+    unsteady: Option<[u64; 2]>,
+    /// Networks that erode at every ratio of the search.
+    eroding: u64,
+    /// What is to be said of its boundary of no erosion.
+    of_boundary: Vec<Finding>,
 }
 
-fn asked_for<'a>(
-    at: usize,
-    rows: &'a [Row],
-    boundaries: &'a [DesignRow],
-    held: Option<f64>,
-) -> Result<Asked<'a>, RunError> {
-    let row = &rows[at];
-    let held_by = |of: &DesignRow| of.held().unwrap_or(0.0);
-    let least = range(row, rows, boundaries).min_by(|a, b| held_by(a).total_cmp(&held_by(b)));
-    let unsteady = least.and_then(|of| Some(named(row, of, of.unsteady.clone()?)));
-    let held = held.map(|held| allowed(row, held, finest_base(row)?.as_ref())).transpose()?;
-    Ok(Asked { row, of: &boundaries[at], held, unsteady })
+impl FoundRow {
+    /// Why no ratio is known that holds; `at` names the curve.
+    fn unheld(&self, at: &str) -> Option<Finding> {
+        let networks = self.of.networks.len() as u64;
+        self.of.held().is_none().then(|| match self.eroding {
+            0 => finding::nothing_walked(at),
+            eroding => finding::erodes_everywhere(eroding, networks, at),
+        })
+    }
 }
 
 /// The row itself, and those of the ends of its range.
-fn range<'a>(
-    row: &'a Row,
-    rows: &'a [Row],
-    boundaries: &'a [DesignRow],
-) -> impl Iterator<Item = &'a DesignRow> {
+fn range<'a>(row: &'a Row, rows: &'a [Row], found: &'a [FoundRow]) -> impl Iterator<Item = &'a FoundRow> {
     let is_of_it = move |other: &Row| {
         let density = &other.wanted.density;
         other.wanted.thickness == row.wanted.thickness
             && (*density == row.wanted.density || row.ends.contains(density))
     };
-    rows.iter().zip(boundaries).filter(move |(other, _)| is_of_it(other)).map(|(_, of)| of)
+    rows.iter().zip(found).filter(move |(other, _)| is_of_it(other)).map(|(_, found)| found)
 }
 
 /// The ratio that nearly all networks hold, of every curve of the range; `None` where that of one is not
 /// known. A curve whose networks hold all that was searched counts as holding to its end.
-fn held_over_range(row: &Row, rows: &[Row], boundaries: &[DesignRow]) -> Option<f64> {
-    let each = range(row, rows, boundaries).map(DesignRow::held);
+fn held_over_range(row: &Row, rows: &[Row], found: &[FoundRow]) -> Option<f64> {
+    let each = range(row, rows, found).map(|found| found.of.held());
     each.reduce(|a, b| Some(a?.min(b?))).flatten()
 }
 
@@ -143,100 +146,89 @@ fn band(row: &Row, held: Option<f64>) -> Result<Option<Band>, RunError> {
     let Some(ratio) = held.filter(|_| !row.inverse) else { return Ok(None) };
     let judged = Judged::new(row, ratio)?;
     let d15f = ratio * row.d85_mm.unwrap_or(1.0);
-    Ok(Band::new(&judged.rules(), d15f, d15f, judged.unit()))
+    let band = Band::new(&judged.rules(), d15f, d15f, judged.unit());
+    Ok(band.map(|band| match empty_band(&band) {
+        Some(empty) => Band { said: within(&empty.sentence()), ..band },
+        None => band,
+    }))
 }
 
 /// Why there is no band, where networks erode at every ratio that was searched, with some curve of the range,
 /// or where they hold every one, and the end of the search is no limit.
-fn no_band(row: &Row, rows: &[Row], boundaries: &[DesignRow]) -> Option<String> {
-    let eroding = range(row, rows, boundaries).find(|of| of.band_note.is_some());
-    if let Some((of, note)) = eroding.and_then(|of| Some((of, of.band_note.clone()?))) {
-        return Some(named(row, of, note));
+fn no_band(row: &Row, rows: &[Row], found: &[FoundRow]) -> Option<Finding> {
+    if let Some(unheld) = range(row, rows, found).find_map(|of| of.unheld(&curve(row, of))) {
+        return Some(unheld);
     }
-    let least = range(row, rows, boundaries).filter_map(|of| Some((of, of.held()?)));
-    let (of, ratio) = least.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    (of.no_erosion.is_none() && !row.inverse).then(|| {
-        let note = match of.eroding_networks() {
-            0 => format!(
-                "nearly all networks hold as far as was searched, here to D15F/D85B {ratio:.2}, so that no \
-                 greatest D15F is known; a higher end of --bracket may find it"
-            ),
-            eroding => format!(
-                "nearly all networks hold to D15F/D85B {ratio:.2}; {eroding} of {} erode within the search, \
-                 and the median lies beyond it: a higher end of --bracket may find it",
-                of.networks.len()
-            ),
-        };
-        named(row, of, note)
+    let least = range(row, rows, found).filter_map(|found| Some((found, found.of.held()?)));
+    let (least, ratio) = least.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let at = curve(row, least);
+    (least.of.no_erosion.is_none() && !row.inverse).then(|| match least.of.eroding_networks() as u64 {
+        0 => finding::holds_everywhere(ratio, &at),
+        eroding => finding::median_beyond(ratio, eroding, least.of.networks.len() as u64, &at),
     })
 }
 
-/// What is said of a curve of a row's range, with its name where it is not the row's own.
-fn named(row: &Row, of: &DesignRow, note: String) -> String {
-    if of.density == row.wanted.density { note } else { format!("{}: {note}", of.density) }
+/// The name of a curve of a row's range, where it is not the row's own.
+fn curve(row: &Row, found: &FoundRow) -> String {
+    let density = &found.of.density;
+    if *density == row.wanted.density { String::new() } else { format!(" ({density})") }
 }
 
-/// What the answers of all rows are worth: as much as the worst of them. The sentences that speak against
-/// them, and all others, of every row: what not all of them say with the row's name.
+/// What the answers of all rows are worth: as much as the worst of them. What was found about them, the
+/// worst first: what not all of them have with the row's name.
 fn all_judged(
-    asked: &[Asked],
+    mut each: Vec<(String, Judgement)>,
     boundaries: &[DesignRow],
-) -> Result<(Confidence, Vec<String>, Vec<String>), RunError> {
-    let mut each = Vec::new();
-    for asked in asked {
-        let name = format!("{}, {}", asked.of.density, asked.of.thickness);
-        each.push((name, judged(asked)?));
-    }
-    // The weightiest first.
+) -> (Confidence, Vec<DesignFinding>) {
     each.sort_by_key(|(_, answer)| std::cmp::Reverse(answer.confidence));
     let worst = each.first().map_or(Confidence::Outside, |(_, answer)| answer.confidence);
-    let said = |of: fn(&Judgement) -> Vec<String>| -> Vec<String> {
-        let mut all: Vec<String> = Vec::new();
-        for (name, answer) in &each {
-            for sentence in of(answer) {
-                let by_all = each.iter().all(|(_, other)| of(other).contains(&sentence));
-                let sentence = if by_all { sentence } else { format!("{name}: {sentence}") };
-                if !all.contains(&sentence) {
-                    all.push(sentence);
-                }
+    let same =
+        |a: &FindingRecord, b: &FindingRecord| (a.against, a.with_to_do()) == (b.against, b.with_to_do());
+    let mut findings: Vec<DesignFinding> = Vec::new();
+    for (name, answer) in &each {
+        for finding in &answer.findings {
+            let by_all = each.iter().all(|(_, other)| other.findings.iter().any(|of| same(of, finding)));
+            let row = (!by_all).then(|| name.clone());
+            if !findings.iter().any(|of| of.row == row && same(&of.finding, finding)) {
+                findings.push(DesignFinding { row, finding: finding.clone() });
             }
         }
-        all
-    };
-    let mut notes = said(Judgement::notes_to_do);
+    }
     let not_monotone: u64 = boundaries.iter().map(|of| of.not_monotone).sum();
-    notes.extend((not_monotone > 0).then(|| finding::not_monotone(not_monotone).sentence()));
-    Ok((worst, said(Judgement::reasons_to_do), notes))
+    if not_monotone > 0 {
+        let finding = finding::not_monotone(not_monotone).record(false);
+        findings.push(DesignFinding { row: None, finding });
+    }
+    (worst, findings)
 }
 
-fn judged(asked: &Asked) -> Result<Judgement, RunError> {
-    let &Asked { row, of, held, .. } = asked;
-    if let Some(ratio) = held {
-        return judged_at(asked, ratio);
-    }
-    // No filter is said to hold, and no rule speaks against one.
-    let why = [&of.band_note, &of.no_erosion_note].into_iter().flatten();
-    let mut found: Vec<Finding> = why.map(|said| of_search(said)).collect();
-    if found.is_empty() {
-        found.push(of_search("no ratio is known that holds"));
-    }
-    Ok(Judged::new(row, USUAL_RATIO)?.answer(row, &[], found))
-}
-
-/// What it is worth that a filter with this ratio holds.
-fn judged_at(Asked { row, of, unsteady, .. }: &Asked, ratio: f64) -> Result<Judgement, RunError> {
+/// What "no erosion" of a row is worth, at the ratio that nearly all networks hold over the range of its
+/// curve, or at the one that practice allows where that is less.
+fn judged(
+    row: &Row,
+    (own, rows, found): (&FoundRow, &[Row], &[FoundRow]),
+    held: Option<f64>,
+    no_band: Option<Finding>,
+) -> Result<Judgement, RunError> {
+    let of = &own.of;
+    let Some(held) = held else {
+        // No filter is said to hold, and no rule speaks against one.
+        let why = no_band.into_iter().chain(own.of_boundary.iter().cloned());
+        return Ok(Judged::new(row, USUAL_RATIO)?.answer(row, &[], why.collect()));
+    };
+    let ratio = allowed(row, held, finest_base(row)?.as_ref())?;
     let judged = Judged::new(row, ratio)?;
-    let greatest = of.no_erosion.as_ref().map_or(ratio, |of| of.high.unwrap_or(of.median).max(ratio));
-    let empty = of.band.as_ref().filter(|band| band.is_empty).map(|band| band.said.clone());
-    let unknown = of.no_erosion_note.clone().filter(|_| of.no_erosion.is_none());
-    let why = [unsteady.clone(), empty, of.band_note.clone(), unknown].into_iter().flatten();
-    let found = why.map(|said| of_search(&said)).chain(row.thicker(greatest));
-    Ok(judged.answer(row, &judged.rules(), found.collect()))
-}
-
-/// What a search found in its own words.
-fn of_search(said: &str) -> Finding {
-    finding::of_search(&capital(said.trim_end_matches('.')))
+    // What the walks of the curve say that holds least.
+    let held_by = |found: &FoundRow| found.of.held().unwrap_or(0.0);
+    let least = range(row, rows, found).min_by(|a, b| held_by(a).total_cmp(&held_by(b)));
+    let unsteady = least.and_then(|of| Some((of.unsteady?, curve(row, of))));
+    let unsteady = unsteady.map(|([held, eroding], at)| finding::unsteady(held, eroding, &at));
+    let of_boundary = match &of.no_erosion {
+        Some(boundary) => Vec::from_iter(row.thicker(boundary.high.unwrap_or(boundary.median).max(ratio))),
+        None => own.of_boundary.clone(),
+    };
+    let why = [unsteady, of.band.as_ref().and_then(empty_band), no_band].into_iter().flatten();
+    Ok(judged.answer(row, &judged.rules(), why.chain(of_boundary).collect()))
 }
 
 /// `design.csv`.
@@ -292,7 +284,7 @@ fn base(row: &Row, name: &str) -> BaseStated {
 }
 
 /// One row of the record, but for its band.
-fn of(row: &Row, done: &[&Done]) -> Result<DesignRow, RunError> {
+fn of(row: &Row, done: &[&Done]) -> FoundRow {
     let networks = |value: fn(&Done) -> Option<f64>, beyond: fn(&Done) -> Option<Beyond>| {
         let one = |done: &&Done| value(done).ok_or(beyond(done).unwrap_or(Beyond::Above));
         done.iter().map(one).collect::<Vec<_>>()
@@ -305,13 +297,14 @@ fn of(row: &Row, done: &[&Done]) -> Result<DesignRow, RunError> {
         |done| done.found.continuing,
         |done| done.found.continuing_beyond.as_ref().map(|(beyond, _)| *beyond),
     );
-    let words = |of: fn(&Done) -> Option<&String>| {
-        let said: Vec<&String> = done.iter().filter_map(|done| of(done)).collect();
-        let why = said.first()?;
-        Some(match said.len() == done.len() {
-            true => (*why).clone(),
-            false => format!("on {} of {} networks: {why}", said.len(), done.len()),
-        })
+    // Why some networks have none, in the words of the first of them.
+    let ended = |of: fn(&Done) -> Option<&Beside>| {
+        let all: Vec<&Ended> = done.iter().filter_map(|done| Some(&of(done)?.1)).collect();
+        let on = match all.len() == done.len() {
+            true => String::new(),
+            false => format!(" ({} of {} networks)", all.len(), done.len()),
+        };
+        all.first().map(|why| why.finding(&on))
     };
     let boundary = |networks: &[Result<f64, Beyond>]| {
         let boundary = Boundary::of(networks, row.d85_mm.filter(|_| !row.inverse))?;
@@ -327,30 +320,21 @@ fn of(row: &Row, done: &[&Done]) -> Result<DesignRow, RunError> {
         no_erosion.as_ref().filter(|_| has_size)?;
         Some(row.case.thickness()? * row.factor(ratio)?)
     };
-    let held = no_erosion.as_ref().map_or(holds_to, Boundary::cautious);
-    let eroding = first.iter().filter(|of| **of == Err(Beyond::Below)).count();
-    let band_note = held.is_none().then(|| match eroding {
-        0 => "no ratio of the search could be walked, so that none is known that holds".to_owned(),
-        _ => format!(
-            "{eroding} of {} networks erode 7.5 % or more at every ratio that was searched, so that no ratio \
-             is known that all but 5 % of networks hold",
-            first.len()
-        ),
-    });
     // Of a filter that is as thin as one layer, or thinner, the layer itself.
     let thicker = |boundary: &Option<Boundary>| {
         let greatest = boundary.as_ref().map(|of| of.high.unwrap_or(of.median));
-        Some(within(&row.thicker(greatest.or(holds_to)?)?.sentence()))
+        row.thicker(greatest.or(holds_to)?)
     };
-    let (first_thicker, second_thicker) = (thicker(&no_erosion), thicker(&continuing));
-    let of_first = words(|done| done.found.no_erosion_beyond.as_ref().map(|(_, why)| why));
-    let of_second = words(|done| done.found.continuing_beyond.as_ref().map(|(_, why)| why));
-    let joined = |notes: [Option<String>; 2]| {
-        let notes: Vec<String> = notes.into_iter().flatten().collect();
-        (!notes.is_empty()).then(|| notes.join("; "))
+    let of_first = ended(|done| done.found.no_erosion_beyond.as_ref());
+    let of_pan = of_first.as_ref().and_then(|_| of_pan(row));
+    let of_boundary: Vec<Finding> = [of_first, of_pan, thicker(&no_erosion)].into_iter().flatten().collect();
+    let of_second = [ended(|done| done.found.continuing_beyond.as_ref()), thicker(&continuing)];
+    let note = |findings: &[Finding]| {
+        let said: Vec<String> = findings.iter().map(Finding::with_to_do).collect();
+        (!said.is_empty()).then(|| said.join(" "))
     };
     let unsteady = no_erosion.as_ref().and_then(|_| steadiness::doubt(done));
-    Ok(DesignRow {
+    let of = DesignRow {
         density: row.wanted.density.clone(),
         thickness: row.wanted.thickness.to_string(),
         layers,
@@ -360,11 +344,11 @@ fn of(row: &Row, done: &[&Done]) -> Result<DesignRow, RunError> {
         },
         grains_per_void: row.case.grains_per_void,
         no_erosion,
-        no_erosion_note: joined([of_first.map(|why| why + &of_pan(row).unwrap_or_default()), first_thicker]),
+        no_erosion_note: note(&of_boundary),
         holds_to,
         continuing,
-        continuing_note: joined([of_second, second_thicker]),
-        unsteady,
+        continuing_note: note(&of_second.into_iter().flatten().collect::<Vec<_>>()),
+        unsteady: unsteady.map(|[held, eroding]| finding::unsteady(held, eroding, "").sentence()),
         not_monotone: done.iter().filter(|done| done.found.is_not_monotone).count() as u64,
         networks: done
             .iter()
@@ -375,9 +359,13 @@ fn of(row: &Row, done: &[&Done]) -> Result<DesignRow, RunError> {
             })
             .collect(),
         band: None,
-        band_note,
+        band_note: None,
         end_of: row.end_of.clone(),
-    })
+    };
+    let eroding = first.iter().filter(|of| **of == Err(Beyond::Below)).count() as u64;
+    let found = FoundRow { of, unsteady, eroding, of_boundary };
+    let band_note = found.unheld("").map(|unheld| unheld.sentence());
+    FoundRow { of: DesignRow { band_note, ..found.of }, ..found }
 }
 
 /// The ratio that nearly all networks hold where their median lies above all that was searched: one that
@@ -393,13 +381,7 @@ fn holds_to(done: &[&Done]) -> Option<f64> {
 }
 
 /// What is to be said where the base's pan fraction alone is enough to erode.
-fn of_pan(row: &Row) -> Option<String> {
+fn of_pan(row: &Row) -> Option<Finding> {
     let pan = row.stated.gradation.pan_fraction();
-    (pan >= THRESHOLD).then(|| {
-        format!(
-            "; {:.1} % of the base is finer than its finest sieve and erodes by itself where it is taken as \
-             finer than every constriction: add finer sieves, or base.d0_mm",
-            100.0 * pan
-        )
-    })
+    (pan >= THRESHOLD).then(|| finding::pan_erodes(100.0 * pan))
 }

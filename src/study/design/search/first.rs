@@ -1,7 +1,7 @@
 //! The boundary of the first run: the least ratio at which it erodes 7.5 %.
 
-use super::erodes_down_to;
 use super::trials::{Pair, STOP, Search, Trial, ratio_at};
+use super::{Beside, Ended, erodes_down_to};
 use crate::outcome::design::Beyond;
 use crate::run::error::RunError;
 
@@ -22,7 +22,7 @@ impl Search<'_> {
         Ok(Some(pair))
     }
 
-    pub(super) fn no_erosion(&mut self, start: i64) -> Result<Result<Pair, (Beyond, String)>, RunError> {
+    pub(super) fn no_erosion(&mut self, start: i64) -> Result<Result<Pair, Beside>, RunError> {
         let lowest = self.stops[0];
         let top = match self.stop_that_erodes(start)? {
             Ok(top) => top,
@@ -39,22 +39,20 @@ impl Search<'_> {
                 Trial::Eroded(eroded) if eroded.below_threshold => held += 1,
                 Trial::Eroded(_) => (least, held) = (at, 0),
                 Trial::CannotBe(_, why) if held == 0 => {
-                    let ratio = ratio_at(least);
-                    let why = format!("7.5 % or more erodes down to D15F/D85B {ratio:.2}, below which {why}");
-                    return Ok(Err((Beyond::Below, why)));
+                    return Ok(Err((Beyond::Below, Ended::ErodesTo(ratio_at(least), why))));
                 }
                 Trial::CannotBe(..) => break,
             }
         }
         if held == 0 && !self.first.contains_key(&(least - STOP)) {
-            return Ok(Err((Beyond::Below, erodes_down_to(least))));
+            return Ok(Err(erodes_down_to(least)));
         }
         self.halved((least - STOP, least), Self::try_first).map(Ok)
     }
 
     /// The first stop from `start` on upwards that erodes; where the base is too fine for any of them, the
     /// first downwards that can be walked.
-    fn stop_that_erodes(&mut self, start: i64) -> Result<Result<i64, (Beyond, String)>, RunError> {
+    fn stop_that_erodes(&mut self, start: i64) -> Result<Result<i64, Beside>, RunError> {
         let [lowest, highest] = self.stops;
         let (mut at, mut too_fine) = (start, None);
         loop {
@@ -65,18 +63,14 @@ impl Search<'_> {
                     too_fine = Some(why);
                     at -= STOP;
                 }
-                (Trial::CannotBe(Beyond::Above, why), _) => return Ok(Err((Beyond::Above, why))),
-                (_, Some(why)) => return Ok(Err((Beyond::Above, why.clone()))),
+                (Trial::CannotBe(Beyond::Above, why), _) => {
+                    return Ok(Err((Beyond::Above, Ended::NotWalked(why))));
+                }
+                (_, Some(why)) => return Ok(Err((Beyond::Above, Ended::NotWalked(why.clone())))),
                 (trial, None) if at + STOP > highest => {
-                    let ratio = ratio_at(at);
                     return Ok(Err(match trial {
-                        Trial::CannotBe(beyond, why) => (beyond, why),
-                        Trial::Eroded(_) => (
-                            Beyond::Above,
-                            format!(
-                                "less than 7.5 % erodes up to D15F/D85B {ratio:.1}, where the search ends"
-                            ),
-                        ),
+                        Trial::CannotBe(beyond, why) => (beyond, Ended::NotWalked(why)),
+                        Trial::Eroded(_) => (Beyond::Above, Ended::Holds(1, ratio_at(at))),
                     }));
                 }
                 _ => at += STOP,

@@ -34,12 +34,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::outcome::design::{BETWEEN_STEPS, Beyond};
 use crate::run::error::RunError;
+use crate::verdict::{Finding, finding};
 pub(super) use trials::USUAL_ACROSS;
 use trials::{STOP, Search, between, ratio_at, tried_below};
 pub(super) use trials::{Trial, Walker};
 
 /// Names this search: networks that another has found are not continued with.
-pub(super) const METHOD: &str = "design search 4";
+pub(super) const METHOD: &str = "design search 5";
 
 /// What a bracket may be.
 pub(super) const BRACKETS: [f64; 2] = [0.1, 1000.0];
@@ -47,17 +48,46 @@ pub(super) const BRACKETS: [f64; 2] = [0.1, 1000.0];
 /// A bracket spans two stops at least.
 pub(super) const NARROWEST: f64 = 1.18;
 
+/// Why a search found no boundary.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) enum Ended {
+    /// The smallest ratio of the search erodes.
+    Erodes(f64),
+    /// All ratios down to this one erode, and what keeps smaller ones from being walked.
+    ErodesTo(f64, String),
+    /// The largest ratio of the search holds, in this run.
+    Holds(u64, f64),
+    /// What keeps further ratios from being walked.
+    NotWalked(String),
+}
+
+impl Ended {
+    /// The same as a finding; `of` says of how many networks.
+    pub fn finding(&self, of: &str) -> Finding {
+        match self {
+            Self::Erodes(ratio) => finding::erodes_to_end(*ratio, of),
+            Self::ErodesTo(ratio, why) => finding::erodes_to(*ratio, of, why),
+            Self::Holds(1, ratio) => finding::holds_to_end("", *ratio, of),
+            Self::Holds(_, ratio) => finding::holds_to_end(" in the second run", *ratio, of),
+            Self::NotWalked(why) => finding::not_walked(of, why),
+        }
+    }
+}
+
+/// On which side of the search a boundary lies, and why.
+pub(super) type Beside = (Beyond, Ended);
+
 /// What one network was found to be.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Found {
     /// D15F/D85B from which the first run erodes 7.5 %.
     pub no_erosion: Option<f64>,
     /// Why there is none.
-    pub no_erosion_beyond: Option<(Beyond, String)>,
+    pub no_erosion_beyond: Option<Beside>,
     /// D15F/D85B from which the second run does too.
     pub continuing: Option<f64>,
     /// Why there is none.
-    pub continuing_beyond: Option<(Beyond, String)>,
+    pub continuing_beyond: Option<Beside>,
     /// Whether some larger ratio was seen to hold.
     pub is_not_monotone: bool,
     /// Every ratio that was walked, rising, with what eroded in the first run and in the second.
@@ -81,9 +111,8 @@ fn stop_near(ratio: f64) -> i64 {
 }
 
 /// That the smallest ratio of the search erodes.
-fn erodes_down_to(step: i64) -> String {
-    let ratio = ratio_at(step);
-    format!("7.5 % or more erodes down to D15F/D85B {ratio:.2}, where the search ends")
+fn erodes_down_to(step: i64) -> Beside {
+    (Beyond::Below, Ended::Erodes(ratio_at(step)))
 }
 
 /// Where a search begins.
@@ -122,7 +151,7 @@ pub(super) fn search(walker: &mut dyn Walker, bracket: [f64; 2], start: Start) -
             if least > stops[0] {
                 found.no_erosion = Some(between((least - 1, least), |step| search.eroded(1, step)));
             } else {
-                found.no_erosion_beyond = Some((Beyond::Below, erodes_down_to(least)));
+                found.no_erosion_beyond = Some(erodes_down_to(least));
             }
             let second = match search.away_from(hints[1], Search::try_second)? {
                 Some(pair) => Ok(pair),
@@ -137,7 +166,7 @@ pub(super) fn search(walker: &mut dyn Walker, bracket: [f64; 2], start: Start) -
                         let second = between((least - 1, least), |step| search.eroded(2, step));
                         found.continuing = Some(found.no_erosion.map_or(second, |first| second.max(first)));
                     } else {
-                        found.continuing_beyond = Some((Beyond::Below, erodes_down_to(least)));
+                        found.continuing_beyond = Some(erodes_down_to(least));
                     }
                 }
                 Err(beyond) => found.continuing_beyond = Some(beyond),

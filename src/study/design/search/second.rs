@@ -1,6 +1,7 @@
 //! The boundary of the second run: the least ratio at which erosion continues.
 
 use super::trials::{Pair, Search, Trial, ratio_at};
+use super::{Beside, Ended};
 use crate::outcome::design::Beyond;
 use crate::run::error::RunError;
 
@@ -9,21 +10,16 @@ use crate::run::error::RunError;
 const SECOND_STOP: i64 = 32;
 
 impl Search<'_> {
-    pub(super) fn continuing(&mut self, first: Pair) -> Result<Result<Pair, (Beyond, String)>, RunError> {
+    pub(super) fn continuing(&mut self, first: Pair) -> Result<Result<Pair, Beside>, RunError> {
         let mut at = (first.1 + SECOND_STOP - 1).div_euclid(SECOND_STOP) * SECOND_STOP;
         at = at.min(self.stops[1].max(first.1));
         let mut below = first.0;
         loop {
             match self.try_second(at)? {
                 Trial::Eroded(eroded) if !eroded.below_threshold => break,
-                Trial::CannotBe(_, why) => return Ok(Err((Beyond::Above, why))),
+                Trial::CannotBe(_, why) => return Ok(Err((Beyond::Above, Ended::NotWalked(why)))),
                 _ if at >= self.stops[1] => {
-                    let ratio = ratio_at(at);
-                    let why = format!(
-                        "less than 7.5 % erodes in the second run up to D15F/D85B {ratio:.1}, where the \
-                         search ends"
-                    );
-                    return Ok(Err((Beyond::Above, why)));
+                    return Ok(Err((Beyond::Above, Ended::Holds(2, ratio_at(at)))));
                 }
                 _ => (below, at) = (at, (at + SECOND_STOP).min(self.stops[1])),
             }
