@@ -12,7 +12,7 @@ from pathlib import Path
 from library_of_packings import PERCENT
 
 TABLE = Path(__file__).parents[2] / "src/data/library.csv"
-SHAPE = [5, 20, 80, 95]
+SHAPE = [5, 20, 30, 70, 80, 95]
 DENSITY = {"loose": 0, "medium": 0.5, "dense": 1}
 HEAD = """\
 # Constrictions of packings, by number: made by scripts/studies/library_of_packings.py and fit_library.py.
@@ -34,13 +34,14 @@ def by_surface(points, percent):
 
 def main():
     lines = [json.loads(line) for line in (Path(sys.argv[1]) / "packings.jsonl").read_text().splitlines()]
-    names = ["shape", "density", "grains_per_void", "void_ratio", *(f"s{p}" for p in SHAPE), *(f"dc{p}" for p in PERCENT)]
+    names = ["shape", "cu", "density", "grains_per_void", "void_ratio", *(f"s{p}" for p in SHAPE), *(f"dc{p}" for p in PERCENT)]
     rows = [",".join(names)]
     for of in sorted((of for of in lines if "dc" in of), key=lambda of: of["key"]):
         half = by_surface(of["points"], 50)
         sizes = [by_surface(of["points"], percent) / half for percent in SHAPE] + [size / half for size in of["dc"]]
         numbers = [of["grains_per_void"], of["void_ratio"], *sizes]
-        rows.append(",".join([str(int(of["key"][:3])), str(DENSITY[of["density"]]), *(f"{n:.5g}" for n in numbers)]))
+        about = [str(int(of["key"][:3])), f"{of['cu']:.4g}", str(DENSITY[of["density"]])]
+        rows.append(",".join([*about, *(f"{n:.5g}" for n in numbers)]))
     TABLE.write_text(HEAD + "\n".join(rows) + "\n")
     print(f"{TABLE}: {len(rows) - 1} packings, {TABLE.stat().st_size / 1000:.0f} kB; refused: {len(lines) + 1 - len(rows)}")
 

@@ -28,6 +28,7 @@ FILTERS = {
     "2-4 mm gravel": [(2, 0), (4, 100)],
     "4.75-37.5 mm gravel": [(4.75, 0), (37.5, 100)],
 }
+WITHIN = "within checked range"
 COLUMNS = [
     "soil", "filter", "fines_percent", "verdict", "confidence", "origin", "eroded_percent", "design_met",
     "no_erosion_limit_mm", "no_erosion_met", "d15f_mm", "first_finding", "seconds", "error",
@@ -81,8 +82,8 @@ def summary(rows):
     """The table of a CSV, in Markdown."""
     done = [row for row in rows if row["verdict"]]
     decided = [row for row in done if row["verdict"] != "undecided"]
-    green = [row for row in done if row["verdict"] == "none" and row["confidence"] == "within"]
-    holds = [row for row in decided if row["verdict"] == "none"]
+    green = [row for row in done if row["verdict"] == "no erosion" and row["confidence"] == WITHIN]
+    holds = [row for row in decided if row["verdict"] == "no erosion"]
     unsafe = [row for row in holds if row["no_erosion_met"] == "False"]
     seconds = sorted(float(row["seconds"]) for row in done)
     lines = [
@@ -90,8 +91,8 @@ def summary(rows):
         ("refused", len(rows) - len(done)),
         ("decided", f"{len(decided)} ({100 * len(decided) / max(1, len(done)):.0f} %)"),
         ("no / some / continuing erosion", " / ".join(
-            str(sum(row["verdict"] == name for row in decided)) for name in ["none", "some", "continuing"])),
-        ("within the checked range", sum(row["confidence"] == "within" for row in done)),
+            str(sum(row["verdict"] == f"{name} erosion" for row in decided)) for name in ["no", "some", "continuing"])),
+        ("within the checked range", sum(row["confidence"] == WITHIN for row in done)),
         ("green (no erosion, within)", len(green)),
         ("green where tests found erosion", sum(row["no_erosion_met"] == "False" for row in green)),
         ("no erosion where tests found erosion, said to be against practice", len(unsafe)),

@@ -4,9 +4,9 @@
 //! (0.3), made by `scripts/studies/library_of_packings.py`. Nothing in it has a length: sizes are in units of the size
 //! that halves the surface of the grains, `S50`.
 //!
-//! Constrictions are made by grains that touch, and grains meet by surface. So a shape is known by four numbers,
-//! `ln(S5/S50)`, `ln(S20/S50)`, `ln(S80/S50)` and `ln(S95/S50)`, and a place in the library by these and the relative
-//! density. Each percentile of the curve is `ln(Dc/S50)`: a quadratic trend, and beside it a Gaussian process that
+//! Constrictions are made by grains that touch, and grains meet by surface. So a shape is known by six numbers,
+//! `ln(S/S50)` of the sizes below which 5, 20, 30, 70, 80 and 95 % of the surface lie, and a place in the library by
+//! these and the relative density. Each percentile of the curve is `ln(Dc/S50)`: a quadratic trend, and beside it a Gaussian process that
 //! draws it to what was measured nearby (universal kriging; Rasmussen & Williams 2006, section 2.7). Grains per void
 //! and void ratio are found likewise.
 
@@ -20,13 +20,13 @@ use crate::gradation::Gradation;
 const TABLE: &str = include_str!("../data/library.csv");
 
 /// Shares of the surface (%) whose sizes tell a shape, beside the half.
-const SHAPE: [f64; 4] = [5.0, 20.0, 80.0, 95.0];
+const SHAPE: [f64; 6] = [5.0, 20.0, 30.0, 70.0, 80.0, 95.0];
 /// Numbers that tell a place: those of the shape, and the relative density.
 const PLACE: usize = SHAPE.len() + 1;
 /// Terms of the trend: 1, each number, the square of the density, its product with each of the shape.
 const TREND: usize = 1 + PLACE + 1 + SHAPE.len();
 /// Distance at which two places still say much of each other.
-const REACH: f64 = 1.0;
+const REACH: f64 = 0.7;
 /// Variance of a packing's own scatter, by that of the process.
 const SCATTER: f64 = 0.05;
 /// Keeps the trend from being singular where the library is small.
@@ -35,7 +35,9 @@ const RIDGE: f64 = 1e-6;
 const FAR: f64 = 0.7;
 /// The constrictions of nine in ten packings lie as near as this, relative, from Dc5 to Dc95, where no packing of
 /// their shape is in the library: `results/library.md`.
-const OFF_BY: f64 = 0.04;
+const OFF_BY: f64 = 0.03;
+/// The same of gap-graded filters, few of which are in the library, and which differ more.
+const OFF_BY_OF_GAP: f64 = 0.09;
 
 /// What the library says of a filter.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,13 +89,14 @@ fn percentages() -> Vec<f64> {
     head.split(',').filter_map(|name| name.strip_prefix("dc")?.parse().ok()).collect()
 }
 
-/// Reads the table: number of the shape, relative density, grains per void, void ratio, s5, s20, s80, s95, and the curve.
+/// Reads the table: number of the shape, Cu, relative density, grains per void, void ratio, the sizes by
+/// surface, and the curve.
 fn packings(table: &str) -> Vec<Shipped> {
     let rows = table.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_digit()));
     rows.map(|line| {
         let numbers: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
-        let place = std::array::from_fn(|k| if k == SHAPE.len() { numbers[1] } else { log(numbers[4 + k]) });
-        let curve = numbers[4 + SHAPE.len()..].iter().chain(&numbers[2..4]).map(|value| log(*value));
+        let place = std::array::from_fn(|k| if k == SHAPE.len() { numbers[2] } else { log(numbers[5 + k]) });
+        let curve = numbers[5 + SHAPE.len()..].iter().chain(&numbers[3..5]).map(|value| log(*value));
         Shipped { place, measured: curve.collect() }
     })
     .collect()
@@ -169,7 +172,7 @@ impl Library {
             curve: Curve::from_points(&points, CurveUnit::Mm)?,
             grains_per_void: rest[0],
             void_ratio: rest[1],
-            off_by: OFF_BY,
+            off_by: if gradation.gap(0.0).is_some() { OFF_BY_OF_GAP } else { OFF_BY },
         }))
     }
 
@@ -261,32 +264,74 @@ fn back(root: &[Vec<f64>], mut right: Vec<f64>) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// Errors, relative, of every packing by a library that holds none of its shape: of the percentiles, grains per
-    /// void and void ratio.
-    fn left_out() -> Vec<Vec<f64>> {
+    /// A packing of the library that was found without its shape.
+    struct LeftOut {
+        cu: f64,
+        density: f64,
+        /// Relative: of the percentiles, grains per void and void ratio.
+        errors: Vec<f64>,
+    }
+
+    /// Every packing, found by a library that holds none of its shape.
+    fn left_out() -> Vec<LeftOut> {
         let all = packings(TABLE);
-        let shape = |packing: &Shipped| -> [u64; 4] { std::array::from_fn(|k| packing.place[k].to_bits()) };
-        let shapes: std::collections::BTreeSet<[u64; 4]> = all.iter().map(shape).collect();
-        let of_shape = |wanted: [u64; 4]| {
-            let (out, others): (Vec<_>, Vec<_>) =
-                all.iter().cloned().partition(|packing| shape(packing) == wanted);
+        let rows: Vec<Vec<f64>> = TABLE
+            .lines()
+            .filter(|line| line.starts_with(|c: char| c.is_ascii_digit()))
+            .map(|line| line.split(',').take(3).map(|cell| cell.parse().unwrap()).collect())
+            .collect();
+        let shapes: std::collections::BTreeSet<u64> = rows.iter().map(|row| row[0] as u64).collect();
+        let of_shape = |shape: u64| {
+            let is_out = |k: &usize| rows[*k][0] as u64 == shape;
+            let others = (0..all.len()).filter(|k| !is_out(k)).map(|k| all[k].clone()).collect();
             let library = Library::of(others);
-            out.into_iter().map(move |packing| {
-                let found = library.at(&packing.place);
-                found.iter().zip(&packing.measured).map(|(found, of)| found / exp(*of) - 1.0).collect()
-            })
+            let error = |k: usize| {
+                let found = library.at(&all[k].place);
+                let errors =
+                    found.iter().zip(&all[k].measured).map(|(found, of)| found / exp(*of) - 1.0).collect();
+                LeftOut { cu: rows[k][1], density: rows[k][2], errors }
+            };
+            (0..all.len()).filter(is_out).map(error).collect::<Vec<_>>()
         };
         shapes.into_iter().flat_map(of_shape).collect()
     }
 
+    /// Prints the errors for `results/library.md`: `cargo test --release library -- --nocapture`.
     #[test]
     fn nine_in_ten_packings_whose_shape_is_not_in_the_library_lie_as_near_as_it_says() {
-        let errors = left_out();
+        let all = left_out();
         let percent = percentages();
-        for wanted in [5.0, 15.0, 50.0, 75.0, 95.0] {
-            let k = percent.iter().position(|percent| *percent == wanted).unwrap();
-            let far = errors.iter().filter(|of| of[k].abs() > OFF_BY).count();
-            assert!(10 * far <= errors.len(), "Dc{wanted}: {far} of {}", errors.len());
+        let columns: Vec<(String, usize)> = [5.0, 15.0, 50.0, 75.0, 95.0]
+            .iter()
+            .map(|wanted| {
+                (format!("Dc{wanted}"), percent.iter().position(|percent| percent == wanted).unwrap())
+            })
+            .chain([("grains per void".into(), percent.len()), ("void ratio".into(), percent.len() + 1)])
+            .collect();
+        let table = |name: &str, of: &[&LeftOut]| {
+            let cells = columns.iter().map(|(_, k)| {
+                let mut sizes: Vec<f64> = of.iter().map(|of| 100.0 * of.errors[*k].abs()).collect();
+                sizes.sort_by(f64::total_cmp);
+                let at = |share: f64| sizes[((sizes.len() as f64 - 1.0) * share).round() as usize];
+                format!("{:.1} ({:.1}, {:.0})", at(0.5), at(0.9), at(1.0))
+            });
+            println!("| {name} | {} | {} |", of.len(), cells.collect::<Vec<_>>().join(" | "));
+        };
+        let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
+        println!("| packings | number | {} |", names.join(" | "));
+        table("all", &all.iter().collect::<Vec<_>>());
+        for [low, high] in [[1.0, 2.0], [2.0, 5.0], [5.0, 10.0], [10.0, 31.0]] {
+            let of: Vec<&LeftOut> = all.iter().filter(|of| (low..high).contains(&of.cu)).collect();
+            table(&format!("Cu {low} to {high}"), &of);
+        }
+        for (name, density) in [("loose", 0.0), ("medium", 0.5), ("dense", 1.0)] {
+            table(name, &all.iter().filter(|of| of.density == density).collect::<Vec<_>>());
+        }
+        for (name, k) in &columns[..5] {
+            let far = all.iter().filter(|of| of.errors[*k].abs() > OFF_BY).count();
+            assert!(10 * far <= all.len(), "{name}: {far} of {}", all.len());
+            let far = all.iter().filter(|of| of.errors[*k].abs() > OFF_BY_OF_GAP).count();
+            assert!(50 * far <= all.len(), "{name}: {far} of {}", all.len());
         }
     }
 

@@ -304,12 +304,12 @@ async function setUpForm() {
   const about = Object.fromEntries(form.keys.map((key) => [key.name, key]));
   const input = (key) => el("input", { type: "text", "data-key": key.name, title: key.doc, autocomplete: "off",
     placeholder: (key.is_set ? "" : "e.g. ") + key.shown });
-  $("#density").append(...form.densities.map((word) => el("option", { value: word }, `${word}: its grains are packed`)));
+  $("#density").append(...form.densities.map((word) => el("option", { value: word }, word)));
   $("#first").append(
     el("label", {}, "Published curve", el("select", { "data-key": "filter.curve", title: about["filter.curve"].doc },
       el("option", { value: "" }, "none"), ...form.curves.map((curve) => el("option", { value: curve.name }, `${curve.name}: ${curve.title}`)))),
     ...FIRST.filter(([name]) => about[name]).map(([name, label]) => el("label", {}, label, input(about[name]))));
-  const own = ["base.sieve", "filter.sieve", "filter.measured", "filter.density", "filter.curve", "base.dispersive", "base.regrade", "filter.joint_mm", ...FIRST.map(([name]) => name)];
+  const own = ["base.sieve", "filter.sieve", "filter.measured", "filter.density", "filter.library", "filter.curve", "base.dispersive", "base.regrade", "filter.joint_mm", ...FIRST.map(([name]) => name)];
   const sections = [...new Set(form.keys.map((key) => key.section))];
   $("#all").append(...sections.map((section) => {
     const keys = form.keys.filter((key) => key.section === section && !own.includes(key.name));
@@ -335,7 +335,7 @@ function asked(compare) {
     .map((field) => `${field.dataset.key}=${field.value.trim()}`);
   changes.push(...ofSoils());
   changes.push(...$("#free").value.split("\n").map((line) => line.trim()).filter(Boolean));
-  const what = { base: state.base, filter: state.filter, density: $("#density").value, quick: $("#quick").checked, ...taken(), changes };
+  const what = { base: state.base, filter: state.filter, density: $("#density").value, pack: $("#pack").checked, quick: $("#quick").checked, ...taken(), changes };
   if (compare) what[$("input[name=as]:checked").value] = state.more;
   return what;
 }
@@ -385,7 +385,7 @@ async function design() {
   try {
     if (shape === CU && !cu) throw new Error("give the Cu of the filter");
     await ask("api/design", { base: state.base, filter: shape ? "" : state.filter, shape: shape === CU ? cu : shape,
-      density: $("#design-density").value, thickness: $("#design-thickness").value, inverse: $("#inverse").checked, ...taken(), changes });
+      density: $("#design-density").value, pack: $("#design-pack").checked, thickness: $("#design-thickness").value, inverse: $("#inverse").checked, ...taken(), changes });
     await poll();
     $("#results").scrollIntoView({ block: "start" });
   } catch (error) {

@@ -178,7 +178,18 @@ fn a_dispersive_base_and_an_open_joint_reach_the_verdict() {
 #[test]
 fn a_density_packs_the_filter() {
     let (_root, at) = soils();
-    let words = ["judge", "base.csv", "coarse.csv", "--density", "medium", "--quick", "--json", "--out", "a"];
+    let words = [
+        "judge",
+        "base.csv",
+        "coarse.csv",
+        "--density",
+        "medium",
+        "--pack",
+        "--quick",
+        "--json",
+        "--out",
+        "a",
+    ];
     let small = ["--set", "packing.grains=150", "--set", "packing.stiffness_ratio=0.01"];
     let said = call(&at, &[&words[..], &SMALL, &small].concat());
     done(&said);
