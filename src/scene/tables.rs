@@ -59,11 +59,11 @@ impl TableOptions {
     /// # Errors
     /// [`SceneError::Clash`]: a change says the density, too.
     pub fn settings(&self) -> Result<Vec<String>, SceneError> {
-        if let (Some(density), true) = (self.density, self.is_set(&["filter.density"])) {
+        if let (Some(density), true) = (self.density, self.is_set(&["filter.density", "filter.library"])) {
             return Err(SceneError::Clash {
                 file: Origin::CommandLine.to_string(),
                 problem: format!(
-                    "density {} and filter.density say the same thing twice: give one",
+                    "density {} and filter.density or filter.library say the same thing twice: give one",
                     density.name()
                 ),
             });
@@ -235,7 +235,9 @@ mod tests {
         let scene = scene(&TableOptions::default()).unwrap();
         assert_eq!(scene.filter.sieve.as_deref(), Some(Path::new("a \"b\".xlsx#Filter A")));
         assert_eq!(scene.base.sieve.as_deref(), Some(Path::new("1e5")));
-        assert_eq!((scene.filter.curve, scene.filter.estimate, scene.filter.cu), (None, Some(MIDDLE), None));
+        let filter = &scene.filter;
+        assert_eq!((&filter.curve, filter.estimate, filter.cu), (&None, None, None));
+        assert_eq!(filter.library, Some(LibraryDensity::Unknown));
         assert_eq!((scene.base.cu, scene.walk.replicates), (None, 10));
     }
 
@@ -276,15 +278,21 @@ mod tests {
     }
 
     #[test]
-    fn a_density_packs_and_changes_go_before_all() {
+    fn a_density_is_one_of_the_library_unless_it_is_packed_and_changes_go_before_all() {
         let dense = TableOptions { density: Some(Density::Dense), ..Default::default() };
-        let packed = scene(&dense).unwrap();
-        assert!(packed.packing.is_some() && packed.filter.estimate.is_none());
+        let looked_up = scene(&dense).unwrap();
+        assert!(looked_up.packing.is_none() && looked_up.filter.library == Some(LibraryDensity::Dense));
+        let packed = scene(&TableOptions { pack: true, ..dense }).unwrap();
+        assert!(packed.packing.is_some() && packed.filter.density == Some(Density::Dense));
+        let loose = scene(&TableOptions { pack: true, ..Default::default() }).unwrap();
+        assert_eq!((loose.filter.density, loose.filter.library), (Some(Density::Loose), None));
         let given = scene(&with(&["filter.curve=cu3-loose", "replicates=3"])).unwrap();
         assert!(given.filter.estimate.is_none() && given.walk.replicates == 3);
         let both = TableOptions { density: Some(Density::Loose), ..with(&["filter.estimate=1"]) };
         assert!(scene(&both).unwrap_err().to_string().contains("both say what the filter's constrictions"));
         let twice = TableOptions { density: Some(Density::Loose), ..with(&["filter.density=dense"]) };
+        assert!(scene(&twice).unwrap_err().to_string().contains("say the same thing twice"));
+        let twice = TableOptions { density: Some(Density::Loose), ..with(&["filter.library=dense"]) };
         assert!(scene(&twice).unwrap_err().to_string().contains("say the same thing twice"));
         let odd = scene(&with(&["base.uc=3"])).unwrap_err().to_string();
         assert!(odd.contains("there is no setting `base.uc`"), "{odd}");

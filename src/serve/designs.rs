@@ -200,6 +200,7 @@ mod tests {
             shape,
             density: "loose, dense,".into(),
             thickness: "8layers".into(),
+            pack: false,
             inverse: false,
             as_sampled: false,
             as_given: false,
