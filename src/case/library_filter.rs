@@ -2,16 +2,11 @@
 
 use super::curve_ends::OtherCurve;
 use super::cut;
-use super::recipe::width_by_largest;
+use super::recipe::{GRAINS_OF_PART, LEAST_WIDTH, width_by_largest};
 use crate::constrictions::{CurveError, FromLibrary, from_library};
 use crate::gradation::Gradation;
 use crate::outcome::packing::PackedPart;
 use crate::scene::LibraryDensity;
-
-/// The packings of the library have so many grains at most, so a broad gradation has its finer part alone in it.
-const GRAINS: usize = 5000;
-/// The cells of the library are this many times as wide as the largest grain.
-const CELLS_WIDTH: f64 = 2.5;
 
 /// A filter as the library knows it.
 #[derive(Clone)]
@@ -30,12 +25,14 @@ impl LibraryFilter {
     /// # Errors
     /// None for a gradation with a known size.
     pub fn find(filter: &Gradation, density: LibraryDensity) -> Result<Option<Self>, CurveError> {
-        let width = |gradation: &Gradation| width_by_largest(gradation, GRAINS, 1.0);
-        let cut = (width(filter) < CELLS_WIDTH).then(|| cut::that_can_be_packed(filter, width));
-        let (looked_up, part) = match cut {
-            None => (filter.clone(), None),
-            Some(Some((finer, part))) => (finer, Some(part)),
-            Some(None) => return Ok(None),
+        // The finer part that would be packed, where the whole could not be.
+        let width = |gradation: &Gradation| width_by_largest(gradation, GRAINS_OF_PART, 1.0);
+        let (looked_up, part) = match width(filter) < LEAST_WIDTH {
+            false => (filter.clone(), None),
+            true => match cut::that_can_be_packed(filter, width) {
+                Some((finer, part)) => (finer, Some(part)),
+                None => return Ok(None),
+            },
         };
         let Some(found) = from_library(&looked_up, density.relative())? else { return Ok(None) };
         // Leaving the coarser grains out makes all constrictions finer.

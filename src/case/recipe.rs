@@ -13,9 +13,9 @@ const CELLS_WIDTH: f64 = 5.4;
 /// ... within these numbers of grains: fewer scatter, more cost a wide gradation hours.
 const GRAINS: (usize, usize) = (9_000, 60_000);
 /// Grains for the finer part of a filter that cannot be packed whole, at most.
-const GRAINS_OF_PART: usize = 30_000;
+pub(super) const GRAINS_OF_PART: usize = 30_000;
 /// A cell is at least this many times as wide as the largest grain: twice, and some for what a guess is off.
-const LEAST_WIDTH: f64 = 2.2;
+pub(super) const LEAST_WIDTH: f64 = 2.2;
 /// Packing fraction by which the width of a cell is guessed.
 const FRACTION: f64 = 0.65;
 

@@ -4,7 +4,6 @@
 use std::path::PathBuf;
 
 use super::{Case, needs_grains_per_void};
-use crate::constrictions::library_version;
 use crate::scene::{About, CurveSource, Scene};
 
 /// Part of the fingerprint of every case: raised whenever the program gives other results for the same scene.
@@ -40,7 +39,7 @@ impl Case {
         if scene.filter.sieve.is_none() {
             scene.filter.cu = scene.filter.cu.or(self.shipped.map(|shipped| shipped.cu));
         }
-        if !needs_grains_per_void(&scene, self.guessed_density) {
+        if self.library.is_none() && !needs_grains_per_void(&scene, self.guessed_density) {
             scene.filter.grains_per_void = self.grains_per_void;
         }
         scene.base.sieve = kept("base.sieve");
@@ -60,7 +59,11 @@ impl Case {
         }
         let mut text = format!("{protocol}\n{}", scene.to_toml()).into_bytes();
         if self.library.is_some() {
-            text.extend_from_slice(library_version().as_bytes());
+            // Another library, or another way through it, gives other curves.
+            let ends = self.curve_ends.iter().map(|end| &end.curve);
+            for curve in std::iter::once(&self.curve).chain(ends) {
+                text.extend_from_slice(format!("{:?}", curve.points()).as_bytes());
+            }
         }
         text.extend_from_slice(self.shipped.map_or("", |shipped| shipped.curve_csv).as_bytes());
         for input in self.inputs.iter().filter(|input| input.setting != "filter.density") {

@@ -32,7 +32,7 @@ pub struct Arguments {
 pub enum Command {
     /// Walk the base of a scene through its filter, and judge it
     Run(RunArgs),
-    /// Judge a base and a filter by their sieve tables: pack or guess, walk, and write the page
+    /// Judge a base and a filter by their sieve tables: find the constrictions, walk, and write the page
     Judge(JudgeArgs),
     /// Compare filters on one base, bases on one filter, or scenes
     Compare(CompareArgs),

@@ -25,8 +25,8 @@ const EXAMPLES: [(&str, [Example; 2]); 19] = [
     (
         "judge",
         [
-            ["voidwalk judge base.csv filter.csv --quick", "a first look: four replicates, a guessed filter"],
-            ["voidwalk judge \"site.xlsx#Core\" \"site.xlsx#Filter A\" --density loose", "the filter packed"],
+            ["voidwalk judge base.csv filter.csv --quick", "a first look: four replicates, loose and dense"],
+            ["voidwalk judge \"site.xlsx#Core\" \"site.xlsx#Filter A\" --pack", "the filter packed"],
         ],
     ),
     (
@@ -159,7 +159,7 @@ Will this filter hold this soil? Type first, with two sieve tables (CSV, .xlsx, 
 the filter:
 
   voidwalk judge base.csv filter.csv --quick            a first look, in seconds to minutes
-  voidwalk judge base.csv filter.csv --density loose    the filter's grains packed: minutes
+  voidwalk judge base.csv filter.csv --pack             the filter's grains packed: minutes
 
 Without tables at hand:
 

@@ -3,8 +3,8 @@
 //! ```text
 //! Packing -> Triangulation -> voids, discs -> Constrictions -> Curve
 //! ```
-//! [`from_library()`] finds a curve between those of packings that were made before, and [`inscribed()`] guesses one
-//! from the gradation alone.
+//! [`from_library()`] finds a curve between those of packings that were made before, and [`inscribed()`]
+//! guesses one from the gradation alone.
 
 mod curve;
 mod discs;
@@ -22,7 +22,7 @@ mod voids;
 pub use curve::{Curve, CurveError, CurveUnit};
 pub use graph::VoidGraph;
 pub use inscribed::inscribed;
-pub use library::{FromLibrary, from_library, library_version};
+pub use library::{FromLibrary, from_library};
 pub use measure::{Constrictions, ConstrictionsError, DEFAULT_MERGE_OVERLAP, Facets};
 pub use shipped::{ShippedFilter, find, shipped};
 pub use summary::{SUMMARY_PERCENT, Summary};

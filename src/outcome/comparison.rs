@@ -132,7 +132,7 @@ impl Comparison {
     /// What no interval of a difference holds, where a case has it.
     pub fn not_in_intervals(&self) -> Option<&'static str> {
         let is_guess = self.cases.iter().any(|case| !case.curve_range.is_empty());
-        is_guess.then_some("how far the constriction curve of a case is a guess")
+        is_guess.then_some("how far the constriction curve of a case may be off")
     }
 }
 

@@ -103,8 +103,8 @@ pub(super) fn with_time(error: CaseError) -> RunError {
     let time = duration(would_do.core_seconds_here());
     RunError::Refused(format!(
         "{error}, in about {time} of one core or more; or packing.coarsest = 90, say, packs the finer 90 % \
-         of the mass alone; or filter.estimate, in place of the density, guesses without a packing, and the \
-         verdict's range shows how far"
+         of the mass alone; or filter.library, in place of the density, takes the constrictions from \
+         packings of filters like it"
     ))
 }
 

@@ -60,9 +60,9 @@ section! {
         pub friction: Option<f64> = None, off "0.3", within(0.0..=10.0, "a number from 0 to 10");
         /// Written by a run whose filter was packed: its measured constriction curve.
         pub measured: Option<PathBuf> = None, off "\"inputs/filter-curve.csv\"", any("a file name in quotes");
-        /// Instead of a density: constrictions from the library of packings, which takes no time, as dense as
-        /// said. Where it is unknown, loose and dense are walked besides. A gradation like none of the library
-        /// has its constrictions guessed.
+        /// Instead of a density: constrictions from the library of packings, which takes no time. Where the
+        /// density is unknown, loose and dense are walked besides. A gradation like none of the library has
+        /// its constrictions guessed.
         pub library: Option<LibraryDensity> = None, off "\"unknown\"",
             any("\"dense\", \"medium\" or \"intermediate\", \"loose\", or \"unknown\"");
         /// Instead of a curve or a density: constrictions guessed from the gradation by inscribed circles, at

@@ -10,8 +10,8 @@ use crate::verdict::Mistake;
 /// What a scene of two tables is given besides them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TableOptions {
-    /// How densely the filter lies. Its constrictions come from the library of packings; without a density, and
-    /// where `changes` do not say what the constrictions are, loose and dense are both walked.
+    /// How densely the filter lies. Its constrictions come from the library of packings; without a density,
+    /// and where `changes` do not say what the constrictions are, loose and dense are both walked.
     pub density: Option<Density>,
     /// This very filter is packed, loose where no density is given.
     pub pack: bool,
@@ -144,11 +144,12 @@ impl Scene {
         }
         if let Some(density) = filter.library {
             let density = match density {
-                LibraryDensity::Unknown => "loose and dense are both walked".into(),
-                density => format!("{}, and both ends of what is known of it are walked", density.name()),
+                LibraryDensity::Unknown => "loose and dense are both walked",
+                density => density.name(),
             };
             return format!(
-                "The filter's constrictions are those of packings of filters like it: {density}."
+                "The filter's constrictions are those of packings of filters like it: {density}. Where the \
+                 library holds none like it, they are guessed."
             );
         }
         match (&filter.estimate, &filter.curve) {

@@ -321,22 +321,22 @@ findings! {
         "The filter is walked with the constrictions of another filter. Its Cu is {cu}, but its curve \
          {curve} belongs to Cu {of_cu}.";
     /// Constrictions from the library, at a density that is not known.
-    library_of_any_density(off_by: Percent): Constrictions, Open, Note;
+    library_of_any_density(off_by: Percent): Constrictions, Open, Limits;
         "density", "uncertainty.md",
-        "How densely the filter lies is not known. Its constrictions come from packings of filters like it; \
-         loose and dense are both walked, with {off_by} more to either side.",
-        to do "--density says how densely it lies, and --pack packs this very filter.";
+        "How densely the filter lies is not known. Its constrictions come from packings of filters like it: \
+         loose and dense are both walked, and {off_by} beyond either.",
+        to do "filter.library says how densely it lies; filter.density packs this very filter.";
     /// Constrictions from the library.
-    library_of_density(density: Text, off_by: Percent): Constrictions, Open, Note;
-        "library", "uncertainty.md",
-        "The constrictions come from packings of filters like this one ({density}). They are known within \
-         {off_by}, and both ends of that range are walked.",
-        to do "--pack packs this very filter.";
+    library_of_density(density: Text, off_by: Percent): Constrictions, Open, Limits;
+        "not packed", "uncertainty.md",
+        "The constrictions come from packings of filters like this one ({density}). Nine of ten such filters \
+         were within {off_by}; both ends of that range are walked.",
+        to do "filter.density packs this very filter.";
     /// A gradation outside the library.
     like_none_of_the_library(): Constrictions, Open, Limits;
         "constrictions", "uncertainty.md",
-        "No packing of the library is like this filter.",
-        to do "--pack packs it.";
+        "No packing of the library is like this filter, so its constrictions are guessed.",
+        to do "filter.density packs it.";
     /// A guess of the constrictions.
     guessed_constrictions(): Constrictions, Open, Limits;
         "constrictions", "uncertainty.md",

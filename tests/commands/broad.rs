@@ -80,7 +80,7 @@ fn what_is_packed_can_be_said_and_what_cannot_be_is_refused_with_its_time() {
     let output = call(&at, &wide);
     refused(&output, "grains would do, in about");
     refused(&output, "packing.coarsest = 90");
-    refused(&output, "filter.estimate");
+    refused(&output, "filter.library");
     assert!(!at.join("p").exists());
 }
 

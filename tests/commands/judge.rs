@@ -33,7 +33,7 @@ fn two_tables_are_judged_as_the_scene_that_says_the_same() {
     let said = call(&at, &[&["judge", "base.csv", "fine.csv", "--quick", "--out", "a"][..], &SMALL].concat());
     done(&said);
     let text = String::from_utf8(said.stdout).unwrap();
-    assert!(text.contains("guessed from its gradation") && text.contains("Verdict: "), "{text}");
+    assert!(text.contains("loose and dense are both walked") && text.contains("Verdict: "), "{text}");
     assert!(text.contains("to go on from: voidwalk run a/scene.toml"), "{text}");
     for file in ["outcome.json", "report.html", "manifest.json", "scene.toml", "inputs/base-sieve.csv"] {
         assert!(at.join("a").join(file).is_file(), "{file}");

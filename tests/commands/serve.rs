@@ -582,7 +582,7 @@ fn what_waited_or_was_compared_when_the_server_ended_is_done_by_the_next() {
 fn a_run_that_was_stopped_while_its_filter_was_packed_continues() {
     let served = serve();
     served.two_sheets();
-    let request = json!({ "base": "1", "filter": "2", "density": "dense", "quick": true });
+    let request = json!({ "base": "1", "filter": "2", "density": "dense", "pack": true, "quick": true });
     let (status, said) = served.post("api/judge", request.to_string().as_bytes());
     assert_eq!(status, 200, "{said}");
     let packing = |job: &Value| job["live"]["packing"]["steps"].as_u64() >= Some(1);

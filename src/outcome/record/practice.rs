@@ -14,8 +14,8 @@ pub struct Practice {
 
 /// What filter tests showed, by the boundaries of Foster and Fell.
 ///
-/// Their boundary of excessive erosion stands in figures whose numbers no text gives, so what lies between the
-/// boundaries of no and of continuing erosion is "some erosion" here, though it may be excessive.
+/// Their boundary of excessive erosion stands in figures whose numbers no text gives, so what lies between
+/// the boundaries of no and of continuing erosion is "some erosion" here, though it may be excessive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum TestedClass {
     /// Within the boundary of no erosion.

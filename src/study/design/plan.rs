@@ -89,6 +89,11 @@ fn shape_setting(shape: &str) -> (bool, String) {
 /// The setting that says a density.
 fn density_setting(density: &str, pack: bool) -> Result<String, RunError> {
     if let Some((name @ ("friction" | "estimate"), value)) = density.split_once('=') {
+        if pack && name == "estimate" {
+            return Err(RunError::refused(
+                "--pack and --density estimate say how the constrictions are found: keep one",
+            ));
+        }
         return Ok(format!("filter.{name}={value}"));
     }
     match Density::named(density) {
@@ -327,7 +332,7 @@ mod tests {
             ["loose, 500 mm", "loose, 30 layers", "friction 0.1, 500 mm", "friction 0.1, 30 layers"]
         );
         let plain = wanted(&options(&[], &[])).unwrap();
-        assert_eq!((plain[0].density.as_str(), plain[0].thickness), ("loose", Thickness::Layers(60)));
+        assert_eq!((plain[0].density.as_str(), plain[0].thickness), ("unknown", Thickness::Layers(60)));
         for same in [["loose", "loose"], ["medium", "intermediate"]] {
             let twice = wanted(&options(&same, &[])).unwrap_err();
             assert!(twice.to_string().contains("asked for twice") && twice.exit().code() == 2);
