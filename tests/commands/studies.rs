@@ -185,6 +185,9 @@ fn the_scene_among_its_variations_has_the_verdict_of_its_page() {
             let sentence = format!("The verdict is undecided; at other thicknesses, {points} (0.5 times");
             assert!(face.contains(&sentence), "{face}");
         }
-        assert!(page.contains(why) && page.contains(&format!("the other points are classed {points}")), "{page}");
+        assert!(
+            page.contains(why) && page.contains(&format!("the other points are classed {points}")),
+            "{page}"
+        );
     }
 }
