@@ -78,10 +78,10 @@ mod tests {
 
     #[test]
     fn of_a_broad_filter_the_finer_part_is_looked_up() {
-        // A processed gravel of Cu 27.
+        // ASTM C33 fine aggregate, the middle of its band.
         let points =
-            [(0.075, 2.0), (0.3, 12.0), (0.6, 18.0), (2.36, 35.0), (4.75, 47.0), (19.0, 80.0), (37.5, 100.0)];
-        let filter = Gradation::from_points(&points, Some(0.05)).unwrap();
+            [(0.15, 6.0), (0.3, 20.0), (0.6, 42.5), (1.18, 67.5), (2.36, 90.0), (4.75, 97.5), (9.5, 100.0)];
+        let filter = Gradation::from_points(&points, None).unwrap();
         let found = LibraryFilter::find(&filter, LibraryDensity::Loose).unwrap();
         assert!(found.is_some_and(|of| of.part.is_some()));
     }

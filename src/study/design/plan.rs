@@ -339,9 +339,11 @@ mod tests {
         }
         // As a scene reads it.
         let medium = wanted(&options(&["medium"], &[])).unwrap();
-        let scene = Scene::built_in(&["filter.cu=3".into(), "filter.density=medium".into()]).unwrap();
+        let scene = Scene::built_in(&["filter.cu=3".into(), "filter.library=medium".into()]).unwrap();
         assert_eq!(medium[0].density, "intermediate");
-        assert_eq!(medium[0].scene.filter.density, scene.filter.density);
+        assert_eq!(medium[0].scene.filter.library, scene.filter.library);
+        let packed = DesignOptions { pack: true, ..options(&["medium"], &[]) };
+        assert_eq!(wanted(&packed).unwrap()[0].scene.filter.density, Some(Density::Intermediate));
         let voids = DesignOptions { settings: vec!["record.voids=[1]".into()], ..options(&[], &[]) };
         let refused = wanted(&voids).unwrap_err();
         assert!(refused.to_string().contains("record.voids does not go") && refused.exit().code() == 2);
