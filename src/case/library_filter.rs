@@ -38,21 +38,18 @@ impl LibraryFilter {
         // Leaving the coarser grains out makes all constrictions finer.
         let finer_by = part.as_ref().map_or(0.0, |part| part.finer_by);
         let [loose, dense] = match density {
-            LibraryDensity::Unknown => {
-                let [loose, dense] = [LibraryDensity::Loose, LibraryDensity::Dense]
-                    .map(|end| from_library(&looked_up, end.relative()));
-                [(loose?, "loose"), (dense?, "dense")]
-            }
-            _ => [(Some(found.clone()), density.name()), (Some(found.clone()), density.name())],
+            LibraryDensity::Unknown => [LibraryDensity::Loose, LibraryDensity::Dense],
+            known => [known; 2],
         };
         let coarsest = (1.0 + found.off_by) / (1.0 - finer_by);
-        let end = |(of, name): (Option<FromLibrary>, &str), factor: f64| {
+        let end = |density: LibraryDensity, factor: f64| {
             let [way, by] = match factor > 1.0 {
                 true => ["coarser", &format!("{:.0}", 100.0 * (factor - 1.0))],
                 false => ["finer", &format!("{:.0}", 100.0 * (1.0 - factor))],
             };
-            let name = format!("{name}, constrictions {by} % {way}");
-            Some(OtherCurve { name, curve: of?.curve.scaled(factor).ok()? })
+            let name = format!("{}, constrictions {by} % {way}", density.name());
+            let of = from_library(&looked_up, density.relative()).ok()??;
+            Some(OtherCurve { name, curve: of.curve.scaled(factor).ok()? })
         };
         let ends = [end(loose, coarsest), end(dense, 1.0 - found.off_by)];
         Ok(Some(Self { found, part, ends: ends.into_iter().flatten().collect() }))

@@ -145,8 +145,7 @@ impl Library {
             Some(share) => log(by_surface(gradation, *share) / half_mm),
             None => density.clamp(0.0, 1.0),
         });
-        let far = |other: &[f64; PLACE]| sqrt(square(&place[..SHAPE.len()], &other[..SHAPE.len()]));
-        let nearest = self.places.iter().map(far).fold(f64::INFINITY, f64::min);
+        let nearest = self.distance(&place);
         let Some((_, off_by)) = OFF_BY.into_iter().find(|(distance, _)| nearest < *distance) else {
             return Ok(None);
         };
@@ -168,6 +167,12 @@ impl Library {
             void_ratio: rest[1],
             off_by,
         }))
+    }
+
+    /// Distance to the nearest shape, whatever its density.
+    fn distance(&self, place: &[f64; PLACE]) -> f64 {
+        let far = |other: &[f64; PLACE]| sqrt(square(&place[..SHAPE.len()], &other[..SHAPE.len()]));
+        self.places.iter().map(far).fold(f64::INFINITY, f64::min)
     }
 
     /// What would be measured at a place.
@@ -267,12 +272,6 @@ mod tests {
         errors: Vec<f64>,
     }
 
-    /// Distance to the nearest shape that is not its own.
-    fn distance(place: &[f64; PLACE], library: &Library) -> f64 {
-        let far = |other: &[f64; PLACE]| sqrt(square(&place[..SHAPE.len()], &other[..SHAPE.len()]));
-        library.places.iter().map(far).fold(f64::INFINITY, f64::min)
-    }
-
     /// Every packing, found by a library that holds none of its shape.
     fn left_out() -> Vec<LeftOut> {
         let all = packings(TABLE);
@@ -293,7 +292,7 @@ mod tests {
                 LeftOut {
                     cu: rows[k][1],
                     density: rows[k][2],
-                    distance: distance(&all[k].place, &library),
+                    distance: library.distance(&all[k].place),
                     errors,
                 }
             };
