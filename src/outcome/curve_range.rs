@@ -1,11 +1,21 @@
 //! What a verdict is worth where the constriction curve is known within a range only: the same replicates are
 //! walked at the range's ends, too.
+//!
+//! The ends of a guess leave the verdict undecided where they differ. Those of a filter from the library are
+//! the coarsest and the finest constrictions that it may have, loose or dense: there the worst class is the
+//! verdict, which errs on the safe side. Coarser constrictions let more pass, so a coarsest curve that is
+//! decided bounds what finer ones leave open.
 
 use super::record::{CurveEnd, CurveRange, Statistic, Verdict};
 
 impl CurveRange {
     /// The range of a verdict of which the curve itself gives `verdict` and `runs`; `None` without ends.
-    pub fn new(verdict: Verdict, runs: &[Statistic], ends: Vec<CurveEnd>) -> Option<Self> {
+    pub fn new(
+        verdict: Verdict,
+        runs: &[Statistic],
+        ends: Vec<CurveEnd>,
+        worst_counts: bool,
+    ) -> Option<Self> {
         if ends.is_empty() {
             return None;
         }
@@ -17,12 +27,35 @@ impl CurveRange {
             })
         };
         let eroded_mass_fraction = (0..runs.len()).map(of_run).collect();
-        Some(Self { verdict, ends, eroded_mass_fraction })
+        Some(Self { verdict, ends, worst_counts, eroded_mass_fraction })
     }
 
-    /// The class that the whole range supports: undecided where its curves do not agree.
+    /// The class that the whole range supports.
     pub fn whole(&self) -> Verdict {
-        if self.agrees() { self.verdict } else { Verdict::Undecided }
+        match self.agrees() {
+            true => self.verdict,
+            false if self.worst_counts => self.worst(),
+            false => Verdict::Undecided,
+        }
+    }
+
+    /// The worst class of the range; undecided where its coarsest curve is.
+    fn worst(&self) -> Verdict {
+        let ends = self.ends.iter().map(|end| (end.dc50_factor, end.walked.verdict));
+        let all: Vec<(f64, Verdict)> = ends.chain([(1.0, self.verdict)]).collect();
+        let coarsest = all.iter().max_by(|a, b| a.0.total_cmp(&b.0)).map_or(self.verdict, |of| of.1);
+        let has = |class: Verdict| all.iter().any(|of| of.1 == class);
+        match coarsest {
+            _ if has(Verdict::Continuing) => Verdict::Continuing,
+            Verdict::Undecided => Verdict::Undecided,
+            _ if has(Verdict::Some) => Verdict::Some,
+            decided => decided,
+        }
+    }
+
+    /// Whether the range leaves the class open that the curve itself gives.
+    pub fn leaves_open(&self) -> bool {
+        self.whole() == Verdict::Undecided && self.verdict != Verdict::Undecided
     }
 
     /// Whether the ends have the class of the curve itself.
@@ -37,19 +70,19 @@ mod tests {
     use crate::outcome::record::Classed;
 
     fn range(verdict: Verdict, end: Verdict) -> CurveRange {
+        range_with(verdict, &[(1.02, end)], false)
+    }
+
+    fn range_with(verdict: Verdict, ends: &[(f64, Verdict)], worst_counts: bool) -> CurveRange {
         let (sd, low, high) = (Some(0.01), |mean: f64| Some(mean - 0.01), |mean: f64| Some(mean + 0.01));
         let of = |mean: f64| Statistic { mean, sd, low: low(mean), high: high(mean) };
-        let end = CurveEnd {
-            curve: "2 % coarser".into(),
-            dc50_factor: 1.02,
-            walked: Classed {
-                replicates: 5,
-                stopped_when_clear: false,
-                verdict: end,
-                runs: vec![of(0.09), of(0.02)],
-            },
+        let end = |&(dc50_factor, verdict): &(f64, Verdict)| {
+            let runs = vec![of(0.09), of(0.02)];
+            let walked = Classed { replicates: 5, stopped_when_clear: false, verdict, runs };
+            CurveEnd { curve: format!("times {dc50_factor}"), dc50_factor, walked }
         };
-        CurveRange::new(verdict, &[of(0.05), of(0.04)], vec![end]).unwrap()
+        let ends = ends.iter().map(end).collect();
+        CurveRange::new(verdict, &[of(0.05), of(0.04)], ends, worst_counts).unwrap()
     }
 
     #[test]
@@ -61,6 +94,21 @@ mod tests {
         }
         let open = range(Verdict::None, Verdict::Some);
         assert_eq!(open.whole(), Verdict::Undecided);
-        assert_eq!(CurveRange::new(Verdict::None, &[], Vec::new()), None);
+        assert_eq!(CurveRange::new(Verdict::None, &[], Vec::new(), false), None);
+    }
+
+    #[test]
+    fn of_a_filter_from_the_library_the_worst_class_counts() {
+        use Verdict::{Continuing, None, Some, Undecided};
+        let whole = |own, coarse, fine| range_with(own, &[(1.03, coarse), (0.8, fine)], true).whole();
+        assert_eq!(whole(None, None, None), None);
+        assert_eq!(whole(Some, Some, None), Some);
+        assert_eq!(whole(None, Some, None), Some);
+        assert_eq!(whole(Some, Continuing, None), Continuing);
+        // What is coarser bounds what is open, and what is open at the coarsest stays so.
+        assert_eq!(whole(Undecided, Some, Undecided), Some);
+        assert_eq!(whole(None, None, Undecided), None);
+        assert_eq!(whole(None, Undecided, None), Undecided);
+        assert_eq!(whole(Continuing, Undecided, None), Continuing);
     }
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::record::{Outcome, RunSummary, Verdict};
+use super::record::{CurveRange, Outcome, RunSummary, Verdict};
 
 /// What leaves a verdict undecided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -38,7 +38,7 @@ impl Outcome {
         };
         Some(if self.pan_bounds.as_ref().is_some_and(|bounds| bounds.differ()) {
             UndecidedBy::Pan
-        } else if self.curve_range.as_ref().is_some_and(|range| range.whole() != range.verdict) {
+        } else if self.curve_range.as_ref().is_some_and(CurveRange::leaves_open) {
             UndecidedBy::Curve
         } else if self.summary.len() == 1 && self.summary.iter().all(erodes) {
             UndecidedBy::SecondRun

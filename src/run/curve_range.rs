@@ -29,5 +29,5 @@ pub fn curve_range(
     // A verdict that was to be certain is one at the level asked for, here too.
     let verdict = stopping(case, walked).and_then(|stopping| stopping.verdict).unwrap_or(verdict);
     let runs: Vec<_> = summaries.iter().map(|s| s.eroded_mass_fraction).collect();
-    Ok(CurveRange::new(verdict, &runs, ends))
+    Ok(CurveRange::new(verdict, &runs, ends, case.library.is_some()))
 }

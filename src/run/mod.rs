@@ -21,6 +21,7 @@ pub mod erosion;
 pub mod error;
 pub mod folder;
 pub mod machine;
+mod margin;
 mod network_answer;
 mod network_record;
 mod network_walk;

@@ -1,11 +1,12 @@
 //! What is walked of a case besides itself, where its inputs leave open what it is: the other reading of a
-//! pan fraction, and the ends of the range of its constriction curve.
+//! pan fraction, the ends of the range of its constriction curve, and how much coarser the filter could be.
 
 use super::curve_range::curve_range;
 use super::error::RunError;
+use super::margin::margin;
 use super::replicates::{ReplicateContext, ReplicateResult, other_reading};
 use crate::case::Case;
-use crate::outcome::record::CurveRange;
+use crate::outcome::record::{CurveRange, Margin};
 
 /// What was walked besides the case itself.
 #[derive(Default)]
@@ -14,6 +15,8 @@ pub struct OtherWalks {
     pub reading: Vec<ReplicateResult>,
     /// What came of the ends of the curve's range; `None` where the curve is no range.
     pub range: Option<CurveRange>,
+    /// How much coarser the filter could be; `None` where that is not asked for.
+    pub margin: Option<Margin>,
 }
 
 impl OtherWalks {
@@ -26,6 +29,9 @@ impl OtherWalks {
         walked: &[ReplicateResult],
         context: &ReplicateContext,
     ) -> Result<Self, RunError> {
-        Ok(Self { reading: other_reading(case, context)?, range: curve_range(case, walked, context)? })
+        let reading = other_reading(case, context)?;
+        let range = curve_range(case, walked, context)?;
+        let margin = margin(case, [walked, &reading], context)?;
+        Ok(Self { reading, range, margin })
     }
 }

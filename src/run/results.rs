@@ -35,6 +35,8 @@ pub fn outcome(
     let verdict = pan_bounds.as_ref().map_or(verdict, PanBounds::verdict);
     let rules = rules::apply(&rule_inputs(case, walked));
     let verdict = match &other.range {
+        // What the base's finest part leaves open stays so.
+        Some(range) if verdict == range.verdict => range.whole(),
         Some(range) if range.whole() != verdict => Verdict::Undecided,
         _ => verdict,
     };
@@ -78,6 +80,7 @@ pub fn outcome(
             .is_lattice_by_area()
             .then(|| infiltration(&case.curve, &case.base, case.counts[3])),
         curve_range: other.range.clone(),
+        margin: other.margin.clone(),
         sensitivity: studies.sensitivity,
         thickness: studies.thickness,
         studies_to_come: false,

@@ -125,6 +125,7 @@ impl Scene {
         if !options.as_sampled && !options.is_set(&REGRADE) {
             settings.push(options.regrading()?);
         }
+        settings.push("record.margin=true".into());
         settings.extend(options.settings()?);
         let scene = Self::built_in(&settings)?;
         if !options.as_given {

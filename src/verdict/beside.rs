@@ -155,6 +155,9 @@ pub fn curve_range(range: &CurveRange) -> Finding {
         range.eroded_mass_fraction.first().copied().unwrap_or([f64::NAN; 2]).map(|of| 100.0 * of);
     match range.agrees() {
         true => finding::curve_range_agrees(low, high, &each),
+        false if range.worst_counts && range.whole() != Verdict::Undecided => {
+            finding::worst_of_range(range.whole().words(), low, high, &each)
+        }
         // What the curve itself leaves open, its range does not decide.
         false if range.verdict == Verdict::Undecided => finding::curve_range_open(low, high, &each),
         false => finding::curve_range_decides(low, high, &each),

@@ -70,6 +70,12 @@ findings! {
         "The filter's constrictions are known too roughly for one verdict. Over the range of the \
          constriction curve {low} to {high} of the mass eroded in the first run ({each}).",
         to do "A filter that is packed whole (filter.density) has one measured curve.";
+    /// A range of which the worst class counts.
+    worst_of_range(class: Text, low: Percent, high: Percent, each: Text): Constrictions, Safe, Note;
+        "constrictions", "uncertainty.md",
+        "The verdict, {class}, is that of the coarsest constrictions that the filter may have. Over the range \
+         of its constrictions {low} to {high} of the mass eroded in the first run ({each}).",
+        to do "filter.library says how densely it lies; filter.density packs this very filter.";
     /// The same where the curve itself gives no class.
     curve_range_open(low: Percent, high: Percent, each: Text): Constrictions, Open, Limits;
         "constrictions", "uncertainty.md",
@@ -324,7 +330,7 @@ findings! {
     library_of_any_density(off_by: Percent): Constrictions, Open, Limits;
         "density", "uncertainty.md",
         "How densely the filter lies is not known. Its constrictions come from packings of filters like it: \
-         loose and dense are both walked, and {off_by} beyond either.",
+         loose and dense are both walked, and {off_by} beyond either; the worst counts.",
         to do "filter.library says how densely it lies; filter.density packs this very filter.";
     /// Constrictions from the library.
     library_of_density(density: Text, off_by: Percent): Constrictions, Open, Limits;

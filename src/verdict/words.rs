@@ -80,7 +80,16 @@ pub fn within(sentence: &str) -> String {
 /// What a class means, in a sentence, of runs whose means these are.
 pub fn meaning(verdict: Verdict, summary: &[RunSummary], threshold: f64) -> String {
     let limit = format!("{}\u{202f}%", (1e4 * threshold).round() / 1e2);
-    match verdict {
+    let run = if verdict == Verdict::Continuing { 1 } else { 0 };
+    let here = summary.get(run).is_none_or(|run| run.eroded_mass_fraction.mean >= threshold);
+    let of_range = match verdict {
+        Verdict::Some | Verdict::Continuing if !here => {
+            " This is the verdict for the coarsest constrictions that the filter may have; with those in the \
+             table less passes."
+        }
+        _ => "",
+    };
+    let class = match verdict {
         Verdict::None => format!(
             "In the model the filter holds this base: less than {limit} of its mass passes in the first run."
         ),
@@ -93,7 +102,8 @@ pub fn meaning(verdict: Verdict, summary: &[RunSummary], threshold: f64) -> Stri
              first run and again in the second."
         ),
         Verdict::Undecided => undecided(summary, threshold, &limit),
-    }
+    };
+    class + of_range
 }
 
 fn undecided(summary: &[RunSummary], threshold: f64, limit: &str) -> String {

@@ -33,7 +33,7 @@ pub use inputs::{
 pub use manifest::{InputFile, Manifest};
 pub use practice::{LimitOfDesign, Practice, TestedClass};
 pub use rows::{FlowRow, LayerRow, SeriesRow, SizeRow};
-pub use varied::{Classed, CurveEnd, CurveRange, OfThickness, Sensitivity};
+pub use varied::{Classed, CurveEnd, CurveRange, Margin, MarginWalk, OfThickness, Sensitivity};
 pub use voids::{BlockedRow, ConstrictionRow, RetainedRow, VoidRow};
 
 pub use super::applied::{AppliedRule, Confidence, RuleRole};
@@ -110,6 +110,10 @@ pub struct Outcome {
     /// given, or measured on the whole filter.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub curve_range: Option<CurveRange>,
+    /// How much coarser the filter could be before the base begins to erode; `None` where that was not asked
+    /// for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub margin: Option<Margin>,
     /// How the verdict moves with the number of base particles; empty when it was not asked for.
     pub sensitivity: Vec<Sensitivity>,
     /// How the verdict moves with the thickness of the filter, itself included; empty when it was not asked

@@ -67,6 +67,42 @@ impl OfThickness {
     }
 }
 
+/// How much coarser the filter could be before the base begins to erode: its first replicate's first run,
+/// walked with the filter larger or smaller.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Margin {
+    /// What was walked, by rising size.
+    pub walks: Vec<MarginWalk>,
+}
+
+/// One size of the filter.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MarginWalk {
+    /// Times as large as the filter itself.
+    pub factor: f64,
+    /// Eroded part of the base's mass.
+    pub eroded_mass_fraction: f64,
+    /// Whether that is less than the threshold.
+    pub holds: bool,
+}
+
+impl Margin {
+    /// The smallest size that erodes.
+    pub fn erodes_from(&self) -> Option<f64> {
+        self.walks.iter().find(|walk| !walk.holds).map(|walk| walk.factor)
+    }
+
+    /// The largest size that holds, of those below all that erode.
+    pub fn holds_to(&self) -> Option<f64> {
+        self.walks.iter().take_while(|walk| walk.holds).last().map(|walk| walk.factor)
+    }
+
+    /// The size at which erosion begins, between these two; `None` where it was not found.
+    pub fn boundary(&self) -> Option<f64> {
+        Some((self.holds_to()? * self.erodes_from()?).sqrt())
+    }
+}
+
 /// The walks at the ends of the range of a constriction curve.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CurveRange {
@@ -74,6 +110,10 @@ pub struct CurveRange {
     pub verdict: Verdict,
     /// The other curves of the range: its ends.
     pub ends: Vec<CurveEnd>,
+    /// Whether the worst class of the range is the verdict, as for a filter of which loose and dense are
+    /// walked; elsewhere ends that differ leave it undecided.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub worst_counts: bool,
     /// Least and most eroded over the whole range, one pair per run: the ends of the 95 % intervals, or the
     /// means of a single replicate (fraction of the mass).
     pub eroded_mass_fraction: Vec<[f64; 2]>,
