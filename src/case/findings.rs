@@ -44,7 +44,7 @@ impl Case {
     pub fn to_be_walked(&self) -> Option<Finding> {
         self.pan_size?;
         let (base, finest) = (&self.base, self.finest_mm);
-        Some(finding::pan_walked_twice(100.0 * base.pan_fraction(), base.smallest_mm(), finest))
+        Some(finding::pan_readings_walked(100.0 * base.pan_fraction(), base.smallest_mm(), finest))
     }
 
     /// What is known of its verdict before the walk, but for what the walk itself will say.

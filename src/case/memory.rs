@@ -189,7 +189,7 @@ impl Case {
     /// # Errors
     /// [`CaseError::Memory`]: they fit neither.
     pub fn place(&mut self, room: &ResourceLimits, threads: u64, folder: &Path) -> Result<(), CaseError> {
-        if let Some(other) = &mut self.other_reading {
+        for other in &mut self.other_readings {
             other.place(room, threads, folder)?;
         }
         self.memory = room.memory;
@@ -253,11 +253,11 @@ impl Case {
 
     /// Where the particles of a walk on this many threads live, for a reader.
     pub fn memory_in_words(&self, threads: u64) -> String {
-        match &self.other_reading {
-            Some(other) if other.bytes(other.n_base, threads) > self.bytes(self.n_base, threads) => {
-                return other.memory_in_words(threads);
-            }
-            _ => {}
+        let largest = self.other_readings.iter().max_by_key(|other| other.bytes(other.n_base, threads));
+        if let Some(other) =
+            largest.filter(|of| of.bytes(of.n_base, threads) > self.bytes(self.n_base, threads))
+        {
+            return other.memory_in_words(threads);
         }
         let bytes = in_words(self.bytes(self.n_base, threads));
         let limit = in_words(self.memory);

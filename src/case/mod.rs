@@ -92,8 +92,8 @@ pub struct Case {
     /// Of what size its pan fraction is walked; `None` where there is none, or where it is passive and
     /// counted by mass only.
     pub pan_size: Option<PanSize>,
-    /// The same case with the other reading of its pan fraction, where it has two.
-    pub other_reading: Option<Box<Case>>,
+    /// The other readings of the base's pan fraction, where it need not be passive.
+    pub other_readings: Vec<Case>,
     /// Draws the base's sizes, in units of `unit_mm`.
     pub sampler: SizeSampler,
     /// Base particles of a run, by Eq. (2) or as given.
@@ -317,7 +317,7 @@ impl Case {
             base,
             regraded_from,
             pan_size: walked.pan_size,
-            other_reading: None,
+            other_readings: Vec::new(),
             n_base_eq2: walked.n_base_eq2(),
             sampler: walked.sampler,
             n_base: walked.n_base.n_base,
@@ -336,7 +336,7 @@ impl Case {
             placement: Placement::Memory,
             scene,
         };
-        case.other_reading = other.map(|walked| Box::new(case.read_as(walked)));
+        case.other_readings = other.into_iter().map(|walked| case.read_as(walked)).collect();
         Ok(case)
     }
 

@@ -2,8 +2,16 @@
 //!
 //! Where the finest sieve is no coarser than the finest constriction, a pan fraction is passive, and is
 //! counted by mass only. Where it is coarser, some of it may block constrictions. The base is then walked
-//! twice, with the same mass: once with a pan fraction that is passive, and once with all of it of the finest
-//! sieve's size.
+//! three times, with the same mass: with the pan fraction continued as in soils whose finest part was
+//! measured, which is the likely reading, and with all of it passive and all of it of the finest sieve's
+//! size, which bound it.
+//!
+//! # The likely reading
+//! Down to 0.063 mm the curve goes on by the slope of its two finest sieves. Below, it has the shape of silts
+//! and clays with a hydrometer test: of 472 soils of ground investigations in the United Kingdom the median
+//! share of what passes 0.063 mm was 70 % at 0.02 mm, 45 % at 0.006 mm and 25 % at 0.002 mm (nine in ten at
+//! 0.02 mm: 47 to 83 %), much the same for all contents of fines. Their sieves say little of it: the slope
+//! of the two finest errs by -60 to +23 points at 0.02 mm.
 
 use crate::gradation::{Gradation, GradationError};
 use crate::outcome::record::PanSize;
@@ -14,6 +22,32 @@ const FINER: f64 = 0.99;
 
 /// Particles of the finest sieve's size are walked from this much finer on: a sieve curve cannot be upright.
 const NEARLY: f64 = 0.999;
+
+/// Below this size (mm) sieves give way to a hydrometer.
+const SILT_MM: f64 = 0.063;
+
+/// Sizes by that of the sieve, and shares of what passes it, below 0.063 mm.
+const OF_SILTS: [(f64, f64); 3] = [(0.02 / SILT_MM, 0.70), (0.006 / SILT_MM, 0.45), (0.002 / SILT_MM, 0.25)];
+
+/// A base's curve below its finest sieve as it is likely to go on, by rising size; the finest of it is what is
+/// left out.
+fn continued(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let [(sieve, percent), (next, above)] = [points[0], points[1]];
+    let slope = (above - percent) / libm::log(next / sieve);
+    let mut tail = Vec::new();
+    let (mut from, mut left) = (sieve, percent);
+    if sieve > SILT_MM {
+        left = percent - slope * libm::log(sieve / SILT_MM);
+        if left <= 0.0 {
+            return vec![(sieve * libm::exp(-percent / slope), 0.0)];
+        }
+        from = SILT_MM;
+        tail.push((from, left));
+    }
+    tail.extend(OF_SILTS.map(|(size, share)| (from * size, left * share)));
+    tail.sort_by(|a, b| a.0.total_cmp(&b.0));
+    tail
+}
 
 /// Whether a pan fraction need not be passive.
 pub(super) fn may_block(base: &Gradation, finest_mm: f64) -> bool {
@@ -30,8 +64,25 @@ pub(super) fn taken_as(base: &Gradation, size: PanSize, finest_mm: f64) -> Resul
             points.splice(0..0, [(FINER * passive, 0.0), (passive, percent)]);
         }
         PanSize::FinestSieve => points.insert(0, (NEARLY * sieve, 0.0)),
+        PanSize::Continued => {
+            let (tail, passive) = (continued(&points), FINER * finest_mm);
+            let mut whole: Vec<(f64, f64)> = tail.into_iter().chain([(sieve, percent)]).collect();
+            let finer = percent_at(&whole, passive);
+            whole.retain(|(size, _)| *size > passive && *size < sieve);
+            let passive = [(FINER * passive, 0.0), (passive, finer)];
+            points.splice(0..0, passive.into_iter().filter(|_| finer > 0.0).chain(whole));
+        }
     }
     Gradation::from_points(&points, None)
+}
+
+/// Percent finer than a size: between points linear in its logarithm, below them the finest one's.
+fn percent_at(points: &[(f64, f64)], size: f64) -> f64 {
+    let pair = points.windows(2).find(|pair| size <= pair[1].0);
+    pair.filter(|pair| pair[0].0 < size).map_or(points[0].1, |pair| {
+        let share = libm::log(size / pair[0].0) / libm::log(pair[1].0 / pair[0].0);
+        pair[0].1 + share * (pair[1].1 - pair[0].1)
+    })
 }
 
 #[cfg(test)]
@@ -55,5 +106,30 @@ mod tests {
         assert!((fine.percent_finer_by_mass(0.0399) - 35.0).abs() < 1e-12);
         assert!(SizeSampler::new(&fine, 1.0).unwrap().smallest() > 0.039);
         assert_eq!(coarse.percent_finer_by_mass(0.074), 0.0);
+    }
+
+    #[test]
+    fn a_likely_tail_is_that_of_silts_and_ends_where_all_is_passive() {
+        let base = Gradation::from_points(&[(0.063, 40.0), (0.5, 80.0), (2.0, 100.0)], None).unwrap();
+        let likely = taken_as(&base, PanSize::Continued, 0.005).unwrap();
+        assert_eq!(likely.pan_fraction(), 0.0);
+        for (size, percent) in [(0.063, 40.0), (0.02, 28.0), (0.006, 18.0), (0.5, 80.0)] {
+            assert!((likely.percent_finer_by_mass(size) - percent).abs() < 1e-9, "{size}");
+        }
+        assert!(likely.smallest_mm() > 0.0048 && likely.percent_finer_by_mass(0.0049) < 18.0);
+    }
+
+    #[test]
+    fn above_the_silts_a_tail_goes_on_by_the_slope_of_its_sieves() {
+        // 20 % from 0.3 to 0.6 mm, so that the tail of 10 % ends at 0.3 mm by the root of 2.
+        let base = Gradation::from_points(&[(0.3, 10.0), (0.6, 30.0), (2.0, 100.0)], None).unwrap();
+        let likely = taken_as(&base, PanSize::Continued, 0.01).unwrap();
+        assert!((likely.smallest_mm() - 0.3 / 2f64.sqrt()).abs() < 1e-12);
+        // A flat one still has silt.
+        let base = Gradation::from_points(&[(0.3, 30.0), (0.6, 32.0), (2.0, 100.0)], None).unwrap();
+        let likely = taken_as(&base, PanSize::Continued, 0.01).unwrap();
+        let at_silt = 30.0 - 2.0 * libm::log2(0.3 / 0.063);
+        assert!((likely.percent_finer_by_mass(0.063) - at_silt).abs() < 1e-9);
+        assert!((likely.percent_finer_by_mass(0.02) - 0.7 * at_silt).abs() < 1e-9);
     }
 }

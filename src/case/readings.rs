@@ -1,4 +1,4 @@
-//! The base of a case as it was given, and both readings of its pan fraction.
+//! The base of a case as it was given, and the readings of its pan fraction.
 
 use super::Case;
 use super::pan::taken_as;
@@ -12,7 +12,7 @@ impl Case {
         self.regraded_from.as_ref().map_or(&self.base, |(given, _)| given)
     }
 
-    /// The same case with another reading of its base, of which no other is studied.
+    /// The same case with another reading of its base, of which no other number or thickness is studied.
     pub(super) fn read_as(&self, walked: WalkedBase) -> Self {
         let mut scene = self.scene.clone();
         scene.record.sensitivity.clear();
@@ -29,9 +29,14 @@ impl Case {
         }
     }
 
-    /// The case itself and its other reading, where it has two.
+    /// The case itself and its other readings, where it has several.
     pub fn readings(&self) -> impl Iterator<Item = &Case> {
-        std::iter::once(self).chain(self.other_reading.as_deref())
+        std::iter::once(self).chain(&self.other_readings)
+    }
+
+    /// The readings between which all others lie; the case itself where it has one.
+    pub fn bounds(&self) -> impl Iterator<Item = &Case> {
+        self.readings().filter(|case| case.pan_size != Some(PanSize::Continued))
     }
 
     /// Share of the base's mass that is passive and counted by mass only.

@@ -7,7 +7,7 @@
 
 use super::files::Files;
 use super::supply::Against;
-use super::{Case, CaseError, base_gradation, regrade, sizes};
+use super::{Case, CaseError, base_gradation, pan, regrade, sizes};
 use crate::constrictions::Curve;
 use crate::gradation::Gradation;
 use crate::network::{Network, NetworkError};
@@ -67,9 +67,23 @@ impl Case {
             is_packed: false,
         };
         let (walked, other) = against.readings(&base)?;
-        let mut case = Self { base, regraded_from: None, other_reading: None, ..case }.read_as(walked);
-        case.other_reading = other.map(|walked| Box::new(case.read_as(walked)));
+        let mut case = Self { base, regraded_from: None, other_readings: Vec::new(), ..case }.read_as(walked);
+        case.other_readings = other.into_iter().map(|walked| case.read_as(walked)).collect();
         Ok(case)
+    }
+
+    /// This case with its filter `factor` times as large against its own base, with the likely reading of its
+    /// finest part where it has several. Nothing else of it is walked.
+    ///
+    /// # Errors
+    /// As [`Case::with_base`].
+    pub fn with_larger_filter(&self, factor: f64) -> Result<Self, CaseError> {
+        // Of the real size first: how a tail goes on hangs on it.
+        let base = match self.pan_size {
+            Some(size) => &pan::taken_as(&self.base, size, factor * self.finest_mm)?,
+            None => &self.base,
+        };
+        self.with_base(base.scaled(1.0 / factor)?, None)
     }
 
     /// This case with its filter `factor` times as large against a stated base as it is: not to be walked,

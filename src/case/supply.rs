@@ -45,14 +45,15 @@ pub(super) struct Against<'a> {
 }
 
 impl Against<'_> {
-    /// The base as it is walked: once, or with both readings of a pan fraction that need not be passive.
-    pub fn readings(&self, base: &Gradation) -> Result<(WalkedBase, Option<WalkedBase>), CaseError> {
+    /// The base as it is walked: once, or with each reading of a pan fraction that need not be passive, the
+    /// likely one first.
+    pub fn readings(&self, base: &Gradation) -> Result<(WalkedBase, Vec<WalkedBase>), CaseError> {
         if !pan::may_block(base, self.finest_mm) {
-            return Ok((self.walked(base, None)?, None));
+            return Ok((self.walked(base, None)?, Vec::new()));
         }
-        let [passive, coarse] =
-            [PanSize::Passive, PanSize::FinestSieve].map(|size| self.walked(base, Some(size)));
-        Ok((passive?, Some(coarse?)))
+        let likely = self.walked(base, Some(PanSize::Continued))?;
+        let bounds = [PanSize::Passive, PanSize::FinestSieve].map(|size| self.walked(base, Some(size)));
+        Ok((likely, bounds.into_iter().collect::<Result<_, _>>()?))
     }
 
     fn walked(&self, base: &Gradation, pan_size: Option<PanSize>) -> Result<WalkedBase, CaseError> {
@@ -64,7 +65,9 @@ impl Against<'_> {
         // is there for the work, which passive particles hardly add to.
         let more = taken.particles_per_unit_volume() / base.particles_per_unit_volume();
         let (ratio, cap) = match self.scene.base.amount() {
-            Amount::MassRatio(ratio, Some(cap)) if pan_size == Some(PanSize::Passive) => {
+            Amount::MassRatio(ratio, Some(cap))
+                if pan_size.is_some_and(|size| size != PanSize::FinestSieve) =>
+            {
                 (ratio, Some(self.times(cap, more)?))
             }
             Amount::MassRatio(ratio, cap) => (ratio, cap),

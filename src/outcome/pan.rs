@@ -1,12 +1,12 @@
-//! What came of the two readings of a base whose pan fraction (finer than its finest sieve) need not be
-//! passive; as they are recorded.
+//! What came of the readings of a base whose pan fraction (finer than its finest sieve) need not be passive;
+//! as they are recorded.
 
 use serde::{Deserialize, Serialize};
 
 use super::record::{Classed, Stopping, Verdict};
 
-/// The two readings of a pan fraction that need not be passive: its sizes are not known, but they lie between
-/// these two.
+/// The readings of a pan fraction that need not be passive: its sizes are not known, but they lie between two
+/// bounds, and go on in a likely way.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PanBounds {
     /// Share of the base's mass that is finer than its finest sieve.
@@ -15,8 +15,9 @@ pub struct PanBounds {
     pub finest_sieve_mm: f64,
     /// The finest constriction: what is finer is passive.
     pub finest_constriction_mm: f64,
-    /// The two readings; the rest of `outcome.json` is of the first, its verdict of both.
-    pub readings: [PanReading; 2],
+    /// The readings; the rest of `outcome.json` is of the first, its verdict of all. Folders of earlier
+    /// versions have the bounds alone.
+    pub readings: Vec<PanReading>,
 }
 
 /// One reading of a pan fraction, walked.
@@ -37,6 +38,9 @@ pub struct PanReading {
 /// Of what size the particles of a pan fraction are walked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PanSize {
+    /// As in soils whose finest part was measured.
+    #[serde(rename = "continued")]
+    Continued,
     /// Just finer than every constriction: they block nothing.
     #[serde(rename = "passive")]
     Passive,
@@ -46,20 +50,34 @@ pub enum PanSize {
 }
 
 impl PanBounds {
-    /// The verdict that both readings give; undecided where they differ.
+    /// The verdict that all readings give; where they differ that of the likely one, and undecided without.
     pub fn verdict(&self) -> Verdict {
-        let [fine, coarse] = self.readings.each_ref().map(|reading| reading.walked.verdict);
-        if fine == coarse { fine } else { Verdict::Undecided }
+        match self.likely() {
+            Some(likely) => likely.walked.verdict,
+            None if self.differ() => Verdict::Undecided,
+            None => self.readings.first().map_or(Verdict::Undecided, |reading| reading.walked.verdict),
+        }
+    }
+
+    /// The likely reading.
+    pub fn likely(&self) -> Option<&PanReading> {
+        self.readings.iter().find(|reading| reading.taken_as == PanSize::Continued)
+    }
+
+    /// The verdict of one reading.
+    pub fn verdict_of(&self, size: PanSize) -> Option<Verdict> {
+        Some(self.readings.iter().find(|reading| reading.taken_as == size)?.walked.verdict)
     }
 
     /// Whether the readings give different verdicts.
     pub fn differ(&self) -> bool {
-        self.readings[0].walked.verdict != self.readings[1].walked.verdict
+        self.readings.windows(2).any(|two| two[0].walked.verdict != two[1].walked.verdict)
     }
 
     /// A reading in words, as `all 0.075 mm`.
     pub fn words(&self, reading: &PanReading) -> String {
         match reading.taken_as {
+            PanSize::Continued => "continued as in soils with a hydrometer test".into(),
             PanSize::Passive => "finer than every constriction".into(),
             PanSize::FinestSieve => format!("all {} mm", self.finest_sieve_mm),
         }
@@ -81,7 +99,10 @@ mod tests {
             mass_fraction: 0.35,
             finest_sieve_mm: 0.075,
             finest_constriction_mm: 0.0392,
-            readings: [reading(PanSize::Passive, verdicts[0]), reading(PanSize::FinestSieve, verdicts[1])],
+            readings: vec![
+                reading(PanSize::Passive, verdicts[0]),
+                reading(PanSize::FinestSieve, verdicts[1]),
+            ],
         }
     }
 
@@ -94,5 +115,10 @@ mod tests {
         // One that is open itself agrees with nothing but another that is.
         let half = bounds([Verdict::Undecided, Verdict::None]);
         assert_eq!(half.verdict(), Verdict::Undecided);
+        let mut likely = open.clone();
+        let walked = Classed { verdict: Verdict::Some, ..likely.readings[0].walked.clone() };
+        let reading = PanReading { taken_as: PanSize::Continued, walked, ..likely.readings[0].clone() };
+        likely.readings.insert(0, reading);
+        assert_eq!((likely.verdict(), likely.differ()), (Verdict::Some, true));
     }
 }

@@ -36,7 +36,7 @@ impl Outcome {
             let eroded = &run.eroded_mass_fraction;
             eroded.low.unwrap_or(eroded.mean) >= self.threshold
         };
-        Some(if self.pan_bounds.as_ref().is_some_and(|bounds| bounds.differ()) {
+        Some(if self.pan_bounds.as_ref().is_some_and(|bounds| bounds.differ() && bounds.likely().is_none()) {
             UndecidedBy::Pan
         } else if self.curve_range.as_ref().is_some_and(CurveRange::leaves_open) {
             UndecidedBy::Curve

@@ -159,7 +159,7 @@ fn verdict_section(folder: &RunFolder, verdict: &Drawn) -> Markup {
             p.lead { (in_words(outcome, walks)) }
             div { (drawing(verdict)) }
             (verdict_box::eroded_table(walks))
-            @if let Some(bounds) = &outcome.pan_bounds { (both_readings(bounds)) }
+            @if let Some(bounds) = &outcome.pan_bounds { (readings(bounds)) }
             @if let Some(stopping) = &outcome.stopping { p { (stopped(outcome, stopping)) } }
             @for id in ["trapped", "second_run_missing", "replicates_leave_open"] {
                 // What a rule that adds replicates says is said above.
@@ -172,8 +172,8 @@ fn verdict_section(folder: &RunFolder, verdict: &Drawn) -> Markup {
     }
 }
 
-/// What came of either reading of a pan fraction that need not be passive.
-fn both_readings(bounds: &PanBounds) -> Markup {
+/// What came of each reading of a pan fraction that need not be passive.
+fn readings(bounds: &PanBounds) -> Markup {
     let table = Table::of(&bounds.readings)
         .name("The base’s finest part taken as", |reading| bounds.words(reading))
         .text("verdict", |reading| reading.walked.verdict.words());
@@ -183,9 +183,12 @@ fn both_readings(bounds: &PanBounds) -> Markup {
         p {
             (percent(bounds.mass_fraction)) " of the base is finer than its finest sieve, "
             (size(bounds.finest_sieve_mm, false)) ", which is coarser than the finest constriction, "
-            (size(bounds.finest_constriction_mm, false)) ". The base was walked twice, with this part at the \
-                finest and at the coarsest size that it may have. The verdict takes both; all other numbers \
-                are of the first."
+            (size(bounds.finest_constriction_mm, false)) ". The base was walked with each of these readings \
+                of that part. "
+            @if bounds.likely().is_some() {
+                "The verdict and all other numbers are of the first, which is the likely one; the others \
+                 bound it."
+            } @else { "The verdict takes both; all other numbers are of the first." }
         }
         (table)
     }
@@ -379,7 +382,7 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
                 (fact("Pan fraction (finer than the finest sieve)",
                     format!("{} by mass; {}", percent(base.tail_mass_fraction),
                         match outcome.pan_bounds {
-                            Some(_) => "walked as passive and as all of the finest sieve’s size",
+                            Some(_) => "walked in several readings",
                             None => "taken as too fine to block any constriction (passive); only its \
                                      mass is counted",
                         })))

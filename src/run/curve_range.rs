@@ -15,8 +15,8 @@ pub fn curve_range(
     walked: &[ReplicateResult],
     context: &ReplicateContext,
 ) -> Result<Option<CurveRange>, RunError> {
-    // The parts before these are the sensitivity study's and the other reading's.
-    let parts = case.sensitivity_factors().len() as u64 + 2..;
+    // The parts before these are the sensitivity study's and the other readings'.
+    let parts = (case.sensitivity_factors().len() + case.other_readings.len()) as u64 + 1..;
     let own = case.curve.dc(50.0).unwrap_or(f64::NAN);
     let mut ends = Vec::new();
     for (part, end) in parts.zip(&case.curve_ends) {

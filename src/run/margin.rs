@@ -24,63 +24,49 @@ const MOST_PARTICLES: u64 = 20_000_000;
 /// Names the checkpoints of these walks, beyond those of all others.
 const FIRST_PART: u64 = 1 << 32;
 
-/// Walks the margin of a case of which these replicates were walked, of each reading of its base; `None`
-/// where it is not asked for.
+/// Walks the margin of a case of which these replicates were walked, with the first reading of its base;
+/// `None` where it is not asked for.
 ///
 /// # Errors
 /// As [`super::replicates::replicates`].
 pub fn margin(
     case: &Case,
-    walked: [&[ReplicateResult]; 2],
+    walked: &[ReplicateResult],
     context: &ReplicateContext,
 ) -> Result<Option<Margin>, RunError> {
-    if case.scene.record.margin != Some(true) {
+    let Some(own) = walked.first().filter(|_| case.scene.record.margin == Some(true)) else {
         return Ok(None);
-    }
-    let own = walked.iter().filter_map(|of| Some((of.first()?, of.first()?.replicate.runs.first()?)));
-    let own = own.map(|(of, run)| (run.eroded_mass_fraction, of.below[0])).reduce(worse);
-    let mut margin = Margin { walks: Vec::new() };
-    margin.walks.extend(own.map(|of| walk_of(1.0, of)));
+    };
+    let mut walks = vec![walk_of(1.0, own)];
     let mut part = FIRST_PART;
-    while let Some(factors) = next(&margin) {
-        let cases: Vec<(f64, Case)> =
-            factors.into_iter().filter_map(|factor| Some((factor, of_size(case, factor)?))).collect();
-        let all_there = cases.len() == factors.len();
-        let readings: Vec<(u64, f64, &Case)> = (part..)
-            .zip(cases.iter().flat_map(|(factor, case)| case.readings().map(move |case| (*factor, case))))
-            .map(|(part, (factor, case))| (part, factor, case))
+    while let Some(factors) = next(&walks) {
+        let cases: Vec<(u64, f64, Case)> = (part..)
+            .zip(factors)
+            .filter_map(|(part, factor)| Some((part, factor, of_size(case, factor)?)))
             .collect();
-        part += readings.len() as u64;
-        context.tell(Event::MoreRuns { runs: readings.len() as u64 });
-        let one = |&(part, factor, case): &(u64, f64, &Case)| {
-            let walked = walk_replicate(case, part, 1, case.n_base, context)?;
-            Ok((factor, (walked.replicate.runs[0].eroded_mass_fraction, walked.below[0])))
+        part += cases.len() as u64;
+        context.tell(Event::MoreRuns { runs: cases.len() as u64 });
+        let one = |(part, factor, case): &(u64, f64, Case)| {
+            Ok(walk_of(*factor, &walk_replicate(case, *part, 1, case.n_base, context)?))
         };
-        let found: Result<Vec<_>, RunError> = readings.par_iter().map(one).collect();
-        let found = found?;
-        for (factor, _) in &cases {
-            let of_size = found.iter().filter(|of| of.0 == *factor).map(|of| of.1).reduce(worse);
-            margin.walks.extend(of_size.map(|of| walk_of(*factor, of)));
-        }
-        margin.walks.sort_by(|a, b| a.factor.total_cmp(&b.factor));
-        if !all_there {
+        let found: Result<Vec<_>, RunError> = cases.par_iter().map(one).collect();
+        walks.extend(found?);
+        walks.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+        if cases.len() < factors.len() {
             break;
         }
     }
-    Ok(Some(margin))
+    Ok(Some(Margin { walks }))
 }
 
-/// Of two readings of a base the one that erodes more.
-fn worse(a: (f64, bool), b: (f64, bool)) -> (f64, bool) {
-    (a.0.max(b.0), a.1 && b.1)
-}
-
-fn walk_of(factor: f64, (eroded_mass_fraction, holds): (f64, bool)) -> MarginWalk {
-    MarginWalk { factor, eroded_mass_fraction, holds }
+fn walk_of(factor: f64, walked: &ReplicateResult) -> MarginWalk {
+    let eroded_mass_fraction = walked.replicate.runs[0].eroded_mass_fraction;
+    MarginWalk { factor, eroded_mass_fraction, holds: walked.below[0] }
 }
 
 /// The sizes to be walked next; `None` where the boundary is known closely enough, or lies too far.
-fn next(margin: &Margin) -> Option<[f64; 2]> {
+fn next(walks: &[MarginWalk]) -> Option<[f64; 2]> {
+    let margin = Margin { walks: walks.to_vec() };
     let factors = match (margin.holds_to(), margin.erodes_from()) {
         (Some(holds), Some(erodes)) => {
             let third = libm::cbrt(erodes / holds);
@@ -95,12 +81,7 @@ fn next(margin: &Margin) -> Option<[f64; 2]> {
 
 /// The case with its filter so many times as large, its first run alone; `None` where that cannot be walked.
 fn of_size(case: &Case, factor: f64) -> Option<Case> {
-    let mut other = case.with_base(case.base.scaled(1.0 / factor).ok()?, None).ok()?;
-    let most = MOST_PARTICLES.max(case.n_base);
+    let mut other = case.with_larger_filter(factor).ok()?;
     other.scene.walk.runs = 1;
-    if let Some(reading) = &mut other.other_reading {
-        reading.scene.walk.runs = 1;
-    }
-    let few = other.readings().all(|reading| reading.n_base <= most);
-    few.then_some(other)
+    (other.n_base <= MOST_PARTICLES.max(case.n_base)).then_some(other)
 }

@@ -1,18 +1,18 @@
-//! What is walked of a case besides itself, where its inputs leave open what it is: the other reading of a
+//! What is walked of a case besides itself, where its inputs leave open what it is: the other readings of a
 //! pan fraction, the ends of the range of its constriction curve, and how much coarser the filter could be.
 
 use super::curve_range::curve_range;
 use super::error::RunError;
 use super::margin::margin;
-use super::replicates::{ReplicateContext, ReplicateResult, other_reading};
+use super::replicates::{ReplicateContext, ReplicateResult, other_readings};
 use crate::case::Case;
 use crate::outcome::record::{CurveRange, Margin};
 
 /// What was walked besides the case itself.
 #[derive(Default)]
 pub struct OtherWalks {
-    /// Replicates of the other reading of the base's pan fraction; none where there is one reading.
-    pub reading: Vec<ReplicateResult>,
+    /// Replicates of each other reading of the base's pan fraction.
+    pub readings: Vec<Vec<ReplicateResult>>,
     /// What came of the ends of the curve's range; `None` where the curve is no range.
     pub range: Option<CurveRange>,
     /// How much coarser the filter could be; `None` where that is not asked for.
@@ -29,9 +29,10 @@ impl OtherWalks {
         walked: &[ReplicateResult],
         context: &ReplicateContext,
     ) -> Result<Self, RunError> {
-        let reading = other_reading(case, context)?;
-        let range = curve_range(case, walked, context)?;
-        let margin = margin(case, [walked, &reading], context)?;
-        Ok(Self { reading, range, margin })
+        Ok(Self {
+            readings: other_readings(case, context)?,
+            range: curve_range(case, walked, context)?,
+            margin: margin(case, walked, context)?,
+        })
     }
 }

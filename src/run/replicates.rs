@@ -74,15 +74,17 @@ pub fn replicates(case: &Case, context: &ReplicateContext) -> Result<Vec<Replica
     all_replicates(case, 0, context)
 }
 
-/// The same for the other reading of the base's pan fraction, on the same networks; none where the case has
-/// only one.
+/// The same for each other reading of the base's pan fraction, on the same networks.
 ///
 /// # Errors
 /// As [`replicates`].
-pub fn other_reading(case: &Case, context: &ReplicateContext) -> Result<Vec<ReplicateResult>, RunError> {
+pub fn other_readings(
+    case: &Case,
+    context: &ReplicateContext,
+) -> Result<Vec<Vec<ReplicateResult>>, RunError> {
     // The parts before are those of the sensitivity study.
-    let part = case.sensitivity_factors().len() as u64 + 1;
-    case.other_reading.as_ref().map_or(Ok(Vec::new()), |other| all_replicates(other, part, context))
+    let parts = case.sensitivity_factors().len() as u64 + 1..;
+    parts.zip(&case.other_readings).map(|(part, other)| all_replicates(other, part, context)).collect()
 }
 
 fn all_replicates(
@@ -94,7 +96,7 @@ fn all_replicates(
     let mut wanted = first_replicates(case);
     loop {
         if part == 0 {
-            let readings = case.other_reading.is_some() || !case.curve_ends.is_empty();
+            let readings = !case.other_readings.is_empty() || !case.curve_ends.is_empty();
             context.tell(Event::VerdictNeeds { replicates: wanted, runs: case.scene.walk.runs, readings });
         }
         let more = walked.len() as u64 + 1..=wanted;

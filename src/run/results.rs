@@ -31,7 +31,7 @@ pub fn outcome(
 ) -> Outcome {
     let (verdict, summary, stopping) = concluded(case, walked);
     let unsure = stopping.as_ref().and_then(|stopping| stopping.less_than_usual(summarise(walked).0));
-    let pan_bounds = pan_bounds(case, [walked, &other.reading]);
+    let pan_bounds = pan_bounds(case, walked, &other.readings);
     let verdict = pan_bounds.as_ref().map_or(verdict, PanBounds::verdict);
     let rules = rules::apply(&rule_inputs(case, walked));
     let verdict = match &other.range {
@@ -41,8 +41,8 @@ pub fn outcome(
         _ => verdict,
     };
     let mut found = findings_of_walk(case, verdict, walked);
-    if let Some(second) = &case.other_reading {
-        found.extend(findings_of_walk(second, verdict, &other.reading));
+    for (reading, walked) in case.other_readings.iter().zip(&other.readings) {
+        found.extend(findings_of_walk(reading, verdict, walked));
     }
     found.extend(unsure.map(finding::decided_below_95));
     found.extend(case.findings().into_iter().chain(case.not_studied()));
@@ -107,8 +107,8 @@ fn concluded(case: &Case, walked: &[ReplicateResult]) -> (Verdict, Vec<RunSummar
     (verdict, summary, stopping)
 }
 
-/// What came of both readings of the base's pan fraction; `None` where there is only one.
-fn pan_bounds(case: &Case, walked: [&[ReplicateResult]; 2]) -> Option<PanBounds> {
+/// What came of the readings of the base's pan fraction; `None` where there is only one.
+fn pan_bounds(case: &Case, own: &[ReplicateResult], others: &[Vec<ReplicateResult>]) -> Option<PanBounds> {
     let reading = |case: &Case, walked: &[ReplicateResult]| -> Option<PanReading> {
         let (verdict, _, stopping) = concluded(case, walked);
         Some(PanReading {
@@ -118,12 +118,15 @@ fn pan_bounds(case: &Case, walked: [&[ReplicateResult]; 2]) -> Option<PanBounds>
             stopping,
         })
     };
-    let other = case.other_reading.as_ref()?;
+    if case.other_readings.is_empty() {
+        return None;
+    }
+    let walked = std::iter::once(own).chain(others.iter().map(Vec::as_slice));
     Some(PanBounds {
         mass_fraction: case.base.pan_fraction(),
         finest_sieve_mm: case.base.smallest_mm(),
         finest_constriction_mm: case.finest_mm,
-        readings: [reading(case, walked[0])?, reading(other, walked[1])?],
+        readings: case.readings().zip(walked).map(|(case, of)| reading(case, of)).collect::<Option<_>>()?,
     })
 }
 

@@ -6,7 +6,7 @@ use crate::outcome::design::band::{Band, SetBy};
 use crate::outcome::digits::percent;
 use crate::outcome::packing::{FLOATING_PERCENT, PackedPart};
 use crate::outcome::record::{
-    CurveEnd, CurveRange, FindingRecord, Outcome, PanBounds, Run, ShortOf, Stopping, Verdict,
+    CurveEnd, CurveRange, FindingRecord, Outcome, PanBounds, PanSize, Run, ShortOf, Stopping, Verdict,
 };
 use crate::outcome::undecided::UndecidedBy;
 
@@ -129,17 +129,20 @@ pub fn empty_band(band: &Band) -> Option<Finding> {
     band.is_empty.then(|| finding::empty_band(&size(band.least), &size(band.greatest), set_by))
 }
 
-/// What both readings of the base's finest part say of its verdict.
+/// What the readings of the base's finest part say of its verdict.
 pub fn pan(bounds: &PanBounds) -> Finding {
     let (share, sieve) = (100.0 * bounds.mass_fraction, bounds.finest_sieve_mm);
     let finest = bounds.finest_constriction_mm;
-    let [fine, coarse] = bounds.readings.each_ref().map(|reading| match reading.walked.verdict {
-        Verdict::Undecided => "stays open".to_owned(),
-        verdict => format!("is {}", verdict.words()),
+    let [fine, coarse] = [PanSize::Passive, PanSize::FinestSieve].map(|size| match bounds.verdict_of(size) {
+        Some(Verdict::Undecided) | None => "stays open".to_owned(),
+        Some(verdict) => format!("is {}", verdict.words()),
     });
-    match bounds.differ() {
-        true => finding::pan_decides(share, sieve, finest, &fine, &coarse),
-        false => finding::pan_agrees(share, sieve, finest, bounds.readings[0].walked.verdict.words()),
+    match (bounds.differ(), bounds.likely()) {
+        (true, Some(likely)) => {
+            finding::pan_taken_as_likely(share, sieve, finest, likely.walked.verdict.words(), &fine, &coarse)
+        }
+        (true, None) => finding::pan_decides(share, sieve, finest, &fine, &coarse),
+        (false, _) => finding::pan_agrees(share, sieve, finest, bounds.verdict().words()),
     }
 }
 
@@ -175,14 +178,18 @@ pub fn packed_part(part: &PackedPart) -> Finding {
     of_part(percent, largest_mm, 100.0 * finer_by)
 }
 
-/// What either reading of the base's finest part came to.
+/// What each reading of the base's finest part came to.
 fn readings(bounds: &PanBounds) -> Finding {
-    let each = bounds.readings.each_ref().map(|reading| {
-        let runs: Vec<String> = reading.walked.runs.iter().map(|run| percent(run.mean)).collect();
-        let (words, verdict) = (bounds.words(reading), reading.walked.verdict.words());
-        format!("{words}: {verdict}, {} eroded", runs.join(" and "))
-    });
-    finding::pan_readings(&each.join("; "))
+    let each: Vec<String> = bounds
+        .readings
+        .iter()
+        .map(|reading| {
+            let runs: Vec<String> = reading.walked.runs.iter().map(|run| percent(run.mean)).collect();
+            let (words, verdict) = (bounds.words(reading), reading.walked.verdict.words());
+            format!("{words}: {verdict}, {} eroded", runs.join(" and "))
+        })
+        .collect();
+    finding::pan_readings(&bounds.words(&bounds.readings[0]), &each.join("; "))
 }
 
 /// Why replicates do not reach what was asked for.

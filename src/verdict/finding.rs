@@ -64,6 +64,15 @@ findings! {
          finer than every constriction the verdict {fine}, with all of it {sieve} in size it {coarse}; the \
          finest constriction is {constriction}. A hydrometer test or a finer sieve would decide.",
         to do "Or base.d0_mm.";
+    /// Readings of the base's finest part that differ, of which the likely one counts.
+    pan_taken_as_likely(share: Percent, sieve: Mm, constriction: Mm, class: Text, fine: Text, coarse: Text):
+        Base, Open, Limits;
+        "finest part", "soils.md",
+        "The answer depends on the {share} of the base that is finer than its finest sieve. With this part \
+         as in soils with a hydrometer test the verdict is {class}; with all of it finer than every \
+         constriction it {fine}, with all of it {sieve} in size it {coarse}. The finest constriction is \
+         {constriction}. A hydrometer test would decide.",
+        to do "Or base.d0_mm.";
     /// A range of constriction curves that do not give one class.
     curve_range_decides(low: Percent, high: Percent, each: Text): Constrictions, Open, Decides;
         "constrictions", "uncertainty.md",
@@ -316,11 +325,11 @@ findings! {
         "The filter is gap-graded: only {within} of it is between {from} and four times that. The \
          constrictions between its fines, which it may lose, were walked.";
     /// A finest part of the base that will be walked twice.
-    pan_walked_twice(share: Percent, sieve: Mm, constriction: Mm): Base, Open, Limits;
+    pan_readings_walked(share: Percent, sieve: Mm, constriction: Mm): Base, Open, Limits;
         "finest part", "soils.md",
         "The finest {share} of the base may block constrictions. It is finer than the finest sieve, {sieve}, \
-         but may be coarser than the finest constriction, {constriction}; it is walked twice, as finer than \
-         every constriction and as all of that sieve's size.";
+         but may be coarser than the finest constriction, {constriction}. It is walked as it goes on in soils \
+         with a hydrometer test, as finer than every constriction and as all of that sieve's size.";
     /// The constriction curve of another filter.
     other_curve(cu: Ratio, curve: Text, of_cu: Ratio): Constrictions, Open, Limits;
         "constrictions", "uncertainty.md",
@@ -512,10 +521,9 @@ findings! {
         "On {networks:network} some larger ratio was seen to hold in the first run or the second. There the \
          smallest ratio that was seen to erode counts.";
     /// What both readings came to.
-    pan_readings(each: Text): Base, Settled, Note;
+    pan_readings(taken: Text, each: Text): Base, Settled, Note;
         "finest part", "soils.md",
-        "The numbers are of the base with its finest part finer than every constriction. Both readings: \
-         {each}.";
+        "The numbers are of the base with its finest part taken as {taken}. All readings: {each}.";
     /// Particles that circle.
     trapped(particles: Count): Walk, Settled, Note;
         "trapped", "uncertainty.md",

@@ -282,6 +282,7 @@ pub fn outcome(replicates: u64) -> Outcome {
             eroded_without_blocking: 0.873,
         }),
         curve_range: None,
+        margin: None,
         sensitivity: sensitivity.collect(),
         thickness: thickness.collect(),
         studies_to_come: false,

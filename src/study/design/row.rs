@@ -210,7 +210,7 @@ impl OneNetwork<'_> {
         let network = case.network_unless(self.network.take(), self.seed)?;
         let before = self.blocked.remove(&step);
         let (mut all, mut left): (Option<Eroded>, Vec<BitVec>) = (None, Vec::new());
-        for (reading, case) in case.readings().enumerate() {
+        for (reading, case) in case.bounds().enumerate() {
             let open = || BitVec::repeat(false, network.constrictions());
             let blocked = match run {
                 1 => open(),
