@@ -93,7 +93,7 @@ impl Case {
         all
     }
 
-    /// Cu of the base between its two readings where D10 lies in an open tail.
+    /// Cu of the base between its bounds where D10 lies in an open tail.
     fn cu_of_base(&self) -> Option<[f64; 2]> {
         if let Some(cu) = self.base.cu() {
             return Some([cu, cu]);

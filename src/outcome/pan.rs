@@ -25,7 +25,7 @@ pub struct PanBounds {
 pub struct PanReading {
     /// Of what size its particles were walked.
     pub taken_as: PanSize,
-    /// Base particles inserted in each run; both readings insert the same mass, where no cap bites.
+    /// Base particles inserted in each run; all readings insert the same mass, where no cap bites.
     pub n_base: u64,
     /// What was walked.
     #[serde(flatten)]

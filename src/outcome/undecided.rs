@@ -7,7 +7,7 @@ use super::record::{CurveRange, Outcome, RunSummary, Verdict};
 /// What leaves a verdict undecided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum UndecidedBy {
-    /// The two readings of the base's finest part give different classes.
+    /// The bounds of the base's finest part give different classes, in folders without a likely reading.
     #[serde(rename = "pan fraction")]
     Pan,
     /// The ends of the constriction curve's range give another class than the curve itself.

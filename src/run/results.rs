@@ -46,7 +46,7 @@ pub fn outcome(
     }
     found.extend(unsure.map(finding::decided_below_95));
     found.extend(case.findings().into_iter().chain(case.not_studied()));
-    // What was to be walked twice has been.
+    // What was to be walked in several readings has been.
     found.extend(pan_bounds.as_ref().map(beside::pan).or_else(|| case.to_be_walked()));
     found.extend(other.range.as_ref().map(beside::curve_range));
     let mut outcome = Outcome {

@@ -14,7 +14,7 @@ use crate::outcome::undecided::UndecidedBy;
 const ROOM: f64 = 0.6;
 
 impl Outcome {
-    /// What its results say: both readings of the base's finest part, the range of the constriction curve,
+    /// What its results say: the readings of the base's finest part, the range of the constriction curve,
     /// what the replicates leave open, what was trapped, the thickness, and what water and voids came to.
     pub fn found(&self) -> Vec<Finding> {
         let trapped: u64 = self.replicates.iter().flat_map(|r| &r.runs).map(|r| r.trapped).sum();

@@ -324,7 +324,7 @@ findings! {
         "gap", "soils.md",
         "The filter is gap-graded: only {within} of it is between {from} and four times that. The \
          constrictions between its fines, which it may lose, were walked.";
-    /// A finest part of the base that will be walked twice.
+    /// A finest part of the base that will be walked in several readings.
     pan_readings_walked(share: Percent, sieve: Mm, constriction: Mm): Base, Open, Limits;
         "finest part", "soils.md",
         "The finest {share} of the base may block constrictions. It is finer than the finest sieve, {sieve}, \
@@ -520,7 +520,7 @@ findings! {
         "search", "design.md",
         "On {networks:network} some larger ratio was seen to hold in the first run or the second. There the \
          smallest ratio that was seen to erode counts.";
-    /// What both readings came to.
+    /// What the readings came to.
     pan_readings(taken: Text, each: Text): Base, Settled, Note;
         "finest part", "soils.md",
         "The numbers are of the base with its finest part taken as {taken}. All readings: {each}.";

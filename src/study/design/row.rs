@@ -191,7 +191,7 @@ struct OneNetwork<'a> {
 }
 
 impl OneNetwork<'_> {
-    /// Run `run` at a ratio. Of a base with two readings the one that erodes more counts.
+    /// Run `run` at a ratio. Of the bounds of a base's finest part the one that erodes more counts.
     fn walk(&mut self, run: u64, step: i64, ratio: f64) -> Result<Trial, RunError> {
         let case = match self.row.at(ratio) {
             Ok(case) => case,
