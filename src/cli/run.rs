@@ -70,6 +70,10 @@ fn summary(run: &FinishedRun) -> String {
     };
     line(format!("Verdict: {}", outcome.headline()));
     line(format!("Practice: {}", plain(&outcome.practice_in_words())));
+    let evidence = outcome.sentence_of("evidence");
+    if let Some(evidence) = &evidence {
+        line(format!("Evidence: {}", plain(evidence)));
+    }
     if outcome.confidence != Confidence::Within {
         line(format!("  Confidence: {}", outcome.confidence.words()));
     }
@@ -79,7 +83,8 @@ fn summary(run: &FinishedRun) -> String {
     for run in &outcome.summary {
         line(format!("  {}", run_line(run)));
     }
-    for said in outcome.beside_the_verdict() {
+    let said_above = |said: &String| evidence.as_ref().is_some_and(|evidence| said.starts_with(evidence));
+    for said in outcome.beside_the_verdict().into_iter().filter(|said| !said_above(said)) {
         line(format!("  {}", plain(&said)));
     }
     line(format!(

@@ -155,6 +155,9 @@ fn verdict_section(folder: &RunFolder, verdict: &Drawn) -> Markup {
         section.verdict.(class) {
             p.word.long[!outcome.reasons.is_empty()] { (clean(&capital(&outcome.headline()))) "." }
             p.practice { b { "Practice" } ": " (clean(&outcome.practice_in_words())) "." }
+            @if let Some(evidence) = outcome.sentence_of("evidence") {
+                p.practice { b { "Evidence" } ": " (clean(&evidence)) }
+            }
             @if doubted { p { "Confidence: " b { (outcome.confidence.words()) } "." } }
             p.lead { (in_words(outcome, walks)) }
             div { (drawing(verdict)) }
@@ -239,7 +242,8 @@ fn findings(outcome: &Outcome) -> Markup {
     };
     let may_be_wrong =
         |finding: &FindingRecord| matches!(finding.direction, Direction::Open | Direction::Unsafe);
-    let (open, mut looked_at): (Vec<_>, Vec<_>) = outcome.besides().into_iter().partition(may_be_wrong);
+    let (open, mut looked_at): (Vec<_>, Vec<_>) =
+        outcome.besides().into_iter().filter(|finding| finding.id != "evidence").partition(may_be_wrong);
     // Folders of earlier versions have reasons of verdicts within the checked range.
     let mut against = outcome.against();
     if outcome.confidence == Confidence::Within {

@@ -11,7 +11,7 @@ use super::replicates::{ReplicateResult, classed, said_by_walks, stopping, summa
 use super::studies::Studies;
 use crate::case::{Case, INPUT_NAMES, replicate_seed};
 use crate::outcome::record::{
-    Classed, Confidence, ConstrictionsRecord, Manifest, Outcome, PanBounds, PanReading, RunSummary,
+    Classed, Confidence, ConstrictionsRecord, Evidence, Manifest, Outcome, PanBounds, PanReading, RunSummary,
     Statistic, Stopping, Verdict, VoidRow,
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
@@ -81,16 +81,28 @@ pub fn outcome(
             .then(|| infiltration(&case.curve, &case.base, case.counts[3])),
         curve_range: other.range.clone(),
         margin: other.margin.clone(),
+        evidence: evidence(case, other),
         sensitivity: studies.sensitivity,
         thickness: studies.thickness,
         studies_to_come: false,
         seconds,
     };
     found.extend(outcome.found());
+    if let Some(evidence) = &outcome.evidence {
+        found = evidence.weigh(verdict, found);
+    }
     let answer = judge(verdict, &outcome.rules, found);
     (outcome.confidence, outcome.reasons) = (answer.confidence, answer.reasons());
     outcome.findings = answer.findings;
     outcome
+}
+
+/// What soils of the base's kind say of the walk's boundary. Tests of dispersive soils and of joints had other
+/// ones.
+fn evidence(case: &Case, other: &OtherWalks) -> Option<Evidence> {
+    let is_other = case.scene.base.dispersive == Some(true) || case.scene.filter.joint_mm.is_some();
+    let margin = other.margin.as_ref().filter(|_| !is_other && !case.is_scale_free())?;
+    Evidence::of(&BaseSoil::of(case.base_as_given(), false), case.filter.d(15.0)?, margin)
 }
 
 /// What these walks say themselves against the verdict.

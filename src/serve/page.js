@@ -539,10 +539,11 @@ function verdictOf(job) {
   const text = done.headline.charAt(0).toUpperCase() + done.headline.slice(1);
   return [el("p", { class: "word" }, text + "."),
     el("p", { class: "practice" }, el("b", {}, "Practice"), `: ${done.practice}.`),
+    done.evidence ? el("p", { class: "practice" }, el("b", {}, "Evidence"), `: ${done.evidence}`) : null,
     el("p", {}, "Confidence: ", confidenceOf(done.confidence), `; ${done.replicates} ${done.replicates === 1 ? "replicate: the scatter is unknown" : "replicates"}.`),
     ...plot(done.runs), list(done.runs.map((run, at) => `${RUNS[at]}: ${eroded(run)}`)),
     done.range ? el("p", {}, el("span", { class: "mark" }, "Over the range of the constriction curve"), `: ${percent(done.range[0][0])} to ${percent(done.range[0][1])} in the first run.`) : null,
-    list(done.beside),
+    list(done.beside.filter((said) => said !== done.evidence)),
     done.reasons.length ? el("details", { open: done.confidence !== "within checked range" }, el("summary", {}, "Limits of this answer"), list(done.reasons)) : null];
 }
 

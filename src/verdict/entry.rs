@@ -79,7 +79,7 @@ macro_rules! findings {
         $(
             $(#[$doc])*
             pub fn $id($($name: findings!(@raw $unit)),*) -> Finding {
-                Finding { entry: &entries::$id, values: vec![$(FindingValue::$unit($name.into())),*] }
+                Finding { entry: &entries::$id, values: vec![$(FindingValue::$unit($name.into())),*], is_settled: false }
             }
         )*
 
@@ -94,7 +94,7 @@ macro_rules! findings {
                 "Count" => FindingValue::Count(n),
                 _ => FindingValue::Text(text.into()),
             };
-            vec![$(Finding { entry: &entries::$id, values: vec![$(of(stringify!($unit))),*] }),*]
+            vec![$(Finding { entry: &entries::$id, values: vec![$(of(stringify!($unit))),*], is_settled: false }),*]
         }
     };
 }
@@ -107,6 +107,8 @@ pub struct Finding {
     pub entry: &'static Entry,
     /// Its numbers, in the order of the entry's names.
     pub values: Vec<FindingValue>,
+    /// Whether evidence shows what it is worth, so that it is no doubt.
+    pub is_settled: bool,
 }
 
 impl PartialEq for Finding {
@@ -121,6 +123,11 @@ impl Finding {
         self.entry.id
     }
 
+    /// The same where evidence shows what it is worth.
+    pub fn settled(self) -> Self {
+        Self { is_settled: true, ..self }
+    }
+
     /// What it says.
     pub fn sentence(&self) -> String {
         self.filled(self.entry.sentence)
@@ -133,7 +140,7 @@ impl Finding {
 
     /// Whether it speaks against this verdict: what makes a verdict surer is no doubt of it.
     pub fn is_against(&self, verdict: Verdict) -> bool {
-        if self.entry.weight == Weight::Note {
+        if self.entry.weight == Weight::Note || self.is_settled {
             return false;
         }
         match (self.entry.against, self.entry.direction) {
@@ -148,6 +155,7 @@ impl Finding {
     /// As it is written beside a verdict.
     pub fn record(&self, against: bool) -> FindingRecord {
         let Entry { about, direction, weight, .. } = *self.entry;
+        let direction = if self.is_settled { Direction::Settled } else { direction };
         let names = self.entry.names.iter().zip(&self.values);
         let numbers: Map<_, _> =
             names.map(|(name, value)| (format!("{name}{}", value.suffix()), value.json())).collect();

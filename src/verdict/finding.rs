@@ -528,6 +528,13 @@ findings! {
     trapped(particles: Count): Walk, Settled, Note;
         "trapped", "uncertainty.md",
         "{particles:particle} trapped in closed loops; they count as retained.";
+    /// What soils of this kind say of the walk's boundary.
+    evidence(probability: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio):
+        Practice, Settled, Note;
+        "evidence", "uncertainty.md",
+        "A test would show no erosion with a probability of {probability}. For {soils:soil} of this kind \
+         ({group}) the walk begins to erode at {median} times the D15F of tests (nine in ten: {low} to \
+         {high}). It knows nothing of cohesion, segregation or cracks in this soil.";
     /// The thickness that was walked.
     modelled_thickness(thickness: Text): Thickness, Settled, Note;
         "thickness", "uncertainty.md", "The modelled filter is {thickness} thick along the flow.";

@@ -11,6 +11,7 @@
 mod answer;
 pub mod beside;
 mod entry;
+mod evidence;
 pub mod finding;
 mod pair;
 pub mod practice;

@@ -283,6 +283,7 @@ pub fn outcome(replicates: u64) -> Outcome {
         }),
         curve_range: None,
         margin: None,
+        evidence: None,
         sensitivity: sensitivity.collect(),
         thickness: thickness.collect(),
         studies_to_come: false,

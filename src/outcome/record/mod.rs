@@ -14,6 +14,7 @@
 //!   second begins.
 
 mod answer;
+mod evidence;
 mod finding;
 mod inputs;
 mod manifest;
@@ -25,6 +26,7 @@ mod voids;
 use serde::{Deserialize, Serialize};
 
 pub use answer::{ShortOf, Statistic, Stopping, Verdict};
+pub use evidence::{Bound, Evidence};
 pub use finding::{Direction, FindingRecord, Topic, Weight};
 pub use inputs::{
     BaseRecord, ConstrictionsRecord, CurveOrigin, FilterRecord, Inputs, NetworkKind, NetworkRecord,
@@ -114,6 +116,9 @@ pub struct Outcome {
     /// for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub margin: Option<Margin>,
+    /// What soils of its kind say of the walk's boundary; `None` without a margin, or for a base of no group.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub evidence: Option<Evidence>,
     /// How the verdict moves with the number of base particles; empty when it was not asked for.
     pub sensitivity: Vec<Sensitivity>,
     /// How the verdict moves with the thickness of the filter, itself included; empty when it was not asked

@@ -133,6 +133,7 @@ pub fn of_run(outcome: &Outcome) -> Value {
     json!({
         "headline": outcome.headline(),
         "practice": outcome.practice_in_words(),
+        "evidence": outcome.sentence_of("evidence"),
         "verdict": outcome.verdict.words(),
         "confidence": outcome.confidence.words(),
         "reasons": outcome.reasons,

@@ -1,0 +1,37 @@
+//! What a verdict rests on beside its walk: the walk's boundary by that of tests, for soils of its kind.
+
+use serde::{Deserialize, Serialize};
+
+/// The evidence for a pair.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Evidence {
+    /// Group of soils by fines after regrading, and by D85B/D50B, as in `results/real-soils.md`.
+    pub group: String,
+    /// Soils that it rests on.
+    pub soils: u64,
+    /// Median over these soils of the walk's D15F of no erosion by that of tests.
+    pub ratio_median: f64,
+    /// The ratio below which 5 % of the soils lie.
+    pub ratio_low: f64,
+    /// The ratio below which 95 % of the soils lie.
+    pub ratio_high: f64,
+    /// Whether there are at least 30 soils, and nine in ten lie within a factor of 2 of the median.
+    pub checked: bool,
+    /// D15F from which the walk erodes this base (mm); beyond it or below it where `bound` says so.
+    pub boundary_d15f_mm: f64,
+    /// The probability that a test of this pair would show no erosion.
+    pub probability_no_erosion: f64,
+    /// Where the walk's boundary was not found: on which side of these two numbers it lies.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bound: Option<Bound>,
+}
+
+/// A number that is known to be at least, or at most, so much.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Bound {
+    /// It is at least this.
+    AtLeast,
+    /// It is at most this.
+    AtMost,
+}
