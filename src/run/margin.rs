@@ -85,3 +85,44 @@ fn of_size(case: &Case, factor: f64) -> Option<Case> {
     other.scene.walk.runs = 1;
     (other.n_base <= MOST_PARTICLES.max(case.n_base)).then_some(other)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The sizes that are walked where a filter erodes from this size on.
+    fn searched(boundary: f64) -> Margin {
+        let walk = |factor: f64| {
+            let eroded_mass_fraction = 0.075 * factor / boundary;
+            MarginWalk { factor, eroded_mass_fraction, holds: factor < boundary }
+        };
+        let mut walks = vec![walk(1.0)];
+        while let Some(factors) = next(&walks) {
+            walks.extend(factors.map(walk));
+            walks.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+        }
+        Margin { walks }
+    }
+
+    #[test]
+    fn a_boundary_is_found_to_4_percent_in_few_walks() {
+        for boundary in [0.14, 0.5, 0.99, 1.0, 1.001, 1.69, 3.0, 7.0] {
+            let found = searched(boundary);
+            let (holds, erodes) = (found.holds_to().unwrap(), found.erodes_from().unwrap());
+            assert!(
+                holds < boundary && boundary <= erodes && erodes <= CLOSE * holds,
+                "{boundary}: {found:?}"
+            );
+            assert!((holds..=erodes).contains(&found.boundary().unwrap()));
+            assert!(found.walks.len() <= 15, "{boundary}: {}", found.walks.len());
+        }
+    }
+
+    #[test]
+    fn what_is_too_far_is_bounded_on_one_side() {
+        let far = searched(20.0);
+        assert!(far.erodes_from().is_none() && far.holds_to().unwrap() > 4.0 && far.boundary().is_none());
+        let near = searched(0.01);
+        assert!(near.holds_to().is_none() && near.erodes_from().unwrap() < 0.25);
+    }
+}

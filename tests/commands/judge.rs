@@ -44,6 +44,20 @@ fn two_tables_are_judged_as_the_scene_that_says_the_same() {
     assert_eq!(a["summary"], b["summary"]);
     assert_eq!(a["curve_range"], b["curve_range"]);
     assert_eq!(a["replicates"].as_array().unwrap().len(), 4);
+    assert_eq!(
+        (&a["constrictions"]["origin"], &a["practice"]["foster_fell"]),
+        (&"library".into(), &"no erosion".into())
+    );
+    // 0.3 mm is the D85B of a sand without fines, whose filter of D15F 0.6 mm holds with any test.
+    let evidence = &a["evidence"];
+    assert_eq!((&evidence["group"], &a["evidence"]), (&"4 steep".into(), &b["evidence"]));
+    assert!(
+        evidence["soils"].as_u64().unwrap() >= 30 && evidence["boundary_d15f_mm"].as_f64().unwrap() > 0.6
+    );
+    let [low, median, high] =
+        ["ratio_low", "ratio_median", "ratio_high"].map(|name| evidence[name].as_f64().unwrap());
+    assert!(low < median && median < high && evidence["probability_no_erosion"].as_f64().unwrap() > 0.9);
+    assert!(text.contains("Evidence: A test would show no erosion with a probability of"), "{text}");
     // A guess is never within the range that was checked.
     assert_ne!(a["confidence"], "within checked range");
 }
@@ -167,6 +181,12 @@ fn a_dispersive_base_and_an_open_joint_reach_the_verdict() {
     for said in ["The base is dispersive", "An open joint of 2 mm was not walked"] {
         assert!(reasons.contains(said), "{reasons}");
     }
+    // Tests of such soils, and of open joints, have other boundaries.
+    assert!(
+        told["evidence"].is_null() && plain["evidence"]["group"] == "2 55-85 steep",
+        "{}",
+        plain["evidence"]
+    );
     assert_ne!(told["confidence"], "within checked range");
     // The scene beside the results says it again, and a word that is neither is refused.
     let scene = fs::read_to_string(at.join("a/scene.toml")).unwrap();
