@@ -46,7 +46,7 @@ pub(super) fn table(rules: &[&AppliedRule]) -> Markup {
             let value = rule
                 .value
                 .map_or_else(|| "–".to_owned(), |value| format!("= {} {}", significant(value), rule.unit));
-            html! { (clean(&rule.quantity)) " " br; (clean(value.trim_end())) }
+            html! { (clean(rule.quantity.name())) " " br; (clean(value.trim_end())) }
         })
         .number("Limit", |rule| {
             let sign = if rule.at_least { "≥" } else { "≤" };

@@ -4,10 +4,10 @@
 use super::entry::Finding;
 use super::finding;
 use super::words::within;
-use crate::outcome::record::{AppliedRule, LimitOfDesign, Outcome, Practice, RuleRole, TestedClass, Verdict};
-
-/// The rule of design.
-const DESIGN: &str = "sherard-dunnigan";
+use crate::outcome::record::{
+    AppliedRule, LimitOfDesign, Outcome, Practice, RuleQuantity, RuleRole, TestedClass, Verdict,
+};
+use crate::outcome::rules::{DESIGN, PAPER_NO_EROSION, TESTS_CONTINUING, TESTS_NO_EROSION, authority};
 
 /// The rules of a role that were made for these soils and are not kept.
 fn broken(rules: &[AppliedRule], role: RuleRole) -> Vec<&AppliedRule> {
@@ -26,7 +26,7 @@ pub fn findings(verdict: Verdict, rules: &[AppliedRule]) -> Vec<Finding> {
     if !unstable.is_empty() {
         all.push(finding::loses_fines(&list(&unstable, |rule| {
             let [value, limit] = against(rule, 2);
-            format!("{} ({} {value}, limit {limit})", whose(rule), rule.quantity)
+            format!("{} ({} {value}, limit {limit})", authority(rule), rule.quantity)
         })));
     }
     all.extend(drainage(rules));
@@ -43,12 +43,12 @@ fn of_rule(rule: &AppliedRule) -> Finding {
     let limit = limit + if rule.limit_at_most { " at most" } else { "" };
     match (rule.id.as_str(), rule.role) {
         (DESIGN, _) => finding::limit_of_design(&limit, &value),
-        ("foster-fell-no-erosion", _) => finding::tests_no_erosion(&limit, &value),
-        ("foster-fell-continuing", _) => finding::tests_continuing(&limit, &value),
+        (TESTS_NO_EROSION, _) => finding::tests_no_erosion(&limit, &value),
+        (TESTS_CONTINUING, _) => finding::tests_continuing(&limit, &value),
         (_, RuleRole::Continuation) => {
-            finding::rule_of_continuation(&rule.quantity, &limit, &value, whose(rule))
+            finding::rule_of_continuation(rule.quantity.name(), &limit, &value, authority(rule))
         }
-        _ => finding::rule_of_retention(&rule.quantity, &limit, &value, whose(rule)),
+        _ => finding::rule_of_retention(rule.quantity.name(), &limit, &value, authority(rule)),
     }
 }
 
@@ -61,7 +61,7 @@ fn asked(rule: &AppliedRule) -> String {
 
 fn drainage(rules: &[AppliedRule]) -> Vec<Finding> {
     let (permeability, fines): (Vec<_>, Vec<_>) =
-        broken(rules, RuleRole::Drainage).into_iter().partition(|rule| rule.quantity == "D15F");
+        broken(rules, RuleRole::Drainage).into_iter().partition(|rule| rule.quantity == RuleQuantity::D15F);
     let too_fine = permeability.first().map(|first| {
         let [value, limit] = against(first, 2);
         let least = permeability.get(1).map_or(String::new(), |least| {
@@ -78,8 +78,8 @@ fn drainage(rules: &[AppliedRule]) -> Vec<Finding> {
 /// Whether the walk is stricter than tests for this pair: they found no erosion where it has some.
 fn stricter(verdict: Verdict, rules: &[AppliedRule]) -> Option<Finding> {
     let find = |id: &str| rules.iter().find(|rule| rule.id == id && rule.applies);
-    let tests = find("foster-fell-no-erosion").filter(|rule| rule.met == Some(true))?;
-    let ratio = find("paper-no-erosion").filter(|rule| rule.met == Some(false))?;
+    let tests = find(TESTS_NO_EROSION).filter(|rule| rule.met == Some(true))?;
+    let ratio = find(PAPER_NO_EROSION).filter(|rule| rule.met == Some(false))?;
     matches!(verdict, Verdict::Some | Verdict::Continuing).then(|| {
         let [value, holds] = [ratio.value, ratio.limit].map(|number| size(number, ""));
         finding::stricter_than_tests(&value, &size(tests.limit, &tests.unit), &holds)
@@ -104,7 +104,7 @@ pub fn record(rules: &[AppliedRule]) -> Option<Practice> {
 /// The class by the boundaries of Foster and Fell.
 fn tested(rules: &[AppliedRule]) -> TestedClass {
     let met = |id: &str| rules.iter().find(|rule| rule.id == id && rule.applies).and_then(|rule| rule.met);
-    match (met("foster-fell-no-erosion"), met("foster-fell-continuing")) {
+    match (met(TESTS_NO_EROSION), met(TESTS_CONTINUING)) {
         (_, Some(false)) => TestedClass::Continuing,
         (Some(true), _) => TestedClass::None,
         (Some(false), Some(true)) => TestedClass::Some,
@@ -129,17 +129,17 @@ pub fn practice_in_words(rules: &[AppliedRule], verdict: Verdict) -> String {
         Some(rule) => of_design(rule),
         None => "the limit of design was not applied".into(),
     });
-    let no_erosion = find("foster-fell-no-erosion");
-    said.extend(of_tests(no_erosion, find("foster-fell-continuing")));
-    for rule in retention.iter().filter(|rule| ![DESIGN, "foster-fell-no-erosion"].contains(&&*rule.id)) {
+    let no_erosion = find(TESTS_NO_EROSION);
+    said.extend(of_tests(no_erosion, find(TESTS_CONTINUING)));
+    for rule in retention.iter().filter(|rule| ![DESIGN, TESTS_NO_EROSION].contains(&&*rule.id)) {
         // What the limit of design says already in millimetres is no second fault.
         if design.is_none_or(|design| design.met.is_none()) {
             let [value, limit] = against(rule, 3);
-            said.push(format!("{} {value} is more than {limit} ({})", rule.quantity, whose(rule)));
+            said.push(format!("{} {value} is more than {limit} ({})", rule.quantity, authority(rule)));
         }
     }
     let unstable: Vec<String> =
-        broken(rules, RuleRole::Stability).into_iter().map(|rule| whose(rule).to_owned()).collect();
+        broken(rules, RuleRole::Stability).into_iter().map(|rule| authority(rule).to_owned()).collect();
     if !unstable.is_empty() {
         said.push(format!("the filter may lose its own fines ({})", listed(&unstable)));
     }
@@ -213,7 +213,7 @@ fn agreement(rules: &[AppliedRule], verdict: Verdict) -> Option<&'static str> {
     const AGREE: &str = "practice and walk agree on retention";
     let met = |id: &str| rules.iter().find(|rule| rule.id == id && rule.applies)?.met;
     let retained = !rules.iter().any(|rule| rule.is_broken() && rule.role == RuleRole::Retention);
-    let (none, continuing) = (met("foster-fell-no-erosion"), met("foster-fell-continuing"));
+    let (none, continuing) = (met(TESTS_NO_EROSION), met(TESTS_CONTINUING));
     let is_known = met(DESIGN).is_some() || none.is_some() || continuing == Some(false);
     // 0 no erosion, 1 some or excessive, 2 continuing.
     let walked = match verdict {
@@ -248,9 +248,22 @@ fn listed(items: &[String]) -> String {
     }
 }
 
-/// Whose rule it is.
-fn whose(rule: &AppliedRule) -> &str {
-    rule.name.split(':').next().unwrap_or_default()
+/// A rule of retention, as a sentence cites it: whose it is, and which of theirs.
+pub(super) fn cited(id: &str, authority: &str) -> String {
+    let which = match id {
+        DESIGN => "limit of design",
+        TESTS_NO_EROSION => "boundary of no erosion",
+        _ => "rule",
+    };
+    format!("{authority}'s {which}")
+}
+
+/// The same of a rule that was applied.
+pub(super) fn cited_rule(rule: &AppliedRule) -> String {
+    match authority(rule) {
+        name if *name == rule.name => name.into(),
+        authority => cited(&rule.id, authority),
+    }
 }
 
 /// A value and its limit, with as many digits as tell them apart, and this many at the least.
