@@ -83,6 +83,12 @@ pub fn leaves_out(rule: ExitRule) -> Vec<String> {
     all
 }
 
+/// What the model does not contain, the first words of each thing.
+pub fn left_out_in_brief(items: &[String]) -> String {
+    let first: Vec<&str> = items.iter().filter_map(|item| item.split(':').next()).collect();
+    format!("The model leaves out: {}.", first.join("; "))
+}
+
 /// What the model does not contain in any of several cases, each with water that gives particles their way or
 /// without.
 pub fn leaves_out_of_all(with_flow: impl IntoIterator<Item = bool>) -> Vec<String> {

@@ -146,7 +146,7 @@ fn thickness(line: &LedgerLine) -> Markup {
 
 /// The names of the rules that a case does not keep.
 fn rules_of(line: &LedgerLine) -> Vec<String> {
-    let name = |id: &String| RULES.iter().find(|rule| rule.id == id).map(|rule| rule.name.to_owned());
+    let name = |id: &String| RULES.iter().find(|rule| rule.id == id).map(|rule| rule.name());
     line.rules_not_met.iter().flatten().map(|id| name(id).unwrap_or_else(|| id.clone())).collect()
 }
 
