@@ -1,5 +1,5 @@
 //! Characters that are not seen, or that change how others are seen: no name may hold them, and no page or
-//! terminal gets them.
+//! terminal gets them. And names that are too long.
 
 use std::ops::RangeInclusive;
 
@@ -42,6 +42,17 @@ pub fn is_plain(character: char) -> bool {
 /// and not up.
 pub fn is_plain_part(part: &str) -> bool {
     !part.is_empty() && !part.starts_with('.') && part.chars().all(is_plain)
+}
+
+/// The text cut to `most` characters, with an ellipsis where something is missing.
+pub fn shorten(text: &str, most: usize) -> String {
+    if text.chars().count() <= most {
+        return text.to_owned();
+    }
+    let mut cut: String = text.chars().take(most.saturating_sub(1)).collect();
+    cut.truncate(cut.trim_end().len());
+    cut.push('…');
+    cut
 }
 
 #[cfg(test)]
