@@ -30,13 +30,15 @@ impl<'a, T: 'a> Columns<'a, T> {
         self.column(name, of).number(heading, shown)
     }
 
-    /// D15F over D85B, whose base a page names below it, and over D95B.
+    /// D15F over D85B, whose base a page names below it, and over D95B; a page shows them after what eroded.
     pub(super) fn ratios(self, decimals: usize, of: fn(&T) -> (Ratios, Option<BaseSize>)) -> Self {
         let d85b = move |row: &T| significant(of(row).0.d15f_over_d85b).shown();
         self.digits("d15f_over_d85b", decimals, move |row| Some(of(row).0.d15f_over_d85b))
             .number("D15F/ D85B", move |row| d85b(row).below(of(row).1.map(|base| base.words())))
+            .place(1)
             .digits("d15f_over_d95b", decimals, move |row| Some(of(row).0.d15f_over_d95b))
             .headed("D15F/ D95B")
+            .place(1)
             .column("d85b_of", move |row| of(row).1.map(|base| base.grading()))
     }
 

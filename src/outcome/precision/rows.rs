@@ -64,7 +64,7 @@ table_rows! {
         pub largest_z: Option<f64>,
         /// Sum of the squares of all deviations, on as many degrees of freedom as there are networks.
         pub chi_squared: Option<f64> =>
-            number("χ² of its degrees", |row| {
+            number("χ² of its degrees of freedom", |row| {
                 row.chi_squared.map(|chi| format!("{chi:.0} of {}", row.networks))
             }),
         /// Processor time of one network, mean, s.
@@ -117,7 +117,7 @@ table_rows! {
     pub struct SamplingLine {
         /// How base particles are drawn and moved.
         pub variant: String =>
-            words("Sampling, replicates", |line| format!("{}, {}", line.variant, line.networks)),
+            words("Sampling, networks", |line| format!("{}, {}", line.variant, line.networks)),
         /// `new networks`, or `one network`.
         pub networks: String,
         /// Replicates.
