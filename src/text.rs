@@ -1,5 +1,5 @@
-//! Characters that are not seen, or that change how others are seen: no name may hold them, and no page or
-//! terminal gets them. And names that are too long.
+//! Names as they may be shown: without characters that are not seen or that change how others are seen, which
+//! no page and no terminal gets, and not too long.
 
 use std::ops::RangeInclusive;
 
@@ -58,6 +58,12 @@ pub fn shorten(text: &str, most: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn long_names_are_cut() {
+        assert_eq!(shorten("abcdef", 6), "abcdef");
+        assert_eq!(shorten("abc defghi", 5), "abc…");
+    }
 
     /// Bidi_Control of Unicode: all twelve.
     #[test]

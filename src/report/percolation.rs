@@ -79,9 +79,8 @@ fn fits(study: &PercolationStudy) -> Markup {
                 } }
             }
             p.small {
-                "A χ² far above the degrees of freedom says that the relation does not describe these \
-                 sizes; its error then "
-                "says nothing."
+                "If χ² far exceeds the degrees of freedom, the relation does not describe these sizes, and \
+                 its error means nothing."
             }
         }
     }

@@ -159,9 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn long_names_are_cut_and_labels_wrapped() {
-        assert_eq!(shorten("abcdef", 6), "abcdef");
-        assert_eq!(shorten("abc defghi", 5), "abc…");
+    fn labels_are_wrapped() {
         assert_eq!(wrap("one two three", 10.0, 40.0), ["one two", "three"]);
         assert_eq!(wrap("", 10.0, 40.0), Vec::<String>::new());
     }

@@ -50,24 +50,27 @@ pub(super) fn exact(exact: &ExactTier) -> Vec<Drawn> {
             "exact-particles",
             "Particles of a network",
             |row| row.particles as f64,
-            "Root mean square error of the probability to leave over the random networks, against the number \
-             of particles. Dashed: the error of independent particles, slope −1/2; particles, counts and \
-             single particles must lie on it. \"Expected\" draws nothing: its error is the rounding of its \
-             whole numbers. Filled: clogged lattice; hollow, dotted: first particle.",
+            "Root mean square error of the probability of leaving, over the random networks, against the \
+             number of particles. Dashed: the error of independent particles, slope −1/2. Particles, \
+             counts and single particles must follow it. \"Expected\" draws no random numbers; its error \
+             comes from rounding to whole particles. Filled symbols: clogged lattice. Hollow symbols and \
+             dotted lines: first particle.",
         ),
         (
             "exact-time",
             "Processor time of a network (s)",
             |row| row.core_seconds,
-            "Root mean square error of the probability to leave, against the processor time of one network. \
-             Counts cost the same for any number of particles, so their line falls without more time. \
-             Dashed: slope −1/2.",
+            "Root mean square error of the probability of leaving, against the processor time of one \
+             network. Counts cost the same for any number of particles, so their error falls at no extra \
+             time. Dashed: slope −1/2.",
         ),
     ];
     let figure = |(name, label, x, caption): (&'static str, &str, Of, &str)| {
-        let words =
-            ["Error against exact answers", "Root mean square error of the probability to leave, by engine"];
-        let y = Role::log("Error of the probability to leave (–)", |row: &ExactRow| row.error)
+        let words = [
+            "Error against exact answers",
+            "Root mean square error of the probability of leaving, by engine",
+        ];
+        let y = Role::log("Error of the probability of leaving (–)", |row: &ExactRow| row.error)
             .interval(|row| Some((row.error_low, row.error_high)));
         let is_first = |row: &ExactRow| exact.quantities.first().is_some_and(|of| of.name == row.quantity);
         let chart = Chart::of(&exact.rows, words, Role::log(label, x), y).by(
@@ -91,16 +94,15 @@ pub(super) fn sampling(sampling: &SamplingTier) -> Vec<Drawn> {
         (
             "sampling-new-networks",
             "new networks",
-            "Over new networks and new walks: standard deviation of the mean of 1, 2, 4, ... replicates \
-             against the processor time that they take together. Bars: 95 % intervals from the independent \
-             groups of replicates. The floor is the scatter between networks, which no other way of drawing \
-             base particles lowers.",
+            "Standard deviation of the mean of 1, 2, 4, ... replicates, each on a new network, against the \
+             processor time of all of them. Bars: 95 % intervals from independent groups of replicates. \
+             The floor is the scatter between networks, which no sampling of the base particles lowers.",
         ),
         (
             "sampling-one-network",
             "one network",
-            "Over new walks on one network: standard deviation of the mean of 1, 2, 4, ... replicates \
-             against their processor time, which a way of drawing base particles can change.",
+            "Standard deviation of the mean of 1, 2, 4, ... replicates on one network, against the \
+             processor time of all of them. The sampling of the base particles can change this scatter.",
         ),
     ];
     let figure = |(name, kind, caption): (&'static str, &str, &str)| {
@@ -129,10 +131,10 @@ fn scatter(sampling: &SamplingTier, name: &'static str, caption: &str, lines: &[
         .power((first.core_seconds, PP * first.sd), -0.5, SLOPE);
     if let (true, Some(floor)) = (kind == "new networks", between_networks(sampling, first)) {
         let through = (first.core_seconds, PP * floor);
-        chart = chart.power_in(BLACK, through, -0.5, "networks alone: the sampling floor");
+        chart = chart.power_in(BLACK, through, -0.5, "scatter between networks: the floor");
     }
     let binomial = Rule::new(Across::Y, PP * first.binomial, BLACK).dash(Dash::Dotted);
-    drawn(name, chart.mark(binomial.label("one replicate by a binomial: too small")), caption)
+    drawn(name, chart.mark(binomial.label("binomial error of one replicate: too small")), caption)
 }
 
 /// The scatter between networks alone: what a line over new networks has beyond that over one.
@@ -225,9 +227,9 @@ pub(super) fn bias(rows: &[BiasRow]) -> Vec<Drawn> {
         "Size of the difference from the reference (percentage points)",
     ];
     let floor = floor.map(|floor| (floor, "sampling floor without common networks"));
-    let caption = "Size of the difference of the mean eroded mass from the reference setting, against the \
-                   processor time of a replicate. Hollow: the 95 % interval holds zero. Bars: 95 % \
-                   intervals, replicate by replicate where both were walked on the same networks.";
+    let caption = "Size of the difference in mean eroded mass from the reference setting, against the \
+                   processor time of a replicate. Hollow: the 95 % interval includes zero. Bars: 95 % \
+                   intervals, replicate by replicate where both settings were walked on the same networks.";
     let figure = drawn("bias", differences(words, &changed, 4.0, floor), caption);
     std::iter::once(figure).chain(amount(rows)).collect()
 }
@@ -249,8 +251,9 @@ fn amount(rows: &[BiasRow]) -> Option<Drawn> {
         .mark(Rule::new(Across::Y, 0.0, GREY).dash(Dash::Dashed))
         .figure();
     let caption = format!(
-        "Difference of the eroded mass when only a part of the base particles that the model requires is \
-         walked: a bias that no replicate takes away. With all of them {:.1} % erode. Bars: 95 % intervals.",
+        "Difference of the eroded mass if only part of the required base particles is walked. More \
+         replicates do not remove this bias. With all of them, {:.1} % of the mass erodes. Bars: 95 % \
+         intervals.",
         PP * reference.value
     );
     Some(Drawn::new("bias-base-particles", figure, caption))
@@ -277,9 +280,9 @@ pub(super) fn decision(decision: &DecisionTier) -> Vec<Drawn> {
             false => Look::points(VERMILLION, Shape::Diamond),
         },
     );
-    let caption = "Share of trials whose class is not that of all replicates together, against their \
-                   processor time; a line a case, named by its eroded mass. Circles: the mean of 1, 2, 4, \
-                   ... replicates. Diamonds: sequential stopping. Bars: 95 % intervals.";
+    let caption = "Share of trials whose class differs from that of all replicates together, against \
+                   processor time. Each line is a case, named by its eroded mass. Circles: means of 1, 2, \
+                   4, ... replicates. Diamonds: sequential stopping. Bars: 95 % intervals.";
     vec![drawn("decision", chart, caption)]
 }
 
@@ -291,16 +294,16 @@ pub(super) fn scaling(rows: &[ScalingRow]) -> Vec<Drawn> {
             "scaling-base-particles",
             "Base particles",
             |row| row.n_base as f64,
-            "Processor time of a first run of this scene's base against the number of its particles. Dashed: \
-             in proportion.",
+            "Processor time of a first run of this scene, against its number of base particles. Dashed: \
+             proportional.",
         ),
         (
             "voids",
             "scaling-voids",
             "Voids",
             |row| row.voids as f64,
-            "Processor time of a first run on cubes, with as many base particles a void as this scene has. \
-             Dashed: in proportion.",
+            "Processor time of a first run on cubic lattices with as many base particles per void as this \
+             scene. Dashed: proportional.",
         ),
     ];
     let figure = |(against, name, label, x, caption): (&str, &'static str, &str, Of, &str)| {
@@ -344,9 +347,9 @@ fn void_ratios(tier: &PackingTier) -> Option<Drawn> {
         "Processor time of a packing (s)",
         "Size of the difference of the void ratio (–)",
     ];
-    let caption = "Size of the difference of the mean void ratio from the default settings against the \
-                   processor time of a packing. Hollow: the 95 % interval holds zero. The floor is the \
-                   scatter of as many seeds.";
+    let caption = "Size of the difference in mean void ratio from the default settings, against the \
+                   processor time of a packing. Hollow: the 95 % interval includes zero. The floor is the \
+                   standard error of a difference between means over the same number of seeds.";
     Some(drawn("packing", differences(words, &changed, 3.0, floor), caption))
 }
 
@@ -377,6 +380,6 @@ fn triangulations(tier: &PackingTier) -> Option<Drawn> {
         )
         .power((last.grains as f64, last.triangulate_seconds), 1.0, "slope 1");
     let caption = "Processor time of the regular triangulation and of the constrictions measured on it. \
-                   Filled: compressed packings; hollow: grains at random before compression.";
+                   Filled: compressed packings. Hollow: random positions before compression.";
     Some(drawn("triangulation", chart, caption))
 }

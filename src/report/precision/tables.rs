@@ -47,8 +47,9 @@ pub(super) fn merits(study: &Precision) -> Markup {
                 .text("Quantity and engine", |row| row[0].clone())
                 .number("Error (–)", |row| row[1].clone())
                 .number("Processor time (s)", |row| row[2].clone())
-                .number("1 / (error² time) (1/s)", |row| row[3].clone()))
-            p.small { "Each line at the most particles that were walked; of this scene, one replicate." }
+                .number("Figure of merit (1/s)", |row| row[3].clone()))
+            p.small { "Each line is for the largest number of particles walked; lines of this scene are \
+                       for one replicate." }
         }
     }
 }
