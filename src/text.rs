@@ -1,5 +1,5 @@
-//! Characters that are not seen, or that change how others are seen: no name may hold them, and no page or
-//! terminal gets them.
+//! Names as they may be shown: without characters that are not seen or that change how others are seen, which
+//! no page and no terminal gets, and not too long.
 
 use std::ops::RangeInclusive;
 
@@ -44,9 +44,26 @@ pub fn is_plain_part(part: &str) -> bool {
     !part.is_empty() && !part.starts_with('.') && part.chars().all(is_plain)
 }
 
+/// The text cut to `most` characters, with an ellipsis where something is missing.
+pub fn shorten(text: &str, most: usize) -> String {
+    if text.chars().count() <= most {
+        return text.to_owned();
+    }
+    let mut cut: String = text.chars().take(most.saturating_sub(1)).collect();
+    cut.truncate(cut.trim_end().len());
+    cut.push('…');
+    cut
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn long_names_are_cut() {
+        assert_eq!(shorten("abcdef", 6), "abcdef");
+        assert_eq!(shorten("abc defghi", 5), "abc…");
+    }
 
     /// Bidi_Control of Unicode: all twelve.
     #[test]

@@ -41,7 +41,7 @@ pub enum Command {
     Serve(ServeArgs),
     /// Continue a run that was stopped or killed, with the same bits
     Resume(ResumeArgs),
-    /// Estimate a run: number of base particles, memory, time, needed parts
+    /// Estimate a run before it starts: number of base particles, memory, time, packings to make
     Check(SceneArgs),
     /// Apply every rule of filter practice to two sieve tables, without a walk
     Rules(RulesArgs),
@@ -117,11 +117,11 @@ pub struct WalkArgs {
     /// Worker threads; the result is the same for any number [default: one per core]
     #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,
-    /// Save a checkpoint this often, as 10min or 50increments; a stop (Ctrl-C, SIGTERM) always saves one
-    /// [default: 10min; for a resumed run, its first setting]
+    /// Save a checkpoint this often, such as 10min or 50increments; a stop (Ctrl-C, SIGTERM) always saves
+    /// one [default: 10min; for a resumed run, its first setting]
     #[arg(long, value_name = "TIME")]
     pub checkpoint_every: Option<CheckpointInterval>,
-    /// No progress and no summary
+    /// Print no progress and no summary
     #[arg(long, short)]
     pub quiet: bool,
 }
@@ -154,24 +154,24 @@ pub struct SceneArgs {
 /// What is set in a scene, and how it is prepared.
 #[derive(Debug, Args)]
 pub struct SettingArgs {
-    /// Replace a setting, as in --set base.cu=3; can be repeated
+    /// Replace a setting, for example --set base.cu=3; can be repeated
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
     pub settings: Vec<String>,
     /// Seed: the same seed gives the same bits
     #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
     pub seed: Option<u64>,
-    /// Add replicates until the 95 % interval of the eroded mass is this wide to either side, as 0.1pp
+    /// Add replicates until the 95 % interval of the eroded mass is within this of its mean, such as 0.1pp
     /// (percentage points)
     #[arg(long, value_name = "ERROR", value_parser = target_error, allow_hyphen_values = true)]
     pub target_error: Option<f64>,
-    /// Add replicates until the verdict is right with this probability, as 99.9%
+    /// Add replicates until the verdict is right with this probability, such as 99.9%
     #[arg(long, value_name = "PERCENT", value_parser = decide, allow_hyphen_values = true)]
     pub decide: Option<f64>,
     /// Folder that keeps packings, so that each is made once
     #[arg(long, value_name = "DIR", default_value = "voidwalk-packings")]
     pub packings: PathBuf,
-    /// Memory limit, as 4GB: base particles beyond it are kept in mapped files in the run folder; the result
-    /// is the same [default: 80 % of what is available]
+    /// Memory limit, such as 4GB: base particles beyond it are kept in mapped files in the run folder; the
+    /// result is the same [default: 80 % of what is available]
     #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
     pub memory: Option<u64>,
     /// Print JSON
@@ -261,10 +261,10 @@ pub struct CompareArgs {
     /// Two to six filters with --base, bases with --filter, or scenes (TOML) with neither
     #[arg(required = true)]
     pub files: Vec<PathBuf>,
-    /// The base of all filters: CSV, .xlsx, .ods or AGS4; FILE#NAME for one of several soils
+    /// The one base, for all filters: CSV, .xlsx, .ods or AGS4; FILE#NAME for one of several soils
     #[arg(long, value_name = "FILE", conflicts_with = "filter")]
     pub base: Option<PathBuf>,
-    /// The filter of all bases, in the same form
+    /// The one filter, for all bases, in the same form
     #[arg(long, value_name = "FILE")]
     pub filter: Option<PathBuf>,
     /// How tables become scenes.
@@ -288,15 +288,15 @@ pub struct ServeArgs {
     /// Port of the loopback address [default: a free one]
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
     pub port: u16,
-    /// Folder for sheets and results: new, empty, or of an earlier start [default: a new one, voidwalk-serve,
-    /// voidwalk-serve-2, ...]
+    /// Folder for sheets and results: new, empty, or from an earlier session [default: a new one,
+    /// voidwalk-serve, voidwalk-serve-2, ...]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Folder that keeps packings, so that each is made once
     #[arg(long, value_name = "DIR", default_value = "voidwalk-packings")]
     pub packings: PathBuf,
-    /// Memory limit, as 4GB: base particles beyond it are kept in mapped files in the run folder; the result
-    /// is the same [default: 80 % of what is available]
+    /// Memory limit, such as 4GB: base particles beyond it are kept in mapped files in the run folder; the
+    /// result is the same [default: 80 % of what is available]
     #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
     pub memory: Option<u64>,
     /// Worker threads; the result is the same for any number [default: one per core]
@@ -309,8 +309,8 @@ pub struct ServeArgs {
 pub struct ResumeArgs {
     /// The run's folder
     pub folder: PathBuf,
-    /// Memory limit, as 4GB: base particles beyond it are kept in mapped files in the run folder; the result
-    /// is the same [default: 80 % of what is available]
+    /// Memory limit, such as 4GB: base particles beyond it are kept in mapped files in the run folder; the
+    /// result is the same [default: 80 % of what is available]
     #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
     pub memory: Option<u64>,
     /// How it is walked.
@@ -325,15 +325,16 @@ pub struct ResumeArgs {
 #[derive(Debug, Args)]
 pub struct DesignArgs {
     /// The base: a sieve table, as base.sieve in a scene (FILE#NAME for one of several soils) [default: from
-    /// the settings, as --set base.cu=3]
+    /// the settings, for example --set base.cu=3]
     pub base: Option<PathBuf>,
     /// The shape of the filter, whose size is searched: a sieve table, a Cu, or a shipped curve [default:
     /// shire2016-cu1.5-loose, or from --set]
     #[arg(long, value_name = "SHAPE", allow_hyphen_values = true)]
     pub filter: Option<String>,
     /// Density of the filter: dense, medium (or intermediate) or loose, from the library of packings, or
-    /// unknown, for anything from loose to dense; friction=F packs the grains so, estimate=D guesses at that
-    /// relative density; can be repeated [default for a table or a Cu: unknown]
+    /// unknown, for anything from loose to dense; friction=F packs the grains with that friction, estimate=D
+    /// guesses the constrictions at that relative density; can be repeated [default for a table or a Cu:
+    /// unknown]
     #[arg(long = "density", value_name = "DENSITY", value_delimiter = ',', allow_hyphen_values = true)]
     pub densities: Vec<String>,
     /// Pack the grains of this very filter and measure its constrictions [density: loose]
@@ -351,7 +352,8 @@ pub struct DesignArgs {
     /// Find the finest base that the filter holds instead: the filter keeps its size, the base is scaled
     #[arg(long)]
     pub inverse: bool,
-    /// Replace a setting, as in --set filter.grains_per_void=0.43 or --set replicates=20; can be repeated
+    /// Replace a setting, for example --set filter.grains_per_void=0.43 or --set replicates=20; can be
+    /// repeated
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
     pub settings: Vec<String>,
     /// Seed: the same seed gives the same bits
@@ -371,7 +373,7 @@ pub struct DesignArgs {
     /// Folder that keeps packings, so that each is made once
     #[arg(long, value_name = "DIR", default_value = "voidwalk-packings")]
     pub packings: PathBuf,
-    /// Memory limit, as 4GB; the result is the same [default: 80 % of what is available]
+    /// Memory limit, such as 4GB; the result is the same [default: 80 % of what is available]
     #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
     pub memory: Option<u64>,
     /// Worker threads; the result is the same for any number [default: one per core]
@@ -380,7 +382,7 @@ pub struct DesignArgs {
     /// Print design.json
     #[arg(long)]
     pub json: bool,
-    /// No progress and no summary
+    /// Print no progress and no summary
     #[arg(long, short)]
     pub quiet: bool,
 }
@@ -404,7 +406,7 @@ pub struct CampaignArgs {
     /// --threads [default: 4]; memory and time are estimated
     #[arg(long, group = "part")]
     pub slurm: bool,
-    /// With --slurm: number of tasks [default: a task takes some ten minutes]
+    /// With --slurm: number of tasks [default: enough that each takes about ten minutes]
     #[arg(long, value_name = "N", requires = "slurm",
           value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub tasks: Option<u16>,
@@ -420,8 +422,8 @@ pub struct CampaignArgs {
     /// Folder that keeps packings [default: packings in --out]
     #[arg(long, value_name = "DIR")]
     pub packings: Option<PathBuf>,
-    /// Memory limit, as 4GB: base particles beyond it are kept in mapped files in the run folder; the result
-    /// is the same [default: 80 % of what is available]
+    /// Memory limit, such as 4GB: base particles beyond it are kept in mapped files in the run folder; the
+    /// result is the same [default: 80 % of what is available]
     #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
     pub memory: Option<u64>,
     /// How it is walked.
@@ -435,10 +437,10 @@ pub struct PackArgs {
     /// The filter (TOML): [filter] with cu or sieve, d0_mm, and density or friction; optionally [packing]. A
     /// scene works too
     pub filter: PathBuf,
-    /// Replace a setting, as in --set packing.grains=20000; can be given again
+    /// Replace a setting, for example --set packing.grains=20000; can be repeated
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
     pub settings: Vec<String>,
-    /// Seed of the sizes and places of the grains
+    /// Seed for the sizes and positions of the grains
     #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
     pub seed: Option<u64>,
     /// Folder for the packing: new, empty, or with a stopped packing, which continues [default: one of its
@@ -457,7 +459,7 @@ pub struct PackArgs {
     /// Print packing.json
     #[arg(long)]
     pub json: bool,
-    /// No progress and no summary
+    /// Print no progress and no summary
     #[arg(long, short)]
     pub quiet: bool,
 }
@@ -496,7 +498,7 @@ pub struct ConstrictionsArgs {
 /// Which lattices, and how many.
 #[derive(Debug, Args)]
 pub struct PercolationArgs {
-    /// Lattice sizes: voids along each side, or along x, y and z, as 40x40x60
+    /// Lattice sizes: voids along each side, or along x, y and z, such as 40x40x60
     #[arg(long, value_name = "L,L,...", value_delimiter = ',', default_value = "10,20,40,80,160",
           value_parser = lattice_size, allow_hyphen_values = true)]
     pub sizes: Vec<[u32; 3]>,
@@ -519,7 +521,7 @@ pub struct PercolationArgs {
     /// Print percolation.json
     #[arg(long)]
     pub json: bool,
-    /// No summary
+    /// Print no summary
     #[arg(long, short)]
     pub quiet: bool,
 }
@@ -536,17 +538,17 @@ pub struct PrecisionArgs {
     /// Replace the results of an earlier call in --out
     #[arg(long)]
     pub overwrite: bool,
-    /// Tiers to measure: exact, sampling, bias, decision, scaling, packing [default: all]
+    /// What to measure: exact, sampling, bias, decision, scaling, packing [default: all]
     #[arg(long = "tier", value_name = "NAME", num_args = 1..)]
     pub tiers: Vec<Tier>,
-    /// Processor time of all cores together. It sets the number of replicates by counted work: the same seed
-    /// and budget give the same errors everywhere
+    /// Processor time of all cores together. It sets the number of replicates by a count of operations, so
+    /// the same seed and budget give the same errors on any machine
     #[arg(long, value_name = "TIME", default_value = "4min", value_parser = time)]
     pub budget: Duration,
     /// Runs side by side; the result is the same for any number [default: one per core]
     #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,
-    /// No progress and no summary
+    /// Print no progress and no summary
     #[arg(long, short)]
     pub quiet: bool,
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::args::CampaignArgs;
 use super::case_progress::CaseProgress;
-use super::print::{grains_per_void, leaves_out, percent, plain, shown, to_stdout};
+use super::print::{grains_per_void, percent, plain, shown, to_stdout};
 use super::progress::{followed, unfollowed};
 use super::run::command_line;
 use crate::campaign::cluster::scripts::quoted_if_needed;
@@ -14,6 +14,7 @@ use crate::campaign::{
     WrittenJobs,
 };
 use crate::outcome::ledger::{self, LedgerLine, confidences, of_earlier_versions};
+use crate::outcome::left_out_in_brief;
 use crate::outcome::record::{Confidence, Verdict};
 use crate::run::RunError;
 use crate::run::allocation::Allocation;
@@ -114,7 +115,7 @@ fn words(lines: &[LedgerLine], out: &Path) -> String {
     if let Some(said) = of_earlier_versions(lines) {
         let _ = writeln!(text, "{said}");
     }
-    let _ = writeln!(text, "{}", leaves_out(&ledger::leaves_out(lines)));
+    let _ = writeln!(text, "{}", left_out_in_brief(&ledger::leaves_out(lines)));
     let seconds: f64 = lines.iter().map(|line| line.made.seconds).sum();
     let page = shown(&out.join("report.html"));
     let _ = writeln!(text, "{} cases, {seconds:.1} s of walks; report: {page}", lines.len());

@@ -4,11 +4,12 @@ use std::fmt::Write;
 
 use super::args::CompareArgs;
 use super::case_progress::CaseProgress;
-use super::print::{grains_per_void, json, leaves_out, of_base, percent, plain, shown, to_stderr, to_stdout};
+use super::print::{grains_per_void, json, of_base, percent, plain, shown, to_stderr, to_stdout};
 use super::progress::followed;
 use super::run::command_line;
 use crate::campaign::{CampaignCallbacks, CampaignOptions, CasePart};
 use crate::outcome::comparison::Comparison;
+use crate::outcome::left_out_in_brief;
 use crate::outcome::record::Statistic;
 use crate::run::RunError;
 use crate::study::compare::{self, ComparePlan, Compared};
@@ -94,7 +95,7 @@ fn words(comparison: &Comparison) -> String {
     if let Some(what) = comparison.not_in_intervals() {
         line(format!("Not in these intervals: {what}"));
     }
-    line(leaves_out(&comparison.model_leaves_out));
+    line(left_out_in_brief(&comparison.model_leaves_out));
     text
 }
 

@@ -1,11 +1,12 @@
 //! `voidwalk design`: how coarse a filter may be.
 
 use super::args::DesignArgs;
-use super::print::{counted, json, leaves_out, plain, shown, to_stdout};
+use super::print::{counted, json, plain, shown, to_stdout};
 use super::progress::followed;
 use super::values::with_options;
 use crate::outcome::design::band::SetBy;
 use crate::outcome::design::{Boundary, Design, DesignRow, Range};
+use crate::outcome::left_out_in_brief;
 use crate::outcome::record::Confidence;
 use crate::run::{PrepareOptions, RunError};
 use crate::study::design::{self, DesignOptions};
@@ -76,7 +77,7 @@ fn words(design: &Design) -> String {
             (false, _) => "of the standard products none is said to fit, as the answer is in doubt".into(),
         });
     }
-    lines.push(leaves_out(&design.model_leaves_out));
+    lines.push(left_out_in_brief(&design.model_leaves_out));
     lines.push(format!("{:.1} s, {} networks each, seed {}", design.seconds, design.replicates, design.seed));
     lines.into_iter().map(|line| plain(&line) + "\n").collect()
 }

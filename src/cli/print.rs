@@ -54,12 +54,6 @@ pub fn grains_per_void(grains: Option<f64>) -> String {
     }
 }
 
-/// What the model leaves out, the first words of each thing.
-pub fn leaves_out(items: &[String]) -> String {
-    let first: Vec<&str> = items.iter().filter_map(|item| item.split(':').next()).collect();
-    format!("The model leaves out: {}.", first.join("; "))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -3,10 +3,9 @@
 use std::fmt::Write;
 
 use super::args::{ResultArgs, ResumeArgs, RunArgs, SettingArgs};
-use super::print::{
-    count, counted, grains_per_void, json, leaves_out, of_base, percent, plain, shown, to_stdout,
-};
+use super::print::{count, counted, grains_per_void, json, of_base, percent, plain, shown, to_stdout};
 use super::progress::followed;
+use crate::outcome::left_out_in_brief;
 use crate::outcome::record::{Confidence, RunSummary};
 use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
 
@@ -97,7 +96,7 @@ fn summary(run: &FinishedRun) -> String {
         outcome.ratios.d15f_over_d95b,
         grains_per_void(outcome.grains_per_void)
     ));
-    line(leaves_out(&outcome.model_leaves_out));
+    line(left_out_in_brief(&outcome.model_leaves_out));
     let page = shown(&run.folder.join("report.html"));
     line(format!("{:.1} s, seed {}; report: {page}", outcome.seconds, outcome.seed));
     text

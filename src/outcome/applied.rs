@@ -1,5 +1,8 @@
 //! What a rule of practice says of two soils, and how far a verdict can be relied on; as they are recorded.
 
+use std::borrow::Cow;
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
 /// A filter rule, applied.
@@ -10,6 +13,9 @@ pub struct AppliedRule {
     pub id: String,
     /// Whose rule it is, and what it says.
     pub name: String,
+    /// Whose rule it is; empty where nobody is cited, and in files of earlier versions.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub authority: String,
     /// What it is a rule of.
     #[serde(default)]
     pub role: RuleRole,
@@ -17,7 +23,7 @@ pub struct AppliedRule {
     #[serde(default)]
     pub applies: bool,
     /// What it limits, as `D15F/D85B`.
-    pub quantity: String,
+    pub quantity: RuleQuantity,
     /// Its value for these inputs; `None` where they do not give it.
     pub value: Option<f64>,
     /// The most, or the least, that the rule allows; `None` where no number is known.
@@ -63,6 +69,45 @@ impl AppliedRule {
     /// Whether it is a rule of practice that was made for these soils and is not kept.
     pub fn is_broken(&self) -> bool {
         self.applies && self.met == Some(false) && self.role != RuleRole::Walk
+    }
+}
+
+/// What a rule limits.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum RuleQuantity {
+    /// A size of the filter.
+    D15F,
+    /// The filter's size over one of the base.
+    #[serde(rename = "D15F/D85B")]
+    D15FOverD85B,
+    /// The filter's size over one of the base.
+    #[serde(rename = "D15F/D95B")]
+    D15FOverD95B,
+    /// Anything that is no limit of D15F, by its name.
+    #[serde(untagged)]
+    Named(Cow<'static, str>),
+}
+
+impl RuleQuantity {
+    /// One that is no limit of D15F.
+    pub const fn named(name: &'static str) -> Self {
+        Self::Named(Cow::Borrowed(name))
+    }
+
+    /// Its name for a reader, as it is written.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::D15F => "D15F",
+            Self::D15FOverD85B => "D15F/D85B",
+            Self::D15FOverD95B => "D15F/D95B",
+            Self::Named(name) => name,
+        }
+    }
+}
+
+impl fmt::Display for RuleQuantity {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.name())
     }
 }
 
@@ -165,5 +210,16 @@ mod tests {
         });
         let rule: AppliedRule = serde_json::from_value(old).unwrap();
         assert!(rule.role == RuleRole::Drainage && !rule.limit_at_most);
+        assert_eq!(rule.quantity, RuleQuantity::D15F);
+    }
+
+    #[test]
+    fn a_quantity_is_written_by_its_name_and_read_back() {
+        let sizes = [RuleQuantity::D15F, RuleQuantity::D15FOverD85B, RuleQuantity::D15FOverD95B];
+        for quantity in sizes.into_iter().chain([RuleQuantity::named("D100F")]) {
+            let text = serde_json::to_string(&quantity).unwrap();
+            assert_eq!(text, format!("\"{quantity}\""));
+            assert_eq!(serde_json::from_str::<RuleQuantity>(&text).unwrap(), quantity);
+        }
     }
 }

@@ -3,9 +3,12 @@
 use serde::{Deserialize, Serialize};
 
 use super::digits::count;
+use super::numbers::whole;
 use super::record::{Confidence, Outcome, Ratios, RunSummary, Verdict};
+use super::table::{Columns, TableCell};
 use super::undecided::UndecidedBy;
 use super::{BaseSize, leaves_out_of_all};
+use crate::text::shorten;
 
 /// A finished case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -128,6 +131,63 @@ pub struct Made {
 }
 
 impl LedgerLine {
+    /// The columns of `cases.csv` and of the page's table. What a line of an earlier version does not say
+    /// stays empty.
+    pub fn columns(factors: &[String]) -> Columns<'_, Self> {
+        let mut columns = Columns::default()
+            .column("case", |line: &Self| line.case.clone())
+            // The levels say which case it is, where there are any.
+            .words(
+                "Case",
+                |line| if line.levels.is_empty() { shorten(&line.case, 60) } else { String::new() },
+            );
+        for factor in factors {
+            let level = move |line: &Self| line.levels.get(factor)?.as_str().map(String::from);
+            let shown = move |line: &Self| shorten(&level(line).unwrap_or_default(), 40);
+            columns = columns.column(factor, level).words(factor, shown);
+        }
+        let run = |line: &Self, run: usize| line.runs.get(run).cloned();
+        let largest = move |line: &Self, of: usize| Some(run(line, of)?.largest_eroded_over_d15f?.mean);
+        let blocked = move |line: &Self, of: usize| Some(run(line, of)?.blocked_fraction.mean);
+        columns
+            .column("verdict", |line| line.verdict)
+            .headed("Class")
+            .place(-1)
+            .confidence(|line| line.confidence, |line| Some(shorten(line.reason.as_ref()?, 200)))
+            .column("reason", |line| line.reason.clone())
+            .broken_rules("rules_not_met", "Rules not met", |line| line.rules_not_met.as_ref().map(Vec::len))
+            .column("warnings", |line| line.warnings.len())
+            .headed("Warnings")
+            .column("layers", |line| line.thickness.map(|thickness| thickness.layers))
+            .thickness(3, |line| {
+                let of = line.thickness;
+                (of.and_then(|of| of.mm), of.is_some_and(|of| of.scale_free), of.map(|of| of.layers))
+            })
+            .place(2)
+            .column("replicates", |line| line.replicates)
+            .column("n_base", |line| line.n_base)
+            .number("Base particles", |line| {
+                whole(line.n_base).shown().below(line.capped.then(|| "capped".into()))
+            })
+            .place(3)
+            .column("capped", |line| line.capped)
+            .digits("grains_per_void", 5, |line| line.grains_per_void)
+            .headed("Grains per void")
+            .place(2)
+            .ratios(5, |line| (line.ratios, line.base))
+            .eroded(|line, run| (line.runs.get(run).map(|run| run.eroded_mass_fraction), None))
+            .digits("first_largest_eroded_over_d15f", 5, move |line| largest(line, 0))
+            .headed("Largest eroded/ D15F")
+            .digits("second_largest_eroded_over_d15f", 5, move |line| largest(line, 1))
+            .percent("first_blocked_percent", move |line| blocked(line, 0))
+            .percent("second_blocked_percent", move |line| blocked(line, 1))
+            .column("replicates_no_erosion", |line| line.replicate_verdicts[0])
+            .column("replicates_some_erosion", |line| line.replicate_verdicts[1])
+            .column("replicates_continuing_erosion", |line| line.replicate_verdicts[2])
+            .column("seed", |line| line.seed)
+            .column("folder", |line| line.folder.clone())
+    }
+
     /// The line of an outcome.
     pub fn new(
         case: &str,

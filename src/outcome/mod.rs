@@ -16,13 +16,14 @@
 //! - [`undecided`] is what leaves a verdict open.
 //! - [`precision`] is error against run time; [`comparison`] is several cases side by side.
 //! - [`design`] is how coarse a filter may be, and the band of a specification.
-//! - [`table`] describes the tables in which all of these are written, [`number_rows`] those of numbers
-//!   alone.
+//! - [`table`] describes the tables of files and pages, [`number_rows`] those of numbers alone, and
+//!   [`numbers`] is how a page writes a number.
 
 mod applied;
 mod base_size;
 pub mod by_connectivity;
 pub mod by_void;
+mod case_columns;
 pub mod comparison;
 mod curve_range;
 pub mod design;
@@ -34,6 +35,7 @@ pub mod ledger;
 mod metrics;
 pub mod network_walk;
 pub mod number_rows;
+pub mod numbers;
 pub mod packing;
 mod pan;
 pub mod paper;
@@ -81,6 +83,12 @@ pub fn leaves_out(rule: ExitRule) -> Vec<String> {
         all[0] = LEAVES_OUT_OF_FLOW.into();
     }
     all
+}
+
+/// What the model does not contain, the first words of each thing.
+pub fn left_out_in_brief(items: &[String]) -> String {
+    let first: Vec<&str> = items.iter().filter_map(|item| item.split(':').next()).collect();
+    format!("The model leaves out: {}.", first.join("; "))
 }
 
 /// What the model does not contain in any of several cases, each with water that gives particles their way or

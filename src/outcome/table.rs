@@ -1,20 +1,24 @@
-//! A table, described once: each column is its name and how its cell is taken from a row.
+//! A table, described once, for its file and for a page: a column has a name in the file, a heading on the
+//! page if it stands there, and one way in which its cell is taken from a row.
 //!
-//! Rows that are written as they are need no description but their type: [`csv_of()`]. Of others each column
-//! is named: [`Columns`].
+//! Rows whose fields are the columns of a file are declared with the headings of a page by `table_rows!`, and
+//! written by [`csv_of()`]. Of others each column is described: [`Columns`].
 //!
 //! ```
 //! use voidwalk::outcome::table::Columns;
-//! let of = Columns::default().column("case", |row: &(&str, f64)| row.0.to_owned());
-//! let of = of.digits("ratio", 2, |row| Some(row.1));
+//! let of = Columns::default().column("case", |row: &(&str, f64)| row.0.to_owned()).headed("Case");
+//! let of = of.digits("ratio", 2, |row| Some(row.1)).headed("D15F/D85B");
 //! assert_eq!(of.csv(&[("=1", 0.125), ("b", 3.0)]), b"case,ratio\n'=1,0.12\nb,3.00\n");
+//! let shown: Vec<String> = of.of_page().map(|column| (column.cell)(&("b", 3.0)).text).collect();
+//! assert_eq!(shown, ["b", "3.00"]);
 //! ```
 
 use serde::de::value::Error;
 use serde::de::{DeserializeOwned, Error as _, Visitor};
 use serde::{Deserializer, Serialize, forward_to_deserialize_any};
 
-use super::record::Statistic;
+use super::numbers::{percent, percent_interval, significant, whole};
+use super::record::{Statistic, Verdict};
 
 /// Why writing to memory does not fail.
 const WRITTEN: &str = "memory takes rows of numbers and names";
@@ -59,8 +63,27 @@ impl<'de> Deserializer<'de> for Names<'_> {
 /// The columns of a table.
 pub struct Columns<'a, T>(Vec<Column<'a, T>>);
 
-/// A column: its name, and its cell of a row.
-type Column<'a, T> = (String, Box<dyn Fn(&T) -> String + 'a>);
+/// A column: of a file, and of a page where it has a heading.
+struct Column<'a, T> {
+    /// In a file; a value with its interval is three columns there, and one cell of a page.
+    names: Vec<String>,
+    cells: Box<dyn Fn(&T) -> Vec<String> + 'a>,
+    page: PageColumn<'a, T>,
+    /// Where on the page: before the columns of a greater number, after those of a smaller one.
+    place: i8,
+}
+
+/// A column as a page shows it.
+pub struct PageColumn<'a, T> {
+    /// Its first name in a file.
+    pub name: String,
+    /// What it is, and its unit; empty where no page shows it.
+    pub heading: String,
+    /// Whether its cells are numbers, which stand at the right.
+    pub is_number: bool,
+    /// Its cell of a row.
+    pub cell: Box<dyn Fn(&T) -> Shown + 'a>,
+}
 
 impl<T> Default for Columns<'_, T> {
     fn default() -> Self {
@@ -70,26 +93,86 @@ impl<T> Default for Columns<'_, T> {
 
 impl<'a, T> Columns<'a, T> {
     /// With a column of texts and whole numbers.
-    pub fn column<C: TableCell>(mut self, name: impl Into<String>, cell: impl Fn(&T) -> C + 'a) -> Self {
-        self.0.push((name.into(), Box::new(move |row| cell(row).text())));
-        self
+    pub fn column<C: TableCell>(self, name: impl Into<String>, cell: impl Fn(&T) -> C + Clone + 'a) -> Self {
+        let shown = cell.clone();
+        let page = (C::IS_NUMBER, move |row: &T| shown(row).shown());
+        self.with(vec![name.into()], move |row| vec![cell(row).text()], page)
     }
 
     /// With a column of numbers with so many decimals.
-    pub fn digits(self, name: &str, decimals: usize, value: impl Fn(&T) -> Option<f64> + 'a) -> Self {
-        self.column(name, move |row| value(row).map(|value| format!("{value:.decimals$}")))
+    pub fn digits(self, name: &str, decimals: usize, value: impl Fn(&T) -> Option<f64> + Clone + 'a) -> Self {
+        let shown = value.clone();
+        let text = move |row: &T| vec![fixed(value(row), decimals)];
+        self.with(vec![name.into()], text, (true, move |row: &T| shown(row).shown()))
     }
 
     /// With a column of fractions, in percent.
-    pub fn percent(self, name: &str, value: impl Fn(&T) -> Option<f64> + 'a) -> Self {
-        self.digits(name, 4, move |row| value(row).map(|fraction| 100.0 * fraction))
+    pub fn percent(self, name: &str, value: impl Fn(&T) -> Option<f64> + Clone + 'a) -> Self {
+        let shown = value.clone();
+        let text = move |row: &T| vec![in_percent(value(row))];
+        self.with(vec![name.into()], text, (true, move |row: &T| shown(row).map(percent).shown()))
     }
 
-    /// With the columns of a fraction in percent and the ends of its interval.
-    pub fn statistic(self, names: [&str; 3], of: impl Fn(&T) -> Option<Statistic> + Copy + 'a) -> Self {
-        self.percent(names[0], move |row| of(row).map(|statistic| statistic.mean))
-            .percent(names[1], move |row| of(row)?.low)
-            .percent(names[2], move |row| of(row)?.high)
+    /// With the columns of a fraction in percent and the ends of its interval; on a page this is one column.
+    pub fn statistic(self, names: [&str; 3], of: impl Fn(&T) -> Option<Statistic> + Clone + 'a) -> Self {
+        let shown = of.clone();
+        let text = move |row: &T| {
+            let statistic = of(row);
+            let ends = statistic.map_or([None; 3], |of| [Some(of.mean), of.low, of.high]);
+            ends.map(in_percent).to_vec()
+        };
+        self.with(names.map(String::from).to_vec(), text, (true, move |row: &T| shown(row).shown()))
+    }
+
+    fn with(
+        mut self,
+        names: Vec<String>,
+        cells: impl Fn(&T) -> Vec<String> + 'a,
+        (is_number, cell): (bool, impl Fn(&T) -> Shown + 'a),
+    ) -> Self {
+        let page =
+            PageColumn { name: names[0].clone(), heading: String::new(), is_number, cell: Box::new(cell) };
+        self.0.push(Column { names, cells: Box::new(cells), page, place: 0 });
+        self
+    }
+
+    /// A page shows the last column, too, under this heading.
+    pub fn headed(mut self, heading: impl Into<String>) -> Self {
+        self.last().page.heading = heading.into();
+        self
+    }
+
+    /// A page shows this number in the place of the last column.
+    pub fn number<C: TableCell>(self, heading: &str, cell: impl Fn(&T) -> C + 'a) -> Self {
+        self.shown(heading, true, move |row| cell(row).shown())
+    }
+
+    /// A page shows this text in the place of the last column.
+    pub fn words<C: TableCell>(self, heading: &str, cell: impl Fn(&T) -> C + 'a) -> Self {
+        self.shown(heading, false, move |row| cell(row).shown())
+    }
+
+    fn shown(mut self, heading: &str, is_number: bool, cell: impl Fn(&T) -> Shown + 'a) -> Self {
+        let page = &mut self.last().page;
+        (page.heading, page.is_number, page.cell) = (heading.into(), is_number, Box::new(cell));
+        self
+    }
+
+    /// A page shows the last column before (below 0) or after (above 0) the others.
+    pub fn place(mut self, place: i8) -> Self {
+        self.last().place = place;
+        self
+    }
+
+    fn last(&mut self) -> &mut Column<'a, T> {
+        self.0.last_mut().expect("a column comes before what is said of it")
+    }
+
+    /// The columns that a page shows, in its order.
+    pub fn of_page(self) -> impl Iterator<Item = PageColumn<'a, T>> {
+        let mut shown: Vec<_> = self.0.into_iter().filter(|column| !column.page.heading.is_empty()).collect();
+        shown.sort_by_key(|column| column.place);
+        shown.into_iter().map(|column| column.page)
     }
 
     /// The rows as CSV; no cell of it is a formula.
@@ -98,37 +181,155 @@ impl<'a, T> Columns<'a, T> {
         T: 'r,
     {
         let mut writer = csv::Writer::from_writer(Vec::new());
-        writer.write_record(self.0.iter().map(|(name, _)| inert(name.clone()))).expect(WRITTEN);
+        writer.write_record(self.0.iter().flat_map(|of| of.names.clone()).map(inert)).expect(WRITTEN);
         for row in rows {
-            writer.write_record(self.0.iter().map(|(_, cell)| inert(cell(row)))).expect(WRITTEN);
+            writer.write_record(self.0.iter().flat_map(|of| (of.cells)(row)).map(inert)).expect(WRITTEN);
         }
         writer.into_inner().expect(WRITTEN)
     }
 }
 
-/// What stands in a cell; nothing where there is no value.
+/// A number with so many decimals; nothing where there is none.
+fn fixed(value: Option<f64>, decimals: usize) -> String {
+    value.map_or_else(String::new, |value| format!("{value:.decimals$}"))
+}
+
+fn in_percent(fraction: Option<f64>) -> String {
+    fixed(fraction.map(|fraction| 100.0 * fraction), 4)
+}
+
+/// A cell of a page.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Shown {
+    /// What stands in it.
+    pub text: String,
+    /// Smaller lines below that.
+    pub below: Vec<String>,
+    /// Whether it stands in the colour of a doubt.
+    pub is_doubt: bool,
+}
+
+impl Shown {
+    /// With a smaller line at its end, where there is one.
+    pub fn below(mut self, line: impl Into<Option<String>>) -> Self {
+        self.below.extend(line.into());
+        self
+    }
+
+    /// In the colour of a doubt, where it is one.
+    pub fn doubt(self, is_doubt: bool) -> Self {
+        Self { is_doubt, ..self }
+    }
+}
+
+/// What stands in a cell: nothing in a file and a dash on a page where there is no value.
 pub trait TableCell {
-    /// As text.
+    /// Whether it stands at the right of a page's column.
+    const IS_NUMBER: bool;
+
+    /// In a file.
     fn text(self) -> String;
+
+    /// On a page.
+    fn shown(self) -> Shown;
 }
 
 impl<C: TableCell> TableCell for Option<C> {
+    const IS_NUMBER: bool = C::IS_NUMBER;
+
     fn text(self) -> String {
         self.map_or(String::new(), C::text)
+    }
+
+    fn shown(self) -> Shown {
+        self.map_or_else(|| "–".shown(), C::shown)
+    }
+}
+
+impl TableCell for Verdict {
+    const IS_NUMBER: bool = false;
+
+    fn text(self) -> String {
+        self.words().to_owned()
+    }
+
+    fn shown(self) -> Shown {
+        self.words().shown()
+    }
+}
+
+/// A fraction in percent, on a page with its interval below it.
+impl TableCell for Statistic {
+    const IS_NUMBER: bool = true;
+
+    fn text(self) -> String {
+        in_percent(Some(self.mean))
+    }
+
+    fn shown(self) -> Shown {
+        percent(self.mean).shown().below(percent_interval(&self))
+    }
+}
+
+impl TableCell for Shown {
+    const IS_NUMBER: bool = false;
+
+    fn text(self) -> String {
+        self.text
+    }
+
+    fn shown(self) -> Shown {
+        self
     }
 }
 
 macro_rules! cells {
-    ($($kind:ty),*) => {
+    ($($kind:ty: $is_number:literal, $shown:expr;)*) => {
         $(impl TableCell for $kind {
+            const IS_NUMBER: bool = $is_number;
+
             fn text(self) -> String {
                 self.to_string()
+            }
+
+            fn shown(self) -> Shown {
+                Shown { text: $shown(self), ..Shown::default() }
             }
         })*
     };
 }
 
-cells!(String, &str, u64, usize, bool, f64);
+cells! {
+    String: false, |text| text;
+    &str: false, str::to_owned;
+    bool: false, |is: bool| if is { "✓" } else { "✗" }.to_owned();
+    u64: true, whole;
+    usize: true, |count| whole(count as u64);
+    f64: true, significant;
+}
+
+/// Declares rows whose fields are the columns of a CSV file ([`csv_of()`]); what follows `=>` is how a page
+/// shows a field, as of [`Columns`]. The type gets a function `columns`.
+macro_rules! table_rows {
+    ($($(#[$about:meta])* pub struct $row:ident {
+        $($(#[$what:meta])* pub $field:ident: $kind:ty $(=> $show:ident($($with:tt)*))?,)*
+    })*) => { $(
+        $(#[$about])*
+        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        pub struct $row {
+            $($(#[$what])* pub $field: $kind,)*
+        }
+
+        impl $row {
+            /// The columns of its table.
+            pub fn columns() -> crate::outcome::table::Columns<'static, Self> {
+                crate::outcome::table::Columns::default()
+                    $(.column(stringify!($field), |row: &Self| row.$field.clone()) $(.$show($($with)*))?)*
+            }
+        }
+    )* };
+}
+pub(crate) use table_rows;
 
 /// A cell that no spreadsheet takes for a formula.
 fn inert(cell: String) -> String {

@@ -3,7 +3,7 @@
 
 use super::figures::{Across, BLACK, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Rule};
 use super::numbers::size;
-use crate::outcome::record::Outcome;
+use crate::outcome::record::{Outcome, RuleQuantity};
 
 /// Half the height of a line, in percent finer.
 const HALF: f64 = 4.0;
@@ -23,8 +23,9 @@ type Boundary = (usize, f64, bool);
 pub(super) fn boundaries(outcome: &Outcome) -> Vec<Boundary> {
     let limit = |id: &str| {
         let rule = outcome.rules.iter().find(|rule| rule.id == id && rule.applies)?;
-        let limit =
-            rule.limit.filter(|limit| rule.quantity == "D15F" && *limit > 0.0 && limit.is_finite())?;
+        let limit = rule
+            .limit
+            .filter(|limit| rule.quantity == RuleQuantity::D15F && *limit > 0.0 && limit.is_finite())?;
         Some((limit, rule.limit_at_most))
     };
     let boundary = |(place, (id, ..)): (usize, &(&str, _, _, _))| {

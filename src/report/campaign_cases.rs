@@ -7,8 +7,8 @@ use maud::{Markup, Render, html};
 
 use super::cases;
 use super::figures::shorten;
-use super::numbers::{significant, size, whole};
-use super::shell::{clean, of_base};
+use super::numbers::whole;
+use super::shell::clean;
 use super::table::Table;
 use crate::outcome::ledger::{Campaign, LedgerLine, of_earlier_versions};
 use crate::outcome::record::{Confidence, Verdict};
@@ -69,39 +69,10 @@ pub(super) fn undecided(ledger: &[LedgerLine]) -> Markup {
 }
 
 fn table(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Markup {
-    let eroded = |line: &LedgerLine, run: usize| {
-        cases::eroded(line.runs.get(run).map(|run| &run.eroded_mass_fraction), None)
-    };
-    let mut table =
-        Table::of(ledger.iter().take(LISTED)).class("cases").name("Class", move |line| class(line, folder));
-    for factor in &about.factors {
-        table = table.text(clean(factor), move |line| match line.levels.get(factor) {
-            Some(serde_json::Value::String(level)) => clean(&shorten(level, 40)),
-            _ => String::new(),
-        });
-    }
-    if about.factors.is_empty() || ledger.iter().any(|line| line.levels.is_empty()) {
-        let name = |line: &LedgerLine| clean(&shorten(&line.case, 60));
-        table =
-            table.text("Case", move |line| if line.levels.is_empty() { name(line) } else { String::new() });
-    }
-    table
-        .text("Confidence", confidence)
-        .number("Rules not met", |line| cases::rules_not_kept(line.rules_not_met.as_ref().map(Vec::len)))
-        .number("Warnings", |line| line.warnings.len())
-        .number("Eroded, first run", move |line| eroded(line, 0))
-        .number("second run", move |line| eroded(line, 1))
-        .number("D15F/ D85B", |line| of_base(line.ratios.d15f_over_d85b, line.base))
-        .number("D15F/ D95B", |line| significant(line.ratios.d15f_over_d95b))
-        .number("Thickness", thickness)
-        .number("Grains per void", |line| line.grains_per_void.map_or_else(|| "–".to_owned(), significant))
-        .number("Largest eroded/ D15F", |line| {
-            let largest = line.runs.first().and_then(|run| run.largest_eroded_over_d15f);
-            largest.map_or_else(|| "–".to_owned(), |largest| significant(largest.mean))
-        })
-        .number("Base particles", |line| {
-            html! { (whole(line.n_base)) @if line.capped { br; span.small { "capped" } } }
-        })
+    Table::of(ledger.iter().take(LISTED))
+        .class("cases")
+        .columns(LedgerLine::columns(&about.factors), |line| line)
+        .named_by("verdict", |line| class(line, folder))
         .render()
 }
 
@@ -123,30 +94,9 @@ fn replicates_by_class(line: &LedgerLine) -> String {
         .join(", ")
 }
 
-/// The confidence, and below it the first reason why it is no more.
-fn confidence(line: &LedgerLine) -> Markup {
-    html! {
-        @if let Some(label) = line.confidence { (cases::confidence(label)) } @else { "–" }
-        @if let Some(reason) = &line.reason { br; span.small { (clean(&shorten(reason, 200))) } }
-    }
-}
-
-/// The thickness modelled, with its layers below it.
-fn thickness(line: &LedgerLine) -> Markup {
-    html! {
-        @match line.thickness {
-            None => "–",
-            Some(of) => {
-                (of.mm.map_or_else(|| "–".to_owned(), |mm| size(mm, of.scale_free)))
-                br; span.small { (whole(of.layers)) " layers" }
-            }
-        }
-    }
-}
-
 /// The names of the rules that a case does not keep.
 fn rules_of(line: &LedgerLine) -> Vec<String> {
-    let name = |id: &String| RULES.iter().find(|rule| rule.id == id).map(|rule| rule.name.to_owned());
+    let name = |id: &String| RULES.iter().find(|rule| rule.id == id).map(|rule| rule.name());
     line.rules_not_met.iter().flatten().map(|id| name(id).unwrap_or_else(|| id.clone())).collect()
 }
 

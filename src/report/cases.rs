@@ -1,13 +1,13 @@
-//! What campaigns and comparisons show of a case among others: cells of their tables, and both runs of all.
+//! What campaigns and comparisons show of a case among others: its class with a link, and both runs of all.
 
 use std::path::Path;
 
 use maud::{Markup, html};
 
 use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, PURPLE, Point, Rule, Shape, shorten};
-use super::numbers::{interval_in_percent, percent, percent_interval};
+use super::numbers::interval_in_percent;
 use super::run_figures::run_name;
-use crate::outcome::record::{Confidence, Statistic, Verdict};
+use crate::outcome::record::{Statistic, Verdict};
 use crate::text::is_plain_part;
 
 /// The class, with a link to the case's own page, where there is one: nowhere else than in a folder inside
@@ -16,37 +16,6 @@ pub(super) fn class(verdict: Verdict, folder: &Path, case: &str) -> Markup {
     let (words, page) = (verdict.words(), format!("{case}/report.html"));
     let is_there = page.split('/').all(is_plain_part) && folder.join(&page).is_file();
     html! { @if is_there { a href=(page) { b { (words) } } } @else { b { (words) } } }
-}
-
-/// How far a verdict can be relied on.
-pub(super) fn confidence(confidence: Confidence) -> Markup {
-    html! { @match confidence {
-        Confidence::Within => "within",
-        Confidence::Outside => span.amber { "outside" },
-        Confidence::Contradicted => span.amber { "contradicted" },
-        doubt => span.amber { (doubt.words()) },
-    } }
-}
-
-/// A number of rules that are not kept, where it is known.
-pub(super) fn rules_not_kept(count: Option<usize>) -> Markup {
-    html! { @match count {
-        None => "–",
-        Some(0) => "0",
-        Some(count) => span.amber { (count) },
-    } }
-}
-
-/// Mass eroded, below it its interval, and below that its range where the constriction curve is a range.
-pub(super) fn eroded(statistic: Option<&Statistic>, range: Option<&[f64; 2]>) -> Markup {
-    let Some(statistic) = statistic else { return html! { "–" } };
-    html! {
-        (percent(statistic.mean))
-        @if let Some(interval) = percent_interval(statistic) { br; span.small { (interval) } }
-        @if let Some([low, high]) = range {
-            br; span.small { "curve: " (percent(*low)) " to " (percent(*high)) }
-        }
-    }
 }
 
 /// First and second run of each case, one row a case.

@@ -8,10 +8,10 @@ use super::cases;
 use super::error::ReportError;
 use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, PURPLE, Point, Rule, Shape, shorten};
 use super::files::json;
-use super::numbers::{known, significant, size, threshold, whole};
+use super::numbers::threshold;
 use super::run_figures::run_name;
 use super::section::Sections;
-use super::shell::{Drawn, citation, clean, leaves_out, of_base};
+use super::shell::{Drawn, citation, clean, leaves_out};
 use super::table::Table;
 use super::written::Written;
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
@@ -186,20 +186,9 @@ fn doubts(comparison: &Comparison) -> Markup {
 fn cases(folder: &Path, comparison: &Comparison) -> Markup {
     Table::of(&comparison.cases)
         .class("cases")
-        .name("Case", |case| html! { bdi { (name(&case.name)) } })
-        .text("Class", move |case| cases::class(case.verdict, folder, &case.folder))
-        .text("Confidence", |case| cases::confidence(case.confidence))
-        .number("Rules not kept", |case| cases::rules_not_kept(Some(case.rules_not_kept.len())))
-        .number("Eroded, first run", |case| cases::eroded(case.runs.first(), case.curve_range.first()))
-        .number("second run", |case| cases::eroded(case.runs.get(1), case.curve_range.get(1)))
-        .number("D15F/ D85B", |case| of_base(case.ratios.d15f_over_d85b, case.base))
-        .number("D15F/ D95B", |case| significant(case.ratios.d15f_over_d95b))
-        .number("Thickness", |case| {
-            case.thickness_mm.map_or_else(|| "–".to_owned(), |thickness| size(thickness, case.scale_free))
-        })
-        .number("Grains per void", |case| known(case.grains_per_void, significant))
-        .number("Replicates", |case| case.replicates)
-        .number("Base particles", |case| whole(case.n_base))
+        .columns(ComparedCase::columns(), |case| case)
+        .named_by("case", |case| html! { bdi { (name(&case.name)) } })
+        .showing("verdict", |case| cases::class(case.verdict, folder, &case.folder))
         .render()
 }
 

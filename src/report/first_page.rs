@@ -102,7 +102,7 @@ fn table(rules: &[&AppliedRule]) -> Markup {
         .name("Rule", |rule| clean(&rule.name))
         .number("here", |rule| {
             let value = rule.value.map_or_else(|| "–".to_owned(), significant);
-            html! { (clean(&rule.quantity)) br; (value) }
+            html! { (clean(rule.quantity.name())) br; (value) }
         })
         .number("limit", |rule| {
             let sign = if rule.at_least { "≥" } else { "≤" };

@@ -46,7 +46,6 @@ mod folder;
 mod infiltration;
 mod names;
 mod network_walk;
-pub mod numbers;
 mod packing;
 mod page;
 mod percolation;
@@ -64,6 +63,7 @@ mod vtu;
 mod walks;
 mod written;
 
+pub use crate::outcome::numbers;
 pub use campaign::{campaign_page, write_campaign};
 pub use comparison::write_comparison;
 pub use design::write_design;

@@ -5,7 +5,9 @@ use std::path::Path;
 use maud::{Markup, Render, html};
 
 use super::error::ReportError;
-use super::figures::{Across, Axis, BLUE, Dash, Figure, GREY, Line, PURPLE, Point, Rule, Shape, Tick};
+use super::figures::{
+    Across, Axis, BLUE, Chart, Dash, Figure, GREY, Line, Look, PURPLE, Point, Role, Rule, Shape, Tick,
+};
 use super::files::json;
 use super::numbers::{duration, significant, whole};
 use super::section::Sections;
@@ -77,9 +79,8 @@ fn fits(study: &PercolationStudy) -> Markup {
                 } }
             }
             p.small {
-                "A χ² far above the degrees of freedom says that the relation does not describe these \
-                 sizes; its error then "
-                "says nothing."
+                "If χ² far exceeds the degrees of freedom, the relation does not describe these sizes, and \
+                 its error means nothing."
             }
         }
     }
@@ -87,16 +88,22 @@ fn fits(study: &PercolationStudy) -> Markup {
 
 /// Standard deviation of the threshold against the size of the lattice: Fig. 6 of the paper.
 pub fn percolation_spread(study: &PercolationStudy) -> Drawn {
-    let of_size = |of: &SizeThreshold| Some((of.size as f64, of.threshold.sd?, of.sd_error.unwrap_or(0.0)));
-    let points: Vec<(f64, f64, f64)> = study.sizes.iter().filter_map(of_size).collect();
-    let widest = points.iter().map(|(x, ..)| *x).fold(1.0, f64::max);
-    let highest = points.iter().map(|(_, sd, error)| sd + 2.0 * error).fold(0.001, f64::max);
-    let x = Axis::linear("Size of the lattice, L (voids along each side)", 0.0, widest);
-    let y = Axis::linear("Standard deviation of the threshold (–)", 0.0, highest);
-    let what = "Standard deviation of the percolation threshold against the size of the lattice";
-    let mut figure = Figure::new("Scatter of the percolation threshold", what, "", x, y);
-    let with_bar = |&(x, sd, error): &_| (x, sd, Some((sd - 1.96 * error, sd + 1.96 * error)));
-    figure.add_series(Line::new(Vec::new(), BLUE), Shape::Circle, points.iter().map(with_bar));
+    let sd = |of: &SizeThreshold| of.threshold.sd.unwrap_or(0.0);
+    let interval = move |of: &SizeThreshold| {
+        let half = 1.96 * of.sd_error.unwrap_or(0.0);
+        Some((sd(of) - half, sd(of) + half))
+    };
+    let words = [
+        "Scatter of the percolation threshold",
+        "Standard deviation of the percolation threshold against the size of the lattice",
+    ];
+    let x =
+        Role::linear("Size of the lattice, L (voids along each side)", |of: &SizeThreshold| of.size as f64);
+    let y = Role::linear("Standard deviation of the threshold (–)", sd).interval(interval);
+    let rows = study.sizes.iter().filter(|of| of.threshold.sd.is_some());
+    let figure = Chart::of(rows, words, x.also([0.0, 1.0]), y.also([0.0, 0.001]))
+        .by(|_| [""], |_| Look::line(BLUE, Shape::Circle))
+        .figure();
     let caption = "Standard deviation of the percolation threshold over the realisations, as in Fig. 6 of \
                    the paper. Bars: 95 % intervals, for normal thresholds.";
     Drawn::new("percolation-sd", figure, caption)

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::numbers::{significant, trimmed};
 use super::shell::clean;
 use super::table::Table;
-use crate::outcome::record::{AppliedRule, Outcome, RuleRole, Verdict};
+use crate::outcome::record::{AppliedRule, Outcome, RuleRole};
 
 /// Every rule with its value, limit, result, source and what it was made for.
 pub(super) fn rules(outcome: &Outcome) -> Markup {
@@ -14,7 +14,7 @@ pub(super) fn rules(outcome: &Outcome) -> Markup {
     html! {
         h2 { "Filter rules beside the verdict" }
         @if outcome.rules.is_empty() { p { "No rule was applied." } } @else {
-            p { (compared(outcome)) }
+            p { (outcome.compared_with_tests()) }
             (table(&practice))
             @if !walk.is_empty() {
                 h3 { "Comparisons of the walk with tests and with the paper" }
@@ -46,7 +46,7 @@ pub(super) fn table(rules: &[&AppliedRule]) -> Markup {
             let value = rule
                 .value
                 .map_or_else(|| "–".to_owned(), |value| format!("= {} {}", significant(value), rule.unit));
-            html! { (clean(&rule.quantity)) " " br; (clean(value.trim_end())) }
+            html! { (clean(rule.quantity.name())) " " br; (clean(value.trim_end())) }
         })
         .number("Limit", |rule| {
             let sign = if rule.at_least { "≥" } else { "≤" };
@@ -66,48 +66,4 @@ pub(super) fn table(rules: &[&AppliedRule]) -> Markup {
             (_, None) => html! { "no result" },
         });
     html! { (table) }
-}
-
-/// Where walk, rules and tests disagree for this pair, and which way each errs.
-fn compared(outcome: &Outcome) -> String {
-    let met = |id: &str| outcome.rules.iter().find(|rule| rule.id == id && rule.applies)?.met;
-    let tests = match (met("foster-fell-no-erosion"), met("foster-fell-continuing")) {
-        (Some(true), _) => Some((0, "no erosion")),
-        (Some(false), Some(true)) => Some((1, "some or excessive erosion")),
-        (Some(false), Some(false)) => Some((2, "continuing erosion")),
-        _ => None,
-    };
-    let walked = match outcome.verdict {
-        Verdict::None => Some(0),
-        Verdict::Some => Some(1),
-        Verdict::Continuing => Some(2),
-        Verdict::Undecided => None,
-    };
-    let mut text = format!("The walk says “{}”. ", outcome.verdict.words());
-    text += &match tests {
-        Some((_, class)) => format!("The boundaries that Foster and Fell saw in tests say “{class}”. "),
-        None => "The boundaries that Foster and Fell saw in tests give no class for this pair. ".into(),
-    };
-    text += match met("sherard-dunnigan") {
-        Some(true) => "The limit of design (Sherard and Dunnigan) is met. ",
-        Some(false) => "The limit of design (Sherard and Dunnigan) is not met. ",
-        None => "The limit of design (Sherard and Dunnigan) gives no result. ",
-    };
-    text += match walked.zip(tests.map(|(class, _)| class)) {
-        Some((walked, tests)) if walked > tests => {
-            "The walk is stricter than the tests here: for uniform sands it errs on the safe side. "
-        }
-        Some((walked, tests)) if walked < tests => {
-            "The walk is more favourable than the tests here, which is on the unsafe side: rely on the \
-             tests. "
-        }
-        Some(_) => "Walk and tests agree here. ",
-        None => "",
-    };
-    text += "Which way each errs: for clean sands tests put the end of no erosion at a D15F/D85B of 6.8 \
-             to 10, the limits of Terzaghi and of design at 4, with a margin, and this network near 5. \
-             For uniform sands the model is therefore stricter than tests. For broadly graded bases it is \
-             unsafe: a few coarse grains block for all the rest; and of cohesive fines it knows nothing. \
-             (Tests: Foster and Fell, as given by Fell et al., Geotechnical Engineering of Dams, Table 9.2.)";
-    text
 }

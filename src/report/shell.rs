@@ -25,8 +25,6 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::figures::{Figure, Size, visible};
-use super::numbers::significant;
-use crate::outcome::BaseSize;
 
 const STYLE: &str = include_str!("page.css");
 /// Its SHA-256 in base64, as a content policy names it. Where the style is changed, a test on Linux says the
@@ -172,14 +170,6 @@ pub(super) fn citation() -> Markup {
                                                         combinations" }
             ", Computers and Geotechnics."
         }
-    }
-}
-
-/// D15F/D85B, and below it which base D85B is of.
-pub(super) fn of_base(ratio: f64, base: Option<BaseSize>) -> Markup {
-    html! {
-        (significant(ratio))
-        @if let Some(base) = base { br; span.small { (base.words()) } }
     }
 }
 

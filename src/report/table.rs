@@ -1,6 +1,10 @@
-//! Tables of a page: a column is its heading and what it shows of a row, so that the two cannot drift apart.
+//! Tables of a page: a column is its heading and what it shows of a row. Where the table is a file, too, both
+//! come from one description ([`Columns`]), which a page may decorate.
 
 use maud::{Markup, Render, html};
+
+use super::shell::clean;
+use crate::outcome::table::{Columns, Shown};
 
 /// Where the text of a column stands.
 #[derive(Clone, Copy)]
@@ -15,6 +19,8 @@ enum Kind {
 
 /// A column: its heading, and its cell of a row.
 struct Column<'a, T> {
+    /// Its name in a file, where it has one.
+    name: String,
     kind: Kind,
     heading: Markup,
     cell: Box<dyn Fn(&T) -> Markup + 'a>,
@@ -44,6 +50,37 @@ impl<'a, T> Table<'a, T> {
         Self { more, ..self }
     }
 
+    /// With the described columns of a row or of a part of it; a column that is empty in every row is left
+    /// out.
+    pub(super) fn columns<P: 'a>(mut self, of: Columns<'a, P>, part: impl Fn(&T) -> &P + Copy + 'a) -> Self {
+        for column in of.of_page() {
+            let shown = |row: &&&T| column.is_number || (column.cell)(part(row)) != Shown::default();
+            if self.rows.is_empty() || self.rows.iter().any(|row| shown(&row)) {
+                let kind = if column.is_number { Kind::Number } else { Kind::Text };
+                self =
+                    self.column(kind, clean(&column.heading), move |row| markup(&(column.cell)(part(row))));
+                self.columns.last_mut().expect("just added").name = column.name;
+            }
+        }
+        self
+    }
+
+    /// The cells of a described column show this instead.
+    pub(super) fn showing(mut self, name: &str, cell: impl Fn(&T) -> Markup + 'a) -> Self {
+        self.described(name).cell = Box::new(cell);
+        self
+    }
+
+    /// The cells of a described column show this instead, and name their rows.
+    pub(super) fn named_by(mut self, name: &str, cell: impl Fn(&T) -> Markup + 'a) -> Self {
+        self.described(name).kind = Kind::Name;
+        self.showing(name, cell)
+    }
+
+    fn described(&mut self, name: &str) -> &mut Column<'a, T> {
+        self.columns.iter_mut().find(|column| column.name == name).expect("a column that is described")
+    }
+
     /// With a column of the names of the rows.
     pub(super) fn name<R: Render>(self, heading: impl Render, cell: impl Fn(&T) -> R + 'a) -> Self {
         self.column(Kind::Name, heading, cell)
@@ -61,8 +98,15 @@ impl<'a, T> Table<'a, T> {
 
     fn column<R: Render>(mut self, kind: Kind, heading: impl Render, cell: impl Fn(&T) -> R + 'a) -> Self {
         let cell = Box::new(move |row: &T| cell(row).render());
-        self.columns.push(Column { kind, heading: heading.render(), cell });
+        self.columns.push(Column { name: String::new(), kind, heading: heading.render(), cell });
         self
+    }
+}
+
+fn markup(shown: &Shown) -> Markup {
+    html! {
+        @if shown.is_doubt { span.amber { (clean(&shown.text)) } } @else { (clean(&shown.text)) }
+        @for line in &shown.below { br; span.small { (clean(line)) } }
     }
 }
 

@@ -10,6 +10,7 @@ use super::run_figures;
 use super::shell::clean;
 use super::table::Table;
 use super::walks::Walks;
+use crate::outcome::left_out_in_brief;
 use crate::outcome::record::{RunSummary, Verdict};
 use crate::verdict::words::{capital, meaning};
 
@@ -81,7 +82,6 @@ pub(super) fn brief(walks: &Walks, said: &Said) -> String {
     let drawn = run_figures::verdict(walks);
     let picture = BASE64_STANDARD.encode(drawn.figure.file());
     let table = eroded_table(walks).number("constrictions blocked", |run| fraction(&run.blocked_fraction));
-    let left_out: Vec<&str> = said.leaves_out.iter().filter_map(|item| item.split(':').next()).collect();
     html! {
         div {
             p { b { (clean(&capital(said.headline))) "." } " " (clean(&said.meaning)) }
@@ -91,7 +91,7 @@ pub(super) fn brief(walks: &Walks, said: &Said) -> String {
                 alt="Mean and 95 % interval of the eroded mass in each run, against the threshold";
             (table)
             (replicates_in_words(walks, said.replicate))
-            p { "The model leaves out: " (clean(&left_out.join("; "))) "." }
+            p { (clean(&left_out_in_brief(said.leaves_out))) }
         }
     }
     .into_string()

@@ -5,11 +5,15 @@ use std::cmp::Ordering;
 use super::network_walk::{NetworkOutcome, NetworkWalk};
 use super::replicates::said_by_walks;
 use crate::case::{PAPER_MASS_RATIO, all_on_its_way, few, fines_of, narrow_lattice, not_as_uniform};
+use crate::gradation::Gradation;
 use crate::network::Network;
 use crate::outcome::record::Statistic;
 use crate::outcome::rules::{self, RuleInputs};
 use crate::verdict::Mistake;
 use crate::verdict::{Finding, Judgement, finding, judge};
+
+/// Cu from which a base counts as broadly graded: that of well-graded sands by ASTM D2487.
+const BROAD_CU: f64 = 6.0;
 
 impl NetworkOutcome {
     /// What the verdict is worth, on so many networks of which this is the first.
@@ -47,9 +51,13 @@ impl NetworkWalk {
         let flows = network.exit_rule().needs_flow();
         let pan = self.base.pan_fraction();
         let mistake = filter.and_then(|filter| Mistake::find(&self.base, filter, false));
+        let measured = self.filter.as_ref().filter(|filter| filter.is_measured);
+        let gap = measured.and_then(|filter| filter.gradation.gap(0.0));
         [
             mistake.as_ref().map(Mistake::finding),
             fines_of(&self.base),
+            broad(&self.base),
+            gap.map(|gap| finding::gap_graded(gap.within, gap.from_mm)),
             self.amount(network),
             Some(finding::given_network(network.filter_voids() as u64)),
             filter.is_none().then(finding::no_filter),
@@ -80,16 +88,28 @@ impl NetworkWalk {
     }
 }
 
+/// A base that is broadly graded; nobody regrades one that is walked without a scene.
+fn broad(base: &Gradation) -> Option<Finding> {
+    let regraded = base.regraded();
+    match regraded.at_mm {
+        Some(at) => Some(finding::not_regraded(at, &regraded.why)),
+        None => base.cu().filter(|cu| *cu >= BROAD_CU).map(finding::broadly_graded),
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+    use std::fs;
     use std::sync::Arc;
 
     use super::*;
+    use crate::case::Case;
     use crate::constrictions::find;
-    use crate::gradation::Gradation;
     use crate::network::{ExitRule, NetworkColumns};
     use crate::outcome::record::Confidence;
     use crate::run::{Callbacks, GivenFilter, walk_networks};
+    use crate::scene::Scene;
 
     fn said(
         n_base: Option<u64>,
@@ -167,5 +187,93 @@ mod tests {
         let reasons = outcome.answer(&plan, &network, 1).reasons().join("\n");
         assert!(reasons.contains("clogged wholly") && reasons.contains("More and smaller increments"));
         assert!(!reasons.contains("inject_share"), "{reasons}");
+    }
+
+    /// Findings that a scene alone has: of its files, and of a filter's finest part, which matters where Eq.
+    /// (2) asks for the base.
+    const OF_A_SCENE: [&str; 2] = ["read_as", "pan_of_filter"];
+    /// A scene knows the Cu of a base whose D10 lies in its finest part, from how it walks that part.
+    const WITHOUT_A_SCENE: [&str; 1] = ["cu_unknown"];
+
+    /// The same soils on the same network, with a scene and without: each finding that follows from them is
+    /// reported by both, or stands in a list above.
+    #[test]
+    fn a_walk_without_a_scene_finds_what_a_scene_of_the_same_soils_finds() {
+        type Points = &'static [(f64, f64)];
+        const SAND: Points = &[(0.2, 0.0), (0.6, 100.0)];
+        const FILTER: Points = &[(1.0, 0.0), (3.0, 100.0)];
+        const GAP: Points = &[(1.0, 0.0), (1.2, 15.0), (8.0, 15.0), (20.0, 100.0)];
+        const SILT: Points = &[(0.01, 0.0), (0.075, 40.0), (0.3, 100.0)];
+        const BROAD: Points = &[(0.1, 0.0), (0.2, 12.0), (1.4, 60.0), (4.0, 100.0)];
+        const NEARLY_BROAD: Points = &[(0.1, 0.0), (0.2, 12.0), (1.0, 60.0), (4.0, 100.0)];
+        const GRAVELLY: Points = &[(0.1, 0.0), (2.0, 40.0), (19.0, 100.0)];
+        const HIDDEN: Points = &[(0.3, 25.0), (1.0, 100.0)];
+        const PASSIVE: Points = &[(0.3, 3.0), (1.0, 100.0)];
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        let write = |name: &str, points: Points| {
+            let rows = points.iter().map(|(mm, percent)| format!("{mm},{percent}\n"));
+            fs::write(path(name), rows.fold("size_mm,percent_finer\n".into(), |all: String, row| all + &row))
+        };
+        let network = "from,to,diameter_mm\nstart,0,\n0,1,0.5\n1,end,0.4\n1,0,0.5\n";
+        fs::write(path("network.csv"), network).unwrap();
+        let (mut seen, mut pairs) = (BTreeSet::new(), 0);
+        for (base, filter) in [
+            (SAND, FILTER),
+            (SAND, GAP),
+            (SILT, FILTER),
+            (BROAD, FILTER),
+            (NEARLY_BROAD, FILTER),
+            (GRAVELLY, FILTER),
+            (HIDDEN, FILTER),
+            (PASSIVE, FILTER),
+            (FILTER, SAND),
+        ] {
+            write("base.csv", base).unwrap();
+            write("filter.csv", filter).unwrap();
+            for replicates in [1, 3, 6] {
+                let file = |key: &str, name: &str| format!("{key}={}", path(name).display());
+                let set = [
+                    file("network.file", "network.csv"),
+                    file("base.sieve", "base.csv"),
+                    file("filter.sieve", "filter.csv"),
+                    "base.n_base=1000".into(),
+                    format!("replicates={replicates}"),
+                    "record.sensitivity=[]".into(),
+                ];
+                let case = Case::new(Scene::built_in(&set).unwrap()).unwrap();
+                let filter = GivenFilter {
+                    gradation: case.filter.clone(),
+                    is_measured: case.filter_is_measured(),
+                    grains_per_void: None,
+                };
+                let plan = NetworkWalk {
+                    increments: case.increments(),
+                    replicates,
+                    filter: Some(filter),
+                    ..NetworkWalk::new(case.base.clone(), case.n_base)
+                };
+                let network = case.fixed_network.as_ref().unwrap();
+                let ids = |found: Vec<Finding>, own: &[&str]| -> BTreeSet<&'static str> {
+                    found.iter().map(Finding::id).filter(|id| !own.contains(id)).collect()
+                };
+                let of_scene = case.findings().into_iter().chain(case.not_studied()).collect();
+                let of_scene = ids(of_scene, &OF_A_SCENE);
+                assert_eq!(of_scene, ids(plan.findings(network, replicates), &WITHOUT_A_SCENE), "{base:?}");
+                seen.extend(of_scene);
+                pairs += 1;
+            }
+        }
+        let wanted = [
+            "broadly_graded",
+            "cohesive_fines",
+            "cu_unchecked",
+            "few_replicates",
+            "gap_graded",
+            "given_network",
+            "not_regraded",
+            "one_replicate",
+        ];
+        assert!(wanted.iter().all(|id| seen.contains(id)) && pairs == 27, "{seen:?}");
     }
 }

@@ -2,7 +2,6 @@
 
 use super::entry::Finding;
 use super::{finding, thickness};
-use crate::outcome::design::band::{Band, SetBy};
 use crate::outcome::digits::percent;
 use crate::outcome::packing::{FLOATING_PERCENT, PackedPart};
 use crate::outcome::record::{
@@ -119,16 +118,6 @@ impl Outcome {
     }
 }
 
-/// That nothing lies between the least D15F that drains a base and the greatest that holds it.
-pub fn empty_band(band: &Band) -> Option<Finding> {
-    let size = |d15f: f64| format!("{d15f:.3} {}", band.unit);
-    let set_by = match band.set_by {
-        Some(SetBy::Practice) => &band.practice_rule,
-        _ => "the walk",
-    };
-    band.is_empty.then(|| finding::empty_band(&size(band.least), &size(band.greatest), set_by))
-}
-
 /// What the readings of the base's finest part say of its verdict.
 pub fn pan(bounds: &PanBounds) -> Finding {
     let (share, sieve) = (100.0 * bounds.mass_fraction, bounds.finest_sieve_mm);
@@ -210,28 +199,4 @@ fn short_of(stopping: &Stopping) -> Option<Finding> {
             finding::target_missed(target, half_width_pp, replicates, needed)
         }
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gradation::Gradation;
-    use crate::verdict::PairRules;
-
-    #[test]
-    fn an_empty_band_names_the_two_numbers_that_clash_and_whose_the_second_is() {
-        let said = |base_cu: f64, greatest: f64| {
-            let base = Gradation::linear_from_dx(85.0, 0.4, base_cu).unwrap();
-            let rules = PairRules::of(&base, &Gradation::linear_from_dx(15.0, 1.6, 1.5).unwrap()).rules;
-            let band = Band::new(&rules, 1.6, greatest, "mm").unwrap();
-            let least = format!("at least {:.3} mm", 5.0 * 0.4 * libm::pow(base_cu, -1.4));
-            let sentence = empty_band(&band).map(|finding| finding.sentence());
-            assert!(sentence.as_ref().is_none_or(|said| said.contains(&least)), "{sentence:?}");
-            sentence.unwrap_or_default()
-        };
-        assert_eq!(said(3.0, 1.8), "");
-        assert!(said(1.2, 1.5).ends_with("but the walk allows at most 1.500 mm."), "{}", said(1.2, 1.5));
-        let practice = said(1.1, 1.8);
-        assert!(practice.ends_with("allows at most 1.600 mm.") && !practice.contains("walk"), "{practice}");
-    }
 }

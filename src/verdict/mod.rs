@@ -5,11 +5,14 @@
 //! - [`judge()`] takes class, rules and findings, and gives the answer with its label and ordered findings.
 //! - [`practice`] is what the rules of filter practice say of a pair.
 //! - [`walks`] is what walks say themselves, [`beside`] what their results say beside the verdict.
+//! - [`design_answer()`] is how coarse a filter may be, and [`Band`] the band of a specification.
 //! - [`PairRules`] are two soils as practice sees them, without a walk.
 //! - [`words`] are what a class means, and the headline.
 
 mod answer;
+mod band;
 pub mod beside;
+mod design;
 mod entry;
 mod evidence;
 pub mod finding;
@@ -20,7 +23,11 @@ mod thickness;
 pub mod walks;
 pub mod words;
 
+#[cfg(doc)]
+use crate::outcome::design::band::Band;
+
 pub use answer::{Judgement, judge, rank};
+pub use design::{FinestBase, design_answer};
 pub use entry::{Entry, Finding};
 pub use pair::{BaseSizes, FilterSizes, Mistake, MistakeKind, PairOptions, PairRules};
 pub use quantity::FindingValue;

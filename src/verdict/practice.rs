@@ -3,11 +3,10 @@
 
 use super::entry::Finding;
 use super::finding;
-use super::words::within;
-use crate::outcome::record::{AppliedRule, LimitOfDesign, Outcome, Practice, RuleRole, TestedClass, Verdict};
-
-/// The rule of design.
-const DESIGN: &str = "sherard-dunnigan";
+use crate::outcome::record::{
+    AppliedRule, LimitOfDesign, Outcome, Practice, RuleQuantity, RuleRole, TestedClass, Verdict,
+};
+use crate::outcome::rules::{DESIGN, PAPER_NO_EROSION, TESTS_CONTINUING, TESTS_NO_EROSION, authority};
 
 /// The rules of a role that were made for these soils and are not kept.
 fn broken(rules: &[AppliedRule], role: RuleRole) -> Vec<&AppliedRule> {
@@ -26,7 +25,7 @@ pub fn findings(verdict: Verdict, rules: &[AppliedRule]) -> Vec<Finding> {
     if !unstable.is_empty() {
         all.push(finding::loses_fines(&list(&unstable, |rule| {
             let [value, limit] = against(rule, 2);
-            format!("{} ({} {value}, limit {limit})", whose(rule), rule.quantity)
+            format!("{} ({} {value}, limit {limit})", authority(rule), rule.quantity)
         })));
     }
     all.extend(drainage(rules));
@@ -43,12 +42,12 @@ fn of_rule(rule: &AppliedRule) -> Finding {
     let limit = limit + if rule.limit_at_most { " at most" } else { "" };
     match (rule.id.as_str(), rule.role) {
         (DESIGN, _) => finding::limit_of_design(&limit, &value),
-        ("foster-fell-no-erosion", _) => finding::tests_no_erosion(&limit, &value),
-        ("foster-fell-continuing", _) => finding::tests_continuing(&limit, &value),
+        (TESTS_NO_EROSION, _) => finding::tests_no_erosion(&limit, &value),
+        (TESTS_CONTINUING, _) => finding::tests_continuing(&limit, &value),
         (_, RuleRole::Continuation) => {
-            finding::rule_of_continuation(&rule.quantity, &limit, &value, whose(rule))
+            finding::rule_of_continuation(rule.quantity.name(), &limit, &value, authority(rule))
         }
-        _ => finding::rule_of_retention(&rule.quantity, &limit, &value, whose(rule)),
+        _ => finding::rule_of_retention(rule.quantity.name(), &limit, &value, authority(rule)),
     }
 }
 
@@ -60,26 +59,38 @@ fn asked(rule: &AppliedRule) -> String {
 }
 
 fn drainage(rules: &[AppliedRule]) -> Vec<Finding> {
-    let (permeability, fines): (Vec<_>, Vec<_>) =
-        broken(rules, RuleRole::Drainage).into_iter().partition(|rule| rule.quantity == "D15F");
-    let too_fine = permeability.first().map(|first| {
-        let [value, limit] = against(first, 2);
-        let least = permeability.get(1).map_or(String::new(), |least| {
-            format!(", and EM 1110-2-1901 for {} at the least", against(least, 2)[1])
-        });
-        finding::too_fine_to_drain(&value, &format!("USBR and NRCS ask for {limit} or more{least}"))
+    let too_fine = too_fine(rules).map(|[value, asked]| finding::too_fine_to_drain(&value, &asked));
+    too_fine.into_iter().chain(too_many_fines(rules).map(|fines| finding::fines_of_filter(&fines))).collect()
+}
+
+/// Rules of drainage that are not kept: of D15F, and of anything else.
+fn undrained(rules: &[AppliedRule]) -> (Vec<&AppliedRule>, Vec<&AppliedRule>) {
+    let all = broken(rules, RuleRole::Drainage).into_iter();
+    all.partition(|rule| rule.quantity == RuleQuantity::D15F)
+}
+
+/// D15F of a filter that is too fine to drain, and what practice asks for.
+fn too_fine(rules: &[AppliedRule]) -> Option<[String; 2]> {
+    let (of_size, _) = undrained(rules);
+    let [value, limit] = against(of_size.first()?, 2);
+    let least = of_size.get(1).map_or(String::new(), |least| {
+        format!(", and EM 1110-2-1901 for {} at the least", against(least, 2)[1])
     });
-    let of_fines = (!fines.is_empty()).then(|| {
-        finding::fines_of_filter(&listed(&fines.iter().map(|rule| asked(rule)).collect::<Vec<_>>()))
-    });
-    too_fine.into_iter().chain(of_fines).collect()
+    Some([value, format!("USBR and NRCS ask for {limit} or more{least}")])
+}
+
+/// What practice asks of the fines of a filter that has too many to drain.
+fn too_many_fines(rules: &[AppliedRule]) -> Option<String> {
+    let (_, of_fines) = undrained(rules);
+    let all: Vec<String> = of_fines.into_iter().map(asked).collect();
+    (!all.is_empty()).then(|| listed(&all))
 }
 
 /// Whether the walk is stricter than tests for this pair: they found no erosion where it has some.
 fn stricter(verdict: Verdict, rules: &[AppliedRule]) -> Option<Finding> {
     let find = |id: &str| rules.iter().find(|rule| rule.id == id && rule.applies);
-    let tests = find("foster-fell-no-erosion").filter(|rule| rule.met == Some(true))?;
-    let ratio = find("paper-no-erosion").filter(|rule| rule.met == Some(false))?;
+    let tests = find(TESTS_NO_EROSION).filter(|rule| rule.met == Some(true))?;
+    let ratio = find(PAPER_NO_EROSION).filter(|rule| rule.met == Some(false))?;
     matches!(verdict, Verdict::Some | Verdict::Continuing).then(|| {
         let [value, holds] = [ratio.value, ratio.limit].map(|number| size(number, ""));
         finding::stricter_than_tests(&value, &size(tests.limit, &tests.unit), &holds)
@@ -103,8 +114,8 @@ pub fn record(rules: &[AppliedRule]) -> Option<Practice> {
 
 /// The class by the boundaries of Foster and Fell.
 fn tested(rules: &[AppliedRule]) -> TestedClass {
-    let met = |id: &str| rules.iter().find(|rule| rule.id == id && rule.applies).and_then(|rule| rule.met);
-    match (met("foster-fell-no-erosion"), met("foster-fell-continuing")) {
+    let met = |id| met_of(rules, id);
+    match (met(TESTS_NO_EROSION), met(TESTS_CONTINUING)) {
         (_, Some(false)) => TestedClass::Continuing,
         (Some(true), _) => TestedClass::None,
         (Some(false), Some(true)) => TestedClass::Some,
@@ -116,6 +127,45 @@ impl Outcome {
     /// What practice says of the pair, in a line.
     pub fn practice_in_words(&self) -> String {
         practice_in_words(&self.rules, self.verdict)
+    }
+
+    /// Where walk, rules and tests disagree for this pair, and which way each errs.
+    pub fn compared_with_tests(&self) -> String {
+        let tests = match tested(&self.rules) {
+            TestedClass::None => Some((0, "no erosion")),
+            TestedClass::Some | TestedClass::Excessive => Some((1, "some or excessive erosion")),
+            TestedClass::Continuing => Some((2, "continuing erosion")),
+            TestedClass::Unknown => None,
+        };
+        let walked = severity(self.verdict);
+        let mut text = format!("The walk says “{}”. ", self.verdict.words());
+        text += &match tests {
+            Some((_, class)) => format!("The boundaries that Foster and Fell saw in tests say “{class}”. "),
+            None => "The boundaries that Foster and Fell saw in tests give no class for this pair. ".into(),
+        };
+        text += match met_of(&self.rules, DESIGN) {
+            Some(true) => "The limit of design (Sherard and Dunnigan) is met. ",
+            Some(false) => "The limit of design (Sherard and Dunnigan) is not met. ",
+            None => "The limit of design (Sherard and Dunnigan) gives no result. ",
+        };
+        text += match walked.zip(tests.map(|(class, _)| class)) {
+            Some((walked, tests)) if walked > tests => {
+                "The walk is stricter than the tests here: for uniform sands it errs on the safe side. "
+            }
+            Some((walked, tests)) if walked < tests => {
+                "The walk is more favourable than the tests here, which is on the unsafe side: rely on the \
+                 tests. "
+            }
+            Some(_) => "Walk and tests agree here. ",
+            None => "",
+        };
+        text += "Which way each errs: for clean sands tests put the end of no erosion at a D15F/D85B of 6.8 \
+                 to 10, the limits of Terzaghi and of design at 4, with a margin, and this network near 5. \
+                 For uniform sands the model is therefore stricter than tests. For broadly graded bases it \
+                 errs on the unsafe side, because a few coarse grains block for all the rest. It ignores the \
+                 cohesion of fines. (Tests: Foster and Fell, as given by Fell et al., Geotechnical \
+                 Engineering of Dams, Table 9.2.)";
+        text
     }
 }
 
@@ -129,25 +179,26 @@ pub fn practice_in_words(rules: &[AppliedRule], verdict: Verdict) -> String {
         Some(rule) => of_design(rule),
         None => "the limit of design was not applied".into(),
     });
-    let no_erosion = find("foster-fell-no-erosion");
-    said.extend(of_tests(no_erosion, find("foster-fell-continuing")));
-    for rule in retention.iter().filter(|rule| ![DESIGN, "foster-fell-no-erosion"].contains(&&*rule.id)) {
+    let no_erosion = find(TESTS_NO_EROSION);
+    said.extend(of_tests(no_erosion, find(TESTS_CONTINUING)));
+    for rule in retention.iter().filter(|rule| ![DESIGN, TESTS_NO_EROSION].contains(&&*rule.id)) {
         // What the limit of design says already in millimetres is no second fault.
         if design.is_none_or(|design| design.met.is_none()) {
             let [value, limit] = against(rule, 3);
-            said.push(format!("{} {value} is more than {limit} ({})", rule.quantity, whose(rule)));
+            said.push(format!("{} {value} is more than {limit} ({})", rule.quantity, authority(rule)));
         }
     }
     let unstable: Vec<String> =
-        broken(rules, RuleRole::Stability).into_iter().map(|rule| whose(rule).to_owned()).collect();
+        broken(rules, RuleRole::Stability).into_iter().map(|rule| authority(rule).to_owned()).collect();
     if !unstable.is_empty() {
         said.push(format!("the filter may lose its own fines ({})", listed(&unstable)));
     }
-    for finding in drainage(rules) {
-        let sentence = finding.sentence();
-        let sentence = sentence.trim_end_matches(" This says nothing of retention.").replace(". ", "; ");
-        said.push(within(&sentence));
-    }
+    let too_fine = too_fine(rules);
+    said.extend(too_fine.map(|[value, asked]| {
+        format!("the filter may be too fine to drain the base; D15F is {value}; {asked}")
+    }));
+    let fines = too_many_fines(rules);
+    said.extend(fines.map(|fines| format!("the filter has fines and may not drain: {fines}")));
     said.extend(agreement(rules, verdict).map(String::from));
     let result = match design.and_then(|rule| rule.met) {
         _ if !retention.is_empty() => "not met",
@@ -203,6 +254,21 @@ fn of_tests(none: Option<&AppliedRule>, continuing: Option<&AppliedRule>) -> Opt
     })
 }
 
+/// Whether a rule that was made for these soils is kept; `None` where it has no result.
+fn met_of(rules: &[AppliedRule], id: &str) -> Option<bool> {
+    rules.iter().find(|rule| rule.id == id && rule.applies)?.met
+}
+
+/// 0 no erosion, 1 some or excessive, 2 continuing; `None` where it is undecided.
+fn severity(verdict: Verdict) -> Option<u8> {
+    match verdict {
+        Verdict::None => Some(0),
+        Verdict::Some => Some(1),
+        Verdict::Continuing => Some(2),
+        Verdict::Undecided => None,
+    }
+}
+
 /// Whether the verdict agrees with practice.
 ///
 /// Tests tell the three classes apart; where they do not tell, the limit of design tells a filter that holds
@@ -211,17 +277,11 @@ fn agreement(rules: &[AppliedRule], verdict: Verdict) -> Option<&'static str> {
     const STRICTER: &str = "the walk is stricter";
     const MILDER: &str = "the walk is more favourable: rely on practice";
     const AGREE: &str = "practice and walk agree on retention";
-    let met = |id: &str| rules.iter().find(|rule| rule.id == id && rule.applies)?.met;
+    let met = |id| met_of(rules, id);
     let retained = !rules.iter().any(|rule| rule.is_broken() && rule.role == RuleRole::Retention);
-    let (none, continuing) = (met("foster-fell-no-erosion"), met("foster-fell-continuing"));
+    let (none, continuing) = (met(TESTS_NO_EROSION), met(TESTS_CONTINUING));
     let is_known = met(DESIGN).is_some() || none.is_some() || continuing == Some(false);
-    // 0 no erosion, 1 some or excessive, 2 continuing.
-    let walked = match verdict {
-        Verdict::None => 0,
-        Verdict::Some => 1,
-        Verdict::Continuing => 2,
-        Verdict::Undecided => return None,
-    };
+    let walked = severity(verdict)?;
     if !is_known {
         return None;
     }
@@ -248,9 +308,22 @@ fn listed(items: &[String]) -> String {
     }
 }
 
-/// Whose rule it is.
-fn whose(rule: &AppliedRule) -> &str {
-    rule.name.split(':').next().unwrap_or_default()
+/// A rule of retention, as a sentence cites it: whose it is, and which of theirs.
+pub(super) fn cited(id: &str, authority: &str) -> String {
+    let which = match id {
+        DESIGN => "limit of design",
+        TESTS_NO_EROSION => "boundary of no erosion",
+        _ => "rule",
+    };
+    format!("{authority}'s {which}")
+}
+
+/// The same of a rule that was applied.
+pub(super) fn cited_rule(rule: &AppliedRule) -> String {
+    match authority(rule) {
+        name if *name == rule.name => name.into(),
+        authority => cited(&rule.id, authority),
+    }
 }
 
 /// A value and its limit, with as many digits as tell them apart, and this many at the least.

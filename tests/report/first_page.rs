@@ -1,6 +1,6 @@
 //! What a page to hand in needs: whose it is, the boundaries of practice, plain words, and a style for print.
 
-use voidwalk::outcome::record::RuleRole;
+use voidwalk::outcome::record::{RuleQuantity, RuleRole};
 use voidwalk::run::FolderKind;
 
 use super::folder::Plan;
@@ -59,7 +59,7 @@ fn boundaries_of_practice_stand_at_the_row_of_d15f() {
         [("foster-fell-no-erosion", 5.5), ("foster-fell-continuing", 12.25)].into_iter().enumerate()
     {
         let rule = &mut plan.outcome.rules[rule];
-        (rule.id, rule.quantity) = (id.into(), "D15F".into());
+        (rule.id, rule.quantity) = (id.into(), RuleQuantity::D15F);
         (rule.applies, rule.limit, rule.unit) = (true, Some(limit), "mm".into());
     }
     let (text, figure) = gradations(&plan);

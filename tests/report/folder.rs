@@ -234,10 +234,13 @@ pub fn outcome(replicates: u64) -> Outcome {
         ]
         .map(|(name, quantity, limit, source)| {
             let value = filter_at(15.0) / base_at(if quantity == "D15F/D85B" { 85.0 } else { 95.0 });
-            let (name, quantity, source) = (name.into(), quantity.into(), source.into());
+            let (name, source) = (name.into(), source.into());
+            let quantity =
+                if quantity == "D15F/D85B" { RuleQuantity::D15FOverD85B } else { RuleQuantity::D15FOverD95B };
             AppliedRule {
                 id: String::new(),
                 name,
+                authority: String::new(),
                 role: RuleRole::Retention,
                 applies: true,
                 quantity,

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use folder::Plan;
 use tempfile::TempDir;
-use voidwalk::outcome::record::{Outcome, Statistic, Verdict};
+use voidwalk::outcome::record::{Outcome, RuleQuantity, Statistic, Verdict};
 use voidwalk::report::{self, ReportError};
 
 /// Writes a folder and its report; the page, the figures, and the folder that holds them.
@@ -167,7 +167,6 @@ fn hostile_names_are_inert() {
         &mut inputs.network.name,
         &mut outcome.engine,
         &mut rule.name,
-        &mut rule.quantity,
         &mut rule.source,
         &mut outcome.warnings[0],
         &mut outcome.left_out[0],
@@ -175,6 +174,7 @@ fn hostile_names_are_inert() {
     ] {
         *text = EVIL.to_owned();
     }
+    rule.quantity = RuleQuantity::Named(EVIL.into());
     let (page, figures, _folder) = made(&plan);
     for text in figures.iter().map(|(_, text)| text).chain([&page]) {
         for live in ["<script", "<img", "</pre>\"", "\u{0}", "\u{202e}"] {

@@ -1,8 +1,9 @@
-//! The band of a specification: from the least D15F that drains the base to the greatest that holds it.
+//! The band of a specification, and the limits of D15F that rules set. What a band is worth, and its words, are
+//! in `verdict`.
 
 use serde::{Deserialize, Serialize};
 
-use crate::outcome::record::{AppliedRule, RuleRole};
+use crate::outcome::record::{AppliedRule, RuleQuantity, RuleRole};
 
 /// What set the answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -19,9 +20,8 @@ pub enum SetBy {
 pub struct Band {
     /// Least D15F, of the rule of permeability.
     pub least: f64,
-    /// Greatest D15F that both allow: the walk, which erodes less than 7.5 % in the first run on all
-    /// but 5 % of
-    /// networks, and practice. Files of earlier versions hold that of the walk alone.
+    /// Greatest D15F that both allow: the walk, which erodes less than 7.5 % in the first run on all but 5 %
+    /// of networks, and practice. Files of earlier versions hold that of the walk alone.
     pub greatest: f64,
     /// Which of the two set it; `None` in files of earlier versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -30,6 +30,9 @@ pub struct Band {
     pub practice: Option<f64>,
     /// Name of that rule.
     pub practice_rule: String,
+    /// Its name for programs; `None` without one, and in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub practice_rule_id: Option<String>,
     /// Unit: `mm`, or `D85B`.
     pub unit: String,
     /// Whether nothing lies between the least and what both the walk and practice allow.
@@ -37,9 +40,6 @@ pub struct Band {
     /// The same in a sentence; of an empty one why it is.
     pub said: String,
 }
-
-/// The name of the rule of permeability.
-pub const PERMEABILITY: &str = "permeability";
 
 /// Limits of D15F that rules set for a base, in the unit of the rules: name and limit.
 ///
@@ -50,29 +50,16 @@ pub fn limits(rules: &[AppliedRule], d15f: f64) -> Vec<(&AppliedRule, f64)> {
     let one = |rule| -> Option<(&AppliedRule, f64)> {
         let rule: &AppliedRule = rule;
         let limit = rule.limit.filter(|limit| rule.applies && *limit > 0.0 && limit.is_finite())?;
-        match rule.quantity.as_str() {
-            "D15F" => Some((rule, limit)),
-            "D15F/D85B" | "D15F/D95B" => {
+        match rule.quantity {
+            RuleQuantity::D15F => Some((rule, limit)),
+            RuleQuantity::D15FOverD85B | RuleQuantity::D15FOverD95B => {
                 let value = rule.value.filter(|value| *value > 0.0 && value.is_finite())?;
                 Some((rule, limit * d15f / value))
             }
-            _ => None,
+            RuleQuantity::Named(_) => None,
         }
     };
     rules.iter().filter_map(one).collect()
-}
-
-/// The rule by which new filters are specified.
-pub const DESIGN: &str = "sherard-dunnigan";
-
-/// A rule of retention, as a sentence names it.
-pub fn whose(rule: &AppliedRule) -> String {
-    match rule.id.as_str() {
-        DESIGN => "Sherard and Dunnigan's limit of design".into(),
-        "foster-fell-no-erosion" => "Foster and Fell's boundary of no erosion".into(),
-        "terzaghi" => "Terzaghi's rule".into(),
-        _ => rule.name.clone(),
-    }
 }
 
 /// The strictest rule by which a filter retains a base, with its limit of D15F.
@@ -83,48 +70,6 @@ pub fn retention(rules: &[AppliedRule], d15f: f64) -> Option<(&AppliedRule, f64)
 }
 
 impl Band {
-    /// From the rules of a filter of this D15F and the greatest D15F that holds, in the unit of the rules;
-    /// `None` where the least is not known. An empty one is still to be put into words.
-    pub fn new(rules: &[AppliedRule], d15f: f64, greatest: f64, unit: &str) -> Option<Self> {
-        let limits = limits(rules, d15f);
-        let (_, least) = *limits.iter().find(|(rule, _)| rule.id == PERMEABILITY)?;
-        let strictest = retention(rules, d15f);
-        // The stricter of walk and practice is the one that clashes.
-        let practice = strictest.filter(|(_, limit)| *limit < greatest);
-        let is_empty = least > practice.map_or(greatest, |(_, limit)| limit);
-        let said = match (is_empty, practice) {
-            (true, _) => String::new(),
-            (false, Some((rule, limit))) => format!(
-                "D15F from {least:.3} to {limit:.3} {unit}, the coarse side by practice ({})",
-                whose(rule)
-            ),
-            (false, None) => {
-                format!("D15F from {least:.3} to {greatest:.3} {unit}, the coarse side by the walk")
-            }
-        };
-        Some(Self {
-            least,
-            greatest: practice.map_or(greatest, |(_, limit)| limit),
-            set_by: Some(if practice.is_some() { SetBy::Practice } else { SetBy::Walk }),
-            practice: strictest.map(|(_, limit)| limit),
-            practice_rule: strictest.map_or_else(String::new, |(rule, _)| rule.name.clone()),
-            unit: unit.into(),
-            is_empty,
-            said,
-        })
-    }
-
-    /// Its two sides in words. That of an earlier version may say more than practice allows.
-    pub fn words(&self) -> String {
-        match (self.is_empty, self.set_by, self.practice) {
-            (false, None, Some(practice)) if practice < self.greatest => format!(
-                "D15F from {:.3} to {practice:.3} {}, the coarse side by practice ({})",
-                self.least, self.unit, self.practice_rule
-            ),
-            _ => self.said.clone(),
-        }
-    }
-
     /// Greatest D15F that both walk and practice allow.
     pub fn greatest_of_both(&self) -> f64 {
         self.practice.map_or(self.greatest, |practice| practice.min(self.greatest))
@@ -154,48 +99,6 @@ mod tests {
     }
 
     #[test]
-    fn a_band_goes_from_permeability_to_the_walk_with_practice_beside() {
-        let all = rules(3.0);
-        let band = Band::new(&all, D15F, 1.8, "mm").unwrap();
-        // D15B of a linear Cu 3 base: 0.4 x 3^(-70/50).
-        let d15b = 0.4 * libm::pow(3.0, -1.4);
-        assert!((band.least - 5.0 * d15b).abs() < 1e-9 && !band.is_empty, "{band:?}");
-        assert!((band.practice.unwrap() - 1.6).abs() < 1e-9 && (band.greatest - 1.6).abs() < 1e-9);
-        assert_eq!(
-            band.said,
-            "D15F from 0.430 to 1.600 mm, the coarse side by practice (Sherard and Dunnigan's limit of \
-             design)"
-        );
-        let narrow = Band::new(&all, D15F, 1.2, "mm").unwrap();
-        assert_eq!((narrow.greatest, narrow.set_by), (1.2, Some(SetBy::Walk)));
-        assert_eq!(narrow.said, "D15F from 0.430 to 1.200 mm, the coarse side by the walk");
-        // As an earlier version wrote it.
-        let old = Band { greatest: 1.8, set_by: None, said: "D15F from 0.430 to 1.800 mm".into(), ..band };
-        assert!(
-            old.words().contains("from 0.430 to 1.600 mm") && (old.greatest_of_both() - 1.6).abs() < 1e-9
-        );
-    }
-
-    #[test]
-    fn an_empty_band_has_the_two_numbers_that_clash() {
-        let all = rules(1.2);
-        let band = Band::new(&all, D15F, 1.5, "mm").unwrap();
-        let least = 5.0 * 0.4 * libm::pow(1.2, -1.4);
-        assert!(band.is_empty && (band.least - least).abs() < 1e-9, "{band:?}");
-        assert_eq!((band.greatest, band.set_by), (1.5, Some(SetBy::Walk)));
-    }
-
-    #[test]
-    fn practice_that_allows_less_than_drains_leaves_an_empty_band() {
-        let all = rules(1.1);
-        let band = Band::new(&all, D15F, 1.8, "mm").unwrap();
-        let least = 5.0 * 0.4 * libm::pow(1.1, -1.4);
-        assert!(band.practice.unwrap() < least && least < 1.8, "{band:?}");
-        assert!(band.is_empty && (band.least - least).abs() < 1e-9, "{band:?}");
-        assert!((band.greatest - 1.6).abs() < 1e-9 && band.set_by == Some(SetBy::Practice), "{band:?}");
-    }
-
-    #[test]
     fn the_limit_of_a_ratio_is_one_of_a_size() {
         let all = rules(3.0);
         assert!((limit_of(&all, "terzaghi").unwrap() - 1.6).abs() < 1e-9);
@@ -219,8 +122,8 @@ mod tests {
             assert!((limit_of(&all, "terzaghi").unwrap() / (4.0 * part) - 1.0).abs() < 1e-9);
             // That of the model is for the base as it is walked.
             assert!((limit_of(&all, "paper-no-erosion").unwrap() / (5.0 * whole) - 1.0).abs() < 1e-9);
-            let band = Band::new(&all, D15F, 100.0, "mm").unwrap();
-            assert!(band.practice.unwrap() <= 4.0 * part * (1.0 + 1e-9), "{band:?}");
+            let (_, practice) = retention(&all, D15F).unwrap();
+            assert!(practice <= 4.0 * part * (1.0 + 1e-9), "{practice}");
         }
     }
 }

@@ -4,13 +4,11 @@
 //! turns into some), or in the second as well (some turns into continuing). One packing a shape and density;
 //! the filter is scaled, which repacks nothing.
 
-mod answer;
 pub mod band;
 pub mod products;
 mod record;
 mod spread;
 
-pub use answer::FinestBase;
 pub use record::{
     BETWEEN_STEPS, BaseStated, Boundary, Design, DesignAnswer, DesignFinding, DesignRow, NetworkBoundaries,
     Range, WalkRow,

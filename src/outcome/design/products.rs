@@ -185,6 +185,7 @@ mod tests {
             set_by: None,
             practice: Some(0.4),
             practice_rule: String::new(),
+            practice_rule_id: None,
             unit: "mm".into(),
             is_empty: false,
             said: String::new(),

@@ -100,9 +100,8 @@ impl DesignFinding {
 /// How coarse the filter may be; for the inverse, how fine the base.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DesignAnswer {
-    /// Greatest D15F (mm) that both walk and practice allow; `None` where none is known, where the base
-    /// has no
-    /// size, and for the inverse.
+    /// Greatest D15F (mm) that both walk and practice allow; `None` where none is known, where the base has
+    /// no size, and for the inverse.
     pub d15f_max_mm: Option<f64>,
     /// Finest D85B (mm) that both allow, for the inverse.
     #[serde(default, skip_serializing_if = "Option::is_none")]

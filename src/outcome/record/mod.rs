@@ -38,7 +38,7 @@ pub use rows::{FlowRow, LayerRow, SeriesRow, SizeRow};
 pub use varied::{Classed, CurveEnd, CurveRange, Margin, MarginWalk, OfThickness, Sensitivity};
 pub use voids::{BlockedRow, ConstrictionRow, RetainedRow, VoidRow};
 
-pub use super::applied::{AppliedRule, Confidence, RuleRole};
+pub use super::applied::{AppliedRule, Confidence, RuleQuantity, RuleRole};
 pub use super::pan::{PanBounds, PanReading, PanSize};
 
 /// The whole of `outcome.json`.

@@ -2,7 +2,22 @@
 
 use super::rule::{FilterRule, Pairing, RuleUnit};
 use super::{drainage, exit, retention, stability, walk};
-use crate::outcome::applied::RuleRole;
+use crate::outcome::applied::{RuleQuantity, RuleRole};
+
+/// The rule by which new filters are specified.
+pub const DESIGN: &str = "sherard-dunnigan";
+
+/// Up to where tests saw no erosion.
+pub const TESTS_NO_EROSION: &str = "foster-fell-no-erosion";
+
+/// From where tests saw continuing erosion.
+pub const TESTS_CONTINUING: &str = "foster-fell-continuing";
+
+/// The rule by which a filter drains its base.
+pub const PERMEABILITY: &str = "permeability";
+
+/// The paper's own boundary of no erosion.
+pub const PAPER_NO_EROSION: &str = "paper-no-erosion";
 
 /// Fell et al., who give Table 9.2.
 const FELL: &str = "Fell, MacGregor, Stapledon & Bell, Geotechnical Engineering of Dams, Table 9.2 (after \
@@ -23,12 +38,13 @@ const BAND: &str = "Megech Dam, Appendix B-1, Design of Filter Gradation (scribd
 /// Every rule, in the order of a reader.
 pub const RULES: &[FilterRule] = &[
     FilterRule {
-        id: "sherard-dunnigan",
-        name: "Sherard and Dunnigan: the filter retains the base (design)",
+        id: DESIGN,
+        authority: "Sherard and Dunnigan",
+        says: "the filter retains the base (design)",
         role: RuleRole::Retention,
         applies_to: "design of filters; the limit follows from the fines A of the regraded base (NRCS, USBR, \
                      FEMA)",
-        quantity: "D15F",
+        quantity: RuleQuantity::D15F,
         formula: "A > 85 %: 9 D85B, not less than 0.2 mm; A 40 to 85 %: 0.7 mm; A 15 to 40 %: (40 - A)/25 \
                   (4 D85B - 0.7) + 0.7 mm; A < 15 %: 4 D85B; dispersive: A > 85 %: 6.5 D85B, not less than \
                   0.2 mm; 40 to 85 %: 0.5 mm",
@@ -41,11 +57,12 @@ pub const RULES: &[FilterRule] = &[
         judge: retention::sherard_dunnigan,
     },
     FilterRule {
-        id: "foster-fell-no-erosion",
-        name: "Foster and Fell: no erosion rather than some",
+        id: TESTS_NO_EROSION,
+        authority: "Foster and Fell",
+        says: "no erosion rather than some",
         role: RuleRole::Retention,
         applies_to: "filters of existing dams: the boundary seen in tests, without a margin of safety",
-        quantity: "D15F",
+        quantity: RuleQuantity::D15F,
         formula: "A > 85 %: 9 D85B; A 35 to 85 %: 0.7 mm; A 15 to 35 %: 1.6 ((35 - A)/20 (4 D85B - 0.7) + \
                   0.7 mm); A < 15 %: 7 D85B; dispersive: A > 85 %: 6.4 D85B; 35 to 85 %: 0.5 mm",
         at_least: false,
@@ -56,10 +73,11 @@ pub const RULES: &[FilterRule] = &[
     },
     FilterRule {
         id: "foster-fell-excessive",
-        name: "Foster and Fell: some erosion rather than excessive",
+        authority: "Foster and Fell",
+        says: "some erosion rather than excessive",
         role: RuleRole::Continuation,
         applies_to: "filters of existing dams",
-        quantity: "D15F",
+        quantity: RuleQuantity::D15F,
         formula: "",
         at_least: false,
         unit: RuleUnit::Size,
@@ -69,11 +87,12 @@ pub const RULES: &[FilterRule] = &[
         judge: retention::excessive,
     },
     FilterRule {
-        id: "foster-fell-continuing",
-        name: "Foster and Fell: some erosion rather than continuing",
+        id: TESTS_CONTINUING,
+        authority: "Foster and Fell",
+        says: "some erosion rather than continuing",
         role: RuleRole::Continuation,
         applies_to: "existing dams with filters coarser than modern rules allow; D95B after regrading",
-        quantity: "D15F",
+        quantity: RuleQuantity::D15F,
         formula: "9 D95B",
         at_least: false,
         unit: RuleUnit::Size,
@@ -86,10 +105,11 @@ pub const RULES: &[FilterRule] = &[
     },
     FilterRule {
         id: "terzaghi",
-        name: "Terzaghi: the filter retains the base",
+        authority: "Terzaghi",
+        says: "the filter retains the base",
         role: RuleRole::Retention,
         applies_to: "bases with less than 15 % fines; D85B after regrading",
-        quantity: "D15F/D85B",
+        quantity: RuleQuantity::D15FOverD85B,
         formula: "4",
         at_least: false,
         unit: RuleUnit::One,
@@ -99,10 +119,11 @@ pub const RULES: &[FilterRule] = &[
     },
     FilterRule {
         id: "constricted-exit",
-        name: "Constricted exit: probability of continuing erosion into an open joint",
+        authority: "",
+        says: "Constricted exit: probability of continuing erosion into an open joint",
         role: RuleRole::Continuation,
         applies_to: "joints, defects and cracks beside the base that do not erode; steady flow",
-        quantity: "probability",
+        quantity: RuleQuantity::named("probability"),
         formula: "from JOS/D95B after regrading: below 0.4: 0; 0.5: 0.01 %; 0.75: 0.1 %; 1: 10 %; 2: 50 %; \
                   3 and more: 90 %; between them straight on the scale of a normal variate",
         at_least: false,
@@ -113,11 +134,12 @@ pub const RULES: &[FilterRule] = &[
         judge: exit::constricted,
     },
     FilterRule {
-        id: "permeability",
-        name: "Permeability: the filter drains the base",
+        id: PERMEABILITY,
+        authority: "",
+        says: "Permeability: the filter drains the base",
         role: RuleRole::Drainage,
         applies_to: "design of filters; D15B before regrading",
-        quantity: "D15F",
+        quantity: RuleQuantity::D15F,
         formula: "5 D15B by USBR (2011) and NRCS (2017), and not less than 0.1 mm",
         at_least: true,
         unit: RuleUnit::Size,
@@ -128,10 +150,11 @@ pub const RULES: &[FilterRule] = &[
     },
     FilterRule {
         id: "permeability-em-1901",
-        name: "Permeability, the least by EM 1110-2-1901: the filter drains the base",
+        authority: "",
+        says: "Permeability, the least by EM 1110-2-1901: the filter drains the base",
         role: RuleRole::Drainage,
         applies_to: "filters of which this older manual is asked; D15B before regrading",
-        quantity: "D15F",
+        quantity: RuleQuantity::D15F,
         formula: "3 D15B, the least of the 3 to 5 D15B of EM 1110-2-1901, and not less than 0.1 mm",
         at_least: true,
         unit: RuleUnit::Size,
@@ -142,10 +165,11 @@ pub const RULES: &[FilterRule] = &[
     },
     FilterRule {
         id: "filter-fines",
-        name: "The filter has few fines",
+        authority: "",
+        says: "The filter has few fines",
         role: RuleRole::Drainage,
         applies_to: "design of filters; that they are not plastic is not seen from a sieve curve",
-        quantity: "finer than 0.075 mm",
+        quantity: RuleQuantity::named("finer than 0.075 mm"),
         formula: "5 %",
         at_least: false,
         unit: RuleUnit::Percent,
@@ -155,10 +179,11 @@ pub const RULES: &[FilterRule] = &[
     },
     FilterRule {
         id: "filter-greatest-size",
-        name: "The filter has no cobbles",
+        authority: "",
+        says: "The filter has no cobbles",
         role: RuleRole::Placing,
         applies_to: "design of filters: coarse grains segregate",
-        quantity: "D100F",
+        quantity: RuleQuantity::named("D100F"),
         formula: "75 mm",
         at_least: false,
         unit: RuleUnit::Size,
@@ -168,10 +193,11 @@ pub const RULES: &[FilterRule] = &[
     },
     FilterRule {
         id: "filter-uniformity",
-        name: "The filter is uniform enough for its band",
+        authority: "",
+        says: "The filter is uniform enough for its band",
         role: RuleRole::Placing,
         applies_to: "design of filters: both sides of the band; wider curves leave room for gap-graded ones",
-        quantity: "Cu of the filter",
+        quantity: RuleQuantity::named("Cu of the filter"),
         formula: "6",
         at_least: false,
         unit: RuleUnit::One,
@@ -181,10 +207,11 @@ pub const RULES: &[FilterRule] = &[
     },
     FilterRule {
         id: "filter-band",
-        name: "The band of the filter is narrow",
+        authority: "",
+        says: "The band of the filter is narrow",
         role: RuleRole::Placing,
         applies_to: "design of filters that are stated as a band of curves",
-        quantity: "size of the coarse side / of the fine side",
+        quantity: RuleQuantity::named("size of the coarse side / of the fine side"),
         formula: "5, from 5 to 60 % finer",
         at_least: false,
         unit: RuleUnit::One,
@@ -194,10 +221,11 @@ pub const RULES: &[FilterRule] = &[
     },
     FilterRule {
         id: "kezdi",
-        name: "Kézdi (1979): the filter holds its own fines",
+        authority: "Kézdi (1979)",
+        says: "the filter holds its own fines",
         role: RuleRole::Stability,
         applies_to: "the filter alone: internal stability",
-        quantity: "greatest D'15/d'85 of the filter",
+        quantity: RuleQuantity::named("greatest D'15/d'85 of the filter"),
         formula: "4",
         at_least: false,
         unit: RuleUnit::One,
@@ -207,10 +235,11 @@ pub const RULES: &[FilterRule] = &[
     },
     FilterRule {
         id: "kenney-lau",
-        name: "Kenney and Lau (1986): the filter holds its own fines",
+        authority: "Kenney and Lau (1986)",
+        says: "the filter holds its own fines",
         role: RuleRole::Stability,
         applies_to: "the filter alone: internal stability, F up to 20 % (Cu > 3) or 30 %",
-        quantity: "least H/F of the filter",
+        quantity: RuleQuantity::named("least H/F of the filter"),
         formula: "1",
         at_least: true,
         unit: RuleUnit::One,
@@ -220,10 +249,11 @@ pub const RULES: &[FilterRule] = &[
     },
     FilterRule {
         id: "li-fannin",
-        name: "Li and Fannin (2008): the filter holds its own fines",
+        authority: "Li and Fannin (2008)",
+        says: "the filter holds its own fines",
         role: RuleRole::Stability,
         applies_to: "the filter alone: internal stability; Kenney and Lau to F = 15 %, Kézdi from there",
-        quantity: "least H/min(F, 15 %) of the filter",
+        quantity: RuleQuantity::named("least H/min(F, 15 %) of the filter"),
         formula: "1",
         at_least: true,
         unit: RuleUnit::One,
@@ -233,11 +263,12 @@ pub const RULES: &[FilterRule] = &[
     },
     FilterRule {
         id: "burenkova",
-        name: "Burenkova (1993): the filter holds its own fines",
+        authority: "Burenkova (1993)",
+        says: "the filter holds its own fines",
         role: RuleRole::Stability,
         applies_to: "the filter alone: broadly graded and gap-graded sands and gravels without cohesion, \
                      up to 100 mm, Cu up to 200",
-        quantity: "h' = D90/D60 of the filter",
+        quantity: RuleQuantity::named("h' = D90/D60 of the filter"),
         formula: "0.76 lg h'' + 1, with h'' = D90/D15, and less than 1.86 lg h'' + 1",
         at_least: true,
         unit: RuleUnit::One,
@@ -248,10 +279,11 @@ pub const RULES: &[FilterRule] = &[
     },
     FilterRule {
         id: "wan-fell",
-        name: "Wan and Fell (2004): probability that the filter loses its fines",
+        authority: "Wan and Fell (2004)",
+        says: "probability that the filter loses its fines",
         role: RuleRole::Stability,
         applies_to: "the filter alone: broadly graded and gap-graded soils",
-        quantity: "probability",
+        quantity: RuleQuantity::named("probability"),
         formula: "none stated: 1 / (1 + exp(-Z)), Z from h' and h'' of Burenkova",
         at_least: false,
         unit: RuleUnit::Percent,
@@ -262,10 +294,11 @@ pub const RULES: &[FilterRule] = &[
     },
     FilterRule {
         id: "kenney-controlling",
-        name: "Kenney et al.: controlling constriction size Dc* ≤ D15F/5",
+        authority: "Kenney et al.",
+        says: "controlling constriction size Dc* ≤ D15F/5",
         role: RuleRole::Walk,
         applies_to: "bases without cohesion; Dc* is the largest particle eroded in the first run",
-        quantity: "largest eroded / D15F",
+        quantity: RuleQuantity::named("largest eroded / D15F"),
         formula: "1/5",
         at_least: false,
         unit: RuleUnit::One,
@@ -274,11 +307,12 @@ pub const RULES: &[FilterRule] = &[
         judge: walk::largest_passing,
     },
     FilterRule {
-        id: "paper-no-erosion",
-        name: "Network model of the paper: no erosion rather than some",
+        id: PAPER_NO_EROSION,
+        authority: "",
+        says: "Network model of the paper: no erosion rather than some",
         role: RuleRole::Walk,
         applies_to: "loose filters of Cu 1.5 and 3",
-        quantity: "D15F/D85B",
+        quantity: RuleQuantity::D15FOverD85B,
         formula: "5",
         at_least: false,
         unit: RuleUnit::One,
@@ -288,10 +322,11 @@ pub const RULES: &[FilterRule] = &[
     },
     FilterRule {
         id: "paper-continuing",
-        name: "Network model of the paper: some erosion rather than continuing",
+        authority: "",
+        says: "Network model of the paper: some erosion rather than continuing",
         role: RuleRole::Walk,
         applies_to: "filters of Cu 1.5 and 3",
-        quantity: "D15F/D95B",
+        quantity: RuleQuantity::D15FOverD95B,
         formula: "4.7",
         at_least: false,
         unit: RuleUnit::One,

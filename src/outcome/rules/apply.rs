@@ -11,6 +11,14 @@ pub fn apply(inputs: &RuleInputs) -> Vec<AppliedRule> {
     RULES.iter().filter_map(|rule| applied(rule, inputs)).collect()
 }
 
+/// Whose rule it is, as a sentence cites it; its name where nobody is cited.
+pub fn authority(rule: &AppliedRule) -> &str {
+    // Files of earlier versions have the name alone.
+    let listed = || RULES.iter().find(|of| of.id == rule.id).map_or("", |of| of.authority);
+    let known = [rule.authority.as_str(), listed()];
+    known.into_iter().find(|of| !of.is_empty()).unwrap_or(&rule.name)
+}
+
 /// A curve of a soil, with its name.
 pub type NamedCurve = (String, Gradation);
 
@@ -114,10 +122,11 @@ fn applied(rule: &FilterRule, inputs: &RuleInputs) -> Option<AppliedRule> {
     let met = met.filter(|met| !judged.limit_at_most || *met == rule.at_least || judged.met.is_some());
     Some(AppliedRule {
         id: rule.id.into(),
-        name: rule.name.into(),
+        name: rule.name(),
+        authority: rule.authority.into(),
         role: rule.role,
         applies: judged.applies,
-        quantity: rule.quantity.into(),
+        quantity: rule.quantity.clone(),
         value: judged.value,
         limit: judged.limit,
         unit: match rule.unit {

@@ -14,8 +14,8 @@ mod rule;
 mod stability;
 mod walk;
 
-pub use all::RULES;
-pub use apply::{NamedCurve, Sides, apply, apply_to_envelopes};
+pub use all::{DESIGN, PAPER_NO_EROSION, PERMEABILITY, RULES, TESTS_CONTINUING, TESTS_NO_EROSION};
+pub use apply::{NamedCurve, Sides, apply, apply_to_envelopes, authority};
 pub use base::BaseSoil;
 pub use rule::{FilterRule, Fines, Judged, Pairing, RuleInputs, RuleUnit, SizeBound};
 

@@ -2,21 +2,22 @@
 
 use super::base::BaseSoil;
 use crate::gradation::Gradation;
-use crate::outcome::record::RuleRole;
+use crate::outcome::record::{RuleQuantity, RuleRole};
 
 /// A rule of practice, as it stands in the table of [`super::RULES`].
 pub struct FilterRule {
     /// Its name in `outcome.json` and in `voidwalk rules --json`.
     pub id: &'static str,
-    /// Its name for a reader: whose it is, a colon, and what it says. Sentences quote what stands before the
-    /// colon.
-    pub name: &'static str,
+    /// Whose rule it is, as sentences cite it; empty where nobody is cited.
+    pub authority: &'static str,
+    /// What it says.
+    pub says: &'static str,
     /// What it is a rule of.
     pub role: RuleRole,
     /// What it was made for.
     pub applies_to: &'static str,
-    /// What it limits. A rule of retention of `D15F`, `D15F/D85B` or `D15F/D95B` also limits a design.
-    pub quantity: &'static str,
+    /// What it limits. A rule of retention also limits a design where [`RuleQuantity`] has a case for it.
+    pub quantity: RuleQuantity,
     /// Its limit in words.
     pub formula: &'static str,
     /// Whether the limit is the least that it allows, and not the most.
@@ -29,6 +30,16 @@ pub struct FilterRule {
     pub pairing: Pairing,
     /// Works it out.
     pub judge: fn(&RuleInputs) -> Judged,
+}
+
+impl FilterRule {
+    /// Its name for a reader: whose it is, and what it says.
+    pub fn name(&self) -> String {
+        match self.authority {
+            "" => self.says.into(),
+            authority => format!("{authority}: {}", self.says),
+        }
+    }
 }
 
 /// Which curves a rule reads where a soil is an envelope of several.

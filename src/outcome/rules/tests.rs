@@ -396,7 +396,7 @@ fn every_rule_says_what_it_is() {
     assert_eq!(ids.len(), RULES.len());
     for rule in RULES {
         assert!(
-            !rule.source.is_empty() && !rule.applies_to.is_empty() && !rule.quantity.is_empty(),
+            !rule.source.is_empty() && !rule.applies_to.is_empty() && !rule.quantity.name().is_empty(),
             "{}",
             rule.id
         );

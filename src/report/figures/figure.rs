@@ -1,7 +1,7 @@
 //! A figure: axes, and what stands between them.
 
 use super::axis::Axis;
-use super::marks::{Line, Mark, Point, Shape};
+use super::marks::{Mark, Point};
 
 /// Room for a figure. Text has the same size in both.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,23 +90,6 @@ impl Figure {
         for (index, point) in points.into_iter().enumerate() {
             self.add(if index == 0 { point.label(name) } else { point });
         }
-    }
-
-    /// Draws a line and a symbol of its colour at each of its points, with its vertical interval where there
-    /// is one.
-    pub fn add_series(
-        &mut self,
-        mut line: Line,
-        shape: Shape,
-        points: impl IntoIterator<Item = (f64, f64, Option<(f64, f64)>)>,
-    ) {
-        let mut symbols = Vec::new();
-        for (x, y, bar) in points {
-            line.points.push((x, y));
-            symbols.push(Mark::from(Point::new(x, y, line.colour, shape).y_interval(bar)));
-        }
-        self.add(line);
-        self.marks.append(&mut symbols);
     }
 
     /// Whether it is higher than wide, so that it needs a printed page for itself.

@@ -17,6 +17,7 @@
 //! ```
 
 mod axis;
+mod chart;
 mod colour;
 mod curves;
 mod draw;
@@ -29,11 +30,13 @@ mod place;
 mod sieves;
 mod svg;
 
+pub use crate::text::shorten;
 pub use axis::{Axis, Scale, Tick, positive_range};
+pub use chart::{Chart, Look, Role};
 pub use colour::{BLACK, BLUE, Colour, GREEN, GREY, ORANGE, PURPLE, VERMILLION, ramp};
 pub use figure::{Figure, Naming, Size};
 pub use marks::{Across, Area, Dash, Disc, Line, Mark, Point, Rule, Shape};
-pub use svg::{escape, shorten, visible};
+pub use svg::{escape, visible};
 
 #[cfg(test)]
 mod tests {

@@ -52,17 +52,6 @@ pub fn visible(character: char) -> char {
     }
 }
 
-/// The text cut to `most` characters, with an ellipsis where something is missing.
-pub fn shorten(text: &str, most: usize) -> String {
-    if text.chars().count() <= most {
-        return text.to_owned();
-    }
-    let mut cut: String = text.chars().take(most.saturating_sub(1)).collect();
-    cut.truncate(cut.trim_end().len());
-    cut.push('…');
-    cut
-}
-
 /// Width of a text in pixels, on the generous side: the reader's font is not known here.
 pub(super) fn width_of(text: &str, size: f64) -> f64 {
     let em: f64 = text
@@ -170,9 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn long_names_are_cut_and_labels_wrapped() {
-        assert_eq!(shorten("abcdef", 6), "abcdef");
-        assert_eq!(shorten("abc defghi", 5), "abc…");
+    fn labels_are_wrapped() {
         assert_eq!(wrap("one two three", 10.0, 40.0), ["one two", "three"]);
         assert_eq!(wrap("", 10.0, 40.0), Vec::<String>::new());
     }

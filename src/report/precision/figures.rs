@@ -2,21 +2,24 @@
 //! samples.
 
 use crate::outcome::precision::{
-    BiasRow, DecisionRow, DecisionTier, ExactRow, ExactTier, PackingTier, SamplingLine, SamplingTier,
-    ScalingRow, TriangulationRow,
+    BiasRow, DecisionRow, DecisionTier, ExactRow, ExactTier, PackingTier, SamplingLine, SamplingRow,
+    SamplingTier, ScalingRow, TriangulationRow,
 };
 use crate::report::figures::{
-    Across, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Point, Rule, Shape,
-    VERMILLION, positive_range, ramp,
+    Across, BLACK, BLUE, Chart, Dash, GREEN, GREY, Look, ORANGE, PURPLE, Role, Rule, Shape, VERMILLION,
+    positive_range, ramp,
 };
 use crate::report::shell::Drawn;
 
 /// Percentage points of a fraction.
 const PP: f64 = 100.0;
 
-/// Colour and symbol of an engine or a way of drawing.
-fn look(name: &str) -> (Colour, Shape) {
-    match name {
+/// The guide of errors of independent samples.
+const SLOPE: &str = "slope −1/2";
+
+/// The look of an engine or a way of drawing.
+fn look(name: &str) -> Look {
+    let (colour, shape) = match name {
         "particles" => (VERMILLION, Shape::Square),
         "counts" => (BLUE, Shape::Circle),
         "expected" => (GREEN, Shape::Diamond),
@@ -26,46 +29,18 @@ fn look(name: &str) -> (Colour, Shape) {
         "counts, stratified constrictions" => (PURPLE, Shape::Circle),
         "expected, both stratified" => (PURPLE, Shape::Diamond),
         _ => (ORANGE, Shape::Triangle),
-    }
+    };
+    Look::line(colour, shape)
 }
 
-/// An empty figure with room for names above its frame, on a page and on a telephone.
-fn figure(title: &str, what: &str, x: Axis, y: Axis) -> Figure {
-    Figure::new(title, what, "", x, y).names_above().sizes((720.0, 500.0), (358.0, 600.0))
+/// A figure with room for names above its frame, on a page and on a telephone.
+fn drawn<T>(name: &'static str, chart: Chart<T>, caption: &str) -> Drawn {
+    Drawn::new(name, chart.figure().names_above().sizes((720.0, 500.0), (358.0, 600.0)), caption)
 }
 
-/// A thin line with a name, still without points.
-fn curve(colour: Colour, name: &str) -> Line {
-    Line::new(Vec::new(), colour).width(1.5).label(name)
-}
-
-/// A logarithmic axis around positive values.
-fn log(label: &str, values: impl Iterator<Item = f64>) -> Axis {
-    let (low, high) = positive_range(values);
-    Axis::log(label, low, high)
-}
-
-/// A dashed power law through a point, over positive values of x.
-fn power(through: (f64, f64), exponent: f64, x: impl Iterator<Item = f64>, colour: Colour) -> Line {
-    let (low, high) = positive_range(x);
-    let at = |x: f64| (x, through.1 * libm::pow(x / through.0, exponent));
-    Line::new(vec![at(low), at(high)], colour).width(1.5).dash(Dash::Dashed)
-}
-
-/// The dashed line on which errors of independent samples lie.
-fn guide(through: (f64, f64), x: impl Iterator<Item = f64>) -> Line {
-    power(through, -0.5, x, GREY).label("slope −1/2")
-}
-
-/// Distinct values in order of first appearance.
-fn distinct<'a, T: 'a>(rows: impl IntoIterator<Item = &'a T>, of: impl Fn(&'a T) -> &'a str) -> Vec<&'a str> {
-    let mut all: Vec<&str> = Vec::new();
-    for name in rows.into_iter().map(of) {
-        if !all.contains(&name) {
-            all.push(name);
-        }
-    }
-    all
+/// The ends of an interval in percentage points.
+fn in_points(low: f64, high: f64) -> Option<(f64, f64)> {
+    Some((PP * low, PP * high))
 }
 
 pub(super) fn exact(exact: &ExactTier) -> Vec<Drawn> {
@@ -75,49 +50,43 @@ pub(super) fn exact(exact: &ExactTier) -> Vec<Drawn> {
             "exact-particles",
             "Particles of a network",
             |row| row.particles as f64,
-            "Root mean square error of the probability to leave over the random networks, against the number \
-             of particles. Dashed: the error of independent particles, slope −1/2; particles, counts and \
-             single particles must lie on it. \"Expected\" draws nothing: its error is the rounding of its \
-             whole numbers. Filled: clogged lattice; hollow, dotted: first particle.",
+            "Root mean square error of the probability of leaving, over the random networks, against the \
+             number of particles. Dashed: the error of independent particles, slope −1/2. Particles, \
+             counts and single particles must follow it. \"Expected\" draws no random numbers; its error \
+             comes from rounding to whole particles. Filled symbols: clogged lattice. Hollow symbols and \
+             dotted lines: first particle.",
         ),
         (
             "exact-time",
             "Processor time of a network (s)",
             |row| row.core_seconds,
-            "Root mean square error of the probability to leave, against the processor time of one network. \
-             Counts cost the same for any number of particles, so their line falls without more time. \
-             Dashed: slope −1/2.",
+            "Root mean square error of the probability of leaving, against the processor time of one \
+             network. Counts cost the same for any number of particles, so their error falls at no extra \
+             time. Dashed: slope −1/2.",
         ),
     ];
-    let drawn = |(name, label, x, caption): (&'static str, &str, Of, &str)| {
-        let what = "Root mean square error of the probability to leave, by engine";
-        let errors = exact.rows.iter().flat_map(|row| [row.error_low, row.error_high]);
-        let y = log("Error of the probability to leave (–)", errors);
-        let mut figure = figure("Error against exact answers", what, log(label, exact.rows.iter().map(x)), y);
-        let mut named: Vec<&str> = Vec::new();
-        for (index, quantity) in exact.quantities.iter().enumerate() {
-            let rows = || exact.rows.iter().filter(|row| row.quantity == quantity.name);
-            for engine in distinct(rows(), |row| &row.engine) {
-                let (colour, shape) = look(engine);
-                let of_engine = || rows().filter(|row| row.engine == engine);
-                let dash = if index == 0 { Dash::Solid } else { Dash::Dotted };
-                let path = of_engine().map(|row| (x(row), row.error)).collect();
-                let line = Line::new(path, colour).width(1.5).dash(dash);
-                figure.add(if named.contains(&engine) { line } else { line.label(engine) });
-                named.push(engine);
-                for row in of_engine() {
-                    let bar = Some((row.error_low, row.error_high));
-                    let point = Point::new(x(row), row.error, colour, shape).y_interval(bar);
-                    figure.add(if index == 0 { point } else { point.hollow() });
-                }
-            }
-        }
-        if let Some(row) = exact.rows.iter().rfind(|row| row.engine == "particles") {
-            figure.add(guide((x(row), row.expected_error), exact.rows.iter().map(x)));
-        }
-        Drawn::new(name, figure, caption)
+    let figure = |(name, label, x, caption): (&'static str, &str, Of, &str)| {
+        let words = [
+            "Error against exact answers",
+            "Root mean square error of the probability of leaving, by engine",
+        ];
+        let y = Role::log("Error of the probability of leaving (–)", |row: &ExactRow| row.error)
+            .interval(|row| Some((row.error_low, row.error_high)));
+        let is_first = |row: &ExactRow| exact.quantities.first().is_some_and(|of| of.name == row.quantity);
+        let chart = Chart::of(&exact.rows, words, Role::log(label, x), y).by(
+            |row| [&row.quantity, &row.engine],
+            |row| match is_first(row) {
+                true => look(&row.engine),
+                false => look(&row.engine).dash(Dash::Dotted).hollow(true),
+            },
+        );
+        let chart = match exact.rows.iter().rfind(|row| row.engine == "particles") {
+            Some(row) => chart.power((x(row), row.expected_error), -0.5, SLOPE),
+            None => chart,
+        };
+        drawn(name, chart, caption)
     };
-    kinds.into_iter().map(drawn).collect()
+    kinds.into_iter().map(figure).collect()
 }
 
 pub(super) fn sampling(sampling: &SamplingTier) -> Vec<Drawn> {
@@ -125,54 +94,47 @@ pub(super) fn sampling(sampling: &SamplingTier) -> Vec<Drawn> {
         (
             "sampling-new-networks",
             "new networks",
-            "Over new networks and new walks: standard deviation of the mean of 1, 2, 4, ... replicates \
-             against the processor time that they take together. Bars: 95 % intervals from the independent \
-             groups of replicates. The floor is the scatter between networks, which no other way of drawing \
-             base particles lowers.",
+            "Standard deviation of the mean of 1, 2, 4, ... replicates, each on a new network, against the \
+             processor time of all of them. Bars: 95 % intervals from independent groups of replicates. \
+             The floor is the scatter between networks, which no sampling of the base particles lowers.",
         ),
         (
             "sampling-one-network",
             "one network",
-            "Over new walks on one network: standard deviation of the mean of 1, 2, 4, ... replicates \
-             against their processor time, which a way of drawing base particles can change.",
+            "Standard deviation of the mean of 1, 2, 4, ... replicates on one network, against the \
+             processor time of all of them. The sampling of the base particles can change this scatter.",
         ),
     ];
-    let drawn = |(name, kind, caption): (&'static str, &str, &str)| {
+    let figure = |(name, kind, caption): (&'static str, &str, &str)| {
         let lines: Vec<&SamplingLine> = sampling.lines.iter().filter(|line| line.networks == kind).collect();
         (!lines.is_empty()).then(|| scatter(sampling, name, caption, &lines))
     };
-    kinds.into_iter().filter_map(drawn).collect()
+    kinds.into_iter().filter_map(figure).collect()
 }
 
 fn scatter(sampling: &SamplingTier, name: &'static str, caption: &str, lines: &[&SamplingLine]) -> Drawn {
     let first = lines[0];
     let kind = &first.networks;
-    let rows = || sampling.rows.iter().filter(|row| row.networks == *kind);
-    let seconds = || rows().map(|row| row.core_seconds);
-    let errors = rows().flat_map(|row| [PP * row.error_low, PP * row.error_high]);
-    let mut figure = figure(
+    let x = Role::log("Processor time of the replicates averaged (s)", |row: &SamplingRow| row.core_seconds);
+    let y = Role::log("Standard error of the eroded mass (percentage points)", |row: &SamplingRow| {
+        PP * row.error
+    })
+    .interval(|row| in_points(row.error_low, row.error_high))
+    .also([PP * first.binomial]);
+    let words = [
         &format!("Standard error of the eroded mass against time, {kind}"),
         "Standard deviation of means over replicates of the eroded mass fraction against processor time",
-        log("Processor time of the replicates averaged (s)", seconds()),
-        log("Standard error of the eroded mass (percentage points)", errors.chain([PP * first.binomial])),
-    );
-    for line in lines {
-        let (colour, shape) = look(&line.variant);
-        let of_line = || rows().filter(|row| row.variant == line.variant);
-        let points = of_line()
-            .map(|row| (row.core_seconds, PP * row.error, Some((PP * row.error_low, PP * row.error_high))));
-        figure.add_series(curve(colour, &line.variant), shape, points);
-    }
-    figure.add(guide((first.core_seconds, PP * first.sd), seconds()));
+    ];
+    let rows = sampling.rows.iter().filter(|row| row.networks == *kind);
+    let mut chart = Chart::of(rows, words, x, y)
+        .by(|row| [row.variant.as_str()], |row| look(&row.variant))
+        .power((first.core_seconds, PP * first.sd), -0.5, SLOPE);
     if let (true, Some(floor)) = (kind == "new networks", between_networks(sampling, first)) {
-        let floor = power((first.core_seconds, PP * floor), -0.5, seconds(), BLACK);
-        figure.add(floor.label("networks alone: the sampling floor"));
+        let through = (first.core_seconds, PP * floor);
+        chart = chart.power_in(BLACK, through, -0.5, "scatter between networks: the floor");
     }
-    let (low, high) = positive_range(seconds());
-    let binomial = vec![(low, PP * first.binomial), (high, PP * first.binomial)];
-    let binomial = Line::new(binomial, BLACK).width(1.0).dash(Dash::Dotted);
-    figure.add(binomial.label("one replicate by a binomial: too small"));
-    Drawn::new(name, figure, caption)
+    let binomial = Rule::new(Across::Y, PP * first.binomial, BLACK).dash(Dash::Dotted);
+    drawn(name, chart.mark(binomial.label("binomial error of one replicate: too small")), caption)
 }
 
 /// The scatter between networks alone: what a line over new networks has beyond that over one.
@@ -182,9 +144,9 @@ pub(super) fn between_networks(sampling: &SamplingTier, new: &SamplingLine) -> O
     (variance > 0.0).then(|| variance.sqrt())
 }
 
-/// Colour and symbol of a changed setting.
-fn factor_look(factor: &str) -> (Colour, Shape) {
-    match factor {
+/// The look of a changed setting.
+fn factor_look(factor: &str) -> Look {
+    let (colour, shape) = match factor {
         "base particles" | "stiffness" => (BLUE, Shape::Circle),
         "cap" | "rate" => (BLUE, Shape::Square),
         "cross-section" | "time step" => (VERMILLION, Shape::Circle),
@@ -193,7 +155,8 @@ fn factor_look(factor: &str) -> (Colour, Shape) {
         "constriction sampling" => (PURPLE, Shape::Triangle),
         "precision" => (ORANGE, Shape::Diamond),
         _ => (GREY, Shape::Triangle),
-    }
+    };
+    Look::points(colour, shape)
 }
 
 /// A changed setting: the processor time of a replicate (s), and a difference from the reference with its
@@ -206,41 +169,39 @@ struct Changed<'a> {
 }
 
 impl Changed<'_> {
-    /// The size of the difference on a logarithmic axis from `least` on: hollow where the interval holds
-    /// zero.
-    fn sized(&self, least: f64) -> Point {
-        let (colour, shape) = factor_look(self.factor);
-        let point = Point::new(self.core_seconds, self.bias.abs().max(least), colour, shape);
-        let Some((low, high)) = self.interval else { return point.hollow() };
-        let holds_zero = low <= 0.0 && high >= 0.0;
+    /// Whether the interval holds zero, or is not known.
+    fn is_open(&self) -> bool {
+        self.interval.is_none_or(|(low, high)| low <= 0.0 && high >= 0.0)
+    }
+
+    /// The interval of the size of the difference, on a logarithmic axis from `least` on.
+    fn sizes(&self, least: f64) -> Option<(f64, f64)> {
+        let (low, high) = self.interval?;
         let (near, far) = (low.abs().min(high.abs()), low.abs().max(high.abs()));
-        let near = if holds_zero { least } else { near.max(least) };
-        let point = point.y_interval(Some((near, far.max(least))));
-        if holds_zero { point.hollow() } else { point }
+        Some((if self.is_open() { least } else { near.max(least) }, far.max(least)))
     }
 }
 
 /// Sizes of differences from the reference setting against time, a symbol a setting; `decades` below the
 /// largest.
-fn differences(
-    [title, what, y]: [&str; 3],
-    x: Axis,
-    changed: &[Changed],
+fn differences<'a>(
+    [title, what, x, y]: [&str; 4],
+    changed: &'a [Changed],
     decades: f64,
     floor: Option<(f64, &str)>,
-) -> Figure {
+) -> Chart<'a, Changed<'a>> {
     let ends = changed.iter().filter_map(|row| row.interval).flat_map(|(low, high)| [low.abs(), high.abs()]);
     let (_, most) = positive_range(ends.chain(changed.iter().map(|row| row.bias.abs())));
     let least = most * libm::pow(10.0, -decades);
-    let mut figure = figure(title, what, x, Axis::log(y, least, most));
-    for factor in distinct(changed, |row| row.factor) {
-        let of_factor = changed.iter().filter(|row| row.factor == factor);
-        figure.add_points(factor, of_factor.map(|row| row.sized(least)));
+    let x = Role::log(x, |row: &Changed| row.core_seconds);
+    let y =
+        Role::log(y, move |row: &Changed| row.bias.abs().max(least)).interval(move |row| row.sizes(least));
+    let chart = Chart::of(changed, [title, what], x, y.also([least]))
+        .by(|row| [row.factor], |row| factor_look(row.factor).hollow(row.is_open()));
+    match floor {
+        Some((at, name)) => chart.mark(Rule::new(Across::Y, at, BLACK).dash(Dash::Dashed).label(name)),
+        None => chart,
     }
-    if let Some((floor, label)) = floor {
-        figure.add(Rule::new(Across::Y, floor, BLACK).dash(Dash::Dashed).label(label));
-    }
-    figure
 }
 
 pub(super) fn bias(rows: &[BiasRow]) -> Vec<Drawn> {
@@ -262,71 +223,67 @@ pub(super) fn bias(rows: &[BiasRow]) -> Vec<Drawn> {
         "Bias of settings against time",
         "Size of the difference of the eroded mass from the reference setting, against processor time of a \
          replicate",
+        "Processor time of a replicate (s)",
         "Size of the difference from the reference (percentage points)",
     ];
-    let x = log("Processor time of a replicate (s)", changed.iter().map(|row| row.core_seconds));
     let floor = floor.map(|floor| (floor, "sampling floor without common networks"));
-    let caption = "Size of the difference of the mean eroded mass from the reference setting, against the \
-                   processor time of a replicate. Hollow: the 95 % interval holds zero. Bars: 95 % \
-                   intervals, replicate by replicate where both were walked on the same networks.";
-    let figure = differences(words, x, &changed, 4.0, floor);
-    std::iter::once(Drawn::new("bias", figure, caption)).chain(amount(rows)).collect()
+    let caption = "Size of the difference in mean eroded mass from the reference setting, against the \
+                   processor time of a replicate. Hollow: the 95 % interval includes zero. Bars: 95 % \
+                   intervals, replicate by replicate where both settings were walked on the same networks.";
+    let figure = drawn("bias", differences(words, &changed, 4.0, floor), caption);
+    std::iter::once(figure).chain(amount(rows)).collect()
 }
 
 /// Eroded mass against the share of the base that is walked.
 fn amount(rows: &[BiasRow]) -> Option<Drawn> {
     let reference = rows.iter().find(|row| row.reference)?;
-    let shares: Vec<&BiasRow> = rows.iter().filter(|row| row.factor == "base particles").collect();
-    let smallest = shares.iter().map(|row| row.at).reduce(f64::min)?.min(1.0);
-    let highest = shares.iter().filter_map(|row| row.bias_high).fold(0.0, f64::max);
-    let lowest = shares.iter().filter_map(|row| row.bias_low).fold(0.0, f64::min);
-    let mut figure = Figure::new(
-        "Bias of too few base particles",
-        "Difference of the eroded mass from that with all base particles of Eq. 2",
-        "",
-        Axis::log("Base particles by those of Eq. 2 (–)", smallest, 1.0),
-        Axis::linear("Difference of the eroded mass (percentage points)", PP * lowest, PP * highest),
-    );
-    let path = shares.iter().map(|row| (row.at, PP * row.bias)).chain([(1.0, 0.0)]).collect();
-    figure.add(Line::new(path, BLUE));
-    for row in &shares {
-        let bar = row.bias_low.zip(row.bias_high).map(|(l, h)| (PP * l, PP * h));
-        figure.add(Point::new(row.at, PP * row.bias, BLUE, Shape::Circle).y_interval(bar));
-    }
-    figure.add(Rule::new(Across::Y, 0.0, GREY).dash(Dash::Dashed));
+    let shares = || rows.iter().filter(|row| row.factor == "base particles");
+    shares().next()?;
+    let words =
+        ["Bias of too few base particles", "Difference of the eroded mass from that with all base particles"];
+    let share = |row: &BiasRow| if row.reference { 1.0 } else { row.at };
+    let x = Role::log("Share of the base particles (–)", share);
+    let y = Role::linear("Difference of the eroded mass (percentage points)", |row: &BiasRow| PP * row.bias)
+        .interval(|row| in_points(row.bias_low?, row.bias_high?))
+        .also([0.0]);
+    let figure = Chart::of(shares().chain([reference]), words, x, y)
+        .by(|_| [""], |_| Look::line(BLUE, Shape::Circle))
+        .mark(Rule::new(Across::Y, 0.0, GREY).dash(Dash::Dashed))
+        .figure();
     let caption = format!(
-        "Difference of the eroded mass when only a part of the base particles that the model requires is \
-         walked: a bias that no replicate takes away. With all of them {:.1} % erode. Bars: 95 % intervals.",
+        "Difference of the eroded mass if only part of the required base particles is walked. More \
+         replicates do not remove this bias. With all of them, {:.1} % of the mass erodes. Bars: 95 % \
+         intervals.",
         PP * reference.value
     );
     Some(Drawn::new("bias-base-particles", figure, caption))
 }
 
 pub(super) fn decision(decision: &DecisionTier) -> Vec<Drawn> {
-    let most = decision.rows.iter().map(|row| row.wrong_high).fold(0.1, f64::max);
-    let mut figure = figure(
+    let words = [
         "Wrong class against time",
         "Share of wrong classes against processor time, for cases near the threshold",
-        log("Processor time (s)", decision.rows.iter().map(|row| row.core_seconds)),
-        Axis::linear("Wrong class (% of trials)", 0.0, PP * most),
+    ];
+    let x = Role::log("Processor time (s)", |row: &DecisionRow| row.core_seconds);
+    let y = Role::linear("Wrong class (% of trials)", |row: &DecisionRow| PP * row.wrong)
+        .interval(|row| in_points(row.wrong_low, row.wrong_high))
+        .also([0.0, 10.0]);
+    let colour = |row: &DecisionRow| {
+        let index = decision.cases.iter().position(|case| case.name == row.case);
+        ramp(index.unwrap_or(0), decision.cases.len())
+    };
+    let is_fixed = |row: &DecisionRow| row.rule == "fixed";
+    let chart = Chart::of(&decision.rows, words, x, y).by(
+        |row| [if is_fixed(row) { "fixed" } else { "sequential" }, &row.case],
+        |row| match is_fixed(row) {
+            true => Look::line(colour(row), Shape::Circle),
+            false => Look::points(VERMILLION, Shape::Diamond),
+        },
     );
-    for (index, case) in decision.cases.iter().enumerate() {
-        let colour = ramp(index, decision.cases.len());
-        let of = |fixed: bool| {
-            decision.rows.iter().filter(move |row| row.case == case.name && (row.rule == "fixed") == fixed)
-        };
-        let point = |row: &DecisionRow| {
-            (row.core_seconds, PP * row.wrong, Some((PP * row.wrong_low, PP * row.wrong_high)))
-        };
-        figure.add_series(curve(colour, &case.name), Shape::Circle, of(true).map(point));
-        for (x, y, bar) in of(false).map(point) {
-            figure.add(Point::new(x, y, VERMILLION, Shape::Diamond).y_interval(bar));
-        }
-    }
-    let caption = "Share of trials whose class is not that of all replicates together, against their \
-                   processor time; a line a case, named by its eroded mass. Circles: the mean of 1, 2, 4, \
-                   ... replicates. Diamonds: sequential stopping. Bars: 95 % intervals.";
-    vec![Drawn::new("decision", figure, caption)]
+    let caption = "Share of trials whose class differs from that of all replicates together, against \
+                   processor time. Each line is a case, named by its eroded mass. Circles: means of 1, 2, \
+                   4, ... replicates. Diamonds: sequential stopping. Bars: 95 % intervals.";
+    vec![drawn("decision", chart, caption)]
 }
 
 pub(super) fn scaling(rows: &[ScalingRow]) -> Vec<Drawn> {
@@ -337,41 +294,31 @@ pub(super) fn scaling(rows: &[ScalingRow]) -> Vec<Drawn> {
             "scaling-base-particles",
             "Base particles",
             |row| row.n_base as f64,
-            "Processor time of a first run of this scene's base against the number of its particles. Dashed: \
-             in proportion.",
+            "Processor time of a first run of this scene, against its number of base particles. Dashed: \
+             proportional.",
         ),
         (
             "voids",
             "scaling-voids",
             "Voids",
             |row| row.voids as f64,
-            "Processor time of a first run on cubes, with as many base particles a void as this scene has. \
-             Dashed: in proportion.",
+            "Processor time of a first run on cubic lattices with as many base particles per void as this \
+             scene. Dashed: proportional.",
         ),
     ];
-    let drawn = |(against, name, label, x, caption): (&str, &'static str, &str, Of, &str)| {
-        let of: Vec<&ScalingRow> = rows.iter().filter(|row| row.against == against).collect();
-        let all_x = || of.iter().map(|row| x(row));
-        let mut figure = figure(
+    let figure = |(against, name, label, x, caption): (&str, &'static str, &str, Of, &str)| {
+        let of = || rows.iter().filter(|row| row.against == against);
+        let words = [
             &format!("Time against {against}"),
-            &format!("Processor time of a first run against {against}, by engine"),
-            log(label, all_x()),
-            log("Processor time of a first run (s)", of.iter().map(|row| row.core_seconds)),
-        );
-        for engine in distinct(of.iter().copied(), |row| &row.engine) {
-            let (colour, shape) = look(engine);
-            let of_engine = of.iter().filter(|row| row.engine == engine);
-            figure.add_series(
-                curve(colour, engine),
-                shape,
-                of_engine.map(|row| (x(row), row.core_seconds, None)),
-            );
-        }
-        let end = of.iter().rfind(|row| row.engine == "particles").or(of.first())?;
-        figure.add(power((x(end), end.core_seconds), 1.0, all_x(), GREY).label("slope 1"));
-        Some(Drawn::new(name, figure, caption))
+            &*format!("Processor time of a first run against {against}, by engine"),
+        ];
+        let y = Role::log("Processor time of a first run (s)", |row: &ScalingRow| row.core_seconds);
+        let chart = Chart::of(of(), words, Role::log(label, x), y)
+            .by(|row| [row.engine.as_str()], |row| look(&row.engine));
+        let end = of().rfind(|row| row.engine == "particles").or(of().next())?;
+        Some(drawn(name, chart.power((x(end), end.core_seconds), 1.0, "slope 1"), caption))
     };
-    kinds.into_iter().filter_map(drawn).collect()
+    kinds.into_iter().filter_map(figure).collect()
 }
 
 pub(super) fn packing(tier: &PackingTier) -> Vec<Drawn> {
@@ -397,39 +344,42 @@ fn void_ratios(tier: &PackingTier) -> Option<Drawn> {
         "Void ratio of packings against time",
         "Size of the difference of the void ratio from the default settings, against processor time of a \
          packing",
+        "Processor time of a packing (s)",
         "Size of the difference of the void ratio (–)",
     ];
-    let x = log("Processor time of a packing (s)", tier.packings.iter().map(|row| row.core_seconds));
-    let caption = "Size of the difference of the mean void ratio from the default settings against the \
-                   processor time of a packing. Hollow: the 95 % interval holds zero. The floor is the \
-                   scatter of as many seeds.";
-    Some(Drawn::new("packing", differences(words, x, &changed, 3.0, floor), caption))
+    let caption = "Size of the difference in mean void ratio from the default settings, against the \
+                   processor time of a packing. Hollow: the 95 % interval includes zero. The floor is the \
+                   standard error of a difference between means over the same number of seeds.";
+    Some(drawn("packing", differences(words, &changed, 3.0, floor), caption))
 }
 
 fn triangulations(tier: &PackingTier) -> Option<Drawn> {
     let rows = &tier.triangulations;
     let last = rows.last()?;
-    let grains = || rows.iter().map(|row| row.grains as f64);
-    let seconds = rows.iter().flat_map(|row| [row.triangulate_seconds, row.measure_seconds]);
-    let mut figure = figure(
+    let both = |row| [("triangulation", row), ("voids, discs and curve", row)];
+    let both: Vec<(&str, &TriangulationRow)> = rows.iter().flat_map(both).collect();
+    let seconds = |(name, row): &(&str, &TriangulationRow)| match *name {
+        "triangulation" => row.triangulate_seconds,
+        _ => row.measure_seconds,
+    };
+    let words = [
         "Time of triangulations",
         "Processor time of triangulation and of the constrictions against the number of grains",
-        log("Grains", grains()),
-        log("Processor time (s)", seconds),
-    );
-    let mut add = |name: &str, of: fn(&TriangulationRow) -> f64, colour, shape| {
-        figure.add_points(
-            name,
-            rows.iter().map(|row| {
-                let point = Point::new(row.grains as f64, of(row), colour, shape);
-                if row.packing.starts_with("at random") { point.hollow() } else { point }
-            }),
-        );
-    };
-    add("triangulation", |row| row.triangulate_seconds, BLUE, Shape::Circle);
-    add("voids, discs and curve", |row| row.measure_seconds, VERMILLION, Shape::Square);
-    figure.add(power((last.grains as f64, last.triangulate_seconds), 1.0, grains(), GREY).label("slope 1"));
+    ];
+    let x = Role::log("Grains", |(_, row): &(&str, &TriangulationRow)| row.grains as f64);
+    let chart = Chart::of(&both, words, x, Role::log("Processor time (s)", seconds))
+        .by(
+            |(name, _)| [*name],
+            |(name, row)| {
+                let (colour, shape) = match *name {
+                    "triangulation" => (BLUE, Shape::Circle),
+                    _ => (VERMILLION, Shape::Square),
+                };
+                Look::points(colour, shape).hollow(row.packing.starts_with("at random"))
+            },
+        )
+        .power((last.grains as f64, last.triangulate_seconds), 1.0, "slope 1");
     let caption = "Processor time of the regular triangulation and of the constrictions measured on it. \
-                   Filled: compressed packings; hollow: grains at random before compression.";
-    Some(Drawn::new("triangulation", figure, caption))
+                   Filled: compressed packings. Hollow: random positions before compression.";
+    Some(drawn("triangulation", chart, caption))
 }

@@ -28,12 +28,13 @@ fn exact(exact: &ExactTier) -> String {
     let sampled: Vec<_> = exact.slopes.iter().filter(|slope| slope.engine != "expected").collect();
     let failed = exact.closed.iter().filter(|row| !row.holds).count();
     let closed = match failed {
-        0 => format!("all {} integers and closed forms hold", exact.closed.len()),
+        0 => format!("All {} integers and closed forms hold", exact.closed.len()),
         n => format!("{n} of {} integers and closed forms FAILED", exact.closed.len()),
     };
     if sampled.is_empty() {
         return format!(
-            "Inconclusive: no network of this curve has a probability worth a linear solve; {closed}."
+            "Inconclusive: no network of this curve has a probability that a linear solve could check. \
+             {closed}."
         );
     }
     let slopes = || sampled.iter().filter_map(|slope| slope.slope);
@@ -47,8 +48,8 @@ fn exact(exact: &ExactTier) -> String {
         false => "FAILED: an engine disagrees with the exact value",
     };
     format!(
-        "{verdict}: the error falls with slopes of {} to {} down to {by_particles:.0e} (particles) and \
-         {smallest:.0e} (counts), and none of {} networks deviates by more than {z:.1} standard errors; \
+        "{verdict}. The error falls with slopes of {} to {}, down to {by_particles:.0e} (particles) and \
+         {smallest:.0e} (counts). None of {} networks deviates by more than {z:.1} standard errors. \
          {closed}.",
         minus(flat),
         minus(steep),
@@ -69,7 +70,7 @@ fn sampling(sampling: &SamplingTier) -> Option<String> {
         return Some("The eroded mass does not scatter: one replicate is enough.".into());
     };
     let floor = between_networks(sampling, best).map_or_else(String::new, |floor| {
-        format!(", of which {} are the networks alone", significant(100.0 * floor))
+        format!(" The networks alone account for {} points.", significant(100.0 * floor))
     });
     let gain = |variant: &str, networks: &str| {
         let of =
@@ -82,8 +83,8 @@ fn sampling(sampling: &SamplingTier) -> Option<String> {
         (gain("counts, stratified base", "one network"), gain("counts, stratified base", "new networks"))
     {
         gains += &format!(
-            " Stratified start nodes and sizes divide the variance by {one} on one network and by {new} over \
-             new ones."
+            " Stratified start nodes and sizes divide the variance by {one} on one network and by {new} \
+             over new networks."
         );
     }
     if let Some(new) = gain("counts, stratified constrictions", "new networks") {
@@ -92,8 +93,9 @@ fn sampling(sampling: &SamplingTier) -> Option<String> {
     // For half a percentage point at 95 %: 1.96 standard errors.
     let needed = (1.96 * best.sd / 0.005).powi(2).max(1.0).ceil();
     Some(format!(
-        "The replicate SD is {} percentage points{floor}, {} times the binomial one of its particles. {} \
-         buys most: ± 0.5 points (95 %) take {needed:.0} replicates, {} of processor time.{gains}",
+        "The standard deviation of a replicate is {} percentage points, {} times that of a \
+         binomial.{floor} The most efficient sampling is \"{}\": ± 0.5 points (95 %) takes {needed:.0} \
+         replicates and {} of processor time.{gains}",
         significant(100.0 * best.sd),
         significant(best.sd / best.binomial),
         best.variant,
@@ -122,18 +124,23 @@ fn bias(rows: &[BiasRow]) -> Option<String> {
         })
         .collect();
     let mut text =
-        format!("Of {} the intervals of {} exclude zero", several(changed.len(), "change"), seen.len());
+        format!("The intervals of {} of {} exclude zero.", seen.len(), several(changed.len(), "change"));
     text += &largest.map_or_else(
-        || "; none of them but the length of the network.".to_owned(),
+        || {
+            " No setting but the length of the network, which is the thickness of the filter, shows a \
+            difference."
+                .to_owned()
+        },
         |row| {
             format!(
-                "; the largest but for the length of the network, which is the filter's thickness, is {}.",
+                " Apart from the length of the network, which is the thickness of the filter, the largest \
+                 difference is {}.",
                 about(row)
             )
         },
     );
     if !small.is_empty() {
-        text += &format!(" In points: {}.", small.join("; "));
+        text += &format!(" Differences in points: {}.", small.join("; "));
     }
     Some(text)
 }
@@ -145,12 +152,15 @@ fn decision(decision: &DecisionTier) -> String {
         let Some(first) = rows().next() else { continue };
         let enough = rows().find(|row| row.wrong <= 0.01);
         text += &format!(
-            "{:.2} points from 7.5 % one replicate is wrong in {:.0} % of trials{}; ",
+            "At {:.2} points from 7.5 %, one replicate is wrong in {:.0} % of trials{}. ",
             100.0 * (case.mean - THRESHOLD).abs(),
             100.0 * first.wrong,
             enough.map_or_else(
-                || ", and 1 % is not reached".to_owned(),
-                |row| format!(", 1 % takes {} of processor time", duration(row.core_seconds))
+                || "; an error rate of 1 % is not reached".to_owned(),
+                |row| format!(
+                    "; an error rate of 1 % takes {} of processor time",
+                    duration(row.core_seconds)
+                )
             )
         );
     }
@@ -158,16 +168,16 @@ fn decision(decision: &DecisionTier) -> String {
     if let Some(worst) = stopped().map(|row| row.wrong).reduce(f64::max) {
         let undecided = stopped().map(|row| row.undecided).fold(0.0, f64::max);
         text += &format!(
-            "stopping where the verdict is decided at the 99.9 % confidence level is wrong in at most {:.1} \
-             % of trials of a case (and leaves up to {:.0} % undecided); ",
+            "Stopping once the verdict is decided at the 99.9 % confidence level is wrong in at most {:.1} \
+             % of the trials of a case and leaves up to {:.0} % undecided. ",
             100.0 * worst,
             100.0 * undecided
         );
     }
     let uncertain = decision.cases.iter().filter(|case| !case.certain).count();
     text += &match uncertain {
-        0 => "the reference decides every case.".to_owned(),
-        n => format!("the reference itself is inconclusive in {}.", several(n, "case")),
+        0 => "The reference decides every case.".to_owned(),
+        n => format!("The reference itself is inconclusive in {}.", several(n, "case")),
     };
     text
 }
@@ -179,7 +189,8 @@ fn scaling(rows: &[ScalingRow]) -> Option<String> {
     };
     let (particles, counts) = (most("particles")?, most("counts")?);
     Some(format!(
-        "{:.0e} base particles take {} one by one, {:.0e} take {} with the passive ones as counts.",
+        "Walking {:.0e} base particles one by one takes {}. Walking {:.0e} with the passive ones as counts \
+         takes {}.",
         particles.n_base as f64,
         duration(particles.core_seconds),
         counts.n_base as f64,
@@ -197,12 +208,12 @@ fn packing(tier: &PackingTier) -> Option<String> {
     let curve = tier.packings.iter().map(|row| row.dc50_bias.abs()).fold(0.0, f64::max);
     let failed = tier.triangulations.iter().filter(|row| !row.identities_hold).count();
     let identities = match failed {
-        0 => "the identities of every triangulation hold".to_owned(),
+        0 => "The identities of every triangulation hold".to_owned(),
         n => format!("FAILED: the identities of {} do not hold", several(n, "triangulation")),
     };
     Some(format!(
-        "{} grains come to rest in {} (friction {}); no setting moves the void ratio by more than {:.4} ({} \
-         x {}, friction {}), nor Dc50 by more than {:.1} %; {identities}.",
+        "{} grains come to rest in {} (friction {}). No setting changes the void ratio by more than {:.4} \
+         ({} x {}, friction {}) or Dc50 by more than {:.1} %. {identities}.",
         reference.grains,
         duration(reference.core_seconds),
         reference.friction,

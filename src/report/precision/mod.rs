@@ -36,10 +36,11 @@ pub fn write_precision(folder: &Path) -> Result<Written, ReportError> {
     let judgements = precision_judgements(&study);
     let title = "Error against run time";
     let lead = html! { p {
-        "How much accuracy a second of processor time buys. Errors are standard deviations over replicates, \
-         never worked out from the number of particles; bars are 95 % intervals. The figure of merit is 1 / \
-         (error² × time): it does not depend on how many replicates were walked, and of two settings the one \
-         with the larger figure of merit gives the same accuracy in less time."
+        "This page shows how much accuracy a second of processor time buys. Errors are standard deviations \
+         over replicates. They are not estimated from the number of particles, because all particles of a \
+         run share one network. Bars are 95 % intervals. The figure of merit is 1 / (error² × time). It \
+         does not depend on the number of replicates. Of two settings, the one with the larger figure of \
+         merit reaches the same accuracy in less time."
     } };
     let mut page = Sections::new(title, title, &html! { (clean(&study.scene)) })
         .words(&lead)
@@ -62,9 +63,9 @@ fn tiers(study: &Precision) -> Vec<Tier> {
     let exact = study.exact.as_ref().map(|exact| Tier {
         name: "exact",
         heading: "Against exact answers",
-        question: "On a given network the probability that a first particle leaves is known by a linear \
-                   solve. Does every engine find it, and does its error fall as that of independent \
-                   particles must?"
+        question: "A linear solve gives the exact probability that the first particle leaves a given \
+                   network. Does every engine find this probability? Does its error fall as it does for \
+                   independent particles?"
             .into(),
         figures: figures::exact(exact),
         tables: tables::exact(exact),
@@ -73,9 +74,8 @@ fn tiers(study: &Precision) -> Vec<Tier> {
         name: "sampling",
         heading: "Scatter of this scene",
         question: format!(
-            "Eroded mass of the first run, walked on {}. Replicates differ by their network and their walk, \
-             or by their walk alone; the scatter between networks is the floor of every better way of \
-             drawing base particles.",
+            "Eroded mass of the first run, walked on {}. Replicates differ in network and walk, or in the \
+             walk alone. No sampling of the base particles removes the scatter between networks.",
             sampling.on
         ),
         figures: figures::sampling(sampling),
@@ -85,8 +85,8 @@ fn tiers(study: &Precision) -> Vec<Tier> {
         name: "bias",
         heading: "What settings do to the answer",
         question:
-            "One setting is changed at a time. A difference whose interval excludes zero is a bias: no \
-                   number of replicates takes it away."
+            "One setting is changed at a time. A difference whose interval excludes zero is a bias. More \
+             replicates do not remove it."
                 .into(),
         figures: figures::bias(bias),
         tables: tables::bias(bias),
@@ -95,8 +95,9 @@ fn tiers(study: &Precision) -> Vec<Tier> {
         name: "decision",
         heading: "Wrong verdicts",
         question: format!(
-            "Cases near the 7.5 % that divide \"no erosion\" from the rest, made of this scene by other \
-             sizes of its base and walked on {}: how often is the class wrong, by the time spent?",
+            "How often is the class wrong, and how does that depend on the time spent? The cases lie near \
+             the 7.5 % that divides \"no erosion\" from the rest. They are this scene with other base \
+             sizes, walked on {}.",
             decision.on
         ),
         figures: figures::decision(decision),
@@ -105,15 +106,16 @@ fn tiers(study: &Precision) -> Vec<Tier> {
     let scaling = study.scaling.as_ref().map(|scaling| Tier {
         name: "scaling",
         heading: "What a larger problem costs",
-        question: "Processor time of one first run.".into(),
+        question: "Processor time of a first run.".into(),
         figures: figures::scaling(scaling),
         tables: tables::scaling(scaling),
     });
     let packing = study.packing.as_ref().map(|packing| Tier {
         name: "packing",
         heading: "Packing and triangulation",
-        question: "Void ratio and constriction curve of small packings of this scene's filter, one setting \
-                   changed at a time; and the time and the identities of triangulations."
+        question: "Small packings of this scene's filter are compared by void ratio and constriction \
+                   curve, with one setting changed at a time. Triangulations are timed, and their \
+                   geometric identities are checked."
             .into(),
         figures: figures::packing(packing),
         tables: tables::packing(packing),
@@ -136,9 +138,9 @@ fn made(study: &Precision) -> Markup {
             (fact("Voids", whole(study.voids)))
         } } }
         p.small {
-            "The same seed and budget give the same numbers on every machine; only times differ. Each run is \
-             walked by one thread and its time is that thread's processor time. The numbers of every figure \
-             are in the CSV files beside this page."
+            "The same seed and budget give the same numbers on every machine; only times differ. Each run \
+             uses one thread, and its time is the processor time of that thread. The numbers of every \
+             figure are in the CSV files beside this page."
         }
     }
 }

@@ -15,7 +15,6 @@ use crate::campaign::cases::PreparedCase;
 use crate::campaign::{self, CampaignCallbacks, CampaignOptions, FinishedCampaign, ReadyCases, Walk};
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
 use crate::outcome::record::Outcome;
-use crate::outcome::table::Columns;
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, claim, shown};
 use crate::store::{Folder, read_whole};
@@ -61,8 +60,8 @@ pub fn run(
             let walked = walk()?;
             walked.problem().map_or(Ok(()), Err)?;
             let comparison = plan.compared(&folder, &walked)?;
-            folder.write(CASES, &cases_table().csv(&comparison.cases))?;
-            folder.write(PAIRS, &pairs_table().csv(&comparison.pairs))?;
+            folder.write(CASES, &ComparedCase::columns().csv(&comparison.cases))?;
+            folder.write(PAIRS, &ComparedPair::columns().csv(&comparison.pairs))?;
             Ok(comparison)
         })
     };
@@ -102,40 +101,4 @@ fn outcome(case: &Path) -> Result<Outcome, RunError> {
     let failed = |error: &dyn std::fmt::Display| RunError::failed(format!("{}: {error}", shown(&path)));
     let bytes = read_whole(&path).map_err(|error| failed(&error))?;
     serde_json::from_slice(&bytes).map_err(|error| failed(&error))
-}
-
-/// `compare.csv`.
-fn cases_table() -> Columns<'static, ComparedCase> {
-    Columns::default()
-        .column("case", |case: &ComparedCase| case.name.clone())
-        .column("verdict", |case| case.verdict.words())
-        .column("confidence", |case| case.confidence.words())
-        .column("rules_not_kept", |case| case.rules_not_kept.len())
-        .column("replicates", |case| case.replicates)
-        .column("n_base", |case| case.n_base)
-        .digits("d15f_over_d85b", 6, |case| Some(case.ratios.d15f_over_d85b))
-        .digits("d15f_over_d95b", 6, |case| Some(case.ratios.d15f_over_d95b))
-        .column("d85b_of", |case| case.base.map(|base| base.grading()))
-        .statistic(["first_eroded_mass_percent", "first_low", "first_high"], |case| {
-            case.runs.first().copied()
-        })
-        .statistic(["second_eroded_mass_percent", "second_low", "second_high"], |case| {
-            case.runs.get(1).copied()
-        })
-        .digits("grains_per_void", 5, |case| case.grains_per_void)
-        .digits("thickness_mm", 5, |case| case.thickness_mm.filter(|_| !case.scale_free))
-        .column("folder", |case| case.folder.clone())
-}
-
-/// `compare_pairs.csv`.
-fn pairs_table() -> Columns<'static, ComparedPair> {
-    Columns::default()
-        .column("first", |pair: &ComparedPair| pair.first.clone())
-        .column("second", |pair| pair.second.clone())
-        .column("run", |pair| pair.run)
-        .column("replicates", |pair| pair.replicates)
-        .statistic(["difference_percentage_points", "low", "high"], |pair| Some(pair.difference))
-        .percent("joint_low", |pair| pair.joint.map(|joint| joint[0]))
-        .percent("joint_high", |pair| pair.joint.map(|joint| joint[1]))
-        .column("differ", |pair| pair.differ)
 }

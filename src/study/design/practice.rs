@@ -2,11 +2,11 @@
 
 use super::judged::Judged;
 use super::row::Row;
-use crate::outcome::design::FinestBase;
 use crate::outcome::design::band::retention;
 use crate::outcome::record::{AppliedRule, RuleRole};
 use crate::outcome::rules::{BaseSoil, RuleInputs, apply};
 use crate::run::error::RunError;
+use crate::verdict::FinestBase;
 
 /// D15F/D85B from and to which the finest base that practice allows is looked for, and the step.
 const SEARCH: (f64, f64, f64) = (0.2, 200.0, 1.01);
@@ -27,9 +27,8 @@ pub(super) fn allowed(row: &Row, held: f64, finest: Option<&FinestBase>) -> Resu
     Ok(retention(&rules, held * d85).map_or(held, |(_, limit)| held.min(limit / d85 * HAIR)))
 }
 
-/// The finest base of this shape that practice allows with a filter of this size: that, and every
-/// coarser one,
-/// keeps every rule of retention. `None` where the base is not scaled, sizes have no unit, or no rule is ever
+/// The finest base of this shape that practice allows with a filter of this size: that, and every coarser
+/// one, keeps every rule of retention. `None` where the base is not scaled, sizes have no unit, or no rule is ever
 /// broken.
 ///
 /// # Errors

@@ -9,17 +9,15 @@ use super::steadiness;
 use crate::outcome::design::band::Band;
 use crate::outcome::design::products::fits;
 use crate::outcome::design::{
-    BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignAnswer, DesignFinding, DesignRow,
-    NetworkBoundaries, WalkRow, spread,
+    BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignFinding, DesignRow, NetworkBoundaries,
+    WalkRow, spread,
 };
 use crate::outcome::leaves_out;
 use crate::outcome::record::{Confidence, FindingRecord};
 use crate::outcome::table::csv_of;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
-use crate::verdict::beside::empty_band;
-use crate::verdict::words::within;
-use crate::verdict::{Finding, Judgement, finding};
+use crate::verdict::{Finding, Judgement, design_answer, finding};
 
 /// Ratio at which the rules are read where no boundary is known.
 const USUAL_RATIO: f64 = 4.0;
@@ -99,7 +97,7 @@ pub(super) fn design(
         seconds,
         boundaries,
     };
-    Ok(Design { answer: Some(DesignAnswer::of(&design, finest.as_ref())), ..design })
+    Ok(Design { answer: Some(design_answer(&design, finest.as_ref())), ..design })
 }
 
 /// A row as its networks have it, and what they say against it.
@@ -146,11 +144,7 @@ fn band(row: &Row, held: Option<f64>) -> Result<Option<Band>, RunError> {
     let Some(ratio) = held.filter(|_| !row.inverse) else { return Ok(None) };
     let judged = Judged::new(row, ratio)?;
     let d15f = ratio * row.d85_mm.unwrap_or(1.0);
-    let band = Band::new(&judged.rules(), d15f, d15f, judged.unit());
-    Ok(band.map(|band| match empty_band(&band) {
-        Some(empty) => Band { said: within(&empty.sentence()), ..band },
-        None => band,
-    }))
+    Ok(Band::new(&judged.rules(), d15f, d15f, judged.unit()))
 }
 
 /// Why there is no band, where networks erode at every ratio that was searched, with some curve of the range,
@@ -227,7 +221,7 @@ fn judged(
         Some(boundary) => Vec::from_iter(row.thicker(boundary.high.unwrap_or(boundary.median).max(ratio))),
         None => own.of_boundary.clone(),
     };
-    let why = [unsteady, of.band.as_ref().and_then(empty_band), no_band].into_iter().flatten();
+    let why = [unsteady, of.band.as_ref().and_then(Band::empty), no_band].into_iter().flatten();
     Ok(judged.answer(row, &judged.rules(), why.chain(of_boundary).collect()))
 }
 

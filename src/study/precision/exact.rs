@@ -105,8 +105,8 @@ pub(super) fn tier(study: &PrecisionStudy, budget_s: f64) -> Result<(ExactTier, 
         all.map(|(engine, most)| Line { quantity, known, way: Way::Together(engine), most })
     };
     if !clogged.is_empty() {
-        let what = "probability that a particle that fits everywhere leaves a 6 x 6 x 4 lattice of which 58 \
-                    % of the constrictions are blocked from the start";
+        let what = "probability that a particle smaller than every constriction leaves a 6 x 6 x 4 lattice \
+                    with 58 % of its constrictions blocked from the start";
         quantities.push(quantity("clogged lattice", what, &clogged));
         lines.extend(engines("clogged lattice", &clogged, particles));
     }

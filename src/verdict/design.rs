@@ -1,13 +1,15 @@
-//! The answer of a design: the least of what walk and practice allow, and which of the two set it.
+//! The answer of a design: how coarse the filter may be, which of walk and practice set it, and why.
 //!
 //! The limit of practice is the strictest rule of retention that was made for the base: as a rule Sherard and
 //! Dunnigan's limit of design, and Foster and Fell's boundary of no erosion where that is lower, as for 35 to
 //! 40 % fines. No specification allows a filter with which tests saw erosion.
 
-use super::band::{DESIGN, SetBy, limits, retention, whose};
-use super::record::{Design, DesignAnswer, DesignRow};
+use super::practice::cited_rule;
+use crate::outcome::design::band::{SetBy, limits, retention};
+use crate::outcome::design::{Design, DesignAnswer, DesignRow};
 use crate::outcome::digits::percent;
 use crate::outcome::record::{AppliedRule, RuleRole};
+use crate::outcome::rules::DESIGN;
 use crate::outcome::three;
 
 /// The finest base that practice allows with a filter, for the inverse.
@@ -20,103 +22,154 @@ pub struct FinestBase {
     pub rule: AppliedRule,
 }
 
-/// A limit of practice.
+/// A limit of D15F/D85B, and the rule that sets it.
+#[derive(Clone, Copy)]
 struct Limit<'a> {
     ratio: f64,
     rule: &'a AppliedRule,
 }
 
-impl DesignAnswer {
-    /// Of a design whose boundaries and rules are known; `finest` is what practice says for the
-    /// inverse, where
-    /// that was searched.
-    pub fn of(design: &Design, finest: Option<&FinestBase>) -> Self {
-        let sizes = Sizes::of(design);
-        let strictest = retention(&design.rules, design.rules_at * sizes.d85);
-        let limit = match (design.inverse, finest) {
-            (true, Some(FinestBase { ratio: Some(ratio), rule })) => Some(Limit { ratio: *ratio, rule }),
-            (true, _) => None,
-            // Sizes without a unit are taken as a sand without fines: no limit is known of the base itself.
-            (false, _) if !sizes.has_unit => None,
-            (false, _) => strictest.map(|(rule, limit)| Limit { ratio: limit / sizes.d85, rule }),
-        };
-        let held = design.least_held();
-        let too_open = design.base.tail_mass_fraction >= design.threshold;
+/// Which of the cases holds, each with its numbers; ratios are D15F/D85B.
+enum Case<'a> {
+    /// Practice allows no base that was searched.
+    Forbidden(&'a AppliedRule),
+    /// Neither walk nor practice knows a ratio.
+    Unknown,
+    /// The walk has no answer: the finest tail of the base, this share of its mass, may be anything.
+    TailOpen(Limit<'a>, f64),
+    /// Practice allows less than the least ratio that was walked, at which networks erode.
+    BelowSearch(Limit<'a>, f64),
+    /// No ratio is known that nearly all networks hold, and practice alone allows one.
+    NotHeld(Limit<'a>),
+    /// Practice allows no more than nearly all networks hold.
+    Practice(Limit<'a>),
+    /// Nearly all networks of a row hold less than practice allows.
+    Walk(&'a DesignRow, f64, Limit<'a>),
+    /// Nearly all networks of a row hold this, and no limit of practice is known.
+    ModelAlone(&'a DesignRow, f64),
+}
+
+/// The answer of a design whose boundaries and rules are known; `finest` is what practice says for the
+/// inverse, where that was searched.
+pub fn design_answer(design: &Design, finest: Option<&FinestBase>) -> DesignAnswer {
+    let sizes = Sizes::of(design);
+    let case = Case::of(design, &sizes, finest);
+    let ratio = case.ratio();
+    let size = |ratio: f64| sizes.mm(ratio);
+    DesignAnswer {
+        d15f_max_mm: ratio.filter(|_| !design.inverse).and_then(size),
+        d85b_min_mm: ratio.filter(|_| design.inverse).and_then(size),
+        d15f_over_d85b: ratio,
+        set_by: if case.rule().is_some() { SetBy::Practice } else { SetBy::Walk },
+        rule: case.rule().map(|rule| rule.id.clone()),
+        said: case.words(design, &sizes),
+    }
+}
+
+impl Design {
+    /// The answer, of files of earlier versions too.
+    pub fn answer(&self) -> DesignAnswer {
+        self.answer.clone().unwrap_or_else(|| design_answer(self, None))
+    }
+
+    fn strictest(&self, sizes: &Sizes) -> Option<(&AppliedRule, f64)> {
+        retention(&self.rules, self.rules_at * sizes.d85)
+    }
+}
+
+impl<'a> Case<'a> {
+    fn of(design: &'a Design, sizes: &Sizes, finest: Option<&'a FinestBase>) -> Self {
         // Files of an earlier version know only whether the base that the walk holds breaks a rule.
         let broken = design.rules.iter().find(|rule| rule.role == RuleRole::Retention && rule.is_broken());
         let known = broken.filter(|_| design.inverse && sizes.has_unit && finest.is_none());
-        let forbidden = known.or(finest.filter(|of| of.ratio.is_none()).map(|of| &of.rule));
-        let (ratio, set_by) = match (&held, &limit) {
-            _ if forbidden.is_some() => (None, SetBy::Practice),
-            // The walk says nothing against a base of which it does not know enough.
-            (None, Some(limit)) if too_open => (Some(limit.ratio), SetBy::Practice),
-            (None, _) => (None, SetBy::Walk),
-            (Some((_, held)), Some(limit)) if limit.ratio <= *held => (Some(limit.ratio), SetBy::Practice),
-            (Some((_, held)), _) => (Some(*held), SetBy::Walk),
+        if let Some(rule) = known.or(finest.filter(|of| of.ratio.is_none()).map(|of| &of.rule)) {
+            return Self::Forbidden(rule);
+        }
+        let limit = match design.inverse {
+            true => finest.and_then(|of| Some(Limit { ratio: of.ratio?, rule: &of.rule })),
+            // Sizes without a unit are taken as a sand without fines: no limit is known of the base itself.
+            false if !sizes.has_unit => None,
+            false => design.strictest(sizes).map(|(rule, limit)| Limit { ratio: limit / sizes.d85, rule }),
         };
-        let said = match (&held, &limit, forbidden) {
-            (.., Some(rule)) => {
-                format!(
-                    "No base is known that both walk and practice allow with this filter ({})",
-                    whose(rule)
-                )
-            }
-            (None, None, _) => "No ratio is known that nearly all networks hold".into(),
-            (None, Some(limit), _) if too_open => format!(
+        let (tail, least) = (design.base.tail_mass_fraction, design.bracket[0]);
+        match (design.least_held(), limit) {
+            (None, None) => Self::Unknown,
+            // The walk says nothing against a base of which it does not know enough.
+            (None, Some(limit)) if tail >= design.threshold => Self::TailOpen(limit, tail),
+            (None, Some(limit)) if limit.ratio < least => Self::BelowSearch(limit, least),
+            (None, Some(limit)) => Self::NotHeld(limit),
+            (Some((_, held)), Some(limit)) if limit.ratio <= held => Self::Practice(limit),
+            (Some((row, held)), Some(limit)) => Self::Walk(row, held, limit),
+            (Some((row, held)), None) => Self::ModelAlone(row, held),
+        }
+    }
+
+    /// The ratio that is allowed; `None` where none is known.
+    fn ratio(&self) -> Option<f64> {
+        match self {
+            Self::TailOpen(limit, _) | Self::Practice(limit) => Some(limit.ratio),
+            Self::Walk(_, held, _) | Self::ModelAlone(_, held) => Some(*held),
+            Self::Forbidden(_) | Self::Unknown | Self::BelowSearch(..) | Self::NotHeld(_) => None,
+        }
+    }
+
+    /// The rule that set the answer; `None` where the walk did.
+    fn rule(&self) -> Option<&'a AppliedRule> {
+        match self {
+            Self::Forbidden(rule) => Some(rule),
+            Self::TailOpen(limit, _) | Self::Practice(limit) => Some(limit.rule),
+            _ => None,
+        }
+    }
+
+    /// A sentence without its full stop.
+    fn words(&self, design: &Design, sizes: &Sizes) -> String {
+        match self {
+            Self::Forbidden(rule) => format!(
+                "No base is known that both the walk and practice allow with this filter ({})",
+                cited_rule(rule)
+            ),
+            Self::Unknown => "No ratio is known that nearly all networks hold".into(),
+            Self::TailOpen(limit, tail) => format!(
                 "{}, by practice alone ({}{}); the walk has no answer, as {} of the base is finer than its \
                  finest sieve",
                 sizes.words(limit.ratio),
-                whose(limit.rule),
+                cited_rule(limit.rule),
                 sizes.other(design, limit.rule),
-                percent(design.base.tail_mass_fraction)
+                percent(*tail)
             ),
-            (None, Some(limit), _) if limit.ratio < design.bracket[0] => format!(
-                "Practice allows {} ({}); the walk was searched from {} only, where it erodes: a lower \
-                 end of \
-                 --bracket looks below",
+            Self::BelowSearch(limit, least) => format!(
+                "Practice allows {} ({}); the walk was searched from a {} of {} only, where networks erode: \
+                 search from a smaller D15F/D85B",
                 sizes.words(limit.ratio),
-                whose(limit.rule),
-                sizes.words(design.bracket[0]).replace("D15F up to", "a D15F of")
+                cited_rule(limit.rule),
+                sizes.name(),
+                sizes.size(*least)
             ),
-            (None, Some(limit), _) => format!(
+            Self::NotHeld(limit) => format!(
                 "No ratio is known that nearly all networks hold; practice alone allows {} ({})",
                 sizes.words(limit.ratio),
-                whose(limit.rule)
+                cited_rule(limit.rule)
             ),
-            (Some(_), Some(limit), _) if set_by == SetBy::Practice => {
-                let other = sizes.other(design, limit.rule);
-                format!(
-                    "{}, by practice ({}{other}); the walk sets no tighter limit",
-                    sizes.words(limit.ratio),
-                    whose(limit.rule)
-                )
-            }
-            (Some((row, held)), Some(limit), _) => format!(
+            Self::Practice(limit) => format!(
+                "{}, by practice ({}{}); the walk sets no tighter limit",
+                sizes.words(limit.ratio),
+                cited_rule(limit.rule),
+                sizes.other(design, limit.rule)
+            ),
+            Self::Walk(row, held, limit) => format!(
                 "{}{}, by the walk; practice allows {} ({})",
                 searched(row),
                 sizes.words(*held),
                 sizes.words(limit.ratio),
-                whose(limit.rule)
+                cited_rule(limit.rule)
             ),
-            (Some((row, held)), None, _) => format!(
+            Self::ModelAlone(row, held) => format!(
                 "{}{} in the model alone; {}",
                 searched(row),
                 sizes.words(*held),
-                sizes.without_limit(strictest)
+                sizes.without_limit(design.strictest(sizes))
             ),
-        };
-        let size = |ratio: f64| sizes.mm(ratio);
-        Self {
-            d15f_max_mm: ratio.filter(|_| !design.inverse).and_then(size),
-            d85b_min_mm: ratio.filter(|_| design.inverse).and_then(size),
-            d15f_over_d85b: ratio,
-            set_by,
-            rule: match (set_by, forbidden, limit) {
-                (SetBy::Practice, Some(rule), _) => Some(rule.id.clone()),
-                (SetBy::Practice, None, limit) => limit.map(|limit| limit.rule.id.clone()),
-                (SetBy::Walk, ..) => None,
-            },
-            said,
         }
     }
 }
@@ -149,21 +202,26 @@ impl Sizes {
         }
     }
 
+    /// What they are sizes of.
+    fn name(&self) -> &'static str {
+        if self.inverse && self.has_unit { "D85B" } else { "D15F" }
+    }
+
+    /// A ratio as a size.
+    fn size(&self, ratio: f64) -> String {
+        self.mm(ratio).map_or_else(|| format!("{ratio:.2} D85B"), |mm| format!("{} mm", three(mm)))
+    }
+
     fn words(&self, ratio: f64) -> String {
-        match (self.mm(ratio), self.inverse) {
-            (Some(mm), false) => format!("D15F up to {} mm", three(mm)),
-            (Some(mm), true) => format!("D85B down to {} mm", three(mm)),
-            (None, _) => format!("D15F up to {ratio:.2} D85B"),
-        }
+        let name = self.name();
+        format!("{name} {} {}", if name == "D85B" { "down to" } else { "up to" }, self.size(ratio))
     }
 
     /// The limit of design, where another rule is stricter.
     fn other(&self, design: &Design, rule: &AppliedRule) -> String {
-        let of_design = limits(&design.rules, design.rules_at * self.d85).into_iter();
-        let mut of_design = of_design.filter(|(of, _)| of.id == DESIGN && rule.id != DESIGN && !self.inverse);
-        of_design
-            .next()
-            .map_or(String::new(), |(of, limit)| format!("; {} is {} mm", whose(of), three(limit)))
+        let all = limits(&design.rules, design.rules_at * self.d85);
+        let of_design = all.iter().find(|(of, _)| of.id == DESIGN && rule.id != DESIGN && !self.inverse);
+        of_design.map_or(String::new(), |(of, limit)| format!("; {} is {} mm", cited_rule(of), three(*limit)))
     }
 
     /// Why no limit of practice is known.
@@ -172,7 +230,7 @@ impl Sizes {
             Some((rule, limit)) => format!(
                 "the limit of practice is not known, as sizes have no unit (for a sand without fines it is \
                  {limit:.2} D85B, {})",
-                whose(rule)
+                cited_rule(rule)
             ),
             None if self.has_unit => "the limit of practice is not known for this base".into(),
             None => "the limit of practice is not known, as sizes have no unit".into(),
@@ -186,13 +244,6 @@ fn searched(row: &DesignRow) -> &'static str {
         (Some(_), _) => "",
         (None, 0) => "Holds as far as was searched: ",
         (None, _) => "Held by nearly all networks: ",
-    }
-}
-
-impl Design {
-    /// The answer, of files of earlier versions too.
-    pub fn answer(&self) -> DesignAnswer {
-        self.answer.clone().unwrap_or_else(|| DesignAnswer::of(self, None))
     }
 }
 
@@ -301,10 +352,10 @@ mod tests {
         (inverse.inverse, inverse.filter_d15_mm, inverse.base.d85_mm) = (true, Some(2.0), None);
         let rule = inverse.rules.iter().find(|rule| rule.id == "sherard-dunnigan").unwrap().clone();
         let finest = FinestBase { ratio: Some(4.0), rule };
-        let answer = DesignAnswer::of(&inverse, Some(&finest));
+        let answer = design_answer(&inverse, Some(&finest));
         assert_eq!((answer.d85b_min_mm, answer.d15f_max_mm), (Some(0.5), None));
         assert!(answer.said.starts_with("D85B down to 0.500 mm, by practice"), "{}", answer.said);
-        let none = DesignAnswer::of(&inverse, Some(&FinestBase { ratio: None, ..finest }));
+        let none = design_answer(&inverse, Some(&FinestBase { ratio: None, ..finest }));
         assert!(none.d85b_min_mm.is_none() && none.said.starts_with("No base is known that both"));
     }
 }

@@ -1,19 +1,19 @@
 //! Numbers as a reader wants them: sensible digits, grouped thousands, units.
 //!
 //! ```
-//! use voidwalk::report::numbers::{duration, significant, whole};
+//! use voidwalk::outcome::numbers::{duration, significant, whole};
 //! assert_eq!([significant(0.16044), significant(2e9)], ["0.160", "2.00e9"]);
 //! assert_eq!([whole(9313), whole(96_000)], ["9313", "96\u{202f}000"]);
 //! assert_eq!([duration(12.34), duration(600.0)], ["12.3\u{202f}s", "10.0\u{202f}min"]);
 //! ```
 
-use crate::outcome::record::Statistic;
+use super::record::Statistic;
 
 /// A narrow space that no line breaks at: it groups thousands and stands before units.
 const THIN: char = '\u{202f}';
 
 /// A value, or that it is not given.
-pub(super) fn known<T>(value: Option<T>, words: impl FnOnce(T) -> String) -> String {
+pub fn known<T>(value: Option<T>, words: impl FnOnce(T) -> String) -> String {
     value.map_or_else(|| "not given".to_owned(), words)
 }
 
@@ -65,39 +65,39 @@ fn percent_digits(fraction: f64) -> String {
 }
 
 /// A fraction as a percentage.
-pub(super) fn percent(fraction: f64) -> String {
+pub fn percent(fraction: f64) -> String {
     format!("{}{THIN}%", percent_digits(fraction))
 }
 
 /// The threshold between the classes as a percentage, no digit more than it has.
-pub(super) fn threshold(fraction: f64) -> String {
+pub fn threshold(fraction: f64) -> String {
     format!("{}{THIN}%", trimmed(fraction * 100.0))
 }
 
 /// The 95 % interval of a fraction, where there is one.
-pub(super) fn percent_interval(statistic: &Statistic) -> Option<String> {
+pub fn percent_interval(statistic: &Statistic) -> Option<String> {
     let (low, high) = interval(statistic)?;
     Some(format!("{} to {}{THIN}%", percent_digits(low), percent_digits(high)))
 }
 
 /// The interval of a fraction, kept within 0 and 1.
-pub(super) fn interval(statistic: &Statistic) -> Option<(f64, f64)> {
+pub fn interval(statistic: &Statistic) -> Option<(f64, f64)> {
     Some((statistic.low?.clamp(0.0, 1.0), statistic.high?.clamp(0.0, 1.0)))
 }
 
 /// The interval of a fraction in percent, kept within 0 and 100.
-pub(super) fn interval_in_percent(statistic: &Statistic) -> Option<(f64, f64)> {
+pub fn interval_in_percent(statistic: &Statistic) -> Option<(f64, f64)> {
     interval(statistic).map(|(low, high)| (100.0 * low, 100.0 * high))
 }
 
 /// A factor or a limit with no digit more than it needs.
-pub(super) fn trimmed(factor: f64) -> String {
+pub fn trimmed(factor: f64) -> String {
     let text = format!("{factor:.3}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// A number with at most this many digits that mean something, and no zeros at the end.
-pub(super) fn in_digits(value: f64, digits: u8) -> String {
+pub fn in_digits(value: f64, digits: u8) -> String {
     if !(1e-4..1e6).contains(&value) {
         return significant(value);
     }
@@ -106,12 +106,12 @@ pub(super) fn in_digits(value: f64, digits: u8) -> String {
 }
 
 /// A size with its unit: mm, or multiples of D0F when nothing has a scale.
-pub(super) fn size(value: f64, scale_free: bool) -> String {
+pub fn size(value: f64, scale_free: bool) -> String {
     format!("{}{THIN}{}", significant(value), size_unit(scale_free))
 }
 
 /// The unit of sizes.
-pub(super) fn size_unit(scale_free: bool) -> &'static str {
+pub fn size_unit(scale_free: bool) -> &'static str {
     if scale_free { "D0F" } else { "mm" }
 }
 

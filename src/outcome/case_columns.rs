@@ -1,0 +1,68 @@
+//! The columns that the tables of campaigns and of comparisons share.
+
+use super::BaseSize;
+use super::numbers::{percent, significant, size, whole};
+use super::record::{Confidence, Ratios, Statistic};
+use super::table::{Columns, TableCell};
+
+impl<'a, T: 'a> Columns<'a, T> {
+    /// How far a verdict can be relied on; on a page, `reason` says below it why no further.
+    pub(super) fn confidence(
+        self,
+        of: fn(&T) -> Option<Confidence>,
+        reason: fn(&T) -> Option<String>,
+    ) -> Self {
+        let shown = move |row: &T| {
+            let words = of(row).map(|confidence| match confidence {
+                Confidence::Within => "within",
+                Confidence::Outside => "outside",
+                Confidence::Contradicted => "contradicted",
+                doubt => doubt.words(),
+            });
+            words.shown().doubt(of(row).is_some_and(|of| of != Confidence::Within)).below(reason(row))
+        };
+        self.column("confidence", move |row| of(row).map(Confidence::words)).words("Confidence", shown)
+    }
+
+    /// How many rules of practice are not kept.
+    pub(super) fn broken_rules(self, name: &str, heading: &str, of: fn(&T) -> Option<usize>) -> Self {
+        let shown = move |row: &T| of(row).shown().doubt(of(row).is_some_and(|count| count > 0));
+        self.column(name, of).number(heading, shown)
+    }
+
+    /// D15F over D85B, whose base a page names below it, and over D95B; a page shows them after what eroded.
+    pub(super) fn ratios(self, decimals: usize, of: fn(&T) -> (Ratios, Option<BaseSize>)) -> Self {
+        let d85b = move |row: &T| significant(of(row).0.d15f_over_d85b).shown();
+        self.digits("d15f_over_d85b", decimals, move |row| Some(of(row).0.d15f_over_d85b))
+            .number("D15F/ D85B", move |row| d85b(row).below(of(row).1.map(|base| base.words())))
+            .place(1)
+            .digits("d15f_over_d95b", decimals, move |row| Some(of(row).0.d15f_over_d95b))
+            .headed("D15F/ D95B")
+            .place(1)
+            .column("d85b_of", move |row| of(row).1.map(|base| base.grading()))
+    }
+
+    /// Mass eroded in the first run and in the second, with its interval and, on a page, its range where the
+    /// constriction curve is a range.
+    pub(super) fn eroded(self, of: fn(&T, usize) -> (Option<Statistic>, Option<[f64; 2]>)) -> Self {
+        let cell = move |row: &T, run| {
+            let (statistic, range) = of(row, run);
+            let curve = |[low, high]: [f64; 2]| format!("curve: {} to {}", percent(low), percent(high));
+            statistic.shown().below(range.map(curve))
+        };
+        self.statistic(["first_eroded_mass_percent", "first_low", "first_high"], move |row| of(row, 0).0)
+            .number("Eroded, first run", move |row| cell(row, 0))
+            .statistic(["second_eroded_mass_percent", "second_low", "second_high"], move |row| of(row, 1).0)
+            .number("second run", move |row| cell(row, 1))
+    }
+
+    /// The thickness of the filter; in a file in mm alone, on a page with its unit and, where given, its layers.
+    pub(super) fn thickness(self, decimals: usize, of: fn(&T) -> (Option<f64>, bool, Option<u64>)) -> Self {
+        let in_mm = move |row: &T| of(row).0.filter(|_| !of(row).1);
+        self.digits("thickness_mm", decimals, in_mm).number("Thickness", move |row| {
+            let (thickness, scale_free, layers) = of(row);
+            let layers = layers.map(|layers| format!("{} layers", whole(layers)));
+            thickness.map(|thickness| size(thickness, scale_free)).shown().below(layers)
+        })
+    }
+}

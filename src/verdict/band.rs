@@ -1,0 +1,143 @@
+//! The band of a specification: from the least D15F that drains the base to the greatest that holds it.
+
+use super::entry::Finding;
+use super::finding;
+use super::practice::cited;
+use super::words::within;
+use crate::outcome::design::band::{Band, SetBy, limits, retention};
+use crate::outcome::record::AppliedRule;
+use crate::outcome::rules::{PERMEABILITY, RULES};
+
+impl Band {
+    /// From the rules of a filter of this D15F and the greatest D15F that holds, in the unit of the rules;
+    /// `None` where the least is not known.
+    pub fn new(rules: &[AppliedRule], d15f: f64, held: f64, unit: &str) -> Option<Self> {
+        let limits = limits(rules, d15f);
+        let (_, least) = *limits.iter().find(|(rule, _)| rule.id == PERMEABILITY)?;
+        let strictest = retention(rules, d15f);
+        // The stricter of walk and practice is the one that clashes.
+        let stricter = strictest.filter(|(_, limit)| *limit < held);
+        let greatest = stricter.map_or(held, |(_, limit)| limit);
+        let mut band = Self {
+            least,
+            greatest,
+            set_by: Some(if stricter.is_some() { SetBy::Practice } else { SetBy::Walk }),
+            practice: strictest.map(|(_, limit)| limit),
+            practice_rule: strictest.map_or_else(String::new, |(rule, _)| rule.name.clone()),
+            practice_rule_id: strictest.map(|(rule, _)| rule.id.clone()),
+            unit: unit.into(),
+            is_empty: least > greatest,
+            said: String::new(),
+        };
+        band.said = match band.empty() {
+            Some(empty) => within(&empty.sentence()),
+            None => band.sides(greatest, stricter.map(|_| band.rule())),
+        };
+        Some(band)
+    }
+
+    /// Its two sides in words. That of an earlier version may say more than practice allows.
+    pub fn words(&self) -> String {
+        match (self.is_empty, self.set_by, self.practice) {
+            (false, None, Some(practice)) if practice < self.greatest => {
+                self.sides(practice, Some(self.rule()))
+            }
+            _ => self.said.clone(),
+        }
+    }
+
+    /// That nothing lies between the least D15F that drains a base and the greatest that holds it.
+    pub fn empty(&self) -> Option<Finding> {
+        let size = |d15f: f64| format!("{d15f:.3} {}", self.unit);
+        let set_by = match self.set_by {
+            Some(SetBy::Practice) => self.rule(),
+            _ => "the walk".into(),
+        };
+        self.is_empty.then(|| finding::empty_band(&size(self.least), &size(self.greatest), &set_by))
+    }
+
+    fn sides(&self, greatest: f64, practice: Option<String>) -> String {
+        let set_by = practice.map_or("the walk".into(), |rule| format!("practice ({rule})"));
+        format!("D15F from {:.3} to {greatest:.3} {}, the coarse side by {set_by}", self.least, self.unit)
+    }
+
+    /// The rule of practice, as a sentence cites it.
+    fn rule(&self) -> String {
+        let id = self.practice_rule_id.as_deref();
+        let listed = RULES.iter().find(|rule| Some(rule.id) == id);
+        listed.map_or_else(|| self.practice_rule.clone(), |rule| cited(rule.id, rule.authority))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gradation::Gradation;
+    use crate::verdict::PairRules;
+
+    /// D15F of the filter that is judged.
+    const D15F: f64 = 1.6;
+
+    fn rules(base_cu: f64) -> Vec<AppliedRule> {
+        let filter = Gradation::linear_from_dx(15.0, D15F, 1.5).unwrap();
+        PairRules::of(&Gradation::linear_from_dx(85.0, 0.4, base_cu).unwrap(), &filter).rules
+    }
+
+    #[test]
+    fn a_band_goes_from_permeability_to_the_walk_with_practice_beside() {
+        let all = rules(3.0);
+        let band = Band::new(&all, D15F, 1.8, "mm").unwrap();
+        // D15B of a linear Cu 3 base: 0.4 x 3^(-70/50).
+        let d15b = 0.4 * libm::pow(3.0, -1.4);
+        assert!((band.least - 5.0 * d15b).abs() < 1e-9 && !band.is_empty, "{band:?}");
+        assert!((band.practice.unwrap() - 1.6).abs() < 1e-9 && (band.greatest - 1.6).abs() < 1e-9);
+        assert_eq!(
+            band.said,
+            "D15F from 0.430 to 1.600 mm, the coarse side by practice (Sherard and Dunnigan's limit of \
+             design)"
+        );
+        let narrow = Band::new(&all, D15F, 1.2, "mm").unwrap();
+        assert_eq!((narrow.greatest, narrow.set_by), (1.2, Some(SetBy::Walk)));
+        assert_eq!(narrow.said, "D15F from 0.430 to 1.200 mm, the coarse side by the walk");
+        // As an earlier version wrote it.
+        let old = Band { greatest: 1.8, set_by: None, said: "D15F from 0.430 to 1.800 mm".into(), ..band };
+        assert!(
+            old.words().contains("from 0.430 to 1.600 mm") && (old.greatest_of_both() - 1.6).abs() < 1e-9
+        );
+    }
+
+    #[test]
+    fn an_empty_band_has_the_two_numbers_that_clash() {
+        let all = rules(1.2);
+        let band = Band::new(&all, D15F, 1.5, "mm").unwrap();
+        let least = 5.0 * 0.4 * libm::pow(1.2, -1.4);
+        assert!(band.is_empty && (band.least - least).abs() < 1e-9, "{band:?}");
+        assert_eq!((band.greatest, band.set_by), (1.5, Some(SetBy::Walk)));
+    }
+
+    #[test]
+    fn practice_that_allows_less_than_drains_leaves_an_empty_band() {
+        let all = rules(1.1);
+        let band = Band::new(&all, D15F, 1.8, "mm").unwrap();
+        let least = 5.0 * 0.4 * libm::pow(1.1, -1.4);
+        assert!(band.practice.unwrap() < least && least < 1.8, "{band:?}");
+        assert!(band.is_empty && (band.least - least).abs() < 1e-9, "{band:?}");
+        assert!((band.greatest - 1.6).abs() < 1e-9 && band.set_by == Some(SetBy::Practice), "{band:?}");
+    }
+
+    #[test]
+    fn an_empty_band_names_the_two_numbers_that_clash_and_whose_the_second_is() {
+        let said = |base_cu: f64, greatest: f64| {
+            let band = Band::new(&rules(base_cu), D15F, greatest, "mm").unwrap();
+            let least = format!("at least {:.3} mm", 5.0 * 0.4 * libm::pow(base_cu, -1.4));
+            let sentence = band.empty().map(|finding| finding.sentence());
+            assert!(sentence.as_ref().is_none_or(|said| said.contains(&least)), "{sentence:?}");
+            sentence.unwrap_or_default()
+        };
+        assert_eq!(said(3.0, 1.8), "");
+        assert!(said(1.2, 1.5).ends_with("but the walk allows at most 1.500 mm."), "{}", said(1.2, 1.5));
+        let practice = said(1.1, 1.8);
+        let limit = "but Sherard and Dunnigan's limit of design allows at most 1.600 mm.";
+        assert!(practice.ends_with(limit) && !practice.contains("walk"), "{practice}");
+    }
+}
