@@ -360,4 +360,16 @@ mod tests {
         let rows = [Row { size: 3, threshold: None }, Row { size: 4, threshold: Some(1.0) }];
         assert_eq!(csv_of(&rows), b"size,threshold\n3,\n4,1.0\n");
     }
+
+    #[test]
+    fn a_value_with_its_interval_is_three_columns_of_a_file_and_one_cell_of_a_page() {
+        let of = Columns::default().statistic(["mass", "low", "high"], |row: &Option<Statistic>| *row);
+        let of = of.headed("Eroded");
+        let rows = [Some(Statistic { mean: 0.25, sd: None, low: Some(0.2), high: Some(0.3) }), None];
+        assert_eq!(of.csv(&rows), b"mass,low,high\n25.0000,20.0000,30.0000\n,,\n");
+        let cell = of.of_page().next().unwrap().cell;
+        let [known, unknown] = rows.map(|row| cell(&row));
+        assert_eq!((&*known.text, &*known.below[0]), ("25.0\u{202f}%", "20.0 to 30.0\u{202f}%"));
+        assert_eq!(unknown, "–".shown());
+    }
 }

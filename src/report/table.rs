@@ -146,4 +146,23 @@ mod tests {
                         class=\"n\">0.25</td></tr></tbody></table></div>";
         assert_eq!(table.render().into_string(), expected);
     }
+
+    #[test]
+    fn described_columns_stand_in_their_places_and_empty_ones_are_left_out() {
+        let columns = Columns::default()
+            .column("case", |row: &(&str, u64)| row.0.to_owned())
+            .headed("Case")
+            .column("none", |_| "")
+            .headed("Nothing")
+            .column("count", |row| row.1)
+            .headed("Count")
+            .place(-1)
+            .column("hidden", |row| row.1);
+        let rows = [("<a>", 12_345)];
+        let table =
+            Table::of(&rows).columns(columns, |row| row).named_by("case", |row| html! { i { (row.0) } });
+        let text = table.render().into_string();
+        assert!(text.contains("<tr><th class=\"n\">Count</th><th>Case</th></tr>"), "{text}");
+        assert!(text.contains("<td class=\"n\">12\u{202f}345</td><th><i>&lt;a&gt;</i></th></tr>"), "{text}");
+    }
 }
