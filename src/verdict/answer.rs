@@ -269,7 +269,8 @@ mod tests {
     #[test]
     fn what_makes_a_verdict_surer_is_no_doubt_of_it() {
         for entry in ALL.iter().filter(|entry| entry.against.is_none()) {
-            let against = |verdict| Finding { entry, values: Vec::new(), is_settled: false }.is_against(verdict);
+            let against =
+                |verdict| Finding { entry, values: Vec::new(), is_settled: false }.is_against(verdict);
             let is_open = |verdict| match (entry.weight, entry.direction) {
                 (Weight::Note, _) | (_, Direction::Settled) => false,
                 (_, Direction::Open) => true,

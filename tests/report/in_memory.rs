@@ -80,7 +80,7 @@ fn a_verdict_that_the_pan_fraction_decides_is_explained_alike_on_the_page_and_in
         mass_fraction: 0.06,
         finest_sieve_mm: 0.2,
         finest_constriction_mm: 0.16,
-        readings: [
+        readings: vec![
             reading(PanSize::Passive, Verdict::Some),
             reading(PanSize::FinestSieve, Verdict::Continuing),
         ],
