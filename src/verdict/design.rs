@@ -320,6 +320,12 @@ mod tests {
     fn what_neither_or_one_of_them_knows_is_said() {
         let nothing = design(&sand(), None).answer();
         assert_eq!((nothing.d15f_max_mm, nothing.set_by), (None, SetBy::Walk));
+        // What programs read: null where nothing is known.
+        let json = serde_json::to_value(&nothing).unwrap();
+        assert!(
+            json["d15f_max_mm"].is_null() && json["rule"].is_null() && json["set_by"] == "walk",
+            "{json}"
+        );
         assert!(nothing.said.contains("practice alone allows D15F up to"), "{}", nothing.said);
         // The least D15F that was searched is above the limit of practice: 0.77 against 0.70 mm.
         let below = design(&till(), None).answer();

@@ -294,8 +294,8 @@ findings! {
     /// A narrow lattice.
     narrow_lattice(nx: Count, ny: Count): Network, Unsafe, Limits;
         "network", "uncertainty.md",
-        "The lattice is only {nx} x {ny} voids across. A narrow lattice seals by chance, so that filters seem \
-         to hold. Use at least 10 x 10 voids; 40 x 40 are better.";
+        "The lattice is only {nx} x {ny} voids across. A narrow one seals by chance, so that filters seem to \
+         hold. Use at least 10 x 10 voids; 40 x 40 are better.";
     /// A base that is all inserted before any can be through.
     all_on_its_way(increments: Count, layers: Count): Flow, Unsafe, Limits;
         "increments", "uncertainty.md",

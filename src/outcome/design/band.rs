@@ -1,5 +1,5 @@
-//! The band of a specification, and the limits of D15F that rules set. What a band is worth, and its words, are
-//! in `verdict`.
+//! The band of a specification, and the limits of D15F that rules set. `verdict` has what it is worth, in
+//! words.
 
 use serde::{Deserialize, Serialize};
 

@@ -28,8 +28,8 @@ pub(super) fn allowed(row: &Row, held: f64, finest: Option<&FinestBase>) -> Resu
 }
 
 /// The finest base of this shape that practice allows with a filter of this size: that, and every coarser
-/// one, keeps every rule of retention. `None` where the base is not scaled, sizes have no unit, or no rule is ever
-/// broken.
+/// one, keeps every rule of retention. `None` where the base is not scaled, sizes have no unit, or no rule is
+/// ever broken.
 ///
 /// # Errors
 /// Sizes out of range.
