@@ -18,6 +18,7 @@ use crate::outcome::rules::{BaseSoil, RuleInputs};
 use crate::outcome::table::csv_of;
 use crate::outcome::{Recorded, by_void, infiltration, leaves_out, rules, verdict};
 use crate::store::{Folder, StoreError};
+use crate::verdict::evidence::MASS_RATIO;
 use crate::verdict::{Finding, beside, finding, judge, practice};
 
 /// The outcome of a case that has been walked; with what was walked besides, and its studies, none so far
@@ -98,11 +99,13 @@ pub fn outcome(
 }
 
 /// What soils of the base's kind say of the walk's boundary. Tests of dispersive soils and of joints had other
-/// ones.
+/// ones, and another amount of base has.
 fn evidence(case: &Case, other: &OtherWalks) -> Option<Evidence> {
     let is_other = case.scene.base.dispersive == Some(true) || case.scene.filter.joint_mm.is_some();
-    let margin = other.margin.as_ref().filter(|_| !is_other && !case.is_scale_free())?;
-    Evidence::of(&BaseSoil::of(case.base_as_given(), false), case.filter.d(15.0)?, margin)
+    let usual = case.mass_ratio.is_some_and(|ratio| (ratio / MASS_RATIO - 1.0).abs() < 0.01);
+    let margin = other.margin.as_ref().filter(|_| usual && !is_other && !case.is_scale_free())?;
+    let soil = BaseSoil::of(case.base_as_given(), false);
+    Evidence::of(&soil, case.filter.d(15.0)?, case.filter.cu(), margin)
 }
 
 /// What these walks say themselves against the verdict.

@@ -1,18 +1,20 @@
 //! What the walk's boundary of no erosion is worth: for soils of this kind it was so many times that of tests.
 //!
 //! `src/data/evidence.csv` is made by `scripts/studies/real_soils_evidence.py` from walks of 639 real soils
-//! (`results/real-soils.md`). Of each group of soils it has the distribution over soils of `r`, the walk's
-//! D15F of no erosion by the middle of the range in which tests found it, and the half width of that range as
-//! a factor. With the walk's boundary `B` of this pair a test is then taken to have its boundary at `B s/r`,
-//! where `s` is uniform over the range in its logarithm, and the probability that it would show no erosion is
-//! that of `B s/r >= D15F`.
+//! against filters of four shapes (`results/real-soils.md`). Of each group of soils and shape of filter it has
+//! the distribution over soils of `r`, the walk's D15F of no erosion by the centre of the range in which tests
+//! found it, and half of that range as a factor.
+//!
+//! With the walk's boundary `B` of this pair a test is taken to have its boundary at `B s / r`, where `s` is
+//! uniform over the range in its logarithm. The probability that it would show no erosion is that of
+//! `B s / r >= D15F`, a mean over the quantiles of `r`.
 //!
 //! No soil of the study was tested itself: tests' boundaries are the ranges published for its kind (Fell et
 //! al., Geotechnical Engineering of Dams, Table 9.2, after Foster 1999).
 
 use std::sync::LazyLock;
 
-use libm::{exp, log};
+use libm::log;
 
 use super::entry::Finding;
 use super::finding;
@@ -23,9 +25,6 @@ const TABLE: &str = include_str!("../data/evidence.csv");
 
 /// D85B by D50B after regrading up to which a base is steep: its coarse half then holds the rest back.
 const STEEP: f64 = 4.0;
-
-/// Places of the tests' range that are looked at.
-const PLACES: u32 = 200;
 
 /// From this probability on evidence shares "no erosion", and below the other it shares erosion.
 const SHARES: [f64; 2] = [0.9, 0.5];
@@ -41,20 +40,27 @@ const STUDIED: [&str; 7] = [
     "library_of_density",
 ];
 
-/// A group of soils.
+/// Fewer soils than this say nothing of a probability.
+const ENOUGH: u64 = 30;
+
+/// The amount of base that was walked in the study: of more, the walk's boundary is another.
+pub const MASS_RATIO: f64 = 0.05;
+
+/// A group of soils against filters of one shape.
 #[derive(Debug)]
 struct Group {
-    name: &'static str,
     /// Percent finer than 0.075 mm after regrading.
     fines: [f64; 2],
     /// Whether its bases are steep.
     steep: bool,
+    /// Cu of the filters.
+    filter_cu: [f64; 2],
     soils: u64,
     /// Whether enough soils have a ratio within a factor of 2 of the median.
     checked: bool,
     /// Half of the tests' range, as a factor.
     spread: f64,
-    /// Logarithms of the ratio at equal steps of probability, from one step to one less than all.
+    /// The ratio at equal steps of probability, from one step to one less than all.
     ratios: Vec<f64>,
 }
 
@@ -64,61 +70,75 @@ static GROUPS: LazyLock<Vec<Group>> = LazyLock::new(|| {
 });
 
 impl Group {
-    /// Reads a row: name, least and most fines, soils, those without a boundary, whether it is checked, half
-    /// of the tests' range, and the ratio's quantiles.
+    /// Reads a row: name, least and most fines, shape of the base, name and Cu of the filter, soils, those
+    /// without a boundary, whether it is checked, half of the tests' range, and the ratio's quantiles.
     fn read(row: &'static str) -> Self {
         let cells: Vec<&str> = row.split(',').collect();
         let number = |cell: usize| -> f64 { cells[cell].parse().expect("a number") };
         Self {
-            name: cells[0],
             fines: [number(1), number(2)],
-            steep: cells[0].ends_with("steep"),
-            soils: number(3) as u64,
-            checked: cells[5] == "yes",
-            spread: number(6),
-            ratios: (7..cells.len()).map(|cell| log(number(cell))).collect(),
+            steep: cells[3] == "steep",
+            filter_cu: [number(5), number(6)],
+            soils: number(7) as u64,
+            checked: cells[9] == "yes",
+            spread: number(10),
+            ratios: (11..cells.len()).map(number).collect(),
         }
     }
 
-    /// The group of a base; `None` where its fines or its coarse half are not known.
-    fn of(soil: &BaseSoil) -> Option<&'static Self> {
-        let fines = soil.fines_percent?;
-        let d85 = soil.gradation.d(85.0)?;
+    /// The group of a base and a filter; `None` where the base's fines or the filter's Cu are not known.
+    fn of(soil: &BaseSoil, filter_cu: Option<f64>) -> Option<&'static Self> {
+        let (fines, d85, cu) = (soil.fines_percent?, soil.gradation.d(85.0)?, filter_cu?);
         let steep = soil.gradation.d(50.0).is_some_and(|d50| d85 <= STEEP * d50);
+        let within = |[least, most]: [f64; 2], value: f64| least <= value && value < most;
         GROUPS.iter().find(|group| {
-            let [least, most] = group.fines;
-            group.steep == steep && (least..most).contains(&fines.min(99.9))
+            // The finest of them have more than 85 %, others so much or more.
+            let has_fines = match group.fines {
+                [85.0, _] => fines > 85.0,
+                [least, 85.0] => least <= fines && fines <= 85.0,
+                of => within(of, fines),
+            };
+            has_fines && group.steep == steep && within(group.filter_cu, cu)
         })
     }
 
+    /// The ratio below which this part of the soils lies, for whole steps of probability.
     fn quantile(&self, p: f64) -> f64 {
-        let at = p * (self.ratios.len() + 1) as f64 - 1.0;
-        let below = (at.floor().max(0.0) as usize).min(self.ratios.len() - 2);
-        exp(self.ratios[below] + (at - below as f64) * (self.ratios[below + 1] - self.ratios[below]))
+        let steps = (self.ratios.len() + 1) as f64;
+        self.ratios[(p * steps).round() as usize - 1]
     }
 
-    /// Part of the soils whose ratio is at most this; beyond the quantiles straight on.
-    fn share_up_to(&self, ratio: f64) -> f64 {
-        let (of, step) = (&self.ratios, 1.0 / (self.ratios.len() + 1) as f64);
-        let x = log(ratio);
-        let at = of.partition_point(|value| *value < x).clamp(1, of.len() - 1);
-        let width = (of[at] - of[at - 1]).max(1e-9);
-        (step * (at as f64 + (x - of[at - 1]) / width)).clamp(0.0, 1.0)
-    }
-
-    /// The probability that a test would show no erosion, with the filter's D15F so many times smaller than
-    /// the walk's boundary.
+    /// The probability that a test would show no erosion, with the walk's boundary so many times the filter's
+    /// D15F.
     fn probability(&self, boundary_by_d15f: f64) -> f64 {
-        let place = |k: u32| (f64::from(k) + 0.5) / f64::from(PLACES) * 2.0 - 1.0;
-        let each = (0..PLACES).map(|k| boundary_by_d15f * exp(place(k) * log(self.spread)));
-        each.map(|of| self.share_up_to(of)).sum::<f64>() / f64::from(PLACES)
+        let each = self.ratios.iter().map(|ratio| self.beyond(ratio / boundary_by_d15f));
+        (each.sum::<f64>() + 0.5) / (self.ratios.len() + 1) as f64
+    }
+
+    /// Part of the tests' range beyond a D15F, by the range's centre.
+    fn beyond(&self, d15f_by_centre: f64) -> f64 {
+        let half = log(self.spread);
+        ((half - log(d15f_by_centre)) / (2.0 * half)).clamp(0.0, 1.0)
+    }
+
+    /// The centre of the range in which tests of such a base had their boundary of no erosion, as D15F (mm).
+    fn centre_of_tests(&self, soil: &BaseSoil) -> Option<f64> {
+        let (d85, fines) = (soil.gradation.d(85.0)?, soil.fines_percent?);
+        let [low, high] = match self.fines[0] {
+            85.0 => [6.4 * d85, 13.5 * d85],
+            35.0 | 55.0 => [0.7, 1.7],
+            15.0 => [1.6, 2.5].map(|times| times * ((35.0 - fines) / 20.0 * (4.0 * d85 - 0.7) + 0.7)),
+            _ => [6.8 * d85, 10.0 * d85],
+        };
+        Some((low * high).sqrt())
     }
 }
 
 impl Evidence {
-    /// The evidence for a pair whose walk has this margin; `None` where the base is of no group.
-    pub fn of(soil: &BaseSoil, d15f_mm: f64, margin: &Margin) -> Option<Self> {
-        let group = Group::of(soil)?;
+    /// The evidence for a base, and a filter of this D15 (mm) and Cu, whose walk has this margin; `None` where
+    /// they are of no group.
+    pub fn of(soil: &BaseSoil, d15f_mm: f64, filter_cu: Option<f64>, margin: &Margin) -> Option<Self> {
+        let group = Group::of(soil, filter_cu)?;
         let (factor, bound) = match (margin.boundary(), margin.holds_to(), margin.erodes_from()) {
             (Some(boundary), ..) => (boundary, None),
             (None, Some(holds), None) => (holds, Some(Bound::AtLeast)),
@@ -126,26 +146,28 @@ impl Evidence {
             (None, None, None) => return None,
         };
         Some(Self {
-            group: group.name.into(),
+            group: group.in_words(),
             soils: group.soils,
             ratio_median: group.quantile(0.5),
             ratio_low: group.quantile(0.05),
             ratio_high: group.quantile(0.95),
             checked: group.checked,
             boundary_d15f_mm: factor * d15f_mm,
-            probability_no_erosion: group.probability(factor),
+            probability_no_erosion: (group.soils >= ENOUGH).then(|| group.probability(factor)),
+            probability_by_tests: group.centre_of_tests(soil).map(|of| group.beyond(d15f_mm / of)),
             bound,
         })
     }
 
-    /// Whether its soils show what the walk's class is worth, and it shares that class.
+    /// Whether its soils show what the walk's class is worth, and tests share that class.
     pub fn supports(&self, verdict: Verdict) -> bool {
-        let [high, low] = SHARES;
+        let ([high, low], Some(of_walk)) = (SHARES, self.probability_no_erosion) else { return false };
+        let of_tests = self.probability_by_tests.unwrap_or(of_walk);
         self.checked
             && match verdict {
-                Verdict::None => self.probability_no_erosion >= high && self.bound != Some(Bound::AtMost),
+                Verdict::None => of_walk.min(of_tests) >= high && self.bound != Some(Bound::AtMost),
                 Verdict::Some | Verdict::Continuing => {
-                    self.probability_no_erosion <= low && self.bound != Some(Bound::AtLeast)
+                    of_walk.max(of_tests) <= low && self.bound != Some(Bound::AtLeast)
                 }
                 Verdict::Undecided => false,
             }
@@ -167,31 +189,35 @@ impl Evidence {
             Some(Bound::AtMost) => "at most ",
             None => "",
         };
-        let probability = format!("{said}{:.0} %", 100.0 * self.probability_no_erosion);
-        let group = self.group_in_words();
-        finding::evidence(
-            &probability,
-            self.soils,
-            &group,
-            self.ratio_median,
-            self.ratio_low,
-            self.ratio_high,
-        )
-    }
-
-    /// Its soils, in words.
-    pub fn group_in_words(&self) -> String {
-        let Some(group) = GROUPS.iter().find(|group| group.name == self.group) else {
-            return self.group.clone();
+        let of_walk = match self.probability_no_erosion {
+            Some(of) => format!("is {said}{:.0} %", 100.0 * of),
+            None => "is not known, as such soils are too few".into(),
         };
-        let [least, most] = group.fines;
+        let of_tests = match self.probability_by_tests {
+            Some(of) => format!("; by the range of such tests alone {:.0} %", 100.0 * of),
+            None => String::new(),
+        };
+        let [low, median, high] = [self.ratio_low, self.ratio_median, self.ratio_high];
+        let probability = format!("{of_walk}{of_tests}");
+        match median > 1.0 {
+            true => finding::evidence_unsafe(&probability, self.soils, &self.group, median, low, high),
+            false => finding::evidence(&probability, self.soils, &self.group, median, low, high),
+        }
+    }
+}
+
+impl Group {
+    /// Its soils and filters, in words.
+    fn in_words(&self) -> String {
+        let [least, most] = self.fines;
         let fines = match (least, most) {
             (0.0, most) => format!("less than {most} % fines"),
-            (least, 100.0) => format!("{least} % fines or more"),
+            (least, 100.0) => format!("more than {least} % fines"),
             (least, most) => format!("{least} to {most} % fines"),
         };
-        let half = if group.steep { "at most" } else { "more than" };
-        format!("{fines}, D85/D50 {half} {STEEP}")
+        let half = if self.steep { "at most" } else { "more than" };
+        let [narrow, broad] = self.filter_cu;
+        format!("{fines}, D85B/D50B {half} {STEEP}, filters of Cu {narrow} to {broad}")
     }
 }
 
@@ -205,45 +231,78 @@ mod tests {
         BaseSoil::of(&Gradation::from_points(points, None).unwrap(), false)
     }
 
+    /// A sand without fines, D85B 0.487 mm.
+    fn sand() -> BaseSoil {
+        soil(&[(0.075, 0.0), (0.3, 50.0), (0.6, 100.0)])
+    }
+
     fn margin(holds: f64, erodes: f64) -> Margin {
         let walk = |factor, holds| MarginWalk { factor, eroded_mass_fraction: 0.07, holds };
         Margin { walks: vec![walk(holds, true), walk(erodes, false)] }
     }
 
     #[test]
-    fn every_group_rises_and_its_probability_falls_with_the_filter() {
+    fn every_group_rises_and_its_probability_with_the_boundary() {
         assert!(GROUPS.len() >= 8, "{}", GROUPS.len());
         for group in GROUPS.iter() {
-            assert!(group.ratios.windows(2).all(|two| two[0] <= two[1]), "{}", group.name);
-            assert!((group.quantile(0.5) - exp(group.ratios[group.ratios.len() / 2])).abs() < 1e-12);
-            let all: Vec<f64> = (-40..=40).map(|k| group.probability(exp(f64::from(k) / 8.0))).collect();
-            assert!(all.windows(2).all(|two| two[0] <= two[1] + 1e-12), "{}", group.name);
-            assert!(all[0] < 0.01 && all[80] > 0.99, "{}: {all:?}", group.name);
+            assert!(group.ratios.len() == 19 && group.ratios.is_sorted(), "{}", group.in_words());
+            assert_eq!(group.quantile(0.5), group.ratios[9]);
+            let all: Vec<f64> =
+                (-40..=40).map(|k| group.probability(libm::exp(f64::from(k) / 8.0))).collect();
+            assert!(all.is_sorted() && all[0] == 0.025 && all[80] == 0.975, "{}: {all:?}", group.in_words());
+            // All soils at the median, all tests at their centre.
+            let one = Group { ratios: vec![0.5; 19], spread: group.spread, ..Group::read(ROW) };
+            assert!((one.probability(0.5) - 0.5).abs() < 1e-12);
         }
     }
 
+    const ROW: &str = "4,0,15,steep,cu1.5,1,2,55,0,yes,1.2,0.5,0.5";
+
     #[test]
-    fn a_sand_with_few_fines_is_of_its_group_and_a_filter_at_its_boundary_is_likely_to_hold() {
-        let sand = soil(&[(0.075, 0.0), (0.3, 50.0), (0.6, 100.0)]);
-        let of = Evidence::of(&sand, 2.0, &margin(0.98, 1.02)).unwrap();
-        assert!((of.group.as_str(), of.bound) == ("4 steep", None) && of.soils >= 30);
-        // The walk is stricter than tests: where it begins to erode, nearly all tests still hold.
-        assert!(of.ratio_median < 0.7 && of.probability_no_erosion > 0.9, "{of:?}");
+    fn a_sand_is_of_its_group_and_at_the_walks_boundary_tests_still_hold() {
+        let of = Evidence::of(&sand(), 2.0, Some(1.5), &margin(0.98, 1.02)).unwrap();
+        assert_eq!(of.group, "less than 15 % fines, D85B/D50B at most 4, filters of Cu 1 to 2");
+        let probability = of.probability_no_erosion.unwrap();
+        assert!(of.soils >= 30 && of.ratio_median < 0.7 && probability > 0.9, "{of:?}");
+        // 2 mm is 4.1 D85B, and tests held to 6.8.
+        assert_eq!(of.probability_by_tests, Some(1.0));
         assert!(of.supports(Verdict::None) && !of.supports(Verdict::Some));
-        let coarse = Evidence::of(&sand, 2.0, &margin(0.3, 0.31)).unwrap();
+        let coarse = Evidence::of(&sand(), 6.0, Some(1.5), &margin(0.3, 0.31)).unwrap();
         assert!(coarse.supports(Verdict::Continuing) && !coarse.supports(Verdict::None), "{coarse:?}");
-        // Fines that are not known are of no group.
+        // The walk alone does not make a filter beyond the tests' range a good one.
+        let beyond = Evidence::of(&sand(), 4.5, Some(1.5), &margin(4.0, 4.1)).unwrap();
+        assert!(beyond.probability_no_erosion > Some(0.9) && !beyond.supports(Verdict::None), "{beyond:?}");
+    }
+
+    #[test]
+    fn what_is_of_no_group_has_no_evidence() {
         let tail = soil(&[(0.3, 40.0), (1.0, 80.0), (2.0, 100.0)]);
-        assert_eq!(Evidence::of(&tail, 2.0, &margin(0.98, 1.02)), None);
+        assert_eq!(Evidence::of(&tail, 2.0, Some(1.5), &margin(0.98, 1.02)), None);
+        assert_eq!(Evidence::of(&sand(), 2.0, Some(60.0), &margin(0.98, 1.02)), None);
+        assert_eq!(Evidence::of(&sand(), 2.0, None, &margin(0.98, 1.02)), None);
+        assert_eq!(Evidence::of(&sand(), 2.0, Some(1.5), &Margin { walks: Vec::new() }), None);
     }
 
     #[test]
     fn a_margin_without_an_end_bounds_the_probability() {
-        let sand = soil(&[(0.075, 0.0), (0.3, 50.0), (0.6, 100.0)]);
         let mut held = margin(1.0, 2.0);
         held.walks.pop();
-        let of = Evidence::of(&sand, 2.0, &held).unwrap();
-        assert!(of.bound == Some(Bound::AtLeast) && !of.supports(Verdict::Some));
-        assert_eq!(Evidence::of(&sand, 2.0, &Margin { walks: Vec::new() }), None);
+        let of = Evidence::of(&sand(), 2.0, Some(1.5), &held).unwrap();
+        assert!(
+            of.bound == Some(Bound::AtLeast) && of.supports(Verdict::None) && !of.supports(Verdict::Some)
+        );
+        assert!(of.finding().sentence().contains("at least"), "{}", of.finding().sentence());
+    }
+
+    #[test]
+    fn what_the_study_had_is_no_doubt_where_it_supports_the_class() {
+        let of = Evidence::of(&sand(), 2.0, Some(1.5), &margin(0.98, 1.02)).unwrap();
+        let found = || vec![finding::library_of_any_density(3.0), finding::few_replicates(4)];
+        let against = |verdict| -> Vec<&str> {
+            let weighed = of.weigh(verdict, found());
+            weighed.iter().filter(|of| of.is_against(verdict)).map(Finding::id).collect()
+        };
+        assert_eq!(against(Verdict::None), ["few_replicates"]);
+        assert_eq!(against(Verdict::Some), ["library_of_any_density", "few_replicates"]);
     }
 }

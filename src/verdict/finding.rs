@@ -531,9 +531,18 @@ findings! {
     evidence(probability: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio):
         Practice, Settled, Note;
         "evidence", "uncertainty.md",
-        "A test would show no erosion with a probability of {probability}. For {soils:soil} of this kind \
-         ({group}) the walk begins to erode at {median} times the D15F of tests (nine in ten: {low} to \
-         {high}). It knows nothing of cohesion, segregation or cracks in this soil.";
+        "The probability that a test would show no erosion {probability}. For {soils} real soils of this kind \
+         ({group}) the walk began to erode at {median} times the D15F of no-erosion tests on soils of these \
+         fines (nine in ten: {low} to {high}). It knows no cohesion, no segregation and no crack, and none of \
+         these soils was tested itself.";
+    /// The same where the walk errs on the unsafe side.
+    evidence_unsafe(probability: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio):
+        Practice, Unsafe, Limits;
+        "evidence", "uncertainty.md",
+        "For filters like this the walk is on the unsafe side of tests. For {soils} real soils of this kind \
+         ({group}) it began to erode at {median} times the D15F of no-erosion tests on soils of these fines \
+         (nine in ten: {low} to {high}). The probability that a test would show no erosion {probability}. It \
+         knows no cohesion, no segregation and no crack, and none of these soils was tested itself.";
     /// The thickness that was walked.
     modelled_thickness(thickness: Text): Thickness, Settled, Note;
         "thickness", "uncertainty.md", "The modelled filter is {thickness} thick along the flow.";

@@ -14,7 +14,7 @@ mod band;
 pub mod beside;
 mod design;
 mod entry;
-mod evidence;
+pub mod evidence;
 pub mod finding;
 mod pair;
 pub mod practice;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// The evidence for a pair.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Evidence {
-    /// Group of soils by fines after regrading, and by D85B/D50B, as in `results/real-soils.md`.
+    /// Group of soils by fines after regrading and by D85B/D50B, and of filters by Cu.
     pub group: String,
     /// Soils that it rests on.
     pub soils: u64,
@@ -19,9 +19,12 @@ pub struct Evidence {
     pub checked: bool,
     /// D15F from which the walk erodes this base (mm); beyond it or below it where `bound` says so.
     pub boundary_d15f_mm: f64,
-    /// The probability that a test of this pair would show no erosion.
-    pub probability_no_erosion: f64,
-    /// Where the walk's boundary was not found: on which side of these two numbers it lies.
+    /// The probability that a test of this pair would show no erosion, by the walk; `None` where the soils are
+    /// fewer than 30.
+    pub probability_no_erosion: Option<f64>,
+    /// The same by the range of tests alone: the part of it that lies beyond the filter's D15F.
+    pub probability_by_tests: Option<f64>,
+    /// Where the walk's boundary was not found: on which side of its number, and of the probability, it lies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bound: Option<Bound>,
 }
