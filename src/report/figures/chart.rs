@@ -5,7 +5,8 @@
 //! use voidwalk::report::figures::{BLUE, Chart, SeriesLook, Role, Shape};
 //! let rows = [("counts", 1.0, 0.5), ("counts", 4.0, 0.25)];
 //! let x = Role::log("Processor time (s)", |row: &(&str, f64, f64)| row.1);
-//! let chart = Chart::of(&rows, ["Error", "Error against time"], x, Role::log("Error (–)", |row| row.2))
+//! let y = Role::log("Error (–)", |row: &(&str, f64, f64)| row.2);
+//! let chart = Chart::of(&rows, ["Error", "Error against time"], x, y)
 //!     .by(|row| [row.0], |_| SeriesLook::line(BLUE, Shape::Circle))
 //!     .power((1.0, 0.5), -0.5, "slope −1/2");
 //! assert!(chart.figure().file().contains(">counts</text>"));
