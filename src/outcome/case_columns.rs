@@ -5,6 +5,12 @@ use super::numbers::{percent, significant, size, whole};
 use super::record::{Confidence, Ratios, Statistic};
 use super::table::{Columns, TableCell};
 
+/// Mass eroded in a run, and its range where the constriction curve is a range.
+type Eroded = (Option<Statistic>, Option<[f64; 2]>);
+
+/// A thickness, whether it is a multiple of D0F instead of mm, and layers.
+type Thickness = (Option<f64>, bool, Option<u64>);
+
 impl<'a, T: 'a> Columns<'a, T> {
     /// How far a verdict can be relied on; on a page, `reason` says below it why no further.
     pub(super) fn confidence(
@@ -44,7 +50,7 @@ impl<'a, T: 'a> Columns<'a, T> {
 
     /// Mass eroded in the first run and in the second, with its interval and, on a page, its range where the
     /// constriction curve is a range.
-    pub(super) fn eroded(self, of: fn(&T, usize) -> (Option<Statistic>, Option<[f64; 2]>)) -> Self {
+    pub(super) fn eroded(self, of: fn(&T, usize) -> Eroded) -> Self {
         let cell = move |row: &T, run| {
             let (statistic, range) = of(row, run);
             let curve = |[low, high]: [f64; 2]| format!("curve: {} to {}", percent(low), percent(high));
@@ -56,8 +62,8 @@ impl<'a, T: 'a> Columns<'a, T> {
             .number("second run", move |row| cell(row, 1))
     }
 
-    /// The thickness of the filter; in a file in mm alone, on a page with its unit and, where given, its layers.
-    pub(super) fn thickness(self, decimals: usize, of: fn(&T) -> (Option<f64>, bool, Option<u64>)) -> Self {
+    /// The thickness of the filter: in a file in mm alone, on a page with its unit and, where given, layers.
+    pub(super) fn thickness(self, decimals: usize, of: fn(&T) -> Thickness) -> Self {
         let in_mm = move |row: &T| of(row).0.filter(|_| !of(row).1);
         self.digits("thickness_mm", decimals, in_mm).number("Thickness", move |row| {
             let (thickness, scale_free, layers) = of(row);

@@ -63,11 +63,14 @@ impl<'de> Deserializer<'de> for Names<'_> {
 /// The columns of a table.
 pub struct Columns<'a, T>(Vec<Column<'a, T>>);
 
+/// What a column says of a row.
+type OfRow<'a, T, C> = Box<dyn Fn(&T) -> C + 'a>;
+
 /// A column: of a file, and of a page where it has a heading.
 struct Column<'a, T> {
     /// In a file; a value with its interval is three columns there, and one cell of a page.
     names: Vec<String>,
-    cells: Box<dyn Fn(&T) -> Vec<String> + 'a>,
+    cells: OfRow<'a, T, Vec<String>>,
     page: PageColumn<'a, T>,
     /// Where on the page: before the columns of a greater number, after those of a smaller one.
     place: i8,

@@ -6,7 +6,7 @@ use maud::{Markup, Render, html};
 
 use super::error::ReportError;
 use super::figures::{
-    Across, Axis, BLUE, Chart, Dash, Figure, GREY, Line, Look, PURPLE, Point, Role, Rule, Shape, Tick,
+    Across, Axis, BLUE, Chart, Dash, Figure, GREY, Line, PURPLE, Point, Role, Rule, SeriesLook, Shape, Tick,
 };
 use super::files::json;
 use super::numbers::{duration, significant, whole};
@@ -102,7 +102,7 @@ pub fn percolation_spread(study: &PercolationStudy) -> Drawn {
     let y = Role::linear("Standard deviation of the threshold (–)", sd).interval(interval);
     let rows = study.sizes.iter().filter(|of| of.threshold.sd.is_some());
     let figure = Chart::of(rows, words, x.also([0.0, 1.0]), y.also([0.0, 0.001]))
-        .by(|_| [""], |_| Look::line(BLUE, Shape::Circle))
+        .by(|_| [""], |_| SeriesLook::line(BLUE, Shape::Circle))
         .figure();
     let caption = "Standard deviation of the percolation threshold over the realisations, as in Fig. 6 of \
                    the paper. Bars: 95 % intervals, for normal thresholds.";

@@ -124,8 +124,8 @@ table_rows! {
         pub replicates: u64 => headed("Replicates"),
         /// Mean of the eroded mass fraction.
         pub mean: f64 => number("Eroded mass (%)", |line| points(line.mean)),
-        /// Mean less that of the first variant, on the same networks: zero but for the scatter, if both have one
-        /// expectation.
+        /// Mean less that of the first variant, on the same networks: zero but for the scatter, if both have
+        /// one expectation.
         pub difference: f64 =>
             number("Difference from the first line (points ± standard error)", |line| {
                 line.difference_error.map(|error| format!("{} ± {}", signed(line.difference), points(error)))
@@ -134,12 +134,15 @@ table_rows! {
         pub difference_error: Option<f64>,
         /// Standard deviation of one replicate.
         pub sd: f64 =>
-            number("SD of a replicate (points, 95 %)", |line| between(points, [line.sd, line.sd_low, line.sd_high])),
+            number("SD of a replicate (points, 95 %)", |line| {
+                between(points, [line.sd, line.sd_low, line.sd_high])
+            }),
         /// Lower end of the 95 % interval.
         pub sd_low: f64,
         /// Upper end of the 95 % interval.
         pub sd_high: f64,
-        /// `sqrt(mean (1 - mean) / N_base)`, what a binomial of all particles would have; for comparison only.
+        /// `sqrt(mean (1 - mean) / N_base)`, what a binomial of all particles would have; for comparison
+        /// only.
         pub binomial: f64 => number("SD over binomial SD (–)", |line| line.sd / line.binomial),
         /// Processor time of a replicate, mean, s.
         pub core_seconds: f64 => headed("Processor time of a replicate (s)"),
@@ -179,8 +182,8 @@ table_rows! {
         pub bias_low: Option<f64>,
         /// Upper end of the 95 % interval.
         pub bias_high: Option<f64>,
-        /// Whether both were walked on the same networks with the same random numbers, so that the interval is
-        /// that of the differences replicate by replicate.
+        /// Whether both were walked on the same networks with the same random numbers, so that the interval
+        /// is that of the differences replicate by replicate.
         pub paired: bool,
         /// Processor time of a replicate, mean, s.
         pub core_seconds: f64 => headed("Processor time of a replicate (s)"),
@@ -198,7 +201,9 @@ table_rows! {
         pub replicates: u64 => headed("Replicates"),
         /// Eroded mass fraction of the first run, mean over the reference.
         pub mean: f64 =>
-            number("Eroded mass of the first run (%, 95 %)", |case| between(points, [case.mean, case.low, case.high])),
+            number("Eroded mass of the first run (%, 95 %)", |case| {
+                between(points, [case.mean, case.low, case.high])
+            }),
         /// Lower end of the 95 % interval.
         pub low: f64,
         /// Upper end of the 95 % interval.
@@ -322,7 +327,8 @@ table_rows! {
         pub triangulate_seconds: f64 => number("Triangulation", |row| duration(row.triangulate_seconds)),
         /// Processor time of voids, discs and curve, s.
         pub measure_seconds: f64 => number("Voids, discs, curve", |row| duration(row.measure_seconds)),
-        /// Every facet shared by two, positive volumes that sum to the cell, local regularity, Euler's relation.
+        /// Every facet shared by two, positive volumes that sum to the cell, local regularity, Euler's
+        /// relation.
         pub identities_hold: bool => words("Identities", |row| holds(row.identities_hold)),
     }
 }

@@ -1,12 +1,13 @@
-//! A figure of rows, told by roles: what of a row stands along x and along y, which rows are a series, and how
-//! each looks.
+//! A figure of rows, told by roles: what of a row stands along x and along y, which rows are a series, and
+//! how each looks.
 //!
 //! ```
-//! use voidwalk::report::figures::{BLUE, Chart, Look, Role, Shape};
+//! use voidwalk::report::figures::{BLUE, Chart, SeriesLook, Role, Shape};
 //! let rows = [("counts", 1.0, 0.5), ("counts", 4.0, 0.25)];
 //! let x = Role::log("Processor time (s)", |row: &(&str, f64, f64)| row.1);
-//! let chart = Chart::of(&rows, ["Error", "Error against time"], x, Role::log("Error (–)", |row| row.2))
-//!     .by(|row| [row.0], |_| Look::line(BLUE, Shape::Circle))
+//! let y = Role::log("Error (–)", |row: &(&str, f64, f64)| row.2);
+//! let chart = Chart::of(&rows, ["Error", "Error against time"], x, y)
+//!     .by(|row| [row.0], |_| SeriesLook::line(BLUE, Shape::Circle))
 //!     .power((1.0, 0.5), -0.5, "slope −1/2");
 //! assert!(chart.figure().file().contains(">counts</text>"));
 //! ```
@@ -16,12 +17,15 @@ use super::colour::{Colour, GREY};
 use super::figure::Figure;
 use super::marks::{Dash, Line, Mark, Point, Shape};
 
+/// The ends of the interval of a row's value.
+type Ends<'a, T> = Box<dyn Fn(&T) -> Option<(f64, f64)> + 'a>;
+
 /// What of a row stands along an axis.
 pub struct Role<'a, T> {
     label: String,
     is_log: bool,
     value: Box<dyn Fn(&T) -> f64 + 'a>,
-    interval: Box<dyn Fn(&T) -> Option<(f64, f64)> + 'a>,
+    interval: Ends<'a, T>,
     also: Vec<f64>,
 }
 
@@ -62,14 +66,14 @@ impl<'a, T> Role<'a, T> {
 
 /// How the symbols of a series look, and the line that joins them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Look {
+pub struct SeriesLook {
     colour: Colour,
     shape: Shape,
     line: Option<Dash>,
     is_hollow: bool,
 }
 
-impl Look {
+impl SeriesLook {
     /// Symbols alone.
     pub fn points(colour: Colour, shape: Shape) -> Self {
         Self { colour, shape, line: None, is_hollow: false }
@@ -117,7 +121,7 @@ impl<'a, T> Chart<'a, T> {
     pub fn by<const N: usize>(
         mut self,
         key: impl Fn(&'a T) -> [&'a str; N],
-        look: impl Fn(&T) -> Look,
+        look: impl Fn(&T) -> SeriesLook,
     ) -> Self {
         let mut series: Vec<([&str; N], Vec<&T>)> = Vec::new();
         for &row in &self.rows {
@@ -131,14 +135,14 @@ impl<'a, T> Chart<'a, T> {
             let name = key[N - 1];
             let mut label = (!named.contains(&name)).then_some(name);
             named.push(name);
-            let Look { colour, line, .. } = look(rows[0]);
+            let SeriesLook { colour, line, .. } = look(rows[0]);
             if let Some(dash) = line {
                 let path = rows.iter().map(|row| ((self.x.value)(row), (self.y.value)(row))).collect();
                 let line = Line::new(path, colour).width(1.5).dash(dash);
                 self.marks.push(label.take().map_or(line.clone(), |name| line.label(name)).into());
             }
             for row in rows {
-                let Look { colour, shape, is_hollow, .. } = look(row);
+                let SeriesLook { colour, shape, is_hollow, .. } = look(row);
                 let point = Point::new((self.x.value)(row), (self.y.value)(row), colour, shape);
                 let point = point.x_interval((self.x.interval)(row)).y_interval((self.y.interval)(row));
                 let point = if is_hollow { point.hollow() } else { point };

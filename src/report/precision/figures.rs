@@ -6,7 +6,7 @@ use crate::outcome::precision::{
     SamplingTier, ScalingRow, TriangulationRow,
 };
 use crate::report::figures::{
-    Across, BLACK, BLUE, Chart, Dash, GREEN, GREY, Look, ORANGE, PURPLE, Role, Rule, Shape, VERMILLION,
+    Across, BLACK, BLUE, Chart, Dash, GREEN, GREY, ORANGE, PURPLE, Role, Rule, SeriesLook, Shape, VERMILLION,
     positive_range, ramp,
 };
 use crate::report::shell::Drawn;
@@ -18,7 +18,7 @@ const PP: f64 = 100.0;
 const SLOPE: &str = "slope −1/2";
 
 /// The look of an engine or a way of drawing.
-fn look(name: &str) -> Look {
+fn look(name: &str) -> SeriesLook {
     let (colour, shape) = match name {
         "particles" => (VERMILLION, Shape::Square),
         "counts" => (BLUE, Shape::Circle),
@@ -30,7 +30,7 @@ fn look(name: &str) -> Look {
         "expected, both stratified" => (PURPLE, Shape::Diamond),
         _ => (ORANGE, Shape::Triangle),
     };
-    Look::line(colour, shape)
+    SeriesLook::line(colour, shape)
 }
 
 /// A figure with room for names above its frame, on a page and on a telephone.
@@ -145,7 +145,7 @@ pub(super) fn between_networks(sampling: &SamplingTier, new: &SamplingLine) -> O
 }
 
 /// The look of a changed setting.
-fn factor_look(factor: &str) -> Look {
+fn factor_look(factor: &str) -> SeriesLook {
     let (colour, shape) = match factor {
         "base particles" | "stiffness" => (BLUE, Shape::Circle),
         "cap" | "rate" => (BLUE, Shape::Square),
@@ -156,7 +156,7 @@ fn factor_look(factor: &str) -> Look {
         "precision" => (ORANGE, Shape::Diamond),
         _ => (GREY, Shape::Triangle),
     };
-    Look::points(colour, shape)
+    SeriesLook::points(colour, shape)
 }
 
 /// A changed setting: the processor time of a replicate (s), and a difference from the reference with its
@@ -247,7 +247,7 @@ fn amount(rows: &[BiasRow]) -> Option<Drawn> {
         .interval(|row| in_points(row.bias_low?, row.bias_high?))
         .also([0.0]);
     let figure = Chart::of(shares().chain([reference]), words, x, y)
-        .by(|_| [""], |_| Look::line(BLUE, Shape::Circle))
+        .by(|_| [""], |_| SeriesLook::line(BLUE, Shape::Circle))
         .mark(Rule::new(Across::Y, 0.0, GREY).dash(Dash::Dashed))
         .figure();
     let caption = format!(
@@ -276,8 +276,8 @@ pub(super) fn decision(decision: &DecisionTier) -> Vec<Drawn> {
     let chart = Chart::of(&decision.rows, words, x, y).by(
         |row| [if is_fixed(row) { "fixed" } else { "sequential" }, &row.case],
         |row| match is_fixed(row) {
-            true => Look::line(colour(row), Shape::Circle),
-            false => Look::points(VERMILLION, Shape::Diamond),
+            true => SeriesLook::line(colour(row), Shape::Circle),
+            false => SeriesLook::points(VERMILLION, Shape::Diamond),
         },
     );
     let caption = "Share of trials whose class differs from that of all replicates together, against \
@@ -375,7 +375,7 @@ fn triangulations(tier: &PackingTier) -> Option<Drawn> {
                     "triangulation" => (BLUE, Shape::Circle),
                     _ => (VERMILLION, Shape::Square),
                 };
-                Look::points(colour, shape).hollow(row.packing.starts_with("at random"))
+                SeriesLook::points(colour, shape).hollow(row.packing.starts_with("at random"))
             },
         )
         .power((last.grains as f64, last.triangulate_seconds), 1.0, "slope 1");

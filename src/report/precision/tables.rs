@@ -114,11 +114,14 @@ pub(super) fn decision(decision: &DecisionTier) -> Markup {
 
 pub(super) fn scaling(rows: &[ScalingRow]) -> Markup {
     let threads = || rows.iter().filter(|row| row.against == "threads");
+    let speed_up = |row: &ScalingRow| {
+        let one = threads().find(|one| one.engine == row.engine);
+        or_dash(one, |one| format!("{:.2}", one.wall_seconds / row.wall_seconds))
+    };
     html! {
-        (table(threads()).columns(ScalingRow::columns(), |row| row).number("Speed-up over one thread (–)", |row| {
-            let one = threads().find(|one| one.engine == row.engine);
-            or_dash(one, |one| format!("{:.2}", one.wall_seconds / row.wall_seconds))
-        }))
+        (table(threads())
+            .columns(ScalingRow::columns(), |row| row)
+            .number("Speed-up over one thread (–)", speed_up))
         p.small {
             "Counts use several threads only if many particles are walked one by one. Replicates that run \
              side by side use all threads."
