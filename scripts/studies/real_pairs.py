@@ -31,7 +31,7 @@ FILTERS = {
 WITHIN = "within checked range"
 COLUMNS = [
     "soil", "filter", "fines_percent", "verdict", "confidence", "origin", "eroded_percent", "design_met",
-    "no_erosion_limit_mm", "no_erosion_met", "d15f_mm", "first_finding", "seconds", "error",
+    "no_erosion_limit_mm", "no_erosion_met", "d15f_mm", "first_finding", "group", "probability", "seconds", "error",
 ]
 
 
@@ -75,6 +75,8 @@ def judge(binary, soil, name, extra):
         "no_erosion_met": tests.get("met"),
         "d15f_mm": tests.get("value"),
         "first_finding": against[0] if against else "",
+        "group": (out.get("evidence") or {}).get("group", ""),
+        "probability": (out.get("evidence") or {}).get("probability_no_erosion", ""),
     }
 
 
@@ -99,6 +101,11 @@ def summary(rows):
         ("seconds: median, most", f"{median(seconds):.1f}, {seconds[-1]:.1f}" if seconds else "-"),
     ]
     print("\n".join(f"| {what} | {value} |" for what, value in lines))
+    known = [row for row in decided if row["no_erosion_met"] in ("True", "False")]
+    alike = sum((row["verdict"] == "no erosion") == (row["no_erosion_met"] == "True") for row in known)
+    print(f"| same side of Foster and Fell's boundary of no erosion | {alike} of {len(known)} |")
+    within = Counter(row["group"] for row in done if row["confidence"] == WITHIN)
+    print("within the checked range, by group:", dict(within))
     print("origins:", dict(Counter(row["origin"] for row in done)))
     undecided = Counter(row["first_finding"] for row in done if row["verdict"] == "undecided")
     print("undecided by:", undecided.most_common(8))

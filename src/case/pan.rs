@@ -7,11 +7,14 @@
 //! size, which bound it.
 //!
 //! # The likely reading
-//! Down to 0.063 mm the curve goes on by the slope of its two finest sieves. Below, it has the shape of silts
-//! and clays with a hydrometer test: of 472 soils of ground investigations in the United Kingdom the median
-//! share of what passes 0.063 mm was 70 % at 0.02 mm, 45 % at 0.006 mm and 25 % at 0.002 mm (nine in ten at
-//! 0.02 mm: 47 to 83 %), much the same for all contents of fines. Their sieves say little of it: the slope
-//! of the two finest errs by -60 to +23 points at 0.02 mm.
+//! It goes on as in 600 soils of ground investigations in the United Kingdom whose finest part was measured.
+//! Of what passes a sieve of more than 0.063 mm the part that passes 0.063 mm falls with the size by the power
+//! 0.2 + 0.35 b, at most 0.85, where b is the slope of the two finest sieves on log-log paper: three numbers
+//! fitted to medians over sieves of 0.15 to 0.3 mm, within 0.05 of them for the finest of these. A straight
+//! line through the two sieves would say too little, on average by a tenth, of steep curves by half.
+//!
+//! Of what passes 0.063 mm, 70 % passes 0.02 mm, 45 % 0.006 mm and 25 % 0.002 mm: medians of 472 soils with a
+//! hydrometer test (nine in ten at 0.02 mm: 47 to 83 %), much the same for all contents of fines.
 
 use crate::gradation::{Gradation, GradationError};
 use crate::outcome::record::PanSize;
@@ -29,22 +32,26 @@ const SILT_MM: f64 = 0.063;
 /// Sizes by that of the sieve, and shares of what passes it, below 0.063 mm.
 const OF_SILTS: [(f64, f64); 3] = [(0.02 / SILT_MM, 0.70), (0.006 / SILT_MM, 0.45), (0.002 / SILT_MM, 0.25)];
 
+/// How what passes falls with the size above 0.063 mm: the least power, its rise with the slope of the sieves,
+/// and the most.
+const OF_SANDS: [f64; 3] = [0.2, 0.35, 0.85];
+
 /// A base's curve below its finest sieve as it is likely to go on, by rising size; the finest of it is what is
 /// left out.
 fn continued(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let [(sieve, percent), (next, above)] = [points[0], points[1]];
-    let slope = (above - percent) / libm::log(next / sieve);
+    let [least, rise, most] = OF_SANDS;
+    let slope = libm::log(above / percent) / libm::log(next / sieve);
+    let power = (least + rise * slope).min(most);
+    let passing = |size: f64| percent * libm::pow(size / sieve, power);
     let mut tail = Vec::new();
-    let (mut from, mut left) = (sieve, percent);
+    let mut from = sieve;
     if sieve > SILT_MM {
-        left = percent - slope * libm::log(sieve / SILT_MM);
-        if left <= 0.0 {
-            return vec![(sieve * libm::exp(-percent / slope), 0.0)];
-        }
         from = SILT_MM;
-        tail.push((from, left));
+        let middle = (sieve * SILT_MM).sqrt();
+        tail.extend([(middle, passing(middle)), (SILT_MM, passing(SILT_MM))]);
     }
-    tail.extend(OF_SILTS.map(|(size, share)| (from * size, left * share)));
+    tail.extend(OF_SILTS.map(|(size, share)| (from * size, passing(from) * share)));
     tail.sort_by(|a, b| a.0.total_cmp(&b.0));
     tail
 }
@@ -120,16 +127,17 @@ mod tests {
     }
 
     #[test]
-    fn above_the_silts_a_tail_goes_on_by_the_slope_of_its_sieves() {
-        // 20 % from 0.3 to 0.6 mm, so that the tail of 10 % ends at 0.3 mm by the root of 2.
-        let base = Gradation::from_points(&[(0.3, 10.0), (0.6, 30.0), (2.0, 100.0)], None).unwrap();
-        let likely = taken_as(&base, PanSize::Continued, 0.01).unwrap();
-        assert!((likely.smallest_mm() - 0.3 / 2f64.sqrt()).abs() < 1e-12);
-        // A flat one still has silt.
-        let base = Gradation::from_points(&[(0.3, 30.0), (0.6, 32.0), (2.0, 100.0)], None).unwrap();
-        let likely = taken_as(&base, PanSize::Continued, 0.01).unwrap();
-        let at_silt = 30.0 - 2.0 * libm::log2(0.3 / 0.063);
-        assert!((likely.percent_finer_by_mass(0.063) - at_silt).abs() < 1e-9);
-        assert!((likely.percent_finer_by_mass(0.02) - 0.7 * at_silt).abs() < 1e-9);
+    fn above_the_silts_a_tail_falls_as_in_soils_that_were_measured() {
+        let at = |points: &[(f64, f64)], size| {
+            let base = Gradation::from_points(points, None).unwrap();
+            taken_as(&base, PanSize::Continued, 0.01).unwrap().percent_finer_by_mass(size)
+        };
+        // Medians of soils by the slope of their sieves: 0.78 and 0.50 of what passes 0.15 mm pass 0.063 mm.
+        for (above, median) in [(33.8, 0.78), (60.0, 0.50)] {
+            let share = at(&[(0.15, 30.0), (0.212, above), (2.0, 100.0)], 0.063) / 30.0;
+            assert!((share - median).abs() < 0.03, "{share} {median}");
+        }
+        let steep = [(0.3, 10.0), (0.6, 30.0), (2.0, 100.0)];
+        assert!((at(&steep, 0.02) / at(&steep, 0.063) - 0.7).abs() < 1e-9);
     }
 }

@@ -152,7 +152,7 @@ mod tests {
         assert_eq!(thick.network_unless(Some(kept), 7).unwrap().layers(), 120);
     }
 
-    /// The pan fraction of the first reading blocks nothing at either end of a guess, so that a walk there
+    /// The pan fraction of the passive reading blocks nothing at either end of a guess, so that a walk there
     /// follows numbers and asks for no column of billions of particles.
     #[test]
     fn a_passive_pan_fraction_is_passive_at_the_ends_of_a_guess_too() {
@@ -165,7 +165,7 @@ mod tests {
         let set = [path("base", &base), path("filter", &filter)].into_iter();
         let set = set.chain(["filter.estimate=0.5", "base.n_base=50", "network.nx=4"].map(String::from));
         let case = Case::new(Scene::built_in(&set.collect::<Vec<_>>()).unwrap()).unwrap();
-        assert_eq!(case.pan_size, Some(PanSize::Passive));
+        let case = case.readings().find(|case| case.pan_size == Some(PanSize::Passive)).unwrap();
         let ends = &case.curve_ends;
         assert!(ends.iter().any(|end| end.curve.smallest() < case.curve.smallest()));
         for end in ends {

@@ -40,9 +40,6 @@ const STUDIED: [&str; 7] = [
     "library_of_density",
 ];
 
-/// Fewer soils than this say nothing of a probability.
-const ENOUGH: u64 = 30;
-
 /// The amount of base that was walked in the study: of more, the walk's boundary is another.
 pub const MASS_RATIO: f64 = 0.05;
 
@@ -153,7 +150,9 @@ impl Evidence {
             ratio_high: group.quantile(0.95),
             checked: group.checked,
             boundary_d15f_mm: factor * d15f_mm,
-            probability_no_erosion: (group.soils >= ENOUGH).then(|| group.probability(factor)),
+            // A ratio that scatters widely says nothing of one soil, and nor does a base that always erodes.
+            probability_no_erosion: (group.checked && bound != Some(Bound::AtMost))
+                .then(|| group.probability(factor)),
             probability_by_tests: group.centre_of_tests(soil).map(|of| group.beyond(d15f_mm / of)),
             bound,
         })
@@ -165,7 +164,7 @@ impl Evidence {
         let of_tests = self.probability_by_tests.unwrap_or(of_walk);
         self.checked
             && match verdict {
-                Verdict::None => of_walk.min(of_tests) >= high && self.bound != Some(Bound::AtMost),
+                Verdict::None => of_walk.min(of_tests) >= high,
                 Verdict::Some | Verdict::Continuing => {
                     of_walk.max(of_tests) <= low && self.bound != Some(Bound::AtLeast)
                 }
@@ -184,19 +183,17 @@ impl Evidence {
 
     /// What it says.
     fn finding(&self) -> Finding {
-        let said = match self.bound {
-            Some(Bound::AtLeast) => "at least ",
-            Some(Bound::AtMost) => "at most ",
-            None => "",
+        let at_least = if self.bound == Some(Bound::AtLeast) { "at least " } else { "" };
+        let of_tests = self.probability_by_tests.map(|of| format!("{:.0} %", 100.0 * of));
+        let of_walk = match (self.probability_no_erosion, self.checked) {
+            (Some(of), _) => format!("is {at_least}{:.0} %", 100.0 * of),
+            (None, true) => "is not known by the walk, in which this base always erodes".into(),
+            (None, false) => {
+                "is not known by the walk, whose ratio to tests scatters or rests on few soils".into()
+            }
         };
-        let of_walk = match self.probability_no_erosion {
-            Some(of) => format!("is {said}{:.0} %", 100.0 * of),
-            None => "is not known, as such soils are too few".into(),
-        };
-        let of_tests = match self.probability_by_tests {
-            Some(of) => format!("; by the range of such tests alone {:.0} %", 100.0 * of),
-            None => String::new(),
-        };
+        let of_tests =
+            of_tests.map_or(String::new(), |of| format!("; by the range of such tests alone it is {of}"));
         let [low, median, high] = [self.ratio_low, self.ratio_median, self.ratio_high];
         let probability = format!("{of_walk}{of_tests}");
         match median > 1.0 {

@@ -1,4 +1,4 @@
-//! A base whose finest sieve is coarser than the finest constriction: both readings of what is finer.
+//! A base whose finest sieve is coarser than the finest constriction: the readings of what is finer.
 
 use std::fs;
 use std::path::Path;
@@ -36,41 +36,49 @@ fn outcome(folder: &Path) -> Value {
 }
 
 #[test]
-fn a_pan_fraction_that_may_block_gives_two_verdicts_and_their_common_one() {
+fn a_pan_fraction_that_may_block_has_the_verdict_of_its_likely_reading() {
     let root = tempfile::tempdir().unwrap();
     files(root.path(), 30);
     let check = call(root.path(), &["check", "scene.toml"]);
     done(&check);
     let said = String::from_utf8_lossy(&check.stdout).into_owned();
-    assert!(said.contains("walked twice, as finer than every constriction and as all of that"), "{said}");
-    // Two readings of three replicates and two studied ones, three replicates at either end of what is a guess,
-    // two of either other thickness, two runs each.
-    assert!(said.contains("36 runs"), "{said}");
+    assert!(
+        said.contains("walked as it goes on in soils with a hydrometer test, as finer than every"),
+        "{said}"
+    );
+    // Three readings of three replicates and two studied ones, three replicates at either end of what is a
+    // guess, two of either other thickness, two runs each.
+    assert!(said.contains("42 runs"), "{said}");
     let run = call(root.path(), &["run", "scene.toml", "--out", "out"]);
     done(&run);
     let found = outcome(&root.path().join("out"));
     let bounds = &found["pan_bounds"];
     let readings = bounds["readings"].as_array().unwrap();
     let of = |k: usize, key: &str| readings[k][key].clone();
-    assert_eq!((of(0, "taken_as"), of(1, "taken_as")), ("passive".into(), "finest sieve".into()));
+    let taken = [0, 1, 2].map(|k| of(k, "taken_as"));
+    assert_eq!(taken, ["continued", "passive", "finest sieve"].map(Value::from));
     let eroded = |k: usize| readings[k]["runs"][0]["mean"].as_f64().unwrap();
     // What is passive leaves; what is of the finest sieve's size is held with the rest.
-    assert!(eroded(0) > 0.1 && eroded(1) < 0.075, "{bounds}");
+    assert!(eroded(1) > 0.1 && eroded(2) < 0.075, "{bounds}");
+    assert!(eroded(2) < eroded(0) && eroded(0) < eroded(1), "{bounds}");
     assert_eq!(found["summary"][0]["eroded_mass_fraction"]["mean"].as_f64().unwrap(), eroded(0));
-    assert_eq!((of(0, "verdict"), of(1, "verdict")), ("some erosion".into(), "no erosion".into()));
-    assert_eq!(found["verdict"], "undecided");
-    let reason = found["reasons"][0].as_str().unwrap();
-    assert!(reason.starts_with("The answer depends on the 30 % of the base"), "{reason}");
+    assert_eq!((of(1, "verdict"), of(2, "verdict")), ("some erosion".into(), "no erosion".into()));
+    let likely = of(0, "verdict");
+    // The ends of the guess may leave it open all the same.
+    assert!(found["verdict"] == likely || found["verdict"] == "undecided", "{found}");
+    let reasons = found["reasons"].to_string();
+    assert!(reasons.contains("The answer depends on the 30 % of the base"), "{reasons}");
+    assert_ne!(found["confidence"], "within checked range");
     let said = String::from_utf8_lossy(&run.stdout).into_owned();
     for words in [
-        "Verdict: undecided in the model; the answer depends on the 30 % of the base",
-        "Both readings: finer than every constriction: some erosion, ",
+        "All readings: continued as in soils with a hydrometer test: ",
+        "finer than every constriction: some erosion, ",
         "eroded; all 0.15 mm: no erosion, ",
     ] {
         assert!(said.contains(words), "{said}");
     }
     let page = fs::read_to_string(root.path().join("out/report.html")).unwrap();
-    for words in ["The base’s finest part taken as", "all 0.15 mm", "decides between the classes"] {
+    for words in ["The base’s finest part taken as", "all 0.15 mm", "which is the likely one"] {
         assert!(page.contains(words), "{words}");
     }
     // The size where it ends leaves one reading, and so does a finer sieve.
@@ -81,7 +89,7 @@ fn a_pan_fraction_that_may_block_gives_two_verdicts_and_their_common_one() {
     done(&call(root.path(), &["run", "scene.toml", "--out", "fine"]));
     assert!(outcome(&root.path().join("fine"))["pan_bounds"].is_null());
 
-    // Where there is hardly any, both readings give the same.
+    // Where there is hardly any, all readings give the same.
     files(root.path(), 1);
     let run = call(root.path(), &["run", "scene.toml", "--set", "replicates=6", "--out", "few"]);
     done(&run);
@@ -118,22 +126,22 @@ fn cu_of_an_open_tail_comes_from_its_two_readings() {
     assert!(!fine.contains("Cu of the base") && fine.contains("counts by mass only"), "{fine}");
     // 0.171 mm over 0.14 mm, or over the finest constriction of the densest guess, 0.040 mm: 1.22 to 4.3.
     let coarse = said("0.14", "0.19");
-    assert!(!coarse.contains("Cu of the base") && coarse.contains("walked twice"), "{coarse}");
+    assert!(!coarse.contains("Cu of the base") && coarse.contains("walked as it goes on"), "{coarse}");
     // 0.091 mm over 0.02 mm is more than 4.5 however it is read.
     let broad = said("0.02", "0.2");
     assert!(broad.contains("Cu of the base is 4.55, and the model was checked for 1.2 to 4.5"), "{broad}");
 }
 
 #[test]
-fn both_readings_are_continued_with_the_same_bits() {
+fn all_readings_are_continued_with_the_same_bits() {
     let root = tempfile::tempdir().unwrap();
     files(root.path(), 20);
     let scene = || Scene::read(&root.path().join("scene.toml"), &[]).unwrap();
     let whole = RunOptions { out: Some(root.path().join("whole")), ..RunOptions::default() };
     walk_scene(scene(), &whole, &Callbacks::default()).unwrap();
     let whole = outcome(&root.path().join("whole"));
-    // Six runs of the first reading, six of the second, four of the study: stopped in each.
-    for runs in [1, 7, 11, 13] {
+    // Six runs of each reading, four of the study: stopped in each.
+    for runs in [1, 7, 13, 19] {
         let out = root.path().join(format!("stopped{runs}"));
         let options = RunOptions {
             out: Some(out.clone()),
@@ -160,7 +168,7 @@ fn both_readings_are_continued_with_the_same_bits() {
 }
 
 #[test]
-fn a_case_of_a_campaign_has_the_class_that_both_readings_give() {
+fn a_case_of_a_campaign_has_the_class_of_its_run() {
     let root = tempfile::tempdir().unwrap();
     files(root.path(), 30);
     fs::write(
@@ -175,6 +183,6 @@ fn a_case_of_a_campaign_has_the_class_that_both_readings_give() {
     let line: Value =
         serde_json::from_slice(&fs::read(root.path().join("c/cases/x/case.json")).unwrap()).unwrap();
     let outcome = outcome(&root.path().join("c/cases/x"));
-    assert_eq!((&line["verdict"], &outcome["verdict"]), (&"undecided".into(), &"undecided".into()));
-    assert!(outcome["pan_bounds"]["readings"].is_array());
+    assert_eq!(line["verdict"], outcome["verdict"]);
+    assert_eq!(outcome["pan_bounds"]["readings"].as_array().unwrap().len(), 3);
 }

@@ -19,8 +19,8 @@ pub struct Evidence {
     pub checked: bool,
     /// D15F from which the walk erodes this base (mm); beyond it or below it where `bound` says so.
     pub boundary_d15f_mm: f64,
-    /// The probability that a test of this pair would show no erosion, by the walk; `None` where the soils are
-    /// fewer than 30.
+    /// The probability that a test of this pair would show no erosion, by the walk; `None` where the group
+    /// is not checked, and where the walk erodes the base behind every filter.
     pub probability_no_erosion: Option<f64>,
     /// The same by the range of tests alone: the part of it that lies beyond the filter's D15F.
     pub probability_by_tests: Option<f64>,
