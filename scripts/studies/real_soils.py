@@ -2,7 +2,7 @@
 """How coarse may a filter be for real soils? The walk's boundaries beside practice and the range of tests.
 
     scripts/studies/real_soils.py SOILS.json --out FOLDER [--binary voidwalk] [--minutes 60] [--part 1/2]
-    scripts/studies/real_soils.py SOILS.json --out FOLDER --summary [--csv results/real-soils.csv]
+    scripts/studies/real_soils.py SOILS.json --out FOLDER --summary [--csv results]
 
 SOILS.json is a list of {"id", "points_mm_percent"}. Needs the Python package, NumPy, and the program for the
 constrictions of the filters. Soils come in a seeded order, stage after stage (`STAGES`), so that a stop at any time
@@ -25,11 +25,11 @@ THRESHOLD = 0.075
 SHAPE_OF_NETWORK = [20, 20, 60]
 # The boundary is looked for between these multiples of the centre of the tests' range.
 LEAST, MOST = 1 / 50, 30
-# Sizes (mm) of a filter of D15F about 1 mm, percent finer. A number is the Cu of a straight line.
+# Sizes (mm), percent finer; a number is the Cu of a straight line. They are scaled to every D15F.
 FILTERS = {
     "cu1.5": 1.5,
     "cu3": 3.0,
-    "c33": [(0.075, 0), (0.15, 6), (0.3, 20), (0.6, 42.5), (1.18, 67.5), (2.36, 90), (4.75, 97.5), (9.5, 100)],
+    "c33": [(0.15, 6), (0.3, 20), (0.6, 42.5), (1.18, 67.5), (2.36, 90), (4.75, 97.5), (9.5, 100)],
     "cu12": [(0.5, 0), (1, 10), (2, 22), (4, 36), (8, 51), (12, 60), (20, 75), (40, 100)],
 }
 # What is walked, in this order: filter, density, boundary, what is done to the base, how many soils, seed of the
@@ -37,28 +37,31 @@ FILTERS = {
 STAGES = [
     ("cu1.5", "loose", "no", "", 639, 1),
     ("cu1.5", "dense", "no", "", 639, 1),
-    ("cu1.5", "loose", "continuing", "", 200, 1),
-    ("c33", "loose", "no", "", 200, 1),
-    ("cu12", "loose", "no", "", 200, 1),
-    ("cu1.5", "loose", "no", "no clay", 200, 1),
-    ("cu1.5", "loose", "no", "as sampled", 200, 1),
-    ("cu1.5", "loose", "no", "to 2 mm", 200, 1),
-    ("cu1.5", "loose", "no", "to 4.75 mm", 639, 1),
+    ("c33", "loose", "no", "", 120, 1),
+    ("cu12", "loose", "no", "", 120, 1),
+    ("cu1.5", "loose", "no", "no clay", 120, 1),
+    ("cu1.5", "loose", "no", "flocs", 120, 1),
+    ("cu1.5", "loose", "no", "to 2 mm", 120, 1),
+    ("cu1.5", "loose", "no", "as sampled", 120, 1),
     ("cu1.5", "loose", "no", "", 100, 2),
-    ("cu3", "loose", "no", "", 200, 1),
-    ("c33", "dense", "no", "", 200, 1),
-    ("cu12", "dense", "no", "", 200, 1),
-    ("cu3", "dense", "no", "", 200, 1),
-    ("cu1.5", "dense", "continuing", "", 200, 1),
-    ("cu1.5", "loose", "continuing", "", 639, 1),
+    ("cu3", "loose", "no", "", 120, 1),
+    ("cu1.5", "loose", "continuing", "", 200, 1),
+    ("c33", "dense", "no", "", 120, 1),
+    ("cu12", "dense", "no", "", 120, 1),
+    ("cu3", "dense", "no", "", 120, 1),
+    ("cu1.5", "loose", "no", "to 4.75 mm", 639, 1),
+    ("cu1.5", "dense", "continuing", "", 120, 1),
+    ("cu1.5", "loose", "no", "no clay", 639, 1),
     ("c33", "loose", "no", "", 639, 1),
     ("cu12", "loose", "no", "", 639, 1),
+    ("cu1.5", "loose", "continuing", "", 639, 1),
     ("cu3", "loose", "no", "", 639, 1),
     ("c33", "dense", "no", "", 639, 1),
     ("cu12", "dense", "no", "", 639, 1),
     ("cu3", "dense", "no", "", 639, 1),
-    ("cu1.5", "dense", "continuing", "", 639, 1),
 ]
+GROUPS = ["1", "2 55-85", "2 35-55", "3", "4"]
+DECILES = [10, 15, 20, 30, 40, 50, 60, 70, 80]
 KEY = ["soil", "filter", "density", "boundary", "base", "network"]
 
 
@@ -104,9 +107,7 @@ class Soil:
     @property
     def group(self):
         a = self.fines
-        if a < 15:
-            return "4 gravelly" if self.gravel >= 5 and not self.regraded_at else "4"
-        return "1" if a > 85 else "2 55-85" if a >= 55 else "2 35-55" if a >= 35 else "3"
+        return "1" if a > 85 else "2 55-85" if a >= 55 else "2 35-55" if a >= 35 else "3" if a >= 15 else "4"
 
 
 def passing(vw, soil, sieve):
@@ -130,6 +131,15 @@ def without_clay(vw, soil):
     points = [(max(0.002, sizes[0]), 0.0)]
     points += [(a, 100 * (p - least) / (100 - least)) for a, p in zip(sizes, percents) if a > points[0][0] and p > least]
     return vw.Gradation(*zip(*points)) if len(points) > 1 else None
+
+
+def in_flocs(vw, soil, floc_mm=0.03):
+    """A soil whose particles finer than this move as flocs of this size."""
+    sizes, percents = soil.points()
+    if sizes[0] >= floc_mm or sizes[-1] <= floc_mm:
+        return None
+    points = [(0.999 * floc_mm, 0.0), (floc_mm, soil.percent_finer(floc_mm))]
+    return vw.Gradation(*zip(*points, *((a, p) for a, p in zip(sizes, percents) if a > floc_mm)))
 
 
 class Filter:
@@ -222,7 +232,7 @@ def boundary(eroded, start, least, most):
             part = -low[1] / (high[1] - low[1])
             u = low[0] + min(max(part, 0.08), 0.92) * (high[0] - low[0])
         else:
-            if u in side:
+            if (f >= 0 and u == side[0]) or (f < 0 and u == side[1]):
                 return None, "below" if f >= 0 else "above", walks
             step = -f / slope
             step += math.copysign(0.03, step)
@@ -241,6 +251,8 @@ def base_of(vw, soil, what):
     """The base to walk; nothing where this is no other than the usual."""
     if what == "no clay":
         return without_clay(vw, soil.walked)
+    if what == "flocs":
+        return in_flocs(vw, soil.walked)
     if what == "as sampled":
         return soil.sampled if soil.regraded_at else None
     if what in ("to 2 mm", "to 4.75 mm"):
@@ -282,7 +294,6 @@ def walk_all(vw, options, soils, done):
                 run = 1 if which == "no" else 2
                 seconds = time.monotonic()
                 row = dict(zip(KEY, key))
-                share_at = {}
 
                 def eroded(d15f, tail="passive"):
                     shares = filter.eroded(vw, base, d15f, run, tail)
@@ -303,9 +314,7 @@ def walk_all(vw, options, soils, done):
                         value = lambda d, b: d if d else rank[b]
                         if value(other, other_beyond) < value(d15f, beyond):
                             row["d15f_mm"], row["beyond"] = other, other_beyond
-                    if which == "no" and not what and row["d15f_mm"]:
-                        ratios.append(math.log(row["d15f_mm"] / reference))
-                    elif row["d15f_mm"]:
+                    if row["d15f_mm"]:
                         ratios.append(math.log(row["d15f_mm"] / reference))
                 except (ValueError, vw.VoidwalkError) as error:
                     row["error"] = str(error)[:200]
@@ -316,8 +325,76 @@ def walk_all(vw, options, soils, done):
 
 
 def rows_of(folder):
-    rows = [json.loads(line) for path in sorted(folder.glob("rows-*.jsonl")) for line in path.read_text().splitlines()]
+    """Every boundary that was found, once."""
+    paths = sorted(folder.glob("rows-*.jsonl"))
+    rows = [json.loads(line) for path in paths for line in path.read_text().splitlines()]
     return list({tuple(row[key] for key in KEY): row for row in rows}.values())
+
+
+def said(row):
+    """A boundary (mm), or on which side of what was tried it lies."""
+    if row is None:
+        return ""
+    return f"{row['d15f_mm']:.4g}" if row.get("d15f_mm") else row.get("beyond") or "refused"
+
+
+def write(soils, rows, folder):
+    """`real-soils.csv`, the boundaries, and `real-soils-bases.csv`, what practice says of each soil."""
+    by = {tuple(row[key] for key in KEY): row for row in rows}
+    with (folder / "real-soils.csv").open("w", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(["soil", "filter", "density", "base", "network", "no_erosion_mm", "continuing_mm", "tail"])
+        places = sorted({(key[0], key[1], key[2], key[4], key[5]) for key in by})
+        for soil, name, density, what, network in places:
+            of = [by.get((soil, name, density, which, what, network)) for which in ("no", "continuing")]
+            tails = ["" if row is None or row.get("tail") != "open" else open_tail(row) for row in of]
+            line = [soil, name, density, what, network, said(of[0]), said(of[1]), tails[0] or tails[1]]
+            writer.writerow(line)
+    names = ["fines", "d85_mm", "d95_mm", "cu", "gravel", "clay", "pan", "finest_mm", "regraded_mm", "design_mm"]
+    names += ["tests_low_mm", "tests_high_mm", "continuing_9_d95_mm"]
+    names += [f"d{percent}_mm" for percent in DECILES]
+    with (folder / "real-soils-bases.csv").open("w", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(["soil", "group", *names])
+        for soil in sorted(soils, key=lambda soil: soil.id):
+            line = [soil.fines, soil.d85, soil.d95, soil.cu, soil.gravel, soil.clay, soil.pan, soil.finest]
+            line += [soil.regraded_at, soil.design, *soil.tests, soil.continuing]
+            line += [size_of(soil.walked, percent) for percent in DECILES]
+            if not soil.has_limit:
+                line[9:13] = [None] * 4
+            writer.writerow([soil.id, soil.group, *("" if x is None else f"{x:.4g}" for x in line)])
+
+
+def open_tail(row):
+    """Which reading of an open tail set the boundary."""
+    coarse = row.get("d15f_coarse_mm") == row.get("d15f_mm") and row.get("beyond_coarse") == row.get("beyond")
+    passive = row.get("d15f_passive_mm") == row.get("d15f_mm") and row.get("beyond_passive") == row.get("beyond")
+    return "passive" if passive else "finest sieve" if coarse else "open"
+
+
+def size_of(soil, percent):
+    try:
+        return soil.d(percent)
+    except ValueError:
+        return None
+
+
+def summary(soils, rows):
+    """Quantiles of boundary / centre of the tests' range, by stage and group."""
+    by_id = {soil.id: soil for soil in soils}
+    stages = sorted({tuple(row[key] for key in KEY[1:]) for row in rows})
+    print("| filter, density, boundary, base, network | group | soils | none | 5 % | 25 % | median | 75 % | 95 % |")
+    print("|---|---|---|---|---|---|---|---|---|")
+    for stage in stages:
+        of = [row for row in rows if tuple(row[key] for key in KEY[1:]) == stage]
+        for group in GROUPS:
+            here = [row for row in of if by_id[row["soil"]].group == group]
+            ratios = sorted(row["d15f_mm"] / by_id[row["soil"]].centre for row in here if row.get("d15f_mm"))
+            if ratios:
+                at = [ratios[round(share * (len(ratios) - 1))] for share in (0.05, 0.25, 0.5, 0.75, 0.95)]
+                cells = " | ".join(f"{value:.2f}" for value in at)
+                name = ", ".join(str(part) for part in stage if part != "")
+                print(f"| {name} | {group} | {len(here)} | {len(here) - len(ratios)} | {cells} |")
 
 
 def main():
@@ -328,7 +405,7 @@ def main():
     parser.add_argument("--minutes", type=float, default=75)
     parser.add_argument("--part", default="1/1")
     parser.add_argument("--summary", action="store_true")
-    parser.add_argument("--csv", type=Path)
+    parser.add_argument("--csv", type=Path, help="folder for real-soils.csv and real-soils-bases.csv")
     options = parser.parse_args()
     import voidwalk as vw
 
@@ -336,6 +413,10 @@ def main():
     soils = [Soil(vw, one) for one in json.loads(options.soils.read_text())]
     if not options.summary:
         walk_all(vw, options, soils, rows_of(options.out))
+    rows = rows_of(options.out)
+    summary(soils, rows)
+    if options.csv:
+        write(soils, rows, options.csv)
 
 
 if __name__ == "__main__":
