@@ -23,6 +23,8 @@ CLASSES = {"1": (85, 100), "2 55-85": (55, 85), "2 35-55": (35, 55), "3": (15, 3
 # D85B / D50B after regrading up to which a base is steep: its coarse half then holds the rest back.
 STEEP = 4.0
 GROUPS = [f"{name} {kind}" for name in CLASSES for kind in ("steep", "broad")]
+# Filters of the study, and the Cu of filters that each stands for.
+FILTERS = {"cu1.5": (1, 2), "cu3": (2, 4), "c33": (4, 8), "cu12": (8, 30)}
 # What it takes for a group's ratio to count as known: soils, and the factor from the median to 5 and 95 %.
 ENOUGH, WITHIN = 30, 2.0
 
@@ -74,11 +76,14 @@ class Data:
         tail = self.tail.get((name, density, ""), {})
         return np.array([tail.get(i, "") != "" for i in range(len(self.id))])
 
-    def ratio(self):
-        """One value a soil: the uniform filter, the geometric mean of loose and dense, by the tests' centre; nothing
-        of soils whose boundary hangs on an open tail."""
-        ratio = np.sqrt(self.of() * self.of(density="dense")) / self.centre
-        return np.where(self.is_open() | self.is_open(density="dense"), np.nan, ratio)
+    def ratio(self, name="cu1.5"):
+        """One value a soil, by the tests' centre: of the uniform filter the geometric mean of loose and dense, of
+        others loose; nothing of soils whose boundary hangs on an open tail."""
+        loose, is_open = self.of(name), self.is_open(name)
+        if name != "cu1.5":
+            return np.where(is_open, np.nan, loose / self.centre)
+        is_open |= self.is_open(density="dense")
+        return np.where(is_open, np.nan, np.sqrt(loose * self.of(density="dense")) / self.centre)
 
 
 def quantiles(values, shares):
@@ -112,38 +117,45 @@ HEAD = ["soils", "number", "no boundary", "5 %", "25 %", "median", "75 %", "95 %
 
 def evidence(data, path):
     """The table that the program reads."""
-    ratio = data.ratio()
     shares = [f"q{round(100 * share):02d}" for share in QUANTILES]
     lines = [
         "# The walk's D15F of no erosion by that of tests, for real soils: by scripts/studies/real_soils_evidence.py.",
         "# Sieve curves: AGS4 files of ground investigations in the United Kingdom, test data of the British",
         "# Geological Survey's pyagsapi, Open Government Licence v3.0. Contains public sector information.",
-        "# Walk: D15F at which the first run erodes 7.5 % of the base as practice regrades it; uniform filter (Cu",
-        "# 1.5), geometric mean of loose and dense, 20 x 20 x 60 voids, one network. Tests: the centre (geometric",
-        "# mean) of the range in which no-erosion tests had their boundary, for soils of these fines and D85B (Fell et",
-        "# al., Geotechnical Engineering of Dams, Table 9.2). No test of these very soils exists.",
-        "# no_boundary: soils of which the walk erodes 7.5 % in every filter. They are not in the quantiles.",
-        "# steep: D85B / D50B of the regraded base at most 4, broad: more. checked: 30 soils or more, 5 % and 95 %",
-        "# within a factor of 2 of the median, no boundary for 5 % of the soils at most.",
+        "# Walk: D15F at which the first run erodes 7.5 % of the base as practice regrades it; 20 x 20 x 60 voids, one",
+        "# network; of the uniform filter the geometric mean of loose and dense, of the others loose.",
+        "# Tests: the centre (geometric mean) of the range in which no-erosion tests had their boundary, for soils of",
+        "# these fines and D85B (Fell et al., Geotechnical Engineering of Dams, Table 9.2). No test of these very soils",
+        "# exists.",
+        "# steep: D85B / D50B of the regraded base is at most 4; broad: more, or D50B is finer than the finest size.",
+        "# soils: with a boundary that no open tail decides. no_boundary: soils among them of which the walk erodes",
+        "# 7.5 % in every filter; they are not in the quantiles. checked: 30 soils or more, 5 % and 95 % within a",
+        "# factor of 2 of the median, no boundary for 5 % of the soils at most.",
         "# spread: half the tests' range, the factor from its centre to either end. q05 to q95: quantiles of the ratio.",
-        "group,fines_from,fines_to,soils,no_boundary,checked,spread," + ",".join(shares),
+        "group,fines_from,fines_to,shape,filter,filter_cu_from,filter_cu_to,soils,no_boundary,checked,spread,"
+        + ",".join(shares),
     ]
-    for group in GROUPS:
-        here = ratio[(data.group == group) & ~np.isnan(ratio)]
-        found = here[here > 0]
-        if len(found) < 5:
-            continue
-        spread = np.exp(np.nanmedian(data.half[data.group == group]))
-        q = quantiles(found, QUANTILES)
-        none = int((here == 0).sum())
-        checked = len(here) >= ENOUGH and q[9] / q[0] <= WITHIN and q[-1] / q[9] <= WITHIN and none <= 0.05 * len(here)
-        span, cells = CLASSES[group.rsplit(" ", 1)[0]], ",".join(f"{x:.3f}" for x in q)
-        line = f"{group},{span[0]},{span[1]},{len(here)},{none},{'yes' if checked else 'no'},{spread:.3f},{cells}"
-        lines.append(line)
+    for name, cu in FILTERS.items():
+        ratio = data.ratio(name)
+        for group in GROUPS:
+            here = ratio[(data.group == group) & ~np.isnan(ratio)]
+            found = here[(here > 0) & np.isfinite(here)]
+            if len(found) < 5:
+                continue
+            fines, shape = group.rsplit(" ", 1)
+            spread = np.exp(np.nanmedian(data.half[data.fines_class == fines]))
+            q, none = quantiles(found, QUANTILES), int((here == 0).sum())
+            near = q[9] / q[0] <= WITHIN and q[-1] / q[9] <= WITHIN
+            checked = "yes" if len(here) >= ENOUGH and near and none <= 0.05 * len(here) else "no"
+            span, cells = CLASSES[fines], ",".join(f"{x:.3f}" for x in q)
+            lines.append(
+                f"{fines},{span[0]},{span[1]},{shape},{name},{cu[0]},{cu[1]},{len(here)},{none},{checked},{spread:.3f},{cells}"
+            )
     if path:
         path.write_text("\n".join(lines) + "\n")
-    print("\n".join(lines[-11:]))
-    print()
+    head = ["fines", "from", "to", "base", "filter", "soils", "no boundary", "checked", "5 %", "median", "95 %"]
+    rows = [line.split(",") for line in lines if not line.startswith(("#", "group"))]
+    table(head, [[*row[:5], *row[7:10], row[11], row[20], row[29]] for row in rows])
 
 
 def of_rule(distance, half):
