@@ -42,18 +42,24 @@ STAGES = [
     ("cu3", "loose", "no", "", 120, 1),
     ("cu1.5", "loose", "no", "no clay", 120, 1),
     ("cu1.5", "loose", "no", "flocs", 120, 1),
+    ("cu1.5", "loose", "no", "crumbs", 120, 1),
+    ("cu1.5", "loose", "no", "4 x base", 120, 1),
     ("cu1.5", "loose", "no", "to 2 mm", 120, 1),
     ("cu1.5", "loose", "no", "as sampled", 120, 1),
     ("cu1.5", "loose", "no", "to 4.75 mm", 639, 1),
     ("cu1.5", "loose", "no", "", 100, 2),
     ("cu1.5", "loose", "continuing", "", 120, 1),
+    ("c33", "loose", "no", "", 400, 1),
+    ("cu1.5", "loose", "no", "4 x base", 300, 1),
+    ("cu12", "loose", "no", "", 400, 1),
+    ("cu3", "loose", "no", "", 400, 1),
     ("c33", "loose", "no", "", 639, 1),
-    ("cu3", "loose", "no", "", 639, 1),
     ("cu12", "loose", "no", "", 639, 1),
+    ("cu3", "loose", "no", "", 639, 1),
+    ("c33", "dense", "no", "", 120, 1),
+    ("cu12", "dense", "no", "", 120, 1),
+    ("cu3", "dense", "no", "", 120, 1),
     ("cu1.5", "loose", "continuing", "", 639, 1),
-    ("c33", "dense", "no", "", 200, 1),
-    ("cu12", "dense", "no", "", 200, 1),
-    ("cu3", "dense", "no", "", 200, 1),
     ("cu1.5", "dense", "continuing", "", 200, 1),
 ]
 GROUPS = ["1", "2 55-85", "2 35-55", "3", "4"]
@@ -112,7 +118,7 @@ def passing(vw, soil, sieve):
     if sieve >= sizes[-1] or sieve <= sizes[0]:
         return soil
     of = soil.percent_finer(sieve)
-    kept = [(a, 100 * p / of) for a, p in zip(sizes, percents) if p < of]
+    kept = [(a, 100 * (p / of)) for a, p in zip(sizes, percents) if p < of]
     end = next(a for a, p in zip(sizes, percents) if p >= of)
     kept.append((min(sieve, end), 100.0))
     return vw.Gradation(*zip(*kept)) if len(kept) > 1 else soil
@@ -125,11 +131,12 @@ def without_clay(vw, soil):
         return None
     least = soil.percent_finer(max(0.002, sizes[0]))
     points = [(max(0.002, sizes[0]), 0.0)]
-    points += [(a, 100 * (p - least) / (100 - least)) for a, p in zip(sizes, percents) if a > points[0][0] and p > least]
+    kept = [(a, p) for a, p in zip(sizes, percents) if a > points[0][0] and p > least]
+    points += [(a, 100 * ((p - least) / (100 - least))) for a, p in kept]
     return vw.Gradation(*zip(*points)) if len(points) > 1 else None
 
 
-def in_flocs(vw, soil, floc_mm=0.03):
+def in_flocs(vw, soil, floc_mm):
     """A soil whose particles finer than this move as flocs of this size."""
     sizes, percents = soil.points()
     if sizes[0] >= floc_mm or sizes[-1] <= floc_mm:
@@ -159,7 +166,7 @@ class Filter:
             reference_mm=sizes[0] * scale,
         )
 
-    def eroded(self, vw, base, d15f, runs, tail):
+    def eroded(self, vw, base, d15f, runs, tail, amount=1):
         """Share of the mass that each run erodes, with the filter of this D15F (mm)."""
         sizes, percents = base.points()
         sizes, percents = [size / d15f for size in sizes], list(percents)
@@ -172,7 +179,7 @@ class Filter:
                 sizes, percents = [0.999 * sizes[0]] + sizes, [0.0] + percents
         scaled = vw.Gradation(sizes, percents)
         voids = math.prod(SHAPE_OF_NETWORK)
-        n_base = scaled.base_particles(self.gradation, voids, self.grains_per_void)
+        n_base = scaled.base_particles(self.gradation, voids, self.grains_per_void, 0.05 * amount)
         if n_base < 1:
             return None
         said = vw.walk(
@@ -247,8 +254,8 @@ def base_of(vw, soil, what):
     """The base to walk; nothing where this is no other than the usual."""
     if what == "no clay":
         return without_clay(vw, soil.walked)
-    if what == "flocs":
-        return in_flocs(vw, soil.walked)
+    if what in ("flocs", "crumbs"):
+        return in_flocs(vw, soil.walked, {"flocs": 0.03, "crumbs": 0.1}[what])
     if what == "as sampled":
         return soil.sampled if soil.regraded_at else None
     if what in ("to 2 mm", "to 4.75 mm"):
@@ -274,7 +281,11 @@ def walk_all(vw, options, soils, done):
                     continue
                 if time.monotonic() - began > 60 * options.minutes:
                     return
-                base = base_of(vw, soil, what)
+                try:
+                    base = base_of(vw, soil, what)
+                except ValueError as error:
+                    print(f"soil {soil.id}, {what}: {error}", flush=True)
+                    continue
                 if base is None:
                     continue
                 place = (name, density, network)
@@ -292,7 +303,7 @@ def walk_all(vw, options, soils, done):
                 row = dict(zip(KEY, key))
 
                 def eroded(d15f, tail="passive"):
-                    shares = filter.eroded(vw, base, d15f, run, tail)
+                    shares = filter.eroded(vw, base, d15f, run, tail, 4 if what == "4 x base" else 1)
                     return None if shares is None else shares[-1]
 
                 try:

@@ -25,6 +25,7 @@ STEEP = 4.0
 GROUPS = [f"{name} {kind}" for name in CLASSES for kind in ("steep", "broad")]
 # Filters of the study, and the Cu of filters that each stands for.
 FILTERS = {"cu1.5": (1, 2), "cu3": (2, 4), "c33": (4, 8), "cu12": (8, 30)}
+USUAL = ("cu1.5", "loose", "no_erosion_mm")
 # What it takes for a group's ratio to count as known: soils, and the factor from the median to 5 and 95 %.
 ENOUGH, WITHIN = 30, 2.0
 
@@ -259,6 +260,141 @@ def scatter(data):
     table(["group", "soils", *names], rows)
 
 
+def spread_of(values):
+    q = quantiles(values, [0.05, 0.5, 0.95])
+    return f"{q[1]:.2f} ({q[0]:.2f} to {q[2]:.2f})"
+
+
+def beside(data):
+    """Of how many soils the walk's boundary lies beyond those of practice."""
+    rows = []
+    for group in GROUPS:
+        b = data.ratio() * data.centre
+        of = (data.group == group) & ~np.isnan(b)
+        if of.sum() < 5:
+            continue
+        share = lambda limit: f"{100 * np.mean(b[of] > limit[of]):.0f} %"
+        rows.append([group, int(of.sum()), share(data.design_mm), share(data.foster_fell), share(data.centre), share(data.high)])
+    head = ["group", "soils", "beyond the design limit", "beyond Foster and Fell", "beyond the tests' centre", "beyond the tests' end"]
+    table(head, rows)
+
+
+def against(data, keys, of=None):
+    """Medians (5 to 95 %) of other boundaries by that of the uniform loose filter, or by `of`."""
+    rows = []
+    for group in GROUPS:
+        cells = []
+        for key in keys:
+            other, usual = data.of(*key), data.of() if of is None else of
+            here = (data.group == group) & (usual > 0) & (other > 0) & np.isfinite(other) & np.isfinite(usual)
+            here &= ~data.is_open()
+            cells.append(f"{spread_of(other[here] / usual[here])}, {here.sum()}" if here.sum() >= 5 else "-")
+        rows.append([group, *cells])
+    table(["group", *(", ".join(part for part in key if part) for key in keys)], rows)
+
+
+def rescued(data, what):
+    """Soils without a boundary, or far below the tests' range, and how many of them another base brings into it."""
+    other, usual = data.of(base=what), data.of()
+    rows = []
+    for group in GROUPS:
+        low = (data.group == group) & (usual < data.low / 2) & ~np.isnan(other)
+        if low.sum() >= 3:
+            mended = other[low] >= data.low[low] / 2
+            rows.append([group, int(low.sum()), int(mended.sum())])
+    table(["group", "less than half of the tests' lower end", f"no longer so: {what}"], rows)
+
+
+def by_hand(data):
+    """Splits of the ratio by hydrometer, gravel, and Cu, within the classes of fines."""
+    ratio, rows = data.ratio(), []
+    splits = {
+        "hydrometer": data.finest_mm < 0.01, "no hydrometer": data.finest_mm >= 0.01,
+        "gravel below 5 %": data.gravel < 5, "gravel 5 to 30 %": (data.gravel >= 5) & (data.gravel < 30),
+        "gravel above 30 %": data.gravel >= 30, "regraded": ~np.isnan(data.regraded_mm), "not regraded": np.isnan(data.regraded_mm),
+        "Cu below 6": data.cu < 6, "Cu 6 to 30": (data.cu >= 6) & (data.cu < 30), "Cu above 30": data.cu >= 30,
+        "Cu not known": np.isnan(data.cu),
+    }
+    for name, mask in splits.items():
+        cells = []
+        for fines in CLASSES:
+            here = ratio[mask & (data.fines_class == fines) & (ratio > 0)]
+            cells.append(f"{spread_of(here)}, {len(here)}" if len(here) >= 5 else "-")
+        rows.append([name, *cells])
+    table(["soils", *CLASSES], rows)
+
+
+def folds(data):
+    """How well the quantiles of nine tenths of the soils, in the order of their ids, hold for the tenth."""
+    ratio, rows = data.ratio(), []
+    fold = (np.argsort(np.argsort(data.id)) * FOLDS) // len(data.id)
+    for group in GROUPS:
+        of = (data.group == group) & (ratio > 0)
+        if of.sum() < 12:
+            continue
+        inside, medians = [], []
+        for k in range(FOLDS):
+            here, others = ratio[of & (fold == k)], ratio[of & (fold != k)]
+            low, high = quantiles(others, [0.05, 0.95])
+            inside += list((here >= low) & (here <= high))
+            medians += [np.median(here)] if len(here) >= 3 else []
+        rows.append([group, int(of.sum()), f"{100 * np.mean(inside):.0f} %", len(medians),
+                     f"{min(medians):.2f} to {max(medians):.2f}"])
+    table(["group", "soils", "within the others' 5 to 95 %", "folds of 3 soils or more", "their medians"], rows)
+
+
+def single_sizes(data):
+    """Which size of the base the boundary follows best: scatter (factor) of boundary / size."""
+    b, rows = data.ratio() * data.centre, []
+    for fines in CLASSES:
+        cells = []
+        for percent in (30, 40, 50, 60, 70, 80, 85, 95):
+            size = getattr(data, f"d{percent}_mm")
+            here = (data.fines_class == fines) & (b > 0) & np.isfinite(size)
+            log = np.log(b[here] / size[here])
+            cells.append(f"{np.exp(np.median(log)):.1f} (x{np.exp(np.std(log)):.2f})" if here.sum() >= 10 else "-")
+        rows.append([fines, *cells])
+    table(["fines", "D30B", "D40B", "D50B", "D60B", "D70B", "D80B", "D85B", "D95B"], rows)
+
+
+def figure(data, found, path):
+    """The ratio over the steepness of the base, and the reliability diagram."""
+    import matplotlib
+
+    matplotlib.use("svg")
+    import matplotlib.pyplot as plt
+    import matplotlib.ticker
+
+    plt.rcParams |= {"svg.hashsalt": "voidwalk", "svg.fonttype": "none", "font.size": 9, "font.family": "sans-serif"}
+    drawn, (left, right) = plt.subplots(1, 2, figsize=(11, 4.6), width_ratios=[1.5, 1])
+    ratio = data.ratio()
+    colours = ["#7b3294", "#c2410c", "#e08214", "#2c7fb8", "#1b7837"]
+    words = ["more than 85 % fines", "55 to 85 %", "35 to 55 %", "15 to 35 %", "less than 15 %"]
+    for fines, colour, word in zip(CLASSES, colours, words):
+        of = (data.fines_class == fines) & (ratio > 0) & np.isfinite(data.steepness)
+        left.plot(np.minimum(data.steepness[of], 60), ratio[of], ".", ms=4, color=colour, label=word, rasterized=True)
+    left.axhspan(1 / 1.558, 1.558, color="0.9", zorder=0, label="range of tests, 35 to 85 % fines")
+    left.axvline(STEEP, color="0.4", lw=0.8, ls="--")
+    left.set(xscale="log", yscale="log", xlabel="D85B / D50B after regrading (60: 60 and more)")
+    left.set(ylabel="D15F of no erosion: walk / centre of the tests", ylim=(0.015, 2.2))
+    for axis, ticks in ((left.xaxis, (1.5, 2, 3, 4, 6, 10, 20, 40, 60)), (left.yaxis, (0.02, 0.05, 0.1, 0.2, 0.5, 1, 2))):
+        axis.set_major_locator(matplotlib.ticker.FixedLocator(ticks))
+        axis.set_minor_locator(matplotlib.ticker.NullLocator())
+        axis.set_major_formatter(matplotlib.ticker.FormatStrFormatter("%g"))
+    left.legend(frameon=True, framealpha=1, edgecolor="none", fontsize=7.5, loc="lower left")
+    right.plot([0, 1], [0, 1], color="0.6", lw=0.8)
+    for name, colour, word in (("walk", "#2c7fb8", "by the walk"), ("rule", "#1b7837", "by the tests' range alone")):
+        bins = reliability(found[name], found["outcome"])
+        right.plot([p for _, _, p, _ in bins], [o for *_, o in bins], "o-", ms=4, color=colour, label=word)
+        if name == "walk":
+            for _, n, p, o in bins:
+                right.annotate(str(n), (p, o), (4, -9), textcoords="offset points", fontsize=6.5, color=colour)
+    right.set(xlabel="probability of no erosion that was said", ylabel="share of drawn outcomes without erosion")
+    right.legend(frameon=False, fontsize=7.5)
+    drawn.tight_layout()
+    drawn.savefig(path, dpi=130, metadata={"Date": None})
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--results", type=Path, default=TOP / "results")
@@ -268,7 +404,20 @@ def main():
     ratio, groups = data.ratio(), [(group, data.group == group) for group in GROUPS]
     table(["group", *HEAD[1:]], by(data, ratio, groups))
     evidence(data, TOP / "src/data/evidence.csv" if options.write else None)
+    beside(data)
+    by_hand(data)
+    folds(data)
     scatter(data)
+    single_sizes(data)
+    print("By the uniform loose filter's boundary:")
+    against(data, [("cu1.5", "dense"), ("cu3",), ("c33",), ("cu12",)])
+    against(data, [(*USUAL, "no clay"), (*USUAL, "flocs"), (*USUAL, "crumbs"), (*USUAL, "4 x base")])
+    against(data, [(*USUAL, "to 2 mm"), (*USUAL, "as sampled")])
+    against(data, [(*USUAL, "to 4.75 mm"), (*USUAL, "", "2"), ("cu1.5", "loose", "continuing_mm")])
+    for what in ("no clay", "flocs", "crumbs", "4 x base", "to 2 mm"):
+        rescued(data, what)
+    print("Continuing erosion by 9 D95B:")
+    against(data, [("cu1.5", "loose", "continuing_mm")], data.continuing_9_d95_mm)
     for likeness in (0.0, 0.5, 0.8):
         found, names = validated(data, GROUPS, likeness)
         outcome, group = found["outcome"], found["group"]
@@ -280,6 +429,8 @@ def main():
         print(f"rank correlation of walk and test within a group {likeness}: {len(outcome)} outcomes")
         table(["probability", "Brier score", *GROUPS], rows)
         if likeness == 0:
+            if options.write:
+                figure(data, found, options.results / "real-soils.svg")
             for name in ("rule", "walk", "mean"):
                 rows = [[f"{k / 10:.1f} to {(k + 1) / 10:.1f}", n, f"{p:.2f}", f"{o:.2f}"]
                         for k, n, p, o in reliability(found[name], outcome)]
