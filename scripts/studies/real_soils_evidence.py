@@ -126,13 +126,12 @@ def evidence(data, path):
         "# Walk: D15F at which the first run erodes 7.5 % of the base as practice regrades it; 20 x 20 x 60 voids, one",
         "# network; of the uniform filter the geometric mean of loose and dense, of the others loose.",
         "# Tests: the centre (geometric mean) of the range in which no-erosion tests had their boundary, for soils of",
-        "# these fines and D85B (Fell et al., Geotechnical Engineering of Dams, Table 9.2). No test of these very soils",
-        "# exists.",
+        "# these fines and D85B (Fell et al., Geotechnical Engineering of Dams, Table 9.2). No test of these soils.",
         "# steep: D85B / D50B of the regraded base is at most 4; broad: more, or D50B is finer than the finest size.",
         "# soils: with a boundary that no open tail decides. no_boundary: soils among them of which the walk erodes",
         "# 7.5 % in every filter; they are not in the quantiles. checked: 30 soils or more, 5 % and 95 % within a",
         "# factor of 2 of the median, no boundary for 5 % of the soils at most.",
-        "# spread: half the tests' range, the factor from its centre to either end. q05 to q95: quantiles of the ratio.",
+        "# spread: the factor from the centre of the tests' range to either end. q05 to q95: quantiles of the ratio.",
         "group,fines_from,fines_to,shape,filter,filter_cu_from,filter_cu_to,soils,no_boundary,checked,spread,"
         + ",".join(shares),
     ]
@@ -148,10 +147,8 @@ def evidence(data, path):
             q, none = quantiles(found, QUANTILES), int((here == 0).sum())
             near = q[9] / q[0] <= WITHIN and q[-1] / q[9] <= WITHIN
             checked = "yes" if len(here) >= ENOUGH and near and none <= 0.05 * len(here) else "no"
-            span, cells = CLASSES[fines], ",".join(f"{x:.3f}" for x in q)
-            lines.append(
-                f"{fines},{span[0]},{span[1]},{shape},{name},{cu[0]},{cu[1]},{len(here)},{none},{checked},{spread:.3f},{cells}"
-            )
+            cells = [fines, *CLASSES[fines], shape, name, *cu, len(here), none, checked, f"{spread:.3f}"]
+            lines.append(",".join(map(str, cells + [f"{x:.3f}" for x in q])))
     if path:
         path.write_text("\n".join(lines) + "\n")
     head = ["fines", "from", "to", "base", "filter", "soils", "no boundary", "checked", "5 %", "median", "95 %"]
@@ -191,8 +188,8 @@ def validated(data, groups, likeness=0.0, seed=SEED):
     ratio = data.ratio()
     known = ~np.isnan(ratio) & (ratio > 0)
     fold = (np.argsort(np.argsort(data.id)) * FOLDS) // len(data.id)
-    names = ["design limit, yes or no", "Foster and Fell, yes or no", "walk, yes or no", "rule", "walk", "mean", "least"]
-    names += [f"shift {weight}" for weight in (0.25, 0.5, 1)]
+    names = ["design limit, yes or no", "Foster and Fell, yes or no", "walk, yes or no"]
+    names += ["rule", "walk", "mean", "least"] + [f"shift {weight}" for weight in (0.25, 0.5, 1)]
     out = {name: [] for name in [*names, "outcome", "group", "distance"]}
     for group in groups:
         of = known & (data.group == group)
@@ -274,8 +271,9 @@ def beside(data):
         if of.sum() < 5:
             continue
         share = lambda limit: f"{100 * np.mean(b[of] > limit[of]):.0f} %"
-        rows.append([group, int(of.sum()), share(data.design_mm), share(data.foster_fell), share(data.centre), share(data.high)])
-    head = ["group", "soils", "beyond the design limit", "beyond Foster and Fell", "beyond the tests' centre", "beyond the tests' end"]
+        limits = (data.design_mm, data.foster_fell, data.centre, data.high)
+        rows.append([group, int(of.sum()), *(share(limit) for limit in limits)])
+    head = ["group", "soils", "beyond the design limit", "Foster and Fell", "the tests' centre", "the tests' end"]
     table(head, rows)
 
 
@@ -311,7 +309,8 @@ def by_hand(data):
     splits = {
         "hydrometer": data.finest_mm < 0.01, "no hydrometer": data.finest_mm >= 0.01,
         "gravel below 5 %": data.gravel < 5, "gravel 5 to 30 %": (data.gravel >= 5) & (data.gravel < 30),
-        "gravel above 30 %": data.gravel >= 30, "regraded": ~np.isnan(data.regraded_mm), "not regraded": np.isnan(data.regraded_mm),
+        "gravel above 30 %": data.gravel >= 30,
+        "regraded": ~np.isnan(data.regraded_mm), "not regraded": np.isnan(data.regraded_mm),
         "Cu below 6": data.cu < 6, "Cu 6 to 30": (data.cu >= 6) & (data.cu < 30), "Cu above 30": data.cu >= 30,
         "Cu not known": np.isnan(data.cu),
     }
@@ -377,7 +376,8 @@ def figure(data, found, path):
     left.axvline(STEEP, color="0.4", lw=0.8, ls="--")
     left.set(xscale="log", yscale="log", xlabel="D85B / D50B after regrading (60: 60 and more)")
     left.set(ylabel="D15F of no erosion: walk / centre of the tests", ylim=(0.015, 2.2))
-    for axis, ticks in ((left.xaxis, (1.5, 2, 3, 4, 6, 10, 20, 40, 60)), (left.yaxis, (0.02, 0.05, 0.1, 0.2, 0.5, 1, 2))):
+    ticks_of = ((left.xaxis, (1.5, 2, 3, 4, 6, 10, 20, 40, 60)), (left.yaxis, (0.02, 0.05, 0.1, 0.2, 0.5, 1, 2)))
+    for axis, ticks in ticks_of:
         axis.set_major_locator(matplotlib.ticker.FixedLocator(ticks))
         axis.set_minor_locator(matplotlib.ticker.NullLocator())
         axis.set_major_formatter(matplotlib.ticker.FormatStrFormatter("%g"))
@@ -425,7 +425,8 @@ def main():
         for name in names:
             cells = [brier(found[name][group == g], outcome[group == g]) if (group == g).any() else np.nan
                      for g in range(len(GROUPS))]
-            rows.append([name, f"{brier(found[name], outcome):.3f}", *("-" if np.isnan(x) else f"{x:.3f}" for x in cells)])
+            cells = [brier(found[name], outcome), *cells]
+            rows.append([name, *("-" if np.isnan(x) else f"{x:.3f}" for x in cells)])
         print(f"rank correlation of walk and test within a group {likeness}: {len(outcome)} outcomes")
         table(["probability", "Brier score", *GROUPS], rows)
         if likeness == 0:
