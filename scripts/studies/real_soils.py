@@ -32,8 +32,8 @@ FILTERS = {
     "c33": [(0.15, 6), (0.3, 20), (0.6, 42.5), (1.18, 67.5), (2.36, 90), (4.75, 97.5), (9.5, 100)],
     "cu12": [(0.5, 0), (1, 10), (2, 22), (4, 36), (8, 51), (12, 60), (20, 75), (40, 100)],
 }
-# What is walked, in this order: filter, density, boundary, what is done to the base, how many soils, seed of the
-# network. "coarse" is the other reading of a tail that is open.
+# What is walked, in this order: filter, density, boundary, what is done to the base, how many soils, number of the
+# replicate whose network it is; 40: that of replicate 1 with 40 x 40 voids across.
 STAGES = [
     ("cu1.5", "loose", "no", "", 639, 1),
     ("cu1.5", "dense", "no", "", 639, 1),
@@ -49,6 +49,7 @@ STAGES = [
     ("cu1.5", "loose", "no", "to 4.75 mm", 639, 1),
     ("cu1.5", "loose", "no", "", 100, 2),
     ("cu1.5", "loose", "continuing", "", 120, 1),
+    ("cu1.5", "loose", "no", "", 60, 40),
     ("c33", "loose", "no", "", 400, 1),
     ("cu1.5", "loose", "no", "4 x base", 300, 1),
     ("cu12", "loose", "no", "", 400, 1),
@@ -158,11 +159,12 @@ class Filter:
         self.gradation = vw.Gradation([size * scale for size in sizes], percents)
         diameters, shares = zip(*found["constrictions"])
         diameters = [diameter * scale for diameter in diameters]
-        self.finest, self.grains_per_void, self.seed = diameters[0], found["grains_per_void"], network
+        self.finest, self.grains_per_void = diameters[0], found["grains_per_void"]
+        self.shape, replicate = ([40, 40, 60], 1) if network == 40 else (SHAPE_OF_NETWORK, network)
         self.network = vw.Network.cubic(
-            SHAPE_OF_NETWORK,
+            self.shape,
             vw.Curve(shares, diameters),
-            seed=vw.replicate_seed(1, network),
+            seed=vw.replicate_seed(1, replicate),
             reference_mm=sizes[0] * scale,
         )
 
@@ -178,7 +180,7 @@ class Filter:
             else:
                 sizes, percents = [0.999 * sizes[0]] + sizes, [0.0] + percents
         scaled = vw.Gradation(sizes, percents)
-        voids = math.prod(SHAPE_OF_NETWORK)
+        voids = math.prod(self.shape)
         n_base = scaled.base_particles(self.gradation, voids, self.grains_per_void, 0.05 * amount)
         if n_base < 1:
             return None
