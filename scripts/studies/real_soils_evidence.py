@@ -26,7 +26,8 @@ GROUPS = [f"{name} {kind}" for name in CLASSES for kind in ("steep", "broad")]
 # Filters of the study, and the Cu of filters that each stands for.
 FILTERS = {"cu1.5": (1, 2), "cu3": (2, 4), "c33": (4, 8), "cu12": (8, 30)}
 USUAL = ("cu1.5", "loose", "no_erosion_mm")
-# What it takes for a group's ratio to count as known: soils, and the factor from the median to 5 and 95 %.
+# What it takes for a group's ratio to count as known, besides a median of at most 1: soils, and the factor from the
+# median to 5 and 95 %.
 ENOUGH, WITHIN = 30, 2.0
 
 
@@ -130,7 +131,7 @@ def evidence(data, path):
         "# steep: D85B / D50B of the regraded base is at most 4; broad: more, or D50B is finer than the finest size.",
         "# soils: with a boundary that no open tail decides. no_boundary: soils among them of which the walk erodes",
         "# 7.5 % in every filter; they are not in the quantiles. checked: 30 soils or more, 5 % and 95 % within a",
-        "# factor of 2 of the median, no boundary for 5 % of the soils at most.",
+        "# factor of 2 of the median, the median at most 1 (not on the unsafe side of tests), no boundary for at most 5 %.",
         "# spread: the factor from the centre of the tests' range to either end. q05 to q95: quantiles of the ratio.",
         "group,fines_from,fines_to,shape,filter,filter_cu_from,filter_cu_to,soils,no_boundary,checked,spread,"
         + ",".join(shares),
@@ -145,7 +146,7 @@ def evidence(data, path):
             fines, shape = group.rsplit(" ", 1)
             spread = np.exp(np.nanmedian(data.half[data.fines_class == fines]))
             q, none = quantiles(found, QUANTILES), int((here == 0).sum())
-            near = q[9] / q[0] <= WITHIN and q[-1] / q[9] <= WITHIN
+            near = q[9] / q[0] <= WITHIN and q[-1] / q[9] <= WITHIN and q[9] <= 1
             checked = "yes" if len(here) >= ENOUGH and near and none <= 0.05 * len(here) else "no"
             cells = [fines, *CLASSES[fines], shape, name, *cu, len(here), none, checked, f"{spread:.3f}"]
             lines.append(",".join(map(str, cells + [f"{x:.3f}" for x in q])))
