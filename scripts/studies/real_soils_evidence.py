@@ -1,0 +1,443 @@
+#!/usr/bin/env python3
+"""What the boundaries of real soils are worth as evidence: `src/data/evidence.csv`, its check, the figures.
+
+    scripts/studies/real_soils_evidence.py [--results results] [--write]
+
+Reads `real-soils.csv` and `real-soils-bases.csv`, prints every table of `real-soils.md`, and with --write makes
+`src/data/evidence.csv`, `real-soils.svg` and `real-soils-reliability.svg`. Needs NumPy, SciPy and Matplotlib.
+"""
+
+import argparse
+import csv
+from pathlib import Path
+
+import numpy as np
+from scipy.stats import norm, rankdata, spearmanr
+
+TOP = Path(__file__).resolve().parents[2]
+SEED = 3604
+FOLDS = 10
+QUANTILES = np.arange(0.05, 0.951, 0.05)
+DRAWS = 20
+CLASSES = {"1": (85, 100), "2 55-85": (55, 85), "2 35-55": (35, 55), "3": (15, 35), "4": (0, 15)}
+# D85B / D50B after regrading up to which a base is steep: its coarse half then holds the rest back.
+STEEP = 4.0
+GROUPS = [f"{name} {kind}" for name in CLASSES for kind in ("steep", "broad")]
+# Filters of the study, and the Cu of filters that each stands for.
+FILTERS = {"cu1.5": (1, 2), "cu3": (2, 4), "c33": (4, 8), "cu12": (8, 30)}
+USUAL = ("cu1.5", "loose", "no_erosion_mm")
+# What it takes for a group's ratio to count as known, besides a median of at most 1: soils, and the factor from the
+# median to 5 and 95 %.
+ENOUGH, WITHIN = 30, 2.0
+
+
+def number(text):
+    try:
+        return float(text)
+    except ValueError:
+        return np.nan
+
+
+class Data:
+    """Columns by soil: of practice, and of each boundary. A boundary below all that was tried is 0."""
+
+    def __init__(self, folder):
+        bases = list(csv.DictReader((folder / "real-soils-bases.csv").open()))
+        self.id = np.array([int(row["soil"]) for row in bases])
+        self.fines_class = np.array([row["group"] for row in bases])
+        for name in bases[0]:
+            if name not in ("soil", "group"):
+                setattr(self, name, np.array([number(row[name]) for row in bases]))
+        self.steepness = self.d85_mm / self.d50_mm
+        # Where D50B is finer than all that was measured the curve is as broad as can be.
+        kind = np.where(self.steepness <= STEEP, "steep", "broad")
+        self.group = np.array([f"{name} {word}" for name, word in zip(self.fines_class, kind)])
+        self.low, self.high = self.tests_low_mm, self.tests_high_mm
+        self.centre = np.sqrt(self.low * self.high)
+        # Foster and Fell's criterion: 9 and 7 D85B, 0.7 mm, 1.6 times the design limit.
+        factor = {"1": 9 / 6.4, "4": 7 / 6.8}
+        self.foster_fell = self.low * np.array([factor.get(name, 1.0) for name in self.fines_class])
+        self.half = np.log(self.high / self.low) / 2
+        self.place = {soil: i for i, soil in enumerate(self.id)}
+        self.boundaries, self.tail = {}, {}
+        for row in csv.DictReader((folder / "real-soils.csv").open()):
+            i = self.place[int(row["soil"])]
+            for which in ("no_erosion_mm", "continuing_mm"):
+                key = (row["filter"], row["density"], which, row["base"], row["network"])
+                text = row[which]
+                if text:
+                    value = 0.0 if text in ("below", "unwalked") else np.inf if text == "above" else number(text)
+                    self.boundaries.setdefault(key, np.full(len(self.id), np.nan))[i] = value
+            self.tail.setdefault((row["filter"], row["density"], row["base"]), {})[i] = row["tail"]
+
+    def of(self, name="cu1.5", density="loose", which="no_erosion_mm", base="", network="1"):
+        return self.boundaries.get((name, density, which, base, network), np.full(len(self.id), np.nan))
+
+    def is_open(self, name="cu1.5", density="loose"):
+        """Soils whose boundary hangs on how the tail below the finest sieve is read."""
+        tail = self.tail.get((name, density, ""), {})
+        return np.array([tail.get(i, "") != "" for i in range(len(self.id))])
+
+    def ratio(self, name="cu1.5"):
+        """One value a soil, by the tests' centre: of the uniform filter the geometric mean of loose and dense, of
+        others loose; nothing of soils whose boundary hangs on an open tail."""
+        loose, is_open = self.of(name), self.is_open(name)
+        if name != "cu1.5":
+            return np.where(is_open, np.nan, loose / self.centre)
+        is_open |= self.is_open(density="dense")
+        return np.where(is_open, np.nan, np.sqrt(loose * self.of(density="dense")) / self.centre)
+
+
+def quantiles(values, shares):
+    return np.quantile(values, shares) if len(values) else np.full(len(shares), np.nan)
+
+
+def table(head, rows):
+    print("| " + " | ".join(head) + " |")
+    print("|" + "---|" * len(head))
+    for row in rows:
+        print("| " + " | ".join(str(cell) for cell in row) + " |")
+    print()
+
+
+def by(data, values, groups, names=None):
+    """Rows of number, none, 5, 25, 50, 75, 95 %, within a factor of two of the median."""
+    rows = []
+    for group, mask in groups:
+        here = values[mask & ~np.isnan(values)]
+        found = here[(here > 0) & np.isfinite(here)]
+        if len(here) == 0:
+            continue
+        q = quantiles(found, [0.05, 0.25, 0.5, 0.75, 0.95])
+        near = np.mean(np.abs(np.log(np.maximum(here, 1e-9) / q[2])) <= np.log(2)) if len(found) else np.nan
+        rows.append([group, len(here), int((here == 0).sum()), *(f"{x:.2f}" for x in q), f"{100 * near:.0f} %"])
+    return rows
+
+
+HEAD = ["soils", "number", "no boundary", "5 %", "25 %", "median", "75 %", "95 %", "within a factor of 2 of the median"]
+
+
+def evidence(data, path):
+    """The table that the program reads."""
+    shares = [f"q{round(100 * share):02d}" for share in QUANTILES]
+    lines = [
+        "# The walk's D15F of no erosion by that of tests, for real soils: by scripts/studies/real_soils_evidence.py.",
+        "# Sieve curves: AGS4 files of ground investigations in the United Kingdom, test data of the British",
+        "# Geological Survey's pyagsapi, Open Government Licence v3.0. Contains public sector information.",
+        "# Walk: D15F at which the first run erodes 7.5 % of the base as practice regrades it; 20 x 20 x 60 voids, one",
+        "# network; of the uniform filter the geometric mean of loose and dense, of the others loose.",
+        "# Tests: the centre (geometric mean) of the range in which no-erosion tests had their boundary, for soils of",
+        "# these fines and D85B (Fell et al., Geotechnical Engineering of Dams, Table 9.2). No test of these soils.",
+        "# steep: D85B / D50B of the regraded base is at most 4; broad: more, or D50B is finer than the finest size.",
+        "# soils: with a boundary that no open tail decides. no_boundary: soils among them of which the walk erodes",
+        "# 7.5 % in every filter; they are not in the quantiles. checked: 30 soils or more, 5 % and 95 % within a",
+        "# factor of 2 of the median, the median at most 1 (not on the unsafe side of tests), no boundary for at most 5 %.",
+        "# spread: the factor from the centre of the tests' range to either end. q05 to q95: quantiles of the ratio.",
+        "group,fines_from,fines_to,shape,filter,filter_cu_from,filter_cu_to,soils,no_boundary,checked,spread,"
+        + ",".join(shares),
+    ]
+    for name, cu in FILTERS.items():
+        ratio = data.ratio(name)
+        for group in GROUPS:
+            here = ratio[(data.group == group) & ~np.isnan(ratio)]
+            found = here[(here > 0) & np.isfinite(here)]
+            if len(found) < 5:
+                continue
+            fines, shape = group.rsplit(" ", 1)
+            spread = np.exp(np.nanmedian(data.half[data.fines_class == fines]))
+            q, none = quantiles(found, QUANTILES), int((here == 0).sum())
+            near = q[9] / q[0] <= WITHIN and q[-1] / q[9] <= WITHIN and q[9] <= 1
+            checked = "yes" if len(here) >= ENOUGH and near and none <= 0.05 * len(here) else "no"
+            cells = [fines, *CLASSES[fines], shape, name, *cu, len(here), none, checked, f"{spread:.3f}"]
+            lines.append(",".join(map(str, cells + [f"{x:.3f}" for x in q])))
+    if path:
+        path.write_text("\n".join(lines) + "\n")
+    head = ["fines", "from", "to", "base", "filter", "soils", "no boundary", "checked", "5 %", "median", "95 %"]
+    rows = [line.split(",") for line in lines if not line.startswith(("#", "group"))]
+    table(head, [[*row[:5], *row[7:10], row[11], row[20], row[29]] for row in rows])
+
+
+def of_rule(distance, half):
+    """P(T >= D) by the tests' range alone; distance = ln(D / centre)."""
+    return np.clip((half - distance) / (2 * half), 0, 1)
+
+
+def of_walk(b, d, ratios, half):
+    """P(T >= D) where T is the walk's boundary by one of these ratios, anywhere in the tests' range about that.
+
+    The quantiles count alike; beyond the last of either end half of one each way."""
+    q = quantiles(ratios, QUANTILES)
+    each = of_rule(np.log(d[:, None] / b[:, None] * q[None, :]), half[:, None])
+    return (each.sum(axis=1) + 0.5) / (len(q) + 1)
+
+
+def shifted(walk_by_usual, distance, half, weight):
+    """P(T >= D) with the tests' range moved by a part of what the walk says beside its usual ratio."""
+    return of_rule(distance - weight * np.log(walk_by_usual), half)
+
+
+def brier(p, outcome):
+    return float(np.mean((p - outcome) ** 2))
+
+
+def validated(data, groups, likeness=0.0, seed=SEED):
+    """Probabilities and drawn outcomes, by folds of neighbouring soils.
+
+    `likeness`: rank correlation, within a group, between where a soil stands in the walk and where its test stands in
+    the tests' range. 0 is what the rule alone says."""
+    draw = np.random.default_rng(seed)
+    ratio = data.ratio()
+    known = ~np.isnan(ratio) & (ratio > 0)
+    fold = (np.argsort(np.argsort(data.id)) * FOLDS) // len(data.id)
+    names = ["design limit, yes or no", "Foster and Fell, yes or no", "walk, yes or no"]
+    names += ["rule", "walk", "mean", "least"] + [f"shift {weight}" for weight in (0.25, 0.5, 1)]
+    out = {name: [] for name in [*names, "outcome", "group", "distance"]}
+    for group in groups:
+        of = known & (data.group == group)
+        if of.sum() < 12:
+            continue
+        z = np.full(len(ratio), np.nan)
+        z[of] = norm.ppf((rankdata(ratio[of]) - 0.5) / of.sum())
+        for k in range(FOLDS):
+            test, others = of & (fold == k), of & (fold != k)
+            if not test.any() or others.sum() < 10:
+                continue
+            i = np.repeat(np.flatnonzero(test), DRAWS)
+            noise = draw.standard_normal(len(i))
+            place = norm.cdf(likeness * z[i] + np.sqrt(1 - likeness**2) * noise)
+            tests = np.log(data.low[i]) + 2 * data.half[i] * place
+            # Filters about the centre, where the question is open.
+            distance = draw.uniform(-np.log(4), np.log(4), len(i))
+            d = data.centre[i] * np.exp(distance)
+            p = of_rule(distance, data.half[i])
+            w = of_walk(ratio[i] * data.centre[i], d, ratio[others], data.half[i])
+            usual = ratio[i] / np.median(ratio[others])
+            b = ratio[i] * data.centre[i]
+            out["design limit, yes or no"].append((d <= data.design_mm[i]).astype(float))
+            out["Foster and Fell, yes or no"].append((d <= data.foster_fell[i]).astype(float))
+            out["walk, yes or no"].append((d <= b).astype(float))
+            out["rule"].append(p)
+            out["walk"].append(w)
+            out["mean"].append((p + w) / 2)
+            out["least"].append(np.minimum(p, w))
+            for weight in (0.25, 0.5, 1):
+                out[f"shift {weight}"].append(shifted(usual, distance, data.half[i], weight))
+            out["outcome"].append((tests >= np.log(d)).astype(float))
+            out["group"].append(np.full(len(i), GROUPS.index(group)))
+            out["distance"].append(distance)
+    return {name: np.concatenate(of) for name, of in out.items()}, names
+
+
+def reliability(p, outcome, bins=10):
+    rows = []
+    for k in range(bins):
+        here = (p >= k / bins) & ((p < (k + 1) / bins) | ((k == bins - 1) & (p >= 1)))
+        if here.any():
+            rows.append((k, int(here.sum()), float(p[here].mean()), float(outcome[here].mean())))
+    return rows
+
+
+def scatter(data):
+    """What goes with the walk's boundary within a group: rank correlations, and what is left of the scatter."""
+    ratio = data.ratio()
+    names = {
+        "fines": data.fines, "clay": data.clay, "ln Cu": np.log(data.cu), "gravel": data.gravel,
+        "D85B": data.d85_mm, "D95B": data.d95_mm, "D95B / D85B": data.d95_mm / data.d85_mm,
+    } | {f"D{p}B": getattr(data, f"d{p}_mm") for p in (20, 30, 40, 50, 60, 70)}
+    rows = []
+    for group in GROUPS:
+        of = (data.group == group) & (ratio > 0)
+        if of.sum() < 20:
+            continue
+        cells = []
+        for values in names.values():
+            here = of & np.isfinite(values)
+            rho = spearmanr(ratio[here], values[here])[0] if here.sum() >= 20 else np.nan
+            cells.append("-" if np.isnan(rho) else f"{rho:+.2f}")
+        rows.append([group, int(of.sum()), *cells])
+    table(["group", "soils", *names], rows)
+
+
+def spread_of(values):
+    q = quantiles(values, [0.05, 0.5, 0.95])
+    return f"{q[1]:.2f} ({q[0]:.2f} to {q[2]:.2f})"
+
+
+def beside(data):
+    """Of how many soils the walk's boundary lies beyond those of practice."""
+    rows = []
+    for group in GROUPS:
+        b = data.ratio() * data.centre
+        of = (data.group == group) & ~np.isnan(b)
+        if of.sum() < 5:
+            continue
+        share = lambda limit: f"{100 * np.mean(b[of] > limit[of]):.0f} %"
+        limits = (data.design_mm, data.foster_fell, data.centre, data.high)
+        rows.append([group, int(of.sum()), *(share(limit) for limit in limits)])
+    head = ["group", "soils", "beyond the design limit", "Foster and Fell", "the tests' centre", "the tests' end"]
+    table(head, rows)
+
+
+def against(data, keys, of=None):
+    """Medians (5 to 95 %) of other boundaries by that of the uniform loose filter, or by `of`."""
+    rows = []
+    for group in GROUPS:
+        cells = []
+        for key in keys:
+            other, usual = data.of(*key), data.of() if of is None else of
+            here = (data.group == group) & (usual > 0) & (other > 0) & np.isfinite(other) & np.isfinite(usual)
+            here &= ~data.is_open()
+            cells.append(f"{spread_of(other[here] / usual[here])}, {here.sum()}" if here.sum() >= 5 else "-")
+        rows.append([group, *cells])
+    table(["group", *(", ".join(part for part in key if part) for key in keys)], rows)
+
+
+def rescued(data, what):
+    """Soils without a boundary, or far below the tests' range, and how many of them another base brings into it."""
+    other, usual = data.of(base=what), data.of()
+    rows = []
+    for group in GROUPS:
+        low = (data.group == group) & (usual < data.low / 2) & ~np.isnan(other)
+        if low.sum() >= 3:
+            mended = other[low] >= data.low[low] / 2
+            rows.append([group, int(low.sum()), int(mended.sum())])
+    table(["group", "less than half of the tests' lower end", f"no longer so: {what}"], rows)
+
+
+def by_hand(data):
+    """Splits of the ratio by hydrometer, gravel, and Cu, within the classes of fines."""
+    ratio, rows = data.ratio(), []
+    splits = {
+        "hydrometer": data.finest_mm < 0.01, "no hydrometer": data.finest_mm >= 0.01,
+        "gravel below 5 %": data.gravel < 5, "gravel 5 to 30 %": (data.gravel >= 5) & (data.gravel < 30),
+        "gravel above 30 %": data.gravel >= 30,
+        "regraded": ~np.isnan(data.regraded_mm), "not regraded": np.isnan(data.regraded_mm),
+        "Cu below 6": data.cu < 6, "Cu 6 to 30": (data.cu >= 6) & (data.cu < 30), "Cu above 30": data.cu >= 30,
+        "Cu not known": np.isnan(data.cu),
+    }
+    for name, mask in splits.items():
+        cells = []
+        for fines in CLASSES:
+            here = ratio[mask & (data.fines_class == fines) & (ratio > 0)]
+            cells.append(f"{spread_of(here)}, {len(here)}" if len(here) >= 5 else "-")
+        rows.append([name, *cells])
+    table(["soils", *CLASSES], rows)
+
+
+def folds(data):
+    """How well the quantiles of nine tenths of the soils, in the order of their ids, hold for the tenth."""
+    ratio, rows = data.ratio(), []
+    fold = (np.argsort(np.argsort(data.id)) * FOLDS) // len(data.id)
+    for group in GROUPS:
+        of = (data.group == group) & (ratio > 0)
+        if of.sum() < 12:
+            continue
+        inside, medians = [], []
+        for k in range(FOLDS):
+            here, others = ratio[of & (fold == k)], ratio[of & (fold != k)]
+            low, high = quantiles(others, [0.05, 0.95])
+            inside += list((here >= low) & (here <= high))
+            medians += [np.median(here)] if len(here) >= 3 else []
+        rows.append([group, int(of.sum()), f"{100 * np.mean(inside):.0f} %", len(medians),
+                     f"{min(medians):.2f} to {max(medians):.2f}"])
+    table(["group", "soils", "within the others' 5 to 95 %", "folds of 3 soils or more", "their medians"], rows)
+
+
+def single_sizes(data):
+    """Which size of the base the boundary follows best: scatter (factor) of boundary / size."""
+    b, rows = data.ratio() * data.centre, []
+    for fines in CLASSES:
+        cells = []
+        for percent in (30, 40, 50, 60, 70, 80, 85, 95):
+            size = getattr(data, f"d{percent}_mm")
+            here = (data.fines_class == fines) & (b > 0) & np.isfinite(size)
+            log = np.log(b[here] / size[here])
+            cells.append(f"{np.exp(np.median(log)):.1f} (x{np.exp(np.std(log)):.2f})" if here.sum() >= 10 else "-")
+        rows.append([fines, *cells])
+    table(["fines", "D30B", "D40B", "D50B", "D60B", "D70B", "D80B", "D85B", "D95B"], rows)
+
+
+def figure(data, found, path):
+    """The ratio over the steepness of the base, and the reliability diagram."""
+    import matplotlib
+
+    matplotlib.use("svg")
+    import matplotlib.pyplot as plt
+    import matplotlib.ticker
+
+    plt.rcParams |= {"svg.hashsalt": "voidwalk", "svg.fonttype": "none", "font.size": 9, "font.family": "sans-serif"}
+    drawn, (left, right) = plt.subplots(1, 2, figsize=(11, 4.6), width_ratios=[1.5, 1])
+    ratio = data.ratio()
+    colours = ["#7b3294", "#c2410c", "#e08214", "#2c7fb8", "#1b7837"]
+    words = ["more than 85 % fines", "55 to 85 %", "35 to 55 %", "15 to 35 %", "less than 15 %"]
+    for fines, colour, word in zip(CLASSES, colours, words):
+        of = (data.fines_class == fines) & (ratio > 0) & np.isfinite(data.steepness)
+        left.plot(np.minimum(data.steepness[of], 60), ratio[of], ".", ms=4, color=colour, label=word, rasterized=True)
+    left.axhspan(1 / 1.558, 1.558, color="0.9", zorder=0, label="range of tests, 35 to 85 % fines")
+    left.axvline(STEEP, color="0.4", lw=0.8, ls="--")
+    left.set(xscale="log", yscale="log", xlabel="D85B / D50B after regrading (60: 60 and more)")
+    left.set(ylabel="D15F of no erosion: walk / centre of the tests", ylim=(0.015, 2.2))
+    ticks_of = ((left.xaxis, (1.5, 2, 3, 4, 6, 10, 20, 40, 60)), (left.yaxis, (0.02, 0.05, 0.1, 0.2, 0.5, 1, 2)))
+    for axis, ticks in ticks_of:
+        axis.set_major_locator(matplotlib.ticker.FixedLocator(ticks))
+        axis.set_minor_locator(matplotlib.ticker.NullLocator())
+        axis.set_major_formatter(matplotlib.ticker.FormatStrFormatter("%g"))
+    left.legend(frameon=True, framealpha=1, edgecolor="none", fontsize=7.5, loc="lower left")
+    right.plot([0, 1], [0, 1], color="0.6", lw=0.8)
+    for name, colour, word in (("walk", "#2c7fb8", "by the walk"), ("rule", "#1b7837", "by the tests' range alone")):
+        bins = reliability(found[name], found["outcome"])
+        right.plot([p for _, _, p, _ in bins], [o for *_, o in bins], "o-", ms=4, color=colour, label=word)
+        if name == "walk":
+            for _, n, p, o in bins:
+                right.annotate(str(n), (p, o), (4, -9), textcoords="offset points", fontsize=6.5, color=colour)
+    right.set(xlabel="probability of no erosion that was said", ylabel="share of drawn outcomes without erosion")
+    right.legend(frameon=False, fontsize=7.5)
+    drawn.tight_layout()
+    drawn.savefig(path, dpi=130, metadata={"Date": None})
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--results", type=Path, default=TOP / "results")
+    parser.add_argument("--write", action="store_true")
+    options = parser.parse_args()
+    data = Data(options.results)
+    ratio, groups = data.ratio(), [(group, data.group == group) for group in GROUPS]
+    table(["group", *HEAD[1:]], by(data, ratio, groups))
+    evidence(data, TOP / "src/data/evidence.csv" if options.write else None)
+    beside(data)
+    by_hand(data)
+    folds(data)
+    scatter(data)
+    single_sizes(data)
+    print("By the uniform loose filter's boundary:")
+    against(data, [("cu1.5", "dense"), ("cu3",), ("c33",), ("cu12",)])
+    against(data, [(*USUAL, "no clay"), (*USUAL, "flocs"), (*USUAL, "crumbs"), (*USUAL, "4 x base")])
+    against(data, [(*USUAL, "to 2 mm"), (*USUAL, "as sampled")])
+    against(data, [(*USUAL, "to 4.75 mm"), (*USUAL, "", "2"), ("cu1.5", "loose", "continuing_mm")])
+    for what in ("no clay", "flocs", "crumbs", "4 x base", "to 2 mm"):
+        rescued(data, what)
+    print("Continuing erosion by 9 D95B:")
+    against(data, [("cu1.5", "loose", "continuing_mm")], data.continuing_9_d95_mm)
+    for likeness in (0.0, 0.5, 0.8):
+        found, names = validated(data, GROUPS, likeness)
+        outcome, group = found["outcome"], found["group"]
+        rows = []
+        for name in names:
+            cells = [brier(found[name][group == g], outcome[group == g]) if (group == g).any() else np.nan
+                     for g in range(len(GROUPS))]
+            cells = [brier(found[name], outcome), *cells]
+            rows.append([name, *("-" if np.isnan(x) else f"{x:.3f}" for x in cells)])
+        print(f"rank correlation of walk and test within a group {likeness}: {len(outcome)} outcomes")
+        table(["probability", "Brier score", *GROUPS], rows)
+        if likeness == 0:
+            if options.write:
+                figure(data, found, options.results / "real-soils.svg")
+            for name in ("rule", "walk", "mean"):
+                rows = [[f"{k / 10:.1f} to {(k + 1) / 10:.1f}", n, f"{p:.2f}", f"{o:.2f}"]
+                        for k, n, p, o in reliability(found[name], outcome)]
+                table([name, "outcomes", "said", "came"], rows)
+
+
+if __name__ == "__main__":
+    main()
