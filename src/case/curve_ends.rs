@@ -11,6 +11,8 @@ pub struct OtherCurve {
     pub name: String,
     /// The curve (mm).
     pub curve: Curve,
+    /// Grains per void of such a filter by those of the case's own curve: so many times the base is offered.
+    pub times_grains: f64,
 }
 
 /// The ends of the range in which a constriction curve is known: of a filter whose finer part was packed, the
@@ -26,11 +28,11 @@ pub(super) fn of(
     let coarser = 1.0 / (1.0 - finer_by);
     let coarser = (finer_by > 0.0).then(|| {
         let name = format!("constrictions {:.1} % coarser", 100.0 * (coarser - 1.0));
-        Some(OtherCurve { name, curve: curve.scaled(coarser).ok()? })
+        Some(OtherCurve { name, curve: curve.scaled(coarser).ok()?, times_grains: 1.0 })
     });
     let guess = |density: f64| {
         let name = format!("estimate = {density}");
-        Some(OtherCurve { name, curve: inscribed(filter, density).ok()? })
+        Some(OtherCurve { name, curve: inscribed(filter, density).ok()?, times_grains: 1.0 })
     };
     let is_other = |end: &f64| guessed.is_some_and(|given| given != *end);
     let guesses = [1.0, 0.0].into_iter().filter(is_other).map(guess);

@@ -49,7 +49,8 @@ impl LibraryFilter {
             };
             let name = format!("{}, constrictions {by} % {way}", density.name());
             let of = from_library(&looked_up, density.relative()).ok()??;
-            Some(OtherCurve { name, curve: of.curve.scaled(factor).ok()? })
+            let times_grains = of.grains_per_void / found.grains_per_void;
+            Some(OtherCurve { name, curve: of.curve.scaled(factor).ok()?, times_grains })
         };
         let ends = [end(loose, coarsest), end(dense, 1.0 - found.off_by)];
         Ok(Some(Self { found, part, ends: ends.into_iter().flatten().collect() }))
@@ -70,6 +71,9 @@ mod tests {
         let [coarse, fine] = [&unknown.ends[0], &unknown.ends[1]].map(|end| dc50(&end.curve));
         assert!(coarse > dc50(&loose.found.curve) && fine < dc50(&dense.found.curve));
         assert_eq!(unknown.found, loose.found);
+        // A dense filter has fewer grains a void, and is offered less base.
+        let [of_loose, of_dense] = [&unknown.ends[0], &unknown.ends[1]].map(|end| end.times_grains);
+        assert!(of_loose == 1.0 && of_dense < 0.9, "{of_dense}");
         assert!(unknown.ends[0].name.starts_with("loose, constrictions"), "{}", unknown.ends[0].name);
     }
 

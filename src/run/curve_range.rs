@@ -22,7 +22,11 @@ pub fn curve_range(
     for (part, end) in parts.zip(&case.curve_ends) {
         let dc50_factor = end.curve.dc(50.0).unwrap_or(f64::NAN) / own;
         let other = case.with_curve(end.curve.clone());
-        let of_end = some_replicates(&other, part, 1..=walked.len() as u64, case.n_base, context)?;
+        // What a user or a cap says of the amount of base holds for every curve.
+        let by_grains = case.n_base_eq2 == Some(case.n_base);
+        let times = if by_grains { end.times_grains } else { 1.0 };
+        let n_base = case.times_base(times);
+        let of_end = some_replicates(&other, part, 1..=walked.len() as u64, n_base, context)?;
         ends.push(CurveEnd { curve: end.name.clone(), dc50_factor, walked: classed(&of_end) });
     }
     let (verdict, summaries) = summarise(walked);
