@@ -8,10 +8,11 @@
 //!
 //! # The likely reading
 //! It goes on as in 600 soils of ground investigations in the United Kingdom whose finest part was measured.
-//! Of what passes a sieve of more than 0.063 mm the part that passes 0.063 mm falls with the size by the power
-//! 0.2 + 0.35 b, at most 0.85, where b is the slope of the two finest sieves on log-log paper: three numbers
-//! fitted to medians over sieves of 0.15 to 0.3 mm, within 0.05 of them for the finest of these. A straight
-//! line through the two sieves would say too little, on average by a tenth, of steep curves by half.
+//! Of what passes a sieve of more than 0.063 mm the part that passes 0.063 mm falls with the size by the
+//! power 0.2 + 0.35 b, at most 0.85, where b is the slope of the two finest sieves on log-log paper: three
+//! numbers fitted to medians over sieves of 0.15 to 0.3 mm, within 0.05 of them for the finest of these. A
+//! straight line through the two sieves would say too little, on average by a tenth, of steep curves by
+//! half.
 //!
 //! Of what passes 0.063 mm, 70 % passes 0.02 mm, 45 % 0.006 mm and 25 % 0.002 mm: medians of 472 soils with a
 //! hydrometer test (nine in ten at 0.02 mm: 47 to 83 %), much the same for all contents of fines.
@@ -32,12 +33,12 @@ const SILT_MM: f64 = 0.063;
 /// Sizes by that of the sieve, and shares of what passes it, below 0.063 mm.
 const OF_SILTS: [(f64, f64); 3] = [(0.02 / SILT_MM, 0.70), (0.006 / SILT_MM, 0.45), (0.002 / SILT_MM, 0.25)];
 
-/// How what passes falls with the size above 0.063 mm: the least power, its rise with the slope of the sieves,
-/// and the most.
+/// How what passes falls with the size above 0.063 mm: the least power, its rise with the slope of the
+/// sieves, and the most.
 const OF_SANDS: [f64; 3] = [0.2, 0.35, 0.85];
 
-/// A base's curve below its finest sieve as it is likely to go on, by rising size; the finest of it is what is
-/// left out.
+/// A base's curve below its finest sieve as it is likely to go on, by rising size; the finest of it is what
+/// is left out.
 fn continued(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let [(sieve, percent), (next, above)] = [points[0], points[1]];
     let [least, rise, most] = OF_SANDS;

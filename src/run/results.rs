@@ -98,8 +98,8 @@ pub fn outcome(
     outcome
 }
 
-/// What soils of the base's kind say of the walk's boundary. Tests of dispersive soils and of joints had other
-/// ones, and another amount of base has.
+/// What soils of the base's kind say of the walk's boundary. Tests of dispersive soils and of joints had
+/// other ones, and another amount of base has.
 fn evidence(case: &Case, other: &OtherWalks) -> Option<Evidence> {
     let is_other = case.scene.base.dispersive == Some(true) || case.scene.filter.joint_mm.is_some();
     let usual = case.mass_ratio.is_some_and(|ratio| (ratio / MASS_RATIO - 1.0).abs() < 0.01);

@@ -61,8 +61,8 @@ section! {
         /// Written by a run whose filter was packed: its measured constriction curve.
         pub measured: Option<PathBuf> = None, off "\"inputs/filter-curve.csv\"", any("a file name in quotes");
         /// Instead of a density: constrictions from the library of packings, which takes no time. Where the
-        /// density is unknown, the filter is taken as loose, and walked as dense besides. A gradation like none
-        /// of the library has its constrictions guessed.
+        /// density is unknown, the filter is taken as loose, and walked as dense besides. A gradation like
+        /// none of the library has its constrictions guessed.
         pub library: Option<LibraryDensity> = None, off "\"unknown\"",
             any("\"dense\", \"medium\" or \"intermediate\", \"loose\", or \"unknown\"");
         /// Instead of a curve or a density: constrictions guessed from the gradation by inscribed circles, at
@@ -228,8 +228,9 @@ section! {
         /// this study. Default: half and twice, if `sensitivity` is walked.
         pub thickness: Option<Vec<f64>> = None, off "[0.5, 2.0]",
             only("a list of numbers above 0", |list: &Vec<f64>| list.iter().all(|factor| *factor > 0.0));
-        /// Walk how much coarser the filter could be before the base begins to erode, on the first replicate's
-        /// network. Default: only where base and filter are sieve tables of `voidwalk judge` and its like.
+        /// Walk how much coarser the filter could be before the base begins to erode, on the first
+        /// replicate's network. Default: only where base and filter are sieve tables of `voidwalk judge` and
+        /// its like.
         pub margin: Option<bool> = None, off "true", any("true or false");
         /// Most replicates of each point of both studies; a clear point stops after one or two.
         pub sensitivity_replicates: u64 = 3, set, whole(1..=1000);

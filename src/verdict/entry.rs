@@ -79,7 +79,8 @@ macro_rules! findings {
         $(
             $(#[$doc])*
             pub fn $id($($name: findings!(@raw $unit)),*) -> Finding {
-                Finding { entry: &entries::$id, values: vec![$(FindingValue::$unit($name.into())),*], is_settled: false }
+                let values = vec![$(FindingValue::$unit($name.into())),*];
+                Finding { entry: &entries::$id, values, is_settled: false }
             }
         )*
 
@@ -94,7 +95,8 @@ macro_rules! findings {
                 "Count" => FindingValue::Count(n),
                 _ => FindingValue::Text(text.into()),
             };
-            vec![$(Finding { entry: &entries::$id, values: vec![$(of(stringify!($unit))),*], is_settled: false }),*]
+            let finding = |entry, values| Finding { entry, values, is_settled: false };
+            vec![$(finding(&entries::$id, vec![$(of(stringify!($unit))),*])),*]
         }
     };
 }

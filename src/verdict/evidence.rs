@@ -1,9 +1,10 @@
-//! What the walk's boundary of no erosion is worth: for soils of this kind it was so many times that of tests.
+//! What the walk's boundary of no erosion is worth: for soils of this kind it was so many times that of
+//! tests.
 //!
 //! `src/data/evidence.csv` is made by `scripts/studies/real_soils_evidence.py` from walks of 639 real soils
-//! against filters of four shapes (`results/real-soils.md`). Of each group of soils and shape of filter it has
-//! the distribution over soils of `r`, the walk's D15F of no erosion by the centre of the range in which tests
-//! found it, and half of that range as a factor.
+//! against filters of four shapes (`results/real-soils.md`). Of each group of soils and shape of filter it
+//! has the distribution over soils of `r`, the walk's D15F of no erosion by the centre of the range in which
+//! tests found it, and half of that range as a factor.
 //!
 //! With the walk's boundary `B` of this pair a test is taken to have its boundary at `B s / r`, where `s` is
 //! uniform over the range in its logarithm. The probability that it would show no erosion is that of
@@ -132,8 +133,8 @@ impl Group {
 }
 
 impl Evidence {
-    /// The evidence for a base, and a filter of this D15 (mm) and Cu, whose walk has this margin; `None` where
-    /// they are of no group.
+    /// The evidence for a base, and a filter of this D15 (mm) and Cu, whose walk has this margin; `None`
+    /// where they are of no group.
     pub fn of(soil: &BaseSoil, d15f_mm: f64, filter_cu: Option<f64>, margin: &Margin) -> Option<Self> {
         let group = Group::of(soil, filter_cu)?;
         let (factor, bound) = match (margin.boundary(), margin.holds_to(), margin.erodes_from()) {

@@ -82,8 +82,8 @@ findings! {
     /// A range of which the worst class counts.
     worst_of_range(class: Text, low: Percent, high: Percent, each: Text): Constrictions, Safe, Note;
         "constrictions", "uncertainty.md",
-        "The verdict, {class}, is that of the coarsest constrictions that the filter may have. Over the range \
-         of its constrictions {low} to {high} of the mass eroded in the first run ({each}).",
+        "The verdict, {class}, is that of the coarsest constrictions that the filter may have. Over the \
+         range of its constrictions {low} to {high} of the mass eroded in the first run ({each}).",
         to do "filter.library says how densely it lies; filter.density packs this very filter.";
     /// The same where the curve itself gives no class.
     curve_range_open(low: Percent, high: Percent, each: Text): Constrictions, Open, Limits;
@@ -326,9 +326,10 @@ findings! {
     /// A finest part of the base that will be walked in several readings.
     pan_readings_walked(share: Percent, sieve: Mm, constriction: Mm): Base, Open, Limits;
         "finest part", "soils.md",
-        "The finest {share} of the base may block constrictions. It is finer than the finest sieve, {sieve}, \
-         but may be coarser than the finest constriction, {constriction}. It is walked as it goes on in soils \
-         with a hydrometer test, as finer than every constriction and as all of that sieve's size.";
+        "The finest {share} of the base may block constrictions. It is finer than the finest sieve, \
+         {sieve}, but may be coarser than the finest constriction, {constriction}. It is walked as it goes \
+         on in soils with a hydrometer test, as finer than every constriction and as all of that sieve's \
+         size.";
     /// The constriction curve of another filter.
     other_curve(cu: Ratio, curve: Text, of_cu: Ratio): Constrictions, Open, Limits;
         "constrictions", "uncertainty.md",
@@ -531,10 +532,10 @@ findings! {
     evidence(probability: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio):
         Practice, Settled, Note;
         "evidence", "uncertainty.md",
-        "The probability that a test would show no erosion {probability}. For {soils} real soils of this kind \
-         ({group}) the walk began to erode at {median} times the D15F of no-erosion tests on soils of these \
-         fines (nine in ten: {low} to {high}). It knows no cohesion, no segregation and no crack, and none of \
-         these soils was tested itself.";
+        "The probability that a test would show no erosion {probability}. For {soils} real soils of this \
+         kind ({group}) the walk began to erode at {median} times the D15F of no-erosion tests on soils of \
+         these fines (nine in ten: {low} to {high}). It knows no cohesion, no segregation and no crack, and \
+         none of these soils was tested itself.";
     /// The same where the walk errs on the unsafe side.
     evidence_unsafe(probability: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio):
         Practice, Unsafe, Limits;
