@@ -84,13 +84,13 @@ pub(super) fn taken_as(base: &Gradation, size: PanSize, finest_mm: f64) -> Resul
     Gradation::from_points(&points, None)
 }
 
-/// Percent finer than a size: between points linear in its logarithm, below them the finest one's.
+/// Percent finer than a size: between points linear in its logarithm, beyond them that of the nearest.
 fn percent_at(points: &[(f64, f64)], size: f64) -> f64 {
-    let pair = points.windows(2).find(|pair| size <= pair[1].0);
-    pair.filter(|pair| pair[0].0 < size).map_or(points[0].1, |pair| {
-        let share = libm::log(size / pair[0].0) / libm::log(pair[1].0 / pair[0].0);
-        pair[0].1 + share * (pair[1].1 - pair[0].1)
-    })
+    let at = points.partition_point(|point| point.0 < size);
+    let (Some(&(above, high)), Some(&(below, low))) = (points.get(at), points[..at].last()) else {
+        return points[at.saturating_sub(1)].1;
+    };
+    low + libm::log(size / below) / libm::log(above / below) * (high - low)
 }
 
 #[cfg(test)]

@@ -15,6 +15,10 @@ const WATER_PROTOCOL: u32 = 4;
 /// What is added to either where a base with a pan fraction is walked on a curve that is a guess.
 const GUESSED_PAN_PROTOCOL: u32 = 100;
 
+/// What is added where several curves or readings are walked: their walks have other names, and the verdict
+/// follows from them in another way than before.
+const RANGE_PROTOCOL: u32 = 200;
+
 impl Case {
     /// The scene with what its files and its filter's packing say of it, and with its files' names in a run
     /// folder: run again from there, it gives the same bits.
@@ -56,6 +60,9 @@ impl Case {
         let mut protocol = if scene.exit_rule().needs_flow() { WATER_PROTOCOL } else { PROTOCOL };
         if self.finest_mm < self.curve.smallest() && self.base.pan_fraction() > 0.0 {
             protocol += GUESSED_PAN_PROTOCOL;
+        }
+        if !self.curve_ends.is_empty() || !self.other_readings.is_empty() {
+            protocol += RANGE_PROTOCOL;
         }
         let mut text = format!("{protocol}\n{}", scene.to_toml()).into_bytes();
         if self.library.is_some() {

@@ -11,6 +11,7 @@ use super::{Case, CaseError, base_gradation, pan, regrade, sizes};
 use crate::constrictions::Curve;
 use crate::gradation::Gradation;
 use crate::network::{Network, NetworkError};
+use crate::outcome::record::PanSize;
 use crate::scene::{NetworkSource, Scene};
 
 /// A base as a scene states it, with its sizes as they are.
@@ -79,9 +80,10 @@ impl Case {
     /// As [`Case::with_base`].
     pub fn with_larger_filter(&self, factor: f64) -> Result<Self, CaseError> {
         // Of the real size first: how a tail goes on hangs on it.
-        let base = match self.pan_size {
-            Some(size) => &pan::taken_as(&self.base, size, factor * self.finest_mm)?,
-            None => &self.base,
+        let finest_mm = factor * self.finest_mm;
+        let base = match pan::may_block(&self.base, finest_mm) {
+            true => &pan::taken_as(&self.base, PanSize::Continued, finest_mm)?,
+            false => &self.base,
         };
         self.with_base(base.scaled(1.0 / factor)?, None)
     }
@@ -122,7 +124,6 @@ impl Case {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::record::PanSize;
 
     fn built_in(set: &[&str]) -> Scene {
         Scene::built_in(&set.iter().map(ToString::to_string).collect::<Vec<_>>()).unwrap()

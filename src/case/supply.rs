@@ -65,10 +65,12 @@ impl Against<'_> {
         // is there for the work, which passive particles hardly add to.
         let more = taken.particles_per_unit_volume() / base.particles_per_unit_volume();
         let (ratio, cap) = match self.scene.base.amount() {
-            Amount::MassRatio(ratio, Some(cap))
-                if pan_size.is_some_and(|size| size != PanSize::FinestSieve) =>
-            {
+            Amount::MassRatio(ratio, Some(cap)) if pan_size == Some(PanSize::Passive) => {
                 (ratio, Some(self.times(cap, more)?))
+            }
+            Amount::MassRatio(ratio, Some(cap)) if pan_size == Some(PanSize::Continued) => {
+                let active = 1.0 - taken.percent_finer_by_number(self.finest_mm) / 100.0;
+                (ratio, Some(self.times(cap, 1.0 / active.max(1e-12))?))
             }
             Amount::MassRatio(ratio, cap) => (ratio, cap),
             Amount::Number(n) => return self.number(taken, pan_size, self.times(n, more)?),

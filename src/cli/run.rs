@@ -8,6 +8,7 @@ use super::progress::followed;
 use crate::outcome::left_out_in_brief;
 use crate::outcome::record::{Confidence, RunSummary};
 use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
+use crate::verdict::beside::is_evidence;
 
 /// Walks a scene and writes its folder.
 pub fn run(args: &RunArgs) -> Result<(), RunError> {
@@ -69,14 +70,14 @@ fn summary(run: &FinishedRun) -> String {
     };
     line(format!("Verdict: {}", outcome.headline()));
     line(format!("Practice: {}", plain(&outcome.practice_in_words())));
-    let evidence = outcome.sentence_of("evidence");
+    let evidence = outcome.evidence_in_words();
     if let Some(evidence) = &evidence {
         line(format!("Evidence: {}", plain(evidence)));
     }
     if outcome.confidence != Confidence::Within {
         line(format!("  Confidence: {}", outcome.confidence.words()));
     }
-    for reason in outcome.reasons_below() {
+    for reason in outcome.reasons_below().into_iter().filter(|reason| !is_evidence(reason)) {
         line(format!("  also: {}", plain(&reason.with_to_do())));
     }
     for run in &outcome.summary {

@@ -3,10 +3,11 @@
 //!
 //! The ends of a guess leave the verdict undecided where they differ. Those of a filter from the library are
 //! the coarsest and the finest constrictions that it may have, loose or dense: there the worst class is the
-//! verdict, which errs on the safe side. Coarser constrictions let more pass, so a coarsest curve that is
-//! decided bounds what finer ones leave open.
+//! verdict, which errs on the safe side. A walk that is open leaves the verdict so where it could be of a
+//! worse class.
 
 use super::record::{CurveEnd, CurveRange, Statistic, Verdict};
+use super::verdict::THRESHOLD;
 
 impl CurveRange {
     /// The range of a verdict of which the curve itself gives `verdict` and `runs`; `None` without ends.
@@ -39,17 +40,27 @@ impl CurveRange {
         }
     }
 
-    /// The worst class of the range; undecided where its coarsest curve is.
+    /// The worst class of the range; undecided where a walk that is open could be of a worse one.
     fn worst(&self) -> Verdict {
-        let ends = self.ends.iter().map(|end| (end.dc50_factor, end.walked.verdict));
-        let all: Vec<(f64, Verdict)> = ends.chain([(1.0, self.verdict)]).collect();
-        let coarsest = all.iter().max_by(|a, b| a.0.total_cmp(&b.0)).map_or(self.verdict, |of| of.1);
-        let has = |class: Verdict| all.iter().any(|of| of.1 == class);
-        match coarsest {
-            _ if has(Verdict::Continuing) => Verdict::Continuing,
-            Verdict::Undecided => Verdict::Undecided,
-            _ if has(Verdict::Some) => Verdict::Some,
-            decided => decided,
+        let all = || self.ends.iter().map(|end| end.walked.verdict).chain([self.verdict]);
+        let decided = [Verdict::Continuing, Verdict::Some, Verdict::None];
+        let worst = decided.into_iter().find(|class| all().any(|of| of == *class));
+        let is_open = all().any(|of| of == Verdict::Undecided);
+        match worst {
+            Some(Verdict::Continuing) => Verdict::Continuing,
+            Some(worst) if !is_open || worst == self.could_be() => worst,
+            _ => Verdict::Undecided,
+        }
+    }
+
+    /// The worst class that the intervals of the whole range allow.
+    fn could_be(&self) -> Verdict {
+        let above =
+            |run: usize| self.eroded_mass_fraction.get(run).is_none_or(|[_, high]| *high >= THRESHOLD);
+        match (above(0), above(1)) {
+            (false, _) => Verdict::None,
+            (true, false) => Verdict::Some,
+            (true, true) => Verdict::Continuing,
         }
     }
 
@@ -105,9 +116,9 @@ mod tests {
         assert_eq!(whole(Some, Some, None), Some);
         assert_eq!(whole(None, Some, None), Some);
         assert_eq!(whole(Some, Continuing, None), Continuing);
-        // What is coarser bounds what is open, and what is open at the coarsest stays so.
+        // Up to 10 % erode in the first run and 5 % in the second: what is open is some erosion at most.
         assert_eq!(whole(Undecided, Some, Undecided), Some);
-        assert_eq!(whole(None, None, Undecided), None);
+        assert_eq!(whole(None, None, Undecided), Undecided);
         assert_eq!(whole(None, Undecided, None), Undecided);
         assert_eq!(whole(Continuing, Undecided, None), Continuing);
     }

@@ -28,6 +28,7 @@ use crate::outcome::record::{
     Confidence, Direction, FindingRecord, NetworkKind, Outcome, PanBounds, Stopping, Verdict,
 };
 use crate::outcome::undecided::UndecidedBy;
+use crate::verdict::beside::is_evidence;
 use crate::verdict::words::capital;
 
 /// Characters of `scene.toml` that are shown.
@@ -155,7 +156,7 @@ fn verdict_section(folder: &RunFolder, verdict: &Drawn) -> Markup {
         section.verdict.(class) {
             p.word.long[!outcome.reasons.is_empty()] { (clean(&capital(&outcome.headline()))) "." }
             p.practice { b { "Practice" } ": " (clean(&outcome.practice_in_words())) "." }
-            @if let Some(evidence) = outcome.sentence_of("evidence") {
+            @if let Some(evidence) = outcome.evidence_in_words() {
                 p.practice { b { "Evidence" } ": " (clean(&evidence)) }
             }
             @if doubted { p { "Confidence: " b { (outcome.confidence.words()) } "." } }
@@ -180,7 +181,8 @@ fn readings(bounds: &PanBounds) -> Markup {
     let table = Table::of(&bounds.readings)
         .name("The base’s finest part taken as", |reading| bounds.words(reading))
         .text("verdict", |reading| reading.walked.verdict.words());
-    let runs = (1..).map(run_name).take(bounds.readings[0].walked.runs.len());
+    let runs =
+        (1..).map(run_name).take(bounds.readings.first().map_or(0, |reading| reading.walked.runs.len()));
     let table = eroded(table, runs, |reading| &reading.walked);
     html! {
         p {
@@ -189,8 +191,8 @@ fn readings(bounds: &PanBounds) -> Markup {
             (size(bounds.finest_constriction_mm, false)) ". The base was walked with each of these readings \
                 of that part. "
             @if bounds.likely().is_some() {
-                "The verdict and all other numbers are of the first, which is the likely one; the others \
-                 bound it."
+                "The class of the first counts, which is the likely one; the others bound it. All are walked \
+                 with the constrictions of the table."
             } @else { "The verdict takes both; all other numbers are of the first." }
         }
         (table)
@@ -243,9 +245,10 @@ fn findings(outcome: &Outcome) -> Markup {
     let may_be_wrong =
         |finding: &FindingRecord| matches!(finding.direction, Direction::Open | Direction::Unsafe);
     let (open, mut looked_at): (Vec<_>, Vec<_>) =
-        outcome.besides().into_iter().filter(|finding| finding.id != "evidence").partition(may_be_wrong);
+        outcome.besides().into_iter().filter(|finding| !is_evidence(finding)).partition(may_be_wrong);
     // Folders of earlier versions have reasons of verdicts within the checked range.
     let mut against = outcome.against();
+    against.retain(|finding| !is_evidence(finding));
     if outcome.confidence == Confidence::Within {
         looked_at.splice(0..0, std::mem::take(&mut against));
     }

@@ -19,6 +19,7 @@ pub mod cost;
 mod curve_range;
 pub mod erosion;
 pub mod error;
+mod evidence;
 pub mod folder;
 pub mod machine;
 mod margin;

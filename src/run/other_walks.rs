@@ -3,7 +3,7 @@
 
 use super::curve_range::curve_range;
 use super::error::RunError;
-use super::margin::margin;
+use super::evidence;
 use super::replicates::{ReplicateContext, ReplicateResult, other_readings};
 use crate::case::Case;
 use crate::outcome::record::{CurveRange, Margin};
@@ -32,7 +32,7 @@ impl OtherWalks {
         Ok(Self {
             readings: other_readings(case, context)?,
             range: curve_range(case, walked, context)?,
-            margin: margin(case, walked, context)?,
+            margin: evidence::walked(case, walked, context)?,
         })
     }
 }

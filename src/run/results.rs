@@ -5,20 +5,20 @@ use std::time::SystemTime;
 use serde::Serialize;
 
 use super::error::RunError;
+use super::evidence::evidence;
 use super::machine::Machine;
 use super::other_walks::OtherWalks;
 use super::replicates::{ReplicateResult, classed, said_by_walks, stopping, summarise};
 use super::studies::Studies;
 use crate::case::{Case, INPUT_NAMES, replicate_seed};
 use crate::outcome::record::{
-    Classed, Confidence, ConstrictionsRecord, Evidence, Manifest, Outcome, PanBounds, PanReading, RunSummary,
+    Classed, Confidence, ConstrictionsRecord, Manifest, Outcome, PanBounds, PanReading, RunSummary,
     Statistic, Stopping, Verdict, VoidRow,
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
 use crate::outcome::table::csv_of;
 use crate::outcome::{Recorded, by_void, infiltration, leaves_out, rules, verdict};
 use crate::store::{Folder, StoreError};
-use crate::verdict::evidence::MASS_RATIO;
 use crate::verdict::{Finding, beside, finding, judge, practice};
 
 /// The outcome of a case that has been walked; with what was walked besides, and its studies, none so far
@@ -82,7 +82,7 @@ pub fn outcome(
             .then(|| infiltration(&case.curve, &case.base, case.counts[3])),
         curve_range: other.range.clone(),
         margin: other.margin.clone(),
-        evidence: evidence(case, other),
+        evidence: evidence(case, other.margin.as_ref()),
         sensitivity: studies.sensitivity,
         thickness: studies.thickness,
         studies_to_come: false,
@@ -96,16 +96,6 @@ pub fn outcome(
     (outcome.confidence, outcome.reasons) = (answer.confidence, answer.reasons());
     outcome.findings = answer.findings;
     outcome
-}
-
-/// What soils of the base's kind say of the walk's boundary. Tests of dispersive soils and of joints had
-/// other ones, and another amount of base has.
-fn evidence(case: &Case, other: &OtherWalks) -> Option<Evidence> {
-    let is_other = case.scene.base.dispersive == Some(true) || case.scene.filter.joint_mm.is_some();
-    let usual = case.mass_ratio.is_some_and(|ratio| (ratio / MASS_RATIO - 1.0).abs() < 0.01);
-    let margin = other.margin.as_ref().filter(|_| usual && !is_other && !case.is_scale_free())?;
-    let soil = BaseSoil::of(case.base_as_given(), false);
-    Evidence::of(&soil, case.filter.d(15.0)?, case.filter.cu(), margin)
 }
 
 /// What these walks say themselves against the verdict.

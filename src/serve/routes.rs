@@ -15,12 +15,13 @@ use super::http::{Answer, BODY, Request, read_body};
 use super::job_file::JobFile;
 use super::jobs::{JobQueue, Work};
 use super::sheets::Sheets;
+use crate::case::LibraryFilter;
 use crate::constrictions::shipped;
-use crate::gradation::{curves_in_file, soils_in_file};
+use crate::gradation::{Gradation, curves_in_file, soils_in_file};
 use crate::report;
 use crate::run::error::Exit;
 use crate::run::{self, PrepareOptions, RunError};
-use crate::scene::{Density, Scene, TableOptions};
+use crate::scene::{Density, LibraryDensity, Scene, TableOptions};
 use crate::store::open_regular;
 use crate::study::compare::{ComparePlan, Compared};
 use crate::study::design;
@@ -102,6 +103,19 @@ pub struct Routes {
 
 /// An answer that is no success: its status and words.
 type Problem = (u16, String);
+
+/// The constriction curves of a filter, loose and dense, by their names; none where the library has none like
+/// it.
+fn of_library(points: &[[f64; 2]]) -> Vec<(String, Vec<[f64; 2]>)> {
+    let points: Vec<(f64, f64)> = points.iter().map(|point| (point[0], point[1])).collect();
+    let Ok(filter) = Gradation::from_points(&points, None) else { return Vec::new() };
+    let curve = |density: LibraryDensity| {
+        let found = LibraryFilter::find(&filter, density).ok()??.found;
+        let name = format!("constrictions, {}, by number", density.name());
+        Some((name, found.curve.points().into_iter().map(|(size, percent)| [size, percent]).collect()))
+    };
+    [LibraryDensity::Loose, LibraryDensity::Dense].into_iter().filter_map(curve).collect()
+}
 
 /// What the input says is wrong with it.
 fn wrong(error: impl std::fmt::Display) -> Problem {
@@ -290,17 +304,22 @@ impl Routes {
         Ok(Answer::json(200, &serde_json::to_value(pair).map_err(wrong)?))
     }
 
-    /// The sieve curves of the sheets that are named, in one drawing.
+    /// The sieve curves of the sheets that are named, in one drawing, and what the library knows of the
+    /// filter's constrictions.
     fn curves(&self, request: &Request) -> Result<Answer, Problem> {
-        let mut soils = Vec::new();
+        let (mut soils, mut constrictions) = (Vec::new(), Vec::new());
         for (name, role) in [("base", "base"), ("filter", "filter"), ("more", "")] {
             for sheet in request.parameter(name).iter().flat_map(|all| all.split('\n')) {
                 for soil in soils_in_file(&self.path(sheet)?, None).map_err(wrong)? {
+                    if role == "filter" {
+                        constrictions.extend(of_library(&soil.points));
+                    }
                     let named = if role.is_empty() { soil.name } else { format!("{role}: {}", soil.name) };
                     soils.push((named, soil.points));
                 }
             }
         }
+        soils.extend(constrictions);
         let drawn =
             report::soils_figure(soils.iter().map(|(name, points)| (name.as_str(), &points[..])), false);
         let answer = Answer::new(200, "image/svg+xml", drawn);

@@ -68,6 +68,11 @@ impl Outcome {
         self.besides().into_iter().find(|finding| finding.id == id).map(|finding| finding.sentence)
     }
 
+    /// What soils of the base's kind say of the walk, whichever way it points.
+    pub fn evidence_in_words(&self) -> Option<String> {
+        self.findings.iter().find(|finding| is_evidence(finding)).map(|finding| finding.sentence.clone())
+    }
+
     /// The sentences of what else is to be known, each with the setting that changes it.
     pub fn beside_the_verdict(&self) -> Vec<String> {
         self.besides().iter().map(FindingRecord::with_to_do).collect()
@@ -116,6 +121,11 @@ impl Outcome {
         let values: Vec<f64> = self.replicates.iter().filter_map(|r| of(r.runs.get(run)?)).collect();
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     }
+}
+
+/// Whether a finding is the line of evidence, which stands above all others.
+pub fn is_evidence(finding: &FindingRecord) -> bool {
+    finding.id.starts_with("evidence")
 }
 
 /// What the readings of the base's finest part say of its verdict.
@@ -178,7 +188,10 @@ fn readings(bounds: &PanBounds) -> Finding {
             format!("{words}: {verdict}, {} eroded", runs.join(" and "))
         })
         .collect();
-    finding::pan_readings(&bounds.words(&bounds.readings[0]), &each.join("; "))
+    finding::pan_readings(
+        &bounds.readings.first().map_or(String::new(), |of| bounds.words(of)),
+        &each.join("; "),
+    )
 }
 
 /// Why replicates do not reach what was asked for.

@@ -44,6 +44,12 @@ const STUDIED: [&str; 7] = [
 /// The amount of base that was walked in the study: of more, the walk's boundary is another.
 pub const MASS_RATIO: f64 = 0.05;
 
+/// The layers of voids that were walked in the study.
+pub const LAYERS: u64 = 60;
+
+/// A probability is never nearer to 0 or 1 than this.
+const SURE: f64 = 0.02;
+
 /// A group of soils against filters of one shape.
 #[derive(Debug)]
 struct Group {
@@ -54,8 +60,8 @@ struct Group {
     /// Cu of the filters.
     filter_cu: [f64; 2],
     soils: u64,
-    /// Whether enough soils have a ratio within a factor of 2 of the median.
-    checked: bool,
+    /// Whether enough soils have a ratio within a factor of 2 of the median, which is at most 1.
+    narrow: bool,
     /// Half of the tests' range, as a factor.
     spread: f64,
     /// The ratio at equal steps of probability, from one step to one less than all.
@@ -69,7 +75,7 @@ static GROUPS: LazyLock<Vec<Group>> = LazyLock::new(|| {
 
 impl Group {
     /// Reads a row: name, least and most fines, shape of the base, name and Cu of the filter, soils, those
-    /// without a boundary, whether it is checked, half of the tests' range, and the ratio's quantiles.
+    /// without a boundary, whether it is narrow, half of the tests' range, and the ratio's quantiles.
     fn read(row: &'static str) -> Self {
         let cells: Vec<&str> = row.split(',').collect();
         let number = |cell: usize| -> f64 { cells[cell].parse().expect("a number") };
@@ -78,7 +84,7 @@ impl Group {
             steep: cells[3] == "steep",
             filter_cu: [number(5), number(6)],
             soils: number(7) as u64,
-            checked: cells[9] == "yes",
+            narrow: cells[9] == "yes",
             spread: number(10),
             ratios: (11..cells.len()).map(number).collect(),
         }
@@ -86,6 +92,9 @@ impl Group {
 
     /// The group of a base and a filter; `None` where the base's fines or the filter's Cu are not known.
     fn of(soil: &BaseSoil, filter_cu: Option<f64>) -> Option<&'static Self> {
+        if soil.hidden_below_mm.is_some() {
+            return None;
+        }
         let (fines, d85, cu) = (soil.fines_percent?, soil.gradation.d(85.0)?, filter_cu?);
         let steep = soil.gradation.d(50.0).is_some_and(|d50| d85 <= STEEP * d50);
         let within = |[least, most]: [f64; 2], value: f64| least <= value && value < most;
@@ -149,12 +158,12 @@ impl Evidence {
             ratio_median: group.quantile(0.5),
             ratio_low: group.quantile(0.05),
             ratio_high: group.quantile(0.95),
-            checked: group.checked,
+            narrow: group.narrow,
             boundary_d15f_mm: factor * d15f_mm,
-            // A ratio that scatters widely says nothing of one soil, and nor does a base that always erodes.
-            probability_no_erosion: (group.checked && bound != Some(Bound::AtMost))
-                .then(|| group.probability(factor)),
-            probability_by_tests: group.centre_of_tests(soil).map(|of| group.beyond(d15f_mm / of)),
+            // A ratio that scatters widely says nothing of one soil.
+            probability_no_erosion: group.narrow.then(|| group.probability(factor)),
+            probability_by_tests: (group.centre_of_tests(soil))
+                .map(|of| group.beyond(d15f_mm / of).clamp(SURE, 1.0 - SURE)),
             bound,
         })
     }
@@ -163,9 +172,9 @@ impl Evidence {
     pub fn supports(&self, verdict: Verdict) -> bool {
         let ([high, low], Some(of_walk)) = (SHARES, self.probability_no_erosion) else { return false };
         let of_tests = self.probability_by_tests.unwrap_or(of_walk);
-        self.checked
+        self.narrow
             && match verdict {
-                Verdict::None => of_walk.min(of_tests) >= high,
+                Verdict::None => of_walk.min(of_tests) >= high && self.bound != Some(Bound::AtMost),
                 Verdict::Some | Verdict::Continuing => {
                     of_walk.max(of_tests) <= low && self.bound != Some(Bound::AtLeast)
                 }
@@ -184,17 +193,19 @@ impl Evidence {
 
     /// What it says.
     fn finding(&self) -> Finding {
-        let at_least = if self.bound == Some(Bound::AtLeast) { "at least " } else { "" };
-        let of_tests = self.probability_by_tests.map(|of| format!("{:.0} %", 100.0 * of));
-        let of_walk = match (self.probability_no_erosion, self.checked) {
-            (Some(of), _) => format!("is {at_least}{:.0} %", 100.0 * of),
-            (None, true) => "is not known by the walk, in which this base always erodes".into(),
-            (None, false) => {
-                "is not known by the walk, whose ratio to tests scatters or rests on few soils".into()
-            }
+        let bound = match self.bound {
+            Some(Bound::AtLeast) => "at least ",
+            Some(Bound::AtMost) => "at most ",
+            None => "",
         };
-        let of_tests =
-            of_tests.map_or(String::new(), |of| format!("; by the range of such tests alone it is {of}"));
+        let of_walk = match self.probability_no_erosion {
+            Some(of) => format!("is {bound}{:.0} %", 100.0 * of),
+            None if self.ratio_median > 1.0 => "is not known by the walk".into(),
+            None => "is not known by the walk, whose ratio to tests scatters or rests on few soils".into(),
+        };
+        let of_tests = self.probability_by_tests.map(|of| format!("{:.0} %", 100.0 * of));
+        let of_tests = of_tests
+            .map_or(String::new(), |of| format!("; by the published range of such tests alone it is {of}"));
         let [low, median, high] = [self.ratio_low, self.ratio_median, self.ratio_high];
         let probability = format!("{of_walk}{of_tests}");
         match median > 1.0 {
@@ -263,7 +274,7 @@ mod tests {
         let probability = of.probability_no_erosion.unwrap();
         assert!(of.soils >= 30 && of.ratio_median < 0.7 && probability > 0.9, "{of:?}");
         // 2 mm is 4.1 D85B, and tests held to 6.8.
-        assert_eq!(of.probability_by_tests, Some(1.0));
+        assert_eq!(of.probability_by_tests, Some(0.98));
         assert!(of.supports(Verdict::None) && !of.supports(Verdict::Some));
         let coarse = Evidence::of(&sand(), 6.0, Some(1.5), &margin(0.3, 0.31)).unwrap();
         assert!(coarse.supports(Verdict::Continuing) && !coarse.supports(Verdict::None), "{coarse:?}");
@@ -276,6 +287,10 @@ mod tests {
     fn what_is_of_no_group_has_no_evidence() {
         let tail = soil(&[(0.3, 40.0), (1.0, 80.0), (2.0, 100.0)]);
         assert_eq!(Evidence::of(&tail, 2.0, Some(1.5), &margin(0.98, 1.02)), None);
+        // A gap at the finest sieve hides the part that practice looks at.
+        let hidden = soil(&[(0.075, 30.0), (0.3, 32.0), (19.0, 100.0)]);
+        assert!(hidden.hidden_below_mm.is_some());
+        assert_eq!(Evidence::of(&hidden, 5.0, Some(1.5), &margin(0.98, 1.02)), None);
         assert_eq!(Evidence::of(&sand(), 2.0, Some(60.0), &margin(0.98, 1.02)), None);
         assert_eq!(Evidence::of(&sand(), 2.0, None, &margin(0.98, 1.02)), None);
         assert_eq!(Evidence::of(&sand(), 2.0, Some(1.5), &Margin { walks: Vec::new() }), None);
@@ -290,6 +305,10 @@ mod tests {
             of.bound == Some(Bound::AtLeast) && of.supports(Verdict::None) && !of.supports(Verdict::Some)
         );
         assert!(of.finding().sentence().contains("at least"), "{}", of.finding().sentence());
+        let mut eroded = margin(0.5, 1.0);
+        eroded.walks.remove(0);
+        let of = Evidence::of(&sand(), 2.0, Some(1.5), &eroded).unwrap();
+        assert!(of.bound == Some(Bound::AtMost) && !of.supports(Verdict::None), "{of:?}");
     }
 
     #[test]

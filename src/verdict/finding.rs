@@ -82,9 +82,9 @@ findings! {
     /// A range of which the worst class counts.
     worst_of_range(class: Text, low: Percent, high: Percent, each: Text): Constrictions, Safe, Note;
         "constrictions", "uncertainty.md",
-        "The verdict, {class}, is that of the coarsest constrictions that the filter may have. Over the \
-         range of its constrictions {low} to {high} of the mass eroded in the first run ({each}).",
-        to do "filter.library says how densely it lies; filter.density packs this very filter.";
+        "The verdict, {class}, is the worst over the range of constrictions that the filter may have. Over \
+         it {low} to {high} of the mass eroded in the first run ({each}).",
+        to do "filter.density packs this very filter.";
     /// The same where the curve itself gives no class.
     curve_range_open(low: Percent, high: Percent, each: Text): Constrictions, Open, Limits;
         "constrictions", "uncertainty.md",
@@ -534,16 +534,17 @@ findings! {
         "evidence", "uncertainty.md",
         "The probability that a test would show no erosion {probability}. For {soils} real soils of this \
          kind ({group}) the walk began to erode at {median} times the D15F of no-erosion tests on soils of \
-         these fines (nine in ten: {low} to {high}). It knows no cohesion, no segregation and no crack, and \
-         none of these soils was tested itself.";
+         these fines (nine in ten: {low} to {high}). The walk knows no cohesion, no segregation and no \
+         crack, and none of these soils was tested itself.";
     /// The same where the walk errs on the unsafe side.
     evidence_unsafe(probability: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio):
         Practice, Unsafe, Limits;
         "evidence", "uncertainty.md",
         "For filters like this the walk is on the unsafe side of tests. For {soils} real soils of this kind \
          ({group}) it began to erode at {median} times the D15F of no-erosion tests on soils of these fines \
-         (nine in ten: {low} to {high}). The probability that a test would show no erosion {probability}. It \
-         knows no cohesion, no segregation and no crack, and none of these soils was tested itself.";
+         (nine in ten: {low} to {high}). The probability that a test would show no erosion {probability}. \
+         The walk knows no cohesion, no segregation and no crack, and none of these soils was tested \
+         itself.";
     /// The thickness that was walked.
     modelled_thickness(thickness: Text): Thickness, Settled, Note;
         "thickness", "uncertainty.md", "The modelled filter is {thickness} thick along the flow.";

@@ -6,10 +6,17 @@ use crate::outcome::record::{OfThickness, Outcome, Statistic, Verdict};
 
 /// How the verdict moves with the thickness of the filter; `None` without another thickness.
 pub fn finding(outcome: &Outcome) -> Option<Finding> {
-    of_rows(&outcome.thickness, outcome.verdict, outcome.points_are())
+    of_rows(&outcome.thickness, outcome.class_of_curve(), outcome.points_are())
 }
 
 impl Outcome {
+    /// The class that the other points of a study are compared with: by the curve itself, where the verdict
+    /// is that of an end of its range.
+    pub fn class_of_curve(&self) -> Verdict {
+        let range = self.curve_range.as_ref().filter(|range| range.whole() == self.verdict);
+        range.map_or(self.verdict, |range| range.verdict)
+    }
+
     /// Whether a row has as many times the base particles of the scene itself as it is thick.
     pub fn has_its_base(&self, row: &OfThickness) -> bool {
         own(&self.thickness).is_none_or(|own| row.has_its_base(own))

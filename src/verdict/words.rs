@@ -50,6 +50,9 @@ impl Outcome {
     /// How the other points of a study are classed, where their classes know nothing of what leaves the
     /// verdict undecided.
     pub fn points_are(&self) -> Option<&'static str> {
+        if self.verdict != Verdict::Undecided && self.class_of_curve() != self.verdict {
+            return Some("by the curve itself");
+        }
         let level = self.stopping.as_ref().and_then(|stopping| stopping.decide_percent);
         match self.undecided_by()? {
             UndecidedBy::Pan => Some("with the base's finest part finer than every constriction"),
@@ -84,8 +87,8 @@ pub fn meaning(verdict: Verdict, summary: &[RunSummary], threshold: f64) -> Stri
     let here = summary.get(run).is_none_or(|run| run.eroded_mass_fraction.mean >= threshold);
     let of_range = match verdict {
         Verdict::Some | Verdict::Continuing if !here => {
-            " This is the verdict for the coarsest constrictions that the filter may have; with those in the \
-             table less passes."
+            " The filter’s constrictions may be coarser than those of the table, and with the coarsest it \
+             comes to this class."
         }
         _ => "",
     };

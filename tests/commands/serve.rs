@@ -253,6 +253,19 @@ fn what_is_too_large_or_no_request_costs_no_memory() {
     assert_eq!(served.get("").0, 200);
 }
 
+/// The library knows them in milliseconds, before anything is walked.
+#[test]
+fn a_filters_constrictions_are_drawn_as_soon_as_its_sheet_is_there() {
+    let served = serve();
+    assert_eq!(served.sheet("fine.csv", FINE).0, 200);
+    let drawn = |path: &str| String::from_utf8(served.get(path).2).unwrap();
+    let of_filter = drawn("api/curves.svg?filter=1");
+    for density in ["loose", "dense"] {
+        assert!(of_filter.contains(&format!(">constrictions, {density}, by number<")), "{density}");
+    }
+    assert!(!drawn("api/curves.svg?base=1").contains("constrictions"));
+}
+
 #[test]
 fn a_hundred_at_once_are_answered() {
     let served = serve();

@@ -15,12 +15,13 @@ pub struct Evidence {
     pub ratio_low: f64,
     /// The ratio below which 95 % of the soils lie.
     pub ratio_high: f64,
-    /// Whether there are at least 30 soils, and nine in ten lie within a factor of 2 of the median.
-    pub checked: bool,
+    /// Whether there are at least 30 soils, nine in ten lie within a factor of 2 of the median, and that is
+    /// at most 1.
+    pub narrow: bool,
     /// D15F from which the walk erodes this base (mm); beyond it or below it where `bound` says so.
     pub boundary_d15f_mm: f64,
     /// The probability that a test of this pair would show no erosion, by the walk; `None` where the group
-    /// is not checked, and where the walk erodes the base behind every filter.
+    /// is not narrow.
     pub probability_no_erosion: Option<f64>,
     /// The same by the range of tests alone: the part of it that lies beyond the filter's D15F.
     pub probability_by_tests: Option<f64>,

@@ -133,7 +133,7 @@ pub fn of_run(outcome: &Outcome) -> Value {
     json!({
         "headline": outcome.headline(),
         "practice": outcome.practice_in_words(),
-        "evidence": outcome.sentence_of("evidence"),
+        "evidence": outcome.evidence_in_words(),
         "verdict": outcome.verdict.words(),
         "confidence": outcome.confidence.words(),
         "reasons": outcome.reasons,

@@ -1,0 +1,46 @@
+//! What soils of the base's kind say of the walk's boundary, where a case is walked as those of the study
+//! were.
+
+use super::error::RunError;
+use super::margin::margin;
+use super::replicates::{ReplicateContext, ReplicateResult};
+use crate::case::Case;
+use crate::outcome::record::{Evidence, Margin};
+use crate::outcome::rules::BaseSoil;
+use crate::verdict::evidence::{LAYERS, MASS_RATIO};
+
+/// The base of a case as practice describes it, where the case is walked as those of the study were: sizes
+/// with a unit, the base regraded as practice does, constrictions of its own filter that are no guess, on the
+/// usual lattice, with as much base. Tests of dispersive soils and of joints had other boundaries.
+fn studied(case: &Case) -> Option<BaseSoil> {
+    let scene = &case.scene;
+    let has_tests = scene.base.dispersive != Some(true) && scene.filter.joint_mm.is_none();
+    let is_lattice = scene.is_lattice_by_area() && case.counts[3] == LAYERS;
+    let has_curve = case.library.is_some() || case.packed.is_some();
+    let has_amount = case.mass_ratio.is_some_and(|ratio| (ratio / MASS_RATIO - 1.0).abs() < 0.01);
+    if case.is_scale_free() || !has_tests || !is_lattice || !has_curve || !has_amount {
+        return None;
+    }
+    let soil = BaseSoil::of(case.base_as_given(), false);
+    (soil.regraded_at_mm == case.regraded_from.as_ref().map(|(_, at)| *at)).then_some(soil)
+}
+
+/// Walks the margin of a case where it is asked for; `None` too where nothing could be said of it.
+///
+/// # Errors
+/// As [`super::replicates::replicates`].
+pub fn walked(
+    case: &Case,
+    replicates: &[ReplicateResult],
+    context: &ReplicateContext,
+) -> Result<Option<Margin>, RunError> {
+    match case.scene.record.margin == Some(true) && studied(case).is_some() {
+        true => margin(case, replicates, context),
+        false => Ok(None),
+    }
+}
+
+/// The evidence for a case with this margin.
+pub fn evidence(case: &Case, margin: Option<&Margin>) -> Option<Evidence> {
+    Evidence::of(&studied(case)?, case.filter.d(15.0)?, case.filter.cu(), margin?)
+}
