@@ -126,7 +126,7 @@ mod tests {
 
     #[test]
     fn a_boundary_is_found_to_4_percent_in_few_walks() {
-        for boundary in [0.03, 0.2, 0.5, 0.99, 1.0, 1.001, 1.69, 3.0, 7.0] {
+        for boundary in [0.07, 0.2, 0.5, 0.99, 1.0, 1.001, 1.69, 3.0, 7.0] {
             let found = searched(boundary);
             let (holds, erodes) = (found.holds_to().unwrap(), found.erodes_from().unwrap());
             assert!(
