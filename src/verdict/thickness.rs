@@ -2,7 +2,7 @@
 
 use super::entry::Finding;
 use super::finding as found;
-use crate::outcome::record::{OfThickness, Outcome, Statistic, Verdict};
+use crate::outcome::record::{CurveRange, OfThickness, Outcome, Statistic, Verdict};
 
 /// How the verdict moves with the thickness of the filter; `None` without another thickness.
 pub fn finding(outcome: &Outcome) -> Option<Finding> {
@@ -13,7 +13,9 @@ impl Outcome {
     /// The class that the other points of a study are compared with: by the curve itself, where the verdict
     /// is that of an end of its range.
     pub fn class_of_curve(&self) -> Verdict {
-        let range = self.curve_range.as_ref().filter(|range| range.whole() == self.verdict);
+        let decided =
+            |range: &&CurveRange| self.verdict != Verdict::Undecided && range.whole() == self.verdict;
+        let range = self.curve_range.as_ref().filter(decided);
         range.map_or(self.verdict, |range| range.verdict)
     }
 
