@@ -39,20 +39,24 @@ impl LibraryFilter {
             known => [known; 2],
         };
         let Some(found) = from_library(&looked_up, loose.relative())? else { return Ok(None) };
+        let at_dense = match loose == dense {
+            true => Some(found.clone()),
+            false => from_library(&looked_up, dense.relative())?,
+        };
         // Leaving the coarser grains out makes all constrictions finer.
         let finer_by = part.as_ref().map_or(0.0, |part| part.finer_by);
         let coarsest = (1.0 + found.off_by) / (1.0 - finer_by);
-        let end = |density: LibraryDensity, factor: f64| {
+        let end = |density: LibraryDensity, of: Option<&FromLibrary>, factor: f64| {
             let [way, by] = match factor > 1.0 {
                 true => ["coarser", &format!("{:.0}", 100.0 * (factor - 1.0))],
                 false => ["finer", &format!("{:.0}", 100.0 * (1.0 - factor))],
             };
             let name = format!("{}, constrictions {by} % {way}", density.name());
-            let of = from_library(&looked_up, density.relative()).ok()??;
+            let of = of?;
             let times_grains = of.grains_per_void / found.grains_per_void;
             Some(OtherCurve { name, curve: of.curve.scaled(factor).ok()?, times_grains })
         };
-        let ends = [end(loose, coarsest), end(dense, 1.0 - found.off_by)];
+        let ends = [end(loose, Some(&found), coarsest), end(dense, at_dense.as_ref(), 1.0 - found.off_by)];
         Ok(Some(Self { found, part, ends: ends.into_iter().flatten().collect() }))
     }
 }

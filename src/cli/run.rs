@@ -70,9 +70,8 @@ fn summary(run: &FinishedRun) -> String {
     };
     line(format!("Verdict: {}", outcome.headline()));
     line(format!("Practice: {}", plain(&outcome.practice_in_words())));
-    let evidence = outcome.evidence_in_words();
-    if let Some(evidence) = &evidence {
-        line(format!("Evidence: {}", plain(evidence)));
+    if let Some(evidence) = outcome.evidence_in_words() {
+        line(format!("Evidence: {}", plain(&evidence)));
     }
     if outcome.confidence != Confidence::Within {
         line(format!("  Confidence: {}", outcome.confidence.words()));
@@ -83,9 +82,8 @@ fn summary(run: &FinishedRun) -> String {
     for run in &outcome.summary {
         line(format!("  {}", run_line(run)));
     }
-    let said_above = |said: &String| evidence.as_ref().is_some_and(|evidence| said.starts_with(evidence));
-    for said in outcome.beside_the_verdict().into_iter().filter(|said| !said_above(said)) {
-        line(format!("  {}", plain(&said)));
+    for said in outcome.besides().iter().filter(|said| !is_evidence(said)) {
+        line(format!("  {}", plain(&said.with_to_do())));
     }
     line(format!(
         "  {} of {} base particles, {} voids; D15F/D85B {:.2}{}, D15F/D95B {:.2}, {}",

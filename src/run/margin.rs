@@ -37,16 +37,16 @@ pub fn margin(
     context: &ReplicateContext,
 ) -> Result<Option<Margin>, RunError> {
     let Some(own) = walked.first() else { return Ok(None) };
-    let mut walks = vec![walk_of(1.0, own)];
+    let mut margin = Margin { walks: vec![walk_of(1.0, own)] };
     let mut part = FIRST_PART;
     loop {
-        let factors = next(&walks);
+        let factors = next(&margin);
         let cases: Vec<(u64, f64, Case)> = (part..)
             .zip(&factors)
             .filter_map(|(part, &factor)| Some((part, factor, of_size(case, factor)?)))
             .collect();
         if cases.is_empty() {
-            return Ok(Some(Margin { walks }));
+            return Ok(Some(margin));
         }
         part += factors.len() as u64;
         context.tell(Event::MoreRuns { runs: cases.len() as u64 });
@@ -59,10 +59,10 @@ pub fn margin(
             true => cases.par_iter().map(one).collect(),
             false => cases.iter().map(one).collect(),
         };
-        walks.extend(found?);
-        walks.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+        margin.walks.extend(found?);
+        margin.walks.sort_by(|a, b| a.factor.total_cmp(&b.factor));
         if cases.len() < factors.len() {
-            return Ok(Some(Margin { walks }));
+            return Ok(Some(margin));
         }
     }
 }
@@ -73,9 +73,8 @@ fn walk_of(factor: f64, walked: &ReplicateResult) -> MarginWalk {
 }
 
 /// The sizes to be walked next; none where the boundary is known closely enough, or lies too far.
-fn next(walks: &[MarginWalk]) -> Vec<f64> {
-    let margin = Margin { walks: walks.to_vec() };
-    let step = STEPS[(walks.len() / 2).min(STEPS.len() - 1)];
+fn next(margin: &Margin) -> Vec<f64> {
+    let step = STEPS[(margin.walks.len() / 2).min(STEPS.len() - 1)];
     let factors = match (margin.holds_to(), margin.erodes_from()) {
         (Some(holds), Some(erodes)) if erodes / holds <= CLOSE => return Vec::new(),
         (Some(holds), Some(erodes)) => {
@@ -113,14 +112,14 @@ mod tests {
             let eroded_mass_fraction = 0.075 * factor / boundary;
             MarginWalk { factor, eroded_mass_fraction, holds: factor < boundary }
         };
-        let mut walks = vec![walk(1.0)];
+        let mut margin = Margin { walks: vec![walk(1.0)] };
         loop {
-            let factors = next(&walks);
+            let factors = next(&margin);
             if factors.is_empty() {
-                return Margin { walks };
+                return margin;
             }
-            walks.extend(factors.into_iter().map(walk));
-            walks.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+            margin.walks.extend(factors.into_iter().map(walk));
+            margin.walks.sort_by(|a, b| a.factor.total_cmp(&b.factor));
         }
     }
 

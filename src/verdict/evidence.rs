@@ -20,7 +20,7 @@ use libm::log;
 use super::entry::Finding;
 use super::finding;
 use crate::outcome::record::{Bound, Evidence, Margin, Verdict};
-use crate::outcome::rules::BaseSoil;
+use crate::outcome::rules::{BaseSoil, range_of_tests};
 
 const TABLE: &str = include_str!("../data/evidence.csv");
 
@@ -127,18 +127,12 @@ impl Group {
         let half = log(self.spread);
         ((half - log(d15f_by_centre)) / (2.0 * half)).clamp(0.0, 1.0)
     }
+}
 
-    /// The centre of the range in which tests of such a base had their boundary of no erosion, as D15F (mm).
-    fn centre_of_tests(&self, soil: &BaseSoil) -> Option<f64> {
-        let (d85, fines) = (soil.gradation.d(85.0)?, soil.fines_percent?);
-        let [low, high] = match self.fines[0] {
-            85.0 => [6.4 * d85, 13.5 * d85],
-            35.0 | 55.0 => [0.7, 1.7],
-            15.0 => [1.6, 2.5].map(|times| times * ((35.0 - fines) / 20.0 * (4.0 * d85 - 0.7) + 0.7)),
-            _ => [6.8 * d85, 10.0 * d85],
-        };
-        Some((low * high).sqrt())
-    }
+/// The centre of the range in which tests of such a base had their boundary of no erosion, as D15F (mm).
+fn centre_of_tests(soil: &BaseSoil) -> Option<f64> {
+    let [low, high] = range_of_tests(soil.fines_percent?, soil.gradation.d(85.0)?);
+    Some((low * high).sqrt())
 }
 
 impl Evidence {
@@ -162,7 +156,7 @@ impl Evidence {
             boundary_d15f_mm: factor * d15f_mm,
             // A ratio that scatters widely says nothing of one soil.
             probability_no_erosion: group.narrow.then(|| group.probability(factor)),
-            probability_by_tests: (group.centre_of_tests(soil))
+            probability_by_tests: centre_of_tests(soil)
                 .map(|of| group.beyond(d15f_mm / of).clamp(SURE, 1.0 - SURE)),
             bound,
         })

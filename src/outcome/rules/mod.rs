@@ -17,6 +17,7 @@ mod walk;
 pub use all::{DESIGN, PAPER_NO_EROSION, PERMEABILITY, RULES, TESTS_CONTINUING, TESTS_NO_EROSION};
 pub use apply::{NamedCurve, Sides, apply, apply_to_envelopes, authority};
 pub use base::BaseSoil;
+pub use retention::range_of_tests;
 pub use rule::{FilterRule, Fines, Judged, Pairing, RuleInputs, RuleUnit, SizeBound};
 
 #[cfg(doc)]

@@ -66,6 +66,18 @@ pub fn no_erosion(inputs: &RuleInputs) -> Judged {
     by_fines(inputs, limit, |_| String::new())
 }
 
+/// The range of D15F (mm) in which tests of bases with so many percent of fines, after regrading, and this
+/// D85B (mm) had their boundary of no erosion (Fell et al., Geotechnical Engineering of Dams, Table 9.2,
+/// after Foster 1999).
+pub fn range_of_tests(fines: f64, d85b: f64) -> [f64; 2] {
+    match fines {
+        fines if fines > 85.0 => [6.4, 13.5].map(|times| times * d85b),
+        fines if fines >= 35.0 => [0.7, 1.7],
+        fines if fines >= FEW_FINES => [1.6, 2.5].map(|times| times * between(FEW_FINES, 35.0, fines, d85b)),
+        _ => [6.8, 10.0].map(|times| times * d85b),
+    }
+}
+
 /// A limit of D15F that follows from fines and D85B of the regraded base.
 ///
 /// What is not known never hides a failure: where the limit itself is not known, the most that it can be is,
