@@ -74,18 +74,24 @@ impl Case {
     }
 
     /// This case with its filter `factor` times as large against its own base, with the likely reading of its
-    /// finest part where it has several. Nothing else of it is walked.
+    /// finest part where it has several, on a lattice at most `across` voids wide. Nothing else of it is
+    /// walked.
     ///
     /// # Errors
     /// As [`Case::with_base`].
-    pub fn with_larger_filter(&self, factor: f64) -> Result<Self, CaseError> {
+    pub fn with_larger_filter(&self, factor: f64, across: u64) -> Result<Self, CaseError> {
         // Of the real size first: how a tail goes on hangs on it.
         let finest_mm = factor * self.finest_mm;
         let base = match pan::may_block(&self.base, finest_mm) {
             true => &pan::taken_as(&self.base, PanSize::Continued, finest_mm)?,
             false => &self.base,
         };
-        self.with_base(base.scaled(1.0 / factor)?, None)
+        let mut case = self.clone();
+        case.scene.network.narrow_to(across);
+        if let NetworkSource::Cubic(shape) = case.scene.network.source() {
+            case.counts = sizes::of_lattice(shape)?;
+        }
+        case.with_base(base.scaled(1.0 / factor)?, None)
     }
 
     /// This case with its filter `factor` times as large against a stated base as it is: not to be walked,

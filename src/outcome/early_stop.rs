@@ -16,6 +16,13 @@
 //!
 //! That the scatter of a point is at most twice that of the scene is an assumption; `results/studies.md`
 //! counts how often it does not hold, and how often it misled.
+//!
+//! # The ends of the curve's range
+//! One replicate does at an end whose class is that of the curve itself, whichever that is: the end is walked
+//! to see whether it *changes* the class, and the class rests on the case's own replicates. Every run that
+//! decides the class lies wholly on its side of the threshold, by an interval as above of at least
+//! [`LEAST_SCATTER`] of its value, and keeps a third of its distance. An end that is of another class, or not
+//! clear, is walked in full.
 
 use super::record::{Statistic, Verdict};
 use super::stopping::ReplicateValues;
@@ -30,6 +37,15 @@ const SCATTER: f64 = 2.0;
 
 /// Part of its distance from the threshold that a point keeps.
 const KEPT: f64 = 1.0 / 3.0;
+
+/// Replicates of the case itself from which the scatter at an end of its curve's range is taken.
+pub const FEWEST_OF_RANGE: usize = 4;
+
+/// Scatter of an end that is taken at the least, by its value: replicates of the case may agree by chance.
+const LEAST_SCATTER: f64 = 0.05;
+
+/// Ends of a range, which share the error.
+const ENDS: usize = 2;
 
 /// Error probability of all looks and runs together, and that of the intervals that are shown.
 const ERROR: f64 = 0.05;
@@ -54,6 +70,36 @@ pub fn clear(own: &[ReplicateValues], class: Verdict, point: &[ReplicateValues])
     let each = ERROR / (LOOKS * own.len()) as f64;
     let is_clear = own.iter().zip(point).all(|(own, point)| is_above(own, point, each));
     is_clear.then(|| own.iter().zip(point).map(|(own, point)| wide(own, point, ERROR)).collect())
+}
+
+/// The eroded mass of each run at an end of the curve's range after its first replicate, with wide 95 %
+/// intervals; `None` where it is not clear that its class is that of the curve itself.
+pub fn clear_end(own: &[ReplicateValues], class: Verdict, end: &[ReplicateValues]) -> Option<Vec<Statistic>> {
+    let deciding = match class {
+        Verdict::Undecided => return None,
+        Verdict::None => 1,
+        Verdict::Some | Verdict::Continuing => own.len(),
+    };
+    if own.first()?.len() < FEWEST_OF_RANGE {
+        return None;
+    }
+    let each = ERROR / (ENDS * deciding) as f64;
+    let is_clear = own.iter().zip(end).take(deciding).all(|(own, end)| is_on_its_side(own, end, each));
+    is_clear.then(|| own.iter().zip(end).map(|(own, end)| wide(own, end, ERROR)).collect())
+}
+
+/// Whether a run at an end lies on the side of the threshold where all replicates of the case lie.
+fn is_on_its_side(own: &ReplicateValues, end: &ReplicateValues, error: f64) -> bool {
+    let (Some(&(_, below)), Some(&(value, _))) = (own.first(), end.first()) else { return false };
+    let found = wide(own, end, error);
+    let of_value = student::two_sided((own.len() - 1) as u64, error) * SCATTER * LEAST_SCATTER * value;
+    let is_whole = match below {
+        true => found.high.is_some_and(|high| high.max(value + of_value) < THRESHOLD),
+        false => found.low.is_some_and(|low| low.min(value - of_value) >= THRESHOLD),
+    };
+    let mean = Statistic::of(&own.iter().map(|&(value, _)| value).collect::<Vec<f64>>()).mean;
+    let keeps = (value - THRESHOLD) / (mean - THRESHOLD) >= KEPT;
+    is_whole && keeps && own.iter().chain(end).all(|&(_, of)| of == below)
 }
 
 /// Whether a run of a point lies above the threshold for certain.
@@ -129,6 +175,29 @@ mod tests {
             assert_eq!(clear(&scene, Verdict::Continuing, &point), None);
         }
         assert_eq!(clear(&scene, Verdict::Undecided, &[values(&[0.6, 0.6]), values(&[0.5, 0.5])]), None);
+    }
+
+    #[test]
+    fn an_end_of_the_same_class_needs_one_replicate_and_any_other_all() {
+        let one = |of: [f64; 2]| of.map(|value| values(&[value])).to_vec();
+        let four = |of: f64| values(&[0.99 * of, of, of, 1.01 * of]);
+        let some = [four(0.3), four(0.01)];
+        let found = clear_end(&some, Verdict::Some, &one([0.35, 0.012])).unwrap();
+        // Student's t for 3 degrees of freedom is 3.182; twice the scatter of 0.3 times 0.00816.
+        assert!((found[0].low.unwrap() - (0.35 - 3.182_446 * 2.0 * 0.3 * 0.008_165)).abs() < 1e-5);
+        // Another class of either run, or close to it.
+        for other in [[0.05, 0.01], [0.35, 0.2], [0.35, 0.06], [0.12, 0.01]] {
+            assert_eq!(clear_end(&some, Verdict::Some, &one(other)), None, "{other:?}");
+        }
+        let none = [four(0.0), four(0.0)];
+        // The second run decides nothing where the first is below the threshold.
+        assert!(clear_end(&none, Verdict::None, &one([0.002, 0.2])).is_some());
+        // No scatter at all is no reason to believe a value near the threshold.
+        assert_eq!(clear_end(&none, Verdict::None, &one([0.052, 0.0])), None);
+        assert_eq!(clear_end(&none, Verdict::None, &one([0.08, 0.0])), None);
+        assert_eq!(clear_end(&some, Verdict::Undecided, &one([0.35, 0.012])), None);
+        let three = some.clone().map(|of| of[..3].to_vec());
+        assert_eq!(clear_end(&three, Verdict::Some, &one([0.35, 0.012])), None);
     }
 
     #[test]

@@ -7,7 +7,7 @@
 //! times (`scripts/checks/check_times.py`).
 
 use super::pilot::{WorkByVoid, pilot, small_packing_seconds};
-use super::planned::{first_replicates, likely_replicates};
+use super::planned::{first_replicates, likely_replicates, replicates_of_end};
 use crate::case::{Case, PackingPlan};
 use crate::constrictions::Curve;
 use crate::packing::is_wide;
@@ -154,7 +154,7 @@ impl Case {
         });
         let replicates = first_replicates(self);
         let of_end = |curve: &Curve| self.with_curve(curve.clone()).of_replicate(self.n_base, most_s);
-        let ends = ends.iter().map(|end| (replicates, of_end(&end.curve)));
+        let ends = ends.iter().map(|end| (replicates_of_end(replicates), of_end(&end.curve)));
         let first = Foreseen::default().and(replicates as f64, &own);
         studies.chain(ends).fold(first, |all, (replicates, point)| all.and(replicates as f64, &point))
     }

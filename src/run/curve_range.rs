@@ -1,12 +1,20 @@
 //! Walks a case at the ends of the range in which its constriction curve is known.
 
-use super::error::RunError;
-use super::replicates::{ReplicateContext, ReplicateResult, classed, some_replicates, stopping, summarise};
-use crate::case::Case;
-use crate::outcome::record::{CurveEnd, CurveRange};
+use rayon::prelude::*;
 
-/// Walks as many replicates as were walked with the curve itself at each end of its range, on the same random
-/// numbers; `None` where the curve is no range.
+use super::callbacks::Event;
+use super::error::RunError;
+use super::planned::replicates_of_end;
+use super::replicates::{
+    ReplicateContext, ReplicateResult, classed, some_replicates, stopping, summarise, values_by_run,
+};
+use crate::case::{Case, OtherCurve};
+use crate::outcome::early_stop::clear_end;
+use crate::outcome::record::{Classed, CurveEnd, CurveRange, Verdict};
+
+/// Walks each end of the range of the curve on the random numbers of the case's first replicates: one
+/// replicate where it is clear that the class stays, else as many as were walked with the curve itself.
+/// `None` where the curve is no range.
 ///
 /// # Errors
 /// As [`super::replicates::replicates`].
@@ -16,22 +24,48 @@ pub fn curve_range(
     context: &ReplicateContext,
 ) -> Result<Option<CurveRange>, RunError> {
     // The parts before these are the sensitivity study's and the other readings'.
-    let parts = (case.sensitivity_factors().len() + case.other_readings.len()) as u64 + 1..;
-    let own = case.curve.dc(50.0).unwrap_or(f64::NAN);
-    let mut ends = Vec::new();
-    for (part, end) in parts.zip(&case.curve_ends) {
-        let dc50_factor = end.curve.dc(50.0).unwrap_or(f64::NAN) / own;
-        let other = case.with_curve(end.curve.clone());
-        // What a user or a cap says of the amount of base holds for every curve.
-        let by_grains = case.n_base_eq2 == Some(case.n_base);
-        let times = if by_grains { end.times_grains } else { 1.0 };
-        let n_base = case.times_base(times);
-        let of_end = some_replicates(&other, part, 1..=walked.len() as u64, n_base, context)?;
-        ends.push(CurveEnd { curve: end.name.clone(), dc50_factor, walked: classed(&of_end) });
-    }
+    let before = (case.sensitivity_factors().len() + case.other_readings.len()) as u64 + 1;
     let (verdict, summaries) = summarise(walked);
     // A verdict that was to be certain is one at the level asked for, here too.
     let verdict = stopping(case, walked).and_then(|stopping| stopping.verdict).unwrap_or(verdict);
+    let one = |(k, end): (usize, &OtherCurve)| of_end(case, end, before + k as u64, walked, verdict, context);
+    let ends: Result<Vec<_>, _> = match case.side_by_side(case.n_base, rayon::current_num_threads() as u64) {
+        0 | 1 => case.curve_ends.iter().enumerate().map(one).collect(),
+        _ => case.curve_ends.par_iter().enumerate().map(one).collect(),
+    };
     let runs: Vec<_> = summaries.iter().map(|s| s.eroded_mass_fraction).collect();
-    Ok(CurveRange::new(verdict, &runs, ends, case.library.is_some()))
+    Ok(CurveRange::new(verdict, &runs, ends?, case.library.is_some()))
+}
+
+/// Walks one end.
+fn of_end(
+    case: &Case,
+    end: &OtherCurve,
+    part: u64,
+    walked: &[ReplicateResult],
+    class: Verdict,
+    context: &ReplicateContext,
+) -> Result<CurveEnd, RunError> {
+    let dc50_factor = end.curve.dc(50.0).unwrap_or(f64::NAN) / case.curve.dc(50.0).unwrap_or(f64::NAN);
+    let other = case.with_curve(end.curve.clone());
+    // What a user or a cap says of the amount of base holds for every curve.
+    let by_grains = case.n_base_eq2 == Some(case.n_base);
+    let times = if by_grains { end.times_grains } else { 1.0 };
+    let n_base = case.times_base(times);
+    let (first, all) = (replicates_of_end(walked.len() as u64), walked.len() as u64);
+    let mut of_end = some_replicates(&other, part, 1..=first, n_base, context)?;
+    let clear = clear_end(&values_by_run(walked), class, &values_by_run(&of_end));
+    let walked = match clear {
+        Some(runs) if first < all => {
+            Classed { stopped_when_clear: true, verdict: class, runs, ..classed(&of_end) }
+        }
+        _ => {
+            if first < all {
+                context.tell(Event::MoreRuns { runs: (all - first) * case.scene.walk.runs });
+            }
+            of_end.extend(some_replicates(&other, part, first + 1..=all, n_base, context)?);
+            classed(&of_end)
+        }
+    };
+    Ok(CurveEnd { curve: end.name.clone(), dc50_factor, walked })
 }

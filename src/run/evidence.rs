@@ -25,7 +25,8 @@ fn studied(case: &Case) -> Option<BaseSoil> {
     (soil.regraded_at_mm == case.regraded_from.as_ref().map(|(_, at)| *at)).then_some(soil)
 }
 
-/// Walks the margin of a case where it is asked for; `None` too where nothing could be said of it.
+/// Walks the margin of a case where it is asked for; `None` too where nothing could be said of it: the walk's
+/// boundary of soils of its kind is no measure of that of tests where their ratio scatters.
 ///
 /// # Errors
 /// As [`super::replicates::replicates`].
@@ -34,13 +35,15 @@ pub fn walked(
     replicates: &[ReplicateResult],
     context: &ReplicateContext,
 ) -> Result<Option<Margin>, RunError> {
-    match case.scene.record.margin == Some(true) && studied(case).is_some() {
+    let has_use = |case| evidence(case, None).is_some_and(|evidence| evidence.narrow);
+    match case.scene.record.margin == Some(true) && has_use(case) {
         true => margin(case, replicates, context),
         false => Ok(None),
     }
 }
 
-/// The evidence for a case with this margin.
+/// The evidence for a case, with its margin where that was walked; `None` where none was asked for.
 pub fn evidence(case: &Case, margin: Option<&Margin>) -> Option<Evidence> {
-    Evidence::of(&studied(case)?, case.filter.d(15.0)?, case.filter.cu(), margin?)
+    let studied = studied(case).filter(|_| case.scene.record.margin == Some(true));
+    Evidence::of(&studied?, case.filter.d(15.0)?, case.filter.cu(), margin)
 }

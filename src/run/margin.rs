@@ -3,7 +3,7 @@
 //!
 //! A coarser filter is a finer base to the walk, of which as much is offered as the coarser filter would be.
 //! Two sizes are walked at a time, outwards by growing steps until one erodes and one does not, then inwards
-//! by thirds to 4 %. One network is walked, so the boundary scatters as networks do: 2 to 7 %. A base that
+//! by thirds to 4 %. One narrow network is walked, as in the study of real soils, so the boundary scatters as networks do: 2 to 7 %. A base that
 //! erodes again in finer filters has several boundaries; this is the one that is nearest below the sizes that
 //! were seen to erode.
 
@@ -24,6 +24,8 @@ const CLOSE: f64 = 1.04;
 const FARTHEST: [f64; 2] = [0.02, 8.0];
 /// More particles than this are walked one by one only where the case itself has as many.
 const MOST_PARTICLES: u64 = 20_000_000;
+/// Voids across of the lattice, as in the study of real soils that the margin is compared with.
+const ACROSS: u64 = 20;
 /// Names the checkpoints of these walks, beyond those of all others.
 const FIRST_PART: u64 = 1 << 32;
 
@@ -92,7 +94,7 @@ fn next(margin: &Margin) -> Vec<f64> {
 /// The case with its filter so many times as large, its first run alone; `None` where that cannot be walked,
 /// or not with as large a share of base.
 fn of_size(case: &Case, factor: f64) -> Option<Case> {
-    let mut other = case.with_larger_filter(factor).ok()?;
+    let mut other = case.with_larger_filter(factor, ACROSS).ok()?;
     other.scene.walk.runs = 1;
     let most = MOST_PARTICLES.max(case.one_by_one(case.n_base));
     let as_much = match (case.mass_ratio, other.mass_ratio) {

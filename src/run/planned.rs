@@ -1,7 +1,7 @@
 //! How many replicates and runs are walked, as far as it is known before.
 
 use crate::case::Case;
-use crate::outcome::early_stop::{FEWEST_OWN, clear, looks};
+use crate::outcome::early_stop::{FEWEST_OF_RANGE, FEWEST_OWN, clear, looks};
 use crate::outcome::stopping::ReplicateValues;
 use crate::outcome::verdict::{THRESHOLD, classify};
 
@@ -9,7 +9,8 @@ use crate::outcome::verdict::{THRESHOLD, classify};
 /// studies, as far as it is known before.
 pub fn runs_to_walk(case: &Case) -> u64 {
     let first = first_replicates(case);
-    let of_verdict = first * (case.readings().count() + case.curve_ends.len()) as u64;
+    let of_ends = replicates_of_end(first) * case.curve_ends.len() as u64;
+    let of_verdict = first * case.readings().count() as u64 + of_ends;
     let points = (case.sensitivity_factors().len() + case.thickness_factors().len()) as u64;
     case.scene.walk.runs * (of_verdict + points * replicates_at_least(case))
 }
@@ -18,6 +19,11 @@ pub fn runs_to_walk(case: &Case) -> u64 {
 pub(super) fn first_replicates(case: &Case) -> u64 {
     let (rule, replicates) = (&case.scene.stop, case.scene.walk.replicates);
     if rule.is_set() { rule.replicates_at(replicates, 1) } else { replicates }
+}
+
+/// Replicates of an end of the curve's range that are walked at the least, beside so many of the case.
+pub(super) fn replicates_of_end(own: u64) -> u64 {
+    if own >= FEWEST_OF_RANGE as u64 { 1 } else { own }
 }
 
 /// Replicates of each point that are walked at the least, as far as it is known before the case is walked.

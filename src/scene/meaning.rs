@@ -199,6 +199,12 @@ impl NetworkKeys {
         (self.thickness_mm, self.thickness_d50f) = (None, None);
     }
 
+    /// Makes a lattice at most so many voids wide, both ways.
+    pub fn narrow_to(&mut self, across: u64) {
+        let narrow = |width: Option<u64>, usual: u64| Some(width.unwrap_or(usual).min(across));
+        (self.nx, self.ny) = (narrow(self.nx, VOIDS[0]), narrow(self.ny, VOIDS[1]));
+    }
+
     /// Says how many copies of a packing its graph is made of.
     pub fn set_copies(&mut self, copies: u64) {
         self.copies = Some(copies);

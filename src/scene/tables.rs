@@ -126,6 +126,8 @@ impl Scene {
             settings.push(options.regrading()?);
         }
         settings.push("record.margin=true".into());
+        // Passive particles by the million scatter by less than anyone reads, and their expectation is quick.
+        settings.push("engine=\"expected\"".into());
         settings.extend(options.settings()?);
         let scene = Self::built_in(&settings)?;
         if !options.as_given {

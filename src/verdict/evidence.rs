@@ -138,13 +138,19 @@ fn centre_of_tests(soil: &BaseSoil) -> Option<f64> {
 impl Evidence {
     /// The evidence for a base, and a filter of this D15 (mm) and Cu, whose walk has this margin; `None`
     /// where they are of no group.
-    pub fn of(soil: &BaseSoil, d15f_mm: f64, filter_cu: Option<f64>, margin: &Margin) -> Option<Self> {
+    pub fn of(
+        soil: &BaseSoil,
+        d15f_mm: f64,
+        filter_cu: Option<f64>,
+        margin: Option<&Margin>,
+    ) -> Option<Self> {
         let group = Group::of(soil, filter_cu)?;
-        let (factor, bound) = match (margin.boundary(), margin.holds_to(), margin.erodes_from()) {
-            (Some(boundary), ..) => (boundary, None),
-            (None, Some(holds), None) => (holds, Some(Bound::AtLeast)),
-            (None, _, Some(erodes)) => (erodes, Some(Bound::AtMost)),
-            (None, None, None) => return None,
+        let bounds = margin.map(|of| (of.boundary(), of.holds_to(), of.erodes_from()));
+        let (factor, bound) = match bounds {
+            Some((Some(boundary), ..)) => (Some(boundary), None),
+            Some((None, Some(holds), None)) => (Some(holds), Some(Bound::AtLeast)),
+            Some((None, _, Some(erodes))) => (Some(erodes), Some(Bound::AtMost)),
+            Some((None, None, None)) | None => (None, None),
         };
         Some(Self {
             group: group.in_words(),
@@ -153,9 +159,9 @@ impl Evidence {
             ratio_low: group.quantile(0.05),
             ratio_high: group.quantile(0.95),
             narrow: group.narrow,
-            boundary_d15f_mm: factor * d15f_mm,
+            boundary_d15f_mm: factor.map(|factor| factor * d15f_mm),
             // A ratio that scatters widely says nothing of one soil.
-            probability_no_erosion: group.narrow.then(|| group.probability(factor)),
+            probability_no_erosion: factor.filter(|_| group.narrow).map(|factor| group.probability(factor)),
             probability_by_tests: centre_of_tests(soil)
                 .map(|of| group.beyond(d15f_mm / of).clamp(SURE, 1.0 - SURE)),
             bound,
@@ -185,7 +191,7 @@ impl Evidence {
         found.into_iter().map(settle).chain([self.finding()]).collect()
     }
 
-    /// What it says.
+    /// What it says. Where tests hold and the walk erodes, that speaks against the walk.
     fn finding(&self) -> Finding {
         let bound = match self.bound {
             Some(Bound::AtLeast) => "at least ",
@@ -202,10 +208,13 @@ impl Evidence {
             .map_or(String::new(), |of| format!("; by the published range of such tests alone it is {of}"));
         let [low, median, high] = [self.ratio_low, self.ratio_median, self.ratio_high];
         let probability = format!("{of_walk}{of_tests}");
-        match median > 1.0 {
-            true => finding::evidence_unsafe(&probability, self.soils, &self.group, median, low, high),
-            false => finding::evidence(&probability, self.soils, &self.group, median, low, high),
-        }
+        let tests_hold = self.probability_by_tests.is_some_and(|of| of >= SHARES[0]);
+        let finding = match (median > 1.0, tests_hold) {
+            (true, _) => finding::evidence_unsafe,
+            (false, true) => finding::evidence_safe,
+            (false, false) => finding::evidence,
+        };
+        finding(&probability, self.soils, &self.group, median, low, high)
     }
 }
 
@@ -263,57 +272,65 @@ mod tests {
 
     #[test]
     fn a_sand_is_of_its_group_and_at_the_walks_boundary_tests_still_hold() {
-        let of = Evidence::of(&sand(), 2.0, Some(1.5), &margin(0.98, 1.02)).unwrap();
+        let of = Evidence::of(&sand(), 2.0, Some(1.5), Some(&margin(0.98, 1.02))).unwrap();
         assert_eq!(of.group, "less than 15 % fines, D85B/D50B at most 4, filters of Cu 1 to 2");
         let probability = of.probability_no_erosion.unwrap();
         assert!(of.soils >= 30 && of.ratio_median < 0.7 && probability > 0.9, "{of:?}");
         // 2 mm is 4.1 D85B, and tests held to 6.8.
         assert_eq!(of.probability_by_tests, Some(0.98));
         assert!(of.supports(Verdict::None) && !of.supports(Verdict::Some));
-        let coarse = Evidence::of(&sand(), 6.0, Some(1.5), &margin(0.3, 0.31)).unwrap();
+        assert!(of.finding().is_against(Verdict::Some) && !of.finding().is_against(Verdict::None));
+        let coarse = Evidence::of(&sand(), 6.0, Some(1.5), Some(&margin(0.3, 0.31))).unwrap();
         assert!(coarse.supports(Verdict::Continuing) && !coarse.supports(Verdict::None), "{coarse:?}");
+        assert!(!coarse.finding().is_against(Verdict::Continuing));
         // The walk alone does not make a filter beyond the tests' range a good one.
-        let beyond = Evidence::of(&sand(), 4.5, Some(1.5), &margin(4.0, 4.1)).unwrap();
+        let beyond = Evidence::of(&sand(), 4.5, Some(1.5), Some(&margin(4.0, 4.1))).unwrap();
         assert!(beyond.probability_no_erosion > Some(0.9) && !beyond.supports(Verdict::None), "{beyond:?}");
     }
 
     #[test]
     fn what_is_of_no_group_has_no_evidence() {
         let tail = soil(&[(0.3, 40.0), (1.0, 80.0), (2.0, 100.0)]);
-        assert_eq!(Evidence::of(&tail, 2.0, Some(1.5), &margin(0.98, 1.02)), None);
+        assert_eq!(Evidence::of(&tail, 2.0, Some(1.5), Some(&margin(0.98, 1.02))), None);
         // A gap at the finest sieve hides the part that practice looks at.
         let hidden = soil(&[(0.075, 30.0), (0.3, 32.0), (19.0, 100.0)]);
         assert!(hidden.hidden_below_mm.is_some());
-        assert_eq!(Evidence::of(&hidden, 5.0, Some(1.5), &margin(0.98, 1.02)), None);
-        assert_eq!(Evidence::of(&sand(), 2.0, Some(60.0), &margin(0.98, 1.02)), None);
-        assert_eq!(Evidence::of(&sand(), 2.0, None, &margin(0.98, 1.02)), None);
-        assert_eq!(Evidence::of(&sand(), 2.0, Some(1.5), &Margin { walks: Vec::new() }), None);
+        assert_eq!(Evidence::of(&hidden, 5.0, Some(1.5), Some(&margin(0.98, 1.02))), None);
+        assert_eq!(Evidence::of(&sand(), 2.0, Some(60.0), Some(&margin(0.98, 1.02))), None);
+        assert_eq!(Evidence::of(&sand(), 2.0, None, Some(&margin(0.98, 1.02))), None);
+        let unknown = Evidence::of(&sand(), 2.0, Some(1.5), None).unwrap();
+        assert!(
+            unknown.narrow && unknown.probability_no_erosion.is_none() && !unknown.supports(Verdict::None)
+        );
+        let empty = Evidence::of(&sand(), 2.0, Some(1.5), Some(&Margin { walks: Vec::new() }));
+        assert_eq!(empty.unwrap(), unknown);
     }
 
     #[test]
     fn a_margin_without_an_end_bounds_the_probability() {
         let mut held = margin(1.0, 2.0);
         held.walks.pop();
-        let of = Evidence::of(&sand(), 2.0, Some(1.5), &held).unwrap();
+        let of = Evidence::of(&sand(), 2.0, Some(1.5), Some(&held)).unwrap();
         assert!(
             of.bound == Some(Bound::AtLeast) && of.supports(Verdict::None) && !of.supports(Verdict::Some)
         );
         assert!(of.finding().sentence().contains("at least"), "{}", of.finding().sentence());
         let mut eroded = margin(0.5, 1.0);
         eroded.walks.remove(0);
-        let of = Evidence::of(&sand(), 2.0, Some(1.5), &eroded).unwrap();
+        let of = Evidence::of(&sand(), 2.0, Some(1.5), Some(&eroded)).unwrap();
         assert!(of.bound == Some(Bound::AtMost) && !of.supports(Verdict::None), "{of:?}");
     }
 
     #[test]
     fn what_the_study_had_is_no_doubt_where_it_supports_the_class() {
-        let of = Evidence::of(&sand(), 2.0, Some(1.5), &margin(0.98, 1.02)).unwrap();
+        let of = Evidence::of(&sand(), 2.0, Some(1.5), Some(&margin(0.98, 1.02))).unwrap();
         let found = || vec![finding::library_of_any_density(3.0), finding::few_replicates(4)];
         let against = |verdict| -> Vec<&str> {
             let weighed = of.weigh(verdict, found());
             weighed.iter().filter(|of| of.is_against(verdict)).map(Finding::id).collect()
         };
         assert_eq!(against(Verdict::None), ["few_replicates"]);
-        assert_eq!(against(Verdict::Some), ["library_of_any_density", "few_replicates"]);
+        let of_some = against(Verdict::Some);
+        assert_eq!(of_some, ["library_of_any_density", "few_replicates", "evidence_safe"]);
     }
 }

@@ -536,6 +536,14 @@ findings! {
          kind ({group}) the walk began to erode at {median} times the D15F of no-erosion tests on soils of \
          these fines (nine in ten: {low} to {high}). The walk knows no cohesion, no segregation and no \
          crack, and none of these soils was tested itself.";
+    /// The same where tests hold such filters.
+    evidence_safe(probability: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio):
+        Practice, Safe, Limits;
+        "evidence", "uncertainty.md",
+        "Tests on soils like this held such filters. The probability that a test would show no erosion \
+         {probability}. For {soils} real soils of this kind ({group}) the walk began to erode at {median} \
+         times the D15F of no-erosion tests on soils of these fines (nine in ten: {low} to {high}). The walk \
+         knows no cohesion, no segregation and no crack, and none of these soils was tested itself.";
     /// The same where the walk errs on the unsafe side.
     evidence_unsafe(probability: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio):
         Practice, Unsafe, Limits;

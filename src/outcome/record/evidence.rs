@@ -18,8 +18,9 @@ pub struct Evidence {
     /// Whether there are at least 30 soils, nine in ten lie within a factor of 2 of the median, and that is
     /// at most 1.
     pub narrow: bool,
-    /// D15F from which the walk erodes this base (mm); beyond it or below it where `bound` says so.
-    pub boundary_d15f_mm: f64,
+    /// D15F from which the walk erodes this base (mm); beyond it or below it where `bound` says so; `None`
+    /// where the group is not narrow, and it was not looked for.
+    pub boundary_d15f_mm: Option<f64>,
     /// The probability that a test of this pair would show no erosion, by the walk; `None` where the group
     /// is not narrow.
     pub probability_no_erosion: Option<f64>,
