@@ -12,12 +12,9 @@ const PROTOCOL: u32 = 2;
 /// The same of cases in which water flows.
 const WATER_PROTOCOL: u32 = 4;
 
-/// What is added to either where a base with a pan fraction is walked on a curve that is a guess.
-const GUESSED_PAN_PROTOCOL: u32 = 100;
-
 /// What is added where several curves or readings are walked: their walks have other names, and the verdict
 /// follows from them in another way than before.
-const RANGE_PROTOCOL: u32 = 200;
+const RANGE_PROTOCOL: u32 = 400;
 
 impl Case {
     /// The scene with what its files and its filter's packing say of it, and with its files' names in a run
@@ -58,9 +55,6 @@ impl Case {
         // Nothing follows from what is only said of it.
         let scene = Scene { about: About::default(), ..self.resolved() };
         let mut protocol = if scene.exit_rule().needs_flow() { WATER_PROTOCOL } else { PROTOCOL };
-        if self.finest_mm < self.curve.smallest() && self.base.pan_fraction() > 0.0 {
-            protocol += GUESSED_PAN_PROTOCOL;
-        }
         if !self.curve_ends.is_empty() || !self.other_readings.is_empty() {
             protocol += RANGE_PROTOCOL;
         }
