@@ -3,8 +3,8 @@
 //! - [`finding`] is the table of all findings: direction, weight, label, sentence and page of each, and a
 //!   function of its name that reports it. A translation is another table of sentences.
 //! - [`judge()`] takes class, rules and findings, and gives the answer with its label and ordered findings.
-//! - [`practice`] is what the rules of filter practice say of a pair.
 //! - [`PlannedWalk`] is what is found about soils and network before their walk.
+//! - [`practice`] is what the rules of filter practice say of a pair.
 //! - [`walks`] is what walks say themselves, [`beside`] what their results say beside the verdict.
 //! - [`design_answer()`] is how coarse a filter may be, and [`Band`] the band of a specification.
 //! - [`PairRules`] are two soils as practice sees them, without a walk.
