@@ -2,13 +2,13 @@
 //! checked, and what else a reader must know.
 
 use super::packed_filter::GUESSED_GRAINS_PER_VOID;
+use super::supply::PAPER_MASS_RATIO;
 use super::{Case, Input, PackingPlan, needs_grains_per_void, replicate_seed};
-use crate::gradation::{FEW_FINES, FINES_MM, GRAVEL_MM, Gradation};
+use crate::gradation::GRAVEL_MM;
 use crate::network::ExitRule;
-use crate::scene::{LibraryDensity, Regrade};
-use crate::verdict::Mistake;
+use crate::scene::{LibraryDensity, NetworkSource, Regrade};
 use crate::verdict::beside::packed_part;
-use crate::verdict::{Finding, finding, rank};
+use crate::verdict::{Finding, PlannedWalk, finding, rank};
 
 /// More moves than these of a particle that nothing stops are worth a word.
 const MANY_MOVES: f64 = 1e5;
@@ -18,15 +18,6 @@ const MANY_LOOSE: f64 = 0.5;
 /// ... and where it is as large as this, coarse grains carry each other: of two sizes far apart 98 % were
 /// without load with 30 % of the mass in the finer one, 19 % with 40 % (`results/cuts.md`).
 const SKELETON: f64 = 0.9;
-
-/// With fewer replicates than these their number is said beside the verdict: their scatter is hardly known.
-const FEW_REPLICATES: u64 = 5;
-
-/// Ranges of Cu that the model was checked for, of filter and base.
-const CHECKED_CU: [(&str, [f64; 2]); 2] = [("filter", [1.2, 6.0]), ("base", [1.2, 4.5])];
-
-/// Cu from which a base counts as broadly graded: that of well-graded sands by ASTM D2487.
-const BROAD_CU: f64 = 6.0;
 
 /// Constrictions that are looked at to find that out, each as often as it is looked at.
 const LOOKED_AT: u64 = 50_000_000;
@@ -49,23 +40,11 @@ impl Case {
 
     /// What is known of its verdict before the walk, but for what the walk itself will say.
     pub fn findings(&self) -> Vec<Finding> {
-        let mut all = Vec::new();
-        let mistake = Mistake::find(self.base_as_given(), &self.filter, self.is_scale_free());
-        all.extend(mistake.as_ref().map(Mistake::finding));
-        all.extend(self.fines());
-        all.extend(self.broad_base());
+        let mut all = self.planned_walk().findings();
         all.extend((self.scene.base.dispersive == Some(true)).then(finding::dispersive_base));
         all.extend(self.scene.filter.joint_mm.map(finding::open_joint));
         all.extend(self.too_thick());
         all.extend(self.too_little_base());
-        all.extend(self.of_network());
-        all.extend(not_as_uniform([self.filter.cu().map(|cu| [cu, cu]), self.cu_of_base()]));
-        if let Some(gap) = self.filter.gap(0.0).filter(|_| self.filter_is_measured()) {
-            all.push(finding::gap_graded(gap.within, gap.from_mm));
-        }
-        if self.pan_size.is_none() && self.base.pan_fraction() > 0.0 {
-            all.push(finding::pan_passive(100.0 * self.base.pan_fraction()));
-        }
         all.extend(self.other_filter());
         all.extend(self.guesses());
         // The grains that were left out can only make constrictions coarser than those that were walked.
@@ -75,7 +54,6 @@ impl Case {
             Some(loose) if loose > 100.0 * SKELETON => all.push(finding::skeleton(loose)),
             loose => all.extend(loose.map(finding::loose_grains)),
         }
-        all.extend(self.few_replicates());
         all.extend(self.regrading());
         let of_file = |input: &Input| -> Vec<Finding> {
             input.notes.iter().map(|note| finding::read_as(&input.name, note)).collect()
@@ -91,6 +69,30 @@ impl Case {
             all.push(finding::long_way_out(&about));
         }
         all
+    }
+
+    /// The soils and the network, as they are walked.
+    fn planned_walk(&self) -> PlannedWalk<'_> {
+        let (source, replicates) = (self.scene.network.source(), self.scene.walk.replicates);
+        PlannedWalk {
+            base: &self.base,
+            regraded_from: self.regraded_from.as_ref().map(|(given, _)| given),
+            base_cu: self.cu_of_base(),
+            pan_is_passive: self.pan_size.is_none(),
+            filter: Some(&self.filter),
+            filter_is_measured: self.filter_is_measured(),
+            scale_free: self.is_scale_free(),
+            given_voids: matches!(source, NetworkSource::File(_)).then_some(self.counts[0]),
+            lattice: source.shape(),
+            layers: self.counts[3],
+            flows: self.scene.exit_rule().needs_flow(),
+            increments: self.increments(),
+            // Where a rule adds replicates, it says itself whether they are enough, unless it may add none.
+            replicates: match self.scene.stop.is_set() {
+                true => self.scene.stop.replicates_at(replicates, 1),
+                false => replicates,
+            },
+        }
     }
 
     /// Cu of the base between its bounds where D10 lies in an open tail.
@@ -128,16 +130,6 @@ impl Case {
         like_none.into_iter().chain([finding::guessed_constrictions()]).chain(grains).collect()
     }
 
-    /// That the replicates say little of their own scatter.
-    fn few_replicates(&self) -> Option<Finding> {
-        let walk = &self.scene.walk;
-        // Where a rule adds replicates, it says itself whether they are enough, unless it may add none.
-        few(match self.scene.stop.is_set() {
-            true => self.scene.stop.replicates_at(walk.replicates, 1),
-            false => walk.replicates,
-        })
-    }
-
     /// That neither study was asked for: worth a word beside a verdict, and no warning before it.
     pub fn not_studied(&self) -> Option<Finding> {
         let record = &self.scene.record;
@@ -146,6 +138,20 @@ impl Case {
         let is_studied =
             studied(&record.sensitivity) || studied(record.thickness.as_deref().unwrap_or_default());
         (!is_studied).then(finding::not_studied)
+    }
+
+    /// That less base is offered than the paper's Eq. (2) and mass ratio ask for.
+    pub fn too_little_base(&self) -> Option<Finding> {
+        let ratio = self.scene.base.mass_ratio.unwrap_or(PAPER_MASS_RATIO);
+        match self.n_base_eq2 {
+            Some(eq2) if self.capped => Some(finding::capped_base(self.n_base, eq2)),
+            Some(eq2) if self.n_base < eq2 => Some(finding::few_particles(self.n_base, eq2)),
+            Some(_) if self.scene.base.n_base.is_none() && ratio < PAPER_MASS_RATIO => {
+                Some(finding::low_mass_ratio(100.0 * ratio))
+            }
+            None => self.scene.base.n_base.map(finding::amount_unknown),
+            _ => None,
+        }
     }
 
     /// A real filter layer that is thinner than the modelled one by more than half a layer of voids, to which
@@ -162,23 +168,6 @@ impl Case {
             Some((copies, _)) => finding::copies_thicker(copies.into(), &shown, real),
             None => finding::layers_thicker(self.counts[3], &shown, real),
         })
-    }
-
-    /// Fines of the base that may be cohesive, or that are not known.
-    fn fines(&self) -> Option<Finding> {
-        if self.is_scale_free() { None } else { fines_of(&self.base) }
-    }
-
-    /// A base that is broadly graded and walked as it is.
-    fn broad_base(&self) -> Option<Finding> {
-        if self.regraded_from.is_some() || self.is_scale_free() {
-            return None;
-        }
-        let regraded = self.base.regraded();
-        match (regraded.at_mm, self.base.cu().filter(|cu| *cu >= BROAD_CU)) {
-            (Some(at), _) => Some(finding::not_regraded(at, &regraded.why)),
-            (None, cu) => cu.map(finding::broadly_graded),
-        }
     }
 
     /// A base that is walked regraded, or that was to be.
@@ -217,49 +206,10 @@ impl Case {
     }
 }
 
-/// Fines of a base in mm that may be cohesive, or that are not known.
-pub fn fines_of(base: &Gradation) -> Option<Finding> {
-    let fines = base.percent_finer_by_mass(FINES_MM);
-    if fines <= FEW_FINES {
-        return None;
-    }
-    let sieve = base.smallest_mm();
-    Some(match sieve <= FINES_MM || base.pan_fraction() == 0.0 {
-        true => finding::cohesive_fines(fines),
-        false => finding::fines_not_sieved(fines, sieve),
-    })
-}
-
-/// That so few replicates say little of their own scatter.
-pub fn few(replicates: u64) -> Option<Finding> {
-    match replicates {
-        1 => Some(finding::one_replicate()),
-        few if few < FEW_REPLICATES => Some(finding::few_replicates(few)),
-        _ => None,
-    }
-}
-
-/// That a filter or base is more or less uniform than those for which the model was checked; each between two
-/// bounds of its Cu.
-pub fn not_as_uniform(cu: [Option<[f64; 2]>; 2]) -> Vec<Finding> {
-    let of_soil = |((soil, [low, high]), cu): ((&str, [f64; 2]), Option<[f64; 2]>)| {
-        let is_within = |cu: f64| (low - 1e-9..=high + 1e-9).contains(&cu);
-        match cu {
-            Some([least, most]) if is_within(least) && is_within(most) => None,
-            Some([least, most]) if most - least < 0.005 => {
-                Some(finding::cu_unchecked(soil, least, low, high))
-            }
-            Some([least, most]) => Some(finding::cu_in_doubt(soil, least, most, low, high)),
-            None => Some(finding::cu_unknown(soil, low, high)),
-        }
-    };
-    CHECKED_CU.into_iter().zip(cu).filter_map(of_soil).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::record::Topic;
+    use crate::outcome::record::{Topic, Verdict};
     use crate::scene::Scene;
 
     fn case(changes: &[&str]) -> Result<Case, String> {
@@ -293,5 +243,56 @@ mod tests {
             assert!(error.contains("allowed: half a layer or more"), "{error}");
         }
         assert_eq!(case(&["filter.d0_mm=2.1", "network.thickness_mm=1.5"]).unwrap().counts[3], 1);
+    }
+    fn doubts(set: &[&str]) -> Vec<String> {
+        let small =
+            ["network.nx=10", "network.ny=10", "network.nz=12", "base.cu=3", "base.d15f_over_d85b=3.9"];
+        let all: Vec<String> = small.iter().chain(set).map(ToString::to_string).collect();
+        let found = Case::new(Scene::built_in(&all).unwrap()).unwrap().findings();
+        found.iter().filter(|of| of.is_against(Verdict::None)).map(Finding::sentence).collect()
+    }
+
+    #[track_caller]
+    fn says(set: &[&str], word: &str) {
+        let found = doubts(set);
+        assert!(found.iter().any(|said| said.starts_with(word)), "{set:?}: {found:?}");
+    }
+
+    #[test]
+    fn less_base_than_eq_2_gives_is_a_doubt() {
+        assert_eq!(doubts(&[]), Vec::<String>::new());
+        says(&["base.cap=500"], "The base is capped at 500 of the");
+        says(&["base.n_base=500"], "The base has 500 of the");
+        says(&["base.mass_ratio=0.01"], "The mass of the base is 1 % of the filter's");
+        for enough in ["base.n_base=1e9", "base.cap=1e12", "base.mass_ratio=0.1"] {
+            assert_eq!(doubts(&[enough]), Vec::<String>::new(), "{enough}");
+        }
+    }
+
+    #[test]
+    fn a_narrow_lattice_is_a_doubt() {
+        says(&["network.nx=9"], "The lattice is only 9 x 10 voids across");
+        says(
+            &["network.ny=1", "network.connectivity={4=50,8=50}"],
+            "The lattice is only 10 x 1 voids across",
+        );
+    }
+
+    #[test]
+    fn a_base_that_is_all_on_its_way_is_a_doubt_where_water_flows() {
+        says(&["walk.exit=flux", "inject_share=0.1"], "The whole base is inserted before");
+        for converged in [["walk.exit=flux", "inject_share=0.05"], ["walk.exit=area", "inject_share=0.1"]] {
+            assert_eq!(doubts(&converged), Vec::<String>::new(), "{converged:?}");
+        }
+    }
+
+    #[test]
+    fn a_capped_base_has_the_mass_ratio_of_its_particles() {
+        let of = |set: &str| {
+            let all = ["network.nx=10", "network.ny=10", "network.nz=12", set].map(String::from);
+            Case::new(Scene::built_in(&all).unwrap()).unwrap().mass_ratio.unwrap()
+        };
+        let (capped, given) = (of("base.cap=1000"), of("base.n_base=1000"));
+        assert!((capped / given - 1.0).abs() < 0.01 && capped < 0.04, "{capped} {given}");
     }
 }

@@ -1,6 +1,5 @@
 //! A case: a scene with its files read and every number worked out, before any work is done.
 
-mod amount;
 mod curve_ends;
 mod cut;
 mod error;
@@ -27,12 +26,10 @@ mod supply;
 mod thickness;
 mod void_graph;
 
-pub use amount::{all_on_its_way, narrow_lattice};
 pub use curve_ends::OtherCurve;
 pub use error::CaseError;
 use files::Files;
 pub use files::{INPUT_FILES, INPUT_NAMES};
-pub use findings::{few, fines_of, not_as_uniform};
 pub use input::Input;
 pub use library_filter::LibraryFilter;
 pub use memory::{ResourceLimits, in_words};

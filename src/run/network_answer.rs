@@ -4,16 +4,11 @@ use std::cmp::Ordering;
 
 use super::network_walk::{NetworkOutcome, NetworkWalk};
 use super::replicates::said_by_walks;
-use crate::case::{PAPER_MASS_RATIO, all_on_its_way, few, fines_of, narrow_lattice, not_as_uniform};
-use crate::gradation::Gradation;
+use crate::case::PAPER_MASS_RATIO;
 use crate::network::Network;
 use crate::outcome::record::Statistic;
 use crate::outcome::rules::{self, RuleInputs};
-use crate::verdict::Mistake;
-use crate::verdict::{Finding, Judgement, finding, judge};
-
-/// Cu from which a base counts as broadly graded: that of well-graded sands by ASTM D2487.
-const BROAD_CU: f64 = 6.0;
+use crate::verdict::{Finding, Judgement, PlannedWalk, finding, judge};
 
 impl NetworkOutcome {
     /// What the verdict is worth, on so many networks of which this is the first.
@@ -44,33 +39,23 @@ impl NetworkOutcome {
 impl NetworkWalk {
     /// What was not checked, or is not known, whatever comes of the walk.
     fn findings(&self, network: &Network, replicates: u64) -> Vec<Finding> {
-        let filter = self.filter.as_ref().map(|filter| &filter.gradation);
-        let cu = |cu: Option<f64>| cu.map(|cu| [cu, cu]);
-        // Of a filter that was not given nothing is said but that.
-        let of_filter = filter.map_or(Some([1.2, 1.2]), |filter| cu(filter.cu()));
-        let flows = network.exit_rule().needs_flow();
-        let pan = self.base.pan_fraction();
-        let mistake = filter.and_then(|filter| Mistake::find(&self.base, filter, false));
-        let measured = self.filter.as_ref().filter(|filter| filter.is_measured);
-        let gap = measured.and_then(|filter| filter.gradation.gap(0.0));
-        [
-            mistake.as_ref().map(Mistake::finding),
-            fines_of(&self.base),
-            broad(&self.base),
-            gap.map(|gap| finding::gap_graded(gap.within, gap.from_mm)),
-            self.amount(network),
-            Some(finding::given_network(network.filter_voids() as u64)),
-            filter.is_none().then(finding::no_filter),
-            narrow_lattice(network.shape()),
-            all_on_its_way(flows, self.increments, network.layers() as u64),
-            (pan > 0.0).then(|| finding::pan_passive(100.0 * pan)),
-            few(replicates),
-            Some(finding::not_studied()),
-        ]
-        .into_iter()
-        .flatten()
-        .chain(not_as_uniform([of_filter, cu(self.base.cu())]))
-        .collect()
+        let filter = self.filter.as_ref();
+        let planned = PlannedWalk {
+            base: &self.base,
+            regraded_from: None,
+            base_cu: self.base.cu().map(|cu| [cu, cu]),
+            pan_is_passive: true,
+            filter: filter.map(|filter| &filter.gradation),
+            filter_is_measured: filter.is_some_and(|filter| filter.is_measured),
+            scale_free: false,
+            given_voids: Some(network.filter_voids() as u64),
+            lattice: network.shape(),
+            layers: network.layers() as u64,
+            flows: network.exit_rule().needs_flow(),
+            increments: self.increments,
+            replicates,
+        };
+        planned.findings().into_iter().chain(self.amount(network)).chain([finding::not_studied()]).collect()
     }
 
     /// That the class follows from a number of base particles that is not the one of Eq. (2), or that nobody
@@ -88,15 +73,6 @@ impl NetworkWalk {
     }
 }
 
-/// A base that is broadly graded; nobody regrades one that is walked without a scene.
-fn broad(base: &Gradation) -> Option<Finding> {
-    let regraded = base.regraded();
-    match regraded.at_mm {
-        Some(at) => Some(finding::not_regraded(at, &regraded.why)),
-        None => base.cu().filter(|cu| *cu >= BROAD_CU).map(finding::broadly_graded),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeSet;
@@ -106,6 +82,7 @@ mod tests {
     use super::*;
     use crate::case::Case;
     use crate::constrictions::find;
+    use crate::gradation::Gradation;
     use crate::network::{ExitRule, NetworkColumns};
     use crate::outcome::record::Confidence;
     use crate::run::{Callbacks, GivenFilter, walk_networks};
@@ -195,8 +172,48 @@ mod tests {
     /// A scene knows the Cu of a base whose D10 lies in its finest part, from how it walks that part.
     const WITHOUT_A_SCENE: [&str; 1] = ["cu_unknown"];
 
+    /// What is found of a scene, and of its soils on its network without it: all but the lists above.
+    fn of_both(case: &Case, network: &Network) -> [BTreeSet<(&'static str, String)>; 2] {
+        let filter = GivenFilter {
+            gradation: case.filter.clone(),
+            is_measured: case.filter_is_measured(),
+            grains_per_void: case.grains_per_void,
+        };
+        let plan = NetworkWalk {
+            increments: case.increments(),
+            filter: Some(filter),
+            ..NetworkWalk::new(case.base.clone(), case.n_base)
+        };
+        let said = |found: Vec<Finding>, own: &[&str]| {
+            let shared = found.iter().filter(|finding| !own.contains(&finding.id()));
+            shared.map(|finding| (finding.id(), finding.with_to_do())).collect()
+        };
+        let of_scene = case.findings().into_iter().chain(case.not_studied()).collect();
+        let of_network = plan.findings(network, case.scene.walk.replicates);
+        [said(of_scene, &OF_A_SCENE), said(of_network, &WITHOUT_A_SCENE)]
+    }
+
+    /// A narrow lattice, and one whose water stops before any of the base can be through.
+    #[test]
+    fn a_lattice_that_is_given_has_the_findings_of_its_scene() {
+        for (own, id) in [
+            (["network.nx=7", "walk.exit=area"], "narrow_lattice"),
+            (["network.nx=10", "walk.exit=flux"], "all_on_its_way"),
+        ] {
+            let small = ["network.ny=10", "network.nz=10", "filter.d0_mm=2", "base.n_base=100"];
+            let rest = ["inject_share=0.1", "replicates=2", "record.sensitivity=[]"];
+            let set: Vec<String> = own.iter().chain(&small).chain(&rest).map(ToString::to_string).collect();
+            let case = Case::new(Scene::built_in(&set).unwrap()).unwrap();
+            let [of_scene, mut of_network] = of_both(&case, &case.network(1).unwrap());
+            of_network.retain(|(id, _)| *id != "given_network");
+            assert_eq!(of_scene, of_network);
+            let ids: BTreeSet<&str> = of_scene.iter().map(|(id, _)| *id).collect();
+            assert_eq!(ids, [id, "few_particles", "few_replicates", "not_studied"].into());
+        }
+    }
+
     /// The same soils on the same network, with a scene and without: each finding that follows from them is
-    /// reported by both, or stands in a list above.
+    /// reported by both with the same numbers, or stands in a list above.
     #[test]
     fn a_walk_without_a_scene_finds_what_a_scene_of_the_same_soils_finds() {
         type Points = &'static [(f64, f64)];
@@ -242,25 +259,10 @@ mod tests {
                     "record.sensitivity=[]".into(),
                 ];
                 let case = Case::new(Scene::built_in(&set).unwrap()).unwrap();
-                let filter = GivenFilter {
-                    gradation: case.filter.clone(),
-                    is_measured: case.filter_is_measured(),
-                    grains_per_void: None,
-                };
-                let plan = NetworkWalk {
-                    increments: case.increments(),
-                    replicates,
-                    filter: Some(filter),
-                    ..NetworkWalk::new(case.base.clone(), case.n_base)
-                };
                 let network = case.fixed_network.as_ref().unwrap();
-                let ids = |found: Vec<Finding>, own: &[&str]| -> BTreeSet<&'static str> {
-                    found.iter().map(Finding::id).filter(|id| !own.contains(id)).collect()
-                };
-                let of_scene = case.findings().into_iter().chain(case.not_studied()).collect();
-                let of_scene = ids(of_scene, &OF_A_SCENE);
-                assert_eq!(of_scene, ids(plan.findings(network, replicates), &WITHOUT_A_SCENE), "{base:?}");
-                seen.extend(of_scene);
+                let [of_scene, of_network] = of_both(&case, network);
+                assert_eq!(of_scene, of_network, "{base:?}");
+                seen.extend(of_scene.iter().map(|(id, _)| *id));
                 pairs += 1;
             }
         }

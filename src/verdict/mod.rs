@@ -3,6 +3,7 @@
 //! - [`finding`] is the table of all findings: direction, weight, label, sentence and page of each, and a
 //!   function of its name that reports it. A translation is another table of sentences.
 //! - [`judge()`] takes class, rules and findings, and gives the answer with its label and ordered findings.
+//! - [`PlannedWalk`] is what is found about soils and network before their walk.
 //! - [`practice`] is what the rules of filter practice say of a pair.
 //! - [`walks`] is what walks say themselves, [`beside`] what their results say beside the verdict.
 //! - [`design_answer()`] is how coarse a filter may be, and [`Band`] the band of a specification.
@@ -17,6 +18,7 @@ mod entry;
 pub mod evidence;
 pub mod finding;
 mod pair;
+mod planned_walk;
 pub mod practice;
 mod quantity;
 mod thickness;
@@ -30,4 +32,5 @@ pub use answer::{Judgement, judge, rank};
 pub use design::{FinestBase, design_answer};
 pub use entry::{Entry, Finding};
 pub use pair::{BaseSizes, FilterSizes, Mistake, MistakeKind, PairOptions, PairRules};
+pub use planned_walk::PlannedWalk;
 pub use quantity::FindingValue;

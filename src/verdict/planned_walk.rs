@@ -1,0 +1,224 @@
+//! What is found about soils and network before they are walked, with a scene or without one.
+
+use super::entry::Finding;
+use super::finding;
+use super::pair::Mistake;
+use crate::gradation::{FEW_FINES, FINES_MM, Gradation};
+
+/// With fewer replicates than these their number is said beside the verdict: their scatter is hardly known.
+const FEW_REPLICATES: u64 = 5;
+
+/// Ranges of Cu that the model was checked for, of filter and base.
+const FILTER_CU: [f64; 2] = [1.2, 6.0];
+const BASE_CU: [f64; 2] = [1.2, 4.5];
+
+/// Cu from which a base counts as broadly graded: that of well-graded sands by ASTM D2487.
+const BROAD_CU: f64 = 6.0;
+
+/// A lattice narrower than this many voids has few ways beside each other: on one pair of soils one void
+/// across eroded 3.3 %, forty 13.3 %.
+const FEWEST_ACROSS: u32 = 10;
+
+/// A base, a filter and a network that are to be walked.
+#[derive(Clone)]
+pub struct PlannedWalk<'a> {
+    /// The base, as it is walked.
+    pub base: &'a Gradation,
+    /// The base as it was stated, where it is walked regraded.
+    pub regraded_from: Option<&'a Gradation>,
+    /// The least and the most that the Cu of the base may be; `None` where nothing says it.
+    pub base_cu: Option<[f64; 2]>,
+    /// Whether the base's pan fraction is counted by mass alone.
+    pub pan_is_passive: bool,
+    /// The filter, where it is known.
+    pub filter: Option<&'a Gradation>,
+    /// Whether the filter's gradation is a sieve curve, and not a straight line that was assumed.
+    pub filter_is_measured: bool,
+    /// Whether sizes are multiples of D0F.
+    pub scale_free: bool,
+    /// Voids of a network that was given, not built.
+    pub given_voids: Option<u64>,
+    /// Voids along each axis of a lattice.
+    pub lattice: Option<[u32; 3]>,
+    /// Layers of voids.
+    pub layers: u64,
+    /// Whether water flows.
+    pub flows: bool,
+    /// Increments in which the base is inserted.
+    pub increments: u64,
+    /// Replicates.
+    pub replicates: u64,
+}
+
+impl PlannedWalk<'_> {
+    /// What nobody has checked, or what is not known, in no order.
+    pub fn findings(&self) -> Vec<Finding> {
+        let found = [
+            self.mistake(),
+            self.fines(),
+            self.broad_base(),
+            self.cu_of_filter(),
+            not_as_uniform("base", self.base_cu, BASE_CU),
+            self.passive_pan(),
+            self.filter.is_none().then(finding::no_filter),
+            self.gap(),
+            self.given_voids.map(finding::given_network),
+            self.narrow_lattice(),
+            self.all_on_its_way(),
+            self.few_replicates(),
+        ];
+        found.into_iter().flatten().collect()
+    }
+
+    /// Two tables that may be exchanged, or in another unit.
+    fn mistake(&self) -> Option<Finding> {
+        let stated = self.regraded_from.unwrap_or(self.base);
+        Some(Mistake::find(stated, self.filter?, self.scale_free)?.finding())
+    }
+
+    /// Fines of the base that may be cohesive, or that are not known.
+    fn fines(&self) -> Option<Finding> {
+        let fines = self.base.percent_finer_by_mass(FINES_MM);
+        if self.scale_free || fines <= FEW_FINES {
+            return None;
+        }
+        let sieve = self.base.smallest_mm();
+        Some(match sieve <= FINES_MM || self.base.pan_fraction() == 0.0 {
+            true => finding::cohesive_fines(fines),
+            false => finding::fines_not_sieved(fines, sieve),
+        })
+    }
+
+    /// A base that is broadly graded and walked as it is.
+    fn broad_base(&self) -> Option<Finding> {
+        if self.regraded_from.is_some() || self.scale_free {
+            return None;
+        }
+        let regraded = self.base.regraded();
+        match regraded.at_mm {
+            Some(at) => Some(finding::not_regraded(at, &regraded.why)),
+            None => self.base.cu().filter(|cu| *cu >= BROAD_CU).map(finding::broadly_graded),
+        }
+    }
+
+    fn cu_of_filter(&self) -> Option<Finding> {
+        not_as_uniform("filter", self.filter?.cu().map(|cu| [cu, cu]), FILTER_CU)
+    }
+
+    fn passive_pan(&self) -> Option<Finding> {
+        let percent = 100.0 * self.base.pan_fraction();
+        (self.pan_is_passive && percent > 0.0).then(|| finding::pan_passive(percent))
+    }
+
+    fn gap(&self) -> Option<Finding> {
+        let gap = self.filter.filter(|_| self.filter_is_measured)?.gap(0.0)?;
+        Some(finding::gap_graded(gap.within, gap.from_mm))
+    }
+
+    fn narrow_lattice(&self) -> Option<Finding> {
+        let [nx, ny, _] = self.lattice?;
+        (nx.min(ny) < FEWEST_ACROSS).then(|| finding::narrow_lattice(nx.into(), ny.into()))
+    }
+
+    /// Where water flows, a base that has all been inserted before any of it can be through.
+    ///
+    /// A particle makes one move an increment, and needs as many as there are layers. What is on its way when
+    /// the water stops counts as retained; here that is all of it.
+    fn all_on_its_way(&self) -> Option<Finding> {
+        let is_late = self.flows && self.increments <= self.layers;
+        is_late.then(|| finding::all_on_its_way(self.increments, self.layers))
+    }
+
+    /// That the replicates say little of their own scatter.
+    fn few_replicates(&self) -> Option<Finding> {
+        match self.replicates {
+            1 => Some(finding::one_replicate()),
+            few if few < FEW_REPLICATES => Some(finding::few_replicates(few)),
+            _ => None,
+        }
+    }
+}
+
+/// That a soil, whose Cu lies between two bounds, is more or less uniform than those for which the model was
+/// checked.
+fn not_as_uniform(soil: &str, cu: Option<[f64; 2]>, [low, high]: [f64; 2]) -> Option<Finding> {
+    let is_within = |cu: f64| (low - 1e-9..=high + 1e-9).contains(&cu);
+    match cu {
+        Some([least, most]) if is_within(least) && is_within(most) => None,
+        Some([least, most]) if most - least < 0.005 => Some(finding::cu_unchecked(soil, least, low, high)),
+        Some([least, most]) => Some(finding::cu_in_doubt(soil, least, most, low, high)),
+        None => Some(finding::cu_unknown(soil, low, high)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn soil(points: &[(f64, f64)]) -> Gradation {
+        Gradation::from_points(points, None).unwrap()
+    }
+
+    /// A plan that nothing is found about, and what each change of it is found to be.
+    #[test]
+    fn each_finding_follows_from_its_own_change_alone() {
+        let sand = soil(&[(0.2, 0.0), (0.6, 100.0)]);
+        let filter = soil(&[(1.0, 0.0), (3.0, 100.0)]);
+        let silt = soil(&[(0.05, 0.0), (0.075, 40.0), (0.15, 100.0)]);
+        let hidden = soil(&[(0.3, 25.0), (1.0, 100.0)]);
+        let till = soil(&[(0.1, 0.0), (2.0, 40.0), (19.0, 100.0)]);
+        let broad = soil(&[(0.1, 0.0), (0.2, 12.0), (1.4, 60.0), (4.0, 100.0)]);
+        let gap = soil(&[(1.0, 0.0), (1.2, 15.0), (8.0, 15.0), (20.0, 100.0)]);
+        let plan = PlannedWalk {
+            base: &sand,
+            regraded_from: None,
+            base_cu: Some([2.0, 2.0]),
+            pan_is_passive: true,
+            filter: Some(&filter),
+            filter_is_measured: true,
+            scale_free: false,
+            given_voids: None,
+            lattice: Some([10, 10, 12]),
+            layers: 12,
+            flows: false,
+            increments: 12,
+            replicates: 5,
+        };
+        let ids = |plan: &PlannedWalk| plan.findings().iter().map(Finding::id).collect::<Vec<_>>();
+        let of = |change: &dyn Fn(&mut PlannedWalk)| {
+            let mut changed = plan.clone();
+            change(&mut changed);
+            ids(&changed)
+        };
+        assert_eq!(ids(&plan), Vec::<&str>::new());
+        // Of each pair of soils: what is found in mm, and in multiples of D0F.
+        for (base, in_mm, free) in [
+            (&silt, vec!["cohesive_fines"], vec![]),
+            (&hidden, vec!["fines_not_sieved", "pan_passive"], vec!["pan_passive"]),
+            (&till, vec!["not_regraded"], vec![]),
+            (&broad, vec!["broadly_graded"], vec![]),
+        ] {
+            let plan = PlannedWalk { base, ..plan.clone() };
+            assert_eq!(ids(&plan), in_mm);
+            assert_eq!(ids(&PlannedWalk { scale_free: true, ..plan }), free);
+        }
+        assert_eq!(ids(&PlannedWalk { base: &till, regraded_from: Some(&till), ..plan.clone() }), [""; 0]);
+        let exchanged = PlannedWalk { base: &filter, filter: Some(&sand), ..plan.clone() };
+        assert_eq!(ids(&exchanged), ["doubtful_tables"]);
+        let gap_graded = PlannedWalk { filter: Some(&gap), ..plan.clone() };
+        assert_eq!(ids(&gap_graded), ["cu_unchecked", "gap_graded"]);
+        assert_eq!(ids(&PlannedWalk { filter_is_measured: false, ..gap_graded }), ["cu_unchecked"]);
+        assert_eq!(of(&|plan| plan.filter = None), ["no_filter"]);
+        assert_eq!(of(&|plan| plan.base_cu = None), ["cu_unknown"]);
+        assert_eq!(of(&|plan| plan.base_cu = Some([4.6, 4.6])), ["cu_unchecked"]);
+        assert_eq!(of(&|plan| plan.base_cu = Some([4.0, 5.0])), ["cu_in_doubt"]);
+        assert_eq!(of(&|plan| plan.given_voids = Some(7)), ["given_network"]);
+        assert_eq!(of(&|plan| plan.lattice = Some([9, 10, 12])), ["narrow_lattice"]);
+        assert_eq!(of(&|plan| plan.flows = true), ["all_on_its_way"]);
+        assert_eq!(of(&|plan| (plan.flows, plan.increments) = (true, 13)), [""; 0]);
+        assert_eq!(of(&|plan| plan.replicates = 4), ["few_replicates"]);
+        assert_eq!(of(&|plan| plan.replicates = 1), ["one_replicate"]);
+        let hidden_and_walked = PlannedWalk { base: &hidden, pan_is_passive: false, ..plan.clone() };
+        assert_eq!(ids(&hidden_and_walked), ["fines_not_sieved"]);
+    }
+}
