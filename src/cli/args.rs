@@ -219,7 +219,7 @@ pub struct TableArgs {
     /// Pack the grains of this very filter and measure its constrictions [density: loose]
     #[arg(long)]
     pub pack: bool,
-    /// A first look: four replicates, no studies of the amount of base and of the thickness
+    /// A first look: five replicates, no studies of the amount of base and of the thickness
     #[arg(long)]
     pub quick: bool,
     /// Walk the base as sampled, not as filter practice regrades it (base.regrade)

@@ -25,7 +25,7 @@ const EXAMPLES: [(&str, [Example; 2]); 19] = [
     (
         "judge",
         [
-            ["voidwalk judge base.csv filter.csv --quick", "a first look: four replicates, loose and dense"],
+            ["voidwalk judge base.csv filter.csv --quick", "a first look: five replicates, loose and dense"],
             ["voidwalk judge \"site.xlsx#Core\" \"site.xlsx#Filter A\" --pack", "the filter packed"],
         ],
     ),

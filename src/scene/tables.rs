@@ -28,7 +28,7 @@ pub struct TableOptions {
 }
 
 /// Replicates of a first look.
-const QUICK: u64 = 4;
+const QUICK: u64 = 5;
 
 /// Settings that say what the filter's constrictions are.
 const CONSTRICTIONS: [&str; 7] = [

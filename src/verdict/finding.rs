@@ -368,21 +368,21 @@ findings! {
     /// A finer part that was packed.
     part_packed(percent: Percent, largest: Mm, finer_by: Percent): Filter, Unsafe, Limits;
         "finer part", "uncertainty.md",
-        "Only the finer part of the filter is packed: {percent} of its mass, up to {largest}. Its \
-         constrictions are up to {finer_by} finer than those of the whole (measured on filters that can be \
+        "The constrictions are those of the finer part of the filter alone: {percent} of its mass, up to \
+         {largest}. They are up to {finer_by} finer than those of the whole (measured on filters that can be \
          packed whole), and both ends of that range are walked.";
     /// A finer part in which the coarse grains float.
     floating_part_packed(percent: Percent, largest: Mm, finer_by: Percent): Filter, Unsafe, Limits;
         "finer part", "uncertainty.md",
-        "Only the finer part of the filter is packed: {percent} of its mass, up to {largest}. Its \
-         constrictions are up to {finer_by} finer than those of the whole, and both ends of that range are \
+        "The constrictions are those of the finer part of the filter alone: {percent} of its mass, up to \
+         {largest}. They are up to {finer_by} finer than those of the whole, and both ends of that range are \
          walked; the coarse grains of this gap-graded filter are taken to float in it, as they do where it \
          is 35 % of the mass or more (Skempton and Brogan 1994).";
     /// A finer part between coarse grains that carry each other.
     loose_part_packed(percent: Percent, largest: Mm, finer_by: Percent): Filter, Unsafe, Limits;
         "finer part", "uncertainty.md",
-        "Only the finer part of the filter is packed: {percent} of its mass, up to {largest}. Its \
-         constrictions are up to {finer_by} finer than those of the whole, and both ends of that range are \
+        "The constrictions are those of the finer part of the filter alone: {percent} of its mass, up to \
+         {largest}. They are up to {finer_by} finer than those of the whole, and both ends of that range are \
          walked. Coarse grains float in 35 % of the mass or more (Skempton and Brogan 1994); here they carry \
          each other, the finer ones may lie loose between them, and wider constrictions than those that were \
          walked may be open.";
