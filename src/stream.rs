@@ -65,6 +65,8 @@ pub enum Purpose {
     Resampling = 11,
     /// Permutations of strata (stratified sampling).
     Strata = 12,
+    /// Which particles start an arch.
+    Arching = 13,
 }
 
 /// The full name of a stream.

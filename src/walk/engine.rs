@@ -1,8 +1,10 @@
 //! Which engine walks a run, and what that run does not need: decided here and nowhere else.
 
+use std::sync::Arc;
+
 use bitvec::slice::BitSlice;
 
-use super::{Sampling, Supply};
+use super::{Arching, Sampling, Supply};
 use crate::gradation::SizeSampler;
 use crate::network::Network;
 
@@ -77,12 +79,13 @@ const WORTH_TWICE: u128 = 13;
 /// assert_eq!(state.tally.eroded, 1_000_000_000_000);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct RunPlan {
     engine: Engine,
     passive_words: u128,
     sampling: Sampling,
     left_out: Vec<String>,
+    arching: Option<Arc<Arching>>,
 }
 
 impl RunPlan {
@@ -95,10 +98,23 @@ impl RunPlan {
         blocked: &BitSlice,
         share: u64,
     ) -> Self {
-        let limit = network.finest_open(|c| blocked[c]);
+        Self::with_arches(wanted, network, sampler, blocked, share, None)
+    }
+
+    /// The same with particles that arch by this law: only those too fine for that are passive.
+    pub fn with_arches(
+        wanted: Engine,
+        network: &Network,
+        sampler: &SizeSampler,
+        blocked: &BitSlice,
+        share: u64,
+        arching: Option<Arc<Arching>>,
+    ) -> Self {
+        let passive_limit = |finest| arching.as_ref().map_or(finest, |of| of.passive_limit(finest));
+        let limit = passive_limit(network.finest_open(|c| blocked[c]));
         let passive_words = sampler.word_limit(limit);
         // On the open network, so that all runs of a replicate have one engine.
-        let on_open = sampler.word_limit(network.finest_open(|_| false));
+        let on_open = sampler.word_limit(passive_limit(network.finest_open(|_| false)));
         let passive = Engine::passive_share(share, on_open);
         let engine = match wanted {
             wanted if wanted.takes_each(passive, network.entries() as u64) => Engine::Particles,
@@ -118,7 +134,7 @@ impl RunPlan {
                 network.entries()
             ));
         }
-        Self { engine, passive_words, sampling: Sampling::Independent, left_out }
+        Self { engine, passive_words, sampling: Sampling::Independent, left_out, arching }
     }
 
     /// This plan with start nodes and sizes drawn in this way.
@@ -138,7 +154,7 @@ impl RunPlan {
 
     /// `n` base particles in `increments` equal parts, for run `run` of `seed`.
     pub fn supply(&self, sampler: SizeSampler, n: u64, increments: u64, seed: u64, run: u64) -> Supply {
-        let all = Supply::new(sampler, n, increments);
+        let all = Supply::new(sampler, n, increments).arching_by(self.arching.clone());
         let all = match self.sampling {
             Sampling::Independent => all,
             Sampling::Stratified => all.stratified(seed, run),

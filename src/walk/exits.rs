@@ -2,7 +2,7 @@
 
 use bitvec::slice::BitSlice;
 
-use super::Isa;
+use super::{Arching, Isa};
 use crate::network::Network;
 
 /// The exits of one void, as draws see them.
@@ -189,23 +189,31 @@ pub(super) struct OpenExits<'a> {
     pub table: &'a ExitTable,
     pub blocked: &'a BitSlice,
     pub passive_limit: f32,
+    /// How particles arch; only with a table of the general form.
+    pub arching: Option<&'a Arching>,
 }
 
 impl ExitTable {
     /// The table for the constrictions that `blocked` leaves open.
     pub fn new(network: &Network, blocked: &BitSlice) -> Self {
-        let form = match network.shape() {
-            Some([nx, ny, _]) => {
-                let finest = network.finest_open(|c| blocked[c]).to_bits();
-                Form::Lattice(Lattice::new(network.voids(), nx, nx * ny, finest))
-            }
-            None => Form::General(General {
-                threshold: vec![0; network.constrictions()],
-                last_open: vec![NONE; network.voids()],
-                few: vec![FewExits::NONE; network.voids()],
-                beyond: network.targets().iter().zip(network.diameters()).map(|(&to, &d)| (to, d)).collect(),
-            }),
+        let Some([nx, ny, _]) = network.shape() else { return Self::general(network, blocked) };
+        let finest = network.finest_open(|c| blocked[c]).to_bits();
+        let form = Form::Lattice(Lattice::new(network.voids(), nx, nx * ny, finest));
+        Self::filled(network, blocked, form)
+    }
+
+    /// The same in the form that any network has.
+    pub(super) fn general(network: &Network, blocked: &BitSlice) -> Self {
+        let general = General {
+            threshold: vec![0; network.constrictions()],
+            last_open: vec![NONE; network.voids()],
+            few: vec![FewExits::NONE; network.voids()],
+            beyond: network.targets().iter().zip(network.diameters()).map(|(&to, &d)| (to, d)).collect(),
         };
+        Self::filled(network, blocked, Form::General(general))
+    }
+
+    fn filled(network: &Network, blocked: &BitSlice, form: Form) -> Self {
         let mut table = Self { form, isa: Isa::chosen(), upstream: network.upstream() };
         let voids = 0..network.voids() as u32;
         of_each(network, blocked, voids, |exits| table.set(network, blocked, exits));

@@ -28,6 +28,8 @@ pub(super) struct Events {
     eroded_count: u64,
     /// Constriction and diameter of the particles that were stopped, in particle order.
     pub stopped: Vec<(u32, f32)>,
+    /// Particles among those stopped that are in arches, arches, and the mass in them.
+    pub arched: (u64, u64, f64),
     /// Void and diameter of the particles without open exit, in particle order.
     pub stranded: Vec<(u32, f32)>,
     /// Particles that wait for the flow to find another way.
@@ -50,6 +52,7 @@ impl Events {
         self.waiting = 0;
         self.eroded_count = 0;
         self.stopped.clear();
+        self.arched = (0, 0, 0.0);
         self.stranded.clear();
     }
 
@@ -116,6 +119,10 @@ pub(super) fn merge(
             tally.eroded += gone[0];
             tally.retained_in_constrictions += gone[1];
             tally.retained_in_voids += gone[2];
+            let (particles, arches, mass) = events.arched;
+            tally.retained_in_arches += particles;
+            tally.arches += arches;
+            tally.arched_mass += mass;
             tally.moving -= gone.iter().sum::<u64>();
             tally.passive_eroded += events.passive_eroded;
             tally.eroded_mass += events.eroded_mass;

@@ -30,6 +30,9 @@
 //! `floor(2^64 c_e / c)` exceeds the 64-bit draw, else the last open exit. A closed exit has exactly
 //! no width.
 //!
+//! # Arches
+//! A particle that fits may jam with others (module `arching`) where a law of that is asked for.
+//!
 //! # The end
 //! A run ends when nothing moves, or when every moving particle is *trapped*: x and y are periodic, so
 //! a particle can move in closed loops for good (module `trapped`).
@@ -45,6 +48,7 @@
 //! The columns of the particles take 8 bytes each. [`State::placed`] puts them into mapped files where they
 //! would not fit; the kernels see slices either way, and the bits are the same.
 
+mod arching;
 mod bits;
 mod chunks;
 mod counts;
@@ -68,6 +72,7 @@ mod tally;
 mod threads;
 mod trapped;
 
+pub use arching::{Arching, LAWS, Law};
 pub use bits::{from_words, to_words};
 pub use counts::{Counted, Expected, ExpectedSums, Passive};
 pub use directions::FlowRecord;
@@ -150,9 +155,12 @@ impl<'a> Walk<'a> {
                 Err(error) => no_flow = Some(error),
             }
         }
-        let table = ExitTable::new(&network, &state.blocked);
-        let (trap, passive) =
-            (trapped::Search::new(&network), counts::PassiveWalk::new(&network, supply, state));
+        let table = match supply.arching() {
+            None => ExitTable::new(&network, &state.blocked),
+            Some(_) => ExitTable::general(&network, &state.blocked),
+        };
+        let trap = trapped::Search::new(&network, supply.arching());
+        let passive = counts::PassiveWalk::new(&network, supply, state);
         Self {
             network,
             directions,
@@ -220,7 +228,8 @@ impl<'a> Walk<'a> {
             if let Some(passive) = &mut self.passive {
                 passive.forget_trap();
             }
-            (self.trap, self.all_caught) = (trapped::Search::new(&self.network), false);
+            self.trap = trapped::Search::new(&self.network, self.supply.arching());
+            self.all_caught = false;
         }
         Ok(())
     }

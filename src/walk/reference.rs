@@ -5,7 +5,7 @@
 //! strata and the streams.
 
 use std::borrow::Cow;
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 use bitvec::vec::BitVec;
 
@@ -40,6 +40,8 @@ pub struct Reference<'a> {
     pub eroded: Vec<Particle>,
     /// Particles stopped by a constriction, with that constriction.
     pub stopped: Vec<(Particle, usize)>,
+    /// How many of them stay in arches.
+    pub arched: u64,
     /// Particles in voids without open exits.
     pub stranded: Vec<Particle>,
     /// Particles trapped in closed loops.
@@ -65,6 +67,7 @@ impl<'a> Reference<'a> {
             moving: vec![],
             eroded: vec![],
             stopped: vec![],
+            arched: 0,
             stranded: vec![],
             trapped: vec![],
             blocked,
@@ -85,6 +88,7 @@ impl<'a> Reference<'a> {
         self.insert();
         let mut newly_blocked = BTreeSet::new();
         let mut still_moving = vec![];
+        let mut begun = HashMap::new();
         let mut place_in_chunk = vec![0u64; 1 + self.supply.total() as usize / CHUNK];
         for particle in std::mem::take(&mut self.moving) {
             let place = &mut place_in_chunk[particle.rank as usize / CHUNK];
@@ -97,9 +101,17 @@ impl<'a> Reference<'a> {
                 }
                 continue;
             };
-            if particle.diameter > self.network.diameters()[exit] {
+            let width = self.network.diameters()[exit];
+            if particle.diameter > width {
                 newly_blocked.insert(exit);
                 self.stopped.push((particle, exit));
+                continue;
+            }
+            let chunk = particle.rank / CHUNK as u64;
+            if self.arches(chunk, *place - 1, exit, particle.diameter, &mut begun) {
+                newly_blocked.insert(exit);
+                self.stopped.push((particle, exit));
+                self.arched += 1;
                 continue;
             }
             self.particle_moves += 1;
@@ -140,6 +152,34 @@ impl<'a> Reference<'a> {
         } else {
             (flow, solved_at, blocked_then)
         });
+    }
+
+    /// Whether the particle at `place` of its chunk stays in an arch: the first by the law, and those that
+    /// follow it as far as the arch has room. `begun`: by chunk and exit, the room that is left.
+    fn arches(
+        &self,
+        chunk: u64,
+        place: u64,
+        exit: usize,
+        diameter: f32,
+        begun: &mut HashMap<(u64, usize), u32>,
+    ) -> bool {
+        let Some(arching) = self.supply.arching() else { return false };
+        let ratio = f64::from(self.network.diameters()[exit]) / f64::from(diameter);
+        if ratio >= arching.widest() {
+            return false;
+        }
+        if let Some(room) = begun.get_mut(&(chunk, exit)) {
+            let joins = *room > 0;
+            *room = room.saturating_sub(1);
+            return joins;
+        }
+        let word = self.key(Purpose::Arching, chunk).words().at(place);
+        let starts = ((word >> 16) as f64) < arching.by_table(ratio) * 2f64.powi(48);
+        if starts {
+            begun.insert((chunk, exit), (ratio * ratio + 1.0).round().max(2.0) as u32 - 1);
+        }
+        starts
     }
 
     /// Whether water left a void when the flow was solved, so that its particles wait for another way.
@@ -225,7 +265,9 @@ impl<'a> Reference<'a> {
                 return false;
             }
             for exit in open {
-                if particle.diameter > self.network.diameters()[exit] || self.network.targets()[exit] == END {
+                let stops = self.supply.arching().map_or(1.0, |arching| arching.widest());
+                let width = f64::from(self.network.diameters()[exit]);
+                if stops * f64::from(particle.diameter) > width || self.network.targets()[exit] == END {
                     return false;
                 }
                 if seen.insert(self.network.targets()[exit]) {

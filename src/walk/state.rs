@@ -58,8 +58,8 @@ pub struct State {
     pub increment: u64,
     /// Whether the run has ended.
     pub finished: bool,
-    /// The finest constriction open when the run began: no particle up to this diameter, called
-    /// *passive*, can be stopped by a constriction in this run.
+    /// The finest constriction open when the run began, or less where particles arch: no particle up to this
+    /// diameter, called *passive*, can be stopped by a constriction in this run.
     pub passive_limit: f32,
     /// The moving base particles that are walked one by one.
     pub particles: Particles,
@@ -129,7 +129,7 @@ impl State {
             run,
             increment: 0,
             finished: false,
-            passive_limit: network.finest_open(|c| blocked[c]),
+            passive_limit: supply.passive_limit(network.finest_open(|c| blocked[c])),
             particles: Particles {
                 void: Column::zeroed(chunks * CHUNK, placement)?,
                 diameter,

@@ -1,5 +1,8 @@
 //! What a run inserts: how many base particles in each increment, and of what sizes.
 
+use std::sync::Arc;
+
+use super::Arching;
 use super::counts::{Passive, coarse_share};
 use super::strata::{self, IncrementStrata, Strata};
 use crate::gradation::SizeSampler;
@@ -20,6 +23,8 @@ pub struct Supply {
     passive: PassiveSupply,
     /// What start nodes and sizes are spread over, where they are not independent.
     strata: Option<Strata>,
+    /// How its particles arch, where they do.
+    arching: Option<Arc<Arching>>,
 }
 
 /// The passive particles of a run that are not walked one by one.
@@ -38,7 +43,29 @@ impl Supply {
     pub fn new(sampler: SizeSampler, n: u64, increments: u64) -> Self {
         let part = |t: u64| (u128::from(n) * u128::from(t) / u128::from(increments)) as u64;
         let inserted = (1..=increments).map(part).collect();
-        Self { sampler, first_word: 0, inserted, passive: PassiveSupply::default(), strata: None }
+        Self {
+            sampler,
+            first_word: 0,
+            inserted,
+            passive: PassiveSupply::default(),
+            strata: None,
+            arching: None,
+        }
+    }
+
+    /// This supply with particles that arch by this law.
+    pub fn arching_by(self, arching: Option<Arc<Arching>>) -> Self {
+        Self { arching, ..self }
+    }
+
+    /// How its particles arch; `None` where they do not.
+    pub fn arching(&self) -> Option<&Arching> {
+        self.arching.as_deref()
+    }
+
+    /// Size up to which its particles are passive where this is the finest open constriction.
+    pub(super) fn passive_limit(&self, finest: f32) -> f32 {
+        self.arching().map_or(finest, |arching| arching.passive_limit(finest))
     }
 
     /// This supply with start nodes and sizes spread evenly (module `strata`), for run `run` of `seed`. To be
@@ -66,7 +93,8 @@ impl Supply {
         };
         let parts = Self::coarse_part(self.sampler.clone(), passive_words as u64, &coarse);
         let inserted = self.inserted.iter().zip(&parts.inserted).map(|(all, coarse)| all - coarse).collect();
-        let parts = Self { passive: PassiveSupply { inserted, words: passive_words, expected }, ..parts };
+        let passive = PassiveSupply { inserted, words: passive_words, expected };
+        let parts = Self { passive, arching: self.arching, ..parts };
         match self.strata {
             None => parts,
             Some(_) => parts.stratified(seed, run),
@@ -81,7 +109,7 @@ impl Supply {
             Some(*sum)
         });
         let inserted = running.collect();
-        Self { sampler, first_word, inserted, passive: PassiveSupply::default(), strata: None }
+        Self { sampler, first_word, inserted, passive: PassiveSupply::default(), strata: None, arching: None }
     }
 
     /// Number of increments after which everything is inserted.

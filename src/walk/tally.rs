@@ -14,6 +14,15 @@ pub struct Tally {
     pub eroded: u64,
     /// Base particles stopped by a constriction.
     pub retained_in_constrictions: u64,
+    /// Those of them that are in arches.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub retained_in_arches: u64,
+    /// Arches.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub arches: u64,
+    /// Mass in arches.
+    #[serde(default, skip_serializing_if = "no_mass")]
+    pub arched_mass: f64,
     /// Base particles in voids without open exits.
     pub retained_in_voids: u64,
     /// Base particles trapped in closed loops.
@@ -32,6 +41,14 @@ pub struct Tally {
     pub passive_eroded: u64,
     /// Diameter of the largest eroded particle; 0 where none is.
     pub largest_eroded: f32,
+}
+
+fn is_zero(number: &u64) -> bool {
+    *number == 0
+}
+
+fn no_mass(mass: &f64) -> bool {
+    *mass == 0.0
 }
 
 impl Tally {

@@ -1,7 +1,8 @@
 //! Trapped particles, found exactly.
 //!
 //! A moving particle is trapped when, through open constrictions that it fits, it can reach no end, no
-//! open constriction finer than it (that would stop it) and no void without open exits. When every
+//! open constriction finer than it or so fine that it may arch there (either would stop it), and no void
+//! without open exits. When every
 //! moving particle is trapped nothing can change any more, so the run ends there, not at a limit of steps.
 //!
 //! One particle that is not trapped is enough to go on. The way out that was found for it is remembered
@@ -9,7 +10,7 @@
 
 use std::collections::HashSet;
 
-use super::State;
+use super::{Arching, State};
 use crate::network::{END, Network};
 
 /// A search that remembers the last way out.
@@ -26,10 +27,12 @@ pub(super) struct Search {
     known: Option<(usize, u32)>,
     /// Chunk in which the last particle that is not trapped was found.
     hint: usize,
+    /// A constriction may stop particles down to its size by this.
+    stops_from: f64,
 }
 
 impl Search {
-    pub fn new(network: &Network) -> Self {
+    pub fn new(network: &Network, arching: Option<&Arching>) -> Self {
         let voids = network.voids();
         Self {
             seen: vec![0; voids],
@@ -39,6 +42,7 @@ impl Search {
             way_out: vec![false; voids],
             known: None,
             hint: 0,
+            stops_from: arching.map_or(1.0, Arching::widest),
         }
     }
 
@@ -84,7 +88,8 @@ impl Search {
             for exit in network.exits(void).filter(|&c| !state.is_closed(network, c)) {
                 closed = false;
                 let target = network.targets()[exit];
-                if network.diameters()[exit] < diameter || target == END {
+                let stops = f64::from(network.diameters()[exit]) < self.stops_from * f64::from(diameter);
+                if stops || target == END {
                     leads_out = true;
                     break;
                 }

@@ -37,7 +37,8 @@ fn of_a_broad_filter_the_finer_part_is_packed_and_its_error_is_in_the_verdict() 
     let (_root, at) = with_scene(&format!("[filter]\nsieve = \"gap.csv\"\ndensity = \"loose\"\n{FEW}"));
     let check = call(&at, &["check", "s.toml"]);
     done(&check);
-    let said = "The constrictions are those of the finer part of the filter alone: 40 % of its mass, up to 1.5 mm";
+    let said =
+        "The constrictions are those of the finer part of the filter alone: 40 % of its mass, up to 1.5 mm";
     assert!(String::from_utf8_lossy(&check.stdout).contains(said));
     let run = call(&at, &["run", "s.toml", "--out", "r1"]);
     done(&run);

@@ -1,5 +1,6 @@
 //! The model itself: gradations, packings, engines and walks against exact answers, slow twins and each other.
 
+mod arches;
 mod counts;
 mod counts_distribution;
 mod coverage;

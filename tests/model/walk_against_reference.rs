@@ -1,11 +1,13 @@
 //! The kernel against the slow reference, particle by particle, on many small networks.
 
+use std::sync::Arc;
+
 use bitvec::vec::BitVec;
 use proptest::prelude::*;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::{ExitRule, Link, LinkEnd, LinkedVoids, Network};
 use voidwalk::walk::reference::Reference;
-use voidwalk::walk::{CHUNK, SizeClasses, State, Supply, Walk};
+use voidwalk::walk::{Arching, CHUNK, LAWS, SizeClasses, State, Supply, Walk};
 
 /// Diameters from a small set, so that ties, closed constrictions and blocking are frequent.
 fn diameters(count: usize, palette: &[f32], mut seed: u64) -> Vec<f32> {
@@ -56,6 +58,7 @@ fn compare(network: &Network, supply: &Supply, blocked: &[bool], seed: u64, run:
         assert_eq!(tally.moving, reference.moving.len() as u64);
         assert_eq!(tally.eroded, reference.eroded.len() as u64);
         assert_eq!(tally.retained_in_constrictions, reference.stopped.len() as u64);
+        assert_eq!(tally.retained_in_arches, reference.arched);
         assert_eq!(tally.retained_in_voids, reference.stranded.len() as u64);
         assert_eq!(tally.trapped, reference.trapped.len() as u64);
         assert_eq!(tally.particle_moves, reference.particle_moves);
@@ -85,6 +88,11 @@ fn compare(network: &Network, supply: &Supply, blocked: &[bool], seed: u64, run:
     reference.blocked
 }
 
+/// No arches in half of the cases, else one of the laws.
+fn law() -> impl Strategy<Value = Option<Arc<Arching>>> {
+    (0..2 * LAWS.len()).prop_map(|k| LAWS.get(k).map(|law| Arc::new(Arching::new(law, 0.3))))
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(250))]
 
@@ -103,6 +111,7 @@ proptest! {
         n in 1u64..800,
         increments in 1u64..40,
         evenly: bool,
+        law in law(),
         seed: u64,
     ) {
         let count = 3 * shape.iter().product::<u32>() as usize;
@@ -110,7 +119,7 @@ proptest! {
         let base = if cu == 1.0 { Gradation::single(1.0) } else { Gradation::linear_from_d0(0.7, cu) };
         let sampler = SizeSampler::new(&base.unwrap(), 1.0).unwrap();
         let supply = |run| {
-            let independent = Supply::new(sampler.clone(), n, increments);
+            let independent = Supply::new(sampler.clone(), n, increments).arching_by(law.clone());
             if evenly { independent.stratified(seed, run) } else { independent }
         };
         for network in [&network, &as_general(&network)] {
@@ -124,6 +133,7 @@ proptest! {
     fn general_networks_agree_with_the_reference(
         edges in prop::collection::vec((0u32..8, 0u32..9, 0usize..4), 1..30),
         n in 1u64..400,
+        law in law(),
         seed: u64,
     ) {
         let mut text = String::from("from,to,diameter_mm\nstart,0,\n");
@@ -137,7 +147,7 @@ proptest! {
         }
         let network = Network::from_csv(text.as_bytes(), "graph.csv", 1.0).unwrap();
         let base = Gradation::linear_from_d0(0.7, 1.6).unwrap();
-        let supply = Supply::new(SizeSampler::new(&base, 1.0).unwrap(), n, 10);
+        let supply = Supply::new(SizeSampler::new(&base, 1.0).unwrap(), n, 10).arching_by(law);
         compare(&network, &supply, &vec![false; network.constrictions()], seed, 1);
     }
 }
@@ -173,12 +183,13 @@ proptest! {
         links in prop::collection::vec((0u32..12, 0u32..12, 0usize..4, 0usize..4), 12..60),
         n in 1u64..600,
         increments in 1u64..20,
+        law in law(),
         seed: u64,
     ) {
         let Some(network) = linked(rule, rho, 10, &links) else { return Ok(()) };
         let base = Gradation::linear_from_d0(0.4, 2.6).unwrap();
         let sampler = SizeSampler::new(&base, 1.0).unwrap();
-        let supply = Supply::new(sampler, n, increments);
+        let supply = Supply::new(sampler, n, increments).arching_by(law);
         let blocked = compare(&network, &supply, &vec![false; network.constrictions()], seed, 1);
         compare(&network, &supply, &blocked, seed, 2);
     }

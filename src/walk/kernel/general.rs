@@ -1,18 +1,84 @@
 //! The step on any network: exits and targets by look-up.
 
+use std::collections::HashMap;
+
 use crate::network::{END, Network};
-use crate::stream::{DRAWS_PER_BLOCK, Extension, Key, draw16};
+use crate::stream::{DRAWS_PER_BLOCK, Extension, Key, Purpose, Words, draw16};
+use crate::walk::Arching;
 use crate::walk::exits::{General, NONE, WAIT};
 use crate::walk::merge::Events;
+use crate::walk::sizes::cube;
 
-/// Moves the particles of one chunk; returns how many still move.
+/// Moves the particles of one chunk, which may arch; returns how many still move.
 pub(super) fn step(
+    network: &Network,
+    table: &General,
+    arching: Option<&Arching>,
+    key: Key,
+    void: &mut [u32],
+    diameter: &mut [f32],
+    events: &mut Events,
+) -> usize {
+    match arching {
+        None => step_all(network, table, key, void, diameter, events, |_, _, _, _, _| false),
+        Some(arching) => {
+            let mut arches = Arches::new(arching, key);
+            step_all(network, table, key, void, diameter, events, |j, exit, width, d, events| {
+                arches.stop(j, exit, width, d, events)
+            })
+        }
+    }
+}
+
+/// The arches of one chunk in one increment.
+struct Arches<'a> {
+    arching: &'a Arching,
+    words: Words,
+    /// Constrictions in which an arch has begun, and how many more particles it takes.
+    begun: HashMap<u32, u32>,
+}
+
+impl<'a> Arches<'a> {
+    fn new(arching: &'a Arching, key: Key) -> Self {
+        let words = Key { purpose: Purpose::Arching, ..key }.words();
+        Self { arching, words, begun: HashMap::new() }
+    }
+
+    /// Whether the particle at `place`, which fits through this exit, stays in an arch there; it is then
+    /// counted.
+    #[inline]
+    fn stop(&mut self, place: usize, exit: u32, width: f32, d: f32, events: &mut Events) -> bool {
+        self.arching.may(width, d) && self.joins(place, exit, width, d, events)
+    }
+
+    fn joins(&mut self, place: usize, exit: u32, width: f32, d: f32, events: &mut Events) -> bool {
+        match self.begun.get_mut(&exit) {
+            Some(0) => return false,
+            Some(left) => *left -= 1,
+            None => match self.arching.begun(width, d, self.words.at(place as u64)) {
+                None => return false,
+                Some(particles) => {
+                    self.begun.insert(exit, particles - 1);
+                    events.arched.1 += 1;
+                }
+            },
+        }
+        events.arched.0 += 1;
+        events.arched.2 += cube(d);
+        true
+    }
+}
+
+/// The step, with what may stop a particle that fits: by place in the chunk, exit, its width, and size.
+#[inline(always)]
+fn step_all(
     network: &Network,
     table: &General,
     key: Key,
     void: &mut [u32],
     diameter: &mut [f32],
     events: &mut Events,
+    mut is_stopped: impl FnMut(usize, u32, f32, f32, &mut Events) -> bool,
 ) -> usize {
     let mut lanes = key.lanes();
     let extension = lanes.extension();
@@ -48,7 +114,7 @@ pub(super) fn step(
                 }
             };
             let (target, width) = table.beyond[exit as usize];
-            if d > width {
+            if d > width || is_stopped(j, exit, width, d, events) {
                 events.stopped.push((exit, d));
                 continue;
             }

@@ -40,7 +40,13 @@ pub(super) fn step(
         chunk: 0,
     };
     let insertion = Insertion::new(network, supply, table.isa(), state);
-    let exits = OpenExits { network, table, blocked: &state.blocked, passive_limit: state.passive_limit };
+    let exits = OpenExits {
+        network,
+        table,
+        blocked: &state.blocked,
+        passive_limit: state.passive_limit,
+        arching: supply.arching(),
+    };
     let classes = &state.classes;
     let moving: u64 = state.particles.live.iter().map(|&live| u64::from(live)).sum();
     let effort = moving + INSERTED * insertion.share() + EMPTY_CHUNK * events.len() as u64;
@@ -84,7 +90,9 @@ fn step_chunk(
             let chunk = LatticeChunk { exits, table, lanes: key.lanes(), void, diameter, events };
             if classed { step_lattice::<true>(chunk, isa) } else { step_lattice::<false>(chunk, isa) }
         }
-        Form::General(table) => general::step(exits.network, table, key, void, diameter, events),
+        Form::General(table) => {
+            general::step(exits.network, table, exits.arching, key, void, diameter, events)
+        }
     }
 }
 

@@ -1,0 +1,241 @@
+//! Arches: a particle that fits through a constriction may jam in it together with others that arrive.
+//!
+//! # What is decided
+//! A particle that would pass a constriction of `R` times its size (diameter by diameter) starts an arch with
+//! the probability that a [`Law`] gives. It stays, and with it as many more of those that follow it through
+//! this constriction in the same increment as an arch of this `R` has, as far as they come: particles of the
+//! same chunk, which were inserted together. The constriction closes from the next increment on, as one that
+//! a coarser particle blocked. Particles so fine that the law gives no arch pass, and are none of an arch.
+//!
+//! Decisions are independent of each other and made on the open set at the start of the increment, so the
+//! order of chunks and threads plays no part. The particle at place `j` of chunk `c` takes word `j` of the
+//! stream (seed, arching, run, increment, `c`).
+//!
+//! # Passive particles
+//! A particle is passive that can neither block nor arch: no coarser than the finest open constriction by
+//! [`Arching::widest`].
+
+use libm::{exp, lgamma, log, pow};
+
+/// A published law of clogging.
+///
+/// The laws are data: what the walk reads is a table of each over `R` ([`Arching`]).
+#[derive(Debug)]
+pub struct Law {
+    /// Its name in a scene.
+    pub name: &'static str,
+    /// Where it was published.
+    pub source: &'static str,
+    /// What of that source could be read, and what was taken besides.
+    pub basis: &'static str,
+    /// `R` from which nothing arches.
+    pub widest: f64,
+    /// Whether the probability depends on how densely the base arrives; the others hold for dense flow.
+    pub of_concentration: bool,
+    probability: fn(f64, f64) -> f64,
+}
+
+/// All laws, in the order in which a user is told of them.
+pub static LAWS: [Law; 3] = [
+    Law {
+        name: "zuriguel-2005",
+        source: "Zuriguel, Garcimartin, Maza, Pugnaloni and Pastor 2005, Physical Review E 71, 051303",
+        basis: "Discharge of dry spheres, dense, through a circular hole: on average A / (4.94 - R)^6.9 grains \
+                pass before a jam, A = 9900. The constants were read in a later review, not in the article; \
+                that a jam comes after so many grains, each with the same probability, is taken from its \
+                abstract. Nothing dilutes it, so it is the most that a dense front of base can do.",
+        widest: 4.94,
+        of_concentration: false,
+        probability: zuriguel,
+    },
+    Law {
+        name: "marin-2018",
+        source: "Marin, Lhuissier, Rossi and Kaehler 2018, Physical Review E 97, 021102 (arXiv 1711.06119)",
+        basis: "Suspensions arch for R < 3, where enough particles are at the neck at once. Read in the \
+                abstract; that an arch needs R^2 + 1 particles was read in a later review. That their number \
+                at the neck is Poisson, with the concentration times the volume of a neck as long as it is \
+                wide for its mean, is an assumption of this program.",
+        widest: 3.0,
+        of_concentration: true,
+        probability: at_the_neck,
+    },
+    Law {
+        name: "critical-3",
+        source: "after Marin, Lhuissier, Rossi and Kaehler 2018, Physical Review E 97, 021102",
+        basis: "Every particle with R < 3 starts an arch: the most that arches can do in a suspension. It \
+                retains as sieving with particles three times as large, by which a walk is checked.",
+        widest: 3.0,
+        of_concentration: false,
+        probability: |_, _| 1.0,
+    },
+];
+
+impl Law {
+    /// The law of this name.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        LAWS.iter().find(|law| law.name == name)
+    }
+
+    /// Probability that a particle starts an arch in a constriction `ratio` times its size, where the base
+    /// arrives with this concentration (volume of particles by volume of voids); 0 from the widest on.
+    ///
+    /// ```
+    /// use voidwalk::walk::Law;
+    ///
+    /// let law = Law::named("zuriguel-2005").unwrap();
+    /// // 9900 / 2.94^6.9 = 5.80 grains pass on average.
+    /// assert!((law.probability(2.0, 0.6) - 1.0 / 6.80).abs() < 1e-3);
+    /// assert_eq!(law.probability(4.94, 0.6), 0.0);
+    /// ```
+    pub fn probability(&self, ratio: f64, concentration: f64) -> f64 {
+        if ratio >= self.widest { 0.0 } else { (self.probability)(ratio.max(1.0), concentration) }
+    }
+}
+
+/// One in as many as pass before a jam, and the one that jams.
+fn zuriguel(ratio: f64, _: f64) -> f64 {
+    1.0 / (1.0 + 9900.0 / pow(4.94 - ratio, 6.9))
+}
+
+/// The probability of the others of an arch being in a neck as long as it is wide, beside this particle.
+fn at_the_neck(ratio: f64, concentration: f64) -> f64 {
+    // pi / 4 D^2 D by pi / 6 d^3.
+    let mean = 1.5 * ratio * ratio * ratio * concentration;
+    let others = in_arch(ratio) - 1;
+    if mean <= 0.0 {
+        return 0.0;
+    }
+    let of = |k: u32| exp(f64::from(k) * log(mean) - mean - lgamma(f64::from(k) + 1.0));
+    (1.0 - (0..others).map(of).sum::<f64>()).max(0.0)
+}
+
+/// Particles of an arch over a constriction `ratio` times their size: R^2 + 1, at least 2.
+pub fn in_arch(ratio: f64) -> u32 {
+    (ratio * ratio + 1.0).round().max(2.0) as u32
+}
+
+/// Steps of the table of a law.
+const STEPS: usize = 1 << 14;
+
+/// Bits of a draw that decide.
+const BITS: u32 = 48;
+
+/// A law as a walk reads it, at one concentration.
+#[derive(Clone, Debug)]
+pub struct Arching {
+    law: &'static Law,
+    concentration: f64,
+    /// Probability at equal steps of `R` from 1 to the widest; the last is that just below the widest.
+    table: Vec<f64>,
+}
+
+impl Arching {
+    /// A law at this concentration (volume of particles by volume of voids).
+    pub fn new(law: &'static Law, concentration: f64) -> Self {
+        let step = (law.widest - 1.0) / STEPS as f64;
+        let at = |k: usize| {
+            // At the widest itself the law says nothing: its table ends with what it comes to there.
+            let ratio = 1.0 + step * k as f64;
+            (law.probability)(ratio.min(law.widest * (1.0 - 1e-12)), concentration)
+        };
+        Self { law, concentration, table: (0..=STEPS).map(at).collect() }
+    }
+
+    /// The law.
+    pub fn law(&self) -> &'static Law {
+        self.law
+    }
+
+    /// How densely the base arrives: volume of particles by volume of voids.
+    pub fn concentration(&self) -> f64 {
+        self.concentration
+    }
+
+    /// `R` from which nothing arches.
+    pub fn widest(&self) -> f64 {
+        self.law.widest
+    }
+
+    /// The size up to which particles can neither block nor arch where this is the finest open constriction.
+    pub fn passive_limit(&self, finest: f32) -> f32 {
+        // A little finer, so that rounding gives no particle an arch that the limit calls passive.
+        (f64::from(finest) / self.law.widest * (1.0 - 1e-6)) as f32
+    }
+
+    /// Whether a particle of this size may arch in this constriction, which it fits.
+    #[inline]
+    pub(super) fn may(&self, width: f32, diameter: f32) -> bool {
+        f64::from(width) < self.law.widest * f64::from(diameter)
+    }
+
+    /// Particles of the arch that a particle of this size starts in this constriction by this word; `None`
+    /// where it starts none.
+    #[inline]
+    pub(super) fn begun(&self, width: f32, diameter: f32, word: u64) -> Option<u32> {
+        let ratio = f64::from(width) / f64::from(diameter);
+        let draw = (word >> (64 - BITS)) as f64 / (1u64 << BITS) as f64;
+        (draw < self.by_table(ratio)).then(|| in_arch(ratio))
+    }
+
+    /// The probability by the table: the law's at its steps, and between them by a straight line.
+    pub(super) fn by_table(&self, ratio: f64) -> f64 {
+        let place = ((ratio - 1.0) / (self.law.widest - 1.0)).clamp(0.0, 1.0) * STEPS as f64;
+        let step = (place as usize).min(STEPS - 1);
+        let [low, high] = [self.table[step], self.table[step + 1]];
+        low + (place - step as f64) * (high - low)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_is_its_law() {
+        for law in &LAWS {
+            for concentration in [0.01, 0.2, 0.6] {
+                let arching = Arching::new(law, concentration);
+                for k in 0..1000 {
+                    let ratio = 1.0 + (law.widest - 1.0) * (f64::from(k) + 0.37) / 1000.0;
+                    let (table, whole) = (arching.by_table(ratio), law.probability(ratio, concentration));
+                    // The number of an arch is whole, so that one law has steps.
+                    let steps = in_arch(ratio - 3e-4) != in_arch(ratio + 3e-4);
+                    let near = (table - whole).abs() < 1e-6 || (steps && law.of_concentration);
+                    assert!(near && (0.0..=1.0).contains(&table), "{} {ratio}: {table} {whole}", law.name);
+                }
+                assert_eq!(law.probability(law.widest, concentration), 0.0);
+            }
+        }
+    }
+
+    /// Numbers that follow from the constants of the review, by hand: 9900 / 3.94^6.9 = 0.7704,
+    /// 9900 / 3.44^6.9 = 1.965, 9900 / 1.94^6.9 = 102.3.
+    #[test]
+    fn dense_discharge_is_as_published() {
+        let law = Law::named("zuriguel-2005").unwrap();
+        for (ratio, passed) in [(1.0, 0.7704), (1.5, 1.965), (3.0, 102.3)] {
+            let probability = law.probability(ratio, 0.0);
+            assert!(((1.0 / probability - 1.0) / passed - 1.0).abs() < 1e-3, "{ratio}: {probability}");
+        }
+    }
+
+    /// By hand: R = 2 needs 5, so four others; 0.2 * 1.5 * 8 = 2.4 are there on average, and four or more
+    /// with 1 - e^-2.4 (1 + 2.4 + 2.88 + 2.304) = 0.2213.
+    #[test]
+    fn a_suspension_needs_enough_at_the_neck() {
+        let law = Law::named("marin-2018").unwrap();
+        assert!((law.probability(2.0, 0.2) - 0.2213).abs() < 1e-4);
+        assert_eq!(law.probability(2.0, 0.0), 0.0);
+        assert!(law.probability(1.5, 0.02) < 0.01 && law.probability(2.9, 0.6) > 0.9);
+    }
+
+    #[test]
+    fn a_passive_particle_never_arches() {
+        let arching = Arching::new(Law::named("critical-3").unwrap(), 0.0);
+        for finest in [0.1f32, 0.333_333_34, 0.7, 1e-3] {
+            let limit = arching.passive_limit(finest);
+            assert!(!arching.may(finest, limit) && arching.may(finest, limit * 1.000_01), "{finest}");
+        }
+        assert_eq!(arching.passive_limit(f32::INFINITY), f32::INFINITY);
+    }
+}
