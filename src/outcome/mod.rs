@@ -43,6 +43,7 @@ pub mod percolation;
 pub mod precision;
 pub mod record;
 mod recorder;
+mod rule_note;
 pub mod rules;
 pub mod so_far;
 mod statistic;

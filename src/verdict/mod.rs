@@ -4,6 +4,7 @@
 //!   function of its name that reports it. A translation is another table of sentences.
 //! - [`judge()`] takes class, rules and findings, and gives the answer with its label and ordered findings.
 //! - [`practice`] is what the rules of filter practice say of a pair.
+//! - `rule_notes` has the words of what those rules say beside their results.
 //! - [`walks`] is what walks say themselves, [`beside`] what their results say beside the verdict.
 //! - [`design_answer()`] is how coarse a filter may be, and [`Band`] the band of a specification.
 //! - [`PairRules`] are two soils as practice sees them, without a walk.
@@ -19,6 +20,7 @@ pub mod finding;
 mod pair;
 pub mod practice;
 mod quantity;
+mod rule_notes;
 mod thickness;
 pub mod walks;
 pub mod words;

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use folder::Plan;
 use tempfile::TempDir;
-use voidwalk::outcome::record::{Outcome, RuleQuantity, Statistic, Verdict};
+use voidwalk::outcome::record::{Outcome, RuleQuantity, RuleText, Statistic, Verdict};
 use voidwalk::report::{self, ReportError};
 
 /// Writes a folder and its report; the page, the figures, and the folder that holds them.
@@ -398,7 +398,7 @@ fn a_rule_says_what_it_is_for_and_what_it_needs() {
     let mut plan = Plan::usual();
     plan.outcome.rules[0].value = None;
     plan.outcome.rules[0].met = None;
-    plan.outcome.rules[0].note = "needs the filter's <sieve> curve".into();
+    plan.outcome.rules[0].note = RuleText::Said("needs the filter's <sieve> curve".into());
     plan.outcome.rules[1].at_least = true;
     plan.outcome.rules[2].limit = None;
     let (page, ..) = made(&plan);

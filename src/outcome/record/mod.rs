@@ -40,6 +40,7 @@ pub use voids::{BlockedRow, ConstrictionRow, RetainedRow, VoidRow};
 
 pub use super::applied::{AppliedRule, Confidence, RuleQuantity, RuleRole};
 pub use super::pan::{PanBounds, PanReading, PanSize};
+pub use super::rule_note::{RuleNote, RuleText};
 
 /// The whole of `outcome.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
