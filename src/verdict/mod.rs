@@ -4,6 +4,7 @@
 //!   function of its name that reports it. A translation is another table of sentences.
 //! - [`judge()`] takes class, rules and findings, and gives the answer with its label and ordered findings.
 //! - [`practice`] is what the rules of filter practice say of a pair.
+//! - [`left_out`] has the words of what the model does not contain and of what a scene does not need.
 //! - `rule_notes` has the words of what those rules say beside their results.
 //! - [`walks`] is what walks say themselves, [`beside`] what their results say beside the verdict.
 //! - [`design_answer()`] is how coarse a filter may be, and [`Band`] the band of a specification.
@@ -17,6 +18,7 @@ mod design;
 mod entry;
 pub mod evidence;
 pub mod finding;
+pub mod left_out;
 mod pair;
 pub mod practice;
 mod quantity;

@@ -4,6 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use super::quantity::{fixed, given};
 use crate::outcome::record::{RuleNote, RuleText};
 
 impl RuleNote {
@@ -101,24 +102,6 @@ impl RuleNote {
             Self::UniformFilter => "the filter is neither broadly graded (Cu of 6 and more) nor gap-graded",
         };
         text.into()
-    }
-}
-
-/// A number with so many decimals.
-fn fixed(value: f64, decimals: usize) -> String {
-    match value.abs() {
-        size if size < 1e7 => format!("{value:.decimals$}"),
-        _ => given(value),
-    }
-}
-
-/// A number as it was given.
-fn given(value: f64) -> String {
-    match value.abs() {
-        0.0 => "0".into(),
-        size if (1e-6..1e7).contains(&size) => value.to_string(),
-        size if size.is_finite() => format!("{value:e}"),
-        _ => "an unknown number of".into(),
     }
 }
 

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use folder::Plan;
 use tempfile::TempDir;
-use voidwalk::outcome::record::{Outcome, RuleQuantity, RuleText, Statistic, Verdict};
+use voidwalk::outcome::record::{ModelLimit, Outcome, RuleQuantity, RuleText, Statistic, Verdict};
 use voidwalk::report::{self, ReportError};
 
 /// Writes a folder and its report; the page, the figures, and the folder that holds them.
@@ -170,11 +170,11 @@ fn hostile_names_are_inert() {
         &mut rule.source,
         &mut outcome.warnings[0],
         &mut outcome.left_out[0],
-        &mut outcome.model_leaves_out[0],
     ] {
         *text = EVIL.to_owned();
     }
     rule.quantity = RuleQuantity::Named(EVIL.into());
+    outcome.model_leaves_out[0] = ModelLimit::Said(EVIL.into());
     let (page, figures, _folder) = made(&plan);
     for text in figures.iter().map(|(_, text)| text).chain([&page]) {
         for live in ["<script", "<img", "</pre>\"", "\u{0}", "\u{202e}"] {
