@@ -1,10 +1,11 @@
-//! The words of what rules of practice say beside their results.
+//! The words of what rules of practice say beside their results, and of why practice regrades a base.
 
 use std::fmt;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::quantity::{fixed, given};
+use crate::gradation::{RegradeCause, RegradeReason};
 use crate::outcome::record::{RuleNote, RuleText};
 
 impl RuleNote {
@@ -105,6 +106,29 @@ impl RuleNote {
     }
 }
 
+impl RegradeReason {
+    /// What it says, as a part of a sentence.
+    pub fn words(&self) -> String {
+        let cause = match self.cause {
+            RegradeCause::Gap(from) => {
+                &*format!("gap-graded: next to nothing between {} mm and four times that", fixed(from, 3))
+            }
+            RegradeCause::GravelAndFines => "grains coarser than No. 4 (4.75 mm) and 15 % fines or more",
+            RegradeCause::BroadGravel => "broadly graded, with grains coarser than No. 4 (4.75 mm)",
+            RegradeCause::GravelOfUnknownCu => {
+                "grains coarser than No. 4 (4.75 mm), and Cu is not known: taken as broadly graded"
+            }
+            RegradeCause::NarrowGravel => "less than 15 % fines and not broadly graded",
+            RegradeCause::NoGravel => "nothing is coarser than No. 4 (4.75 mm)",
+            RegradeCause::NoUnit => "sizes are multiples of D0F",
+        };
+        match self.nothing_passes {
+            true => format!("{cause}; but no known size of it passes that sieve: left as it is"),
+            false => cause.to_owned(),
+        }
+    }
+}
+
 impl fmt::Display for RuleText {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
@@ -153,6 +177,28 @@ mod tests {
                 assert!(!words.ends_with(['.', ';', ':', ' ']), "{note:?}: {words}");
                 assert_eq!(words.starts_with("needs "), format!("{note:?}").starts_with("Needs"), "{words}");
                 assert!(all.insert(words), "{note:?} says what another says");
+            }
+        }
+    }
+
+    #[test]
+    fn every_reason_to_regrade_reads_well_with_any_number() {
+        for size in [0.0, 1e-300, -1.0, 12.345, 1e300, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for (cause, begin) in [
+                (RegradeCause::Gap(size), "gap-graded: next to nothing between "),
+                (RegradeCause::GravelAndFines, "grains coarser than No. 4 (4.75 mm) and 15 %"),
+                (RegradeCause::BroadGravel, "broadly graded, with grains"),
+                (RegradeCause::GravelOfUnknownCu, "grains coarser than No. 4 (4.75 mm), and Cu"),
+                (RegradeCause::NarrowGravel, "less than 15 % fines"),
+                (RegradeCause::NoGravel, "nothing is coarser than No. 4"),
+                (RegradeCause::NoUnit, "sizes are multiples of D0F"),
+            ] {
+                for nothing_passes in [false, true] {
+                    let words = RegradeReason { cause, nothing_passes }.words();
+                    assert!(words.starts_with(begin) && words.len() < 200, "{words}");
+                    assert_eq!(words.ends_with("sieve: left as it is"), nothing_passes, "{words}");
+                    assert!(!words.contains("NaN") && !words.contains("inf ") && !words.ends_with('.'));
+                }
             }
         }
     }
