@@ -27,8 +27,8 @@ impl Case {
         let not_walked = asked.iter().copied().filter(|factor| !walked.contains(factor));
         let (above, same): (Vec<f64>, Vec<f64>) =
             not_walked.partition(|factor| factor * self.n_base as f64 > cap);
-        let is_above = (!above.is_empty()).then(|| LeftOut::AmountsAboveCap(above, cap));
-        let is_same = (!same.is_empty()).then(|| LeftOut::AmountsTheSame(same));
+        let is_above = (!above.is_empty()).then_some(LeftOut::AmountsAboveCap(above, cap));
+        let is_same = (!same.is_empty()).then_some(LeftOut::AmountsTheSame(same));
         is_above.into_iter().chain(is_same).collect()
     }
 
