@@ -1,56 +1,40 @@
 //! What a case does not need.
 
 use super::Case;
-use super::sensitivity::SENSITIVITY;
+use crate::verdict::left_out::LeftOut;
 
 impl Case {
-    /// Parts of the program that this scene does not need, in words.
-    pub fn left_out(&self) -> Vec<String> {
+    /// Parts of the program that this scene does not need.
+    pub fn left_out(&self) -> Vec<LeftOut> {
         let mut left_out = vec![match self.fixed_network {
-            Some(_) if self.copies.is_some() => {
-                "a lattice: the voids of the packing are the network".to_string()
-            }
-            Some(_) => "packing, triangulation and constriction curve: the network is given".to_string(),
-            None if self.packed.is_some() => {
-                "a given constriction curve: it is measured on the packing".to_string()
-            }
-            None if self.library.is_some() => {
-                "packing and triangulation: the constriction curve is from the library of packings"
-                    .to_string()
-            }
-            None if self.guessed_density.is_some() => {
-                "packing and triangulation: the constriction curve is guessed from the gradation".to_string()
-            }
-            None => "packing and triangulation: the constriction curve is given".to_string(),
+            Some(_) if self.copies.is_some() => LeftOut::Lattice,
+            Some(_) => LeftOut::BeforeNetwork,
+            None if self.packed.is_some() => LeftOut::GivenCurve,
+            None if self.library.is_some() => LeftOut::PackingByLibrary,
+            None if self.guessed_density.is_some() => LeftOut::PackingByGuess,
+            None => LeftOut::PackingByCurve,
         }];
         if let Some(other) = self.packed.as_ref().and_then(|packed| packed.same_shape.as_ref()) {
-            left_out.push(format!(
-                "packing the filter: the packing in {} has its shape, and was taken {:.4} times as large",
-                other.folder, other.factor
-            ));
+            left_out.push(LeftOut::PackingOfShape(other.folder.clone(), other.factor));
         }
         if self.scene.walk.runs == 1 {
-            left_out.push("the second run: it was not asked for".into());
+            left_out.push(LeftOut::SecondRun);
         }
         if self.scene.record.sensitivity.is_empty() {
-            left_out.push(format!("{SENSITIVITY}: it was not asked for"));
+            left_out.push(LeftOut::Amounts);
         }
         left_out.extend(self.sensitivity_not_walked());
         for factor in self.thickness_factors() {
             if let Err(error) = self.of_thickness(factor) {
-                left_out.push(format!("a filter {factor} times as thick: {error}"));
+                left_out.push(LeftOut::ThicknessRefused(factor, error.to_string()));
             }
         }
         let not_walked = self.thickness_not_walked();
-        let is_said = !not_walked.is_empty();
-        left_out.extend(not_walked);
-        if !is_said
-            && self.thickness_factors().is_empty()
-            && self.copies.is_none()
-            && self.fixed_network.is_none()
-        {
-            left_out.push("how the verdict moves with the filter's thickness: it was not asked for".into());
+        let is_of_lattice = self.copies.is_none() && self.fixed_network.is_none();
+        if not_walked.is_empty() && self.thickness_factors().is_empty() && is_of_lattice {
+            left_out.push(LeftOut::Thicknesses);
         }
+        left_out.extend(not_walked);
         left_out
     }
 }

@@ -2,6 +2,7 @@
 
 use super::Case;
 use crate::scene::Amount;
+use crate::verdict::left_out::LeftOut;
 
 impl Case {
     /// Multiples of N_base that the sensitivity study walks: those asked for, none above a cap that the user
@@ -19,24 +20,16 @@ impl Case {
     }
 
     /// Multiples that are asked for, but not walked, each with the reason.
-    pub(super) fn sensitivity_not_walked(&self) -> Vec<String> {
+    pub(super) fn sensitivity_not_walked(&self) -> Vec<LeftOut> {
         let asked = &self.scene.record.sensitivity;
         let walked = self.sensitivity_factors();
         let cap = self.cap();
-        let (mut above, mut same) = (Vec::new(), Vec::new());
-        for factor in asked.iter().filter(|factor| !walked.contains(factor)) {
-            match *factor * self.n_base as f64 > cap {
-                true => above.push(format!("x{factor}")),
-                false => same.push(format!("x{factor}")),
-            }
-        }
-        let said = |factors: Vec<String>, why: String| {
-            let factors = factors.join(", ");
-            (!factors.is_empty()).then(|| format!("{SENSITIVITY}, {factors}: {why}"))
-        };
-        let is_capped = said(above, format!("more than base.cap, {cap}, allows"));
-        let is_same = said(same, "the same number of particles as the scene itself or another factor".into());
-        is_capped.into_iter().chain(is_same).collect()
+        let not_walked = asked.iter().copied().filter(|factor| !walked.contains(factor));
+        let (above, same): (Vec<f64>, Vec<f64>) =
+            not_walked.partition(|factor| factor * self.n_base as f64 > cap);
+        let is_above = (!above.is_empty()).then_some(LeftOut::AmountsAboveCap(above, cap));
+        let is_same = (!same.is_empty()).then_some(LeftOut::AmountsTheSame(same));
+        is_above.into_iter().chain(is_same).collect()
     }
 
     /// So many times the base particles, one at the least.
@@ -52,9 +45,6 @@ impl Case {
     }
 }
 
-/// What the study is called among what is left out.
-pub(super) const SENSITIVITY: &str = "sensitivity to the number of base particles";
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -65,7 +55,7 @@ mod tests {
         let of = |set: &[&str]| {
             let all: Vec<String> = set.iter().map(ToString::to_string).collect();
             let case = Case::new(Scene::built_in(&all).unwrap()).unwrap();
-            (case.sensitivity_factors(), case.left_out())
+            (case.sensitivity_factors(), case.left_out().iter().map(LeftOut::words).collect::<Vec<_>>())
         };
         let (factors, left_out) = of(&["base.cap=1000"]);
         assert_eq!(factors, [0.25, 0.5]);
@@ -76,6 +66,9 @@ mod tests {
         assert!(left_out.iter().any(|line| line.contains("particles, x1: the same number")), "{left_out:?}");
         let (factors, left_out) = of(&["base.n_base=1000"]);
         assert_eq!(factors.len(), 4);
-        assert!(!left_out.iter().any(|line| line.starts_with(SENSITIVITY)), "{left_out:?}");
+        assert!(
+            !left_out.iter().any(|line| line.starts_with("sensitivity to the number of base particles")),
+            "{left_out:?}"
+        );
     }
 }

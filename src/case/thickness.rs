@@ -2,6 +2,7 @@
 
 use super::{Case, CaseError};
 use crate::scene::NetworkSource;
+use crate::verdict::left_out::{LayerKind, LeftOut};
 
 /// Multiples of the thickness that are walked by default.
 const HALF_AND_TWICE: [f64; 2] = [0.5, 2.0];
@@ -22,26 +23,16 @@ impl Case {
     }
 
     /// Multiples that are asked for, but of which nothing is walked, each with the reason.
-    pub(super) fn thickness_not_walked(&self) -> Vec<String> {
+    pub(super) fn thickness_not_walked(&self) -> Vec<LeftOut> {
         if matches!(self.scene.network.source(), NetworkSource::File(_)) {
             let asked = self.scene.record.thickness.as_ref().is_some_and(|factors| !factors.is_empty());
-            let reason = "filters of another thickness: a network from a file is as thick as it is";
-            return if asked { vec![reason.to_string()] } else { Vec::new() };
+            return if asked { vec![LeftOut::ThicknessOfFile] } else { Vec::new() };
         }
         let parts = self.thickness_parts();
-        let noun = match (self.copies.is_some(), parts) {
-            (true, 1) => "copy of the packing",
-            (true, _) => "copies of the packing",
-            (false, 1) => "layer",
-            (false, _) => "layers",
-        };
+        let kind = if self.copies.is_some() { LayerKind::Copy } else { LayerKind::Layer };
         let same = |factor: &f64| times(parts, *factor) == parts;
-        let say = |factor| {
-            format!(
-                "a filter {factor} times as thick: to the nearest whole number it has the same {parts} {noun}"
-            )
-        };
-        self.thickness_wanted().into_iter().filter(same).map(say).collect()
+        let the_same = |factor| LeftOut::ThicknessTheSame(factor, parts, kind);
+        self.thickness_wanted().into_iter().filter(same).map(the_same).collect()
     }
 
     fn thickness_wanted(&self) -> Vec<f64> {
@@ -109,7 +100,7 @@ mod tests {
         assert!(case(&["network.nz=20", "record.thickness=[1.01]"]).thickness_factors().is_empty());
         let unsaid = case(&["network.nz=20", "record.thickness=[1.01, 2]"]);
         let reason = "a filter 1.01 times as thick: to the nearest whole number it has the same 20 layers";
-        assert_eq!(unsaid.left_out().iter().filter(|line| *line == reason).count(), 1);
+        assert_eq!(unsaid.left_out().iter().filter(|item| item.words() == reason).count(), 1);
         assert_eq!(unsaid.thickness_factors(), [2.0]);
         let given = case(&["base.n_base=1000"]).of_thickness(0.5).unwrap();
         assert_eq!((given.n_base, given.counts[3]), (1000, 30));

@@ -14,11 +14,11 @@ use crate::campaign::{
     WrittenJobs,
 };
 use crate::outcome::ledger::{self, LedgerLine, confidences, of_earlier_versions};
-use crate::outcome::left_out_in_brief;
 use crate::outcome::record::{Confidence, Verdict};
 use crate::run::RunError;
 use crate::run::allocation::Allocation;
 use crate::run::cost::duration;
+use crate::verdict::left_out::left_out_in_brief;
 
 /// A summary names no more cases than this.
 const SHOWN: usize = 20;

@@ -9,10 +9,10 @@ use super::progress::followed;
 use super::run::command_line;
 use crate::campaign::{CampaignCallbacks, CampaignOptions, CasePart};
 use crate::outcome::comparison::Comparison;
-use crate::outcome::left_out_in_brief;
 use crate::outcome::record::Statistic;
 use crate::run::RunError;
 use crate::study::compare::{self, ComparePlan, Compared};
+use crate::verdict::left_out::left_out_in_brief;
 
 impl CompareArgs {
     fn compared(&self) -> Compared {

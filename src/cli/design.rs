@@ -6,10 +6,10 @@ use super::progress::followed;
 use super::values::with_options;
 use crate::outcome::design::band::SetBy;
 use crate::outcome::design::{Boundary, Design, DesignRow, Range};
-use crate::outcome::left_out_in_brief;
 use crate::outcome::record::Confidence;
 use crate::run::{PrepareOptions, RunError};
 use crate::study::design::{self, DesignOptions};
+use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::words::capital;
 
 /// Finds the boundaries and writes them into a folder.

@@ -92,8 +92,8 @@ fn words(pair: &PairRules, args: &RulesArgs, notes: &[(&str, Vec<String>)]) -> S
             let named = curves.iter().filter(|(_, curve)| !curve.is_empty());
             let curves: Vec<String> = named.map(|(whose, curve)| format!("{whose} curve {curve}")).collect();
             let curves = curves.join(", ");
-            let more = [&curves, &rule.note, &rule.needs].map(String::as_str);
-            for text in more.into_iter().filter(|text| !text.is_empty()) {
+            let more = [curves, rule.note.to_string(), rule.needs.to_string()];
+            for text in more.iter().filter(|text| !text.is_empty()) {
                 wrapped(text).into_iter().for_each(&mut line);
             }
             wrapped(&rule.source).into_iter().for_each(&mut line);

@@ -5,10 +5,10 @@ use std::fmt::Write;
 use super::args::{ResultArgs, ResumeArgs, RunArgs, SettingArgs};
 use super::print::{count, counted, grains_per_void, json, of_base, percent, plain, shown, to_stdout};
 use super::progress::followed;
-use crate::outcome::left_out_in_brief;
 use crate::outcome::record::{Confidence, RunSummary};
 use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
 use crate::verdict::beside::is_evidence;
+use crate::verdict::left_out::left_out_in_brief;
 
 /// Walks a scene and writes its folder.
 pub fn run(args: &RunArgs) -> Result<(), RunError> {

@@ -42,7 +42,7 @@ mod table;
 pub use burenkova::UniformityFactors;
 pub(crate) use error::shortened;
 pub use error::{GradationError, NumberError, Position, TableError};
-pub use regrade::{FEW_FINES, Regraded};
+pub use regrade::{FEW_FINES, RegradeCause, RegradeReason, Regraded};
 pub use sampler::{SizeRange, SizeSampler};
 pub use shape::Gap;
 pub use sieve::Gradation;

@@ -15,10 +15,38 @@ pub struct Regraded {
     /// The size on which it was regraded (mm); `None` where it was not.
     pub at_mm: Option<f64>,
     /// Why it was regraded, or not.
-    pub why: String,
+    pub why: RegradeReason,
     /// The size below which practice looks at it, where no sieve tells the sizes there: `gradation` is then
     /// the whole soil, coarser than what practice looks at.
     pub hidden_below_mm: Option<f64>,
+}
+
+/// Why practice regrades a base, or leaves it as it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RegradeReason {
+    /// What practice asks of the soil.
+    pub cause: RegradeCause,
+    /// Whether it was to be regraded and is left as it is, as none of its known sizes passes the sieve.
+    pub nothing_passes: bool,
+}
+
+/// What of a soil has it regraded, or not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RegradeCause {
+    /// It has a gap that begins at this size (mm).
+    Gap(f64),
+    /// It has gravel and many fines.
+    GravelAndFines,
+    /// It has gravel and is broadly graded.
+    BroadGravel,
+    /// It has gravel, and Cu is not known.
+    GravelOfUnknownCu,
+    /// It has gravel, few fines, and is not broadly graded.
+    NarrowGravel,
+    /// It has no gravel.
+    NoGravel,
+    /// Its sizes have no unit.
+    NoUnit,
 }
 
 impl Gradation {
@@ -37,12 +65,13 @@ impl Gradation {
     /// # Ok::<(), voidwalk::gradation::GradationError>(())
     /// ```
     pub fn regraded(&self) -> Regraded {
-        let (at, why) = self.regrading();
+        let (at, cause) = self.regrading();
+        let why = RegradeReason { cause, nothing_passes: false };
         match at.map(|at| self.passing(at)) {
             None => Regraded { gradation: self.clone(), at_mm: None, why, hidden_below_mm: None },
             Some(Some(gradation)) => Regraded { gradation, at_mm: at, why, hidden_below_mm: None },
             Some(None) => {
-                let why = format!("{why}; but no known size of it passes that sieve: left as it is");
+                let why = RegradeReason { nothing_passes: true, ..why };
                 let hidden_below_mm = at.filter(|at| self.percent_finer_by_mass(*at) > 0.0);
                 Regraded { gradation: self.clone(), at_mm: None, why, hidden_below_mm }
             }
@@ -50,26 +79,25 @@ impl Gradation {
     }
 
     /// The size on which practice regrades this base, and why.
-    fn regrading(&self) -> (Option<f64>, String) {
+    fn regrading(&self) -> (Option<f64>, RegradeCause) {
         if let Some(Gap { from_mm, .. }) = self.gap(FINES_MM) {
-            let why = format!("gap-graded: next to nothing between {from_mm:.3} mm and four times that");
-            return (Some(from_mm), why);
+            return (Some(from_mm), RegradeCause::Gap(from_mm));
         }
         if self.largest_mm() <= GRAVEL_MM {
-            return (None, "nothing is coarser than No. 4 (4.75 mm)".into());
+            return (None, RegradeCause::NoGravel);
         }
         let broad = self.is_broad();
         // Where the finest sieve is coarser, this is the most that the fines can be.
         let many_fines = self.percent_finer_by_mass(FINES_MM) >= FEW_FINES;
         if !many_fines && broad == Some(false) {
-            return (None, "less than 15 % fines and not broadly graded".into());
+            return (None, RegradeCause::NarrowGravel);
         }
-        let why = match broad {
-            _ if many_fines => "grains coarser than No. 4 (4.75 mm) and 15 % fines or more",
-            Some(true) => "broadly graded, with grains coarser than No. 4 (4.75 mm)",
-            _ => "grains coarser than No. 4 (4.75 mm), and Cu is not known: taken as broadly graded",
+        let cause = match broad {
+            _ if many_fines => RegradeCause::GravelAndFines,
+            Some(true) => RegradeCause::BroadGravel,
+            _ => RegradeCause::GravelOfUnknownCu,
         };
-        (Some(GRAVEL_MM), why.into())
+        (Some(GRAVEL_MM), cause)
     }
 
     /// Whether a soil is broadly graded: Cu of at least 6, as of well-graded sands by ASTM D2487, or 4, as of
@@ -109,16 +137,16 @@ mod tests {
         assert_eq!(regraded(&[(0.1, 0.0), (0.5, 60.0), (4.75, 100.0)]).at_mm, None);
         // Coarser, less than 15 % fines, Cu 3.2: left.
         let gravel = regraded(&[(2.0, 0.0), (9.5, 60.0), (19.0, 100.0)]);
-        assert!(gravel.at_mm.is_none() && gravel.why.contains("not broadly graded"));
+        assert!(gravel.at_mm.is_none() && gravel.why.cause == RegradeCause::NarrowGravel);
         // Coarser and broadly graded: Cu 15.0, Cc 1.01.
         let broad = regraded(&[(0.1, 0.0), (0.5, 20.0), (2.0, 45.0), (4.75, 70.0), (19.0, 100.0)]);
-        assert!(broad.at_mm.is_some() && broad.why.starts_with("broadly graded"), "{}", broad.why);
+        assert!(broad.at_mm.is_some() && broad.why.cause == RegradeCause::BroadGravel, "{:?}", broad.why);
         // The same sand with more gravel: Cu 20.9, but Cc 0.70.
         let skewed = regraded(&[(0.1, 0.0), (0.42, 20.0), (2.0, 45.0), (4.75, 62.0), (19.0, 100.0)]);
-        assert!(skewed.at_mm.is_some() && skewed.why.starts_with("broadly graded"), "{}", skewed.why);
+        assert!(skewed.at_mm.is_some() && skewed.why.cause == RegradeCause::BroadGravel, "{:?}", skewed.why);
         // Coarser, and D10 in a tail: on the safe side.
         let tail = regraded(&[(0.3, 12.0), (1.0, 40.0), (4.75, 80.0), (9.5, 100.0)]);
-        assert!(tail.at_mm.is_some() && tail.why.contains("not known"));
+        assert!(tail.at_mm.is_some() && tail.why.cause == RegradeCause::GravelOfUnknownCu);
         // A gap: the part finer than it.
         let gap = regraded(&[(0.1, 0.0), (0.5, 40.0), (5.0, 40.0), (20.0, 100.0)]);
         assert_eq!((gap.at_mm, gap.gradation.largest_mm()), (Some(0.5), 0.5));
@@ -127,6 +155,6 @@ mod tests {
     #[test]
     fn gravel_alone_has_nothing_to_regrade() {
         let soil = regraded(&[(5.0, 0.0), (10.0, 10.0), (25.0, 30.0), (60.0, 60.0), (80.0, 100.0)]);
-        assert!(soil.at_mm.is_none() && soil.why.contains("left as it is"), "{}", soil.why);
+        assert!(soil.at_mm.is_none() && soil.why.nothing_passes, "{:?}", soil.why);
     }
 }

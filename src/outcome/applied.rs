@@ -5,6 +5,8 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+use super::rule_note::RuleText;
+
 /// A filter rule, applied.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AppliedRule {
@@ -42,10 +44,10 @@ pub struct AppliedRule {
     pub met: Option<bool>,
     /// What is missing for a result; may be empty.
     #[serde(default)]
-    pub needs: String,
+    pub needs: RuleText,
     /// Where the value is, why the rule was not made for these soils; may be empty.
     #[serde(default)]
-    pub note: String,
+    pub note: RuleText,
     /// What the rule was made for.
     #[serde(default)]
     pub applies_to: String,

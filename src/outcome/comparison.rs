@@ -7,7 +7,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::record::{Confidence, Outcome, Ratios, Statistic, Verdict};
+use super::record::{Confidence, ModelLimit, Outcome, Ratios, Statistic, Verdict};
 use super::table::Columns;
 use super::{BaseSize, leaves_out_of_all};
 
@@ -33,7 +33,7 @@ pub struct Comparison {
     pub threshold: f64,
     /// What the model does not contain; records of earlier versions do not say.
     #[serde(default)]
-    pub model_leaves_out: Vec<String>,
+    pub model_leaves_out: Vec<ModelLimit>,
 }
 
 /// A case of a comparison.

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::digits::count;
 use super::numbers::whole;
-use super::record::{Confidence, Outcome, Ratios, RunSummary, Verdict};
+use super::record::{Confidence, ModelLimit, Outcome, Ratios, RunSummary, Verdict};
 use super::table::{Columns, TableCell};
 use super::undecided::UndecidedBy;
 use super::{BaseSize, leaves_out_of_all};
@@ -231,7 +231,7 @@ impl LedgerLine {
 }
 
 /// What the model does not contain in the cases of a ledger.
-pub fn leaves_out(lines: &[LedgerLine]) -> Vec<String> {
+pub fn leaves_out(lines: &[LedgerLine]) -> Vec<ModelLimit> {
     leaves_out_of_all(lines.iter().filter_map(|line| line.with_flow))
 }
 

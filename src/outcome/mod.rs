@@ -7,6 +7,7 @@
 //! - [`by_void`] is what happened in each void and constriction, for pictures.
 //! - [`verdict`] classifies, by mass eroded, one replicate or many; [`stopping`] says how many are enough,
 //!   [`early_stop`] how many of a study.
+//! - [`leaves_out`] is what the model does not contain.
 //! - [`so_far`] is a look at the replicates of a run that is under way.
 //! - [`paper`] holds what the paper states.
 //! - [`rules`] applies the rules of filter practice to the same two curves.
@@ -33,6 +34,7 @@ mod infiltration;
 mod least_squares;
 pub mod ledger;
 mod metrics;
+mod model_limit;
 pub mod network_walk;
 pub mod number_rows;
 pub mod numbers;
@@ -43,6 +45,7 @@ pub mod percolation;
 pub mod precision;
 pub mod record;
 mod recorder;
+mod rule_note;
 pub mod rules;
 pub mod so_far;
 mod statistic;
@@ -58,51 +61,10 @@ pub use infiltration::infiltration;
 pub(crate) use least_squares::log_log_slope;
 pub(crate) use metrics::eroded_mass_fraction;
 pub use metrics::{Eroded, Recorded, RunId, RunMetrics};
+pub use model_limit::{leaves_out, leaves_out_of_all};
 pub use recorder::{Recorder, Wanted};
 
 use crate::network::ExitRule;
-
-/// What the model does not contain, for any scene; shown next to every verdict.
-pub const MODEL_LEAVES_OUT: [&str; 6] = [
-    "hydraulics: no flow, no gradient, no time; an increment is not an interval of time",
-    "bridging: a particle is stopped only by a constriction finer than itself",
-    "partial clogging: a constriction is open at its full size or blocked",
-    "a limit to what enters: all base particles of the scene are offered to the filter",
-    "the excessive-erosion class of Foster and Fell: the verdict knows no, some and continuing erosion",
-    "cohesion, suffusion of the filter itself, segregation and layering of the filter",
-];
-
-/// What stands in the place of the first where water gives particles their way.
-const LEAVES_OUT_OF_FLOW: &str = "hydraulics but for the direction and the shares of slow flow: no gradient, \
-    no time; an increment is not an interval of time";
-
-/// What the model does not contain where particles choose by this rule.
-pub fn leaves_out(rule: ExitRule) -> Vec<String> {
-    let mut all = MODEL_LEAVES_OUT.map(String::from).to_vec();
-    if rule.needs_flow() {
-        all[0] = LEAVES_OUT_OF_FLOW.into();
-    }
-    all
-}
-
-/// What the model does not contain, the first words of each thing.
-pub fn left_out_in_brief(items: &[String]) -> String {
-    let first: Vec<&str> = items.iter().filter_map(|item| item.split(':').next()).collect();
-    format!("The model leaves out: {}.", first.join("; "))
-}
-
-/// What the model does not contain in any of several cases, each with water that gives particles their way or
-/// without.
-pub fn leaves_out_of_all(with_flow: impl IntoIterator<Item = bool>) -> Vec<String> {
-    let (with, without): (Vec<bool>, Vec<bool>) = with_flow.into_iter().partition(|with| *with);
-    let mut all = leaves_out(if with.is_empty() { ExitRule::Area } else { ExitRule::Flux });
-    if !with.is_empty() && !without.is_empty() {
-        all[0] = LEAVES_OUT_OF_FLOW.replacen(':', ", where water gives particles their way:", 1);
-        all.insert(0, MODEL_LEAVES_OUT[0].replacen(':', ", in the other cases:", 1));
-        all.swap(0, 1);
-    }
-    all
-}
 
 impl record::Outcome {
     /// Whether water gave particles their way.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::record::{BaseRecord, Confidence, FindingRecord, Replicate, RunSummary, Verdict};
+use super::record::{BaseRecord, Confidence, FindingRecord, ModelLimit, Replicate, RunSummary, Verdict};
 
 /// The results of [`crate::run::walk_networks`]; the names are those of `outcome.json` where both have them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,7 +42,7 @@ pub struct NetworkWalkRecord {
     /// Parts of the program that this walk did not need.
     pub left_out: Vec<String>,
     /// What the model does not contain.
-    pub model_leaves_out: Vec<String>,
+    pub model_leaves_out: Vec<ModelLimit>,
     /// The base.
     pub base: BaseRecord,
     /// 15 % of the filter finer by mass (mm), where the filter is known.

@@ -4,16 +4,17 @@
 use super::figures::{Across, BLACK, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Rule};
 use super::numbers::size;
 use crate::outcome::record::{Outcome, RuleQuantity};
+use crate::outcome::rules::{DESIGN, TESTS_CONTINUING, TESTS_EXCESSIVE, TESTS_NO_EROSION};
 
 /// Half the height of a line, in percent finer.
 const HALF: f64 = 4.0;
 
 /// The rules whose limit is a D15F: what stands beside the line, its colour, and what the caption says of it.
 const LIMITS: [(&str, &str, Colour, &str); 4] = [
-    ("sherard-dunnigan", "design", GREY, "design (Sherard and Dunnigan)"),
-    ("foster-fell-no-erosion", "NE", GREEN, "no erosion (NE)"),
-    ("foster-fell-excessive", "EE", ORANGE, "excessive erosion (EE)"),
-    ("foster-fell-continuing", "CE", PURPLE, "continuing erosion (CE)"),
+    (DESIGN, "design", GREY, "design (Sherard and Dunnigan)"),
+    (TESTS_NO_EROSION, "NE", GREEN, "no erosion (NE)"),
+    (TESTS_EXCESSIVE, "EE", ORANGE, "excessive erosion (EE)"),
+    (TESTS_CONTINUING, "CE", PURPLE, "continuing erosion (CE)"),
 ];
 
 /// A boundary: its place in [`LIMITS`], the D15F at which it is, and whether it is that or less.

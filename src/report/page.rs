@@ -29,6 +29,7 @@ use crate::outcome::record::{
 };
 use crate::outcome::undecided::UndecidedBy;
 use crate::verdict::beside::is_evidence;
+use crate::verdict::left_out::{OF_AMOUNTS, OF_THICKNESS};
 use crate::verdict::words::capital;
 
 /// Characters of `scene.toml` that are shown.
@@ -263,11 +264,6 @@ fn findings(outcome: &Outcome) -> Markup {
 const TO_COME: &str = "The thickness of the filter and the number of base particles move the verdict most. \
     Their effect is not walked yet; voidwalk resume goes on with it.";
 
-/// How what is left out of a study begins: of the number of base particles, and of the thickness.
-const SENSITIVITY: &[&str] = &["sensitivity to the number of base particles"];
-const THICKER: &[&str] =
-    &["a filter ", "filters of another thickness", "how the verdict moves with the filter"];
-
 /// What was left out of a study, in sentences.
 fn left_out_of(outcome: &Outcome, study: &[&str]) -> Vec<String> {
     let is_of = |said: &&String| study.iter().any(|begin| said.starts_with(begin));
@@ -284,8 +280,8 @@ fn missing(folder: &RunFolder, figures: &[Drawn]) -> Markup {
         (false, said) if said.is_empty() => asked.to_owned(),
         (false, said) => said.join(" "),
     };
-    let of_base = because(SENSITIVITY, "Sensitivity to the number of base particles was not asked for.");
-    let of_thickness = because(THICKER, "Filters of other thicknesses were not asked for.");
+    let of_base = because(OF_AMOUNTS, "Sensitivity to the number of base particles was not asked for.");
+    let of_thickness = because(OF_THICKNESS, "Filters of other thicknesses were not asked for.");
     let reasons = [
         ("eroded", "series.csv has no rows: the progress of erosion is not drawn."),
         ("layers", "layers.csv has no rows: blocking by layer is not drawn."),
@@ -301,7 +297,7 @@ fn missing(folder: &RunFolder, figures: &[Drawn]) -> Markup {
             @if !has(name) && !reason.is_empty() { p.small { (clean(reason)) } }
         }
         // What was asked for beside the points that were walked.
-        @for (name, study) in [("sensitivity", SENSITIVITY), ("thickness", THICKER)] {
+        @for (name, study) in [("sensitivity", OF_AMOUNTS), ("thickness", OF_THICKNESS)] {
             @if has(name) { @for said in left_out_of(outcome, study) { p.small { (clean(&said)) } } }
         }
         @if has("eroded")

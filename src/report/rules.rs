@@ -37,7 +37,7 @@ pub(super) fn table(rules: &[&AppliedRule]) -> Markup {
                     br; span.small { "If not met, it speaks against " (clean(&rule.speaks_against)) "." }
                 }
                 @for text in [&rule.note, &rule.needs] {
-                    @if !text.is_empty() { br; span.small { b { (clean(text)) } } }
+                    @if !text.is_empty() { br; span.small { b { (clean(&text.to_string())) } } }
                 }
                 br; span.small { (clean(&rule.source)) }
             }

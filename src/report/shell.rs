@@ -25,6 +25,7 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::figures::{Figure, Size, visible};
+use crate::outcome::record::ModelLimit;
 
 const STYLE: &str = include_str!("page.css");
 /// Its SHA-256 in base64, as a content policy names it. Where the style is changed, a test on Linux says the
@@ -151,11 +152,11 @@ fn looks(number: usize, curves: &[String]) -> Markup {
 }
 
 /// What a page says beside its results: what the model does not contain.
-pub(super) fn leaves_out<T: AsRef<str>>(items: &[T], more: &Markup) -> Markup {
+pub(super) fn leaves_out(limits: &[ModelLimit], more: &Markup) -> Markup {
     html! {
         aside.leaves {
             h2 { "What the model leaves out" }
-            ul { @for item in items { li { (clean(item.as_ref())) } } }
+            ul { @for limit in limits { li { (clean(&limit.to_string())) } } }
             (more)
         }
     }

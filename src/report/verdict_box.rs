@@ -10,8 +10,8 @@ use super::run_figures;
 use super::shell::clean;
 use super::table::Table;
 use super::walks::Walks;
-use crate::outcome::left_out_in_brief;
-use crate::outcome::record::{RunSummary, Verdict};
+use crate::outcome::record::{ModelLimit, RunSummary, Verdict};
+use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::words::{capital, meaning};
 
 /// Eroded mass by run, with its interval.
@@ -70,7 +70,7 @@ pub(super) struct Said<'a> {
     /// What one replicate is, and what each of several is.
     pub replicate: [&'static str; 2],
     /// What the model leaves out.
-    pub leaves_out: &'a [String],
+    pub leaves_out: &'a [ModelLimit],
 }
 
 /// The amber of `page.css`, where there is no style sheet; the dark text goes with it on dark pages too.

@@ -9,6 +9,7 @@ use super::machine::number_of_threads;
 use super::planned::runs_to_walk;
 use super::prepare::{Draft, PrepareOptions};
 use super::replicates::{have_networks, left_out_of_first_run};
+use super::results::left_out;
 use crate::case::{CaseError, PackedFilter, PackingPlan};
 use crate::outcome::record::{Inputs, Ratios};
 use crate::scene::Scene;
@@ -102,10 +103,10 @@ pub fn check(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError> 
     let here = Path::new(".");
     let threads = number_of_threads(options.threads) as u64;
     let refusal = case.place(&options.limits(here), threads, here).err();
-    let mut left_out = case.left_out();
+    let mut of_run = Vec::new();
     if refusal.is_none() {
         have_networks(&case)?;
-        left_out.extend(left_out_of_first_run(&case).map_err(RunError::refused)?);
+        of_run = left_out_of_first_run(&case).map_err(RunError::refused)?;
     }
     Ok(Check {
         n_base: case.n_base,
@@ -128,7 +129,7 @@ pub fn check(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError> 
         ratios: case.ratios(),
         packing,
         inputs: case.record(),
-        left_out,
+        left_out: left_out(&case, &of_run),
         warnings: case.warnings(),
         refusal,
     })

@@ -33,7 +33,9 @@ impl NetworkOutcome {
             replicates: self.replicates.iter().map(|walked| walked.result.replicate.clone()).collect(),
             summary: self.summary.clone(),
             threshold: verdict::THRESHOLD,
-            left_out: first.map(|first| first.left_out.clone()).unwrap_or_default(),
+            left_out: first.map_or(Vec::new(), |first| {
+                first.left_out.iter().map(|shortcut| shortcut.sentence("mm")).collect()
+            }),
             model_leaves_out: leaves_out(network.exit_rule()),
             base: base_record(in_words(&plan.base), &plan.base),
             d15f_mm: plan.d15f_mm(),
@@ -104,7 +106,7 @@ mod tests {
         assert!(given.diameters.iter().all(|&[mm, percent]| (mm == 0.25) == (percent <= 50.0)));
         assert_eq!((record.base.name.as_str(), record.base.d85_mm), ("one size", 0.1));
         assert_eq!((record.n_base, record.replicates.len(), record.summary.len()), (1000, 2, 2));
-        assert!(record.model_leaves_out[0].starts_with("hydraulics but for"));
+        assert!(record.model_leaves_out[0].to_string().starts_with("hydraulics but for"));
         assert_eq!((record.n_base_eq2, record.grains_per_void), (None, None));
         assert!(record.reasons[0].contains("nothing says how many are needed"), "{:?}", record.reasons);
     }

@@ -26,7 +26,7 @@ use crate::scene::NetworkSource;
 use crate::store::checkpoint::{Checkpoint, CheckpointError};
 use crate::verdict::Finding;
 use crate::verdict::walks::{self, Walked, is_clogged};
-use crate::walk::{Engine, FlowRecord, RunPlan, SizeClasses, State, Walk, WalkControl, from_words};
+use crate::walk::{Engine, FlowRecord, RunPlan, Shortcut, SizeClasses, State, Walk, WalkControl, from_words};
 
 /// How replicates are walked: who follows them, and what saves them.
 #[derive(Clone, Copy)]
@@ -61,7 +61,7 @@ pub struct ReplicateResult {
     /// The engine that walked the first run.
     pub engine: Engine,
     /// What the first run did not need.
-    pub left_out: Vec<String>,
+    pub left_out: Vec<Shortcut>,
     /// Whether less than 7.5 % of the mass eroded, by run.
     pub(super) below: Vec<bool>,
 }
@@ -226,11 +226,11 @@ pub(super) fn plan(case: &Case, network: &Network, blocked: &BitSlice, n_base: u
         .sampled(case.scene.walk.sampling)
 }
 
-/// What the first run of the first replicate does not need, in words.
+/// What the first run of the first replicate does not need.
 ///
 /// # Errors
 /// As [`Case::network`].
-pub fn left_out_of_first_run(case: &Case) -> Result<Vec<String>, RunError> {
+pub fn left_out_of_first_run(case: &Case) -> Result<Vec<Shortcut>, RunError> {
     let network = case.network(replicate_seed(case.scene.walk.seed, 1))?;
     let open: BitVec = BitVec::repeat(false, network.constrictions());
     Ok(plan(case, &network, &open, case.n_base).left_out().to_vec())

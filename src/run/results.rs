@@ -19,7 +19,9 @@ use crate::outcome::rules::{BaseSoil, RuleInputs};
 use crate::outcome::table::csv_of;
 use crate::outcome::{Recorded, by_void, infiltration, leaves_out, rules, verdict};
 use crate::store::{Folder, StoreError};
+use crate::verdict::left_out::LeftOut;
 use crate::verdict::{Finding, beside, finding, judge, practice};
+use crate::walk::Shortcut;
 
 /// The outcome of a case that has been walked; with what was walked besides, and its studies, none so far
 /// where they are to come.
@@ -70,7 +72,7 @@ pub fn outcome(
         pan_bounds,
         threshold: verdict::THRESHOLD,
         warnings: Vec::new(),
-        left_out: left_out(case, walked),
+        left_out: left_out(case, walked.first().map_or(&[], |walked| &walked.left_out)),
         model_leaves_out: leaves_out(case.scene.exit_rule()),
         inputs: case.record(),
         network: case.network_summary(walked.first().and_then(|w| w.replicate.runs.first()?.k0_mm2)),
@@ -185,14 +187,12 @@ fn rule_inputs<'a>(case: &'a Case, walked: &[ReplicateResult]) -> RuleInputs<'a>
     }
 }
 
-/// What the scene did not need, and what the first replicate's first run did not.
-fn left_out(case: &Case, walked: &[ReplicateResult]) -> Vec<String> {
-    let mut of_run = walked.first().map(|w| w.left_out.clone()).unwrap_or_default();
-    if case.is_scale_free() {
-        // The smallest grain stands for 1 mm while it is walked.
-        of_run.iter_mut().for_each(|sentence| *sentence = sentence.replace(" mm)", " D0F)"));
-    }
-    [case.left_out(), of_run].concat()
+/// What the scene does not need, and what the first replicate's first run does not, in words.
+pub(super) fn left_out(case: &Case, of_run: &[Shortcut]) -> Vec<String> {
+    // The smallest grain stands for 1 mm while it is walked.
+    let unit = if case.is_scale_free() { "D0F" } else { "mm" };
+    let of_run = of_run.iter().map(|shortcut| shortcut.sentence(unit));
+    case.left_out().iter().map(LeftOut::words).chain(of_run).collect()
 }
 
 /// Writes a run folder: the resolved scene and its input files, the outcome, the manifest, the CSV files.

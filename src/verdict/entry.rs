@@ -40,8 +40,17 @@ macro_rules! findings {
     (@raw Text) => {
         &str
     };
+    (@raw Reason) => {
+        &crate::gradation::RegradeReason
+    };
     (@raw $unit:ident) => {
         f64
+    };
+    (@value Reason $name:ident) => {
+        FindingValue::Text($name.words())
+    };
+    (@value $unit:ident $name:ident) => {
+        FindingValue::$unit($name.into())
     };
     (@or $default:expr) => {
         $default
@@ -79,7 +88,7 @@ macro_rules! findings {
         $(
             $(#[$doc])*
             pub fn $id($($name: findings!(@raw $unit)),*) -> Finding {
-                let values = vec![$(FindingValue::$unit($name.into())),*];
+                let values = vec![$(findings!(@value $unit $name)),*];
                 Finding { entry: &entries::$id, values, is_settled: false }
             }
         )*

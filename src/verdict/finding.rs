@@ -200,7 +200,7 @@ findings! {
         "Up to {fines} of the base may be fines (finer than 0.075 mm), and the model ignores cohesion. The \
          finest sieve of the base is {sieve}.";
     /// A base that practice would regrade.
-    not_regraded(at: Mm, why: Text): Base, Unsafe, Limits;
+    not_regraded(at: Mm, why: Reason): Base, Unsafe, Limits;
         "grading", "soils.md",
         "The model errs on the unsafe side for this base. Practice regrades it on {at} ({why}), but it is \
          walked as sampled, so that a few coarse grains block for all the rest.",
@@ -461,7 +461,7 @@ findings! {
         "grading", "soils.md",
         "The base is walked as practice regrades it: the {part} of it that is finer than {at}.";
     /// A base that was to be regraded.
-    regrading_not_needed(why: Text): Base, Settled, Note;
+    regrading_not_needed(why: Reason): Base, Settled, Note;
         "grading", "soils.md", "Practice does not regrade this base ({why}).";
     /// How a file was read.
     read_as(file: Text, note: Text): Files, Settled, Note;

@@ -5,6 +5,8 @@
 //! - [`judge()`] takes class, rules and findings, and gives the answer with its label and ordered findings.
 //! - [`PlannedWalk`] is what is found about soils and network before their walk.
 //! - [`practice`] is what the rules of filter practice say of a pair.
+//! - [`left_out`] has the words of what the model does not contain and of what a scene does not need.
+//! - `rule_notes` has the words of what those rules say beside their results.
 //! - [`walks`] is what walks say themselves, [`beside`] what their results say beside the verdict.
 //! - [`design_answer()`] is how coarse a filter may be, and [`Band`] the band of a specification.
 //! - [`PairRules`] are two soils as practice sees them, without a walk.
@@ -17,10 +19,12 @@ mod design;
 mod entry;
 pub mod evidence;
 pub mod finding;
+pub mod left_out;
 mod pair;
 mod planned_walk;
 pub mod practice;
 mod quantity;
+mod rule_notes;
 mod thickness;
 pub mod walks;
 pub mod words;

@@ -7,7 +7,7 @@ use super::finding;
 use super::words::capital;
 use crate::gradation::Gradation;
 use crate::outcome::record::AppliedRule;
-use crate::outcome::rules::{BaseSoil, NamedCurve, Sides, apply_to_envelopes};
+use crate::outcome::rules::{BaseSoil, DESIGN, NamedCurve, Sides, apply_to_envelopes};
 
 /// What is said of two sieve curves by the rules of practice alone.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -167,7 +167,7 @@ impl PairRules {
                 fines_percent,
                 regraded,
                 regraded_at_mm,
-                why,
+                why: why.words(),
                 d15_mm: base.d(15.0),
                 d85_mm: gradation.d(85.0),
                 d85_as_sampled_mm: base.d(85.0),
@@ -191,7 +191,7 @@ fn stricter(
     rules: &[AppliedRule],
 ) -> Option<Finding> {
     let limit = |rules: &[AppliedRule]| {
-        let rule = rules.iter().find(|rule| rule.id == "sherard-dunnigan")?;
+        let rule = rules.iter().find(|rule| rule.id == DESIGN)?;
         rule.limit.filter(|_| !rule.limit_at_most)
     };
     let of_finest = limit(rules)?;

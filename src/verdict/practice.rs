@@ -220,17 +220,17 @@ fn of_design(rule: &AppliedRule) -> String {
         }
         (None, Some(_)) => format!(
             "the limit of Sherard and Dunnigan (design) is {limit}{at_most}, D15F {value}: {}",
-            first_clause(&rule.needs)
+            first_clause(&rule.needs.to_string())
         ),
         (None, None) => format!(
             "the limit of Sherard and Dunnigan (design) is not known, D15F {value}: {}",
-            first_clause(&rule.needs)
+            first_clause(&rule.needs.to_string())
         ),
     }
 }
 
-fn first_clause(needs: &str) -> &str {
-    needs.split([':', ';']).next().unwrap_or_default()
+fn first_clause(needs: &str) -> String {
+    needs.split([':', ';']).next().unwrap_or_default().to_owned()
 }
 
 /// What tests saw.

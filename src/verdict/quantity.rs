@@ -88,6 +88,24 @@ fn number(value: f64) -> String {
     }
 }
 
+/// A number with so many decimals.
+pub(super) fn fixed(value: f64, decimals: usize) -> String {
+    match value.abs() {
+        size if size < 1e7 => format!("{value:.decimals$}"),
+        _ => given(value),
+    }
+}
+
+/// A number as it was given.
+pub(super) fn given(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".into(),
+        size if (1e-12..1e16).contains(&size) => value.to_string(),
+        size if size.is_finite() => format!("{value:e}"),
+        _ => "an unknown number of".into(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

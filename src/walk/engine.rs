@@ -84,7 +84,7 @@ pub struct RunPlan {
     engine: Engine,
     passive_words: u128,
     sampling: Sampling,
-    left_out: Vec<String>,
+    left_out: Vec<Shortcut>,
     arching: Option<Arc<Arching>>,
 }
 
@@ -125,14 +125,10 @@ impl RunPlan {
         let mut left_out = left_out(engine, limit, passive_words, network.unit_mm());
         if sampler.smallest() == sampler.largest() && (engine == Engine::Particles || passive_words < 1 << 64)
         {
-            left_out.push("The base has one size: no column of diameters is kept.".into());
+            left_out.push(Shortcut::OneSize);
         }
         if wanted == Engine::Auto && engine == Engine::Particles && on_open > 0 {
-            left_out.push(format!(
-                "None is kept as a count: {passive} passive base particles an increment for {} start nodes \
-                 are so few that walking each by itself is faster, and the distribution is the same.",
-                network.entries()
-            ));
+            left_out.push(Shortcut::FewPassive(passive, network.entries() as u64));
         }
         Self { engine, passive_words, sampling: Sampling::Independent, left_out, arching }
     }
@@ -147,8 +143,8 @@ impl RunPlan {
         self.engine
     }
 
-    /// What is left out, in plain sentences.
-    pub fn left_out(&self) -> &[String] {
+    /// What is left out.
+    pub fn left_out(&self) -> &[Shortcut] {
         &self.left_out
     }
 
@@ -166,49 +162,41 @@ impl RunPlan {
     }
 }
 
-fn left_out(engine: Engine, limit: f32, passive_words: u128, unit_mm: f64) -> Vec<String> {
-    let coarse_percent = 100.0 * (((1u128 << 64) - passive_words) as f64 / 18_446_744_073_709_551_616.0);
-    let size_mm = f64::from(limit) * unit_mm;
-    let mut sentences = Vec::new();
-    if limit == f32::INFINITY {
-        sentences.push("No constriction is open: every base particle stays in the void it starts in.".into());
-    } else if passive_words == 0 {
-        sentences.push(format!(
-            "No base particle is as fine as the finest open constriction ({size_mm:.4} mm), so none is \
-             kept as a count."
-        ));
-    }
-    if engine == Engine::Particles {
-        return sentences;
-    }
-    let how = match engine {
-        Engine::Expected => "only their expected number in each void is followed",
-        _ => "only their number in each void is followed, which is exact",
-    };
-    if passive_words == 1 << 64 {
-        if limit != f32::INFINITY {
-            sentences.push(format!(
-                "Every base particle passes every open constriction (finest {size_mm:.4} mm): nothing can \
-                 be blocked, and none is walked on its own; {how}."
-            ));
-        }
-    } else {
-        sentences.push(format!(
-            "All but {} % of the base particles by number are no coarser than the finest \
-             open constriction ({size_mm:.4} mm) and can block nothing: {how}, and their sizes are drawn \
-            where they come to rest.",
-            digits(coarse_percent)
-        ));
-    }
-    sentences
+/// What is not needed of a run; sizes are those of the finest open constriction (mm).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shortcut {
+    /// Nothing moves, as no constriction is open.
+    NothingOpen,
+    /// No base particle is a count, as none is as fine as this.
+    NonePassive(f64),
+    /// Every base particle is a count of this engine, as none is coarser than this.
+    AllPassive(f64, Engine),
+    /// All but so many percent of the base particles are counts of this engine.
+    MostPassive(f64, f64, Engine),
+    /// No column of diameters is kept, as the base has one size.
+    OneSize,
+    /// So many passive base particles an increment on so many start nodes are too few for counts.
+    FewPassive(u64, u64),
 }
 
-/// A number of percent with four digits that mean something: `19.65`, `0.002500`, `3.000e-7`.
-fn digits(percent: f64) -> String {
-    match percent {
-        few if few < 1e-3 => format!("{few:.3e}"),
-        many => format!("{many:.*}", (3.0 - libm::log10(many).floor()).max(0.0) as usize),
+fn left_out(engine: Engine, limit: f32, passive_words: u128, unit_mm: f64) -> Vec<Shortcut> {
+    let coarse_percent = 100.0 * (((1u128 << 64) - passive_words) as f64 / 18_446_744_073_709_551_616.0);
+    let finest = f64::from(limit) * unit_mm;
+    let mut left_out = Vec::new();
+    if limit == f32::INFINITY {
+        left_out.push(Shortcut::NothingOpen);
+    } else if passive_words == 0 {
+        left_out.push(Shortcut::NonePassive(finest));
     }
+    if engine == Engine::Particles {
+        return left_out;
+    }
+    if passive_words < 1 << 64 {
+        left_out.push(Shortcut::MostPassive(coarse_percent, finest, engine));
+    } else if limit != f32::INFINITY {
+        left_out.push(Shortcut::AllPassive(finest, engine));
+    }
+    left_out
 }
 
 #[cfg(test)]

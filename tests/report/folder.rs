@@ -158,14 +158,15 @@ pub fn outcome(replicates: u64) -> Outcome {
         threshold: 0.075,
         warnings: vec!["18 % of the base is finer than 0.075 mm: the model was checked up to 15 %.".into()],
         left_out: vec!["packing: the constriction curve was given".into(), "triangulation".into()],
-        model_leaves_out: vec![
-            "Hydraulics: no gradient, no flow rate, no time. A step is chosen by constriction area alone."
-                .into(),
-            "Bridging of several particles over one constriction.".into(),
-            "Partial clogging: a constriction is open or blocked.".into(),
-            "Cohesion, particle shape, and segregation of the filter.".into(),
-            "The class “excessive erosion” of Foster and Fell.".into(),
-        ],
+        model_leaves_out: [
+            "Hydraulics: no gradient, no flow rate, no time. A step is chosen by constriction area alone.",
+            "Bridging of several particles over one constriction.",
+            "Partial clogging: a constriction is open or blocked.",
+            "Cohesion, particle shape, and segregation of the filter.",
+            "The class “excessive erosion” of Foster and Fell.",
+        ]
+        .map(|words| ModelLimit::Said(words.into()))
+        .to_vec(),
         inputs: Inputs {
             filter: FilterRecord {
                 name: "Loose filter gravel".into(),
@@ -250,8 +251,8 @@ pub fn outcome(replicates: u64) -> Outcome {
                 at_least: false,
                 limit_at_most: false,
                 met: Some(value <= limit),
-                needs: String::new(),
-                note: String::new(),
+                needs: RuleText::default(),
+                note: RuleText::default(),
                 applies_to: "bases in general".into(),
                 formula: String::new(),
                 source,

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use folder::Plan;
 use tempfile::TempDir;
-use voidwalk::outcome::record::{Outcome, RuleQuantity, Statistic, Verdict};
+use voidwalk::outcome::record::{ModelLimit, Outcome, RuleQuantity, RuleText, Statistic, Verdict};
 use voidwalk::report::{self, ReportError};
 
 /// Writes a folder and its report; the page, the figures, and the folder that holds them.
@@ -170,11 +170,11 @@ fn hostile_names_are_inert() {
         &mut rule.source,
         &mut outcome.warnings[0],
         &mut outcome.left_out[0],
-        &mut outcome.model_leaves_out[0],
     ] {
         *text = EVIL.to_owned();
     }
     rule.quantity = RuleQuantity::Named(EVIL.into());
+    outcome.model_leaves_out[0] = ModelLimit::Said(EVIL.into());
     let (page, figures, _folder) = made(&plan);
     for text in figures.iter().map(|(_, text)| text).chain([&page]) {
         for live in ["<script", "<img", "</pre>\"", "\u{0}", "\u{202e}"] {
@@ -398,7 +398,7 @@ fn a_rule_says_what_it_is_for_and_what_it_needs() {
     let mut plan = Plan::usual();
     plan.outcome.rules[0].value = None;
     plan.outcome.rules[0].met = None;
-    plan.outcome.rules[0].note = "needs the filter's <sieve> curve".into();
+    plan.outcome.rules[0].note = RuleText::Said("needs the filter's <sieve> curve".into());
     plan.outcome.rules[1].at_least = true;
     plan.outcome.rules[2].limit = None;
     let (page, ..) = made(&plan);

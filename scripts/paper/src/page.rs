@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use maud::{Markup, html};
-use voidwalk::outcome::MODEL_LEAVES_OUT;
+use voidwalk::network::ExitRule;
+use voidwalk::outcome::leaves_out;
 use voidwalk::outcome::record::Verdict;
 use voidwalk::report::numbers::{duration, significant, whole};
 use voidwalk::report::shell::{Drawn, clean, drawing, whole_page};
@@ -96,7 +97,7 @@ fn page(study: &Study, judged: &[Judged], sections: &[(&Section, Vec<Drawn>)]) -
             }
             aside.leaves {
                 h2 { "What the model leaves out" }
-                ul { @for item in MODEL_LEAVES_OUT { li { (item) } } }
+                ul { @for limit in leaves_out(ExitRule::Area) { li { (limit.to_string()) } } }
             }
         }
         (what_differs(judged))

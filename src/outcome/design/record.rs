@@ -6,7 +6,7 @@ use super::band::{Band, SetBy};
 use super::products::Fit;
 use super::spread::{Beyond, spread};
 use crate::outcome::BaseSize;
-use crate::outcome::record::{AppliedRule, Confidence, FindingRecord};
+use crate::outcome::record::{AppliedRule, Confidence, FindingRecord, ModelLimit};
 use crate::walk::Engine;
 
 /// Steps of the scale of ratios on which boundaries are found: half a percent, in ln(D15F/D85B).
@@ -71,7 +71,7 @@ pub struct Design {
     /// The sentences of all others.
     pub warnings: Vec<String>,
     /// What the model does not contain.
-    pub model_leaves_out: Vec<String>,
+    pub model_leaves_out: Vec<ModelLimit>,
     /// Settings that were given, as on the command line.
     pub settings: Vec<String>,
     /// Wall time (s).

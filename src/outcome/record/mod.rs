@@ -39,7 +39,9 @@ pub use varied::{Classed, CurveEnd, CurveRange, Margin, MarginWalk, OfThickness,
 pub use voids::{BlockedRow, ConstrictionRow, RetainedRow, VoidRow};
 
 pub use super::applied::{AppliedRule, Confidence, RuleQuantity, RuleRole};
+pub use super::model_limit::ModelLimit;
 pub use super::pan::{PanBounds, PanReading, PanSize};
+pub use super::rule_note::{RuleNote, RuleText};
 
 /// The whole of `outcome.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -95,7 +97,7 @@ pub struct Outcome {
     /// Parts of the program that this scene did not need.
     pub left_out: Vec<String>,
     /// What the model does not contain, for any scene.
-    pub model_leaves_out: Vec<String>,
+    pub model_leaves_out: Vec<ModelLimit>,
     /// What went in, resolved.
     pub inputs: Inputs,
     /// The network, where its constrictions have no direction of their own.

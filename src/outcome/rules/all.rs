@@ -19,6 +19,15 @@ pub const PERMEABILITY: &str = "permeability";
 /// The paper's own boundary of no erosion.
 pub const PAPER_NO_EROSION: &str = "paper-no-erosion";
 
+/// Id of the paper's boundary of continuing erosion.
+pub const PAPER_CONTINUING: &str = "paper-continuing";
+
+/// Id of the boundary beyond which tests found excessive erosion.
+pub const TESTS_EXCESSIVE: &str = "foster-fell-excessive";
+
+/// Id of Terzaghi's ratio.
+pub const TERZAGHI: &str = "terzaghi";
+
 /// Fell et al., who give Table 9.2.
 const FELL: &str = "Fell, MacGregor, Stapledon & Bell, Geotechnical Engineering of Dams, Table 9.2 (after \
                     Foster 1999; Foster & Fell 2001)";
@@ -72,7 +81,7 @@ pub const RULES: &[FilterRule] = &[
         judge: retention::no_erosion,
     },
     FilterRule {
-        id: "foster-fell-excessive",
+        id: TESTS_EXCESSIVE,
         authority: "Foster and Fell",
         says: "some erosion rather than excessive",
         role: RuleRole::Continuation,
@@ -104,7 +113,7 @@ pub const RULES: &[FilterRule] = &[
         judge: retention::continuing,
     },
     FilterRule {
-        id: "terzaghi",
+        id: TERZAGHI,
         authority: "Terzaghi",
         says: "the filter retains the base",
         role: RuleRole::Retention,
@@ -321,7 +330,7 @@ pub const RULES: &[FilterRule] = &[
         judge: walk::paper_no_erosion,
     },
     FilterRule {
-        id: "paper-continuing",
+        id: PAPER_CONTINUING,
         authority: "",
         says: "Network model of the paper: some erosion rather than continuing",
         role: RuleRole::Walk,

@@ -5,6 +5,7 @@ use super::base::BaseSoil;
 use super::rule::{FilterRule, Pairing, RuleInputs, RuleUnit};
 use crate::gradation::Gradation;
 use crate::outcome::applied::AppliedRule;
+use crate::outcome::rule_note::RuleText;
 
 /// Applies every rule.
 pub fn apply(inputs: &RuleInputs) -> Vec<AppliedRule> {
@@ -138,8 +139,8 @@ fn applied(rule: &FilterRule, inputs: &RuleInputs) -> Option<AppliedRule> {
         at_least: rule.at_least,
         limit_at_most: judged.limit_at_most,
         met: met.filter(|_| judged.applies),
-        needs: judged.needs,
-        note: judged.note,
+        needs: RuleText::Of(judged.needs.into_iter().collect()),
+        note: RuleText::Of(judged.notes),
         applies_to: rule.applies_to.into(),
         formula: rule.formula.into(),
         source: rule.source.into(),

@@ -1,6 +1,6 @@
 //! The base as practice describes it: regraded where it is broad, and its category by fines.
 
-use crate::gradation::{FEW_FINES, FINES_MM, Gradation, Regraded};
+use crate::gradation::{FEW_FINES, FINES_MM, Gradation, RegradeCause, RegradeReason, Regraded};
 
 /// A base soil as practice describes it.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,7 +12,7 @@ pub struct BaseSoil {
     /// The size on which it was regraded (mm).
     pub regraded_at_mm: Option<f64>,
     /// Why it was regraded, or not.
-    pub why: String,
+    pub why: RegradeReason,
     /// The size below which practice looks at it, where no sieve tells the sizes there (mm): they are at most
     /// this.
     pub hidden_below_mm: Option<f64>,
@@ -33,7 +33,7 @@ impl BaseSoil {
                 gradation: base.clone(),
                 regraded: false,
                 regraded_at_mm: None,
-                why: "sizes are multiples of D0F".into(),
+                why: RegradeReason { cause: RegradeCause::NoUnit, nothing_passes: false },
                 hidden_below_mm: None,
                 fines_percent: None,
                 category: None,

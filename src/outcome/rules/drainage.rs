@@ -4,6 +4,7 @@
 
 use super::rule::{Judged, RuleInputs};
 use crate::gradation::{FINES_MM, Gradation};
+use crate::outcome::record::RuleNote;
 
 /// Times D15B that D15F is at least, by USBR (2011) and NRCS (2017).
 const TIMES: f64 = 5.0;
@@ -32,19 +33,18 @@ fn coarse_enough(inputs: &RuleInputs, times: f64) -> Judged {
     // Where D15B is finer than the finest sieve, the limit lies between the least and this one.
     let surely = if d15b.is_some() { limit } else { least };
     let judged = match (d15f, d15b) {
-        (Some(_), Some(_)) => Judged::of(d15f, Some(limit)).noted("base before regrading"),
-        (None, _) if finest < surely => Judged { met: Some(false), ..Judged::of(Some(finest), Some(limit)) }
-            .noted("D15F is finer than the finest sieve: at most this"),
-        (None, Some(_)) => Judged::of(None, Some(limit)).lacking("needs the filter's D15: finer sieves"),
-        (Some(d15f), None) if d15f >= limit => Judged::of(Some(d15f), Some(limit))
-            .noted("D15B is finer than the finest sieve: the limit is at most this"),
+        (Some(_), Some(_)) => Judged::of(d15f, Some(limit)).noted(RuleNote::BeforeRegrading),
+        (None, _) if finest < surely => {
+            Judged { met: Some(false), ..Judged::of(Some(finest), Some(limit)) }.noted(RuleNote::D15FAtMost)
+        }
+        (None, Some(_)) => Judged::of(None, Some(limit)).lacking(RuleNote::NeedsD15FSieved),
+        (Some(d15f), None) if d15f >= limit => {
+            Judged::of(Some(d15f), Some(limit)).noted(RuleNote::LimitAtMost)
+        }
         (Some(d15f), None) if d15f < least => {
-            Judged { met: Some(false), ..Judged::of(Some(d15f), Some(least)) }
-                .noted("D15B is finer than the finest sieve; the limit is never less than this")
+            Judged { met: Some(false), ..Judged::of(Some(d15f), Some(least)) }.noted(RuleNote::LimitAtLeast)
         }
-        (_, None) => {
-            Judged::of(d15f, Some(limit)).lacking("needs the base's D15: finer sieves, or base.d0_mm")
-        }
+        (_, None) => Judged::of(d15f, Some(limit)).lacking(RuleNote::NeedsD15B),
     };
     Judged { limit_at_most: d15b.is_none() && judged.limit == Some(limit), ..judged }
 }
@@ -53,12 +53,12 @@ fn coarse_enough(inputs: &RuleInputs, times: f64) -> Judged {
 pub fn fines(inputs: &RuleInputs) -> Judged {
     const MOST: Option<f64> = Some(5.0);
     if inputs.scale_free || !inputs.filter_is_measured {
-        return Judged { limit: MOST, ..Judged::default() }.lacking("needs the filter's sieve curve in mm");
+        return Judged { limit: MOST, ..Judged::default() }.lacking(RuleNote::NeedsCurveOfFilterInMm);
     }
     let (filter, finer) = (inputs.filter, inputs.filter.percent_finer_by_mass(FINES_MM));
     match filter.pan_fraction() == 0.0 || filter.smallest_mm() <= FINES_MM || finer <= 5.0 {
         true => Judged::of(Some(finer), MOST),
-        false => Judged::of(None, MOST).lacking("needs finer sieves of the filter, down to 0.075 mm"),
+        false => Judged::of(None, MOST).lacking(RuleNote::NeedsFinesOfFilter),
     }
 }
 
@@ -66,7 +66,7 @@ pub fn fines(inputs: &RuleInputs) -> Judged {
 pub fn greatest_size(inputs: &RuleInputs) -> Judged {
     const MOST: Option<f64> = Some(75.0);
     match inputs.scale_free || !inputs.filter_is_measured {
-        true => Judged { limit: MOST, ..Judged::default() }.lacking("needs the filter's sieve curve in mm"),
+        true => Judged { limit: MOST, ..Judged::default() }.lacking(RuleNote::NeedsCurveOfFilterInMm),
         false => Judged::of(Some(inputs.filter.largest_mm()), MOST),
     }
 }
@@ -75,14 +75,13 @@ pub fn greatest_size(inputs: &RuleInputs) -> Judged {
 pub fn uniformity(inputs: &RuleInputs) -> Judged {
     const MOST: Option<f64> = Some(6.0);
     match (inputs.filter_is_measured, inputs.filter.cu()) {
-        (false, _) => Judged { limit: MOST, ..Judged::default() }.lacking("needs the filter's sieve curve"),
+        (false, _) => Judged { limit: MOST, ..Judged::default() }.lacking(RuleNote::NeedsCurveOfFilter),
         (true, None) => {
             // D10 is at most the finest sieve, or D60 lies in the tail as well.
             let least = inputs.filter.d(60.0).map(|d60| d60 / inputs.filter.smallest_mm());
             match least.filter(|least| Some(*least) > MOST) {
-                Some(least) => Judged::of(Some(least), MOST)
-                    .noted("D10 is finer than the finest sieve: Cu is at least this"),
-                None => Judged::of(None, MOST).lacking("needs the filter's D10: finer sieves"),
+                Some(least) => Judged::of(Some(least), MOST).noted(RuleNote::CuAtLeast),
+                None => Judged::of(None, MOST).lacking(RuleNote::NeedsD10F),
             }
         }
         (true, cu) => Judged::of(cu, MOST),
@@ -110,7 +109,7 @@ pub fn band(inputs: &RuleInputs) -> Judged {
     let percents = inputs.filter_curves.iter().flat_map(of_curve).chain(BAND);
     let within = percents.filter(|percent| (BAND[0]..=BAND[1]).contains(percent));
     let Some((percent, ratio)) = within.filter_map(widest).max_by(|a, b| a.1.total_cmp(&b.1)) else {
-        return Judged::of(None, Some(5.0)).lacking("needs finer sieves of the filter");
+        return Judged::of(None, Some(5.0)).lacking(RuleNote::NeedsSievesOfFilter);
     };
-    Judged::of(Some(ratio), Some(5.0)).noted(format!("at {percent:.0} % finer"))
+    Judged::of(Some(ratio), Some(5.0)).noted(RuleNote::AtPercentFiner(percent))
 }

@@ -3,6 +3,7 @@
 use std::f64::consts::SQRT_2;
 
 use super::rule::{Judged, RuleInputs};
+use crate::outcome::record::RuleNote;
 
 /// Width of the joint over D95B, and the probability of continuing erosion.
 const PROBABILITY: [(f64, f64); 5] = [(0.5, 0.0001), (0.75, 0.001), (1.0, 0.1), (2.0, 0.5), (3.0, 0.9)];
@@ -14,14 +15,13 @@ const CLOSED: f64 = 0.4;
 pub fn constricted(inputs: &RuleInputs) -> Judged {
     let Some(joint) = inputs.joint_mm else { return Judged::left_out() };
     let Some(d95b) = inputs.base_soil.gradation.d(95.0) else {
-        return Judged::of(None, None).lacking("needs the base's D95: finer sieves");
+        return Judged::of(None, None).lacking(RuleNote::NeedsD95B);
     };
     let ratio = joint / d95b;
-    let note = format!("joint of {joint} mm, D95B {d95b:.3} mm: JOS/D95B = {ratio:.2}; steady flow");
-    match probability(ratio) {
-        Some(share) => Judged::of(Some(100.0 * share), None).noted(note),
-        None => Judged::of(None, None).noted(format!("{note}; less than 0.01 %")),
-    }
+    let share = probability(ratio);
+    let judged =
+        Judged::of(share.map(|share| 100.0 * share), None).noted(RuleNote::Joint(joint, d95b, ratio));
+    if share.is_none() { judged.noted(RuleNote::LessThanSource) } else { judged }
 }
 
 /// Probability (0 to 1) of continuing erosion at this width over D95B: between the table's points straight in

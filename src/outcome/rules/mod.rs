@@ -14,7 +14,10 @@ mod rule;
 mod stability;
 mod walk;
 
-pub use all::{DESIGN, PAPER_NO_EROSION, PERMEABILITY, RULES, TESTS_CONTINUING, TESTS_NO_EROSION};
+pub use all::{
+    DESIGN, PAPER_CONTINUING, PAPER_NO_EROSION, PERMEABILITY, RULES, TERZAGHI, TESTS_CONTINUING,
+    TESTS_EXCESSIVE, TESTS_NO_EROSION,
+};
 pub use apply::{NamedCurve, Sides, apply, apply_to_envelopes, authority};
 pub use base::BaseSoil;
 pub use retention::range_of_tests;

@@ -2,19 +2,7 @@
 
 use super::rule::{Fines, Judged, RuleInputs};
 use crate::gradation::{FEW_FINES, FINES_MM};
-
-/// What is said where the fines are not known.
-const FINES_NEEDED: &str = "needs finer sieves of the base: whether it has 15 % fines or more is not known";
-
-/// What is said where the base's D85 lies in its finest tail.
-const D85B_NEEDED: &str = "needs the base's D85: finer sieves, or base.d0_mm";
-
-/// What is said of dispersive bases with 15 to 40 % fines.
-const DISPERSIVE: &str = "needs a test of this soil: it is dispersive, and no source that was read gives its \
-                          limit with so few fines; that of other soils is the most that it can be";
-
-/// What is said of sizes without a unit.
-const ASSUMED: &str = "sizes are multiples of D0F: taken as a sand without fines";
+use crate::outcome::record::RuleNote;
 
 /// Largest D15F of a base with between `few` and `many` percent of fines: from 4 D85B down to 0.7 mm.
 fn between(few: f64, many: f64, fines: f64, d85b: f64) -> f64 {
@@ -49,7 +37,7 @@ pub fn sherard_dunnigan(inputs: &RuleInputs) -> Judged {
         (_, fines) if fines >= FEW_FINES => Limit::Is(between(FEW_FINES, 40.0, fines, d85b)),
         _ => Limit::Is(4.0 * d85b),
     };
-    by_fines(inputs, limit, |category| format!("base category {category}"))
+    by_fines(inputs, limit, true)
 }
 
 /// Foster and Fell's boundary of no erosion; with their limits for dispersive soils where the base is one.
@@ -63,7 +51,7 @@ pub fn no_erosion(inputs: &RuleInputs) -> Judged {
         (_, fines) if fines >= FEW_FINES => Limit::Is(1.6 * between(FEW_FINES, 35.0, fines, d85b)),
         _ => Limit::Is(7.0 * d85b),
     };
-    by_fines(inputs, limit, |_| String::new())
+    by_fines(inputs, limit, false)
 }
 
 /// The range of D15F (mm) in which tests of bases with so many percent of fines, after regrading, and this
@@ -82,35 +70,38 @@ pub fn range_of_tests(fines: f64, d85b: f64) -> [f64; 2] {
 ///
 /// What is not known never hides a failure: where the limit itself is not known, the most that it can be is,
 /// and a filter beyond that breaks the rule whatever a test of the soil may show.
-fn by_fines(inputs: &RuleInputs, limit: impl Fn(f64, f64) -> Limit, note: impl Fn(u8) -> String) -> Judged {
+fn by_fines(inputs: &RuleInputs, limit: impl Fn(f64, f64) -> Limit, says_category: bool) -> Judged {
     let (d15f, d85b) = (inputs.d15f(), inputs.size_of_base(85.0));
-    let (known, said) = match inputs.fines() {
-        Fines::Percent(percent) => {
-            (Some(percent), regraded(inputs, note(inputs.base_soil.category.unwrap_or(4))))
-        }
-        Fines::Few => (Some(0.0), regraded(inputs, note(4))),
-        Fines::Assumed => (Some(0.0), ASSUMED.to_owned()),
-        Fines::Unknown => (None, regraded(inputs, String::new())),
-    };
-    let said = match inputs.dispersive && known.is_none_or(|fines| fines >= FEW_FINES) {
-        true => format!("dispersive; {said}").trim_end_matches("; ").to_owned(),
-        false => said,
+    let known = match inputs.fines() {
+        Fines::Percent(percent) => Some(percent),
+        Fines::Few | Fines::Assumed => Some(0.0),
+        Fines::Unknown => None,
     };
     let (limit, needs) = match known.map(|fines| limit(fines, d85b.most)) {
-        Some(Limit::Is(limit)) if d85b.is_known => (Limit::Is(limit), ""),
-        Some(Limit::AtMost(most)) if d85b.is_known => (Limit::AtMost(most), DISPERSIVE),
-        Some(limit) => (Limit::AtMost(limit.most()), D85B_NEEDED),
-        None => (Limit::AtMost(whatever_its_fines(&limit, d85b.most)), FINES_NEEDED),
-    };
-    let judged = Judged::of(d15f, Some(limit.most()));
-    match (d15f, limit) {
-        (None, _) => judged.noted(said).lacking("needs the filter's D15: finer sieves, or filter.d0_mm"),
-        (_, Limit::Is(_)) => judged.noted(said),
-        (Some(d15f), Limit::AtMost(most)) if d15f > most => {
-            let said = format!("{said}; beyond the most that the limit can be");
-            judged.at_most().noted(said.trim_start_matches("; "))
+        Some(Limit::Is(limit)) if d85b.is_known => (Limit::Is(limit), None),
+        Some(Limit::AtMost(most)) if d85b.is_known => {
+            (Limit::AtMost(most), Some(RuleNote::NeedsTestOfDispersive))
         }
-        (_, Limit::AtMost(_)) => judged.at_most().noted(said).lacking(needs),
+        Some(limit) => (Limit::AtMost(limit.most()), Some(RuleNote::NeedsD85B)),
+        None => (Limit::AtMost(whatever_its_fines(&limit, d85b.most)), Some(RuleNote::NeedsFinesOfBase)),
+    };
+    let is_beyond = d15f.is_some_and(|d15f| d15f > limit.most()) && matches!(limit, Limit::AtMost(_));
+    let is_dispersive = inputs.dispersive && known.is_none_or(|fines| fines >= FEW_FINES);
+    let category = inputs.base_soil.category.filter(|_| says_category).map(RuleNote::Category);
+    let notes = [
+        is_dispersive.then_some(RuleNote::Dispersive),
+        category,
+        base_as_read(inputs),
+        is_beyond.then_some(RuleNote::BeyondAnyLimit),
+    ];
+    Judged {
+        limit_at_most: d15f.is_some() && matches!(limit, Limit::AtMost(_)),
+        needs: match d15f {
+            None => Some(RuleNote::NeedsD15F),
+            Some(_) => needs.filter(|_| !is_beyond),
+        },
+        notes: notes.into_iter().flatten().collect(),
+        ..Judged::of(d15f, Some(limit.most()))
     }
 }
 
@@ -124,12 +115,12 @@ fn whatever_its_fines(limit: &impl Fn(f64, f64) -> Limit, d85b: f64) -> f64 {
     (0..=100).map(of).fold(0.0, f64::max)
 }
 
-/// A note, and whether the base was regraded.
-fn regraded(inputs: &RuleInputs, note: String) -> String {
-    let at = inputs.base_soil.regraded_at_mm;
-    let parts = [Some(note), at.map(|at| format!("base regraded on {at:.3} mm"))];
-    let parts: Vec<String> = parts.into_iter().flatten().filter(|part| !part.is_empty()).collect();
-    parts.join("; ")
+/// What the base was read as, where that is not as it is.
+fn base_as_read(inputs: &RuleInputs) -> Option<RuleNote> {
+    match inputs.fines() {
+        Fines::Assumed => Some(RuleNote::TakenAsSand),
+        _ => inputs.base_soil.regraded_at_mm.map(RuleNote::RegradedOn),
+    }
 }
 
 /// Terzaghi's ratio, for bases with few fines.
@@ -138,13 +129,10 @@ pub fn terzaghi(inputs: &RuleInputs) -> Judged {
     let value = inputs.d15f().zip(d85b).map(|(d15f, d85b)| d15f / d85b);
     let judged = Judged::of(value, Some(4.0));
     match inputs.fines() {
-        Fines::Percent(percent) if percent >= FEW_FINES => {
-            judged.not_for(format!("{percent:.0} % of the base is fines: limits by fines stand in its place"))
-        }
+        Fines::Percent(percent) if percent >= FEW_FINES => judged.not_for(RuleNote::LimitsByFines(percent)),
         // With more fines other limits stand in its place, and most of them are stricter.
-        Fines::Unknown => judged.at_most().lacking(FINES_NEEDED),
-        Fines::Assumed => judged.noted(ASSUMED),
-        _ => judged.noted(regraded(inputs, String::new())),
+        Fines::Unknown => judged.at_most().lacking(RuleNote::NeedsFinesOfBase),
+        _ => judged.noted(base_as_read(inputs)),
     }
 }
 
@@ -153,22 +141,19 @@ pub fn continuing(inputs: &RuleInputs) -> Judged {
     let (d15f, d95b) = (inputs.d15f(), inputs.size_of_base(95.0));
     let judged = Judged::of(d15f, Some(9.0 * d95b.most));
     if !d95b.is_known {
-        let judged = judged.at_most().noted(regraded(inputs, String::new()));
+        let judged = judged.at_most().noted(base_as_read(inputs));
         let is_broken = d15f.is_some_and(|d15f| d15f > 9.0 * d95b.most);
-        return if is_broken { judged } else { judged.lacking("needs the base's D95: finer sieves") };
+        return if is_broken { judged } else { judged.lacking(RuleNote::NeedsD95B) };
     }
     match inputs.fines() {
         Fines::Percent(percent) if percent >= FEW_FINES && d95b.most > 2.0 => {
-            judged.noted("for bases with 15 to 85 % fines and D95B above 2 mm tests found no clear boundary")
+            judged.noted(RuleNote::NoClearBoundary)
         }
-        Fines::Assumed => judged.noted(ASSUMED),
-        _ => judged.noted(regraded(inputs, String::new())),
+        _ => judged.noted(base_as_read(inputs)),
     }
 }
 
 /// Foster and Fell's boundary of excessive erosion: its numbers stand in figures that could not be read.
 pub fn excessive(inputs: &RuleInputs) -> Judged {
-    Judged { applies: false, value: inputs.d15f(), ..Judged::default() }.lacking(
-        "needs the numbers of this boundary: they stand in figures, and no text that was read gives them",
-    )
+    Judged { value: inputs.d15f(), ..Judged::default() }.lacking(RuleNote::NeedsNumbersOfBoundary)
 }

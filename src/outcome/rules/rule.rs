@@ -2,7 +2,7 @@
 
 use super::base::BaseSoil;
 use crate::gradation::Gradation;
-use crate::outcome::record::{RuleQuantity, RuleRole};
+use crate::outcome::record::{RuleNote, RuleQuantity, RuleRole};
 
 /// A rule of practice, as it stands in the table of [`super::RULES`].
 pub struct FilterRule {
@@ -78,9 +78,9 @@ pub struct Judged {
     /// The result where it does not follow from value and limit.
     pub met: Option<bool>,
     /// What is missing for a result.
-    pub needs: String,
+    pub needs: Option<RuleNote>,
     /// What else a reader must know.
-    pub note: String,
+    pub notes: Vec<RuleNote>,
     /// Whether nobody asked for it: it is not listed.
     pub is_left_out: bool,
 }
@@ -96,14 +96,15 @@ impl Judged {
         Self { limit_at_most: true, ..self }
     }
 
-    /// The same with a note.
-    pub fn noted(self, note: impl Into<String>) -> Self {
-        Self { note: note.into(), ..self }
+    /// The same with one more note, if there is one.
+    pub fn noted(mut self, note: impl Into<Option<RuleNote>>) -> Self {
+        self.notes.extend(note.into());
+        self
     }
 
     /// The same for a rule that was not made for these soils.
-    pub fn not_for(self, why: impl Into<String>) -> Self {
-        Self { applies: false, note: why.into(), ..self }
+    pub fn not_for(self, why: RuleNote) -> Self {
+        Self { applies: false, notes: vec![why], ..self }
     }
 
     /// A rule that nobody asked for.
@@ -112,8 +113,8 @@ impl Judged {
     }
 
     /// The same for a rule that lacks an input.
-    pub fn lacking(self, needs: impl Into<String>) -> Self {
-        Self { needs: needs.into(), ..self }
+    pub fn lacking(self, needs: RuleNote) -> Self {
+        Self { needs: Some(needs), ..self }
     }
 }
 

@@ -77,7 +77,7 @@ fn continuing_erosion_is_nine_d95_of_the_regraded_base() {
     let gravelly = sieve(&[(0.01, 0.0), (0.075, 30.0), (1.0, 60.0), (4.75, 80.0), (50.0, 100.0)]);
     let d95 = 4.75f64.powf((76.0 - 60.0) / 20.0);
     let rule = of("foster-fell-continuing", &filter(1.0), &gravelly);
-    assert!(close(rule.limit, 9.0 * d95) && rule.note.contains("no clear boundary"), "{rule:?}");
+    assert!(close(rule.limit, 9.0 * d95) && rule.note.to_string().contains("no clear boundary"), "{rule:?}");
 }
 
 #[test]
@@ -85,7 +85,7 @@ fn terzaghi_is_for_few_fines_and_takes_the_regraded_base() {
     let rule = of("terzaghi", &filter(2.1), &base(5.0, 0.5));
     assert!(close(rule.value, 4.2) && rule.met == Some(false) && rule.unit.is_empty());
     let rule = of("terzaghi", &filter(2.1), &base(30.0, 0.5));
-    assert!(!rule.applies && rule.met.is_none() && rule.note.contains("30 % of the base"));
+    assert!(!rule.applies && rule.met.is_none() && rule.note.to_string().contains("30 % of the base"));
 }
 
 #[test]
@@ -105,9 +105,9 @@ fn permeability_is_five_d15_of_the_base_as_it_is() {
     // A till whose table ends at No. 200 with 35 %: at most 5 x 0.075 mm.
     let till = sieve(&[(0.075, 35.0), (1.0, 100.0)]);
     let rule = of("permeability", &filter(0.4), &till);
-    assert!(rule.met == Some(true) && close(rule.limit, 0.375) && rule.note.contains("at most"));
+    assert!(rule.met == Some(true) && close(rule.limit, 0.375) && rule.note.to_string().contains("at most"));
     let rule = of("permeability", &filter(0.3), &till);
-    assert!(rule.met.is_none() && rule.needs.contains("D15"));
+    assert!(rule.met.is_none() && rule.needs.to_string().contains("D15"));
 }
 
 #[test]
@@ -121,7 +121,7 @@ fn fines_and_cobbles_of_the_filter() {
     assert_eq!(of("filter-fines", &clean, &soil).met, Some(true));
     assert_eq!(of("filter-greatest-size", &clean, &soil).met, Some(true));
     let coarse_table = sieve(&[(0.3, 8.0), (5.0, 60.0), (75.0, 100.0)]);
-    assert!(of("filter-fines", &coarse_table, &soil).needs.contains("finer sieves"));
+    assert!(of("filter-fines", &coarse_table, &soil).needs.to_string().contains("finer sieves"));
 }
 
 /// The gap-graded filter of the first trial: 40 % below 0.5 mm, nothing to 5 mm. And one at which Kenney and
@@ -133,11 +133,15 @@ fn internal_stability_by_hand() {
     // From F = 25 % the next 15 % end beyond the gap: 5 mm over D25 = 0.1 x 5^(25/40).
     let rule = of("kezdi", &gap, &soil);
     assert!(close(rule.value, 50.0 / 5.0f64.powf(0.625)) && rule.met == Some(false), "{rule:?}");
-    assert!(rule.note.contains("at F = 25 %, judged from F = 15 to 55 %"), "{}", rule.note);
+    assert!(rule.note.to_string().contains("at F = 25 %, judged from F = 15 to 55 %"), "{}", rule.note);
     let unstable = sieve(&[(0.1, 0.0), (0.2, 15.0), (4.0, 15.0), (20.0, 100.0)]);
     for (id, value) in [("kenney-lau", 0.0), ("li-fannin", 0.0)] {
         let rule = of(id, &unstable, &soil);
-        assert!(close(rule.value, value) && rule.met == Some(false) && rule.note.contains("F = 15.0 %"));
+        assert!(
+            close(rule.value, value)
+                && rule.met == Some(false)
+                && rule.note.to_string().contains("F = 15.0 %")
+        );
     }
     // Straight with Cu 60: H = 50 ln 4 / ln 60 = 16.93 %, less than F = 20 % and more than 15 %.
     let broad = sieve(&[(0.1, 0.0), (360.0, 100.0)]);
@@ -152,8 +156,8 @@ fn a_linear_filter_is_an_assumption_and_has_no_stability() {
     let inputs = RuleInputs { filter_is_measured: false, ..RuleInputs::of_soils(&base, &filter) };
     for rule in apply(&inputs).iter().filter(|rule| rule.role == RuleRole::Stability) {
         assert_eq!(
-            (rule.value, rule.met, rule.needs.as_str()),
-            (None, None, "needs the filter's sieve curve")
+            (rule.value, rule.met, rule.needs.to_string()),
+            (None, None, "needs the filter's sieve curve".to_owned())
         );
     }
 }
@@ -175,7 +179,7 @@ fn sizes_without_a_unit_are_those_of_a_sand() {
     for (id, limit) in [("sherard-dunnigan", 0.8), ("foster-fell-no-erosion", 1.4)] {
         let rule = find(id);
         assert!(close(rule.limit, limit) && close(rule.value, d15f) && rule.unit == "D0F");
-        assert!(rule.applies && rule.note.contains("sand without fines"));
+        assert!(rule.applies && rule.note.to_string().contains("sand without fines"));
     }
     assert_eq!(find("sherard-dunnigan").met, Some(false));
     let limits =
@@ -192,11 +196,14 @@ fn fines_that_are_not_known_hide_no_failure() {
     let d85 = 0.3 * (1.0f64 / 0.3).powf(0.8);
     for (id, most) in [("sherard-dunnigan", 4.0 * d85), ("foster-fell-no-erosion", 7.0 * d85)] {
         let fine = of(id, &filter(0.99 * most), &hidden);
-        assert!(fine.met.is_none() && fine.limit_at_most && fine.needs.contains("fines"), "{fine:?}");
+        assert!(
+            fine.met.is_none() && fine.limit_at_most && fine.needs.to_string().contains("fines"),
+            "{fine:?}"
+        );
         assert!(close(fine.limit, most), "{fine:?}");
         let coarse = of(id, &filter(1.01 * most), &hidden);
         assert!(coarse.met == Some(false) && coarse.needs.is_empty(), "{coarse:?}");
-        assert!(coarse.note.contains("beyond the most that the limit can be"), "{coarse:?}");
+        assert!(coarse.note.to_string().contains("beyond the most that the limit can be"), "{coarse:?}");
     }
     // With few fines Terzaghi would hold it for good: nobody knows that they are few.
     let terzaghi = of("terzaghi", &filter(1.0), &hidden);
@@ -212,7 +219,7 @@ fn a_size_in_the_finest_tail_hides_no_failure() {
         let rule = of(id, &filter(0.7), &clay);
         assert!(rule.met == Some(false) && close(rule.limit, 0.675) && rule.limit_at_most, "{rule:?}");
         let rule = of(id, &filter(0.6), &clay);
-        assert!(rule.met.is_none() && rule.needs.contains("D85"), "{rule:?}");
+        assert!(rule.met.is_none() && rule.needs.to_string().contains("D85"), "{rule:?}");
     }
     let clay = sieve(&[(0.075, 97.0), (2.0, 100.0)]);
     let continuing = of("foster-fell-continuing", &filter(0.7), &clay);
@@ -222,14 +229,19 @@ fn a_size_in_the_finest_tail_hides_no_failure() {
     let silty = sieve(&[(0.2, 20.0), (4.0, 100.0)]);
     let coarse = sieve(&[(0.1, 0.0), (0.3, 15.0), (2.0, 100.0)]);
     let drains = of("permeability", &silty, &coarse);
-    assert!(drains.met == Some(false) && close(drains.value, 0.2) && drains.note.contains("at most"));
+    assert!(
+        drains.met == Some(false) && close(drains.value, 0.2) && drains.note.to_string().contains("at most")
+    );
     // Whatever D15B, it is never less than 0.1 mm.
     let drains = of("permeability", &filter(0.09), &sieve(&[(0.075, 35.0), (1.0, 100.0)]));
     assert!(drains.met == Some(false) && close(drains.limit, 0.1), "{drains:?}");
     // D60 over a D10 of at most 0.2 mm.
     let broad = sieve(&[(0.2, 12.0), (2.0, 60.0), (4.0, 100.0)]);
     let cu = of("filter-uniformity", &broad, &coarse);
-    assert!(cu.met == Some(false) && close(cu.value, 10.0) && cu.note.contains("at least"), "{cu:?}");
+    assert!(
+        cu.met == Some(false) && close(cu.value, 10.0) && cu.note.to_string().contains("at least"),
+        "{cu:?}"
+    );
 }
 
 /// 20 % finer than 0.075 mm and next to nothing up to 0.5 mm: practice looks at the fines alone, of which no
@@ -273,7 +285,7 @@ fn dispersive_bases_have_limits_of_their_own() {
     for (id, most) in [("sherard-dunnigan", 1.72), ("foster-fell-no-erosion", 2.48)] {
         let rule = of(id, 0.99 * most, 25.0, 0.6);
         assert!(close(rule.limit, most) && rule.limit_at_most && rule.met.is_none(), "{rule:?}");
-        assert!(rule.needs.contains("test of this soil"), "{rule:?}");
+        assert!(rule.needs.to_string().contains("test of this soil"), "{rule:?}");
         assert_eq!(of(id, 1.01 * most, 25.0, 0.6).met, Some(false));
     }
 }
@@ -322,7 +334,7 @@ fn burenkova_and_wan_and_fell_by_hand() {
     // A long coarse tail: her third zone has no result.
     let tailed = sieve(&[(0.05, 0.0), (0.1, 5.0), (1.0, 15.0), (2.5, 60.0), (19.0, 90.0), (30.0, 100.0)]);
     let rule = of("burenkova", &tailed, &soil);
-    assert!(!rule.applies && rule.met.is_none() && rule.note.contains("third zone"), "{rule:?}");
+    assert!(!rule.applies && rule.met.is_none() && rule.note.to_string().contains("third zone"), "{rule:?}");
 }
 
 /// Kezdi's ratio is above 4 at the splits of 1 % and 100 % of an ordinary filter, which is no alarm.
@@ -367,7 +379,9 @@ fn envelopes_pair_the_worst_sides() {
     assert!(close(band.value, 2.0 * 1.5f64.powf(0.9)) && band.met == Some(true), "{band:?}");
     // The finest D95B is straight from 0.2 mm at 85 % to 4 mm at 100 %: 0.2 x 20^(2/3) = 1.474 mm.
     let joint = find("constricted-exit");
-    assert!(close(joint.value, 0.0) && joint.met.is_none() && joint.note.contains("JOS/D95B = 0.20"));
+    assert!(
+        close(joint.value, 0.0) && joint.met.is_none() && joint.note.to_string().contains("JOS/D95B = 0.20")
+    );
     // One curve each is what it always was, and asks for neither.
     let one = apply_to_envelopes(&bases[..1], &filters[..1], false, None);
     assert_eq!(one, apply(&RuleInputs::of_soils(&bases[0].1, &filters[0].1)));

@@ -1,14 +1,15 @@
 //! What the walk itself is checked by: tests of the largest passing particle, and the paper's own network.
 
 use super::rule::{Judged, RuleInputs};
+use crate::outcome::record::RuleNote;
 
 /// Kenney et al.: the largest particle that passes.
 pub fn largest_passing(inputs: &RuleInputs) -> Judged {
     let value = inputs.largest_eroded_over_d15f;
     let judged = Judged { applies: value.is_some(), ..Judged::of(value, Some(0.2)) };
     match value {
-        Some(_) => judged.noted("checks the walk against their tests, not the filter"),
-        None => judged.lacking("needs a walk whose first run erodes something"),
+        Some(_) => judged.noted(RuleNote::ChecksWalk),
+        None => judged.lacking(RuleNote::NeedsErosion),
     }
 }
 
@@ -25,5 +26,5 @@ pub fn paper_continuing(inputs: &RuleInputs) -> Judged {
 /// D15F over a size of the base that is walked.
 fn ratio(inputs: &RuleInputs, percent: f64, limit: f64) -> Judged {
     let value = inputs.d15f().zip(inputs.walked_base.d(percent)).map(|(d15f, of)| d15f / of);
-    Judged::of(value, Some(limit)).noted("a result of the model, for the base as it is walked")
+    Judged::of(value, Some(limit)).noted(RuleNote::ResultOfModel)
 }

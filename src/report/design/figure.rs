@@ -3,6 +3,10 @@
 use crate::outcome::design::band::{limits, retention};
 use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow};
 use crate::outcome::record::AppliedRule;
+use crate::outcome::rules::{
+    DESIGN, PAPER_CONTINUING, PAPER_NO_EROSION, PERMEABILITY, TERZAGHI, TESTS_CONTINUING, TESTS_EXCESSIVE,
+    TESTS_NO_EROSION,
+};
 use crate::report::figures::{
     Across, Area, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Rule,
     VERMILLION,
@@ -12,14 +16,14 @@ use crate::report::shell::Drawn;
 
 /// Names of rules beside their lines.
 const NAMES: [(&str, &str); 8] = [
-    ("permeability", "drains"),
-    ("sherard-dunnigan", "design"),
-    ("terzaghi", "Terzaghi"),
-    ("paper-no-erosion", "paper, no erosion"),
-    ("foster-fell-no-erosion", "NE"),
-    ("paper-continuing", "paper, continuing"),
-    ("foster-fell-excessive", "EE"),
-    ("foster-fell-continuing", "CE"),
+    (PERMEABILITY, "drains"),
+    (DESIGN, "design"),
+    (TERZAGHI, "Terzaghi"),
+    (PAPER_NO_EROSION, "paper, no erosion"),
+    (TESTS_NO_EROSION, "NE"),
+    (PAPER_CONTINUING, "paper, continuing"),
+    (TESTS_EXCESSIVE, "EE"),
+    (TESTS_CONTINUING, "CE"),
 ];
 
 /// The figure, of the row that the answer is of: that which holds least. Where none is known to hold, of the

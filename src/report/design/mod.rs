@@ -361,6 +361,7 @@ mod tests {
     use super::*;
     use crate::gradation::Gradation;
     use crate::outcome::design::BaseStated;
+    use crate::outcome::record::ModelLimit;
     use crate::verdict::PairRules;
 
     fn written(design: &Design, csv: &str) -> String {
@@ -423,7 +424,7 @@ mod tests {
             products: Vec::new(),
             products_confidence: None,
             warnings: Vec::new(),
-            model_leaves_out: vec!["water".into()],
+            model_leaves_out: vec![ModelLimit::Said("water".into())],
             settings: Vec::new(),
             seconds: 1.0,
         }

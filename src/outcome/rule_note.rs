@@ -1,0 +1,141 @@
+//! What rules say beside their results, as values. Their words are in `verdict`.
+
+/// Declares the notes; a test can make each of them with any number.
+macro_rules! notes {
+    ($($(#[$doc:meta])* $id:ident $(($($type:ty),*))?,)*) => {
+        /// What a rule says beside its result.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub enum RuleNote {
+            $($(#[$doc])* $id $(($($type),*))?,)*
+        }
+
+        #[cfg(test)]
+        impl RuleNote {
+            /// Every note, all its numbers being this one.
+            pub fn all_with(number: f64) -> Vec<Self> {
+                vec![$(Self::$id $(($(number as $type),*))?),*]
+            }
+        }
+    };
+}
+
+notes! {
+    // What is missing for a result.
+    /// The fines of the base.
+    NeedsFinesOfBase,
+    /// D85 of the base.
+    NeedsD85B,
+    /// D95 of the base.
+    NeedsD95B,
+    /// D15 of the base.
+    NeedsD15B,
+    /// D15 of the filter, of which D0F would tell, too.
+    NeedsD15F,
+    /// D15 of the filter, of which only sieves tell.
+    NeedsD15FSieved,
+    /// D10 of the filter.
+    NeedsD10F,
+    /// The fines of the filter.
+    NeedsFinesOfFilter,
+    /// Sieves of the filter where the curves of a band are compared.
+    NeedsSievesOfFilter,
+    /// The finest part of the filter, for its shape.
+    NeedsFinestPartOfFilter,
+    /// A sieve curve of the filter.
+    NeedsCurveOfFilter,
+    /// A sieve curve of the filter with a unit.
+    NeedsCurveOfFilterInMm,
+    /// A test of a dispersive base with 15 to 40 % fines.
+    NeedsTestOfDispersive,
+    /// A source of the boundary of excessive erosion.
+    NeedsNumbersOfBoundary,
+    /// A first run that erodes something.
+    NeedsErosion,
+
+    // What the base was taken as.
+    /// It is dispersive.
+    Dispersive,
+    /// Its category of NRCS.
+    Category(u8),
+    /// It was regraded on this size (mm).
+    RegradedOn(f64),
+    /// It was not regraded, for a rule that reads it as it is.
+    BeforeRegrading,
+    /// Sizes have no unit: a sand without fines.
+    TakenAsSand,
+    /// It is walked as it is.
+    ResultOfModel,
+
+    // What is known of a limit or a value.
+    /// The filter is coarser than any limit that the base can have.
+    BeyondAnyLimit,
+    /// Tests found no clear boundary for such bases.
+    NoClearBoundary,
+    /// D15F lies in the filter's finest part, and is at most the value.
+    D15FAtMost,
+    /// D15B lies in the base's finest part: the limit is at most the one given.
+    LimitAtMost,
+    /// D15B lies in the base's finest part: the limit is at least the one given.
+    LimitAtLeast,
+    /// D10 lies in the filter's finest part: Cu is at least the value.
+    CuAtLeast,
+    /// The percent finer at which a band is widest.
+    AtPercentFiner(f64),
+    /// Width of a joint (mm), D95B (mm), and their ratio.
+    Joint(f64, f64, f64),
+    /// A probability below the least that the source states.
+    LessThanSource,
+    /// A largest particle that the tests of others know.
+    ChecksWalk,
+
+    // What the filter's own stability was judged by.
+    /// F (%) of Kezdi's ratio, and the range of F that was searched (%).
+    KezdiAt(f64, f64, f64),
+    /// The share (%) of the filter that hides something of Kezdi's ratio.
+    KezdiHidden(f64),
+    /// F (%) of an index of shape, and the most that F can be (%).
+    ShapeAt(f64, f64),
+    /// D90/D15, and the range of D90/D60 that is stable by Burenkova.
+    BurenkovaRange(f64, f64, f64),
+    /// Sand and gravel with few fines, by Wan and Fell.
+    WanFellSand,
+    /// Silt, sand and gravel with some clay, by Wan and Fell.
+    WanFellSilt,
+    /// How the source states its probability.
+    WanFellContours,
+
+    // Why a rule was not made for these soils.
+    /// The base has this share of fines (%).
+    LimitsByFines(f64),
+    /// The filter is coarser or broader than Burenkova's.
+    BurenkovaSoils,
+    /// The filter is in Burenkova's third zone, above this D90/D60.
+    BurenkovaThirdZone(f64),
+    /// The filter is uniform.
+    UniformFilter,
+}
+
+/// What a rule says, in its order; or as a file says it that was read back.
+#[derive(Clone, Debug)]
+pub enum RuleText {
+    /// The notes of a rule that was applied here.
+    Of(Vec<RuleNote>),
+    /// The words of a file.
+    Said(String),
+}
+
+impl Default for RuleText {
+    fn default() -> Self {
+        Self::Of(Vec::new())
+    }
+}
+
+impl RuleText {
+    /// Whether it says nothing.
+    pub fn is_empty(&self) -> bool {
+        match self {
+            Self::Of(notes) => notes.is_empty(),
+            Self::Said(words) => words.is_empty(),
+        }
+    }
+}
