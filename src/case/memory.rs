@@ -75,7 +75,9 @@ impl Case {
     /// How many of all 2^64 words draw a particle no coarser than the finest constriction.
     fn passive_words(&self) -> u128 {
         let finest = self.finest_of_fixed.unwrap_or_else(|| (self.finest_mm / self.unit_mm) as f32);
-        self.sampler.word_limit(finest)
+        // Whatever its concentration, a law has one widest ratio.
+        let by = self.scene.law().map_or(1.0, |law| law.widest as f32);
+        self.sampler.word_limit(finest / by)
     }
 
     /// Bytes of the columns of a walk of `n_base` particles.

@@ -1,5 +1,6 @@
 //! A case: a scene with its files read and every number worked out, before any work is done.
 
+mod arching;
 mod curve_ends;
 mod cut;
 mod error;
@@ -334,6 +335,7 @@ impl Case {
             scene,
         };
         case.other_readings = other.into_iter().map(|walked| case.read_as(walked)).collect();
+        arching::check(&case)?;
         Ok(case)
     }
 

@@ -88,10 +88,7 @@ impl Case {
                 d50_mm: d(&self.filter, 50.0),
                 d50_by_number_mm: self.filter.d_by_number(50.0).unwrap_or(f64::NAN),
                 d85_mm: d(&self.filter, 85.0),
-                void_ratio: match &self.packed {
-                    Some(packed) => packed.void_ratio,
-                    None => self.shipped.filter(|_| self.fixed_network.is_none()).map(|s| s.void_ratio),
-                },
+                void_ratio: self.void_ratio(),
                 gradation: pairs(self.filter.points()),
                 constrictions: self.curve.points().into_iter().map(|(percent, d)| [d, percent]).collect(),
                 cu_csd: self.curve.cu(),

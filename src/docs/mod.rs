@@ -12,6 +12,9 @@ pub mod serve {}
 #[doc = include_str!("graph.md")]
 pub mod graph {}
 
+#[doc = include_str!("arches.md")]
+pub mod arches {}
+
 #[doc = include_str!("rules.md")]
 pub mod rules {}
 

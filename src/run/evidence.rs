@@ -15,7 +15,7 @@ use crate::verdict::evidence::{LAYERS, MASS_RATIO};
 fn studied(case: &Case) -> Option<BaseSoil> {
     let scene = &case.scene;
     let has_tests = scene.base.dispersive != Some(true) && scene.filter.joint_mm.is_none();
-    let is_lattice = scene.is_lattice_by_area() && case.counts[3] == LAYERS;
+    let is_lattice = scene.is_lattice_by_area() && case.counts[3] == LAYERS && scene.law().is_none();
     let has_curve = case.library.is_some() || case.packed.is_some();
     let has_amount = case.mass_ratio.is_some_and(|ratio| (ratio / MASS_RATIO - 1.0).abs() < 0.01);
     if case.is_scale_free() || !has_tests || !is_lattice || !has_curve || !has_amount {

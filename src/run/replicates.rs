@@ -222,7 +222,8 @@ fn tell_walked(id: WalkId, run: &Run, below_threshold: bool, context: &Replicate
 
 /// How a run with these constrictions blocked is walked.
 pub(super) fn plan(case: &Case, network: &Network, blocked: &BitSlice, n_base: u64) -> RunPlan {
-    RunPlan::new(case.scene.walk.engine, network, &case.sampler, blocked, n_base / case.increments())
+    let (engine, share) = (case.scene.walk.engine, n_base / case.increments());
+    RunPlan::with_arches(engine, network, &case.sampler, blocked, share, case.arching(n_base))
         .sampled(case.scene.walk.sampling)
 }
 

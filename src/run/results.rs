@@ -12,8 +12,8 @@ use super::replicates::{ReplicateResult, classed, said_by_walks, stopping, summa
 use super::studies::Studies;
 use crate::case::{Case, INPUT_NAMES, replicate_seed};
 use crate::outcome::record::{
-    Classed, Confidence, ConstrictionsRecord, Manifest, Outcome, PanBounds, PanReading, RunSummary,
-    Statistic, Stopping, Verdict, VoidRow,
+    Classed, Confidence, ConstrictionsRecord, Manifest, ModelLimit, Outcome, PanBounds, PanReading,
+    RunSummary, Statistic, Stopping, Verdict, VoidRow,
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
 use crate::outcome::table::csv_of;
@@ -47,6 +47,7 @@ pub fn outcome(
     for (reading, walked) in case.other_readings.iter().zip(&other.readings) {
         found.extend(findings_of_walk(reading, verdict, walked));
     }
+    found.extend(case.scene.law().map(|law| finding::arches(law.name)));
     found.extend(unsure.map(finding::decided_below_95));
     found.extend(case.findings().into_iter().chain(case.not_studied()));
     // What was to be walked in several readings has been.
@@ -73,7 +74,7 @@ pub fn outcome(
         threshold: verdict::THRESHOLD,
         warnings: Vec::new(),
         left_out: left_out(case, walked.first().map_or(&[], |walked| &walked.left_out)),
-        model_leaves_out: leaves_out(case.scene.exit_rule()),
+        model_leaves_out: model_leaves_out(case),
         inputs: case.record(),
         network: case.network_summary(walked.first().and_then(|w| w.replicate.runs.first()?.k0_mm2)),
         ratios: case.ratios(),
@@ -85,6 +86,7 @@ pub fn outcome(
         curve_range: other.range.clone(),
         margin: other.margin.clone(),
         evidence: evidence(case, other.margin.as_ref()),
+        arching: case.arching_record(),
         sensitivity: studies.sensitivity,
         thickness: studies.thickness,
         studies_to_come: false,
@@ -98,6 +100,12 @@ pub fn outcome(
     (outcome.confidence, outcome.reasons) = (answer.confidence, answer.reasons());
     outcome.findings = answer.findings;
     outcome
+}
+
+/// What the model does not contain: arches are in some walks.
+fn model_leaves_out(case: &Case) -> Vec<ModelLimit> {
+    let is_left_out = |limit: &ModelLimit| *limit != ModelLimit::Bridging || case.scene.law().is_none();
+    leaves_out(case.scene.exit_rule()).into_iter().filter(is_left_out).collect()
 }
 
 /// What these walks say themselves against the verdict.

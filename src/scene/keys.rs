@@ -10,7 +10,7 @@ use crate::network::{Connectivity, ExitRule};
 use crate::packing::{CellOption, LengthUnit};
 use crate::schema::{Allowed, Leaf, above_zero, any, only, section, whole, within, words};
 use crate::text::is_hidden;
-use crate::walk::{Engine, Sampling};
+use crate::walk::{Engine, LawName, Sampling};
 
 section! {
     /// A base-filter combination for voidwalk: `voidwalk run scene.toml`, or `voidwalk check scene.toml`
@@ -155,6 +155,12 @@ section! {
         pub rho: Option<f64> = None, off "0.0", within(0.0..=1.0, "a part from 0 to 1");
         /// On a lattice, conductance is proportional to this power of the diameter. Default: 4.
         pub conductance_exponent: Option<f64> = None, off "4.0", within(0.0..=10.0, "a number from 0 to 10");
+        /// Arches: particles that fit through a constriction jam in it together, by a published law of
+        /// clogging. Default: "none". No law has been checked with filter tests; the report says its source.
+        pub arching: Option<LawName> = None, off "\"zuriguel-2005\"", words(&LawName::ALL.map(LawName::name));
+        /// How densely the base arrives, for a law that depends on it: volume of particles by volume of voids.
+        /// Default: what an increment brings into the first layer of voids.
+        pub concentration: Option<f64> = None, off "0.05", within(0.0..=0.64, "a part from 0 to 0.64");
     }
 }
 
@@ -431,6 +437,7 @@ impl Leaf for CellOption {}
 impl Leaf for LengthUnit {}
 impl Leaf for NetworkMadeOf {}
 impl Leaf for ExitRule {}
+impl Leaf for LawName {}
 /// Whether a base is walked regraded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

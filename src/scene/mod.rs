@@ -34,6 +34,7 @@ pub use tables::{TableOptions, keep_soils, quoted, refuse_exchanged};
 use crate::network::ExitRule;
 use crate::outcome::stopping::StopRule;
 use crate::schema::{GivenSettings, KeyInfo, Names};
+use crate::walk::Law;
 use packing_keys::packing_keys;
 
 /// What errors call the built-in scene.
@@ -324,7 +325,15 @@ impl Scene {
                 "says nothing where no water flows: walk.exit",
             )?;
         }
+        if !self.law().is_some_and(|law| law.of_concentration) {
+            wrong(&["walk.concentration"], "says nothing without a law of arching that depends on it")?;
+        }
         Ok(())
+    }
+
+    /// The law by which particles arch, where they do.
+    pub fn law(&self) -> Option<&'static Law> {
+        self.exits.arching?.law()
     }
 
     /// How particles choose among the exits of a void.

@@ -15,6 +15,8 @@
 //! A particle is passive that can neither block nor arch: no coarser than the finest open constriction by
 //! [`Arching::widest`].
 
+use serde::{Deserialize, Serialize};
+
 use libm::{exp, lgamma, log, pow};
 
 /// A published law of clogging.
@@ -33,6 +35,38 @@ pub struct Law {
     /// Whether the probability depends on how densely the base arrives; the others hold for dense flow.
     pub of_concentration: bool,
     probability: fn(f64, f64) -> f64,
+}
+
+/// The name of a law, as a scene says it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum LawName {
+    /// No arches.
+    #[serde(rename = "none")]
+    None,
+    /// Dense discharge of dry spheres.
+    #[serde(rename = "zuriguel-2005")]
+    Zuriguel2005,
+    /// A suspension: enough particles at the neck at once.
+    #[serde(rename = "marin-2018")]
+    Marin2018,
+    /// Every particle up to a third of the constriction.
+    #[serde(rename = "critical-3")]
+    Critical3,
+}
+
+impl LawName {
+    /// All names, in the order in which a user is told of them.
+    pub const ALL: [Self; 4] = [Self::None, Self::Zuriguel2005, Self::Marin2018, Self::Critical3];
+
+    /// The name itself.
+    pub fn name(self) -> &'static str {
+        self.law().map_or("none", |law| law.name)
+    }
+
+    /// Its law; `None` where particles do not arch.
+    pub fn law(self) -> Option<&'static Law> {
+        (self as usize).checked_sub(1).map(|place| &LAWS[place])
+    }
 }
 
 /// All laws, in the order in which a user is told of them.
@@ -189,6 +223,15 @@ impl Arching {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_are_those_of_the_laws() {
+        for name in LawName::ALL {
+            assert_eq!(serde_json::to_value(name).unwrap(), name.name());
+            assert_eq!(Law::named(name.name()).map(|law| law.name), name.law().map(|law| law.name));
+        }
+        assert_eq!(LawName::ALL.len(), LAWS.len() + 1);
+    }
 
     #[test]
     fn a_table_is_its_law() {

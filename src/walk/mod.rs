@@ -72,7 +72,7 @@ mod tally;
 mod threads;
 mod trapped;
 
-pub use arching::{Arching, LAWS, Law};
+pub use arching::{Arching, LAWS, Law, LawName};
 pub use bits::{from_words, to_words};
 pub use counts::{Counted, Expected, ExpectedSums, Passive};
 pub use directions::FlowRecord;

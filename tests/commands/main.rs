@@ -1,5 +1,6 @@
 //! The commands as a user meets them: what they print and write, refuse, stop, and continue.
 
+mod arches;
 mod broad;
 mod campaign;
 mod check_and_run;

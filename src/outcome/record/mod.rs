@@ -121,6 +121,9 @@ pub struct Outcome {
     /// What soils of its kind say of the walk's boundary; `None` without a margin, or for a base of no group.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub evidence: Option<Evidence>,
+    /// The law by which particles arched; `None` where they did not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub arching: Option<ArchingRecord>,
     /// How the verdict moves with the number of base particles; empty when it was not asked for.
     pub sensitivity: Vec<Sensitivity>,
     /// How the verdict moves with the thickness of the filter, itself included; empty when it was not asked
@@ -146,6 +149,22 @@ impl Outcome {
                 && (finding.weight != Weight::Note || is_of_inputs(finding.about))
         })
     }
+}
+
+/// A law by which particles arch in a constriction that they fit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ArchingRecord {
+    /// Its name in a scene.
+    pub law: String,
+    /// Where it was published.
+    pub source: String,
+    /// What of the source was read, and what was assumed.
+    pub basis: String,
+    /// Sizes of a constriction by that of a particle between which arches form.
+    pub range_of_ratio: [f64; 2],
+    /// Volume of particles by volume of voids with which the base arrives; `None` where the law is of dense
+    /// flow.
+    pub concentration: Option<f64>,
 }
 
 /// One new network, walked once or twice.
@@ -186,6 +205,15 @@ pub struct Run {
     pub eroded: u64,
     /// Particles stopped by a constriction.
     pub retained_in_constrictions: u64,
+    /// Those of them that are in arches; `None` where there are no arches.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub retained_in_arches: Option<u64>,
+    /// Arches, likewise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub arches: Option<u64>,
+    /// Mass in arches over the mass inserted, likewise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub arched_mass_fraction: Option<f64>,
     /// Particles in voids without an open exit.
     pub retained_in_voids: u64,
     /// Particles trapped in closed loops.

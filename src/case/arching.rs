@@ -1,0 +1,66 @@
+//! How the base of a case arches.
+
+use std::sync::Arc;
+
+use super::{Case, CaseError};
+use crate::outcome::record::ArchingRecord;
+use crate::walk::Arching;
+
+/// Concentration of grains that lie densely: none arrive more densely.
+const DENSEST: f64 = 0.64;
+
+impl Case {
+    /// The law of its arches, with as many base particles as these; `None` where particles do not arch.
+    pub fn arching(&self, n_base: u64) -> Option<Arc<Arching>> {
+        let law = self.scene.law()?;
+        let concentration = if law.of_concentration { self.concentration(n_base)? } else { DENSEST };
+        Some(Arc::new(Arching::new(law, concentration)))
+    }
+
+    /// How densely so many base particles arrive: the volume of those of an increment by that of the voids of
+    /// the first layer, unless the scene says it. A particle makes one move an increment, so that those of an
+    /// increment are in one layer together.
+    fn concentration(&self, n_base: u64) -> Option<f64> {
+        if self.scene.exits.concentration.is_some() {
+            return self.scene.exits.concentration;
+        }
+        let times = n_base as f64 / self.n_base as f64;
+        let of_base = self.mass_ratio? * times / self.increments() as f64;
+        Some((of_base * self.counts[3] as f64 / self.void_ratio()?).min(DENSEST))
+    }
+
+    /// Volume of the voids of the filter by that of its grains, where it is known.
+    pub(super) fn void_ratio(&self) -> Option<f64> {
+        match (&self.packed, &self.library) {
+            (Some(packed), _) => packed.void_ratio,
+            (None, Some(library)) => library.part.is_none().then_some(library.found.void_ratio),
+            (None, None) => self.shipped.filter(|_| self.fixed_network.is_none()).map(|of| of.void_ratio),
+        }
+    }
+
+    /// What is written of its arches.
+    pub fn arching_record(&self) -> Option<ArchingRecord> {
+        let law = self.scene.law()?;
+        Some(ArchingRecord {
+            law: law.name.into(),
+            source: law.source.into(),
+            basis: law.basis.into(),
+            range_of_ratio: [1.0, law.widest],
+            concentration: self.concentration(self.n_base).filter(|_| law.of_concentration),
+        })
+    }
+}
+
+/// Refuses a law that asks how densely the base arrives where nothing says so.
+pub(super) fn check(case: &Case) -> Result<(), CaseError> {
+    let scene = &case.scene;
+    let needs = scene.law().is_some_and(|law| law.of_concentration);
+    match needs && case.concentration(case.n_base).is_none() {
+        true => {
+            let problem = "walk.concentration is needed: how densely the base arrives hangs on the filter's \
+                           void ratio and the mass of the base, and they are not known here";
+            Err(scene.clash(problem).into())
+        }
+        false => Ok(()),
+    }
+}

@@ -1,0 +1,101 @@
+//! Arches as a user meets them: what is walked, written and said, and what is refused.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::program::{call, done, refused};
+
+const SCENE: &str = "replicates = 2\nseed = 5\n[filter]\ncurve = \"cu1.5-loose\"\n[base]\ncu = 1.5\nd15f_over_d85b = 7\n\
+    [network]\nnx = 10\nny = 10\nnz = 12\n[record]\nsensitivity = []\n";
+
+fn walked(at: &Path, name: &str, more: &[&str]) -> Value {
+    let words = ["run", "s.toml", "--overwrite", "--out", name];
+    done(&call(at, &[&words[..], more].concat()));
+    serde_json::from_slice(&fs::read(at.join(name).join("outcome.json")).unwrap()).unwrap()
+}
+
+fn eroded(outcome: &Value, run: usize) -> f64 {
+    outcome["summary"][run]["eroded_mass_fraction"]["mean"].as_f64().unwrap()
+}
+
+#[test]
+fn a_law_holds_what_sieving_lets_pass_and_is_said() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    fs::write(at.join("s.toml"), SCENE).unwrap();
+    let sieving = walked(at, "none", &["--set", "walk.arching=none"]);
+    assert!(sieving.get("arching").is_none() && sieving["replicates"][0]["runs"][0].get("arches").is_none());
+    let brief = sieving["model_leaves_out"].to_string();
+    assert!(brief.contains("bridging"), "{brief}");
+    // Finer than every constriction by far: nothing is held without arches.
+    assert!(eroded(&sieving, 0) > 0.9, "{}", eroded(&sieving, 0));
+    for law in ["zuriguel-2005", "critical-3"] {
+        let arching = walked(at, law, &["--set", &format!("walk.arching={law}")]);
+        assert!(eroded(&arching, 0) < 0.5 * eroded(&sieving, 0), "{law}");
+        assert_eq!(arching["arching"]["law"], law);
+        let run = &arching["replicates"][0]["runs"][0];
+        let [arches, inside, all] =
+            ["arches", "retained_in_arches", "retained_in_constrictions"].map(|of| run[of].as_u64().unwrap());
+        assert!(0 < arches && arches < inside && inside <= all, "{run}");
+        let sum: u64 = ["eroded", "retained_in_constrictions", "retained_in_voids", "trapped"]
+            .iter()
+            .map(|of| run[of].as_u64().unwrap())
+            .sum();
+        assert_eq!(sum, run["inserted"].as_u64().unwrap());
+        assert!(!arching["model_leaves_out"].to_string().contains("bridging"));
+        assert_ne!(arching["confidence"], "within checked range");
+        let findings = arching["findings"].as_array().unwrap();
+        assert!(findings.iter().any(|of| of["id"] == "arches" && of["against"] == true), "{findings:?}");
+        // One thread or three, and every engine that walks the same particles.
+        let threads = walked(at, "threads", &["--set", &format!("walk.arching={law}"), "--threads", "3"]);
+        assert_eq!(threads["summary"], arching["summary"]);
+    }
+}
+
+/// A base three times as fine is held by arches as sieving holds one three times as coarse.
+#[test]
+fn a_critical_ratio_is_sieving_with_larger_particles() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    fs::write(at.join("s.toml"), SCENE).unwrap();
+    // As many particles in both, at 3.5 and at 10.5 D85B.
+    let of = |ratio: &str, law: &str| {
+        let [ratio, law] = [format!("base.d15f_over_d85b={ratio}"), format!("walk.arching={law}")];
+        walked(at, "a", &["--set", &ratio, "--set", &law, "--set", "base.n_base=300000"])
+    };
+    let (fine, coarse) = (eroded(&of("10.5", "critical-3"), 0), eroded(&of("3.5", "none"), 0));
+    assert!(fine < 0.075 && coarse < 0.075, "{fine} {coarse}");
+    let (fine, coarse) = (eroded(&of("18", "critical-3"), 0), eroded(&of("6", "none"), 0));
+    assert!(fine > 0.3 && coarse > 0.3, "{fine} {coarse}");
+}
+
+#[test]
+fn what_cannot_be_is_refused() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    fs::write(at.join("s.toml"), SCENE).unwrap();
+    fs::write(at.join("c.csv"), "percent_smaller,diameter_over_d0f\n0,0.15\n50,0.3\n100,0.9\n").unwrap();
+    let refusal = |more: &[&str], says: &str| {
+        let said = call(at, &[&["run", "s.toml", "--out", "r"][..], more].concat());
+        refused(&said, says);
+        assert!(!at.join("r").exists());
+    };
+    refusal(&["--set", "walk.arching=zuriguel"], "\"zuriguel-2005\"");
+    refusal(&["--set", "walk.concentration=0.1"], "walk.concentration");
+    refusal(
+        &["--set", "walk.arching=zuriguel-2005", "--set", "walk.concentration=0.1"],
+        "walk.concentration",
+    );
+    let unknown =
+        ["--set", "walk.arching=marin-2018", "--set", "filter.curve=c.csv", "--set", "filter.cu=1.5"];
+    refusal(
+        &[&unknown[..], &["--set", "filter.grains_per_void=0.6"]].concat(),
+        "walk.concentration is needed",
+    );
+    let known =
+        [&unknown[..], &["--set", "filter.grains_per_void=0.6", "--set", "walk.concentration=0.2"]].concat();
+    let outcome = walked(at, "r", &known);
+    assert_eq!(outcome["arching"]["concentration"], 0.2);
+}
