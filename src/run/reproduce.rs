@@ -6,7 +6,7 @@
 
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::Serialize;
 use serde_json::Value;
@@ -152,7 +152,7 @@ fn csv_files(folder: &Path) -> Result<BTreeSet<String>, RunError> {
     Ok(paths.filter_map(|path| Some(path.file_name()?.to_str()?.to_owned())).collect())
 }
 
-fn is_csv(path: &PathBuf) -> bool {
+fn is_csv(path: &Path) -> bool {
     path.extension() == Some(OsStr::new("csv")) && path.is_file()
 }
 
