@@ -9,6 +9,7 @@ use super::plan::{CampaignPlan, PlannedCase};
 use crate::outcome::ledger::{Campaign, LedgerLine};
 use crate::run::error::RunError;
 use crate::run::results::json;
+use crate::store::format;
 use crate::store::{read_whole, write_whole};
 
 /// Cases of the ledger in a campaign's folder that this plan does not have: they are about to leave it.
@@ -47,7 +48,7 @@ pub(super) fn collect(
         ledger.push(b'\n');
     }
     write_whole(&out.join("ledger.jsonl"), &ledger)?;
-    write_whole(&out.join("campaign.json"), &json("campaign.json", &about)?)?;
+    write_whole(&out.join("campaign.json"), &json(format::CAMPAIGN, &about)?)?;
     write_whole(&out.join("cases.csv"), &LedgerLine::columns(&about.factors).csv(&lines))?;
     Ok(lines)
 }

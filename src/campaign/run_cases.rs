@@ -31,6 +31,7 @@ use crate::run::replicates::{self, ReplicateContext};
 use crate::run::results;
 use crate::run::shared_networks::SharedNetworks;
 use crate::run::studies::Studies;
+use crate::store::format;
 use crate::store::{Folder, StoreError, make_folder};
 
 /// What is said of a case whose results are gone.
@@ -299,7 +300,7 @@ impl CaseRunner<'_> {
         let place = prepared.folder().display().to_string();
         let fingerprint = prepared.fingerprint.clone();
         let line = LedgerLine::new(name, &prepared.planned.levels, place, fingerprint, &outcome, made);
-        folder.write(LINE, &results::json(LINE, &line)?)?;
+        folder.write(LINE, &results::json(format::CASE, &line)?)?;
         checkpoints.clear()?;
         (self.callbacks.on_case)(name, CaseEvent::Done(&line));
         Ok(true)

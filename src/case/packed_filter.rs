@@ -10,6 +10,7 @@ use super::packing_plan::PackingPlan;
 use crate::constrictions::{Constrictions, ConstrictionsError, Curve, CurveError, CurveUnit, inscribed};
 use crate::outcome::packing::{PackedPart, PackingRecord, SameShape};
 use crate::packing::{ImportError, Packing};
+use crate::store::format::{self, from_json};
 use crate::store::{StoreError, read_whole};
 
 /// The packing's measures; a folder that holds it is whole.
@@ -163,7 +164,7 @@ impl PackedFilter {
         let found = Constrictions::measure(&packing, order.merge_overlap)?;
         let record = match record {
             Some(record) => record,
-            None => serde_json::to_vec_pretty(&read).map_err(|e| problem(e.to_string()))?,
+            None => format::PACKING.json(&read).map_err(|e| problem(e.to_string()))?.into_bytes(),
         };
         Ok(Self {
             files: Some([folder.join("constrictions.csv"), path]),
@@ -191,7 +192,7 @@ impl PackedFilter {
         };
         let (curve_bytes, record_bytes) = (read(curve)?, read(&record)?);
         let problem = |problem: String| PackedError::Record { file: record.display().to_string(), problem };
-        let of: PackingRecord = serde_json::from_slice(&record_bytes).map_err(|e| problem(e.to_string()))?;
+        let of: PackingRecord = from_json(&record_bytes).map_err(|e| problem(e.to_string()))?;
         Ok(Self {
             curve: Curve::from_csv_text(&curve.display().to_string(), &curve_bytes)?,
             curve_csv: String::from_utf8_lossy(&curve_bytes).into_owned(),
@@ -252,6 +253,6 @@ fn read_record(folder: &Path) -> Result<Option<(Vec<u8>, PackingRecord)>, Packed
         file: path.display().to_string(),
         problem: e.to_string(),
     };
-    let read = serde_json::from_slice(&record).map_err(problem)?;
+    let read = from_json(&record).map_err(problem)?;
     Ok(Some((record, read)))
 }

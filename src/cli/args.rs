@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 
+use super::exit::FailOn;
 use super::values::{
     assignment, bracket, decide, density, facets, lattice_size, millimetres, seed, target_error, threads,
     time,
@@ -41,6 +42,8 @@ pub enum Command {
     Serve(ServeArgs),
     /// Continue a run that was stopped or killed, with the same bits
     Resume(ResumeArgs),
+    /// Walk a finished run again from the scene and inputs in its folder, and compare every number
+    Reproduce(ReproduceArgs),
     /// Estimate a run before it starts: number of base particles, memory, time, packings to make
     Check(SceneArgs),
     /// Apply every rule of filter practice to two sieve tables, without a walk
@@ -126,6 +129,16 @@ pub struct WalkArgs {
     pub quiet: bool,
 }
 
+/// Which verdicts the caller does not accept.
+#[derive(Debug, Args)]
+pub struct AcceptArgs {
+    /// Exit with code 4 if the verdict is at least this bad: some or continuing erosion, or doubt for
+    /// anything but no erosion within the checked range. Undecided counts as bad for each of them. Results
+    /// are written as usual
+    #[arg(long, value_name = "VERDICT")]
+    pub fail_on: Option<FailOn>,
+}
+
 /// Where a run's results go, and how it is walked.
 #[derive(Debug, Args)]
 pub struct ResultArgs {
@@ -136,6 +149,9 @@ pub struct ResultArgs {
     /// Replace the results of an earlier run in --out
     #[arg(long)]
     pub overwrite: bool,
+    /// Which verdicts are not accepted.
+    #[command(flatten)]
+    pub accept: AcceptArgs,
     /// How it is walked.
     #[command(flatten)]
     pub walk: WalkArgs,
@@ -276,6 +292,9 @@ pub struct CompareArgs {
     /// Replace an earlier comparison in --out; shared cases are kept
     #[arg(long)]
     pub overwrite: bool,
+    /// Which verdicts are not accepted, of any case.
+    #[command(flatten)]
+    pub accept: AcceptArgs,
     /// How it is walked.
     #[command(flatten)]
     pub walk: WalkArgs,
@@ -313,12 +332,36 @@ pub struct ResumeArgs {
     /// result is the same [default: 80 % of what is available]
     #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
     pub memory: Option<u64>,
+    /// Which verdicts are not accepted.
+    #[command(flatten)]
+    pub accept: AcceptArgs,
     /// How it is walked.
     #[command(flatten)]
     pub walk: WalkArgs,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
+}
+
+/// Which run is walked again.
+#[derive(Debug, Args)]
+pub struct ReproduceArgs {
+    /// The folder of a finished run, of judge or run; it stays as it is, and the run is walked into a
+    /// temporary folder beside it
+    pub folder: PathBuf,
+    /// Worker threads; the result is the same for any number [default: one per core]
+    #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
+    pub threads: Option<usize>,
+    /// Memory limit, such as 4GB: base particles beyond it are kept in mapped files; the result is the same
+    /// [default: 80 % of what is available]
+    #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
+    pub memory: Option<u64>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Print no progress and no summary
+    #[arg(long, short)]
+    pub quiet: bool,
 }
 
 /// Which base, and what shape of filter.

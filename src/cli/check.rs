@@ -9,6 +9,7 @@ use crate::constrictions::shipped;
 use crate::run::cost::duration;
 use crate::run::{self, Check, PackingCheck, PrepareOptions, RunError};
 use crate::scene::Scene;
+use crate::store::format;
 
 impl SettingArgs {
     /// All settings that the arguments give.
@@ -44,7 +45,7 @@ impl SceneArgs {
 /// Says what a run would do.
 pub fn check(args: &SceneArgs) -> Result<(), RunError> {
     let check = run::check(args.scene()?, &args.set.prepare(None))?;
-    to_stdout(&if args.set.json { json(&check)? } else { words(&check) });
+    to_stdout(&if args.set.json { json(format::CHECK, &check)? } else { words(&check) });
     check.refusal.map_or(Ok(()), |refusal| Err(refusal.into()))
 }
 

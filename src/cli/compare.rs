@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::args::CompareArgs;
 use super::case_progress::CaseProgress;
+use super::exit::accept;
 use super::print::{grains_per_void, json, of_base, percent, plain, shown, to_stderr, to_stdout};
 use super::progress::followed;
 use super::run::command_line;
@@ -11,6 +12,7 @@ use crate::campaign::{CampaignCallbacks, CampaignOptions, CasePart};
 use crate::outcome::comparison::Comparison;
 use crate::outcome::record::Statistic;
 use crate::run::RunError;
+use crate::store::format;
 use crate::study::compare::{self, ComparePlan, Compared};
 use crate::verdict::left_out::left_out_in_brief;
 
@@ -53,14 +55,15 @@ pub fn compare(args: &CompareArgs) -> Result<(), RunError> {
         done
     })?;
     if tables.set.json {
-        to_stdout(&json(&comparison)?);
+        to_stdout(&json(format::COMPARISON, &comparison)?);
     } else if !quiet {
         let constrictions = plan.constrictions_in_words().into_iter().map(|said| plain(&said) + "\n");
         to_stdout(&constrictions.collect::<String>());
         to_stdout(&words(&comparison));
         to_stdout(&format!("report: {}\n", shown(&args.out.join("compare.html"))));
     }
-    Ok(())
+    let cases = comparison.cases.iter().map(|case| (case.name.as_str(), case.verdict, case.confidence));
+    accept(args.accept.fail_on, cases)
 }
 
 fn words(comparison: &Comparison) -> String {

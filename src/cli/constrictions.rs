@@ -5,6 +5,7 @@ use super::print::{count, json, plain, to_stdout};
 use super::progress::unfollowed;
 use crate::packing::ReadOptions;
 use crate::run::{ConstrictionsOptions, RunError, measure_constrictions};
+use crate::store::format;
 
 /// Measures a packing's constrictions and writes them into a folder.
 pub fn constrictions(args: &ConstrictionsArgs) -> Result<(), RunError> {
@@ -17,7 +18,7 @@ pub fn constrictions(args: &ConstrictionsArgs) -> Result<(), RunError> {
     };
     let summary = measure_constrictions(&args.packing, &options, &unfollowed())?;
     if args.json {
-        to_stdout(&json(&summary)?);
+        to_stdout(&json(format::CONSTRICTIONS, &summary)?);
         return Ok(());
     }
     let mut lines = vec![

@@ -8,6 +8,7 @@ use crate::outcome::design::band::SetBy;
 use crate::outcome::design::{Boundary, Design, DesignRow, Range};
 use crate::outcome::record::Confidence;
 use crate::run::{PrepareOptions, RunError};
+use crate::store::format;
 use crate::study::design::{self, DesignOptions};
 use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::words::capital;
@@ -37,7 +38,7 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
     };
     let found = followed(args.quiet, |callbacks| design::run(&options, callbacks))?;
     if args.json {
-        to_stdout(&json(&found)?);
+        to_stdout(&json(format::DESIGN, &found)?);
     } else if !args.quiet {
         to_stdout(&format!("{}report: {}\n", words(&found), shown(&args.out.join("design.html"))));
     }

@@ -6,12 +6,13 @@ use std::sync::LazyLock;
 use clap::{Arg, Command, CommandFactory};
 
 use super::args::Arguments;
+use super::exit;
 
 /// A command line, and what it does.
 type Example = [&'static str; 2];
 
 /// Every command and its examples.
-const EXAMPLES: [(&str, [Example; 2]); 19] = [
+const EXAMPLES: [(&str, [Example; 2]); 20] = [
     (
         "run",
         [
@@ -48,6 +49,13 @@ const EXAMPLES: [(&str, [Example; 2]); 19] = [
         [
             ["voidwalk resume voidwalk-run", "goes on where the run was stopped"],
             ["voidwalk resume dam --threads 2", "on two cores, with the same bits"],
+        ],
+    ),
+    (
+        "reproduce",
+        [
+            ["voidwalk reproduce voidwalk-run", "the same numbers again? Exit code 0 if so, else 1"],
+            ["voidwalk reproduce dam --threads 2 --json", "on two cores, the answer as JSON"],
         ],
     ),
     (
@@ -177,7 +185,7 @@ static VERSION: LazyLock<String> = LazyLock::new(|| {
 
 /// The program's arguments as they are read, with examples and the version.
 pub fn command() -> Command {
-    let mut command = Arguments::command().version(VERSION.as_str());
+    let mut command = Arguments::command().version(VERSION.as_str()).after_help(exit::in_words());
     for (name, examples) in EXAMPLES {
         if command.find_subcommand(name).is_some() {
             let text = in_words(&examples);

@@ -5,11 +5,12 @@ use std::path::Path;
 use super::print::{json, shown, to_stdout};
 use crate::run::{RunError, write_built_in};
 use crate::scene::Scene;
+use crate::store::format;
 
 /// Writes the built-in scene, or says what may be set.
 pub fn init(path: Option<&Path>, as_json: bool) -> Result<(), RunError> {
     if as_json {
-        to_stdout(&json(&Scene::reference())?);
+        to_stdout(&json(format::SETTINGS, &Scene::reference())?);
         return Ok(());
     }
     let Some(path) = path else {

@@ -55,5 +55,5 @@ pub fn judge(args: &JudgeArgs) -> Result<(), RunError> {
         };
         to_stdout(&format!("to go on from: voidwalk run {scene} --set replicates=30{studies}\n"));
     }
-    Ok(())
+    args.results.accept.judged(&run)
 }

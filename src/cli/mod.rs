@@ -1,6 +1,6 @@
 //! The command line: it parses, calls the library and prints, and is the only place that does.
 //!
-//! Exit codes: 0 done, 1 failed, 2 refused (before any work, nothing written), 3 stopped but resumable.
+//! How it ends is said in one table, [`exit::EXIT_CODES`].
 
 mod args;
 mod campaign;
@@ -10,6 +10,7 @@ mod compare;
 mod constrictions;
 mod design;
 mod examples;
+mod exit;
 mod export;
 mod init;
 mod judge;
@@ -20,6 +21,7 @@ mod precision;
 mod print;
 mod progress;
 mod report;
+mod reproduce;
 mod rules;
 mod run;
 #[cfg(feature = "serve")]
@@ -69,6 +71,7 @@ pub fn main() -> ExitCode {
         #[cfg(feature = "serve")]
         Command::Serve(args) => serve::serve(&args),
         Command::Resume(args) => run::resume(&args),
+        Command::Reproduce(args) => reproduce::reproduce(&args),
         Command::Soil(args) => soil::soil(&args),
         Command::Check(args) => check::check(&args),
         Command::Init { path, json } => init::init(path.as_deref(), json),
@@ -93,6 +96,7 @@ pub fn main() -> ExitCode {
         Exit::Refused => "refused",
         Exit::Stopped => "stopped",
         Exit::Failed => "error",
+        Exit::NotAccepted => "not accepted",
     };
     // Messages name files and values that may hold anything.
     let mut text = error.to_string();

@@ -5,6 +5,7 @@ use super::print::{json, shown, to_stdout};
 use super::progress::unfollowed;
 use crate::outcome::percolation::PercolationStudy;
 use crate::run::RunError;
+use crate::store::format;
 use crate::study::percolation::{self, PercolationOptions, PercolationPlan};
 
 /// Finds the thresholds and writes them into a folder.
@@ -21,7 +22,7 @@ pub fn percolation(args: &PercolationArgs) -> Result<(), RunError> {
     };
     let study = percolation::run(&options, &unfollowed())?;
     if args.json {
-        to_stdout(&json(&study)?);
+        to_stdout(&json(format::PERCOLATION, &study)?);
     } else if !args.quiet {
         to_stdout(&format!("{}{}\n", words(&study), shown(&args.out.join("report.html"))));
     }

@@ -6,6 +6,7 @@ use super::progress::followed;
 use crate::outcome::precision::Precision;
 use crate::report::precision_judgements;
 use crate::run::RunError;
+use crate::store::format;
 use crate::study::precision::{self, PrecisionOptions};
 
 /// Measures, and writes tables, figures and the page.
@@ -20,7 +21,7 @@ pub fn precision(args: &PrecisionArgs) -> Result<(), RunError> {
     };
     let precision = followed(args.quiet, |callbacks| precision::run(scene, &options, callbacks))?;
     if args.scene.set.json {
-        to_stdout(&json(&precision)?);
+        to_stdout(&json(format::PRECISION, &precision)?);
     } else if !args.quiet {
         let page = shown(&args.out.join("precision.html"));
         to_stdout(&format!("{}{page}\n", words(&precision)));

@@ -9,6 +9,7 @@ use crate::outcome::BaseSize;
 pub use crate::outcome::digits::{count, percent};
 use crate::report::figures::visible;
 use crate::run::RunError;
+use crate::store::format::Format;
 
 /// Prints to stdout; a reader that has left is no fault of ours.
 pub fn to_stdout(text: &str) {
@@ -36,9 +37,9 @@ pub fn of_base(base: Option<BaseSize>) -> String {
     base.map_or(String::new(), |base| format!(" ({})", base.words()))
 }
 
-/// A value as indented JSON with a newline at its end.
-pub fn json(value: &impl Serialize) -> Result<String, RunError> {
-    Ok(serde_json::to_string_pretty(value)? + "\n")
+/// A record in its form, as its file says it.
+pub fn json(format: Format, record: &impl Serialize) -> Result<String, RunError> {
+    Ok(format.json(record)?)
 }
 
 /// A count and what is counted, one or many: `1 replicate`.

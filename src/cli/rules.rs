@@ -5,6 +5,7 @@ use super::print::{json, plain, shown, to_stdout};
 use crate::gradation::{curves_in_file, notes_in_file};
 use crate::outcome::record::{AppliedRule, RuleRole};
 use crate::run::RunError;
+use crate::store::format;
 use crate::verdict::{PairOptions, PairRules};
 use std::fmt::Write;
 
@@ -23,7 +24,7 @@ pub fn rules(args: &RulesArgs) -> Result<(), RunError> {
     })?;
     let assumed = |path| notes_in_file(path).map_err(RunError::refused);
     let notes = [("base", assumed(&args.base)?), ("filter", assumed(&args.filter)?)];
-    to_stdout(&if args.json { json(&pair)? } else { words(&pair, args, &notes) });
+    to_stdout(&if args.json { json(format::RULES, &pair)? } else { words(&pair, args, &notes) });
     Ok(())
 }
 

@@ -2,11 +2,13 @@
 
 use std::fmt::Write;
 
-use super::args::{ResultArgs, ResumeArgs, RunArgs, SettingArgs};
+use super::args::{AcceptArgs, ResultArgs, ResumeArgs, RunArgs, SettingArgs};
+use super::exit::accept;
 use super::print::{count, counted, grains_per_void, json, of_base, percent, plain, shown, to_stdout};
 use super::progress::followed;
 use crate::outcome::record::{Confidence, RunSummary};
 use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
+use crate::store::format;
 use crate::verdict::beside::is_evidence;
 use crate::verdict::left_out::left_out_in_brief;
 
@@ -15,7 +17,15 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
     let (scene, set, quiet) = (args.scene.scene()?, &args.scene.set, args.results.walk.quiet);
     let options = args.results.options(set);
     let run = followed(quiet, |callbacks| run::walk_scene(scene, &options, callbacks))?;
-    show(&run, set.json, quiet)
+    show(&run, set.json, quiet)?;
+    args.results.accept.judged(&run)
+}
+
+impl AcceptArgs {
+    /// Ends a command by the verdict of its run.
+    pub fn judged(&self, run: &FinishedRun) -> Result<(), RunError> {
+        accept(self.fail_on, [("", run.outcome.verdict, run.outcome.confidence)])
+    }
 }
 
 impl ResultArgs {
@@ -41,7 +51,8 @@ pub fn resume(args: &ResumeArgs) -> Result<(), RunError> {
         ..RunOptions::default()
     };
     let run = followed(walk.quiet, |callbacks| run::resume(&args.folder, &options, callbacks))?;
-    show(&run, args.json, walk.quiet)
+    show(&run, args.json, walk.quiet)?;
+    args.accept.judged(&run)
 }
 
 /// The command line in words, whatever bytes it is made of.
@@ -53,7 +64,7 @@ pub fn command_line() -> String {
 /// Prints what came of a run.
 pub fn show(run: &FinishedRun, as_json: bool, quiet: bool) -> Result<(), RunError> {
     if as_json {
-        to_stdout(&json(&run.outcome)?);
+        to_stdout(&json(format::OUTCOME, &run.outcome)?);
     } else if !quiet {
         to_stdout(&summary(run));
     }

@@ -4,8 +4,10 @@ use std::path::Path;
 
 use clap_complete::{Shell, generate};
 use clap_mangen::Man;
+use clap_mangen::roff::{Roff, bold, roman};
 
 use super::examples::command;
+use super::exit::EXIT_CODES;
 use super::print::{shown, to_stdout};
 use crate::run::RunError;
 use crate::store::{StoreError, write_whole};
@@ -25,7 +27,7 @@ pub fn man(folder: &Path) -> Result<(), RunError> {
     }
     let mut whole = command();
     whole.build();
-    let mut pages = vec![("voidwalk.1".to_owned(), page(whole.clone())?)];
+    let mut pages = vec![("voidwalk.1".to_owned(), page(whole.clone().after_help(None))?)];
     for sub in whole.get_subcommands().filter(|sub| sub.get_name() != "help") {
         pages.push((format!("voidwalk-{}.1", sub.get_name()), page(sub.clone())?));
     }
@@ -41,5 +43,11 @@ pub fn man(folder: &Path) -> Result<(), RunError> {
 fn page(command: clap::Command) -> Result<Vec<u8>, RunError> {
     let mut text = Vec::new();
     Man::new(command).render(&mut text).map_err(RunError::failed)?;
+    let mut codes = Roff::default();
+    codes.control("SH", ["EXIT STATUS"]);
+    for (code, meaning) in EXIT_CODES {
+        codes.control("TP", []).text([bold(code.to_string())]).text([roman(meaning)]);
+    }
+    codes.to_writer(&mut text).map_err(RunError::failed)?;
     Ok(text)
 }

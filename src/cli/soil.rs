@@ -10,6 +10,7 @@ use crate::case::CaseError;
 use crate::gradation::{SoilSummary, soils_in_file};
 use crate::report::soils_figure;
 use crate::run::{RunError, write_new};
+use crate::store::format;
 
 /// The soils of a file.
 #[derive(Serialize)]
@@ -26,7 +27,7 @@ pub fn soil(args: &SoilArgs) -> Result<(), RunError> {
     }
     let soils = Soils { soils };
     let drawn = args.figure.as_deref().map_or(String::new(), |path| format!("\n{}\n", shown(path)));
-    to_stdout(&if args.json { json(&soils)? } else { words(&soils.soils) + &drawn });
+    to_stdout(&if args.json { json(format::SOILS, &soils)? } else { words(&soils.soils) + &drawn });
     Ok(())
 }
 

@@ -3,6 +3,7 @@
 use super::curve::CurveError;
 use super::measure::{Constrictions, Facets};
 use crate::packing::vtp_points;
+use crate::store::format;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
@@ -95,7 +96,7 @@ impl Constrictions {
     /// # Errors
     /// As [`Constrictions::curve`].
     pub fn files(&self, summary: &Summary) -> Result<[(&'static str, String); 3], CurveError> {
-        let json = serde_json::to_string_pretty(summary).expect("numbers and names") + "\n";
+        let json = format::CONSTRICTIONS.json(summary).expect("numbers and names");
         Ok([
             ("constrictions.csv", self.curve_csv()?),
             ("constrictions.vtp", self.to_vtp()),

@@ -35,3 +35,6 @@ pub mod python {}
 
 #[doc = include_str!("files.md")]
 pub mod files {}
+
+#[doc = include_str!("stability.md")]
+pub mod stability {}

@@ -6,6 +6,7 @@ use std::path::Path;
 use serde::de::DeserializeOwned;
 
 use super::error::ReportError;
+use crate::store::format::from_json;
 use crate::store::read_whole;
 
 /// A file of text.
@@ -25,7 +26,7 @@ pub fn json<T: DeserializeOwned>(path: &Path) -> Result<T, ReportError> {
 
 /// [`json()`] of a file with this text.
 pub(super) fn json_of<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, ReportError> {
-    serde_json::from_str(text).map_err(|error| ReportError::Form {
+    from_json(text.as_bytes()).map_err(|error| ReportError::Form {
         path: path.to_owned(),
         line: error.line() as u64,
         message: error.to_string(),

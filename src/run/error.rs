@@ -19,15 +19,18 @@ pub enum Exit {
     Stopped,
     /// The work failed.
     Failed,
+    /// The work is done, and its verdict is one that the caller does not accept.
+    NotAccepted,
 }
 
 impl Exit {
     /// Exit code of the program.
-    pub fn code(self) -> u8 {
+    pub const fn code(self) -> u8 {
         match self {
             Self::Refused => 2,
             Self::Stopped => 3,
             Self::Failed => 1,
+            Self::NotAccepted => 4,
         }
     }
 }
@@ -63,6 +66,9 @@ pub enum RunError {
     /// Stopped on request.
     #[error("{0}")]
     Stopped(String),
+    /// The verdict is one that the caller does not accept.
+    #[error("{0}")]
+    NotAccepted(String),
     /// The walk went wrong, or was stopped.
     #[error(transparent)]
     Walk(#[from] WalkError),
@@ -104,7 +110,7 @@ impl RunError {
         Self::Failed(problem.into())
     }
 
-    /// Whether it was refused, stopped or failed.
+    /// Whether it was refused, stopped, failed or not accepted.
     pub fn exit(&self) -> Exit {
         let refused_if = |refused| if refused { Exit::Refused } else { Exit::Failed };
         match self {
@@ -112,6 +118,7 @@ impl RunError {
             Self::Claim(error) => refused_if(error.is_refusal()),
             Self::Checkpoint(error) => refused_if(!error.is_unreadable()),
             Self::Stopped(_) | Self::Walk(WalkError::Stopped { .. }) => Exit::Stopped,
+            Self::NotAccepted(_) => Exit::NotAccepted,
             // What a packing is asked for is checked before its first step.
             Self::Packing(error) => refused_if(matches!(
                 error,

@@ -6,6 +6,7 @@ use super::checkpoints::Checkpoints;
 use super::error::RunError;
 use super::unfinished::{self, Unfinished};
 use crate::case::{GRAINS, INPUT_FILES, RECORD};
+use crate::store::format::{self, Format};
 use crate::store::{Folder, StoreError};
 use crate::text::is_hidden;
 
@@ -79,19 +80,24 @@ impl FolderKind {
         }
     }
 
+    /// The form of its record.
+    pub fn format(self) -> Format {
+        match self {
+            Self::Run => format::OUTCOME,
+            Self::Packing => format::PACKING,
+            Self::Campaign => format::CAMPAIGN,
+            Self::Percolation => format::PERCOLATION,
+            Self::Precision => format::PRECISION,
+            Self::Comparison => format::COMPARISON,
+            Self::Design => format::DESIGN,
+            Self::Serve => format::SERVE,
+            Self::Constrictions => format::CONSTRICTIONS,
+        }
+    }
+
     /// The file from which its page is made, which a finished folder holds.
     pub fn record(self) -> &'static str {
-        match self {
-            Self::Run => "outcome.json",
-            Self::Packing => RECORD,
-            Self::Campaign => "campaign.json",
-            Self::Percolation => "percolation.json",
-            Self::Precision => "precision.json",
-            Self::Comparison => "compare.json",
-            Self::Design => "design.json",
-            Self::Serve => "serve.json",
-            Self::Constrictions => "constrictions.json",
-        }
+        self.format().file
     }
 
     /// Whether a page is made of its record.

@@ -1,6 +1,7 @@
 //! The application: what every face of the program calls, the command line as much as any other.
 //!
-//! - [`walk_scene`] and [`resume`] walk a scene into a folder, [`walk_case`] walks a case in memory,
+//! - [`walk_scene`] and [`resume`] walk a scene into a folder, [`reproduce`](reproduce::reproduce) walks it
+//!   again and compares, [`walk_case`] walks a case in memory,
 //!   [`walk_networks`] networks from elsewhere.
 //! - [`pack`](pack::pack) packs a filter, [`measure_constrictions`] measures a packing from elsewhere.
 //! - [`check`](check::check) says what a run would do, by the one model of [`cost`].
@@ -33,6 +34,7 @@ mod pilot;
 pub mod planned;
 pub mod prepare;
 pub mod replicates;
+mod reproduce;
 pub mod results;
 pub mod shared_networks;
 pub mod studies;
@@ -48,4 +50,5 @@ pub use folder::FolderKind;
 pub use network_walk::{GivenFilter, NetworkOutcome, NetworkWalk, WalkedNetwork, walk_networks};
 pub use pack::{FinishedPacking, PackOptions, pack};
 pub use prepare::{PrepareOptions, prepare, write_built_in, write_new};
+pub use reproduce::{Difference, Reproduced, reproduce};
 pub use walk::{FinishedRun, RunOptions, resume, walk_case, walk_case_recorded, walk_scene};

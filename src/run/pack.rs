@@ -22,6 +22,7 @@ use crate::outcome::packing::PackingRecord;
 use crate::packing::{Compression, PackReport, PackingError, draw, tall_start};
 use crate::scene::PackingSpec;
 use crate::store::checkpoint::{CheckpointError, Identity, Label, Section, newest, save};
+use crate::store::format;
 use crate::store::{Folder, StoreError};
 
 /// The checkpoint of a compression that is not finished; its files are [`STATES`].
@@ -185,7 +186,7 @@ fn make(
     }
     let seconds = seconds_before + begun.elapsed().as_secs_f64();
     let record = record(plan, &packing, &grains, &report, seconds)?;
-    folder.write(RECORD, &super::results::json(RECORD, &record)?)?;
+    folder.write(RECORD, &super::results::json(format::PACKING, &record)?)?;
     finish(folder, callbacks)
 }
 

@@ -18,6 +18,7 @@ use crate::outcome::record::{
 use crate::outcome::rules::{BaseSoil, RuleInputs};
 use crate::outcome::table::csv_of;
 use crate::outcome::{Recorded, by_void, infiltration, leaves_out, rules, verdict};
+use crate::store::format::{self, Format};
 use crate::store::{Folder, StoreError};
 use crate::verdict::left_out::LeftOut;
 use crate::verdict::{Finding, beside, finding, judge, practice};
@@ -233,9 +234,9 @@ pub fn write(
     if case.scene.record.voids.is_some() {
         write_voids(folder, case, &recorded)?;
     }
-    folder.write("outcome.json", &json("outcome.json", outcome)?)?;
+    folder.write("outcome.json", &json(format::OUTCOME, outcome)?)?;
     // Last, so that a folder with a manifest is whole.
-    folder.write("manifest.json", &json("manifest.json", manifest)?)?;
+    folder.write("manifest.json", &json(format::MANIFEST, manifest)?)?;
     Ok(())
 }
 
@@ -254,13 +255,11 @@ fn write_voids(folder: &Folder, case: &Case, recorded: &Recorded) -> Result<(), 
     Ok(folder.write("retained_by_void.csv", &csv_of(&recorded.voids))?)
 }
 
-/// A value as indented JSON with a newline at its end.
+/// A file of JSON in its form.
 ///
 /// # Errors
 /// What cannot be put into words.
-pub fn json(file: &'static str, value: &impl Serialize) -> Result<Vec<u8>, RunError> {
-    let mut bytes =
-        serde_json::to_vec_pretty(value).map_err(|e| RunError::Format { file, source: e.into() })?;
-    bytes.push(b'\n');
-    Ok(bytes)
+pub fn json(format: Format, record: &impl Serialize) -> Result<Vec<u8>, RunError> {
+    let text = format.json(record).map_err(|e| RunError::Format { file: format.file, source: e.into() })?;
+    Ok(text.into_bytes())
 }

@@ -31,6 +31,7 @@ pub use jobs::OnResults;
 use crate::run::folder::{FolderKind, claim};
 use crate::run::{PrepareOptions, RunError};
 use crate::store::Folder;
+use crate::store::format;
 use connections::{Connections, Place};
 use guard::Guard;
 use jobs::JobQueue;
@@ -75,8 +76,8 @@ impl Server {
             Some(path) => claim(path, FolderKind::Serve, false),
             None => first_new("voidwalk-serve"),
         }?;
-        let record = serde_json::json!({ "voidwalk": env!("CARGO_PKG_VERSION") });
-        folder.write(FolderKind::Serve.record(), record.to_string().as_bytes())?;
+        let record = format::SERVE.json(&())?;
+        folder.write(FolderKind::Serve.record(), record.as_bytes())?;
         let port = listener.local_addr().map_err(RunError::failed)?.port();
         let root = folder.path();
         let routes = Routes {

@@ -4,6 +4,7 @@ pub mod checkpoint;
 mod column;
 pub mod disk;
 mod folder;
+pub mod format;
 mod npz;
 pub mod platform;
 

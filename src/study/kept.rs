@@ -60,7 +60,7 @@ pub(super) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
             mark.begin(folder)?;
             let record = study(&kept, found)?;
             // The page is made of it.
-            folder.write(kind.record(), &json(kind.record(), &record)?)?;
+            folder.write(kind.record(), &json(kind.format(), &record)?)?;
             record
         }
     };

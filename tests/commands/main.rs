@@ -6,6 +6,7 @@ mod campaign;
 mod check_and_run;
 mod checkpoints;
 mod compare;
+mod contract;
 mod design;
 mod first_hour;
 mod formats;

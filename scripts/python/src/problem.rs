@@ -35,7 +35,7 @@ pub fn of_run(error: &RunError) -> PyErr {
     let text = error.advice().map_or_else(|| error.to_string(), |advice| format!("{error}\n{advice}"));
     match error.exit() {
         Exit::Refused => refused(text),
-        Exit::Stopped | Exit::Failed => failed(text),
+        Exit::Stopped | Exit::Failed | Exit::NotAccepted => failed(text),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use pyo3::prelude::*;
 use voidwalk::outcome::rules::NamedCurve;
+use voidwalk::store::format;
 use voidwalk::verdict::{PairOptions, PairRules};
 
 use crate::problem::{failed, refused};
@@ -29,5 +30,5 @@ pub fn rules(
     let options = PairOptions { dispersive, joint_mm, as_given };
     let pair = PairRules::guarded(&named(bases), &named(filters), options)
         .map_err(|mistake| refused(mistake.refusal_unless("as_given=True")))?;
-    serde_json::to_string(&pair).map_err(failed)
+    format::RULES.json(&pair).map_err(failed)
 }

@@ -11,6 +11,7 @@ use voidwalk::case::{Case, RECORD};
 use voidwalk::run::machine::threads as pool;
 use voidwalk::run::{self as runs, CheckpointInterval, PrepareOptions, RunOptions, results};
 use voidwalk::schema::SceneError;
+use voidwalk::store::format;
 
 use crate::problem::{failed, of_run, refused};
 use crate::tables::of_recorded;
@@ -52,7 +53,7 @@ fn toml_of(name: &str, json: &str) -> PyResult<String> {
 }
 
 fn json(outcome: &Outcome) -> PyResult<String> {
-    serde_json::to_string(outcome).map_err(failed)
+    format::OUTCOME.json(outcome).map_err(failed)
 }
 
 /// A scene of the library.

@@ -1,0 +1,122 @@
+//! How the program ends: its exit codes, and the verdicts that a caller does not accept.
+
+use clap::ValueEnum;
+
+use crate::outcome::record::{Confidence, Verdict};
+use crate::run::{Exit, RunError};
+
+/// Every exit code and what it means: help, manual pages and guide show this table.
+pub const EXIT_CODES: [(u8, &str); 5] = [
+    (0, "done"),
+    (Exit::Failed.code(), "failed; of `voidwalk reproduce` also: not the same"),
+    (
+        Exit::Refused.code(),
+        "refused before any work, and nothing was written: the message says what to change",
+    ),
+    (Exit::Stopped.code(), "stopped on request; progress is saved, and the message says how to continue"),
+    (Exit::NotAccepted.code(), "done and written, but the verdict is one that `--fail-on` does not accept"),
+];
+
+/// The table in words, a line a code.
+pub fn in_words() -> String {
+    let lines = EXIT_CODES.map(|(code, meaning)| format!("  {code}  {meaning}\n"));
+    format!("Exit codes:\n{}", lines.concat())
+}
+
+/// Which verdicts are not accepted. An undecided verdict never is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FailOn {
+    /// Some erosion, continuing erosion, undecided
+    Some,
+    /// Continuing erosion, undecided
+    Continuing,
+    /// Anything but no erosion within the checked range
+    Doubt,
+}
+
+impl FailOn {
+    fn refuses(self, verdict: Verdict, confidence: Confidence) -> bool {
+        match self {
+            Self::Some => verdict != Verdict::None,
+            Self::Continuing => matches!(verdict, Verdict::Continuing | Verdict::Undecided),
+            Self::Doubt => (verdict, confidence) != (Verdict::None, Confidence::Within),
+        }
+    }
+
+    /// Its word on the command line.
+    fn word(self) -> &'static str {
+        match self {
+            Self::Some => "some",
+            Self::Continuing => "continuing",
+            Self::Doubt => "doubt",
+        }
+    }
+}
+
+/// Ends a command by the verdicts of its cases, each with its name.
+///
+/// # Errors
+/// The cases whose verdict is not accepted.
+pub fn accept<'a>(
+    fail_on: Option<FailOn>,
+    cases: impl IntoIterator<Item = (&'a str, Verdict, Confidence)>,
+) -> Result<(), RunError> {
+    let Some(fail_on) = fail_on else { return Ok(()) };
+    let not_accepted: Vec<String> = cases
+        .into_iter()
+        .filter(|(_, verdict, confidence)| fail_on.refuses(*verdict, *confidence))
+        .map(|(name, verdict, confidence)| {
+            let name = if name.is_empty() { String::new() } else { format!("{name}: ") };
+            format!("{name}{} ({})", verdict.words(), confidence.words())
+        })
+        .collect();
+    match not_accepted.is_empty() {
+        true => Ok(()),
+        false => Err(RunError::NotAccepted(format!(
+            "{}, with --fail-on {}; the results are written",
+            not_accepted.join("; "),
+            fail_on.word()
+        ))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_undecided_verdict_is_never_accepted_and_doubt_accepts_one_answer_alone() {
+        let every = [Confidence::Within, Confidence::MaySegregate, Confidence::Outside]
+            .map(|confidence| Verdict::ALL.map(|verdict| (verdict, confidence)));
+        for (verdict, confidence) in every.concat() {
+            let accepted = FailOn::value_variants()
+                .iter()
+                .map(|of| accept(Some(*of), [("a", verdict, confidence)]).is_ok());
+            let expected = match (verdict, confidence) {
+                (Verdict::None, Confidence::Within) => [true, true, true],
+                (Verdict::None, _) => [true, true, false],
+                (Verdict::Some, _) => [false, true, false],
+                _ => [false; 3],
+            };
+            assert_eq!(accepted.collect::<Vec<_>>(), expected, "{verdict:?}, {confidence:?}");
+            assert!(accept(None, [("a", verdict, confidence)]).is_ok());
+        }
+    }
+
+    #[test]
+    fn the_guide_shows_every_exit_code() {
+        let guide = include_str!("../docs/stability.md");
+        for (code, meaning) in EXIT_CODES {
+            assert!(guide.contains(&format!("| {code} | {meaning} |\n")), "{code}: {meaning}");
+        }
+        let codes = EXIT_CODES.map(|(code, _)| code);
+        assert_eq!(codes, [0, 1, 2, 3, 4]);
+    }
+
+    #[test]
+    fn the_words_are_those_of_the_command_line() {
+        for of in FailOn::value_variants() {
+            assert_eq!(of.to_possible_value().unwrap().get_name(), of.word());
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! The JSON files of the program: each begins with the name and number of its form and the program's version.
+//!
+//! ```json
+//! { "format": "voidwalk-outcome/1", "voidwalk": "0.1.0", ... }
+//! ```
+//! The number rises when a program that read the file before would now misread it: a field is gone, or means
+//! something else. A new field raises nothing. Files of versions that wrote no such beginning are still read.
+
+use std::fmt;
+
+use serde::ser::Error;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// The form of a file of JSON.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Format {
+    /// Its name, without the program's.
+    name: &'static str,
+    /// Its number.
+    number: u32,
+    /// The file; what prints it, where it is no file.
+    pub file: &'static str,
+}
+
+macro_rules! formats {
+    ($($(#[$what:meta])* $constant:ident = $name:literal / $number:literal, $file:literal;)*) => {
+        $($(#[$what])* pub const $constant: Format = Format { name: $name, number: $number, file: $file };)*
+
+        /// Every form.
+        pub const FORMATS: &[Format] = &[$($constant),*];
+    };
+}
+
+formats! {
+    /// What came of a scene.
+    OUTCOME = "outcome" / 1, "outcome.json";
+    /// What made a run folder.
+    MANIFEST = "manifest" / 1, "manifest.json";
+    /// How coarse a filter may be.
+    DESIGN = "design" / 1, "design.json";
+    /// Several cases side by side.
+    COMPARISON = "comparison" / 1, "compare.json";
+    /// A campaign, with its `ledger.jsonl` and `cases.csv`.
+    CAMPAIGN = "campaign" / 1, "campaign.json";
+    /// One case of a campaign.
+    CASE = "case" / 1, "case.json";
+    /// A filter that was packed.
+    PACKING = "packing" / 1, "packing.json";
+    /// Constrictions that were measured.
+    CONSTRICTIONS = "constrictions" / 1, "constrictions.json";
+    /// The percolation threshold.
+    PERCOLATION = "percolation" / 1, "percolation.json";
+    /// Error against run time.
+    PRECISION = "precision" / 1, "precision.json";
+    /// The folder of a page on this machine.
+    SERVE = "serve" / 1, "serve.json";
+    /// What a run would do.
+    CHECK = "check" / 1, "voidwalk check --json";
+    /// The rules of practice for two soils.
+    RULES = "rules" / 1, "voidwalk rules --json";
+    /// The soils of a file.
+    SOILS = "soils" / 1, "voidwalk soil --json";
+    /// A run that was walked again.
+    REPRODUCED = "reproduced" / 1, "voidwalk reproduce --json";
+    /// Every setting of a scene.
+    SETTINGS = "settings" / 1, "voidwalk init --json";
+}
+
+/// How every file begins.
+#[derive(Serialize)]
+struct Headed<'a, T> {
+    format: String,
+    voidwalk: &'static str,
+    #[serde(flatten)]
+    content: &'a T,
+}
+
+/// The beginning of a file that may have none.
+#[derive(Deserialize)]
+struct Beginning {
+    #[serde(default)]
+    format: Value,
+    #[serde(default)]
+    voidwalk: Value,
+}
+
+impl Format {
+    /// A record in this form, as indented JSON with a newline at its end.
+    ///
+    /// # Errors
+    /// A record that is no map, or that JSON cannot hold.
+    pub fn json(self, content: &impl Serialize) -> Result<String, serde_json::Error> {
+        let headed = Headed { format: self.to_string(), voidwalk: env!("CARGO_PKG_VERSION"), content };
+        Ok(serde_json::to_string_pretty(&headed)? + "\n")
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "voidwalk-{}/{}", self.name, self.number)
+    }
+}
+
+/// A record from the text of its file.
+///
+/// # Errors
+/// Text in a newer form than this version knows, or that is no such record.
+pub fn from_json<T: serde::de::DeserializeOwned>(text: &[u8]) -> Result<T, serde_json::Error> {
+    let read = serde_json::from_slice(text);
+    // Read second: where the file is no JSON, its own error names the line.
+    match serde_json::from_slice(text).ok().and_then(|beginning: Beginning| newer(&beginning)) {
+        Some(problem) => Err(serde_json::Error::custom(problem)),
+        None => read,
+    }
+}
+
+/// What there is to say of a form that is newer than the one known here.
+fn newer(beginning: &Beginning) -> Option<String> {
+    let (name, number) = beginning.format.as_str()?.strip_prefix("voidwalk-")?.rsplit_once('/')?;
+    let known = FORMATS.iter().find(|format| format.name == name)?;
+    let by = beginning.voidwalk.as_str().unwrap_or("a later version");
+    (number.parse::<u32>().ok()? > known.number).then(|| {
+        format!(
+            "this file is in the form voidwalk-{name}/{number} of voidwalk {by}; this is voidwalk {}, which \
+             reads forms up to {known}: read it with that version",
+            env!("CARGO_PKG_VERSION")
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[derive(Debug, PartialEq, Serialize, Deserialize)]
+    struct Record {
+        seconds: f64,
+        seed: u64,
+    }
+
+    #[test]
+    fn every_record_begins_with_its_form_and_the_version_and_is_read_with_and_without_them() {
+        let record = Record { seconds: 0.1 + 0.2, seed: u64::MAX };
+        let text = OUTCOME.json(&record).unwrap();
+        let version = env!("CARGO_PKG_VERSION");
+        let begins = format!("{{\n  \"format\": \"voidwalk-outcome/1\",\n  \"voidwalk\": \"{version}\",\n");
+        assert!(text.starts_with(&begins) && text.ends_with("}\n"), "{text}");
+        assert_eq!(from_json::<Record>(text.as_bytes()).unwrap(), record);
+        let bare = serde_json::to_vec(&record).unwrap();
+        assert_eq!(from_json::<Record>(&bare).unwrap(), record);
+    }
+
+    #[test]
+    fn a_newer_form_is_refused_with_the_version_that_wrote_it() {
+        let read = |format: &str| {
+            let text = format!(r#"{{"format":"{format}","voidwalk":"9.1.0","seconds":1,"seed":2}}"#);
+            from_json::<Record>(text.as_bytes()).map_err(|error| error.to_string())
+        };
+        let error = read("voidwalk-outcome/2").unwrap_err();
+        assert!(error.contains("voidwalk-outcome/2 of voidwalk 9.1.0"), "{error}");
+        assert!(error.contains("up to voidwalk-outcome/1"), "{error}");
+        for known in ["voidwalk-outcome/1", "voidwalk-new/7", "another", ""] {
+            assert!(read(known).is_ok(), "{known}");
+        }
+    }
+
+    #[test]
+    fn the_guide_lists_every_form() {
+        let guide = include_str!("../docs/stability.md");
+        for format in FORMATS {
+            let row = guide.lines().find(|line| line.starts_with(&format!("| `{format}` |")));
+            assert!(row.is_some_and(|row| row.contains(&format!("`{}`", format.file))), "{format}");
+        }
+    }
+
+    #[test]
+    fn no_two_files_share_a_form() {
+        let names: BTreeSet<&str> = FORMATS.iter().map(|format| format.name).collect();
+        let files: BTreeSet<&str> = FORMATS.iter().map(|format| format.file).collect();
+        assert_eq!([names.len(), files.len()], [FORMATS.len(); 2]);
+    }
+}
