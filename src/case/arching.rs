@@ -49,18 +49,21 @@ impl Case {
             concentration: self.concentration(self.n_base).filter(|_| law.of_concentration),
         })
     }
-}
 
-/// Refuses a law that asks how densely the base arrives where nothing says so.
-pub(super) fn check(case: &Case) -> Result<(), CaseError> {
-    let scene = &case.scene;
-    let needs = scene.law().is_some_and(|law| law.of_concentration);
-    match needs && case.concentration(case.n_base).is_none() {
-        true => {
-            let problem = "walk.concentration is needed: how densely the base arrives hangs on the filter's \
-                           void ratio and the mass of the base, and they are not known here";
-            Err(scene.clash(problem).into())
+    /// Refuses a law that asks how densely the base arrives where nothing says so.
+    ///
+    /// # Errors
+    /// The setting that is missing.
+    pub(super) fn check_arching(&self) -> Result<(), CaseError> {
+        let scene = &self.scene;
+        let needs = scene.law().is_some_and(|law| law.of_concentration);
+        match needs && self.concentration(self.n_base).is_none() {
+            true => {
+                let problem = "walk.concentration is needed: how densely the base arrives follows from the \
+                               filter's void ratio and the mass of the base, which are not known here";
+                Err(scene.clash(problem).into())
+            }
+            false => Ok(()),
         }
-        false => Ok(()),
     }
 }

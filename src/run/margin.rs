@@ -3,9 +3,9 @@
 //!
 //! A coarser filter is a finer base to the walk, of which as much is offered as the coarser filter would be.
 //! Two sizes are walked at a time, outwards by growing steps until one erodes and one does not, then inwards
-//! by thirds to 4 %. One narrow network is walked, as in the study of real soils, so the boundary scatters as networks do: 2 to 7 %. A base that
-//! erodes again in finer filters has several boundaries; this is the one that is nearest below the sizes that
-//! were seen to erode.
+//! by thirds to 4 %. One narrow network is walked, as in the study of real soils, so the boundary scatters as
+//! networks do: 2 to 7 %. A base that erodes again in finer filters has several boundaries; this is the one
+//! that is nearest below the sizes that were seen to erode.
 
 use rayon::prelude::*;
 

@@ -157,9 +157,10 @@ section! {
         pub conductance_exponent: Option<f64> = None, off "4.0", within(0.0..=10.0, "a number from 0 to 10");
         /// Arches: particles that fit through a constriction jam in it together, by a published law of
         /// clogging. Default: "none". No law has been checked with filter tests; the report says its source.
-        pub arching: Option<LawName> = None, off "\"zuriguel-2005\"", words(&LawName::ALL.map(LawName::name));
-        /// How densely the base arrives, for a law that depends on it: volume of particles by volume of voids.
-        /// Default: what an increment brings into the first layer of voids.
+        pub arching: Option<LawName> = None, off "\"zuriguel-2005\"",
+            words(&LawName::ALL.map(LawName::name));
+        /// How densely the base arrives, for a law that depends on it: volume of particles by volume of
+        /// voids. Default: what an increment brings into the first layer of voids.
         pub concentration: Option<f64> = None, off "0.05", within(0.0..=0.64, "a part from 0 to 0.64");
     }
 }

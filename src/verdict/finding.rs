@@ -531,8 +531,8 @@ findings! {
     /// A walk with arches.
     arches(law: Text): Walk, Open, Limits;
         "arches", "arches.md",
-        "Particles that fit a constriction jam in it together by a law of clogging ({law}) that no filter test \
-         has checked.";
+        "Particles that fit a constriction jam in it together by a law of clogging ({law}) that no filter \
+         test has checked.";
     /// What soils of this kind say of the walk's boundary.
     evidence(probability: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio):
         Practice, Settled, Note;

@@ -74,8 +74,9 @@ pub static LAWS: [Law; 3] = [
     Law {
         name: "zuriguel-2005",
         source: "Zuriguel, Garcimartin, Maza, Pugnaloni and Pastor 2005, Physical Review E 71, 051303",
-        basis: "Discharge of dry spheres, dense, through a circular hole: on average A / (4.94 - R)^6.9 grains \
-                pass before a jam, A = 9900. The constants were read in a later review, not in the article; \
+        basis: "Dense discharge of dry spheres through a circular hole: on average A / (4.94 - R)^6.9 \
+                grains pass before a jam, A = 9900. The constants were read in a later review, not in the \
+                article; \
                 that a jam comes after so many grains, each with the same probability, is taken from its \
                 abstract. Nothing dilutes it, so it is the most that a dense front of base can do.",
         widest: 4.94,
