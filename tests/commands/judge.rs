@@ -43,7 +43,7 @@ fn two_tables_are_judged_as_the_scene_that_says_the_same() {
     let [a, b] = ["a", "b"].map(|folder| json(at.join(folder).join("outcome.json")));
     assert_eq!(a["summary"], b["summary"]);
     assert_eq!(a["curve_range"], b["curve_range"]);
-    assert_eq!(a["replicates"].as_array().unwrap().len(), 4);
+    assert_eq!(a["replicates"].as_array().unwrap().len(), 5);
     assert_eq!(
         (&a["constrictions"]["origin"], &a["practice"]["foster_fell"]),
         (&"library".into(), &"no erosion".into())
@@ -74,7 +74,9 @@ fn evidence_of_soils_of_its_kind_stands_beside_the_verdict() {
     // What holds at D15F 0.597 mm begins to erode beyond it.
     assert!(of("boundary_d15f_mm") > 0.59 && of("probability_no_erosion") > 0.9, "{evidence}");
     assert_eq!(of("probability_by_tests"), 0.98);
-    assert!(text.contains("Evidence: The probability that a test would show no erosion is"), "{text}");
+    let said = "Evidence: Tests on soils like this held such filters. The probability that a test would show no \
+                erosion is";
+    assert!(text.contains(said), "{text}");
     assert!(std::fs::read_to_string(at.join("a/report.html")).unwrap().contains("<b>Evidence</b>"));
     let walks = outcome["margin"]["walks"].as_array().unwrap();
     assert!(walks.len() > 3 && walks.iter().any(|walk| walk["factor"] == 1.0), "{walks:?}");
@@ -182,7 +184,9 @@ fn a_dispersive_base_and_an_open_joint_reach_the_verdict() {
     fs::write(at.join("sand.csv"), "size_mm,percent\n0.5,0\n0.6,15\n1.0,70\n1.5,100\n").unwrap();
     let judge = |more: &[&str]| {
         let words = ["judge", "silt.csv", "sand.csv", "--quick", "--json", "--overwrite", "--out", "a"];
-        let said = call(&at, &[&words[..], &SMALL, more].concat());
+        // With more the class is the worst there is, of which nothing on the unsafe side is a doubt.
+        let few = ["--set", "replicates=4"];
+        let said = call(&at, &[&words[..], &SMALL, &few, more].concat());
         done(&said);
         serde_json::from_slice::<Value>(&said.stdout).unwrap()
     };
@@ -234,7 +238,7 @@ fn a_density_packs_the_filter() {
     let said = call(&at, &[&words[..], &SMALL, &small].concat());
     done(&said);
     let outcome: Value = serde_json::from_slice(&said.stdout).unwrap();
-    assert_eq!(outcome["replicates"].as_array().unwrap().len(), 4);
+    assert_eq!(outcome["replicates"].as_array().unwrap().len(), 5);
     let scene = fs::read_to_string(at.join("a/scene.toml")).unwrap();
     assert!(scene.contains("density = \"intermediate\"") && scene.contains("inputs/filter-curve.csv"));
     assert!(at.join("voidwalk-packings").is_dir());
