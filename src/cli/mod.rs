@@ -1,6 +1,6 @@
 //! The command line: it parses, calls the library and prints, and is the only place that does.
 //!
-//! How it ends is said in one table, [`exit::EXIT_CODES`].
+//! How it ends is said in one table, `EXIT_CODES` (`exit.rs`).
 
 mod args;
 mod campaign;

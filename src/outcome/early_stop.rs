@@ -21,7 +21,7 @@
 //! One replicate does at an end whose class is that of the curve itself, whichever that is: the end is walked
 //! to see whether it *changes* the class, and the class rests on the case's own replicates. Every run that
 //! decides the class lies wholly on its side of the threshold, by an interval as above of at least
-//! [`LEAST_SCATTER`] of its value, and keeps a third of its distance. An end that is of another class, or not
+//! 5 % of its value as scatter, and keeps a third of its distance. An end that is of another class, or not
 //! clear, is walked in full.
 
 use super::record::{Statistic, Verdict};
