@@ -72,12 +72,10 @@ impl Case {
         if self.takes_each(n_base) { 0 } else { self.passive_words() }
     }
 
-    /// How many of all 2^64 words draw a particle no coarser than the finest constriction.
+    /// How many of all 2^64 words draw a particle that is passive on the open network.
     fn passive_words(&self) -> u128 {
         let finest = self.finest_of_fixed.unwrap_or_else(|| (self.finest_mm / self.unit_mm) as f32);
-        // Whatever its concentration, a law has one widest ratio.
-        let by = self.scene.law().map_or(1.0, |law| law.widest as f32);
-        self.sampler.word_limit(finest / by)
+        self.sampler.word_limit(self.scene.law().map_or(finest, |law| law.passive_limit(finest)))
     }
 
     /// Bytes of the columns of a walk of `n_base` particles.

@@ -1,12 +1,10 @@
 //! Walks a case at the ends of the range in which its constriction curve is known.
 
-use rayon::prelude::*;
-
 use super::callbacks::Event;
 use super::error::RunError;
 use super::planned::replicates_of_end;
 use super::replicates::{
-    ReplicateContext, ReplicateResult, classed, some_replicates, stopping, summarise, values_by_run,
+    ReplicateContext, ReplicateResult, classed, concluded, each, some_replicates, values_by_run,
 };
 use crate::case::{Case, OtherCurve};
 use crate::outcome::early_stop::clear_end;
@@ -25,16 +23,12 @@ pub fn curve_range(
 ) -> Result<Option<CurveRange>, RunError> {
     // The parts before these are the sensitivity study's and the other readings'.
     let before = (case.sensitivity_factors().len() + case.other_readings.len()) as u64 + 1;
-    let (verdict, summaries) = summarise(walked);
-    // A verdict that was to be certain is one at the level asked for, here too.
-    let verdict = stopping(case, walked).and_then(|stopping| stopping.verdict).unwrap_or(verdict);
-    let one = |(k, end): (usize, &OtherCurve)| of_end(case, end, before + k as u64, walked, verdict, context);
-    let ends: Result<Vec<_>, _> = match case.side_by_side(case.n_base, rayon::current_num_threads() as u64) {
-        0 | 1 => case.curve_ends.iter().enumerate().map(one).collect(),
-        _ => case.curve_ends.par_iter().enumerate().map(one).collect(),
-    };
+    let (verdict, summaries, _) = concluded(case, walked);
+    let one = |(part, end): (u64, &OtherCurve)| of_end(case, end, part, walked, verdict, context);
+    let fit = case.side_by_side(case.n_base, rayon::current_num_threads() as u64) > 1;
+    let ends = each((before..).zip(&case.curve_ends).collect(), fit, one)?;
     let runs: Vec<_> = summaries.iter().map(|s| s.eroded_mass_fraction).collect();
-    Ok(CurveRange::new(verdict, &runs, ends?, case.library.is_some()))
+    Ok(CurveRange::new(verdict, &runs, ends, case.library.is_some()))
 }
 
 /// Walks one end.

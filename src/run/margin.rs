@@ -7,11 +7,9 @@
 //! networks do: 2 to 7 %. A base that erodes again in finer filters has several boundaries; this is the one
 //! that is nearest below the sizes that were seen to erode.
 
-use rayon::prelude::*;
-
 use super::callbacks::Event;
 use super::error::RunError;
-use super::replicates::{ReplicateContext, ReplicateResult, walk_replicate};
+use super::replicates::{ReplicateContext, ReplicateResult, each, walk_replicate};
 use crate::case::Case;
 use crate::outcome::record::{Margin, MarginWalk};
 
@@ -52,18 +50,15 @@ pub fn margin(
         }
         part += factors.len() as u64;
         context.tell(Event::MoreRuns { runs: cases.len() as u64 });
-        let one = |(part, factor, case): &(u64, f64, Case)| {
-            Ok(walk_of(*factor, &walk_replicate(case, *part, 1, case.n_base, context)?))
+        let one = |(part, factor, case): (u64, f64, Case)| {
+            Ok(walk_of(factor, &walk_replicate(&case, part, 1, case.n_base, context)?))
         };
         let threads = rayon::current_num_threads() as u64;
         let fit = cases.iter().all(|(_, _, case)| case.side_by_side(case.n_base, threads) > 1);
-        let found: Result<Vec<_>, RunError> = match fit {
-            true => cases.par_iter().map(one).collect(),
-            false => cases.iter().map(one).collect(),
-        };
-        margin.walks.extend(found?);
+        let is_whole = cases.len() == factors.len();
+        margin.walks.extend(each(cases, fit, one)?);
         margin.walks.sort_by(|a, b| a.factor.total_cmp(&b.factor));
-        if cases.len() < factors.len() {
+        if !is_whole {
             return Ok(Some(margin));
         }
     }

@@ -144,12 +144,16 @@ pub(super) fn some_replicates(
     context: &ReplicateContext,
 ) -> Result<Vec<ReplicateResult>, RunError> {
     let one = |replicate| walk_replicate(case, part, replicate, n_base, context);
-    let threads = rayon::current_num_threads() as u64;
-    if case.side_by_side(n_base, threads) > 1 {
-        which.into_par_iter().map(one).collect()
-    } else {
-        which.map(one).collect()
-    }
+    each(which.collect(), case.side_by_side(n_base, rayon::current_num_threads() as u64) > 1, one)
+}
+
+/// Does the same for each of several, side by side where their walks fit into the memory together.
+pub(super) fn each<T: Send, R: Send>(
+    all: Vec<T>,
+    fit: bool,
+    one: impl Fn(T) -> Result<R, RunError> + Sync + Send,
+) -> Result<Vec<R>, RunError> {
+    if fit { all.into_par_iter().map(one).collect() } else { all.into_iter().map(one).collect() }
 }
 
 /// Walks one replicate with `n_base` particles, or takes it from its checkpoint.
@@ -251,11 +255,8 @@ pub fn have_networks(case: &Case) -> Result<(), RunError> {
         Err(error) => Err(RunError::Refused(format!("replicate {replicate}: {error}"))),
     };
     let replicates = 1..=first_replicates(case).max(case.scene.record.sensitivity_replicates);
-    if case.side_by_side(case.n_base, rayon::current_num_threads() as u64) > 1 {
-        replicates.into_par_iter().try_for_each(one)
-    } else {
-        replicates.into_iter().try_for_each(one)
-    }
+    let fit = case.side_by_side(case.n_base, rayon::current_num_threads() as u64) > 1;
+    each(replicates.collect(), fit, one).map(drop)
 }
 
 /// One run of one replicate.
@@ -377,6 +378,18 @@ pub fn summarise(walked: &[ReplicateResult]) -> (Verdict, Vec<RunSummary>) {
         below_by_interval(&summary.eroded_mass_fraction, &each)
     };
     (classify(below(0), below(1)), summaries)
+}
+
+/// The verdict of replicates, their statistics by run, and what a rule that adds replicates came to.
+pub(super) fn concluded(
+    case: &Case,
+    walked: &[ReplicateResult],
+) -> (Verdict, Vec<RunSummary>, Option<Stopping>) {
+    let (verdict, summary) = summarise(walked);
+    let stopping = stopping(case, walked);
+    // A verdict that was to be certain is one at the level asked for.
+    let verdict = stopping.as_ref().and_then(|stopping| stopping.verdict).unwrap_or(verdict);
+    (verdict, summary, stopping)
 }
 
 /// What the replicates are worth together, as a point of a study holds it.

@@ -23,7 +23,18 @@ use crate::store::{StoreError, read_whole};
 const NAMED: usize = 10;
 
 /// Strings with these names are results, all others words about them.
-const RESULTS: [&str; 7] = ["verdict", "confidence", "engine", "kind", "direction", "weight", "xxh3"];
+const RESULTS: [&str; 10] = [
+    "verdict",
+    "confidence",
+    "engine",
+    "kind",
+    "direction",
+    "weight",
+    "xxh3",
+    "foster_fell",
+    "origin",
+    "law",
+];
 
 /// The names of the files whose numbers are compared besides CSV files.
 const OUTCOME: &str = "outcome.json";

@@ -8,12 +8,12 @@ use super::error::RunError;
 use super::evidence::evidence;
 use super::machine::Machine;
 use super::other_walks::OtherWalks;
-use super::replicates::{ReplicateResult, classed, said_by_walks, stopping, summarise};
+use super::replicates::{ReplicateResult, classed, concluded, said_by_walks, summarise};
 use super::studies::Studies;
 use crate::case::{Case, INPUT_NAMES, replicate_seed};
 use crate::outcome::record::{
     Classed, Confidence, ConstrictionsRecord, Manifest, ModelLimit, Outcome, PanBounds, PanReading,
-    RunSummary, Statistic, Stopping, Verdict, VoidRow,
+    Statistic, Verdict, VoidRow,
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
 use crate::outcome::table::csv_of;
@@ -112,15 +112,6 @@ fn model_leaves_out(case: &Case) -> Vec<ModelLimit> {
 /// What these walks say themselves against the verdict.
 fn findings_of_walk(case: &Case, verdict: Verdict, walked: &[ReplicateResult]) -> Vec<Finding> {
     said_by_walks(verdict, walked, &case.base, case.increments(), case.counts[3])
-}
-
-/// The verdict of replicates, their statistics by run, and what a rule that adds replicates came to.
-fn concluded(case: &Case, walked: &[ReplicateResult]) -> (Verdict, Vec<RunSummary>, Option<Stopping>) {
-    let (verdict, summary) = summarise(walked);
-    let stopping = stopping(case, walked);
-    // A verdict that was to be certain is one at the level asked for.
-    let verdict = stopping.as_ref().and_then(|stopping| stopping.verdict).unwrap_or(verdict);
-    (verdict, summary, stopping)
 }
 
 /// What came of the readings of the base's pan fraction; `None` where there is only one.

@@ -22,7 +22,7 @@ section! {
         /// How passive particles, which can block nothing, move: "counts" (exact counts per void),
         /// "particles" (one by one), "expected" (their expectation), or "auto": particles if fewer than 6.5
         /// passive ones are inserted on a start node in an increment, else counts; expected in `voidwalk
-        /// design`.
+        /// design`. `judge`, `compare` of tables and `serve` set "expected".
         pub engine: Engine = Engine::Auto, set, words(&Engine::ALL.map(Engine::name));
         /// Number of runs: 1 or 2. The second offers fresh base to the filter as the first left it.
         pub runs: u64 = 2, set, whole(1..=2);

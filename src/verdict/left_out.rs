@@ -6,7 +6,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::quantity::{fixed, given};
 use crate::outcome::record::ModelLimit;
-use crate::walk::{Engine, Shortcut};
+use crate::walk::{Engine, Finest, Shortcut};
 
 impl ModelLimit {
     /// What it is in brief, and the rest of what is said of it.
@@ -186,32 +186,34 @@ impl LeftOut {
 impl Shortcut {
     /// What it says, in a sentence; sizes have this unit.
     pub fn sentence(&self, unit: &str) -> String {
-        let size = |size: f64| format!("{} {unit}", fixed(size, 4));
         let followed = |engine: Engine| match engine {
             Engine::Expected => "only their expected number in each void is followed",
             _ => "only their number in each void is followed, which is exact",
         };
+        let finest_open =
+            |finest: Finest| format!("the finest open constriction ({} {unit})", fixed(finest.size_mm, 4));
         match *self {
             Self::NothingOpen => {
                 "No constriction is open: every base particle stays in the void it starts in.".into()
             }
-            Self::NonePassive(finest) => format!(
-                "No base particle is as fine as the finest open constriction ({}), so none is kept as a \
-                 count.",
-                size(finest)
-            ),
+            Self::NonePassive(finest) => {
+                let fine = if finest.arches { "too fine to arch in" } else { "as fine as" };
+                let open = finest_open(finest);
+                format!("No base particle is {fine} {open}, so none is kept as a count.")
+            }
             Self::AllPassive(finest, engine) => format!(
-                "Every base particle passes every open constriction (finest {}): nothing can be blocked, \
-                 and none is walked on its own; {}.",
-                size(finest),
+                "Every base particle passes every open constriction (finest {} {unit}){}: nothing can be \
+                 blocked, and none is walked on its own; {}.",
+                fixed(finest.size_mm, 4),
+                if finest.arches { ", and is too fine to arch" } else { "" },
                 followed(engine)
             ),
             Self::MostPassive(percent, finest, engine) => format!(
-                "All but {} % of the base particles by number are no coarser than the finest open \
-                 constriction ({}) and can block nothing: {}, and their sizes are drawn where they come to \
-                 rest.",
+                "All but {} % of the base particles by number are {} {} and can block nothing: {}, and \
+                 their sizes are drawn where they come to rest.",
                 digits(percent),
-                size(finest),
+                if finest.arches { "too fine to arch in" } else { "no coarser than" },
+                finest_open(finest),
                 followed(engine)
             ),
             Self::OneSize => "The base has one size: no column of diameters is kept.".into(),
@@ -281,14 +283,17 @@ mod tests {
                     assert_eq!(begins(OF_THICKNESS), name.starts_with("Thickness"), "{words}");
                 }
                 let of_run = |engine| {
-                    [
-                        Shortcut::NothingOpen,
-                        Shortcut::NonePassive(number),
-                        Shortcut::AllPassive(number, engine),
-                        Shortcut::MostPassive(number, number, engine),
-                        Shortcut::OneSize,
-                        Shortcut::FewPassive(n, n),
-                    ]
+                    [false, true].into_iter().flat_map(move |arches| {
+                        let finest = Finest { size_mm: number, arches };
+                        [
+                            Shortcut::NothingOpen,
+                            Shortcut::NonePassive(finest),
+                            Shortcut::AllPassive(finest, engine),
+                            Shortcut::MostPassive(number, finest, engine),
+                            Shortcut::OneSize,
+                            Shortcut::FewPassive(n, n),
+                        ]
+                    })
                 };
                 for item in Engine::ALL.into_iter().flat_map(of_run) {
                     reads_well(&item.sentence("mm"));

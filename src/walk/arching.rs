@@ -125,6 +125,12 @@ impl Law {
     pub fn probability(&self, ratio: f64, concentration: f64) -> f64 {
         if ratio >= self.widest { 0.0 } else { (self.probability)(ratio.max(1.0), concentration) }
     }
+
+    /// The size up to which particles can neither block nor arch where this is the finest open constriction.
+    pub fn passive_limit(&self, finest: f32) -> f32 {
+        // A little finer, so that rounding gives no particle an arch that the limit calls passive.
+        (f64::from(finest) / self.widest * (1.0 - 1e-6)) as f32
+    }
 }
 
 /// One in as many as pass before a jam, and the one that jams.
@@ -159,7 +165,6 @@ const BITS: u32 = 48;
 #[derive(Clone, Debug)]
 pub struct Arching {
     law: &'static Law,
-    concentration: f64,
     /// Probability at equal steps of `R` from 1 to the widest; the last is that just below the widest.
     table: Vec<f64>,
 }
@@ -173,17 +178,7 @@ impl Arching {
             let ratio = 1.0 + step * k as f64;
             (law.probability)(ratio.min(law.widest * (1.0 - 1e-12)), concentration)
         };
-        Self { law, concentration, table: (0..=STEPS).map(at).collect() }
-    }
-
-    /// The law.
-    pub fn law(&self) -> &'static Law {
-        self.law
-    }
-
-    /// How densely the base arrives: volume of particles by volume of voids.
-    pub fn concentration(&self) -> f64 {
-        self.concentration
+        Self { law, table: (0..=STEPS).map(at).collect() }
     }
 
     /// `R` from which nothing arches.
@@ -191,10 +186,9 @@ impl Arching {
         self.law.widest
     }
 
-    /// The size up to which particles can neither block nor arch where this is the finest open constriction.
+    /// [`Law::passive_limit`] of its law.
     pub fn passive_limit(&self, finest: f32) -> f32 {
-        // A little finer, so that rounding gives no particle an arch that the limit calls passive.
-        (f64::from(finest) / self.law.widest * (1.0 - 1e-6)) as f32
+        self.law.passive_limit(finest)
     }
 
     /// Whether a particle of this size may arch in this constriction, which it fits.

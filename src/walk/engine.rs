@@ -111,8 +111,8 @@ impl RunPlan {
         arching: Option<Arc<Arching>>,
     ) -> Self {
         let passive_limit = |finest| arching.as_ref().map_or(finest, |of| of.passive_limit(finest));
-        let limit = passive_limit(network.finest_open(|c| blocked[c]));
-        let passive_words = sampler.word_limit(limit);
+        let finest = network.finest_open(|c| blocked[c]);
+        let passive_words = sampler.word_limit(passive_limit(finest));
         // On the open network, so that all runs of a replicate have one engine.
         let on_open = sampler.word_limit(passive_limit(network.finest_open(|_| false)));
         let passive = Engine::passive_share(share, on_open);
@@ -122,7 +122,8 @@ impl RunPlan {
             Engine::Auto => Engine::Counts,
             chosen => chosen,
         };
-        let mut left_out = left_out(engine, limit, passive_words, network.unit_mm());
+        let size_mm = f64::from(finest) * network.unit_mm();
+        let mut left_out = left_out(engine, Finest { size_mm, arches: arching.is_some() }, passive_words);
         if sampler.smallest() == sampler.largest() && (engine == Engine::Particles || passive_words < 1 << 64)
         {
             left_out.push(Shortcut::OneSize);
@@ -162,28 +163,36 @@ impl RunPlan {
     }
 }
 
-/// What is not needed of a run; sizes are those of the finest open constriction (mm).
+/// The finest constriction that is open when a run begins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Finest {
+    /// Its size (mm).
+    pub size_mm: f64,
+    /// Whether particles arch in it, so that only those too fine for that are passive.
+    pub arches: bool,
+}
+
+/// What is not needed of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shortcut {
     /// Nothing moves, as no constriction is open.
     NothingOpen,
     /// No base particle is a count, as none is as fine as this.
-    NonePassive(f64),
+    NonePassive(Finest),
     /// Every base particle is a count of this engine, as none is coarser than this.
-    AllPassive(f64, Engine),
+    AllPassive(Finest, Engine),
     /// All but so many percent of the base particles are counts of this engine.
-    MostPassive(f64, f64, Engine),
+    MostPassive(f64, Finest, Engine),
     /// No column of diameters is kept, as the base has one size.
     OneSize,
     /// So many passive base particles an increment on so many start nodes are too few for counts.
     FewPassive(u64, u64),
 }
 
-fn left_out(engine: Engine, limit: f32, passive_words: u128, unit_mm: f64) -> Vec<Shortcut> {
+fn left_out(engine: Engine, finest: Finest, passive_words: u128) -> Vec<Shortcut> {
     let coarse_percent = 100.0 * (((1u128 << 64) - passive_words) as f64 / 18_446_744_073_709_551_616.0);
-    let finest = f64::from(limit) * unit_mm;
     let mut left_out = Vec::new();
-    if limit == f32::INFINITY {
+    if finest.size_mm == f64::INFINITY {
         left_out.push(Shortcut::NothingOpen);
     } else if passive_words == 0 {
         left_out.push(Shortcut::NonePassive(finest));
@@ -193,7 +202,7 @@ fn left_out(engine: Engine, limit: f32, passive_words: u128, unit_mm: f64) -> Ve
     }
     if passive_words < 1 << 64 {
         left_out.push(Shortcut::MostPassive(coarse_percent, finest, engine));
-    } else if limit != f32::INFINITY {
+    } else if finest.size_mm != f64::INFINITY {
         left_out.push(Shortcut::AllPassive(finest, engine));
     }
     left_out

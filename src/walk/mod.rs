@@ -76,7 +76,7 @@ pub use arching::{Arching, LAWS, Law, LawName};
 pub use bits::{from_words, to_words};
 pub use counts::{Counted, Expected, ExpectedSums, Passive};
 pub use directions::FlowRecord;
-pub use engine::{Engine, RunPlan, Shortcut};
+pub use engine::{Engine, Finest, RunPlan, Shortcut};
 pub use error::WalkError;
 pub use exits::ExitTable;
 pub use isa::Isa;

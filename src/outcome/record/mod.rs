@@ -118,7 +118,8 @@ pub struct Outcome {
     /// for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub margin: Option<Margin>,
-    /// What soils of its kind say of the walk's boundary; `None` without a margin, or for a base of no group.
+    /// What soils of its kind say of the walk's boundary; `None` where no margin was asked for, or for a base
+    /// of no group.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub evidence: Option<Evidence>,
     /// The law by which particles arched; `None` where they did not.
