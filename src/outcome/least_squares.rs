@@ -1,7 +1,7 @@
 //! Straight lines by least squares.
 
 /// A straight line by weighted least squares.
-pub(super) struct Straight {
+pub(crate) struct Straight {
     pub offset: f64,
     pub slope: f64,
     /// Standard error of the offset.
@@ -12,7 +12,7 @@ pub(super) struct Straight {
 
 impl Straight {
     /// Through `(x, y, standard error of y)`.
-    pub(super) fn through(rows: &[(f64, f64, f64)]) -> Self {
+    pub(crate) fn through(rows: &[(f64, f64, f64)]) -> Self {
         let sum = |term: &dyn Fn(f64, f64) -> f64| -> f64 {
             rows.iter().map(|&(x, y, error)| term(x, y) / (error * error)).sum()
         };

@@ -58,7 +58,7 @@ pub mod verdict;
 pub use base_size::BaseSize;
 pub(crate) use base_size::three;
 pub use infiltration::infiltration;
-pub(crate) use least_squares::log_log_slope;
+pub(crate) use least_squares::{Straight, log_log_slope};
 pub(crate) use metrics::eroded_mass_fraction;
 pub use metrics::{Eroded, Recorded, RunId, RunMetrics};
 pub use model_limit::{leaves_out, leaves_out_of_all};

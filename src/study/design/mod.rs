@@ -44,7 +44,7 @@ use crate::run::replicates::have_networks;
 use crate::scene::{BaseGradation, D85};
 use plan::{Wanted, wanted};
 use row::Row;
-use search::{BRACKETS, Done, METHOD, NARROWEST, Start};
+use search::{BRACKETS, Done, Hint, METHOD, NARROWEST, Start};
 
 /// A base coarser than this (D85, mm) is none: its sizes are in another unit.
 const NO_BASE_MM: f64 = 100.0;
@@ -230,7 +230,7 @@ fn searched(
     let text = format!("searching {} networks", open.len());
     (callbacks.on_event)(Event::Studying(&text));
     let done = Mutex::new(done);
-    let one = |(row, network): (usize, u64), hint: [Option<f64>; 2]| {
+    let one = |(row, network): (usize, u64), hint: Hint| {
         let of = &rows[row];
         let start = Start { ratio: of.start(), hint, across: of.across() };
         let found = of.search(network, (bracket, start), callbacks)?;
@@ -252,7 +252,7 @@ fn searched(
     };
     // The first network of each row says where to look on the others.
     let (first, others): (Vec<_>, Vec<_>) = open.into_iter().partition(|(_, network)| *network == 1);
-    let mut ended = first.into_par_iter().map(|job| one(job, [None; 2])).find_any(Result::is_err);
+    let mut ended = first.into_par_iter().map(|job| one(job, Hint::default())).find_any(Result::is_err);
     if ended.is_none() {
         let hints = hints(rows.len(), &done.lock().expect("no search panics while it keeps"));
         ended = others.into_par_iter().map(|job| one(job, hints[job.0])).find_any(Result::is_err);
@@ -268,11 +268,11 @@ fn searched(
     Ok(done)
 }
 
-/// The boundaries of the first network of every row.
-fn hints(rows: usize, done: &[Done]) -> Vec<[Option<f64>; 2]> {
-    let mut hints = vec![[None; 2]; rows];
+/// What the first network of every row was found to be.
+fn hints(rows: usize, done: &[Done]) -> Vec<Hint> {
+    let mut hints = vec![Hint::default(); rows];
     for done in done.iter().filter(|done| done.network == 1) {
-        hints[done.row] = [done.found.no_erosion, done.found.continuing];
+        hints[done.row] = Hint::of(&done.found);
     }
     hints
 }

@@ -12,6 +12,12 @@ use crate::walk::Engine;
 
 use super::options::{DesignOptions, Thickness};
 
+/// Voids across of a lattice whose width nobody states: as in the study of real soils.
+const ACROSS: u64 = 20;
+
+/// Networks where nobody states how many replicates there are: the fewest that give percentiles.
+const NETWORKS: u64 = 5;
+
 /// One density and thickness.
 #[derive(Clone, Debug)]
 pub(super) struct Wanted {
@@ -154,6 +160,15 @@ fn one(
     if matches!(thickness, Some(Thickness::Mm(_))) && !options.inverse {
         // How many layers that is hangs on the ratio.
         scene.network.set_layers(crate::scene::USUAL_LAYERS);
+    }
+    let is_stated = |key: &str| {
+        options.settings.iter().any(|setting| key_of(setting).split('.').next_back() == Some(key))
+    };
+    if is_lattice && !["nx", "ny"].into_iter().any(is_stated) {
+        scene.network.narrow_to(ACROSS);
+    }
+    if !is_stated("replicates") {
+        scene.walk.replicates = NETWORKS;
     }
     scene.walk.runs = 2;
     if scene.walk.engine == Engine::Auto {

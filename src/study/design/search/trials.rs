@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::outcome::Eroded;
 use crate::outcome::design::{BETWEEN_STEPS, Beyond};
 use crate::outcome::verdict::THRESHOLD;
+use crate::outcome::{Eroded, Straight};
 use crate::run::error::RunError;
 
 /// Steps from stop to stop.
@@ -60,6 +60,36 @@ pub(super) fn ratio_at(step: i64) -> f64 {
 /// Two neighbouring steps: the last that holds and the first that erodes; `None` where nothing holds below.
 pub(super) type Pair = (i64, i64);
 
+/// What eroded at steps below a boundary, tried one after another, each below the one before.
+#[derive(Default)]
+pub(super) struct Fall(Vec<(f64, f64, f64)>);
+
+impl Fall {
+    /// Steps from which a line is told from what scatters about it.
+    const FEWEST: usize = 5;
+    /// Part of the threshold by which the last step lies below it.
+    const CLEAR: f64 = 0.15;
+    /// As many deviations from the line lie between the last step and the threshold.
+    const DEVIATIONS: f64 = 8.0;
+
+    pub(super) fn add(&mut self, step: i64, eroded: f64) {
+        self.0.push((step as f64, eroded, 1.0));
+    }
+
+    /// Whether what erodes falls away from the threshold so steadily that no step farther down erodes by
+    /// scatter: the last step is clear of it, and so is the straight line through all, by many deviations.
+    pub(super) fn is_steady(&self) -> bool {
+        let Some(&(step, eroded, _)) = self.0.last() else { return false };
+        if self.0.len() < Self::FEWEST {
+            return false;
+        }
+        let line = Straight::through(&self.0);
+        let deviation = (line.chi_squared / (self.0.len() - 2) as f64).sqrt();
+        let gap = THRESHOLD - eroded.max(line.offset + line.slope * step);
+        line.slope > 0.0 && gap >= (Self::CLEAR * THRESHOLD).max(Self::DEVIATIONS * deviation)
+    }
+}
+
 /// A search under way.
 pub(super) struct Search<'a> {
     pub(super) walker: &'a mut dyn Walker,
@@ -85,6 +115,11 @@ impl Search<'_> {
             self.first.insert(step, trial);
         }
         Ok(self.first[&step].clone())
+    }
+
+    /// Whether the first run erodes at a step.
+    pub(super) fn erodes(&mut self, step: i64) -> Result<bool, RunError> {
+        Ok(matches!(self.try_first(step)?, Trial::Eroded(eroded) if !eroded.below_threshold))
     }
 
     /// Whether erosion continues at a step: both runs erode.
@@ -148,7 +183,7 @@ impl Search<'_> {
     }
 
     /// The smallest step that is seen to erode, from one that does on, after single steps below it have been
-    /// tried.
+    /// tried: all of them, or as many as it takes to see that what erodes falls steadily.
     pub(super) fn smallest_that_erodes(
         &mut self,
         boundary: i64,
@@ -156,6 +191,7 @@ impl Search<'_> {
     ) -> Result<i64, RunError> {
         let (mut least, lowest) = (boundary, self.stops[0]);
         'again: loop {
+            let mut fall = Fall::default();
             for at in 0..self.below.len() {
                 let step = least - self.below[at];
                 if step < lowest {
@@ -166,7 +202,12 @@ impl Search<'_> {
                         least = step;
                         continue 'again;
                     }
-                    Trial::Eroded(_) => {}
+                    Trial::Eroded(eroded) => {
+                        fall.add(step, eroded.mass_fraction);
+                        if fall.is_steady() {
+                            break;
+                        }
+                    }
                     Trial::CannotBe(..) => break,
                 }
             }
