@@ -3,8 +3,9 @@
 
     scripts/studies/arches.py --out results/arches.csv [--binary target/release/voidwalk] [--threads 2]
 
-Filters from the library of packings, bases linear on semi-log paper, 10 x 10 x 60 voids, 5 replicates at each ratio.
-Each ratio is bracketed by a factor of 1.25 and halved to 2 %, up to 13. Cells that are in the CSV already are not walked again.
+Filters from the library of packings, bases linear on semi-log paper, 10 x 10 x 60 voids unless the cell says otherwise, five replicates at each
+ratio. A ratio is bracketed by a factor of 1.25 and halved to 2 %, up to 16. `no_erosion` is where the mean crosses 7.5 %, `least` and `most` where
+the first and the last of the five replicates do, by interpolation between the ratios walked. Cells that are in the CSV already are not walked again.
 """
 
 import argparse
@@ -16,26 +17,31 @@ import tempfile
 import time
 from pathlib import Path
 
-FILTERS = [(1.5, "loose"), (3, "loose"), (1.5, "dense"), (3, "dense")]
-BASES = [1.5, 3]
 LAWS = ["none", "marin-2018", "zuriguel-2005", "critical-3"]
+FILTERS = [(1.5, "loose"), (1.5, "dense"), (3, "loose"), (3, "dense"), (6, "loose"), (6, "dense")]
+BASES = [1.5, 3, 4.5]
 CONCENTRATIONS = [0.006, 0.02, 0.06, 0.2, 0.6]
-COLUMNS = ["filter_cu", "density", "base_cu", "law", "concentration", "walked_concentration", "holds_to", "erodes_from",
-           "no_erosion", "arched_percent", "seconds"]
+CELL = ["filter_cu", "density", "base_cu", "law", "concentration", "layers", "across"]
+COLUMNS = CELL + ["walked_concentration", "holds_to", "erodes_from", "no_erosion", "least", "most", "arched_percent", "seconds"]
 THRESHOLD = 0.075
 CLOSE = 1.02
-MOST = 13.0
+MOST = 16.0
 
 
 def cells():
-    """Every filter and base by law at the concentration that is worked out, then one pair by concentration."""
-    for filter_cu, density in FILTERS:
-        for base_cu in BASES:
+    """Every filter and base by law; beads; then one pair by concentration, thickness and width."""
+    for law in LAWS:
+        yield 1.2, "dense", 1.2, law, "", 60, 10
+    for base_cu in BASES:
+        for filter_cu, density in FILTERS:
             for law in LAWS:
-                yield filter_cu, density, base_cu, law, ""
-    for base_cu in BASES[:1]:
-        for concentration in CONCENTRATIONS:
-            yield 1.5, "loose", base_cu, "marin-2018", concentration
+                yield filter_cu, density, base_cu, law, "", 60, 10
+        if base_cu == BASES[0]:
+            for concentration in CONCENTRATIONS:
+                yield 1.5, "loose", base_cu, "marin-2018", concentration, 60, 10
+            for layers, across in [(30, 10), (120, 10), (60, 20)]:
+                for law in LAWS[:2]:
+                    yield 1.5, "loose", base_cu, law, "", layers, across
 
 
 class Walks:
@@ -43,11 +49,11 @@ class Walks:
         self.binary, self.threads = options.binary, options.threads
 
     def eroded(self, cell, ratio):
-        """Share of the mass that erodes in the first run, and what the outcome says of arches."""
-        filter_cu, density, base_cu, law, concentration = cell
+        """Shares of the mass that erode in the first runs, and what the outcome says of arches."""
+        filter_cu, density, base_cu, law, concentration, layers, across = cell
         settings = {
             "filter.library": density, "filter.cu": filter_cu, "filter.d0_mm": 1, "base.cu": base_cu,
-            "base.d15f_over_d85b": round(ratio, 6), "network.nx": 10, "network.ny": 10, "network.nz": 60,
+            "base.d15f_over_d85b": round(ratio, 6), "network.nx": across, "network.ny": across, "network.nz": layers,
             "replicates": 5, "runs": 1, "record.sensitivity": "[]", "record.thickness": "[]", "engine": "expected",
             "walk.arching": law,
         }
@@ -65,33 +71,49 @@ class Walks:
         runs = [replicate["runs"][0] for replicate in outcome["replicates"]]
         arched = sum(run.get("arched_mass_fraction") or 0 for run in runs) / len(runs)
         law = outcome.get("arching") or {}
-        return outcome["summary"][0]["eroded_mass_fraction"]["mean"], arched, law.get("concentration")
+        return [run["eroded_mass_fraction"] for run in runs], arched, law.get("concentration")
 
     def boundary(self, cell):
         began = time.monotonic()
-        holds, erodes, arched, walked = None, None, 0.0, None
+        holds, erodes, arched, walked = None, None, 0.0, {}
         ratio = 4.0
-        while holds is None or erodes is None or erodes[0] / holds[0] > CLOSE:
-            share, of_arches, concentration = self.eroded(cell, ratio)
-            if share < THRESHOLD:
-                holds, arched = (ratio, share), of_arches
+        while holds is None or erodes is None or erodes / holds > CLOSE:
+            shares, of_arches, concentration = self.eroded(cell, ratio)
+            walked[ratio] = shares
+            if sum(shares) / len(shares) < THRESHOLD:
+                holds, arched = ratio, of_arches
             else:
-                erodes = (ratio, share)
-            walked = concentration
+                erodes = ratio
             if holds and erodes:
-                ratio = math.sqrt(holds[0] * erodes[0])
+                ratio = math.sqrt(holds * erodes)
             else:
                 ratio = ratio * 1.25 if holds else ratio / 1.25
             if ratio > MOST:
                 break
-        row = dict(zip(COLUMNS, cell)) | {"walked_concentration": walked, "arched_percent": round(100 * arched, 2)}
-        row |= {"holds_to": round(holds[0], 3), "seconds": round(time.monotonic() - began, 1)}
+        row = dict(zip(CELL, cell)) | {"walked_concentration": concentration, "arched_percent": round(100 * arched, 2)}
+        row |= {"holds_to": round(holds, 3), "seconds": round(time.monotonic() - began, 1)}
+        single = [crossing({at: shares[k] for at, shares in walked.items()}) for k in range(len(shares))]
+        single = [at if at else math.inf for at in single]
         if erodes:
-            low, high = holds[1], erodes[1]
-            part = (THRESHOLD - low) / (high - low)
-            row |= {"erodes_from": round(erodes[0], 3),
-                    "no_erosion": round(holds[0] * (erodes[0] / holds[0]) ** part, 2)}
+            mean = crossing({at: sum(shares) / len(shares) for at, shares in walked.items()})
+            row |= {"erodes_from": round(erodes, 3), "no_erosion": round(mean, 2)}
+        if min(single) < math.inf:
+            row |= {"least": round(min(single), 2)}
+        if max(single) < math.inf:
+            row |= {"most": round(max(single), 2)}
         return row
+
+
+def crossing(shares):
+    """The least ratio at which what erodes crosses the threshold, between ratios walked; None where it does not."""
+    ratios = sorted(shares)
+    if shares[ratios[0]] >= THRESHOLD:
+        return ratios[0]
+    for low, high in zip(ratios, ratios[1:]):
+        if shares[high] >= THRESHOLD:
+            part = (THRESHOLD - shares[low]) / (shares[high] - shares[low])
+            return low * (high / low) ** part
+    return None
 
 
 def main():
@@ -101,7 +123,7 @@ def main():
     parser.add_argument("--threads", default="2")
     options = parser.parse_args()
     rows = list(csv.DictReader(options.out.open())) if options.out.exists() else []
-    there = {tuple(row[name] for name in COLUMNS[:5]) for row in rows}
+    there = {tuple(row[name] for name in CELL) for row in rows}
     walks = Walks(options)
     with options.out.open("a", newline="") as file:
         writer = csv.DictWriter(file, COLUMNS, restval="")

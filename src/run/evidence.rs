@@ -35,11 +35,15 @@ pub fn walked(
     replicates: &[ReplicateResult],
     context: &ReplicateContext,
 ) -> Result<Option<Margin>, RunError> {
-    let has_use = |case| evidence(case, None).is_some_and(|evidence| evidence.narrow);
-    match case.scene.record.margin == Some(true) && has_use(case) {
+    match walks_margin(case) {
         true => margin(case, replicates, context),
         false => Ok(None),
     }
+}
+
+/// Whether the margin of a case is walked.
+pub fn walks_margin(case: &Case) -> bool {
+    evidence(case, None).is_some_and(|evidence| evidence.narrow)
 }
 
 /// The evidence for a case, with its margin where that was walked; `None` where none was asked for.

@@ -24,6 +24,8 @@ const FARTHEST: [f64; 2] = [0.02, 8.0];
 const MOST_PARTICLES: u64 = 20_000_000;
 /// Voids across of the lattice, as in the study of real soils that the margin is compared with.
 const ACROSS: u64 = 20;
+/// As many sizes are walked at most, besides the case's own.
+pub const MOST_WALKS: u64 = 16;
 /// Names the checkpoints of these walks, beyond those of all others.
 const FIRST_PART: u64 = 1 << 32;
 
@@ -130,15 +132,17 @@ mod tests {
                 "{boundary}: {found:?}"
             );
             assert!((holds..=erodes).contains(&found.boundary().unwrap()));
-            assert!(found.walks.len() <= 17, "{boundary}: {}", found.walks.len());
+            assert!(found.walks.len() as u64 <= 1 + MOST_WALKS, "{boundary}: {}", found.walks.len());
         }
     }
 
     #[test]
     fn what_is_too_far_is_bounded_on_one_side() {
         let far = searched(20.0);
+        assert!(far.walks.len() as u64 <= 1 + MOST_WALKS);
         assert!(far.erodes_from().is_none() && far.holds_to().unwrap() > 4.0 && far.boundary().is_none());
         let near = searched(0.001);
+        assert!(near.walks.len() as u64 <= 1 + MOST_WALKS);
         assert!(near.holds_to().is_none() && near.erodes_from().unwrap() < 0.05);
     }
 }

@@ -396,10 +396,12 @@ async function design() {
 async function check() {
   show($("#form-problem"), "");
   const into = $("#checked");
+  const margin = (check) => check.runs_of_margin ? `, and up to ${check.runs_of_margin} for the margin` : "";
+  const runs = (check) => whole(check.runs_to_walk) + margin(check);
   into.hidden = true;
   try {
     const check = await ask("api/check", asked(false));
-    const rows = [["base particles", whole(check.n_base) + " a run"], ["runs to walk", whole(check.runs_to_walk)],
+    const rows = [["base particles", whole(check.n_base) + " a run"], ["runs to walk", runs(check)],
       ["voids", whole(check.inputs.network.voids)], ["memory", check.memory],
       ["time to walk", `about ${number(check.core_seconds)} s of one core, a rough guess`]];
     if (check.packing) {
