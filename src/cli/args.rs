@@ -512,7 +512,7 @@ pub struct PackArgs {
 pub struct ConstrictionsArgs {
     /// Grains: CSV (x_mm,y_mm,z_mm,diameter_mm after `# cell_mm = Lx, Ly, Lz` or `# cell = none`; or points
     /// of ParaView and MFIX by their names), a text dump of LAMMPS or LIGGGHTS, Yade's export.text,
-    /// MercuryDPM's .data
+    /// MercuryDPM's .data, or points of VTK with a diameter or radius (.vtk, .vtp, .vtu); each also by gzip
     pub packing: PathBuf,
     /// Unit of lengths, if the file does not state it: m, cm, mm, um or nm
     #[arg(long, value_name = "UNIT")]

@@ -46,19 +46,25 @@ const CALLED: [&[&str]; 5] = [
         "pos_z",
         "z coord",
     ],
-    &["diameter", "diam"],
-    &["radius", "r"],
+    DIAMETER,
+    RADIUS,
 ];
 
+/// What a column of diameters may be called.
+pub(super) const DIAMETER: &[&str] = &["diameter", "diam"];
+
+/// What a column of radii may be called.
+pub(super) const RADIUS: &[&str] = &["radius", "radii", "r"];
+
 /// A name in a header, and the unit at its end.
-struct Named {
-    name: String,
-    unit: Option<LengthUnit>,
+pub(super) struct Named {
+    pub name: String,
+    pub unit: Option<LengthUnit>,
 }
 
 impl Named {
     /// Of `X_mm`, `"Diameter (m)"`, `Points:0`.
-    fn of(text: &str) -> Self {
+    pub fn of(text: &str) -> Self {
         let text = text.trim().trim_matches('"').trim().to_lowercase();
         for unit in LengthUnit::ALL {
             let name = unit.name();

@@ -5,7 +5,8 @@ use crate::gradation::{Position, shortened};
 /// The formats that are read, in words.
 const KNOWN: &str = "CSV with columns as x_mm, y_mm, z_mm and diameter_mm (or Points:0, Points:1, Points:2 \
                      and Diameter of ParaView and MFIX; radius will do), text dumps of LAMMPS and LIGGGHTS, \
-                     Yade's export.text, and MercuryDPM's .data";
+                     Yade's export.text, MercuryDPM's .data, and points of VTK with a diameter or radius \
+                     (.vtk, .vtp, .vtu); each also packed by gzip";
 
 /// What other programs usually have.
 const UNITS_OF_PROGRAMS: &str = " (LIGGGHTS, Yade, MercuryDPM and MFIX mostly have metres; LAMMPS says it \

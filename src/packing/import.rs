@@ -5,11 +5,14 @@
 //!   ([`csv`](super::csv)): this program's own, spreadsheets, and what ParaView saves of points (MFIX and
 //!   other programs write points for it);
 //! - text dumps of LAMMPS and LIGGGHTS ([`dump`](super::dump));
-//! - what Yade's `export.text` writes, and MercuryDPM's `.data` ([`rows`](super::rows)).
+//! - what Yade's `export.text` writes, and MercuryDPM's `.data` ([`rows`](super::rows));
+//! - points of VTK with a diameter or radius, as LIGGGHTS, Yade, MercuryDPM and ParaView write them
+//!   ([`vtk`](super::vtk)).
 //!
-//! What a file is, is seen by its first line, not by its name. What a file does not say, its unit of length
+//! Each of them may be packed by gzip. What a file is, is seen by its first line, not by its name. What a file does not say, its unit of length
 //! or whether its boundaries are periodic, is never guessed: [`ReadOptions`] says it, or the file is refused.
 
+use std::io::Read;
 use std::path::Path;
 use std::str::FromStr;
 
@@ -22,6 +25,7 @@ use super::found::{FileCell, FileGrains};
 use super::grains::{Cell, Packing};
 use super::rows::{is_mercury, mercury, yade};
 use super::unit::LengthUnit;
+use super::vtk::{legacy, xml};
 use crate::store::read_regular;
 
 /// Largest packing file that is read, in bytes.
@@ -156,10 +160,18 @@ impl Packing {
         content: &[u8],
         options: &ReadOptions,
     ) -> Result<(Packing, Vec<String>), ImportError> {
-        let unknown =
-            |looks_like: &str| ImportError::Unknown { file: name.into(), looks_like: looks_like.into() };
+        if content.starts_with(GZIP) {
+            return Self::parse_as(name, &unpacked(name, content)?, options);
+        }
         if let Some((_, what)) = NOT_TEXT.iter().find(|(begin, _)| content.starts_with(begin)) {
-            return Err(unknown(what));
+            return Err(ImportError::Unknown { file: name.into(), looks_like: (*what).into() });
+        }
+        // Of these the numbers may be no text.
+        if content.starts_with(b"# vtk DataFile") {
+            return complete(name, legacy(name, content)?, options);
+        }
+        if is_vtk_in_xml(content) {
+            return complete(name, xml(name, content)?, options);
         }
         let text = std::str::from_utf8(content).map_err(|error| {
             let good = error.valid_up_to();
@@ -172,8 +184,6 @@ impl Packing {
             dump(name, text, options.unit)?
         } else if start.starts_with("#format") {
             yade(name, text)?
-        } else if start.starts_with("<?xml") || start.starts_with("<VTKFile") || start.starts_with("# vtk") {
-            return Err(unknown("a file of VTK (in ParaView: File, Save Data, as CSV)"));
         } else if is_mercury(text) {
             mercury(name, text)?
         } else {
@@ -183,9 +193,36 @@ impl Packing {
     }
 }
 
+/// How a file that is packed by gzip begins.
+const GZIP: &[u8] = b"\x1f\x8b";
+
+/// What a file holds that is packed by gzip, once: what it holds is packed no more.
+fn unpacked(name: &str, content: &[u8]) -> Result<Vec<u8>, ImportError> {
+    let (mut bytes, limit) = (Vec::new(), PACKING_FILE_LIMIT_BYTES);
+    let read = flate2::read::MultiGzDecoder::new(content).take(limit + 1).read_to_end(&mut bytes);
+    read.map_err(|error| {
+        let source = std::io::Error::other(format!("its gzip is broken: {error}"));
+        ImportError::Read { file: name.into(), source }
+    })?;
+    if bytes.len() as u64 > limit {
+        return Err(ImportError::TooLarge { file: name.into(), limit });
+    }
+    if bytes.starts_with(GZIP) {
+        let looks_like = "packed twice (gzip): unpack it first".into();
+        return Err(ImportError::Unknown { file: name.into(), looks_like });
+    }
+    Ok(bytes)
+}
+
+/// Whether a file of VTK in XML begins here, perhaps behind a byte order mark and a declaration.
+fn is_vtk_in_xml(content: &[u8]) -> bool {
+    let start = String::from_utf8_lossy(&content[..content.len().min(1000)]);
+    let start = start.trim_start_matches('\u{feff}').trim_start();
+    start.starts_with("<VTKFile") || start.starts_with("<?xml") && start.contains("<VTKFile")
+}
+
 /// How files that are no text begin, and what they are.
-const NOT_TEXT: [(&[u8], &str); 3] = [
-    (b"\x1f\x8b", "a compressed file (gzip): unpack it first"),
+const NOT_TEXT: [(&[u8], &str); 2] = [
     (b"PK\x03\x04", "a zip or a workbook (save a workbook's sheet as CSV)"),
     (b"\x28\xb5\x2f\xfd", "a compressed file (zstd): unpack it first"),
 ];

@@ -54,6 +54,7 @@ mod rows;
 mod settings;
 mod state;
 mod unit;
+mod vtk;
 
 pub use compression::{Compression, Stage};
 pub use draw::{draw, random_start, tall_start};

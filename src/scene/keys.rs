@@ -172,8 +172,8 @@ section! {
         /// "lattice", or "graph": the voids of the filter's own packing and the constrictions between them.
         pub kind: Option<NetworkMadeOf> = None, off "\"graph\"",
             words(&NetworkMadeOf::ALL.map(NetworkMadeOf::name));
-        /// A packing of your own whose voids are walked: grains in a periodic cell (CSV, and files of LAMMPS,
-        /// LIGGGHTS, Yade, MercuryDPM).
+        /// A packing of your own whose voids are walked: grains in a periodic cell (CSV, VTK, and files of
+        /// LAMMPS, LIGGGHTS, Yade, MercuryDPM).
         pub packing: Option<PathBuf> = None, off "\"grains.csv\"", any("a file name in quotes");
         /// Unit of lengths in network.packing, or of diameters in an .npz of network.file. Files that do not
         /// state theirs need it.

@@ -81,8 +81,9 @@ class Packing:
     ) -> Packing:
         """Grains from a CSV file with the columns x_mm, y_mm, z_mm and diameter_mm below a first line ``# cell_mm =
         Lx, Ly, Lz`` or ``# cell = none`` (or the columns of ParaView and MFIX), from a text dump of LAMMPS or
-        LIGGGHTS (the last frame, `radius` or `diameter`), from Yade's ``export.text`` or a ``.data`` of
-        MercuryDPM.
+        LIGGGHTS (the last frame, `radius` or `diameter`), from Yade's ``export.text``, a ``.data`` of
+        MercuryDPM, or points of VTK with an array called diameter or radius (.vtk, .vtp, .vtu). Each may be packed by
+        gzip.
 
         Parameters
         ----------

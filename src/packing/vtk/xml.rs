@@ -1,0 +1,335 @@
+//! Files of VTK in XML, `.vtp` and `.vtu`: numbers in text, in Base64, or appended behind the XML in Base64
+//! or as they are; compressed by zlib or not.
+
+use std::io::Read;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use quick_xml::Reader;
+use quick_xml::events::{BytesStart, Event};
+
+use super::{Array, Number, Points, grains};
+use crate::packing::fields::{ImportError, refused};
+use crate::packing::found::FileGrains;
+
+/// Types of files that are read.
+const TYPES: [&str; 2] = ["PolyData", "UnstructuredGrid"];
+
+/// A block of compressed numbers is no larger than this, unpacked.
+const LARGEST_BLOCK: usize = 1 << 28;
+
+/// The grains of a file of VTK in XML.
+pub fn xml(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
+    let (head, appended) = split(file, content)?;
+    let line_at = |at: usize| 1 + head.as_bytes()[..at].iter().filter(|&&byte| byte == b'\n').count();
+    let mut reader = Reader::from_str(head);
+    reader.config_mut().expand_empty_elements = true;
+    // Of a file with appended data the end is cut off.
+    reader.config_mut().check_end_names = false;
+    let mut form =
+        Form { file, line: 1, is_big_endian: false, header: Number::U32, is_zlib: false, appended };
+    let mut points = Points { line: 1, places: Vec::new(), arrays: Vec::new() };
+    let (mut room, mut open): (Option<Room>, Option<Declared>) = (None, None);
+    // How deep within an array: what VTK notes of one stands in elements of their own.
+    let mut within: i64 = 0;
+    loop {
+        let at = reader.buffer_position() as usize;
+        let event = match reader.read_event() {
+            Ok(event) => event,
+            Err(_) if form.appended.is_some() => break,
+            Err(error) => {
+                return Err(refused(file, line_at(at), "XML", &error.to_string(), "a whole file of VTK"));
+            }
+        };
+        match event {
+            Event::Start(e) => {
+                form.line = line_at(at);
+                match e.name().as_ref() {
+                    "VTKFile" => form.read(&e)?,
+                    "Points" => {
+                        (room, points.line) = (Some(Room::Places), form.line);
+                    }
+                    "PointData" => room = Some(Room::Numbers),
+                    "DataArray" if room.is_some() => (open, within) = (Some(Declared::of(&e, &form)?), 0),
+                    _ if open.is_some() => within += 1,
+                    _ => {}
+                }
+            }
+            Event::Text(text) => {
+                if let Some(open) = open.as_mut().filter(|_| within == 0) {
+                    open.text.push_str(&text);
+                }
+            }
+            Event::End(e) => match e.name().as_ref() {
+                "DataArray" => {
+                    if let (Some(room), Some(open)) = (room, open.take()) {
+                        keep(&mut points, room, open, &form)?;
+                    }
+                }
+                "Points" | "PointData" => room = None,
+                _ if open.is_some() => within -= 1,
+                _ => {}
+            },
+            Event::Eof => break,
+            _ => {}
+        }
+    }
+    grains(file, points)
+}
+
+/// What an array is of.
+#[derive(Clone, Copy, PartialEq)]
+enum Room {
+    Places,
+    Numbers,
+}
+
+/// Adds an array to those of the pieces before it.
+fn keep(points: &mut Points, room: Room, of: Declared, form: &Form<'_>) -> Result<(), ImportError> {
+    match room {
+        Room::Places if of.components != 3 => {
+            let allowed = "three: x, y and z";
+            Err(refused(form.file, of.line, "NumberOfComponents", &of.components.to_string(), allowed))
+        }
+        Room::Places => {
+            points.places.extend(of.values(form)?);
+            Ok(())
+        }
+        Room::Numbers if of.components != 1 => Ok(()),
+        Room::Numbers => {
+            let (line, name, values) = (of.line, of.name.clone(), of.values(form)?);
+            match points.arrays.iter_mut().find(|array| array.name == name) {
+                Some(array) => array.values.extend(values),
+                None => points.arrays.push(Array { line, name, values }),
+            }
+            Ok(())
+        }
+    }
+}
+
+/// The XML, and what is appended behind it.
+fn split<'a>(file: &str, content: &'a [u8]) -> Result<(&'a str, Option<Appended<'a>>), ImportError> {
+    const OPENS: &[u8] = b"<AppendedData";
+    let found = content.windows(OPENS.len()).position(|window| window == OPENS);
+    let end = found.unwrap_or(content.len());
+    let head = std::str::from_utf8(&content[..end]).map_err(|error| {
+        let good = error.valid_up_to();
+        let line = 1 + content[..good].iter().filter(|&&byte| byte == b'\n').count();
+        ImportError::Encoding { file: file.into(), line, byte: content[good] }
+    })?;
+    let Some(begin) = found else { return Ok((head, None)) };
+    let line = 1 + head.bytes().filter(|&byte| byte == b'\n').count();
+    let tag = &content[begin..];
+    let marks = |mark: u8, from: usize| tag[from..].iter().position(|&byte| byte == mark).map(|at| from + at);
+    let Some((close, data)) = marks(b'>', 0).and_then(|close| Some((close, marks(b'_', close)?))) else {
+        let expected = "an underscore and the appended numbers".into();
+        return Err(ImportError::Truncated { file: file.into(), line, expected });
+    };
+    let is_raw = match String::from_utf8_lossy(&tag[..close]) {
+        tag if tag.contains("\"raw\"") => true,
+        tag if tag.contains("\"base64\"") => false,
+        tag => return Err(refused(file, line, "encoding", &tag, "raw or base64")),
+    };
+    Ok((head, Some(Appended { is_raw, content: &tag[data + 1..] })))
+}
+
+struct Appended<'a> {
+    is_raw: bool,
+    content: &'a [u8],
+}
+
+/// How a file gives its numbers.
+struct Form<'a> {
+    file: &'a str,
+    line: usize,
+    is_big_endian: bool,
+    /// The whole numbers that say how many bytes follow.
+    header: Number,
+    is_zlib: bool,
+    appended: Option<Appended<'a>>,
+}
+
+impl Form<'_> {
+    fn refused(&self, field: &'static str, value: &str, allowed: &str) -> ImportError {
+        refused(self.file, self.line, field, value, allowed)
+    }
+
+    fn read(&mut self, e: &BytesStart<'_>) -> Result<(), ImportError> {
+        let kind = attribute(e, "type").unwrap_or_default();
+        if !TYPES.contains(&kind.as_str()) {
+            let allowed = "PolyData or UnstructuredGrid, one file of points; of a parallel file give a piece";
+            return Err(self.refused("type", &kind, allowed));
+        }
+        self.is_big_endian = attribute(e, "byte_order").is_some_and(|order| order == "BigEndian");
+        self.header = match attribute(e, "header_type").as_deref() {
+            None | Some("UInt32") => Number::U32,
+            Some("UInt64") => Number::U64,
+            Some(other) => return Err(self.refused("header_type", other, "UInt32 or UInt64")),
+        };
+        self.is_zlib = match attribute(e, "compressor").as_deref() {
+            None | Some("") => false,
+            Some("vtkZLibDataCompressor") => true,
+            Some(other) => {
+                return Err(self.refused("compressor", other, "none or vtkZLibDataCompressor"));
+            }
+        };
+        Ok(())
+    }
+}
+
+fn attribute(element: &BytesStart<'_>, name: &str) -> Option<String> {
+    let found = element.attributes().with_checks(false).flatten().find(|a| a.key.as_ref() == name)?;
+    Some(quick_xml::escape::unescape(&found.value).ok()?.into_owned())
+}
+
+/// An array as it is declared, with the text in it.
+struct Declared {
+    line: usize,
+    name: String,
+    number: Number,
+    components: usize,
+    place: Place,
+    text: String,
+}
+
+/// Where an array's numbers are.
+enum Place {
+    Text,
+    Base64,
+    /// So many bytes or characters behind the underscore.
+    Appended(usize),
+}
+
+impl Declared {
+    fn of(e: &BytesStart<'_>, form: &Form<'_>) -> Result<Self, ImportError> {
+        let kind = attribute(e, "type").unwrap_or_default();
+        let number = number(&kind)
+            .ok_or_else(|| form.refused("type", &kind, "a number's type, as Float32, Float64 or Int32"))?;
+        let place = match attribute(e, "format").as_deref() {
+            Some("ascii") => Place::Text,
+            Some("binary") => Place::Base64,
+            Some("appended") => {
+                let offset = attribute(e, "offset").unwrap_or_default();
+                let offset = offset.parse().map_err(|_| form.refused("offset", &offset, "a whole number"))?;
+                Place::Appended(offset)
+            }
+            other => return Err(form.refused("format", other.unwrap_or(""), "ascii, binary or appended")),
+        };
+        let components = attribute(e, "NumberOfComponents").and_then(|n| n.parse().ok()).unwrap_or(1);
+        let name = attribute(e, "Name").unwrap_or_default();
+        Ok(Self { line: form.line, name, number, components, place, text: String::new() })
+    }
+
+    fn values(&self, form: &Form<'_>) -> Result<Vec<f64>, ImportError> {
+        let broken = |expected: &str| {
+            let expected = format!("{expected} of the array {}", self.name);
+            ImportError::Truncated { file: form.file.into(), line: self.line, expected }
+        };
+        let bytes = match (&self.place, &form.appended) {
+            (Place::Text, _) => {
+                let one = |word: &str| {
+                    word.parse().map_err(|_| refused(form.file, self.line, "number", word, "a number"))
+                };
+                return self.text.split_ascii_whitespace().map(one).collect();
+            }
+            (Place::Base64, _) => {
+                let text: String = self.text.split_ascii_whitespace().collect();
+                block(&Coded::Base64(text.as_bytes()), form)
+            }
+            (&Place::Appended(offset), Some(appended)) => match appended.content.get(offset..) {
+                Some(content) if appended.is_raw => block(&Coded::Raw(content), form),
+                Some(content) => block(&Coded::Base64(content), form),
+                None => None,
+            },
+            (Place::Appended(_), None) => return Err(broken("AppendedData with the numbers")),
+        };
+        let bytes = bytes.ok_or_else(|| broken("all bytes"))?;
+        Ok(self.number.all(&bytes, form.is_big_endian))
+    }
+}
+
+/// Bytes as a file has them; more may follow than belong to an array.
+enum Coded<'a> {
+    Raw(&'a [u8]),
+    Base64(&'a [u8]),
+}
+
+impl Coded<'_> {
+    /// So many bytes, and where the next run begins; runs in Base64 are filled up to whole groups.
+    fn run(&self, from: usize, bytes: usize) -> Option<(Vec<u8>, usize)> {
+        match self {
+            Self::Raw(content) => {
+                let end = from.checked_add(bytes)?;
+                Some((content.get(from..end)?.to_vec(), end))
+            }
+            Self::Base64(content) => {
+                let end = from.checked_add(bytes.checked_add(2)? / 3 * 4)?;
+                let mut decoded = STANDARD.decode(content.get(from..end)?).ok()?;
+                decoded.truncate(bytes);
+                (decoded.len() == bytes).then_some((decoded, end))
+            }
+        }
+    }
+
+    /// The first bytes of what begins here, whatever follows in the same groups of Base64.
+    fn start(&self, bytes: usize) -> Option<Vec<u8>> {
+        match self {
+            Self::Raw(_) => Some(self.run(0, bytes)?.0),
+            Self::Base64(content) => {
+                // Whole groups hold no filling where more follows; an array of nothing ends in one.
+                let groups = content.get(..bytes.div_ceil(3) * 4)?;
+                STANDARD.decode(groups).ok()?.get(..bytes).map(<[u8]>::to_vec)
+            }
+        }
+    }
+}
+
+/// The bytes of an array behind its header, unpacked.
+fn block(coded: &Coded<'_>, form: &Form<'_>) -> Option<Vec<u8>> {
+    let word = form.header.bytes();
+    let whole = |bytes: &[u8]| form.header.one(bytes, form.is_big_endian) as usize;
+    let first = whole(&coded.start(word)?);
+    if !form.is_zlib {
+        let (all, _) = coded.run(0, word.checked_add(first)?)?;
+        return Some(all[word..].to_vec());
+    }
+    // Blocks, the bytes of each unpacked, of the last if it is shorter, and of each as packed.
+    let (header, mut at) = coded.run(0, first.checked_add(3)?.checked_mul(word)?)?;
+    let sizes: Vec<usize> = header.chunks_exact(word).map(whole).collect();
+    let (full, last) = (sizes[1], sizes[2]);
+    let packed: usize = sizes[3..].iter().try_fold(0usize, |sum, size| sum.checked_add(*size))?;
+    let (packed, _) = match coded {
+        Coded::Raw(_) => coded.run(at, packed)?,
+        Coded::Base64(content) => Coded::Base64(&content[at..]).run(0, packed)?,
+    };
+    at = 0;
+    let mut bytes = Vec::new();
+    for (k, size) in sizes[3..].iter().enumerate() {
+        let unpacked = if k + 1 == first && last > 0 { last } else { full };
+        let end = at.checked_add(*size)?;
+        let begun = bytes.len();
+        let block = flate2::read::ZlibDecoder::new(packed.get(at..end)?);
+        block.take(unpacked.min(LARGEST_BLOCK) as u64 + 1).read_to_end(&mut bytes).ok()?;
+        if bytes.len() - begun != unpacked {
+            return None;
+        }
+        at = end;
+    }
+    Some(bytes)
+}
+
+fn number(kind: &str) -> Option<Number> {
+    Some(match kind {
+        "Int8" => Number::I8,
+        "UInt8" => Number::U8,
+        "Int16" => Number::I16,
+        "UInt16" => Number::U16,
+        "Int32" => Number::I32,
+        "UInt32" => Number::U32,
+        "Int64" => Number::I64,
+        "UInt64" => Number::U64,
+        "Float32" => Number::F32,
+        "Float64" => Number::F64,
+        _ => return None,
+    })
+}
