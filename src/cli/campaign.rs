@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use super::START;
 use super::args::CampaignArgs;
 use super::case_progress::CaseProgress;
 use super::print::{grains_per_void, percent, plain, shown, to_stdout};
@@ -133,8 +134,13 @@ fn write_scripts(
     plan: &CampaignPlan,
     options: &CampaignOptions,
 ) -> Result<(), RunError> {
+    let (program, words) = match START.get().and_then(|start| start.again.as_deref()) {
+        Some([program, words @ ..]) => (program.into(), words.to_vec()),
+        _ => (std::env::current_exe().map_err(RunError::failed)?, Vec::new()),
+    };
     let jobs = JobOptions {
-        program: std::env::current_exe().map_err(RunError::failed)?,
+        program,
+        words,
         plan: args.plan.clone(),
         tasks: args.tasks.map(usize::from),
     };
