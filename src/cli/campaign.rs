@@ -3,12 +3,12 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use super::START;
 use super::args::CampaignArgs;
 use super::case_progress::CaseProgress;
 use super::print::{grains_per_void, percent, plain, shown, to_stdout};
 use super::progress::{followed, unfollowed};
 use super::run::command_line;
+use super::start::START;
 use crate::campaign::cluster::scripts::quoted_if_needed;
 use crate::campaign::{
     self, CampaignCallbacks, CampaignOptions, CampaignPlan, CasePart, FinishedCampaign, JobOptions,
@@ -138,12 +138,7 @@ fn write_scripts(
         Some([program, words @ ..]) => (program.into(), words.to_vec()),
         _ => (std::env::current_exe().map_err(RunError::failed)?, Vec::new()),
     };
-    let jobs = JobOptions {
-        program,
-        words,
-        plan: args.plan.clone(),
-        tasks: args.tasks.map(usize::from),
-    };
+    let jobs = JobOptions { program, words, plan: args.plan.clone(), tasks: args.tasks.map(usize::from) };
     let written = campaign::write_job_scripts(plan, options, &jobs, &unfollowed())?;
     to_stdout(&jobs_in_words(&written));
     Ok(())

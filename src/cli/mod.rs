@@ -28,30 +28,21 @@ mod run;
 mod serve;
 mod shell;
 mod soil;
+mod start;
 mod values;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
-use std::sync::OnceLock;
 
 use clap::FromArgMatches;
 
 use crate::run::Exit;
 use args::{Arguments, Command};
+use start::START;
+pub use start::Start;
 
 /// The system's number of the error that a file is not there: the same on Unix and Windows.
 const NO_FILE: i32 = 2;
-
-/// How the program was started.
-#[derive(Clone, Debug)]
-pub struct Start {
-    /// The words of the command line, the program's name first.
-    pub words: Vec<OsString>,
-    /// What starts the program again, in a job script: a path and the words after it. This executable, if `None`.
-    pub again: Option<Vec<String>>,
-}
-
-static START: OnceLock<Start> = OnceLock::new();
 
 /// Reads the arguments; else says what is wrong and what to type instead, or what was asked for by `--help`.
 fn arguments(words: &[OsString]) -> Result<Arguments, u8> {
@@ -70,11 +61,11 @@ fn arguments(words: &[OsString]) -> Result<Arguments, u8> {
 
 /// Runs the program with the arguments of this process.
 pub fn main() -> ExitCode {
-    ExitCode::from(start(Start { words: std::env::args_os().collect(), again: None }))
+    ExitCode::from(main_with(Start { words: std::env::args_os().collect(), again: None }))
 }
 
-/// Runs the program, once a process, and returns its exit code: for whoever holds the command line in a library.
-pub fn start(start: Start) -> u8 {
+/// Runs the program, once a process: its exit code. For whoever holds the command line in a library.
+pub fn main_with(start: Start) -> u8 {
     crate::store::platform::signals::outlive_large_files();
     let words = &START.get_or_init(|| start).words;
     let arguments = match arguments(words) {

@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use super::START;
 use super::args::{AcceptArgs, ResultArgs, ResumeArgs, RunArgs, SettingArgs};
 use super::exit::accept;
 use super::print::{count, counted, grains_per_void, json, of_base, percent, plain, shown, to_stdout};
 use super::progress::followed;
+use super::start::START;
 use crate::outcome::record::{Confidence, RunSummary};
 use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
 use crate::store::format;

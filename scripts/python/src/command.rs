@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::panic::catch_unwind;
 
 use pyo3::prelude::*;
-use voidwalk::cli::{Start, start};
+use voidwalk::cli::{Start, main_with};
 
 /// The exit code of a program of Rust that panicked.
 const PANICKED: u8 = 101;
@@ -13,5 +13,5 @@ const PANICKED: u8 = 101;
 /// `again` starts the program from a job script.
 #[pyfunction]
 pub fn command(py: Python<'_>, words: Vec<OsString>, again: Vec<String>) -> u8 {
-    py.detach(|| catch_unwind(|| start(Start { words, again: Some(again) })).unwrap_or(PANICKED))
+    py.detach(|| catch_unwind(|| main_with(Start { words, again: Some(again) })).unwrap_or(PANICKED))
 }
