@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 pub struct Start {
     /// The words of the command line, the program's name first.
     pub words: Vec<OsString>,
-    /// What starts the program again, in a job script: a path and the words after it. If `None`, this executable.
+    /// What starts the program again, in a job script: a path and words after it. If `None`, this executable.
     pub again: Option<Vec<String>>,
 }
 
