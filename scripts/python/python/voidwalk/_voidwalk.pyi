@@ -19,6 +19,7 @@ _Texts = Tuple[str, str, Optional[str]]
 _Callback = Optional[Callable[[Progress], object]]
 
 __all__ = [
+    "command",
     "measure",
     "pack",
     "read_packing",
