@@ -4,8 +4,9 @@
     scripts/checks/run_workflow.py .github/workflows/release.yml wheel
     scripts/checks/run_workflow.py .github/workflows/release.yml binary --matrix target=x86_64-unknown-linux-gnu
 
-The job works in a clean clone of the last commit, with a HOME, a Python environment and a PATH of its own; the toolchains of
-Rust and the caches of cargo are this machine's. Steps that `use` an action are named and skipped, for they need GitHub:
+The job works in a clean clone of the last commit, with a HOME, a CARGO_HOME, a Python environment and a PATH of its own. Of this
+machine it has the Rust that is in use and the crates that cargo has fetched. `rustup` only says what it was asked for: a runner is
+thrown away, but this machine's toolchains are everybody's. Steps that `use` an action are named and skipped, for they need GitHub:
 `--instead 'PyO3/maturin-action=maturin build ...'` runs a command in the place of one. Every step is timed. Ends with the
 exit code of the first step that fails.
 """
@@ -34,7 +35,11 @@ except ModuleNotFoundError:
     os.execv(own, [own, *sys.argv])
 
 #: What a clean environment keeps of this one: how packages are fetched, and how many processors may be used.
-KEPT = re.compile(r"(PIP_|CARGO_BUILD_JOBS$|CARGO_NET_|SSL_CERT|RUSTUP_AUTO_INSTALL$|.*_proxy$)", re.IGNORECASE)
+KEPT = re.compile(r"(PIP_|CARGO_BUILD_JOBS$|CARGO_NET_|SSL_CERT|.*_proxy$)", re.IGNORECASE)
+#: Stands in for rustup, which would change the toolchains of this machine.
+RUSTUP = """#!/bin/sh
+echo "not done here: rustup $*; $(rustc --version) is taken"
+"""
 
 
 def fail(problem):
@@ -116,13 +121,21 @@ def run(workflow, job, args, matrix, instead, work, clone):
     home, python = work / "home", work / "python"
     home.mkdir()
     subprocess.run([sys.executable, "-m", "venv", python], check=True)
-    cargo = Path(os.environ.get("CARGO_HOME", Path.home() / ".cargo"))
+    # The compiler itself, not rustup's proxies, which may install another.
+    rust = subprocess.run(["rustc", "--print", "sysroot"], check=True, stdout=subprocess.PIPE, text=True).stdout.strip()
+    cargo, stand_ins = work / "cargo", work / "bin"
+    cargo.mkdir()
+    stand_ins.mkdir()
+    (stand_ins / "rustup").write_text(RUSTUP)
+    (stand_ins / "rustup").chmod(0o755)
+    fetched = Path(os.environ.get("CARGO_HOME", Path.home() / ".cargo")) / "registry"
+    if fetched.is_dir():
+        (cargo / "registry").symlink_to(fetched)
     files = {name: work / name for name in ["GITHUB_ENV", "GITHUB_OUTPUT", "GITHUB_PATH", "GITHUB_STEP_SUMMARY"]}
     environment = {name: value for name, value in os.environ.items() if KEPT.match(name)} | {
         "HOME": str(home),
         "CARGO_HOME": str(cargo),
-        "RUSTUP_HOME": os.environ.get("RUSTUP_HOME", str(Path.home() / ".rustup")),
-        "PATH": f"{python}/bin:{cargo}/bin:/usr/local/bin:/usr/bin:/bin",
+        "PATH": f"{stand_ins}:{python}/bin:{rust}/bin:/usr/local/bin:/usr/bin:/bin",
         "LANG": "C.UTF-8",
         "CI": "true",
         "GITHUB_ACTIONS": "true",
