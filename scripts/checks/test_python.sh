@@ -15,12 +15,12 @@ $environment/bin/pip install --quiet --disable-pip-version-check "${packages[@]}
 
 step() { printf '%4d s  %s\n' "$SECONDS" "$1"; }
 
-# The whole workspace and the very features of the command line: the library is the one that `cargo test --release --workspace`
-# compiled, and only the module is compiled for Python.
+# The whole workspace and its profile: the library is the one that `cargo test --release --workspace` compiled, and only the
+# module is compiled for Python.
 step "program and module"
 cargo build --release --workspace --bins
 step "pip install"
-PATH=$PWD/$environment/bin:$PATH MATURIN_PEP517_ARGS="--features voidwalk/default" $environment/bin/pip install --quiet \
+PATH=$PWD/$environment/bin:$PATH MATURIN_PEP517_ARGS="--profile release" $environment/bin/pip install --quiet \
     --disable-pip-version-check --no-build-isolation --force-reinstall --no-deps .
 
 # From elsewhere, so that what is tested is what was installed. A test that walks for long has the other worker beside it.

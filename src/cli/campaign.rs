@@ -8,6 +8,7 @@ use super::case_progress::CaseProgress;
 use super::print::{grains_per_void, percent, plain, shown, to_stdout};
 use super::progress::{followed, unfollowed};
 use super::run::command_line;
+use super::start::START;
 use crate::campaign::cluster::scripts::quoted_if_needed;
 use crate::campaign::{
     self, CampaignCallbacks, CampaignOptions, CampaignPlan, CasePart, FinishedCampaign, JobOptions,
@@ -133,11 +134,11 @@ fn write_scripts(
     plan: &CampaignPlan,
     options: &CampaignOptions,
 ) -> Result<(), RunError> {
-    let jobs = JobOptions {
-        program: std::env::current_exe().map_err(RunError::failed)?,
-        plan: args.plan.clone(),
-        tasks: args.tasks.map(usize::from),
+    let (program, words) = match START.get().and_then(|start| start.again.as_deref()) {
+        Some([program, words @ ..]) => (program.into(), words.to_vec()),
+        _ => (std::env::current_exe().map_err(RunError::failed)?, Vec::new()),
     };
+    let jobs = JobOptions { program, words, plan: args.plan.clone(), tasks: args.tasks.map(usize::from) };
     let written = campaign::write_job_scripts(plan, options, &jobs, &unfollowed())?;
     to_stdout(&jobs_in_words(&written));
     Ok(())

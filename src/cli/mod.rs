@@ -28,6 +28,7 @@ mod run;
 mod serve;
 mod shell;
 mod soil;
+mod start;
 mod values;
 
 use std::ffi::OsString;
@@ -37,30 +38,37 @@ use clap::FromArgMatches;
 
 use crate::run::Exit;
 use args::{Arguments, Command};
+use start::START;
+pub use start::Start;
 
 /// The system's number of the error that a file is not there: the same on Unix and Windows.
 const NO_FILE: i32 = 2;
 
 /// Reads the arguments; else says what is wrong and what to type instead, or what was asked for by `--help`.
-fn arguments(words: &[OsString]) -> Result<Arguments, ExitCode> {
+fn arguments(words: &[OsString]) -> Result<Arguments, u8> {
     if words.len() < 2 {
         print::to_stderr(examples::FIRST_WORDS);
-        return Err(ExitCode::from(Exit::Refused.code()));
+        return Err(Exit::Refused.code());
     }
     let command = examples::command();
     let read = command.clone().try_get_matches_from(words);
     read.and_then(|matches| Arguments::from_arg_matches(&matches)).map_err(|error| {
         let error = mistakes::explained(error, &command, words);
         let _ = error.print();
-        ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(Exit::Refused.code()))
+        u8::try_from(error.exit_code()).unwrap_or(Exit::Refused.code())
     })
 }
 
 /// Runs the program with the arguments of this process.
 pub fn main() -> ExitCode {
+    ExitCode::from(main_with(Start { words: std::env::args_os().collect(), again: None }))
+}
+
+/// Runs the program, once a process: its exit code. For whoever holds the command line in a library.
+pub fn main_with(start: Start) -> u8 {
     crate::store::platform::signals::outlive_large_files();
-    let words: Vec<OsString> = std::env::args_os().collect();
-    let arguments = match arguments(&words) {
+    let words = &START.get_or_init(|| start).words;
+    let arguments = match arguments(words) {
         Ok(arguments) => arguments,
         Err(code) => return code,
     };
@@ -90,7 +98,7 @@ pub fn main() -> ExitCode {
         }
         Command::Man { folder } => shell::man(&folder),
     };
-    let Err(error) = done else { return ExitCode::SUCCESS };
+    let Err(error) = done else { return 0 };
     let exit = error.exit();
     let kind = match exit {
         Exit::Refused => "refused",
@@ -103,7 +111,7 @@ pub fn main() -> ExitCode {
     let meant = match exit {
         Exit::Refused => {
             let no_file = std::io::Error::from_raw_os_error(NO_FILE).to_string();
-            mistakes::instead_of_files(&words, text.contains(&no_file))
+            mistakes::instead_of_files(words, text.contains(&no_file))
         }
         _ => None,
     };
@@ -112,5 +120,5 @@ pub fn main() -> ExitCode {
     }
     let lines: Vec<String> = text.lines().map(print::plain).collect();
     print::to_stderr(&format!("{kind}: {}\n", lines.join("\n")));
-    ExitCode::from(exit.code())
+    exit.code()
 }

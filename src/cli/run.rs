@@ -6,6 +6,7 @@ use super::args::{AcceptArgs, ResultArgs, ResumeArgs, RunArgs, SettingArgs};
 use super::exit::accept;
 use super::print::{count, counted, grains_per_void, json, of_base, percent, plain, shown, to_stdout};
 use super::progress::followed;
+use super::start::START;
 use crate::outcome::record::{Confidence, RunSummary};
 use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
 use crate::store::format;
@@ -57,8 +58,8 @@ pub fn resume(args: &ResumeArgs) -> Result<(), RunError> {
 
 /// The command line in words, whatever bytes it is made of.
 pub fn command_line() -> String {
-    let words: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
-    words.join(" ")
+    let words = START.get().map_or(&[][..], |start| &start.words);
+    words.iter().map(|word| word.to_string_lossy()).collect::<Vec<_>>().join(" ")
 }
 
 /// Prints what came of a run.

@@ -5,6 +5,7 @@
 //! a user sees are written in Python (`python/voidwalk`), over these.
 
 mod arrays;
+mod command;
 mod grains;
 mod network;
 mod pages;
@@ -22,6 +23,8 @@ use pyo3::prelude::*;
 /// global lock needs none for it.
 #[pymodule(gil_used = false)]
 mod _voidwalk {
+    #[pymodule_export]
+    use crate::command::command;
     #[pymodule_export]
     use crate::grains::{measure, pack, read_packing};
     #[pymodule_export]

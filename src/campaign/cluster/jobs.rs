@@ -26,6 +26,8 @@ const TASK_S: f64 = 600.0;
 pub struct JobOptions {
     /// The program.
     pub program: PathBuf,
+    /// The words between it and its command: `-m voidwalk` where the program is Python.
+    pub words: Vec<String>,
     /// The plan's file.
     pub plan: PathBuf,
     /// Tasks of the array; so many that one takes some ten minutes without a number.
@@ -96,6 +98,7 @@ pub fn write_job_scripts(
     let (walk_words, collect_words) = command_words(options);
     let scripts = Jobs {
         program: &jobs.program,
+        words: &jobs.words,
         plan: &jobs.plan,
         out: out.path(),
         options: walk_words,

@@ -64,6 +64,8 @@ impl TaskNeeds {
 pub struct Jobs<'a> {
     /// The program.
     pub program: &'a Path,
+    /// The words between it and its command.
+    pub words: &'a [String],
     /// The plan.
     pub plan: &'a Path,
     /// The campaign's folder.
@@ -105,14 +107,14 @@ impl Jobs<'_> {
         // Scripts that wait in a queue name the list that they were written with.
         let list_name = format!("tasks-{:08x}.tsv", xxhash_rust::xxh3::xxh3_64(list.as_bytes()) as u32);
         let cases: usize = self.tasks.iter().map(Vec::len).sum();
+        let words = |all: &[String]| all.iter().map(|word| format!(" {}", quoted(word))).collect::<String>();
         let common = [
             ("OUT", path(self.out)?),
             ("PLAN", path(self.plan)?),
-            ("PROGRAM", path(self.program)?),
+            ("PROGRAM", path(self.program)? + &words(self.words)),
             ("FILE", list_name.clone()),
             ("CASES", cases.to_string()),
         ];
-        let words = |all: &[String]| all.iter().map(|word| format!(" {}", quoted(word))).collect();
         let job = |template: &str, options: &[String], tasks: usize, need: &TaskNeeds| {
             let own = [
                 ("OPTIONS", words(options)),

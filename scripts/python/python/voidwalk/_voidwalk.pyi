@@ -19,6 +19,7 @@ _Texts = Tuple[str, str, Optional[str]]
 _Callback = Optional[Callable[[Progress], object]]
 
 __all__ = [
+    "command",
     "measure",
     "pack",
     "read_packing",
@@ -199,6 +200,7 @@ def rules(
     joint_mm: Optional[float],
     as_given: bool,
 ) -> str: ...
+def command(words: List[str], again: List[str]) -> int: ...
 def init_text() -> str: ...
 @final
 class Scene:

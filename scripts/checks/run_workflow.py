@@ -1,0 +1,192 @@
+#!/usr/bin/env python3
+"""Runs a job of a workflow here: its `run:` steps from the YAML, in order, as a runner of GitHub does.
+
+    scripts/checks/run_workflow.py .github/workflows/release.yml wheel
+    scripts/checks/run_workflow.py .github/workflows/release.yml binary --matrix target=x86_64-unknown-linux-gnu
+
+The job works in a clean clone of the last commit, with a HOME, a CARGO_HOME, a Python environment and a PATH of its own. Of this
+machine it has the Rust that is in use and the crates that cargo has fetched. `rustup` only says what it was asked for: a runner is
+thrown away, but this machine's toolchains are everybody's. Steps that `use` an action are named and skipped, for they need GitHub:
+`--instead 'PyO3/maturin-action=maturin build ...'` runs a command in the place of one. Every step is timed. Ends with the
+exit code of the first step that fails.
+"""
+
+import argparse
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+
+try:
+    import yaml
+except ModuleNotFoundError:
+    own = ROOT / "target" / "workflow" / "bin" / "python"
+    if Path(sys.executable) == own:
+        raise
+    if not own.exists():
+        subprocess.run([sys.executable, "-m", "venv", own.parents[1]], check=True)
+    subprocess.run([own, "-m", "pip", "install", "--quiet", "pyyaml"], check=True)
+    os.execv(own, [own, *sys.argv])
+
+#: What a clean environment keeps of this one: how packages are fetched, and how many processors may be used.
+KEPT = re.compile(r"(PIP_|CARGO_BUILD_JOBS$|CARGO_NET_|SSL_CERT|.*_proxy$)", re.IGNORECASE)
+#: Stands in for rustup, which would change the toolchains of this machine.
+RUSTUP = """#!/bin/sh
+echo "not done here: rustup $*; $(rustc --version) is taken"
+"""
+
+
+def fail(problem):
+    sys.exit(f"run_workflow.py: {problem}")
+
+
+def filled(text, values):
+    """A text with its `${{ }}` filled in: names such as `matrix.target`, and nothing else."""
+
+    def value(match):
+        name = match[1].strip()
+        if name not in values:
+            fail(f"cannot work out ${{{{ {name} }}}}; known: {', '.join(sorted(values))}")
+        return str(values[name])
+
+    return re.sub(r"\$\{\{(.*?)\}\}", value, str(text))
+
+
+def combination(job, wanted):
+    """The first combination of the matrix that has the wanted values and runs on Linux for x86-64."""
+    matrix = job.get("strategy", {}).get("matrix", {})
+    rows = [dict(row) for row in matrix.get("include", [])]
+    for name, values in matrix.items():
+        if name != "include":
+            rows = [{**row, name: value} for row in rows or [{}] for value in values]
+    for row in rows or [{}]:
+        runner = filled(job["runs-on"], {f"matrix.{name}": value for name, value in row.items()})
+        if all(str(row.get(name)) == value for name, value in wanted.items()):
+            if runner.startswith("ubuntu") and not runner.endswith("-arm"):
+                return row
+    fail(f"no combination of the matrix has {wanted or 'what runs here'} and runs on Linux for x86-64")
+
+
+def pairs(words):
+    """`name=value` words as a dict."""
+    for word in words:
+        if "=" not in word:
+            fail(f"{word}: name=value is expected")
+    return dict(word.split("=", 1) for word in words)
+
+
+def named_values(path):
+    """What a step wrote into the file GITHUB_ENV or GITHUB_OUTPUT: lines `name=value`."""
+    return dict(line.split("=", 1) for line in path.read_text().splitlines() if "=" in line)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("workflow", type=Path)
+    parser.add_argument("job")
+    parser.add_argument("--matrix", nargs="*", default=[], metavar="NAME=VALUE", help="picks a combination of the matrix")
+    parser.add_argument("--instead", nargs="*", default=[], metavar="ACTION=COMMAND", help="runs a command in the place of an action")
+    parser.add_argument("--ref", default="v0.0.0-trial", help="name of the tag or branch (v0.0.0-trial)")
+    parser.add_argument("--target", type=Path, help="a folder for what cargo builds that outlives the run, to save time")
+    parser.add_argument("--keep", type=Path, help="keeps the clone in this folder, which must not exist")
+    args = parser.parse_args()
+    workflow = yaml.safe_load(args.workflow.read_text(encoding="utf-8"))
+    job = workflow["jobs"].get(args.job) or fail(f"no job {args.job}; there are: {', '.join(workflow['jobs'])}")
+    if "steps" not in job:
+        fail(f"{args.job} is the workflow {job['uses']}: run its jobs")
+    instead = pairs(args.instead)
+    matrix = combination(job, pairs(args.matrix))
+
+    work = Path(tempfile.mkdtemp(prefix="workflow-"))
+    clone = args.keep or work / "clone"
+    try:
+        subprocess.run(["git", "clone", "--quiet", "--local", ROOT, clone], check=True)
+        clone = clone.resolve()
+        if args.target:
+            args.target.mkdir(parents=True, exist_ok=True)
+            (clone / "target").symlink_to(args.target.resolve())
+        return run(workflow, job, args, matrix, instead, work, clone)
+    finally:
+        shutil.rmtree(work)
+
+
+def run(workflow, job, args, matrix, instead, work, clone):
+    """Runs the steps of a job: the exit code of the first that fails."""
+    home, python = work / "home", work / "python"
+    home.mkdir()
+    subprocess.run([sys.executable, "-m", "venv", python], check=True)
+    # The compiler itself, not rustup's proxies, which may install another.
+    rust = subprocess.run(["rustc", "--print", "sysroot"], check=True, stdout=subprocess.PIPE, text=True).stdout.strip()
+    cargo, stand_ins = work / "cargo", work / "bin"
+    cargo.mkdir()
+    stand_ins.mkdir()
+    (stand_ins / "rustup").write_text(RUSTUP)
+    (stand_ins / "rustup").chmod(0o755)
+    fetched = Path(os.environ.get("CARGO_HOME", Path.home() / ".cargo")) / "registry"
+    if fetched.is_dir():
+        (cargo / "registry").symlink_to(fetched)
+    files = {name: work / name for name in ["GITHUB_ENV", "GITHUB_OUTPUT", "GITHUB_PATH", "GITHUB_STEP_SUMMARY"]}
+    environment = {name: value for name, value in os.environ.items() if KEPT.match(name)} | {
+        "HOME": str(home),
+        "CARGO_HOME": str(cargo),
+        "PATH": f"{stand_ins}:{python}/bin:{rust}/bin:/usr/local/bin:/usr/bin:/bin",
+        "LANG": "C.UTF-8",
+        "CI": "true",
+        "GITHUB_ACTIONS": "true",
+        "GITHUB_REF_NAME": args.ref,
+        "GITHUB_WORKSPACE": str(clone),
+        "RUNNER_OS": "Linux",
+        "RUNNER_ARCH": "X64",
+        "RUNNER_TEMP": str(work),
+        **{name: str(path) for name, path in files.items()},
+    }
+    values = {f"matrix.{name}": value for name, value in matrix.items()}
+    values |= {"github.ref_name": args.ref, "runner.os": "Linux", "runner.arch": "X64", "github.workspace": str(clone)}
+    for level in (workflow, job):
+        environment |= {name: filled(value, values) for name, value in level.get("env", {}).items()}
+    shells = [level.get("defaults", {}).get("run", {}).get("shell") for level in (workflow, job)]
+    print(f"{args.workflow.name}, {args.job}, {matrix or 'no matrix'}: in {clone}", flush=True)
+    begun = time.monotonic()
+    for step in job["steps"]:
+        if "uses" in step:
+            action = step["uses"].split("@")[0]
+            if action not in instead:
+                print(f"-- skipped: {step['uses']}", flush=True)
+                continue
+            name, script, shell = f"{action}, here: {instead[action]}", instead[action], "bash"
+        else:
+            script = filled(step["run"], values)
+            name = step.get("name", script.splitlines()[0])
+            shell = step.get("shell") or shells[1] or shells[0]
+        if "if" in step:
+            print(f"-- its condition is not looked at: {step['if']}", flush=True)
+        for path in files.values():
+            path.write_text("")
+        own = {name: filled(value, values) for name, value in step.get("env", {}).items()}
+        # As GitHub does: without a shell named, a pipe fails as its last command does.
+        flags = ["-eo", "pipefail"] if shell == "bash" else ["-e"]
+        where = clone / step.get("working-directory", ".")
+        print(f"== {name}", flush=True)
+        at = time.monotonic()
+        done = subprocess.run(["bash", "--noprofile", "--norc", *flags, "-c", script], cwd=where, env=environment | own)
+        print(f"   {time.monotonic() - at:.1f} s, exit code {done.returncode}", flush=True)
+        if done.returncode:
+            return done.returncode
+        environment |= named_values(files["GITHUB_ENV"])
+        for folder in files["GITHUB_PATH"].read_text().splitlines():
+            environment["PATH"] = f"{folder}:{environment['PATH']}"
+        if "id" in step:
+            outputs = named_values(files["GITHUB_OUTPUT"])
+            values |= {f"steps.{step['id']}.outputs.{name}": value for name, value in outputs.items()}
+    print(f"{args.job}: every step that runs here has passed, {time.monotonic() - begun:.0f} s", flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
