@@ -1,5 +1,5 @@
-//! The first sheet, which can be handed in by itself: for whom and by whom it is, the answer in four lines and
-//! the findings that matter most, the gradations with their sizes, and every rule of practice in short.
+//! The first sheet, which can be handed in by itself: for whom and by whom it is, the answer in four lines
+//! and the findings that matter most, the gradations with their sizes, and every rule of practice in short.
 
 use maud::{Markup, html};
 use serde::Deserialize;
@@ -96,7 +96,7 @@ pub(super) fn answer(outcome: &Outcome) -> Markup {
             @if !foremost.is_empty() {
                 ul { @for finding in &foremost { li { (clean(&finding.sentence)) } } }
             }
-            @if more > 0 { p.small { "and " (more) " more below, under “All findings”" } }
+            @if more > 0 { p.small { "and " (more) " more below, under “Other findings”" } }
         }
     }
 }
@@ -139,12 +139,12 @@ const SIZES: [SizeRow; 11] = [
     ("D85", finer::<85>),
     ("D90", finer::<90>),
     ("D95", finer::<95>),
-    ("Cu = D60/D10", |soil| soil.cu().map(|cu| in_digits(cu, 3))),
-    ("Cc = D30²/(D10 D60)", |soil| soil.cc().map(|cc| in_digits(cc, 3))),
+    ("Cu", |soil| soil.cu().map(|cu| in_digits(cu, 3))),
+    ("Cc", |soil| soil.cc().map(|cc| in_digits(cc, 3))),
 ];
 
 /// The same where sizes have a unit.
-const OF_UNIT: [SizeRow; 2] = [("Fines (%)", percent_fines), ("Group (ASTM D2487)", Gradation::group)];
+const OF_UNIT: [SizeRow; 2] = [("Fines (%)", percent_fines), ("Group", Gradation::group)];
 
 /// Sizes of both soils as a table, of the base as sampled and as regraded where it is.
 pub(super) fn sizes(outcome: &Outcome) -> Markup {
@@ -168,7 +168,12 @@ pub(super) fn sizes(outcome: &Outcome) -> Markup {
         let value = move |row: &SizeRow| soil.as_ref().and_then(row.1).unwrap_or_else(|| "–".into());
         table = table.number(*name, value);
     }
-    html! { div.sizes { (table) p.small { "–: finer than the finest sieve, or not known." } } }
+    html! {
+        div.sizes {
+            (table)
+            p.small { "Group by ASTM D2487, from the sieve curve. –: not known from the sieves." }
+        }
+    }
 }
 
 /// The rules of practice, one a line, and the thickness that was modelled.
@@ -204,7 +209,7 @@ fn table(rules: &[&AppliedRule]) -> Markup {
             let limit = clean(rule.limit.map_or_else(|| "–".to_owned(), limit).trim_end());
             html! { (limit) @if rule.limit_at_most { " at most" } }
         })
-        .text("", |rule| match (result(rule), rule.applies) {
+        .text("", |rule| match (result(rule), rule.applies || !rule.needs.is_empty()) {
             (Some(true), _) => html! { span.keeps { "✓ met" } },
             (Some(false), _) => html! { span.breaks { "✗ not met" } },
             (None, true) => html! { "no result" },

@@ -63,12 +63,17 @@ pub fn run_brief(outcome: &str) -> Result<String, ReportError> {
     let outcome = checked(path, json_of(path, outcome)?)?;
     let rows = RunRows::default();
     let walks = walks(&outcome, &rows);
+    let doubt = outcome
+        .against()
+        .first()
+        .filter(|_| outcome.confidence != Confidence::Within)
+        .map(|first| format!("Confidence: {}. {}", outcome.confidence.words(), first.sentence));
     let said = Said {
         headline: &outcome.headline(),
+        class: Some(outcome.verdict.words()),
         practice: Some(outcome.practice_in_words()),
         meaning: in_words(&outcome, &walks),
-        // The headline has the first reason.
-        doubt: None,
+        doubt: doubt.as_deref(),
         replicate: REPLICATE,
         leaves_out: &outcome.model_leaves_out,
     };
@@ -153,7 +158,9 @@ fn walk(folder: &RunFolder, verdict: &Drawn) -> Markup {
             p { (clean(&said)) }
         }
         (verdict_box::replicates_in_words(walks, REPLICATE))
-        @if let Some(evidence) = outcome.evidence_in_words() { p { b { "Evidence" } ": " (clean(&evidence)) } }
+        @if let Some(evidence) = outcome.evidence_in_words() {
+            p { b { "Evidence" } ": " (clean(&evidence)) }
+        }
     }
 }
 
@@ -218,8 +225,7 @@ fn findings(outcome: &Outcome) -> Markup {
     let rest = &all[all.len().min(FOREMOST)..];
     html! {
         @if !rest.is_empty() {
-            h2 { "All findings" }
-            p.small { "The first " (FOREMOST) " stand at the top of the first sheet." }
+            h2 { "Other findings" }
             details {
                 summary { (rest.len()) " more" }
                 ul { @for finding in rest { li { (clean(&finding.sentence)) } } }

@@ -32,8 +32,8 @@ impl Outcome {
     /// What the walk says, in a line: its class, the mass eroded, how far it can be relied on, and what tests
     /// on soils of this kind make of it.
     pub fn walk_in_words(&self) -> String {
-        let runs = [("first run", self.summary.first()), ("second", self.summary.get(1))];
-        let runs: Vec<String> = runs.into_iter().filter_map(|(name, run)| Some(eroded(name, run?))).collect();
+        let runs = [("first run", "95 % interval "), ("second", "")].into_iter().zip(&self.summary);
+        let runs: Vec<String> = runs.map(|((name, what), run)| eroded(name, what, run)).collect();
         let mut said = format!("{}; eroded {}", self.verdict.words(), runs.join(", "));
         if self.confidence != Confidence::Within {
             said += &format!("; {}", self.confidence.words());
@@ -139,6 +139,9 @@ impl Outcome {
     }
 }
 
+/// Beyond the limit of design, and within the boundary of no erosion.
+const NO_MARGIN: &str = "does not meet the limit of design, though tests held such filters";
+
 /// Whether a filter of a class, with this label, holds, does not, or nobody can say, in a line.
 ///
 /// Practice speaks first: a walk that is more favourable never makes a filter a good one.
@@ -153,12 +156,8 @@ pub fn headline(rules: &[AppliedRule], verdict: Verdict, confidence: Confidence)
         }
         (Standing::Fails, Verdict::Undecided) => "does not meet practice; the walk is undecided".into(),
         (Standing::Fails, _) => format!("does not hold: practice is not met, {walked} in the model"),
-        (Standing::NoMargin, Verdict::Undecided) => {
-            "no margin: the limit of design is not met, tests held; the walk is undecided".into()
-        }
-        (Standing::NoMargin, _) => {
-            format!("no margin: the limit of design is not met, tests held; {walked} in the model")
-        }
+        (Standing::NoMargin, Verdict::Undecided) => format!("{NO_MARGIN}; the walk is undecided"),
+        (Standing::NoMargin, _) => format!("{NO_MARGIN}; {walked} in the model"),
         (Standing::Unstable, Verdict::Continuing) => {
             format!("does not hold: {walked} in the model, and the filter may lose its own fines")
         }
@@ -205,10 +204,10 @@ fn breaks(rules: &[AppliedRule], role: RuleRole) -> bool {
     !broken(rules, role).is_empty()
 }
 
-fn eroded(name: &str, run: &RunSummary) -> String {
+fn eroded(name: &str, what: &str, run: &RunSummary) -> String {
     let eroded = &run.eroded_mass_fraction;
     let interval = match eroded.low.zip(eroded.high) {
-        Some((low, high)) => format!(" ({} to {})", percent(low), percent(high)),
+        Some((low, high)) => format!(" ({what}{} to {})", percent(low), percent(high)),
         None => String::new(),
     };
     format!("{} in the {name}{interval}", percent(eroded.mean))
@@ -259,7 +258,10 @@ mod tests {
             assert_eq!(open, "does not meet practice; the walk is undecided");
         }
         let margin = said(&BETWEEN, &SAND, Verdict::None);
-        assert_eq!(margin, "no margin: the limit of design is not met, tests held; no erosion in the model");
+        assert_eq!(
+            margin,
+            "does not meet the limit of design, though tests held such filters; no erosion in the model"
+        );
         assert_eq!(headline(&[], Verdict::None, Confidence::Outside), "no erosion in the model");
     }
 

@@ -37,8 +37,8 @@ const INTERNAL_STABILITY: &str = "U.S. Army Corps of Engineers, Internal Instabi
                                   (RMC-CPD-2023-10), after Li and Fannin (2008)";
 
 /// Of numbers that no text confirms which a report could cite.
-const OURS: &str = "a check of this program, as specifications of filters commonly have it; no text that can be \
-                    cited was read for its number";
+const OURS: &str = "a check of this program, as specifications of filters commonly have it; no text that can \
+                    be cited was read for its number";
 
 /// Every rule, in the order of a reader.
 pub const RULES: &[FilterRule] = &[
@@ -57,7 +57,8 @@ pub const RULES: &[FilterRule] = &[
         unit: RuleUnit::Size,
         source: "Sherard & Dunnigan (1989), as given by Fell et al., Geotechnical Engineering of Dams, Table \
                  9.2, with its note (b) on dispersive soils; the 0.2 mm: Sherard et al. (1984), as given by \
-                 Messerklinger, 18th Int. Conf. on Soil Mechanics and Geotechnical Engineering (2013), p. 3315",
+                 Messerklinger, 18th International Conference on Soil Mechanics and Geotechnical Engineering \
+                 (2013), p. 3315",
         pairing: Pairing::CoarseFilterFineBase,
         judge: retention::sherard_dunnigan,
     },
@@ -194,6 +195,21 @@ pub const RULES: &[FilterRule] = &[
         source: OURS,
         pairing: Pairing::EachFilter,
         judge: drainage::greatest_size,
+    },
+    FilterRule {
+        id: "filter-segregation",
+        authority: "",
+        says: "The filter does not segregate: greatest D90F by least D10F",
+        role: RuleRole::Placing,
+        applies_to: "design of filters, as placed",
+        quantity: RuleQuantity::named("D90F"),
+        formula: "",
+        at_least: false,
+        unit: RuleUnit::Size,
+        source: "FEMA (2011), cited without its numbers by U.S. Army Corps of Engineers, Filter Evaluation \
+                 manual (RMC-CPD-2023-04), chapter Filter Gradation",
+        pairing: Pairing::EachFilter,
+        judge: drainage::segregation,
     },
     FilterRule {
         id: "filter-uniformity",
