@@ -46,11 +46,11 @@ mod tests {
     #[test]
     fn groups_are_those_of_the_standard() {
         let group = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap().group();
-        let well = [(0.075, 3.0), (0.2, 10.0), (0.6, 30.0), (2.0, 60.0), (9.5, 100.0)];
+        let well = [(0.075, 3.0), (0.2, 10.0), (0.7, 30.0), (2.0, 60.0), (9.5, 100.0)];
         assert_eq!(group(&well).as_deref(), Some("SW"));
         assert_eq!(group(&[(0.5, 0.0), (1.0, 100.0)]).as_deref(), Some("SP"));
         assert_eq!(group(&[(5.0, 0.0), (10.0, 100.0)]).as_deref(), Some("GP"));
-        let wide = [(1.0, 2.0), (2.0, 10.0), (6.0, 30.0), (20.0, 60.0), (60.0, 100.0)];
+        let wide = [(1.0, 2.0), (2.0, 10.0), (7.0, 30.0), (20.0, 60.0), (60.0, 100.0)];
         assert_eq!(group(&wide).as_deref(), Some("GW"));
         let dual = [(0.075, 8.0), (0.15, 10.0), (0.3, 30.0), (0.6, 60.0), (2.0, 100.0)];
         assert_eq!(group(&dual).as_deref(), Some("SP-SM or SP-SC"));

@@ -58,9 +58,9 @@ fn the_page_says_what_an_engineer_reads_first() {
         "Rules of practice, in short",
         "Thickness modelled: 296 mm",
         "The model leaves out: ",
+        "Hydraulics: no gradient",
         "The walk",
         "What the model leaves out",
-        "Hydraulics: no gradient",
         "Figure 2.",
         "Figure 5.",
         "Filter rules beside the verdict",
@@ -136,9 +136,8 @@ fn nothing_may_run_or_be_fetched() {
     assert!(
         head.contains("@media screen and (prefers-color-scheme:dark)") && head.contains("color-scheme:light")
     );
-    assert!(
-        page.contains("<a href=\"#part-1\">Figures</a>") && page.contains("<h2 id=\"part-1\">Figures</h2>")
-    );
+    let part = page.split("\">Figures</a>").next().unwrap().rsplit("href=\"#").next().unwrap();
+    assert!(page.contains(&format!("<h2 id=\"{part}\">Figures</h2>")), "{part}");
     assert!(head.contains("default-src 'none'; style-src 'sha256-"));
     assert!(!page.contains("unsafe-inline"));
     // Links lead to headings of the page itself.
