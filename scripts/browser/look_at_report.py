@@ -69,7 +69,7 @@ PRINTED_CURVES = """[...document.querySelectorAll('[class^=curve-]')].filter(par
   .concat([...document.querySelectorAll('.looks')].filter(part => part.getClientRects().length > 0)).length"""
 
 # What must stand on the first printed page, so that it can be handed in by itself.
-FIRST_PAGE = """[...document.querySelectorAll('.names, .about, .verdict .word, .practice, .short, .leaves')]
+FIRST_PAGE = """[...document.querySelectorAll('.names, .about, .verdict .word, .practice, .verdict li, .sizes, .short, .pair figcaption')]
   .map(part => part.innerText)"""
 
 # Width and height in inches.

@@ -10,10 +10,10 @@ use super::progress::followed;
 use super::run::command_line;
 use crate::campaign::{CampaignCallbacks, CampaignOptions, CasePart};
 use crate::outcome::comparison::Comparison;
-use crate::outcome::record::Statistic;
 use crate::run::RunError;
 use crate::store::format;
 use crate::study::compare::{self, ComparePlan, Compared};
+use crate::verdict::FOREMOST;
 use crate::verdict::left_out::left_out_in_brief;
 
 impl CompareArgs {
@@ -73,25 +73,24 @@ fn words(comparison: &Comparison) -> String {
         let _ = writeln!(text, "{}", plain(&said));
     };
     for case in &comparison.cases {
-        let runs: Vec<String> = case.runs.iter().map(eroded).collect();
-        line(format!("{}: {} ({})", case.name, case.verdict.words(), case.confidence.words()));
+        line(format!("{}: {}", case.name, case.headline));
+        line(format!("  Practice: {}", case.practice));
+        line(format!("  Walk: {}", case.walk));
+        line(format!("  Next: {}", case.next));
         line(format!(
-            "  {} of the mass eroded; D15F/D85B {:.2}{}, {}",
-            runs.join(", then "),
+            "  D15F/D85B {:.2}{}, {}",
             case.ratios.d15f_over_d85b,
             of_base(case.base),
             grains_per_void(case.grains_per_void)
         ));
-        line(format!("  Practice: {}", case.practice));
-        for reason in case.reasons.iter().chain(&case.beside) {
-            line(format!("  {reason}"));
+        let found = || case.reasons.iter().chain(&case.beside);
+        found().take(FOREMOST).for_each(|said| line(format!("  - {said}")));
+        if found().count() > FOREMOST {
+            line(format!("  - and {} more on the page", found().count() - FOREMOST));
         }
         for ([low, high], run) in case.curve_range.iter().zip(["first", "second"]) {
             let (low, high) = (percent(*low), percent(*high));
             line(format!("  {run} run over the range of the constriction curve: {low} to {high}"));
-        }
-        if !case.rules_not_kept.is_empty() {
-            line(format!("  rules not kept: {}", case.rules_not_kept.join("; ")));
         }
     }
     comparison.pairs.iter().for_each(|pair| line(pair.sentence()));
@@ -100,11 +99,4 @@ fn words(comparison: &Comparison) -> String {
     }
     line(left_out_in_brief(&comparison.model_leaves_out));
     text
-}
-
-fn eroded(run: &Statistic) -> String {
-    match run.low.zip(run.high) {
-        Some((low, high)) => format!("{} ({} to {})", percent(run.mean), percent(low), percent(high)),
-        None => percent(run.mean),
-    }
 }

@@ -4,13 +4,11 @@ use std::fmt::Write;
 
 use super::args::{AcceptArgs, ResultArgs, ResumeArgs, RunArgs, SettingArgs};
 use super::exit::accept;
-use super::print::{count, counted, grains_per_void, json, of_base, percent, plain, shown, to_stdout};
+use super::print::{count, counted, grains_per_void, json, of_base, plain, shown, to_stdout};
 use super::progress::followed;
 use super::start::START;
-use crate::outcome::record::{Confidence, RunSummary};
 use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
 use crate::store::format;
-use crate::verdict::beside::is_evidence;
 use crate::verdict::left_out::left_out_in_brief;
 
 /// Walks a scene and writes its folder.
@@ -80,22 +78,15 @@ fn summary(run: &FinishedRun) -> String {
     let mut line = |s: String| {
         let _ = writeln!(text, "{s}");
     };
-    line(format!("Verdict: {}", outcome.headline()));
-    line(format!("Practice: {}", plain(&outcome.practice_in_words())));
-    if let Some(evidence) = outcome.evidence_in_words() {
-        line(format!("Evidence: {}", plain(&evidence)));
+    for (name, said) in outcome.first_lines() {
+        line(format!("{name}: {}", plain(&said)));
     }
-    if outcome.confidence != Confidence::Within {
-        line(format!("  Confidence: {}", outcome.confidence.words()));
+    let (foremost, more) = outcome.foremost();
+    for finding in foremost {
+        line(format!("- {}", plain(&finding.with_to_do())));
     }
-    for reason in outcome.reasons_below().into_iter().filter(|reason| !is_evidence(reason)) {
-        line(format!("  also: {}", plain(&reason.with_to_do())));
-    }
-    for run in &outcome.summary {
-        line(format!("  {}", run_line(run)));
-    }
-    for said in outcome.besides().iter().filter(|said| !is_evidence(said)) {
-        line(format!("  {}", plain(&said.with_to_do())));
+    if more > 0 {
+        line(format!("- and {more} more on the page"));
     }
     line(format!(
         "  {} of {} base particles, {} voids; D15F/D85B {:.2}{}, D15F/D95B {:.2}, {}",
@@ -111,18 +102,4 @@ fn summary(run: &FinishedRun) -> String {
     let page = shown(&run.folder.join("report.html"));
     line(format!("{:.1} s, seed {}; report: {page}", outcome.seconds, outcome.seed));
     text
-}
-
-fn run_line(run: &RunSummary) -> String {
-    let eroded = &run.eroded_mass_fraction;
-    let interval = match (eroded.low, eroded.high) {
-        (Some(low), Some(high)) => format!(" (95 % interval {} to {})", percent(low), percent(high)),
-        _ => String::new(),
-    };
-    let largest = match &run.largest_eroded_over_d15f {
-        Some(largest) => format!("largest eroded {:.3} D15F", largest.mean),
-        None => "nothing eroded".into(),
-    };
-    let which = if run.run == 1 { "first" } else { "second" };
-    format!("{which} run: {} of the mass eroded{interval}, {largest}", percent(eroded.mean))
 }

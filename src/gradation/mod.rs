@@ -26,6 +26,7 @@
 mod burenkova;
 mod comma;
 mod error;
+mod group;
 mod numbers;
 mod regrade;
 mod root;

@@ -54,6 +54,15 @@ pub struct ComparedCase {
     /// What filter practice says of the pair, in a line; records of earlier versions do not say.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub practice: String,
+    /// Whether the filter holds, in a line; records of earlier versions do not say.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub headline: String,
+    /// What the walk says, in a line.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub walk: String,
+    /// What to do next.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub next: String,
     /// What else stands beside every verdict, in sentences.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub beside: Vec<String>,
@@ -183,6 +192,9 @@ impl ComparedCase {
             confidence: outcome.confidence,
             reasons: outcome.reasons.clone(),
             practice: String::new(),
+            headline: String::new(),
+            walk: String::new(),
+            next: String::new(),
             rules_not_kept: broken.map(|rule| rule.name.clone()).collect(),
             beside: Vec::new(),
             replicates: outcome.replicates.len() as u64,

@@ -16,6 +16,7 @@ use super::table::Table;
 use super::written::Written;
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
 use crate::outcome::record::{Confidence, Verdict};
+use crate::verdict::FOREMOST;
 use crate::verdict::words::capital;
 
 const RECORD: &str = "compare.json";
@@ -107,7 +108,7 @@ fn page(folder: &Path, comparison: &Comparison) -> Sections {
             @if comparison.cases.iter().any(|case| case.verdict == Verdict::Undecided) {
                 p { "Undecided is not a verdict. The page of the case says what would decide it." }
             }
-            (practice(comparison))
+            (answers(comparison))
             (doubts(comparison))
         }
         (leaves_out(&comparison.model_leaves_out, &html! {
@@ -163,12 +164,15 @@ fn lead(comparison: &Comparison) -> String {
     format!("In the model: {}. {relied}", classes.join(", "))
 }
 
-/// What practice says of each case, whatever its verdict.
-fn practice(comparison: &Comparison) -> Markup {
+/// The lines that every face begins with, of each case; records of earlier versions have some of them.
+fn answers(comparison: &Comparison) -> Markup {
     html! { @for case in comparison.cases.iter().filter(|case| !case.practice.is_empty()) {
-        p.practice {
-            bdi { (name(&case.name)) } ": " (case.verdict.words()) ". " b { "Practice" } ": "
-            (clean(&case.practice)) "."
+        @let headline = if case.headline.is_empty() { case.verdict.words() } else { &case.headline };
+        p.practice { bdi { (name(&case.name)) } ": " b { (clean(headline)) } "." }
+        ul {
+            @for (line, said) in [("Practice", &case.practice), ("Walk", &case.walk), ("Next", &case.next)] {
+                @if !said.is_empty() { li { b { (line) } ": " (clean(said)) "." } }
+            }
         }
     } }
 }
@@ -233,13 +237,17 @@ fn reasons(comparison: &Comparison) -> Markup {
             h2 { bdi { (name(&case.name)) } ": "
                 @if case.confidence == Confidence::Within { "what else to know" }
                 @else { "why this verdict is in doubt" } }
-            ul { @for reason in &case.reasons { li { (clean(reason)) } } }
+            @let all: Vec<&String> = case.reasons.iter().chain(&case.beside).collect();
+            @let (foremost, rest) = all.split_at(all.len().min(FOREMOST));
+            ul { @for said in foremost { li { (clean(said)) } } }
             @if !case.rules_not_kept.is_empty() {
                 p { "Rules of practice that are not kept: " (clean(&case.rules_not_kept.join("; "))) "." }
             }
-            @if !case.beside.is_empty() {
-                p { "Beside the verdict:" }
-                ul { @for said in &case.beside { li { (clean(said)) } } }
+            @if !rest.is_empty() {
+                details {
+                    summary { "and " (rest.len()) " more" }
+                    ul { @for said in rest { li { (clean(said)) } } }
+                }
             }
         }
     } }

@@ -1,5 +1,5 @@
-//! What the first page says besides verdict and warnings, so that it can be handed in by itself: for whom and
-//! by whom it is, the rules of practice in short, the thickness that was modelled.
+//! The first sheet, which can be handed in by itself: for whom and by whom it is, the answer in four lines
+//! and the findings that matter most, the gradations with their sizes, and every rule of practice in short.
 
 use maud::{Markup, html};
 use serde::Deserialize;
@@ -7,10 +7,14 @@ use serde::Deserialize;
 use super::figures::shorten;
 use super::folder::RunFolder;
 use super::names::soil_name;
-use super::numbers::{in_digits, significant, size, whole};
+use super::numbers::{in_digits, significant, size, size_unit, whole};
 use super::shell::clean;
 use super::table::Table;
-use crate::outcome::record::{AppliedRule, Outcome, RuleRole};
+use crate::gradation::{FINES_MM, Gradation};
+use crate::outcome::record::{AppliedRule, Confidence, Outcome, RuleRole, Verdict};
+use crate::verdict::left_out::left_out_in_brief;
+use crate::verdict::practice::{Standing, standing};
+use crate::verdict::words::capital;
 
 /// Characters of a text of the user's that are shown.
 const LINE: usize = 120;
@@ -26,8 +30,13 @@ struct Said {
 #[serde(default)]
 struct About {
     project: Option<String>,
+    number: Option<String>,
+    purpose: Option<String>,
     client: Option<String>,
     author: Option<String>,
+    checker: Option<String>,
+    revision: Option<String>,
+    date: Option<String>,
     coarse_left: bool,
 }
 
@@ -59,9 +68,13 @@ fn about(folder: &RunFolder) -> Markup {
     };
     let facts = [
         ("Project", said.project),
+        ("Number", said.number),
+        ("Purpose", said.purpose),
         ("Client", said.client),
         ("Author", said.author),
-        ("Date", manifest.finished.split('T').next().map(String::from)),
+        ("Checked by", said.checker),
+        ("Revision", said.revision),
+        ("Date", said.date.or_else(|| manifest.finished.split('T').next().map(String::from))),
         ("Program", Some(program)),
         ("Seed", Some(folder.outcome.seed.to_string())),
     ];
@@ -72,22 +85,108 @@ fn about(folder: &RunFolder) -> Markup {
     }
 }
 
-/// The rules of practice that have a result, one a line, and the thickness that was modelled.
+/// The answer: four lines, and the findings that matter most.
+pub(super) fn answer(outcome: &Outcome) -> Markup {
+    let [(_, headline), lines @ ..] = outcome.first_lines();
+    let (foremost, more) = outcome.foremost();
+    html! {
+        section.verdict.(colour(outcome)) {
+            p.word { (clean(&capital(&headline))) "." }
+            @for (name, said) in &lines { p.practice { b { (name) } ": " (clean(said)) "." } }
+            @if !foremost.is_empty() {
+                ul { @for finding in &foremost { li { (clean(&finding.sentence)) } } }
+            }
+            @if more > 0 { p.small { "and " (more) " more below, under “Other findings”" } }
+        }
+    }
+}
+
+/// The colour of the answer: never green where the model was not checked or practice does not agree, and
+/// never that of a filter that holds where practice says that it does not.
+fn colour(outcome: &Outcome) -> &'static str {
+    let fails = standing(&outcome.rules) == Standing::Fails;
+    match outcome.verdict {
+        Verdict::Continuing => "continuing",
+        Verdict::Some | Verdict::Undecided if fails => "continuing",
+        Verdict::None if fails || outcome.confidence != Confidence::Within => "doubted",
+        Verdict::None => "none",
+        Verdict::Some => "some",
+        Verdict::Undecided => "undecided",
+    }
+}
+
+/// A row of the table of sizes: its name, and its value of a soil.
+type SizeRow = (&'static str, fn(&Gradation) -> Option<String>);
+
+/// A size that so many percent are finer than.
+fn finer<const PERCENT: u8>(soil: &Gradation) -> Option<String> {
+    soil.d(f64::from(PERCENT)).map(|size| in_digits(size, 3))
+}
+
+fn percent_fines(soil: &Gradation) -> Option<String> {
+    let is_known = soil.pan_fraction() == 0.0 || soil.smallest_mm() <= FINES_MM;
+    is_known.then(|| in_digits(soil.percent_finer_by_mass(FINES_MM), 3))
+}
+
+/// The sizes that engineers look for.
+const SIZES: [SizeRow; 11] = [
+    ("D5", finer::<5>),
+    ("D10", finer::<10>),
+    ("D15", finer::<15>),
+    ("D30", finer::<30>),
+    ("D50", finer::<50>),
+    ("D60", finer::<60>),
+    ("D85", finer::<85>),
+    ("D90", finer::<90>),
+    ("D95", finer::<95>),
+    ("Cu", |soil| soil.cu().map(|cu| in_digits(cu, 3))),
+    ("Cc", |soil| soil.cc().map(|cc| in_digits(cc, 3))),
+];
+
+/// The same where sizes have a unit.
+const OF_UNIT: [SizeRow; 2] = [("Fines (%)", percent_fines), ("Group", Gradation::group)];
+
+/// Sizes of both soils as a table, of the base as sampled and as regraded where it is.
+pub(super) fn sizes(outcome: &Outcome) -> Markup {
+    let inputs = &outcome.inputs;
+    let soil = |rows: &[[f64; 2]]| {
+        let points: Vec<(f64, f64)> = rows.iter().map(|row| (row[0], row[1])).collect();
+        Gradation::from_points(&points, None).ok()
+    };
+    let (filter, base) = (&inputs.filter, &inputs.base);
+    let mut soils = vec![("Filter", soil(&filter.gradation))];
+    match &base.as_sampled {
+        Some(sampled) => {
+            soils.extend([("Base, sampled", soil(&sampled.gradation)), ("regraded", soil(&base.gradation))]);
+        }
+        None => soils.push(("Base", soil(&base.gradation))),
+    }
+    let of_unit = if inputs.scale_free { &[][..] } else { &OF_UNIT };
+    let rows: Vec<SizeRow> = SIZES.iter().chain(of_unit).copied().collect();
+    let mut table = Table::of(&rows).name(size_unit(inputs.scale_free), |(name, _)| *name);
+    for (name, soil) in &soils {
+        let value = move |row: &SizeRow| soil.as_ref().and_then(row.1).unwrap_or_else(|| "–".into());
+        table = table.number(*name, value);
+    }
+    html! {
+        div.sizes {
+            (table)
+            p.small { "Group by ASTM D2487, from the sieve curve. –: not known from the sieves." }
+        }
+    }
+}
+
+/// The rules of practice, one a line, and the thickness that was modelled.
 pub(super) fn in_short(outcome: &Outcome) -> Markup {
-    let practice = || outcome.rules.iter().filter(|rule| rule.role != RuleRole::Walk);
-    let judged: Vec<&AppliedRule> = practice().filter(|rule| result(rule).is_some()).collect();
-    let without = practice().count() - judged.len();
+    let practice: Vec<&AppliedRule> =
+        outcome.rules.iter().filter(|rule| rule.role != RuleRole::Walk).collect();
     html! {
         section.short {
             h2 { "Rules of practice, in short" }
-            @if judged.is_empty() { p { "No rule has a result for these soils." } } @else { (table(&judged)) }
-            @if without > 0 && !judged.is_empty() {
-                p.small {
-                    (without) @if without == 1 { " more rule has" } @else { " more rules have" }
-                    " no result here; all are below, with what they are for and where they are published."
-                }
-            }
+            @if practice.is_empty() { p { "No rule was applied." } } @else { (table(&practice)) }
             (thickness(outcome))
+            p.small { (clean(&left_out_in_brief(&outcome.model_leaves_out))) " The verdict of the walk is \
+                the model’s. It does not replace a filter test or a designer’s judgement." }
         }
     }
 }
@@ -100,19 +199,21 @@ fn result(rule: &AppliedRule) -> Option<bool> {
 fn table(rules: &[&AppliedRule]) -> Markup {
     let table = Table::of(rules)
         .name("Rule", |rule| clean(&rule.name))
-        .number("here", |rule| {
+        .text("here", |rule| {
             let value = rule.value.map_or_else(|| "–".to_owned(), significant);
-            html! { (clean(rule.quantity.name())) br; (value) }
+            clean(&format!("{} = {value}", rule.quantity.name()))
         })
-        .number("limit", |rule| {
+        .text("limit", |rule| {
             let sign = if rule.at_least { "≥" } else { "≤" };
             let limit = |limit: f64| format!("{sign} {} {}", in_digits(limit, 3), rule.unit);
             let limit = clean(rule.limit.map_or_else(|| "–".to_owned(), limit).trim_end());
             html! { (limit) @if rule.limit_at_most { " at most" } }
         })
-        .text("", |rule| match result(rule) {
-            Some(true) => html! { span.keeps { "✓ met" } },
-            _ => html! { span.breaks { "✗ not met" } },
+        .text("", |rule| match (result(rule), rule.applies || !rule.needs.is_empty()) {
+            (Some(true), _) => html! { span.keeps { "✓ met" } },
+            (Some(false), _) => html! { span.breaks { "✗ not met" } },
+            (None, true) => html! { "no result" },
+            (None, false) => html! { "does not apply" },
         });
     html! { (table) }
 }

@@ -56,6 +56,7 @@ pub fn network_walk_brief(record: &str) -> Result<String, ReportError> {
         &walks,
         &Said {
             headline: &headline(&record),
+            class: None,
             practice: None,
             meaning: in_words(&walks),
             doubt: Some(&doubt(&record)),

@@ -8,7 +8,7 @@ use super::connectivity::by_connectivity;
 use super::error::ReportError;
 use super::figures::{shorten, visible};
 use super::files::json_of;
-use super::first_page::{self, in_short};
+use super::first_page::{self, answer, in_short, sizes};
 use super::folder::{RunFolder, RunTexts, checked, walks};
 use super::infiltration::infiltration;
 use super::names::soil_name;
@@ -24,11 +24,9 @@ use super::walks::{RunRows, Walks};
 use super::written::{Written, write_page};
 use super::{appendix, packing, shell::leaves_out};
 use crate::outcome::packing::PackingRecord;
-use crate::outcome::record::{
-    Confidence, Direction, FindingRecord, NetworkKind, Outcome, PanBounds, Stopping, Verdict,
-};
+use crate::outcome::record::{Confidence, NetworkKind, Outcome, PanBounds, Stopping};
 use crate::outcome::undecided::UndecidedBy;
-use crate::verdict::beside::is_evidence;
+use crate::verdict::FOREMOST;
 use crate::verdict::left_out::{OF_AMOUNTS, OF_THICKNESS};
 use crate::verdict::words::capital;
 
@@ -65,12 +63,17 @@ pub fn run_brief(outcome: &str) -> Result<String, ReportError> {
     let outcome = checked(path, json_of(path, outcome)?)?;
     let rows = RunRows::default();
     let walks = walks(&outcome, &rows);
+    let doubt = outcome
+        .against()
+        .first()
+        .filter(|_| outcome.confidence != Confidence::Within)
+        .map(|first| format!("Confidence: {}. {}", outcome.confidence.words(), first.sentence));
     let said = Said {
         headline: &outcome.headline(),
+        class: Some(outcome.verdict.words()),
         practice: Some(outcome.practice_in_words()),
         meaning: in_words(&outcome, &walks),
-        // The headline has the first reason.
-        doubt: None,
+        doubt: doubt.as_deref(),
         replicate: REPLICATE,
         leaves_out: &outcome.model_leaves_out,
     };
@@ -109,21 +112,16 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
     let title = format!("{}: {} on {}", outcome.verdict.words(), soil(&base.name), soil(&filter.name));
     let main = html! {
         section.sheet {
-            div.first {
-                (verdict_section(folder, verdict))
-                (leaves_out(&outcome.model_leaves_out, &html! {
-                    @if outcome.model_leaves_out.is_empty() { p { "outcome.json does not say." } }
-                    p { "The verdict is the model’s. It does not replace a filter test or a designer’s \
-                         judgement." }
-                }))
-            }
-            div.pair {
-                (shell::figure(1, gradations))
-                (in_short(outcome))
-            }
-            (findings(outcome))
+            (answer(outcome))
+            div.pair { (shell::figure(1, gradations)) (sizes(outcome)) }
+            (in_short(outcome))
         }
         (shell::contents())
+        (findings(outcome))
+        (walk(folder, verdict))
+        (leaves_out(&outcome.model_leaves_out, &html! {
+            @if outcome.model_leaves_out.is_empty() { p { "outcome.json does not say." } }
+        }))
         h2 { "Figures" }
         @for (number, drawn) in (2..).zip(figures) { (shell::figure(number, drawn)) }
         (missing(folder, figures))
@@ -141,38 +139,27 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
     whole_page(&title, &first_page::header(folder), &main, &citation(outcome))
 }
 
-fn verdict_section(folder: &RunFolder, verdict: &Drawn) -> Markup {
+/// What the walk found: its class, the mass eroded, and what leaves it open.
+fn walk(folder: &RunFolder, verdict: &Drawn) -> Markup {
     let (outcome, walks) = (&folder.outcome, &folder.walks());
-    let doubted = outcome.confidence != Confidence::Within;
     let falls_short = outcome.stopping.as_ref().is_some_and(|stopping| !stopping.met);
-    let class = match outcome.verdict {
-        // Never in green where the model was not checked, or practice does not agree.
-        Verdict::None if doubted => "doubted",
-        Verdict::None => "none",
-        Verdict::Some => "some",
-        Verdict::Continuing => "continuing",
-        Verdict::Undecided => "undecided",
-    };
     html! {
-        section.verdict.(class) {
-            p.word.long[!outcome.reasons.is_empty()] { (clean(&capital(&outcome.headline()))) "." }
-            p.practice { b { "Practice" } ": " (clean(&outcome.practice_in_words())) "." }
-            @if let Some(evidence) = outcome.evidence_in_words() {
-                p.practice { b { "Evidence" } ": " (clean(&evidence)) }
-            }
-            @if doubted { p { "Confidence: " b { (outcome.confidence.words()) } "." } }
-            p.lead { (in_words(outcome, walks)) }
-            div { (drawing(verdict)) }
-            (verdict_box::eroded_table(walks))
-            @if let Some(bounds) = &outcome.pan_bounds { (readings(bounds)) }
-            @if let Some(stopping) = &outcome.stopping { p { (stopped(outcome, stopping)) } }
-            @for id in ["trapped", "second_run_missing", "replicates_leave_open"] {
-                // What a rule that adds replicates says is said above.
-                @if let Some(said) = outcome.sentence_of(id).filter(|_| id == "trapped" || !falls_short) {
-                    p { (clean(&said)) }
-                }
-            }
-            (verdict_box::replicates_in_words(walks, REPLICATE))
+        h2 { "The walk" }
+        p.lead { b { (capital(outcome.verdict.words())) } ". " (in_words(outcome, walks)) }
+        @if outcome.confidence != Confidence::Within {
+            p { "Confidence: " b { (outcome.confidence.words()) } "." }
+        }
+        div.drawn { (drawing(verdict)) }
+        (verdict_box::eroded_table(walks))
+        @if let Some(bounds) = &outcome.pan_bounds { (readings(bounds)) }
+        @if let Some(stopping) = &outcome.stopping { p { (stopped(outcome, stopping)) } }
+        // What a rule that adds replicates says is said above.
+        @if let Some(said) = outcome.sentence_of("second_run_missing").filter(|_| !falls_short) {
+            p { (clean(&said)) }
+        }
+        (verdict_box::replicates_in_words(walks, REPLICATE))
+        @if let Some(evidence) = outcome.evidence_in_words() {
+            p { b { "Evidence" } ": " (clean(&evidence)) }
         }
     }
 }
@@ -231,32 +218,19 @@ fn in_words(outcome: &Outcome, walks: &Walks) -> String {
     }
 }
 
-/// What was found about the verdict: what speaks against it, what else may be wrong, and what was looked at.
+/// What was found about the verdict and does not stand on the first sheet: folded on a screen, and open in
+/// print.
 fn findings(outcome: &Outcome) -> Markup {
-    let list = |class: &str, heading: &str, found: &[FindingRecord]| {
-        html! {
-            @if !found.is_empty() {
-                section class=(class) {
-                    h2 { (heading) }
-                    ul { @for finding in found { li { (clean(&finding.sentence)) } } }
-                }
+    let all = outcome.ordered();
+    let rest = &all[all.len().min(FOREMOST)..];
+    html! {
+        @if !rest.is_empty() {
+            h2 { "Other findings" }
+            details {
+                summary { (rest.len()) " more" }
+                ul { @for finding in rest { li { (clean(&finding.sentence)) } } }
             }
         }
-    };
-    let may_be_wrong =
-        |finding: &FindingRecord| matches!(finding.direction, Direction::Open | Direction::Unsafe);
-    let (open, mut looked_at): (Vec<_>, Vec<_>) =
-        outcome.besides().into_iter().filter(|finding| !is_evidence(finding)).partition(may_be_wrong);
-    // Folders of earlier versions have reasons of verdicts within the checked range.
-    let mut against = outcome.against();
-    against.retain(|finding| !is_evidence(finding));
-    if outcome.confidence == Confidence::Within {
-        looked_at.splice(0..0, std::mem::take(&mut against));
-    }
-    html! {
-        (list("warnings", "Why this verdict is in doubt", &against))
-        (list("warnings", "Before you rely on this", &open))
-        (list("known", "What else to know of this pair", &looked_at))
     }
 }
 

@@ -59,8 +59,10 @@ pub(super) fn replicates_in_words(walks: &Walks, what: [&str; 2]) -> Markup {
 
 /// What a verdict in brief says beside its numbers.
 pub(super) struct Said<'a> {
-    /// The verdict in a few words.
+    /// The answer in a few words.
     pub headline: &'a str,
+    /// The class of the walk, where the answer is by practice, too.
+    pub class: Option<&'static str>,
     /// What filter practice says of the pair; of a network there is no pair.
     pub practice: Option<String>,
     /// What the class means, in the sentence of the page.
@@ -84,8 +86,12 @@ pub(super) fn brief(walks: &Walks, said: &Said) -> String {
     let table = eroded_table(walks).number("constrictions blocked", |run| fraction(&run.blocked_fraction));
     html! {
         div {
-            p { b { (clean(&capital(said.headline))) "." } " " (clean(&said.meaning)) }
+            p {
+                b { (clean(&capital(said.headline))) "." }
+                @if said.class.is_none() { " " (clean(&said.meaning)) }
+            }
             @if let Some(practice) = &said.practice { p { b { "Practice" } ": " (clean(practice)) "." } }
+            @if let Some(class) = said.class { p { b { (capital(class)) "." } " " (clean(&said.meaning)) } }
             @if let Some(doubt) = said.doubt { p { span style=(AMBER) { (clean(doubt)) } } }
             img src={ "data:image/svg+xml;base64," (picture) }
                 alt="Mean and 95 % interval of the eroded mass in each run, against the threshold";

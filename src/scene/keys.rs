@@ -249,10 +249,20 @@ section! {
     pub struct About in "about" {
         /// The project.
         pub project: Option<String> = None, off "\"Main dam, zone 2B\"", line();
+        /// The number of the project.
+        pub number: Option<String> = None, off "\"D-2031\"", line();
+        /// What the sheet is for.
+        pub purpose: Option<String> = None, off "\"Design of the chimney filter\"", line();
         /// The client.
         pub client: Option<String> = None, off "\"Water Board\"", line();
         /// The author.
         pub author: Option<String> = None, off "\"N. N.\"", line();
+        /// Who checked it.
+        pub checker: Option<String> = None, off "\"M. M.\"", line();
+        /// The revision of the sheet.
+        pub revision: Option<String> = None, off "\"A, issued for review\"", line();
+        /// The date on the sheet; that of the run otherwise.
+        pub date: Option<String> = None, off "\"2026-11-25\"", line();
         /// Coarse sizes on the left of the figure of the gradations, as in the United States.
         pub coarse_left: Option<bool> = None, off "true", any("true or false");
     }

@@ -523,6 +523,15 @@ const colourOfDesign = (done) => (done.confidence !== "within checked range"
   || done.boundaries.some((row) => row.band && row.band.is_empty) ? "amber"
   : done.boundaries.every((row) => row.no_erosion && !row.band_note) ? "green" : "");
 
+/** The lines that every face begins with. */
+const answer = (of) => [of.headline ? el("p", { class: "word" }, `${of.headline.charAt(0).toUpperCase()}${of.headline.slice(1)}.`) : null,
+  ...["Practice", "Walk", "Next"].filter((name) => of[name.toLowerCase()])
+    .map((name) => el("p", { class: "practice" }, el("b", {}, name), `: ${of[name.toLowerCase()]}.`))];
+
+/** At most three findings; the rest is folded. */
+const findings = (all) => [list(all.slice(0, 3)),
+  all.length > 3 ? el("details", {}, el("summary", {}, `and ${all.length - 3} more`), list(all.slice(3))) : null];
+
 function verdictOf(job) {
   const done = job.result;
   if (job.kind === "design") return boundariesOf(done);
@@ -533,20 +542,12 @@ function verdictOf(job) {
         el("td", {}, confidenceOf(one.confidence)), el("td", {}, one.rules_not_kept.length ? el("span", { class: "mark" }, String(one.rules_not_kept.length)) : "0"),
         ...[0, 1].map((at) => el("td", {}, one.runs[at] ? percent(one.runs[at].mean) : "–",
           one.runs[at] && one.runs[at].low !== null ? el("span", { class: "small" }, ` ${percent(one.runs[at].low)} to ${percent(one.runs[at].high)}`) : "")))))) ),
-      ...done.cases.map((one) => el("p", { class: "practice" }, el("b", {}, `${one.name}, practice`), `: ${one.practice}.`)),
-      ...done.cases.map((one) => el("details", { open: one.confidence !== "within checked range" }, el("summary", {}, `${one.name}: to know beside its verdict`),
-        list([...one.reasons, ...one.beside]))),
+      ...done.cases.flatMap((one) => [el("h4", {}, one.name), ...answer(one), ...findings([...one.reasons, ...one.beside])]),
       el("p", { class: "small" }, "Differences, each with its interval, are on the page of this comparison.")];
   }
-  const text = done.headline.charAt(0).toUpperCase() + done.headline.slice(1);
-  return [el("p", { class: "word" }, text + "."),
-    el("p", { class: "practice" }, el("b", {}, "Practice"), `: ${done.practice}.`),
-    done.evidence ? el("p", { class: "practice" }, el("b", {}, "Evidence"), `: ${done.evidence}`) : null,
-    el("p", {}, "Confidence: ", confidenceOf(done.confidence), `; ${done.replicates} ${done.replicates === 1 ? "replicate: the scatter is unknown" : "replicates"}.`),
-    ...plot(done.runs), list(done.runs.map((run, at) => `${RUNS[at]}: ${eroded(run)}`)),
+  return [...answer(done), ...plot(done.runs),
     done.range ? el("p", {}, el("span", { class: "mark" }, "Over the range of the constriction curve"), `: ${percent(done.range[0][0])} to ${percent(done.range[0][1])} in the first run.`) : null,
-    list(done.beside.filter((said) => said !== done.evidence)),
-    done.reasons.length ? el("details", { open: done.confidence !== "within checked range" }, el("summary", {}, "Limits of this answer"), list(done.reasons)) : null];
+    ...findings(done.findings)];
 }
 
 function card(job) {

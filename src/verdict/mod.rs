@@ -10,11 +10,13 @@
 //! - [`walks`] is what walks say themselves, [`beside`] what their results say beside the verdict.
 //! - [`design_answer()`] is how coarse a filter may be, and [`Band`] the band of a specification.
 //! - [`PairRules`] are two soils as practice sees them, without a walk.
-//! - [`words`] are what a class means, and the headline.
+//! - `conclusion` has what every face says first: headline, line of practice, line of the walk, what to do.
+//! - [`words`] are what a class means.
 
 mod answer;
 mod band;
 pub mod beside;
+mod conclusion;
 mod design;
 mod entry;
 pub mod evidence;
@@ -33,6 +35,7 @@ pub mod words;
 use crate::outcome::design::band::Band;
 
 pub use answer::{Judgement, judge, rank};
+pub use conclusion::FOREMOST;
 pub use design::{FinestBase, design_answer};
 pub use entry::{Entry, Finding};
 pub use pair::{BaseSizes, FilterSizes, Mistake, MistakeKind, PairOptions, PairRules};

@@ -9,7 +9,7 @@ use crate::outcome::record::{
 use crate::outcome::rules::{DESIGN, PAPER_NO_EROSION, TESTS_CONTINUING, TESTS_NO_EROSION, authority};
 
 /// The rules of a role that were made for these soils and are not kept.
-fn broken(rules: &[AppliedRule], role: RuleRole) -> Vec<&AppliedRule> {
+pub(super) fn broken(rules: &[AppliedRule], role: RuleRole) -> Vec<&AppliedRule> {
     rules.iter().filter(|rule| rule.is_broken() && rule.role == role).collect()
 }
 
@@ -123,10 +123,50 @@ fn tested(rules: &[AppliedRule]) -> TestedClass {
     }
 }
 
+/// Where a filter stands by practice, the worst first.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Standing {
+    /// A rule of retention or of coarser filters is not kept, and no test held either.
+    Fails,
+    /// The limit of design is not kept, but such a filter is within the boundary of no erosion of tests.
+    NoMargin,
+    /// It keeps the limits, but may lose its own fines.
+    Unstable,
+    /// The limit of design has no result: what is missing.
+    Unknown(String),
+    /// The limit of design is kept.
+    Met,
+    /// No rule of design was applied.
+    NoRules,
+}
+
+/// Where the filter of a pair stands.
+pub fn standing(rules: &[AppliedRule]) -> Standing {
+    let Some(design) = rules.iter().find(|rule| rule.id == DESIGN && rule.applies) else {
+        return Standing::NoRules;
+    };
+    let mut retention = broken(rules, RuleRole::Retention);
+    if met_of(rules, TESTS_NO_EROSION) == Some(true) {
+        // Terzaghi's ratio is the limit of design of a sand.
+        retention.clear();
+    }
+    let fails = !retention.is_empty() || !broken(rules, RuleRole::Continuation).is_empty();
+    match design.met {
+        _ if fails => Standing::Fails,
+        Some(false) => Standing::NoMargin,
+        _ if !broken(rules, RuleRole::Stability).is_empty() => Standing::Unstable,
+        Some(true) => Standing::Met,
+        None => {
+            let needs = first_clause(&design.needs.to_string());
+            Standing::Unknown(needs.strip_prefix("needs ").map_or("the limit of design", |of| of).to_owned())
+        }
+    }
+}
+
 impl Outcome {
     /// What practice says of the pair, in a line.
     pub fn practice_in_words(&self) -> String {
-        practice_in_words(&self.rules, self.verdict)
+        practice_in_words(&self.rules)
     }
 
     /// Where walk, rules and tests disagree for this pair, and which way each errs.
@@ -169,9 +209,9 @@ impl Outcome {
     }
 }
 
-/// What practice says of a pair, in a line: whether its rules of retention are kept, what tests saw, whether
-/// the filter is stable and drains, and whether the verdict agrees.
-pub fn practice_in_words(rules: &[AppliedRule], verdict: Verdict) -> String {
+/// What practice says of a pair, in a line: whether the limit of design is kept, the class that tests of
+/// Foster and Fell give it, and whether the filter is stable and drains.
+pub fn practice_in_words(rules: &[AppliedRule]) -> String {
     let find = |id: &str| rules.iter().find(|rule| rule.id == id && rule.applies);
     let (design, retention) = (find(DESIGN), broken(rules, RuleRole::Retention));
     let mut said = Vec::new();
@@ -179,8 +219,7 @@ pub fn practice_in_words(rules: &[AppliedRule], verdict: Verdict) -> String {
         Some(rule) => of_design(rule),
         None => "the limit of design was not applied".into(),
     });
-    let no_erosion = find(TESTS_NO_EROSION);
-    said.extend(of_tests(no_erosion, find(TESTS_CONTINUING)));
+    said.extend(of_tests(rules));
     for rule in retention.iter().filter(|rule| ![DESIGN, TESTS_NO_EROSION].contains(&&*rule.id)) {
         // What the limit of design says already in millimetres is no second fault.
         if design.is_none_or(|design| design.met.is_none()) {
@@ -188,18 +227,16 @@ pub fn practice_in_words(rules: &[AppliedRule], verdict: Verdict) -> String {
             said.push(format!("{} {value} is more than {limit} ({})", rule.quantity, authority(rule)));
         }
     }
-    let unstable: Vec<String> =
-        broken(rules, RuleRole::Stability).into_iter().map(|rule| authority(rule).to_owned()).collect();
-    if !unstable.is_empty() {
-        said.push(format!("the filter may lose its own fines ({})", listed(&unstable)));
+    let also = [
+        (RuleRole::Stability, "may lose its own fines"),
+        (RuleRole::Drainage, "may not drain"),
+        (RuleRole::Placing, "may segregate"),
+    ];
+    let also = also.into_iter().filter(|(role, _)| !broken(rules, *role).is_empty());
+    let also: Vec<String> = also.map(|(_, what)| what.to_owned()).collect();
+    if !also.is_empty() {
+        said.push(format!("the filter {}", listed(&also)));
     }
-    let too_fine = too_fine(rules);
-    said.extend(too_fine.map(|[value, asked]| {
-        format!("the filter may be too fine to drain the base; D15F is {value}; {asked}")
-    }));
-    let fines = too_many_fines(rules);
-    said.extend(fines.map(|fines| format!("the filter has fines and may not drain: {fines}")));
-    said.extend(agreement(rules, verdict).map(String::from));
     let result = match design.and_then(|rule| rule.met) {
         _ if !retention.is_empty() => "not met",
         Some(_) => "met",
@@ -233,25 +270,27 @@ fn first_clause(needs: &str) -> String {
     needs.split([':', ';']).next().unwrap_or_default().to_owned()
 }
 
-/// What tests saw.
-fn of_tests(none: Option<&AppliedRule>, continuing: Option<&AppliedRule>) -> Option<String> {
-    let limit = |rule: &AppliedRule| {
-        rule.limit
-            .map(|_| format!("{}{}", against(rule, 3)[1], if rule.limit_at_most { " at most" } else { "" }))
+/// The class that tests give the pair, with the boundaries between which it lies.
+fn of_tests(rules: &[AppliedRule]) -> Option<String> {
+    let limit = |id: &str| {
+        let rule = rules.iter().find(|rule| rule.id == id && rule.applies)?;
+        rule.limit?;
+        Some(format!("{}{}", against(rule, 3)[1], if rule.limit_at_most { " at most" } else { "" }))
     };
-    if let Some(rule) = continuing.filter(|rule| rule.met == Some(false)) {
-        return Some(format!("tests found continuing erosion beyond {} (Foster and Fell)", limit(rule)?));
-    }
-    let none = none?;
-    let up_to = limit(none)?;
-    Some(match (none.met, continuing.and_then(limit)) {
-        (Some(false), Some(beyond)) => format!(
-            "tests found no erosion up to {up_to} only, and continuing erosion beyond {beyond} (Foster and \
-             Fell)"
-        ),
-        (Some(false), None) => format!("tests found no erosion up to {up_to} only (Foster and Fell)"),
-        _ => format!("tests found no erosion up to {up_to} (Foster and Fell)"),
-    })
+    let up_to = limit(TESTS_NO_EROSION).map(|of| format!("no erosion up to {of}"));
+    let beyond = limit(TESTS_CONTINUING).map(|of| format!("continuing erosion beyond {of}"));
+    let (class, between) = match tested(rules) {
+        TestedClass::None => ("no erosion", limit(TESTS_NO_EROSION).map(|of| format!("up to {of}"))),
+        TestedClass::Continuing => {
+            ("continuing erosion", limit(TESTS_CONTINUING).map(|of| format!("beyond {of}")))
+        }
+        TestedClass::Excessive => ("excessive erosion", beyond),
+        TestedClass::Some => {
+            ("some or excessive erosion", up_to.zip(beyond).map(|(a, b)| format!("{a}, {b}")))
+        }
+        TestedClass::Unknown => ("class not known", up_to.or(beyond)),
+    };
+    Some(format!("Foster and Fell: {class} ({})", between?))
 }
 
 /// Whether a rule that was made for these soils is kept; `None` where it has no result.
@@ -267,36 +306,6 @@ fn severity(verdict: Verdict) -> Option<u8> {
         Verdict::Continuing => Some(2),
         Verdict::Undecided => None,
     }
-}
-
-/// Whether the verdict agrees with practice.
-///
-/// Tests tell the three classes apart; where they do not tell, the limit of design tells a filter that holds
-/// from one that may not.
-fn agreement(rules: &[AppliedRule], verdict: Verdict) -> Option<&'static str> {
-    const STRICTER: &str = "the walk is stricter";
-    const MILDER: &str = "the walk is more favourable: rely on practice";
-    const AGREE: &str = "practice and walk agree on retention";
-    let met = |id| met_of(rules, id);
-    let retained = !rules.iter().any(|rule| rule.is_broken() && rule.role == RuleRole::Retention);
-    let (none, continuing) = (met(TESTS_NO_EROSION), met(TESTS_CONTINUING));
-    let is_known = met(DESIGN).is_some() || none.is_some() || continuing == Some(false);
-    let walked = severity(verdict)?;
-    if !is_known {
-        return None;
-    }
-    Some(match (walked, none, continuing) {
-        (2, _, Some(false)) => AGREE,
-        (_, _, Some(false)) => MILDER,
-        (0, ..) if retained => AGREE,
-        (0, ..) => MILDER,
-        (_, Some(true), _) => STRICTER,
-        (1, Some(false), _) => AGREE,
-        // Between the boundaries tests saw some or excessive erosion, and the walk knows no excessive class.
-        (_, Some(false), _) => "practice and walk agree that it does not hold",
-        _ if retained => STRICTER,
-        _ => "practice and walk agree that it does not hold",
-    })
 }
 
 /// `a`, `a and b`, `a, b and c`.
@@ -350,7 +359,7 @@ fn short(value: f64) -> String {
     digits_of(value, 2)
 }
 
-fn digits_of(value: f64, digits: i32) -> String {
+pub(super) fn digits_of(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
     }
@@ -370,78 +379,55 @@ mod tests {
         PairRules::of_envelopes(&one(base), &one(filter), options).rules
     }
 
-    fn said(filter: &[(f64, f64)], base: &[(f64, f64)], verdict: Verdict) -> String {
-        practice_in_words(&of(filter, base, false), verdict)
+    fn said(filter: &[(f64, f64)], base: &[(f64, f64)]) -> String {
+        practice_in_words(&of(filter, base, false))
     }
 
     const SAND: [(f64, f64); 2] = [(0.2, 0.0), (0.6, 100.0)];
     const TILL: [(f64, f64); 5] = [(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)];
     const GRAVEL: [(f64, f64); 3] = [(5.0, 0.0), (6.5, 15.0), (20.0, 100.0)];
 
-    /// A broken rule of retention is said of every verdict, undecided and continuing too.
     #[test]
-    fn a_broken_rule_is_said_of_every_verdict() {
+    fn the_limit_of_design_and_the_class_of_tests_stand_in_one_line() {
         let begin = "not met: D15F 6.50 mm is more than the 1.12 mm that Sherard and Dunnigan allow \
-                     (design); tests found no erosion up to 0.700 mm only, and continuing erosion beyond ";
-        for (verdict, end) in [
-            (Verdict::None, "; the walk is more favourable: rely on practice"),
-            (Verdict::Some, "; practice and walk agree on retention"),
-            (Verdict::Continuing, "; practice and walk agree that it does not hold"),
-            (Verdict::Undecided, " (Foster and Fell)"),
-        ] {
-            let said = said(&GRAVEL, &TILL, verdict);
-            assert!(said.starts_with(begin) && said.ends_with(end), "{said}");
-        }
-    }
-
-    #[test]
-    fn agreement_and_disagreement_are_said() {
-        let met = "met: D15F 1.18 mm is within the 2.04 mm that Sherard and Dunnigan allow (design); tests \
-                   found no erosion up to 3.56 mm (Foster and Fell); ";
-        for (verdict, end) in [
-            (Verdict::None, "practice and walk agree on retention"),
-            (Verdict::Some, "the walk is stricter"),
-            (Verdict::Continuing, "the walk is stricter"),
-        ] {
-            assert_eq!(said(&[(1.0, 0.0), (3.0, 100.0)], &SAND, verdict), format!("{met}{end}"));
-        }
-        for (verdict, end) in [
-            (Verdict::Continuing, "practice and walk agree on retention"),
-            (Verdict::Some, "the walk is more favourable: rely on practice"),
-            (Verdict::None, "the walk is more favourable: rely on practice"),
-        ] {
-            let said = said(&[(8.0, 0.0), (16.0, 100.0)], &SAND, verdict);
-            assert!(
-                said.contains("tests found continuing erosion beyond 5.") && said.ends_with(end),
-                "{said}"
-            );
-        }
+                     (design); Foster and Fell: some or excessive erosion (no erosion up to 0.700 mm, \
+                     continuing erosion beyond ";
+        assert!(said(&GRAVEL, &TILL).starts_with(begin), "{}", said(&GRAVEL, &TILL));
+        assert_eq!(
+            said(&[(1.0, 0.0), (3.0, 100.0)], &SAND),
+            "met: D15F 1.18 mm is within the 2.04 mm that Sherard and Dunnigan allow (design); Foster and \
+             Fell: no erosion (up to 3.56 mm)"
+        );
+        let coarse = said(&[(8.0, 0.0), (16.0, 100.0)], &SAND);
+        assert!(coarse.contains("; Foster and Fell: continuing erosion (beyond 5."), "{coarse}");
         // Between the limit of design and the boundary that tests saw.
-        let said = said(&[(2.5, 0.0), (5.0, 100.0)], &SAND, Verdict::None);
-        assert!(said.starts_with("not met: ") && said.ends_with("rely on practice"), "{said}");
+        let between = said(&[(2.5, 0.0), (5.0, 100.0)], &SAND);
+        assert!(between.starts_with("not met: ") && between.contains("Fell: no erosion (up to"), "{between}");
     }
 
     #[test]
     fn stability_and_drainage_are_said() {
-        let too_fine = said(&SAND, &SAND, Verdict::None);
-        let drains = "; the filter may be too fine to drain the base; D15F ";
-        assert!(too_fine.starts_with("met: ") && too_fine.contains(drains), "{too_fine}");
+        let too_fine = said(&SAND, &SAND);
+        assert!(
+            too_fine.starts_with("met: ") && too_fine.ends_with("; the filter may not drain"),
+            "{too_fine}"
+        );
         let gap = [(0.3, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)];
-        let unstable = said(&gap, &SAND, Verdict::None);
-        assert!(unstable.contains("; the filter may lose its own fines (Kézdi (1979), "), "{unstable}");
+        let unstable = said(&gap, &SAND);
+        assert!(unstable.contains("; the filter may lose its own fines, may not drain"), "{unstable}");
     }
 
     #[test]
     fn what_is_not_known_is_said_with_the_most_that_it_can_be() {
         // A sand whose fines nobody sieved, and a dispersive one.
-        let hidden = said(&[(1.0, 0.0), (3.0, 100.0)], &[(0.3, 25.0), (1.0, 100.0)], Verdict::Undecided);
+        let hidden = said(&[(1.0, 0.0), (3.0, 100.0)], &[(0.3, 25.0), (1.0, 100.0)]);
         assert!(hidden.starts_with("no result: the limit of Sherard and Dunnigan (design) is "), "{hidden}");
         assert!(hidden.contains(" mm at most, D15F 1.18 mm: needs finer sieves of the base"), "{hidden}");
         let silty = [(0.01, 0.0), (0.075, 22.0), (0.3, 85.0), (0.6, 100.0)];
-        let fine = practice_in_words(&of(&[(0.5, 0.0), (1.0, 100.0)], &silty, true), Verdict::None);
+        let fine = practice_in_words(&of(&[(0.5, 0.0), (1.0, 100.0)], &silty, true));
         assert!(fine.starts_with("no result: ") && fine.contains(": needs a test of this soil"), "{fine}");
         let all = of(&[(3.0, 0.0), (6.0, 100.0)], &silty, true);
-        let coarse = practice_in_words(&all, Verdict::None);
+        let coarse = practice_in_words(&all);
         // (40 - 22)/25 (4 x 0.3 - 0.7) + 0.7 = 1.06.
         assert!(
             coarse.starts_with("not met: D15F 3.33 mm is more than the 1.06 mm at most that"),

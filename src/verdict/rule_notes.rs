@@ -33,8 +33,7 @@ impl RuleNote {
                  with so few fines; that of other soils is the most that it can be"
             }
             Self::NeedsNumbersOfBoundary => {
-                "needs the numbers of this boundary: they stand in figures, and no text that was read gives \
-                 them"
+                "needs the numbers of this rule: no text that could be read gives them"
             }
             Self::NeedsErosion => "needs a walk whose first run erodes something",
             Self::Dispersive => "dispersive",

@@ -1,6 +1,6 @@
-//! What a class means, and the headline.
+//! What a class means.
 
-use crate::outcome::record::{Confidence, FindingRecord, Outcome, RunSummary, Verdict};
+use crate::outcome::record::{Outcome, RunSummary, Verdict};
 use crate::outcome::undecided::UndecidedBy;
 
 impl UndecidedBy {
@@ -22,31 +22,6 @@ impl UndecidedBy {
 }
 
 impl Outcome {
-    /// The verdict in a line, with the first sentence of what speaks most against it.
-    pub fn headline(&self) -> String {
-        let verdict = self.verdict.words();
-        match (self.verdict, self.confidence, self.reasons.first()) {
-            (_, Confidence::Within, _) | (_, _, None) => verdict.to_owned(),
-            // No reason of an unfavourable verdict makes the filter a better one; they follow below it.
-            (Verdict::Continuing, ..) => format!("{verdict} in the model"),
-            (Verdict::None, Confidence::Unstable, _) => {
-                format!("{verdict} only while the filter keeps its own fines, which it may lose")
-            }
-            (.., Some(reason)) => format!("{verdict} in the model; {}", clause(reason)),
-        }
-    }
-
-    /// What speaks against the verdict and does not stand in the headline.
-    pub fn reasons_below(&self) -> Vec<FindingRecord> {
-        let is_said = self.verdict != Verdict::Continuing
-            && !(self.verdict == Verdict::None && self.confidence == Confidence::Unstable);
-        let mut against = self.against();
-        if is_said && !against.is_empty() {
-            against.remove(0);
-        }
-        against
-    }
-
     /// How the other points of a study are classed, where their classes know nothing of what leaves the
     /// verdict undecided.
     pub fn points_are(&self) -> Option<&'static str> {
@@ -60,12 +35,6 @@ impl Outcome {
             UndecidedBy::SecondRun | UndecidedBy::Replicates => level.map(|_| "by their 95 % intervals"),
         }
     }
-}
-
-/// The first clause of a sentence, as it stands behind a semicolon; the rest stands where all findings do.
-pub fn clause(sentence: &str) -> String {
-    let ends = ["; ", ". "].into_iter().filter_map(|end| sentence.find(end));
-    within(&sentence[..ends.min().unwrap_or(sentence.len())])
 }
 
 /// A text with a capital letter at its beginning.

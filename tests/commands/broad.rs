@@ -43,8 +43,8 @@ fn of_a_broad_filter_the_finer_part_is_packed_and_its_error_is_in_the_verdict() 
     let run = call(&at, &["run", "s.toml", "--out", "r1"]);
     done(&run);
     assert!(String::from_utf8_lossy(&run.stderr).contains(said));
-    let stdout = String::from_utf8_lossy(&run.stdout).into_owned();
-    assert!(stdout.contains("over the whole range of the constriction curve"), "{stdout}");
+    let page = fs::read_to_string(at.join("r1/report.html")).unwrap();
+    assert!(page.contains("over the whole range of the constriction curve"), "{page}");
     let outcome = read(&at.join("r1/outcome.json"));
     assert_ne!(outcome["confidence"], "within checked range");
     let reasons = sentences(&outcome["reasons"]);

@@ -136,7 +136,9 @@ fn one_replicate_is_said_to_have_no_scatter() {
         "{text}"
     );
     // One run of two, undecided, says what would decide it.
-    assert!(text.contains("only a first was asked for. runs = 2 walks both."), "{text}");
+    assert!(text.contains("\nNext: walk a second run\n"), "{text}");
+    let page = fs::read_to_string(root.path().join("one/report.html")).unwrap();
+    assert!(page.contains("only a first was asked for"), "{page}");
     let two = voidwalk(root.path(), &["run", "small.toml", "--set", "replicates=2", "--out", "two"]);
     let text = String::from_utf8_lossy(&two.stdout);
     assert!(!text.contains("scatter is unknown") && text.contains(" 2 replicates of 500"), "{text}");

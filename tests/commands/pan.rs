@@ -69,7 +69,7 @@ fn a_pan_fraction_that_may_block_has_the_verdict_of_its_likely_reading() {
     let reasons = found["reasons"].to_string();
     assert!(reasons.contains("The answer depends on the 30 % of the base"), "{reasons}");
     assert_ne!(found["confidence"], "within checked range");
-    let said = String::from_utf8_lossy(&run.stdout).into_owned();
+    let said = fs::read_to_string(root.path().join("out/report.html")).unwrap();
     for words in [
         "All readings: continued as in soils with a hydrometer test: ",
         "finer than every constriction: some erosion, ",

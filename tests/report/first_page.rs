@@ -1,7 +1,12 @@
 //! What a page to hand in needs: whose it is, the boundaries of practice, plain words, and a style for print.
 
+use std::path::Path;
+use std::process::Command;
+
+use voidwalk::Gradation;
 use voidwalk::outcome::record::{RuleQuantity, RuleRole};
 use voidwalk::run::FolderKind;
+use voidwalk::verdict::PairRules;
 
 use super::folder::Plan;
 use super::{made, words};
@@ -74,7 +79,7 @@ fn boundaries_of_practice_stand_at_the_row_of_d15f() {
 }
 
 #[test]
-fn rules_in_short_are_those_with_a_result() {
+fn every_rule_is_in_short() {
     let short = |plan: &Plan| {
         let text = words(&made(plan).0);
         let begin = text.find("Rules of practice, in short").unwrap();
@@ -82,14 +87,50 @@ fn rules_in_short_are_those_with_a_result() {
     };
     let mut plan = Plan::usual();
     assert!(short(&plan).contains("Terzaghi") && short(&plan).contains("continuing erosion"));
-    assert!(!short(&plan).contains("no result here"));
     plan.outcome.rules[0].met = None;
+    assert!(short(&plan).contains("Terzaghi") && short(&plan).contains("no result"));
+    plan.outcome.rules[0].applies = false;
+    assert!(short(&plan).contains("Terzaghi") && short(&plan).contains("does not apply"));
+    // What checks the walk is no rule of the filter.
     plan.outcome.rules[2].role = RuleRole::Walk;
-    let text = short(&plan);
-    assert!(!text.contains("Terzaghi") && !text.contains("continuing erosion"), "{text}");
-    assert!(text.contains("1 more rule has no result here"), "{text}");
+    assert!(!short(&plan).contains("continuing erosion"));
     plan.outcome.rules.clear();
-    assert!(short(&plan).contains("No rule has a result for these soils."));
+    assert!(short(&plan).contains("No rule was applied."));
+}
+
+/// Three findings stand on the first sheet, and all others below it, once.
+#[test]
+fn findings_are_said_once() {
+    let mut plan = Plan::usual();
+    plan.outcome.warnings = (1..=10).map(|n| format!("Finding {n} of ten.")).collect();
+    let text = words(&made(&plan).0);
+    let place = |what: &str| text.find(what).unwrap_or_else(|| panic!("{what}: {text}"));
+    let (more, all) = (place("more below, under “Other findings”"), text.rfind("Other findings").unwrap());
+    for n in 1..=10 {
+        let said = format!("Finding {n} of ten.");
+        assert_eq!(text.matches(&said).count(), 1, "{said}");
+        assert!(if n <= 3 { place(&said) < more } else { place(&said) > all }, "{said}");
+    }
+}
+
+/// The cover of a sheet, and sizes and groups of both soils.
+#[test]
+fn a_sheet_can_be_signed() {
+    let mut plan = Plan::usual();
+    plan.scene.push_str(
+        "[about]\nproject = \"Dam\"\nnumber = \"D-1\"\npurpose = \"Design\"\nauthor = \"N. N.\"\nchecker = \"M. \
+         M.\"\nrevision = \"A\"\ndate = \"2026-11-25\"\n",
+    );
+    let text = words(&made(&plan).0);
+    let cover = "Project DamNumber D-1Purpose DesignAuthor N. N.Checked by M. M.Revision ADate \
+                 2026-11-25Program";
+    assert!(text.contains(cover), "{text}");
+    let begin = text.find("mmFilterBase").unwrap_or_else(|| panic!("{text}"));
+    let sizes = &text[begin..begin + text[begin..].find("Rules of practice").unwrap()];
+    // A straight line from 4 mm, Cu 1.5: D15 is 4 x 1.5^0.3.
+    for row in ["D5", "D154.52", "D95", "Cu1.5", "Fines (%)0", "GroupGP"] {
+        assert!(sizes.contains(row), "{row}: {sizes}");
+    }
 }
 
 #[test]
@@ -127,6 +168,55 @@ fn headings_are_plain_words() {
         "taken as too fine to block any constriction (passive)",
     ] {
         assert!(page.contains(plain), "{plain}");
+    }
+}
+
+/// Printed as a reader would, the first sheet holds the figure, the table of sizes and every rule, whatever was
+/// found. Left out where Chromium is not installed.
+#[test]
+fn the_first_printed_sheet_is_complete() {
+    let has = |name: &str, asked: &str| Command::new(name).arg(asked).output().is_ok();
+    if !has("chromium", "--version") || !has("pdftotext", "-v") || !has("python3", "--version") {
+        println!("left out: chromium, pdftotext or python3 is missing");
+        return;
+    }
+    let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
+    let till = soil(&[(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)]);
+    let gravel = soil(&[(5.0, 0.0), (6.5, 15.0), (20.0, 100.0)]);
+    let (sand, medium) = (soil(&[(0.2, 0.0), (0.6, 100.0)]), soil(&[(1.0, 0.0), (3.0, 100.0)]));
+    let gap = soil(&[(0.3, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)]);
+    for (base, filter, findings) in [(&till, &gravel, 10), (&sand, &medium, 0), (&sand, &gap, 5)] {
+        let mut plan = Plan::usual();
+        plan.outcome.rules = PairRules::of(base, filter).rules;
+        let long = "The answer depends on the 12 % of the base that is finer than its finest sieve. With all of it \
+                    finer than every constriction the verdict is no erosion, with all of it 0.075 mm in size it is \
+                    continuing erosion; the finest constriction is 0.05 mm. A hydrometer test would decide";
+        plan.outcome.warnings = (1..=findings).map(|n| format!("{long} ({n}).")).collect();
+        let rows = |soil: &Gradation| soil.points().iter().map(|&(size, percent)| [size, percent]).collect();
+        (plan.outcome.inputs.base.gradation, plan.outcome.inputs.filter.gradation) =
+            (rows(base), rows(filter));
+        let cover = "[about]\nproject = \"Main dam, raising, zone 2B\"\nnumber = \"D-2031\"\npurpose = \"Design of \
+                     the chimney filter\"\nclient = \"Water Board\"\nauthor = \"N. N.\"\nchecker = \"M. \
+                     M.\"\nrevision = \"A, issued for review\"\n";
+        plan.scene.push_str(cover);
+        let folder = made(&plan).2;
+        let page = folder.path().join("report.html");
+        for paper in ["a4", "letter"] {
+            let pdf = folder.path().join("page.pdf");
+            let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/browser/look_at_report.sh");
+            let said = Command::new("sh").arg(script).args([&page, &pdf]).arg(paper).output().unwrap();
+            assert!(said.status.success(), "{paper}: {}", String::from_utf8_lossy(&said.stderr));
+            let said = Command::new("pdftotext").args(["-f", "1", "-l", "1"]).arg(&pdf).arg("-").output();
+            let text = String::from_utf8(said.unwrap().stdout).unwrap();
+            let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+            let names =
+                plan.outcome.rules.iter().filter(|rule| rule.role != RuleRole::Walk).map(|rule| &*rule.name);
+            for part in
+                names.chain(["Figure 1.", "D5 ", "D95 ", "Group by ASTM D2487", "The model leaves out: "])
+            {
+                assert!(text.contains(part), "{paper}, {findings} findings, {part}: {text}");
+            }
+        }
     }
 }
 

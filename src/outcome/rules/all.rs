@@ -36,13 +36,9 @@ const FELL: &str = "Fell, MacGregor, Stapledon & Bell, Geotechnical Engineering 
 const INTERNAL_STABILITY: &str = "U.S. Army Corps of Engineers, Internal Instability Toolbox manual \
                                   (RMC-CPD-2023-10), after Li and Fannin (2008)";
 
-/// Where the most fines are stated: a weak source and a design; that of NRCS could not be read.
-const FINES: &str = "IS 11568 (1986), as summarised at infralens.in; Megech Dam, Appendix B-1, Design of \
-                     Filter Gradation (scribd.com/document/500296062)";
-
-/// Where the band is stated: a design, of which it is one; the handbook of NRCS could not be read.
-const BAND: &str = "Megech Dam, Appendix B-1, Design of Filter Gradation (scribd.com/document/500296062): \
-                    the practice of one design";
+/// Of numbers that no text confirms which a report could cite.
+const OURS: &str = "a check of this program, as specifications of filters commonly have it; no text that can \
+                    be cited was read for its number";
 
 /// Every rule, in the order of a reader.
 pub const RULES: &[FilterRule] = &[
@@ -55,13 +51,14 @@ pub const RULES: &[FilterRule] = &[
                      FEMA)",
         quantity: RuleQuantity::D15F,
         formula: "A > 85 %: 9 D85B, not less than 0.2 mm; A 40 to 85 %: 0.7 mm; A 15 to 40 %: (40 - A)/25 \
-                  (4 D85B - 0.7) + 0.7 mm; A < 15 %: 4 D85B; dispersive: A > 85 %: 6.5 D85B, not less than \
+                  (4 D85B - 0.7) + 0.7 mm; A < 15 %: 4 D85B; dispersive: A > 85 %: 6.4 D85B, not less than \
                   0.2 mm; 40 to 85 %: 0.5 mm",
         at_least: false,
         unit: RuleUnit::Size,
         source: "Sherard & Dunnigan (1989), as given by Fell et al., Geotechnical Engineering of Dams, Table \
-                 9.2, with its note on dispersive soils; the 0.2 mm and 6.5 D85B: NRCS, National Engineering \
-                 Handbook 633, chapter 26 (2017), second hand",
+                 9.2, with its note (b) on dispersive soils; the 0.2 mm: Sherard et al. (1984), as given by \
+                 Messerklinger, 18th International Conference on Soil Mechanics and Geotechnical Engineering \
+                 (2013), p. 3315",
         pairing: Pairing::CoarseFilterFineBase,
         judge: retention::sherard_dunnigan,
     },
@@ -105,10 +102,9 @@ pub const RULES: &[FilterRule] = &[
         formula: "9 D95B",
         at_least: false,
         unit: RuleUnit::Size,
-        source: "Foster and Fell, as stated by Shire & O'Sullivan, section 2, and in nsenergybusiness.com, \
-                 Potential for surfacing internal erosion in glacial moraine core embankment dams, Table 1; \
-                 regraded base: U.S. Army Corps of Engineers, Filter Evaluation manual, chapter Foster and \
-                 Fell",
+        source: "Foster & Fell (2001), as given by Fell et al., Geotechnical Engineering of Dams, section \
+                 9.3.2; regraded base: U.S. Army Corps of Engineers, Filter Evaluation manual \
+                 (RMC-CPD-2023-04), chapter Foster and Fell",
         pairing: Pairing::CoarseFilterFineBase,
         judge: retention::continuing,
     },
@@ -182,7 +178,7 @@ pub const RULES: &[FilterRule] = &[
         formula: "5 %",
         at_least: false,
         unit: RuleUnit::Percent,
-        source: FINES,
+        source: OURS,
         pairing: Pairing::EachFilter,
         judge: drainage::fines,
     },
@@ -196,9 +192,24 @@ pub const RULES: &[FilterRule] = &[
         formula: "75 mm",
         at_least: false,
         unit: RuleUnit::Size,
-        source: "IS 11568 (1986), as summarised at infralens.in",
+        source: OURS,
         pairing: Pairing::EachFilter,
         judge: drainage::greatest_size,
+    },
+    FilterRule {
+        id: "filter-segregation",
+        authority: "",
+        says: "The filter does not segregate: greatest D90F by least D10F",
+        role: RuleRole::Placing,
+        applies_to: "design of filters, as placed",
+        quantity: RuleQuantity::named("D90F"),
+        formula: "",
+        at_least: false,
+        unit: RuleUnit::Size,
+        source: "FEMA (2011), cited without its numbers by U.S. Army Corps of Engineers, Filter Evaluation \
+                 manual (RMC-CPD-2023-04), chapter Filter Gradation",
+        pairing: Pairing::EachFilter,
+        judge: drainage::segregation,
     },
     FilterRule {
         id: "filter-uniformity",
@@ -210,7 +221,7 @@ pub const RULES: &[FilterRule] = &[
         formula: "6",
         at_least: false,
         unit: RuleUnit::One,
-        source: BAND,
+        source: OURS,
         pairing: Pairing::EachFilter,
         judge: drainage::uniformity,
     },
@@ -224,7 +235,7 @@ pub const RULES: &[FilterRule] = &[
         formula: "5, from 5 to 60 % finer",
         at_least: false,
         unit: RuleUnit::One,
-        source: BAND,
+        source: OURS,
         pairing: Pairing::EachFilter,
         judge: drainage::band,
     },

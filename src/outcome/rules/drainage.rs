@@ -71,6 +71,12 @@ pub fn greatest_size(inputs: &RuleInputs) -> Judged {
     }
 }
 
+/// The filter does not segregate: no text that could be read gives the numbers of this rule.
+pub fn segregation(inputs: &RuleInputs) -> Judged {
+    let value = inputs.filter_is_measured.then(|| inputs.filter.d(90.0)).flatten();
+    Judged { value, ..Judged::default() }.lacking(RuleNote::NeedsNumbersOfBoundary)
+}
+
 /// The filter is uniform enough: a band of wider curves leaves room for gap-graded ones.
 pub fn uniformity(inputs: &RuleInputs) -> Judged {
     const MOST: Option<f64> = Some(6.0);

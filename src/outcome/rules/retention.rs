@@ -30,7 +30,7 @@ impl Limit {
 pub fn sherard_dunnigan(inputs: &RuleInputs) -> Judged {
     let limit = |fines: f64, d85b: f64| match (inputs.dispersive, fines) {
         (false, fines) if fines > 85.0 => Limit::Is((9.0 * d85b).max(0.2)),
-        (true, fines) if fines > 85.0 => Limit::Is((6.5 * d85b).max(0.2)),
+        (true, fines) if fines > 85.0 => Limit::Is((6.4 * d85b).max(0.2)),
         (false, fines) if fines >= 40.0 => Limit::Is(0.7),
         (true, fines) if fines >= 40.0 => Limit::Is(0.5),
         (true, fines) if fines >= FEW_FINES => Limit::AtMost(between(FEW_FINES, 40.0, fines, d85b)),

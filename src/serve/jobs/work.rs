@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 use serde_json::{Value, json};
 
 use crate::campaign::{CampaignCallbacks, CampaignOptions, CasePart};
-use crate::outcome::record::Outcome;
+use crate::outcome::record::{FindingRecord, Outcome};
 use crate::run::callbacks::Callbacks;
 use crate::run::checkpoints::CheckpointInterval;
 use crate::run::error::AnyError;
@@ -133,11 +133,12 @@ pub fn of_run(outcome: &Outcome) -> Value {
     json!({
         "headline": outcome.headline(),
         "practice": outcome.practice_in_words(),
-        "evidence": outcome.evidence_in_words(),
+        "walk": outcome.walk_in_words(),
+        "next": outcome.next_in_words(),
         "verdict": outcome.verdict.words(),
         "confidence": outcome.confidence.words(),
         "reasons": outcome.reasons,
-        "beside": outcome.beside_the_verdict(),
+        "findings": outcome.ordered().iter().map(FindingRecord::with_to_do).collect::<Vec<_>>(),
         "replicates": outcome.replicates.len(),
         "runs": outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect::<Vec<_>>(),
         "range": outcome.curve_range.as_ref().map(|range| range.eroded_mass_fraction.clone()),

@@ -89,7 +89,11 @@ impl ComparePlan {
         }
         let mut comparison = Comparison::new(self.of, &self.common, self.seed, &outcomes);
         for (case, (.., outcome)) in comparison.cases.iter_mut().zip(&outcomes) {
-            (case.practice, case.beside) = (outcome.practice_in_words(), outcome.beside_the_verdict());
+            case.headline = outcome.headline();
+            case.practice = outcome.practice_in_words();
+            case.walk = outcome.walk_in_words();
+            case.next = outcome.next_in_words();
+            case.beside = outcome.beside_the_verdict();
         }
         Ok(comparison)
     }

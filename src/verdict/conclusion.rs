@@ -1,0 +1,287 @@
+//! What every face says first: whether the filter holds, the line of practice, the line of the walk, what to
+//! do next, and the three findings that matter most.
+
+use super::beside::is_evidence;
+use super::practice::{Standing, broken, digits_of, standing};
+use crate::outcome::digits::percent;
+use crate::outcome::record::{
+    AppliedRule, Bound, Confidence, FindingRecord, Outcome, RuleQuantity, RuleRole, RunSummary, Verdict,
+};
+use crate::outcome::rules::DESIGN;
+use crate::outcome::undecided::UndecidedBy;
+
+/// Findings that stand on the first page and on a terminal; the rest stand further down the page.
+pub const FOREMOST: usize = 3;
+
+impl Outcome {
+    /// Whether the filter holds, does not, or nobody can say, in a line.
+    pub fn headline(&self) -> String {
+        headline(&self.rules, self.verdict, self.confidence)
+    }
+
+    /// The lines that every face begins with, each under its name.
+    pub fn first_lines(&self) -> [(&'static str, String); 4] {
+        [
+            ("Verdict", self.headline()),
+            ("Practice", self.practice_in_words()),
+            ("Walk", self.walk_in_words()),
+            ("Next", self.next_in_words()),
+        ]
+    }
+
+    /// What the walk says, in a line: its class, the mass eroded, how far it can be relied on, and what tests
+    /// on soils of this kind make of it.
+    pub fn walk_in_words(&self) -> String {
+        let runs = [("first run", "95 % interval "), ("second", "")].into_iter().zip(&self.summary);
+        let runs: Vec<String> = runs.map(|((name, what), run)| eroded(name, what, run)).collect();
+        let mut said = format!("{}; eroded {}", self.verdict.words(), runs.join(", "));
+        if self.confidence != Confidence::Within {
+            said += &format!("; {}", self.confidence.words());
+        }
+        match self.probability() {
+            Some(probability) => format!("{said}. {probability}"),
+            None => said,
+        }
+    }
+
+    /// The probability that a test would show no erosion, by the walk and by tests alone.
+    fn probability(&self) -> Option<String> {
+        let evidence = self.evidence.as_ref()?;
+        let bound = match evidence.bound {
+            Some(Bound::AtLeast) => "at least ",
+            Some(Bound::AtMost) => "at most ",
+            None => "",
+        };
+        let of_walk =
+            evidence.probability_no_erosion.map(|of| format!("{bound}{:.0} % by the walk", 100.0 * of));
+        let of_tests =
+            evidence.probability_by_tests.map(|of| format!("{:.0} % by published tests", 100.0 * of));
+        let each: Vec<String> = of_walk.into_iter().chain(of_tests).collect();
+        (!each.is_empty()).then(|| format!("Probability of no erosion in a test: {}", each.join(", ")))
+    }
+
+    /// What to do next, in a sentence without its end.
+    pub fn next_in_words(&self) -> String {
+        let design = self.rules.iter().find(|rule| rule.id == DESIGN && rule.applies);
+        let unit = if self.inputs.scale_free { "D0F" } else { "mm" };
+        match standing(&self.rules) {
+            Standing::Fails | Standing::NoMargin => {
+                let limit = design.filter(|rule| rule.met == Some(false)).and_then(|rule| rule.limit);
+                let finer = limit.map_or("take a finer filter".to_owned(), |limit| {
+                    format!("take a filter with a D15F of at most {} {unit}", three(limit))
+                });
+                format!("{finer}; for a filter that exists, have this pair tested")
+            }
+            Standing::Unstable => {
+                "take a filter without a gap and with fewer fines, or have its internal stability tested"
+                    .into()
+            }
+            Standing::Unknown(needs) => format!("get {needs}"),
+            Standing::Met | Standing::NoRules => match self.of_drainage().or_else(|| self.of_placing()) {
+                Some(said) => said,
+                None => self.of_walk(),
+            },
+        }
+    }
+
+    fn of_drainage(&self) -> Option<String> {
+        let least = broken(&self.rules, RuleRole::Drainage)
+            .into_iter()
+            .find(|rule| rule.quantity == RuleQuantity::D15F);
+        let of_size = least.and_then(|rule| {
+            let most = self.rules.iter().find(|of| of.id == DESIGN && of.applies).and_then(|of| of.limit);
+            let (least, unit) = (rule.limit?, &rule.unit);
+            Some(match most {
+                Some(most) if most >= least => {
+                    format!("take a coarser filter, D15F {} to {} {unit}", three(least), three(most))
+                }
+                _ => "compare the permeabilities of filter and base: no D15F both retains and drains".into(),
+            })
+        });
+        of_size.or_else(|| {
+            breaks(&self.rules, RuleRole::Drainage).then(|| "take a filter with fewer fines".into())
+        })
+    }
+
+    fn of_placing(&self) -> Option<String> {
+        (self.verdict == Verdict::None && breaks(&self.rules, RuleRole::Placing))
+            .then(|| "narrow the filter's range of sizes, or specify how it is placed".into())
+    }
+
+    fn of_walk(&self) -> String {
+        match (self.undecided_by(), self.verdict, self.confidence) {
+            (Some(UndecidedBy::Pan), ..) => "have the base's finest part tested with a hydrometer".into(),
+            (Some(UndecidedBy::Curve), ..) => {
+                "pack this filter at its density, so that its own constrictions are known".into()
+            }
+            (Some(UndecidedBy::SecondRun), ..) => "walk a second run".into(),
+            (Some(UndecidedBy::Replicates), ..) => "walk more replicates".into(),
+            (None, Verdict::None, Confidence::Within) => {
+                "check what the model leaves out: segregation, placing, gradients".into()
+            }
+            (None, Verdict::None, _) => "settle what is listed first below, or have this pair tested".into(),
+            (None, ..) => "have this pair tested: practice and walk differ".into(),
+        }
+    }
+
+    /// The findings that matter most, at most [`FOREMOST`], and how many more there are.
+    pub fn foremost(&self) -> (Vec<FindingRecord>, usize) {
+        let mut all = self.ordered();
+        let more = all.split_off(all.len().min(FOREMOST)).len();
+        (all, more)
+    }
+
+    /// All findings in the order of a reader, but the line of evidence: what speaks against the verdict, then
+    /// the rest.
+    pub fn ordered(&self) -> Vec<FindingRecord> {
+        let all = self.against().into_iter().chain(self.besides());
+        all.filter(|finding| !is_evidence(finding)).collect()
+    }
+}
+
+/// Beyond the limit of design, and within the boundary of no erosion.
+const NO_MARGIN: &str = "does not meet the limit of design, though tests held such filters";
+
+/// Whether a filter of a class, with this label, holds, does not, or nobody can say, in a line.
+///
+/// Practice speaks first: a walk that is more favourable never makes a filter a good one.
+pub fn headline(rules: &[AppliedRule], verdict: Verdict, confidence: Confidence) -> String {
+    let standing = standing(rules);
+    let walked = verdict.words();
+    let said = match (&standing, verdict) {
+        (Standing::NoRules, Verdict::Undecided) => "nobody can say yet: the walk is undecided".into(),
+        (Standing::NoRules, _) => format!("{walked} in the model"),
+        (Standing::Fails, Verdict::None) => {
+            "does not meet practice, though nothing erodes in the model: rely on practice".into()
+        }
+        (Standing::Fails, Verdict::Undecided) => "does not meet practice; the walk is undecided".into(),
+        (Standing::Fails, _) => format!("does not hold: practice is not met, {walked} in the model"),
+        (Standing::NoMargin, Verdict::Undecided) => format!("{NO_MARGIN}; the walk is undecided"),
+        (Standing::NoMargin, _) => format!("{NO_MARGIN}; {walked} in the model"),
+        (Standing::Unstable, Verdict::Continuing) => {
+            format!("does not hold: {walked} in the model, and the filter may lose its own fines")
+        }
+        (Standing::Unstable, _) => "may not hold: the filter may lose its own fines".into(),
+        (Standing::Unknown(needs), Verdict::Undecided) => {
+            format!("nobody can say yet: practice needs {needs}, and the walk is undecided")
+        }
+        (Standing::Unknown(needs), Verdict::None) => {
+            format!("nobody can say yet: practice needs {needs}; {walked} in the model")
+        }
+        (Standing::Unknown(needs), _) => {
+            format!("may not hold: {walked} in the model; practice needs {needs}")
+        }
+        (Standing::Met, Verdict::None) if confidence == Confidence::Within => {
+            "holds: practice and walk agree".into()
+        }
+        (Standing::Met, Verdict::None) => format!("holds by practice; {}", reservation(confidence)),
+        (Standing::Met, Verdict::Undecided) => "holds by practice; the walk is undecided".into(),
+        (Standing::Met, _) => format!("holds by practice; the walk is stricter: {walked} in the model"),
+    };
+    let unstable = matches!(standing, Standing::Fails | Standing::NoMargin | Standing::Unknown(_))
+        && breaks(rules, RuleRole::Stability);
+    // A walk that agrees has said what the doubt is.
+    let is_said = standing == Standing::Met && verdict == Verdict::None;
+    let dry = !is_said && breaks(rules, RuleRole::Drainage);
+    let more = [(unstable, "; the filter may lose its own fines"), (dry, "; the filter may not drain")];
+    more.into_iter().filter(|(holds, _)| *holds).fold(said, |said, (_, more)| said + more)
+}
+
+/// What keeps "no erosion" from being said without reserve, where practice is met.
+fn reservation(confidence: Confidence) -> &'static str {
+    match confidence {
+        Confidence::MayNotDrain => "the filter may not drain the base",
+        Confidence::MaySegregate => "the filter may segregate when placed",
+        Confidence::Unstable => "the filter may lose its own fines",
+        Confidence::Contradicted => "another rule speaks against it",
+        Confidence::Within | Confidence::Outside => {
+            "the walk agrees, outside the range in which it was checked"
+        }
+    }
+}
+
+fn breaks(rules: &[AppliedRule], role: RuleRole) -> bool {
+    !broken(rules, role).is_empty()
+}
+
+fn eroded(name: &str, what: &str, run: &RunSummary) -> String {
+    let eroded = &run.eroded_mass_fraction;
+    let interval = match eroded.low.zip(eroded.high) {
+        Some((low, high)) => format!(" ({what}{} to {})", percent(low), percent(high)),
+        None => String::new(),
+    };
+    format!("{} in the {name}{interval}", percent(eroded.mean))
+}
+
+fn three(value: f64) -> String {
+    digits_of(value, 3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gradation::Gradation;
+    use crate::verdict::{PairRules, judge};
+
+    fn said(filter: &[(f64, f64)], base: &[(f64, f64)], verdict: Verdict) -> String {
+        let soil = |points| Gradation::from_points(points, None).unwrap();
+        let rules = PairRules::of(&soil(base), &soil(filter)).rules;
+        headline(&rules, verdict, judge(verdict, &rules, Vec::new()).confidence)
+    }
+
+    const SAND: [(f64, f64); 2] = [(0.2, 0.0), (0.6, 100.0)];
+    const TILL: [(f64, f64); 5] = [(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)];
+    const GRAVEL: [(f64, f64); 3] = [(5.0, 0.0), (6.5, 15.0), (20.0, 100.0)];
+    const GOOD: [(f64, f64); 2] = [(1.0, 0.0), (3.0, 100.0)];
+    const COARSE: [(f64, f64); 2] = [(8.0, 0.0), (16.0, 100.0)];
+    /// Between the limit of design and the boundary that tests saw.
+    const BETWEEN: [(f64, f64); 2] = [(2.5, 0.0), (5.0, 100.0)];
+
+    #[test]
+    fn practice_and_walk_stand_in_one_line() {
+        assert_eq!(said(&GOOD, &SAND, Verdict::None), "holds: practice and walk agree");
+        for (verdict, line) in [
+            (Verdict::Some, "holds by practice; the walk is stricter: some erosion in the model"),
+            (Verdict::Continuing, "holds by practice; the walk is stricter: continuing erosion in the model"),
+            (Verdict::Undecided, "holds by practice; the walk is undecided"),
+        ] {
+            assert_eq!(said(&GOOD, &SAND, verdict), line);
+        }
+        for (filter, base) in [(&GRAVEL[..], &TILL[..]), (&COARSE, &SAND)] {
+            for verdict in [Verdict::Some, Verdict::Continuing] {
+                let line = format!("does not hold: practice is not met, {} in the model", verdict.words());
+                assert_eq!(said(filter, base, verdict), line);
+            }
+            let none = said(filter, base, Verdict::None);
+            assert_eq!(none, "does not meet practice, though nothing erodes in the model: rely on practice");
+            let open = said(filter, base, Verdict::Undecided);
+            assert_eq!(open, "does not meet practice; the walk is undecided");
+        }
+        let margin = said(&BETWEEN, &SAND, Verdict::None);
+        assert_eq!(
+            margin,
+            "does not meet the limit of design, though tests held such filters; no erosion in the model"
+        );
+        assert_eq!(headline(&[], Verdict::None, Confidence::Outside), "no erosion in the model");
+    }
+
+    /// Nobody reads "holds" alone where practice has something against the filter.
+    #[test]
+    fn what_speaks_against_the_filter_stands_in_the_line() {
+        let fine = said(&SAND, &SAND, Verdict::None);
+        assert_eq!(fine, "holds by practice; the filter may not drain the base");
+        let fine = said(&SAND, &SAND, Verdict::Undecided);
+        assert_eq!(fine, "holds by practice; the walk is undecided; the filter may not drain");
+        let gap = [(0.3, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)];
+        assert_eq!(
+            said(&gap, &SAND, Verdict::None),
+            "may not hold: the filter may lose its own fines; the filter may not drain"
+        );
+        // A sand whose fines nobody sieved.
+        let hidden = said(&GOOD, &[(0.3, 25.0), (1.0, 100.0)], Verdict::None);
+        assert!(
+            hidden.starts_with("nobody can say yet: practice needs finer sieves of the base; "),
+            "{hidden}"
+        );
+    }
+}
