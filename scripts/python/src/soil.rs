@@ -4,9 +4,16 @@ use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
 use voidwalk::constrictions::{self, CurveUnit};
 use voidwalk::gradation::{self, curves_in_file};
+use voidwalk::scene::Density;
 
 use crate::arrays::column;
 use crate::problem::refused;
+
+/// A density by its word.
+pub fn density_named(word: &str) -> PyResult<Density> {
+    let words = Density::WORDS;
+    Density::named(word).ok_or_else(|| refused(format!("density = {word} is not allowed; {words}")))
+}
 
 /// A sieve curve of the library.
 #[pyclass(frozen, module = "voidwalk._voidwalk", skip_from_py_object)]

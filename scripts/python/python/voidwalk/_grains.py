@@ -7,10 +7,11 @@ import os
 from typing import Any, Dict, Iterator, Mapping, Optional, Tuple, Union
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import _voidwalk
 from ._arrays import Floats, cell_lengths, floats, frozen, threads_or_none, whole
+from ._plots import Axes
 from ._progress import Follower, Following
 from ._soil import Curve, Gradation
 
@@ -56,7 +57,7 @@ class Packing:
     cell: Optional[Tuple[float, float, float]]
     reached: Dict[str, Any]
 
-    def __init__(self, coords: Any, diameter: Any, cell: Any = None) -> None:
+    def __init__(self, coords: ArrayLike, diameter: ArrayLike, cell: Optional[ArrayLike] = None) -> None:
         self.coords = frozen(floats("coords", coords, None, 3))
         self.diameter = frozen(floats("diameter", diameter, len(self.coords)))
         if (self.diameter <= 0).any():
@@ -71,7 +72,7 @@ class Packing:
         return self.coords, self.diameter, self.cell
 
     @classmethod
-    def from_arrays(cls, coords: Any, diameter: Any, cell: Any = None) -> Packing:
+    def from_arrays(cls, coords: ArrayLike, diameter: ArrayLike, cell: Optional[ArrayLike] = None) -> Packing:
         """The class itself, by another name."""
         return cls(coords, diameter, cell)
 
@@ -106,9 +107,11 @@ class Packing:
 
     from_lammps = from_file
 
-    def constrictions(self, **options: Any) -> Constrictions:
+    def constrictions(
+        self, *, merge_overlap: float = MERGE_OVERLAP, facets: str = "all", threads: Optional[int] = None
+    ) -> Constrictions:
         """:func:`constrictions` of this packing."""
-        return constrictions(self, **options)
+        return constrictions(self, merge_overlap=merge_overlap, facets=facets, threads=threads)
 
     def __len__(self) -> int:
         return len(self.diameter)
@@ -237,6 +240,10 @@ class Constrictions(Mapping[str, NDArray[Any]]):
         curve.grains_per_void = self.grains_per_void
         return curve
 
+    def plot(self, ax: Optional[Axes] = None, *, label: Optional[str] = None) -> Axes:
+        """Draws the curve of constriction sizes, as :meth:`Curve.plot`."""
+        return self.curve.plot(ax, label=label)
+
     def to_openpnm(self) -> Dict[str, NDArray[Any]]:
         """The voids and constrictions as a dict that OpenPNM's ``Network`` is updated with; lengths in m."""
         si = {"pore.coords": 1e-3, "pore.diameter": 1e-3, "throat.diameter": 1e-3, "pore.volume": 1e-9}
@@ -249,9 +256,9 @@ class Constrictions(Mapping[str, NDArray[Any]]):
 
 
 def constrictions(
-    coords: Any,
-    diameter: Any = None,
-    cell: Any = None,
+    coords: Union[Packing, ArrayLike],
+    diameter: Optional[ArrayLike] = None,
+    cell: Optional[ArrayLike] = None,
     *,
     merge_overlap: float = MERGE_OVERLAP,
     facets: str = "all",
