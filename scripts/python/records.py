@@ -74,6 +74,8 @@ class Types:
         others = [kind for kind in dict.fromkeys(kinds) if not kind.startswith("Literal[") and kind != "None"]
         if words:
             others.insert(0, f"Literal[{', '.join(words)}]")
+        if not others:
+            return "None"
         text = others[0] if len(others) == 1 else f"Union[{', '.join(others)}]"
         return f"Optional[{text}]" if "None" in kinds else text
 

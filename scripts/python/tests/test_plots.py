@@ -78,7 +78,10 @@ def test_studies_are_drawn() -> None:
     compared = vw.compare(BASE, {"a": FILTER, "b": ([3, 9], [0, 100])}, density="dense", quick=True, settings=SMALL)
     ax = compared.plot()
     assert [tick.get_text() for tick in ax.get_xticklabels()] == ["a", "b"]
-    design = vw.design(BASE, FILTER, density="dense", thickness="10layers", bracket=(4, 16), replicates=2, settings=SMALL)
+    small = {"network.nx": 8, "network.ny": 8}
+    design = vw.design(
+        BASE, FILTER, density="dense", thickness="10layers", bracket=(4, 16), replicates=2, settings=small
+    )
     assert words(design.plot())[:2] == ["D15F/D85B", "Eroded mass of the first run (%)"]
     matplotlib.pyplot.close("all")
 

@@ -50,7 +50,8 @@ def folders(tmp_path_factory: pytest.TempPathFactory) -> Path:
     vw.judge(BASE, FILTER, place / "run", **options)
     vw.judge(BASE, FILTER, place / "studied", density="dense", replicates=2, settings=SMALL)
     vw.compare(BASE, {"a": FILTER, "b": ([3, 9], [0, 100])}, place / "compared", **options)
-    vw.design(BASE, FILTER, place / "designed", thickness="10layers", bracket=(4, 16), replicates=2, settings=SMALL)
+    across = {"network.nx": 8, "network.ny": 8}
+    vw.design(BASE, FILTER, place / "designed", thickness="10layers", bracket=(4, 16), replicates=2, settings=across)
     vw.percolation([4, 6, 8, 10], realisations=4, out=place / "percolated")
     scene = {"seed": 11, "replicates": 2, "filter": {"curve": "cu1.5-loose"}, "base": {"cu": 1.5, "d85_at_dc": 5}}
     plan = {"title": "a plan", "scene": {**scene, "network": {"nx": 6, "ny": 6, "nz": 9}}, "factors": {"seed": [1, 2]}}
@@ -83,7 +84,8 @@ def test_what_the_program_prints_keeps_to_its_schema(program: str, folders: Path
     keeps(printed("init", "--json"))
     keeps(printed("reproduce", str(folders / "run"), "--json"))
     packing = ["--set", "filter.cu=1.2", "--set", "packing.grains=100"]
-    done = subprocess.run([program, "pack", "--out", "p", "--quiet", *packing], cwd=tmp_path, capture_output=True, text=True)
+    words = [program, "pack", "--out", "p", "--quiet", *packing]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     for _, record in records(tmp_path / "p"):
         keeps(record)

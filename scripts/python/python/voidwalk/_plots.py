@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Tuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from ._arrays import Floats, Ints
 from .records import Comparison, Design, Outcome, WalkOutcome
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes  # type: ignore[import-not-found,unused-ignore]
+    from matplotlib.axes import Axes as Axes  # type: ignore[import-not-found,unused-ignore]
 else:
     Axes = "matplotlib.axes.Axes"
 
@@ -85,7 +85,7 @@ def plot_network(
 
 
 def plot_result(
-    outcome: "Outcome | WalkOutcome", tables: Mapping[str, Mapping[str, NDArray[Any]]], what: str, ax: Optional[Axes]
+    outcome: Outcome, tables: Mapping[str, Mapping[str, NDArray[Any]]], what: str, ax: Optional[Axes]
 ) -> Axes:
     """One of the figures of a result."""
     if what == "progress":
@@ -143,17 +143,17 @@ def _layers(layers: Mapping[str, NDArray[Any]], ax: Optional[Axes]) -> Axes:
 
 
 def _curves(
-    outcome: "Outcome | WalkOutcome", tables: Mapping[str, Mapping[str, NDArray[Any]]], ax: Optional[Axes]
+    outcome: Outcome, tables: Mapping[str, Mapping[str, NDArray[Any]]], ax: Optional[Axes]
 ) -> Axes:
     drawn = axes(ax)
     inputs = outcome.get("inputs")
-    base = outcome.get("base") if inputs is None else inputs["base"]
     lines: Dict[str, Sequence[Sequence[float]]] = {}
-    if base is not None:
-        lines["Base, as walked"] = base["gradation"]  # type: ignore[index]
-    if inputs is not None:
-        lines["Filter"] = inputs["filter"]["gradation"]  # type: ignore[index]
-        lines["Constrictions, by number"] = inputs["filter"]["constrictions"]  # type: ignore[index]
+    if inputs is None:
+        lines["Base, as walked"] = cast(WalkOutcome, outcome)["base"]["gradation"]
+    else:
+        lines["Base, as walked"] = inputs["base"]["gradation"]
+        lines["Filter"] = inputs["filter"]["gradation"]
+        lines["Constrictions, by number"] = inputs["filter"]["constrictions"]
     for label, points in lines.items():
         drawn.plot([point[0] for point in points], [point[1] for point in points], label=label)
     for name, label in (("retained", "Retained, run 1"), ("eroded", "Eroded, run 1")):
@@ -161,26 +161,32 @@ def _curves(
         chosen = (table["run"] == 1) & (table["replicate"] == 1) if len(table.get("run", ())) else np.zeros(0, bool)
         if chosen.any():
             chosen &= table["increment"] == table["increment"][chosen].max()
-            style = dict(linestyle="--", label=label)
-            drawn.plot(table["diameter_mm"][chosen], table["percent_finer_by_mass"][chosen], **style)
+            sizes, percents = table["diameter_mm"][chosen], table["percent_finer_by_mass"][chosen]
+            drawn.plot(sizes, percents, linestyle="--", label=label)
     _semi_log(drawn, _SIZE, f"{_PERCENT_BY_MASS} (constrictions: smaller by number)")
     drawn.legend()
     return drawn
 
 
-def _rules(outcome: "Outcome | WalkOutcome", ax: Optional[Axes]) -> Axes:
+def _rules(outcome: Outcome, ax: Optional[Axes]) -> Axes:
     rules = outcome.get("rules")
     if rules is None:
         raise ValueError("a walk on a network has no rules of practice in its outcome: voidwalk.rules gives them")
-    known = [rule for rule in rules if rule["value"] and rule["limit"]]  # type: ignore[attr-defined]
+    ratios: List[float] = []
+    names: List[str] = []
+    colours: List[str] = []
+    for rule in rules:
+        value, limit = rule["value"], rule["limit"]
+        if value and limit:
+            ratios.append(limit / value if rule["at_least"] else value / limit)
+            names.append(rule["name"])
+            colours.append({True: "tab:green", False: "tab:red", None: "tab:gray"}[rule["met"]])
     drawn = axes(ax, 8.0)
-    ratios = [rule["limit"] / rule["value"] if rule["at_least"] else rule["value"] / rule["limit"] for rule in known]
-    colours = ["tab:green" if rule["met"] else "tab:red" if rule["met"] is False else "tab:gray" for rule in known]
-    places = np.arange(len(known))
+    places = list(range(len(names)))
     drawn.scatter(ratios, places, c=colours)
     drawn.axvline(1, color="black", linewidth=1)
     drawn.set_xscale("log")
-    drawn.set_yticks(places, [str(rule["name"]) for rule in known])
+    drawn.set_yticks(places, names)
     drawn.invert_yaxis()
     drawn.set_xlabel("Value over limit (for a least value, limit over value); kept up to 1")
     drawn.grid(True, axis="x", which="both", alpha=0.25)

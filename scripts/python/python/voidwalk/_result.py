@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from . import _voidwalk
 from ._plots import Axes, plot_result
-from .records import Finding, Outcome, Replicate, RunSummary, WalkOutcome
+from .records import Finding, Outcome, Replicate, RunSummary
 
 if TYPE_CHECKING:
     import pandas  # type: ignore[import-untyped,import-not-found,unused-ignore]
@@ -49,8 +49,9 @@ class Result:
     Attributes
     ----------
     outcome : dict
-        Everything that ``outcome.json`` says of a scene; of a network the verdict with confidence, reasons and
-        warnings, the summary, every replicate, what was walked with what, and what Eq. (2) asks for.
+        Everything that ``outcome.json`` says of a scene (:class:`voidwalk.records.Outcome`); of a network the verdict
+        with confidence, reasons and findings, the summary, every replicate, what was walked with what, and what
+        Eq. (2) asks for (:class:`voidwalk.records.WalkOutcome`).
     series : dict of ndarray
         Counts of particles after each recorded increment, by replicate and run: inserted, moving, eroded,
         retained_in_constrictions, retained_in_voids, trapped, blocked (constrictions), eroded_mass_fraction.
@@ -70,7 +71,7 @@ class Result:
         Folder of the run, where it has one.
     """
 
-    outcome: Union[Outcome, WalkOutcome]
+    outcome: Outcome
     series: Table
     layers: Table
     retained: Table
@@ -83,7 +84,7 @@ class Result:
 
     def __init__(
         self,
-        outcome: Union[Outcome, WalkOutcome],
+        outcome: Outcome,
         tables: Dict[str, Table],
         blocked: Optional[NDArray[np.bool_]] = None,
         folder: Optional[Path] = None,

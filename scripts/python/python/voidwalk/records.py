@@ -258,7 +258,7 @@ class RunSummary(TypedDict):
     #: Of `Run::eroded_number_fraction`.
     eroded_number_fraction: Statistic
     #: Of `Run::largest_eroded_over_d15f`, over the replicates in which something eroded; `None` if in none.
-    largest_eroded_over_d15f: Union[Statistic, Optional[Union[]]]
+    largest_eroded_over_d15f: Optional[Statistic]
     #: Of `Run::blocked_fraction`.
     blocked_fraction: Statistic
     #: Of `Run::blocked_first_three_layers_fraction`.
@@ -279,7 +279,7 @@ class _Stopping(TypedDict):
     #: Whether what was asked for is reached.
     met: bool
     #: The verdict at that confidence level, where one was asked for.
-    verdict: Union[Literal["no erosion", "some erosion", "continuing erosion", "undecided"], Optional[Union[]]]
+    verdict: Optional[Literal["no erosion", "some erosion", "continuing erosion", "undecided"]]
     #: Widest half of the 95 % intervals of the eroded mass (percentage points); `None` with one replicate.
     half_width_pp: Optional[float]
 
@@ -290,7 +290,7 @@ class Stopping(_Stopping, total=False):
     #: Why it is not reached, in folders of earlier versions.
     sentence: Optional[str]
     #: Why it is not reached.
-    short_of: Union[Union[Literal["second_run"], Dict[str, Dict[str, Union[int, float, Optional[int]]]], Dict[str, Dict[str, Union[float, int]]]], Optional[Union[]]]
+    short_of: Optional[Union[Literal["second_run"], Dict[str, Dict[str, Union[int, float, Optional[int]]]], Dict[str, Dict[str, Union[float, int]]]]]
 
 
 class _PanReading(TypedDict):
@@ -313,7 +313,7 @@ class PanReading(_PanReading, total=False):
     #: scatter of the scene's own replicates, or its own where that is wider (`crate::outcome::early_stop`).
     stopped_when_clear: bool
     #: Why there are so many replicates, where a rule added them.
-    stopping: Union[Stopping, Optional[Union[]]]
+    stopping: Optional[Stopping]
 
 
 class PanBounds(TypedDict):
@@ -404,7 +404,7 @@ class BaseRecord(_BaseRecord, total=False):
     #: The size that it was regraded on before it was walked; `None` where it is walked as it is.
     regraded_at_mm: Optional[float]
     #: The base as it was sampled, where it was regraded before it was walked.
-    as_sampled: Union[SampledBase, Optional[Union[]]]
+    as_sampled: Optional[SampledBase]
 
 
 class _NetworkRecord(TypedDict):
@@ -655,7 +655,7 @@ class Evidence(_Evidence, total=False):
     """The evidence for a pair."""
 
     #: Where the walk's boundary was not found: on which side of its number, and of the probability, it lies.
-    bound: Union[Literal["at_least", "at_most"], Optional[Union[]]]
+    bound: Optional[Literal["at_least", "at_most"]]
 
 
 class ArchingRecord(TypedDict):
@@ -778,29 +778,29 @@ class Outcome(_Outcome, total=False):
     #: What folders of earlier versions say besides; now in `findings`.
     notes: List[str]
     #: What filter practice says of the pair; folders of earlier versions have it in `rules` alone.
-    practice: Union[Practice, Optional[Union[]]]
+    practice: Optional[Practice]
     #: Where the constrictions come from; folders of earlier versions do not say.
-    constrictions: Union[ConstrictionsRecord, Optional[Union[]]]
+    constrictions: Optional[ConstrictionsRecord]
     #: Why there are so many replicates, where a rule added them.
-    stopping: Union[Stopping, Optional[Union[]]]
+    stopping: Optional[Stopping]
     #: Both readings of a pan fraction that need not be passive.
-    pan_bounds: Union[PanBounds, Optional[Union[]]]
+    pan_bounds: Optional[PanBounds]
     #: What folders of earlier versions say of their inputs; now in `findings`.
     warnings: List[str]
     #: The network, where its constrictions have no direction of their own.
-    network: Union[NetworkSummary, Optional[Union[]]]
+    network: Optional[NetworkSummary]
     #: Eq. (1) for single particles; `None` where the network is no cubic lattice.
-    infiltration: Union[Infiltration, Optional[Union[]]]
+    infiltration: Optional[Infiltration]
     #: What comes of the other constriction curves that the filter may have; `None` where its curve was given, or
     #: measured on the whole filter.
-    curve_range: Union[CurveRange, Optional[Union[]]]
+    curve_range: Optional[CurveRange]
     #: How much coarser the filter could be before the base begins to erode; `None` where that was not asked for.
-    margin: Union[Margin, Optional[Union[]]]
+    margin: Optional[Margin]
     #: What soils of its kind say of the walk's boundary; `None` where no margin was asked for, or for a base of
     #: no group.
-    evidence: Union[Evidence, Optional[Union[]]]
+    evidence: Optional[Evidence]
     #: The law by which particles arched; `None` where they did not.
-    arching: Union[ArchingRecord, Optional[Union[]]]
+    arching: Optional[ArchingRecord]
     #: How the verdict moves with the thickness of the filter, itself included; empty when it was not asked for.
     thickness: List[OfThickness]
     #: Whether both studies are still being walked, or their walk was ended: `voidwalk resume` goes on.
@@ -914,7 +914,7 @@ class _Boundary(TypedDict):
     #: 5 % of networks lie above; `None` likewise.
     high: Optional[float]
     #: D15F (mm) of the filter, where the base has a size.
-    d15f_mm: Union[Range, Optional[Union[]]]
+    d15f_mm: Optional[Range]
 
 
 class Boundary(_Boundary, total=False):
@@ -922,9 +922,9 @@ class Boundary(_Boundary, total=False):
 
     #: On which side of the search the 5 percentile lies, where it lies beyond: below, networks erode at every
     #: ratio that was searched.
-    low_beyond: Union[Literal["below", "above"], Optional[Union[]]]
+    low_beyond: Optional[Literal["below", "above"]]
     #: D85B (mm) of the base, for the inverse, where the filter has a size.
-    d85b_mm: Union[Range, Optional[Union[]]]
+    d85b_mm: Optional[Range]
 
 
 class NetworkBoundaries(TypedDict):
@@ -960,7 +960,7 @@ class Band(_Band, total=False):
     """Between which D15F a filter both drains and holds."""
 
     #: Which of the two set it; `None` in files of earlier versions.
-    set_by: Union[Literal["practice", "walk"], Optional[Union[]]]
+    set_by: Optional[Literal["practice", "walk"]]
     #: Its name for programs; `None` without one, and in files of earlier versions.
     practice_rule_id: Optional[str]
 
@@ -977,9 +977,9 @@ class _DesignRow(TypedDict):
     #: Filter grains per void, Eq. (2).
     grains_per_void: Optional[float]
     #: Where no erosion turns into some; `None` where that lies beyond what can be walked.
-    no_erosion: Union[Boundary, Optional[Union[]]]
+    no_erosion: Optional[Boundary]
     #: Where some erosion turns into continuing.
-    continuing: Union[Boundary, Optional[Union[]]]
+    continuing: Optional[Boundary]
     #: Networks on which a larger ratio was seen to hold than one that erodes, in either run: their smallest that
     #: erodes counts.
     not_monotone: int
@@ -987,7 +987,7 @@ class _DesignRow(TypedDict):
     networks: List[NetworkBoundaries]
     #: The band of a specification, up to what holds over the whole range of its curve; `None` for the inverse,
     #: where nothing limits it, and where no ratio is known that all but 5 % of networks hold.
-    band: Union[Band, Optional[Union[]]]
+    band: Optional[Band]
 
 
 class DesignRow(_DesignRow, total=False):
@@ -1139,12 +1139,12 @@ class Design(_Design, total=False):
 
     #: How coarse the filter may be: the least of what walk and practice allow; `None` in files of earlier
     #: versions, of which `Design::answer()` works it out.
-    answer: Union[DesignAnswer, Optional[Union[]]]
+    answer: Optional[DesignAnswer]
     #: What was found about "no erosion" there, the weightiest first; empty in files of earlier versions.
     findings: List[DesignFinding]
     #: How far it can be relied on that a product fits: as `confidence`, but at the greatest D15F that walk and
     #: practice both allow; `None` without products.
-    products_confidence: Union[Literal["within checked range", "may segregate", "outside checked range", "may not drain", "may lose its own fines", "contradicted by practice"], Optional[Union[]]]
+    products_confidence: Optional[Literal["within checked range", "may segregate", "outside checked range", "may not drain", "may lose its own fines", "contradicted by practice"]]
 
 
 class _BaseSize(TypedDict):
@@ -1198,7 +1198,7 @@ class ComparedCase(_ComparedCase, total=False):
     #: What else stands beside every verdict, in sentences.
     beside: List[str]
     #: D85B and which base it is of; `None` without a unit, and in records of earlier versions.
-    base: Union[BaseSize, Optional[Union[]]]
+    base: Optional[BaseSize]
     #: Least and most eroded over the range of the constriction curve, one pair per run; empty where the curve is
     #: no range.
     curve_range: List[List[float]]
@@ -1319,9 +1319,9 @@ class _PercolationStudy(TypedDict):
     #: One per size, ascending.
     sizes: List[SizeThreshold]
     #: The relation of one length; `None` with fewer than two sizes or realisations.
-    one_length: Union[OneLength, Optional[Union[]]]
+    one_length: Optional[OneLength]
     #: The relation of many starts; `None` with fewer than four sizes, or where no threshold fits.
-    many_starts: Union[ManyStarts, Optional[Union[]]]
+    many_starts: Optional[ManyStarts]
     #: Slope of ln(standard deviation) against ln(size); `None` as for `one_length`.
     sd_exponent: Optional[float]
     #: `INFINITE_LATTICE`.
@@ -1601,9 +1601,9 @@ class PackingRecord(_PackingRecord, total=False):
     """The whole of `packing.json`."""
 
     #: What part of the filter was packed, where it is not the whole.
-    part: Union[PackedPart, Optional[Union[]]]
+    part: Optional[PackedPart]
     #: Where the packing was taken from, where it was made for another filter of the same shape.
-    same_shape: Union[SameShape, Optional[Union[]]]
+    same_shape: Optional[SameShape]
     #: Height (mm) of a cell that is taller than wide.
     height_mm: Optional[float]
 
