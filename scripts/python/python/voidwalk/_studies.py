@@ -293,7 +293,7 @@ def compare(
             callback,
         )
         return Comparison(
-            json.loads(said),
+            json.loads(place.named(said)),
             read_csv(place_of_results / "compare.csv"),
             None if out is None else place_of_results,
         )
@@ -402,7 +402,7 @@ def design(
             callback,
         )
         return Design(
-            json.loads(said), read_csv(place_of_results / "design.csv"), None if out is None else place_of_results
+            json.loads(place.named(said)), read_csv(place_of_results / "design.csv"), None if out is None else place_of_results
         )
 
 

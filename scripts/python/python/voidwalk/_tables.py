@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import tempfile
 from contextlib import contextmanager
@@ -46,6 +47,7 @@ class Workplace:
 
     def __init__(self, folder: str) -> None:
         self.folder = Path(folder)
+        self._names: Dict[str, str] = {}
 
     def table(self, name: str, soil: Soil) -> str:
         """The file of a soil: its own, or one that is written here."""
@@ -57,13 +59,25 @@ class Workplace:
         if len(sizes) == 2 and sizes[0] == sizes[1]:
             raise ValueError(f"{name} has a single size; a sieve curve has two sizes or more")
         rows = "".join(f"{size!r},{percent!r}\n" for size, percent in zip(sizes.tolist(), percents.tolist()))
-        file = self.folder / f"{name}.csv"
+        # As a run keeps its inputs: the library then calls them by their names, not by their places here.
+        inputs = self.folder / "inputs"
+        inputs.mkdir(exist_ok=True)
+        file = inputs / f"{name}.csv"
         file.write_text("opening_mm,percent_finer\n" + rows, encoding="utf-8")
+        self._names[file.name] = name
+        (inputs / "names.json").write_text(json.dumps(self._names), encoding="utf-8")
         return str(file)
 
     def tables(self, name: str, soils: Mapping[str, Soil]) -> List[str]:
         """The files of several soils under their names."""
         return [self.table(key, gradation(f"{name}[{key!r}]", soil)) for key, soil in soils.items()]
+
+    def named(self, record: str) -> str:
+        """A record of the library in which soils have their names, not their places here."""
+        for file, name in self._names.items():
+            place = json.dumps(str(self.folder / "inputs" / file))[1:-1]
+            record = record.replace(place, name)
+        return record
 
     def out(self, out: Union[None, str, "os.PathLike[str]"]) -> str:
         """Where results go: where a user says, or here."""
@@ -80,7 +94,8 @@ def workplace() -> Iterator[Workplace]:
             said = str(error)
             if folder not in said:
                 raise
-            raise type(error)(said.replace(folder + os.sep, "").replace(folder, "memory")) from None
+            inputs = os.path.join(folder, "inputs") + os.sep
+            raise type(error)(said.replace(inputs, "").replace(folder, "memory")) from None
 
 
 def changes(settings: Optional[Settings], options: Mapping[str, Tuple[str, Optional[Setting]]]) -> List[str]:
