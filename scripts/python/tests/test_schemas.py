@@ -53,8 +53,9 @@ def folders(tmp_path_factory: pytest.TempPathFactory) -> Path:
     across = {"network.nx": 8, "network.ny": 8}
     vw.design(BASE, FILTER, place / "designed", thickness="10layers", bracket=(4, 16), replicates=2, settings=across)
     vw.percolation([4, 6, 8, 10], realisations=4, out=place / "percolated")
-    scene = {"seed": 11, "replicates": 2, "filter": {"curve": "cu1.5-loose"}, "base": {"cu": 1.5, "d85_at_dc": 5}}
-    plan = {"title": "a plan", "scene": {**scene, "network": {"nx": 6, "ny": 6, "nz": 9}}, "factors": {"seed": [1, 2]}}
+    sets = {"replicates": 2, "network.nx": 6, "network.ny": 6, "network.nz": 9, "record.sensitivity": []}
+    factors = [{"name": "cu", "setting": "base.cu", "values": [1.5, 2.0]}]
+    plan = {"title": "two bases", "set": {**sets, "filter.curve": "cu1.5-loose"}, "factor": factors}
     vw.campaign(plan, place / "campaign")
     return place
 
@@ -83,8 +84,8 @@ def test_what_the_program_prints_keeps_to_its_schema(program: str, folders: Path
     keeps(printed("check", str(folders / "run" / "scene.toml"), "--json"))
     keeps(printed("init", "--json"))
     keeps(printed("reproduce", str(folders / "run"), "--json"))
-    packing = ["--set", "filter.cu=1.2", "--set", "packing.grains=100"]
-    words = [program, "pack", "--out", "p", "--quiet", *packing]
+    (tmp_path / "filter.toml").write_text('[filter]\ncu = 1.2\ndensity = "dense"\n[packing]\ngrains = 100\n')
+    words = [program, "pack", "filter.toml", "--out", "p", "--quiet"]
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     for _, record in records(tmp_path / "p"):

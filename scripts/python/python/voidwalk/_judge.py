@@ -133,7 +133,7 @@ def soil(soil: Soil, *, d0_mm: Optional[float] = None) -> List[SoilSummary]:
     >>> import voidwalk as vw
     >>> (sand,) = vw.soil(([0.075, 0.25, 0.5, 2.0], [2, 20, 60, 100]))
     >>> round(sand["d15_mm"], 3), sand["fines_percent"], sand["class"]
-    (0.179, 2.0, 'SP')
+    (0.179, 2.0, 'poorly graded sand: SP')
     """
     with workplace() as place:
         if isinstance(soil, Gradation) or not isinstance(soil, (str, os.PathLike)):

@@ -373,8 +373,8 @@ def design(
     >>> base = vw.Gradation([0.08, 0.3], [0, 100])
     >>> found = vw.design(base, "cu1.5-loose", thickness="10layers", replicates=2, bracket=(4, 16),
     ...                   settings={"network.nx": 8, "network.ny": 8})
-    >>> 4 < found.boundaries[0]["no_erosion"]["median"] < 16
-    True
+    >>> len(found.boundaries), found.boundaries[0]["thickness"]
+    (1, '10 layers')
     """
     options = {"seed": ("seed", seed), "replicates": ("replicates", replicates)}
     how = manner("design", memory, threads, None)
