@@ -51,7 +51,12 @@ class Packing:
     Packing(27 grains, 1 to 1 mm, cell 3 x 3 x 3 mm)
     """
 
-    __slots__ = ("coords", "diameter", "cell", "reached")
+    __slots__ = {
+        "coords": "Centres (mm), shape (n, 3), read-only.",
+        "diameter": "Diameters (mm), shape (n,), read-only.",
+        "cell": "Lengths (mm) of the periodic cell, or None.",
+        "reached": "What a compression reached: void ratio, pressure (kPa), coordination number and more.",
+    }
     coords: Floats
     diameter: Floats
     cell: Optional[Tuple[float, float, float]]
@@ -211,7 +216,12 @@ class Constrictions(Mapping[str, NDArray[Any]]):
         The figures that ``voidwalk constrictions`` writes as constrictions.json, without permeability.
     """
 
-    __slots__ = ("_arrays", "summary", "packing", "merge_overlap")
+    __slots__ = {
+        "_arrays": "",
+        "summary": "The figures that constrictions.json holds, without permeability.",
+        "packing": "The grains that were measured.",
+        "merge_overlap": "Overlap of two inscribed spheres from which they were one void.",
+    }
 
     def __init__(
         self, arrays: Dict[str, NDArray[Any]], summary: Dict[str, Any], packing: Packing, merge_overlap: float

@@ -70,29 +70,31 @@ class Network:
     [False, False, True, False]
     """
 
-    __slots__ = (
-        "_native", "_made", "conns", "diameter", "inlets", "outlets", "coords", "conductance", "rho", "filter",
-        "grains_per_void",
-    )
+    # Their meanings, which help() shows.
+    __slots__ = {
+        "_native": "",
+        "_made": "",
+        "conns": "Voids at both ends of each constriction, shape (n, 2); -1 is the outside.",
+        "diameter": "Diameter (mm) by constriction, shape (n,).",
+        "inlets": "Voids that particles come into.",
+        "outlets": "Voids that particles leave by ways that nothing can block.",
+        "coords": "Centres of the voids, shape (count, 3), or None.",
+        "conductance": "Conductance by constriction as it was given, or None.",
+        "rho": "Part of its conductance that a blocked constriction keeps.",
+        "filter": "Gradation of the filter, where it is known: of lattices with a shipped curve; else None.",
+        "grains_per_void": "Filter grains per void, where known: of lattices with a shipped or measured curve, and "
+        "of packings; else None.",
+    }
     _native: _voidwalk.Network
     _made: Tuple[str, Dict[str, Any]]
-    #: Voids at both ends of each constriction, shape (n, 2); -1 is the outside.
     conns: Ints
-    #: Diameter (mm) by constriction, shape (n,).
     diameter: Floats
-    #: Voids that particles come into.
     inlets: Ints
-    #: Voids that particles leave by ways that nothing can block.
     outlets: Ints
-    #: Centres of the voids, shape (count, 3), or ``None``.
     coords: Optional[Floats]
-    #: Conductance by constriction as it was given, or ``None``.
     conductance: Optional[Floats]
-    #: Part of its conductance that a blocked constriction keeps.
     rho: float
-    #: Gradation of the filter that the network is of, where that is known: of lattices with a shipped curve.
     filter: Optional[Gradation]
-    #: Filter grains per void, where they are known: of lattices with a shipped or measured curve, and of packings.
     grains_per_void: Optional[float]
 
     def __init__(

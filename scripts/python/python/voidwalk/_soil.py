@@ -287,11 +287,13 @@ class Curve:
     0.25
     """
 
-    __slots__ = ("_native", "filter", "grains_per_void")
+    __slots__ = {
+        "_native": "",
+        "filter": "Gradation of the filter of a shipped curve, a straight line, or None.",
+        "grains_per_void": "Filter grains per void where the curve was measured, or None.",
+    }
     _native: _voidwalk.Curve
-    #: Gradation of the filter of a shipped curve, a straight line, or ``None``.
     filter: Optional[Gradation]
-    #: Filter grains per void where the curve was measured, or ``None``.
     grains_per_void: Optional[float]
 
     def __init__(self, percent_smaller: ArrayLike, diameter_mm: ArrayLike) -> None:
