@@ -7,8 +7,8 @@ use clap::{Args, Parser, Subcommand};
 
 use super::exit::FailOn;
 use super::values::{
-    assignment, bracket, decide, density, facets, lattice_size, millimetres, seed, target_error, threads,
-    time,
+    assignment, bracket, decide, density, facets, form, lattice_size, millimetres, seed, target_error,
+    threads, time,
 };
 use crate::campaign::CasePart;
 use crate::constrictions::{DEFAULT_MERGE_OVERLAP, Facets};
@@ -16,6 +16,7 @@ use crate::packing::{CellOption, LengthUnit};
 use crate::run::CheckpointInterval;
 use crate::run::machine::bytes_from_words;
 use crate::scene::Density;
+use crate::store::format::Format;
 use crate::study::design::Thickness;
 use crate::study::precision::Tier;
 
@@ -57,6 +58,9 @@ pub enum Command {
         /// Print every setting as JSON instead: type, default, allowed values, meaning
         #[arg(long, conflicts_with = "path")]
         json: bool,
+        /// Print the JSON Schema of a file that the program writes instead, such as outcome for outcome.json
+        #[arg(long, value_name = "NAME", conflicts_with_all = ["path", "json"], value_parser = form)]
+        schema: Option<Format>,
     },
     /// Find how coarse a filter may be for a base: both boundaries of erosion, and the specification band
     Design(DesignArgs),

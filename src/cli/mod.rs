@@ -24,6 +24,8 @@ mod report;
 mod reproduce;
 mod rules;
 mod run;
+#[cfg(test)]
+mod schemas;
 #[cfg(feature = "serve")]
 mod serve;
 mod shell;
@@ -82,7 +84,11 @@ pub fn main_with(start: Start) -> u8 {
         Command::Reproduce(args) => reproduce::reproduce(&args),
         Command::Soil(args) => soil::soil(&args),
         Command::Check(args) => check::check(&args),
-        Command::Init { path, json } => init::init(path.as_deref(), json),
+        Command::Init { schema: Some(form), .. } => {
+            print::to_stdout(form.schema);
+            Ok(())
+        }
+        Command::Init { path, json, .. } => init::init(path.as_deref(), json),
         Command::Design(args) => design::design(&args),
         Command::Campaign(args) => campaign::campaign(&args),
         Command::Pack(args) => pack::pack(&args),

@@ -14,7 +14,8 @@ use crate::store::format;
 
 /// The soils of a file.
 #[derive(Serialize)]
-struct Soils {
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(super) struct Soils {
     soils: Vec<SoilSummary>,
 }
 

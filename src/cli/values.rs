@@ -6,6 +6,7 @@ use std::time::Duration;
 use crate::constrictions::Facets;
 use crate::run::RunError;
 use crate::scene::Density;
+use crate::store::format::{FORMATS, Format};
 
 /// Two ratios.
 pub(super) fn bracket(text: &str) -> Result<(f64, f64), String> {
@@ -56,6 +57,12 @@ pub(super) fn lattice_size(text: &str) -> Result<[u32; 3], String> {
 /// A seed.
 pub(super) fn seed(text: &str) -> Result<u64, String> {
     text.trim().parse().map_err(|_| format!("write a whole number from 0 to {}", u64::MAX))
+}
+
+/// The form of a file of JSON, by its name.
+pub(super) fn form(text: &str) -> Result<Format, String> {
+    let names: Vec<&str> = FORMATS.iter().map(|form| form.name()).collect();
+    Format::named(text).ok_or_else(|| format!("one of {}", names.join(", ")))
 }
 
 /// A number of threads.

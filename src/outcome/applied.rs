@@ -9,6 +9,7 @@ use super::rule_note::RuleText;
 
 /// A filter rule, applied.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct AppliedRule {
     /// Its name for programs, as `sherard-dunnigan`.
     #[serde(default)]
@@ -76,6 +77,7 @@ impl AppliedRule {
 
 /// What a rule limits.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub enum RuleQuantity {
     /// A size of the filter.
     D15F,
@@ -115,6 +117,7 @@ impl fmt::Display for RuleQuantity {
 
 /// What a rule is a rule of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum RuleRole {
     /// The filter retains the base without erosion.
@@ -150,6 +153,7 @@ impl RuleRole {
 
 /// How far a verdict can be relied on; the worst is the greatest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub enum Confidence {
     /// The model was checked for such soils, and no rule of practice speaks against the verdict.
     #[serde(rename = "within checked range")]

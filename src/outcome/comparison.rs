@@ -16,6 +16,7 @@ const ERROR: f64 = 0.05;
 
 /// The whole of `compare.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Comparison {
     /// What is compared: `filters`, `bases` or `scenes`.
     pub of: String,
@@ -38,6 +39,7 @@ pub struct Comparison {
 
 /// A case of a comparison.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ComparedCase {
     /// Its name.
     pub name: String,
@@ -94,6 +96,7 @@ pub struct ComparedCase {
 
 /// How much two cases differ in one run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ComparedPair {
     /// The one.
     pub first: String,

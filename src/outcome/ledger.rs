@@ -12,6 +12,7 @@ use crate::text::shorten;
 
 /// A finished case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct LedgerLine {
     /// Name of the case.
     pub case: String,
@@ -75,6 +76,7 @@ pub struct LedgerLine {
 
 /// The whole of `campaign.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Campaign {
     /// What the plan is about, in a line.
     pub title: String,
@@ -90,6 +92,7 @@ pub struct Campaign {
 
 /// How thick the filter is that was modelled.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ModelledThickness {
     /// Layers of voids.
     pub layers: u64,
@@ -117,6 +120,7 @@ impl ModelledThickness {
 
 /// Where and when a case was walked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Made {
     /// Name of the machine.
     pub host: String,

@@ -4,6 +4,7 @@ use crate::network::ExitRule;
 
 /// Something that the model does not contain.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(with = "String"))]
 pub enum ModelLimit {
     /// Flow, gradient and time.
     Hydraulics,

@@ -6,6 +6,7 @@ use super::record::{BaseRecord, Confidence, FindingRecord, ModelLimit, Replicate
 
 /// The results of [`crate::run::walk_networks`]; the names are those of `outcome.json` where both have them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct NetworkWalkRecord {
     /// The class that the replicates together support.
     pub verdict: Verdict,
@@ -55,6 +56,7 @@ pub struct NetworkWalkRecord {
 
 /// Networks that were given; where there are several, the numbers are those of the first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct GivenNetwork {
     /// Networks that the replicates took in turn.
     pub networks: u64,

@@ -8,6 +8,7 @@ use super::record::{Classed, Stopping, Verdict};
 /// The readings of a pan fraction that need not be passive: its sizes are not known, but they lie between two
 /// bounds, and go on in a likely way.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PanBounds {
     /// Share of the base's mass that is finer than its finest sieve.
     pub mass_fraction: f64,
@@ -22,6 +23,7 @@ pub struct PanBounds {
 
 /// One reading of a pan fraction, walked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PanReading {
     /// Of what size its particles were walked.
     pub taken_as: PanSize,
@@ -37,6 +39,7 @@ pub struct PanReading {
 
 /// Of what size the particles of a pan fraction are walked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub enum PanSize {
     /// As in soils whose finest part was measured.
     #[serde(rename = "continued")]

@@ -117,6 +117,7 @@ notes! {
 
 /// What a rule says, in its order; or as a file says it that was read back.
 #[derive(Clone, Debug)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(with = "String"))]
 pub enum RuleText {
     /// The notes of a rule that was applied here.
     Of(Vec<RuleNote>),

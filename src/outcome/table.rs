@@ -319,6 +319,7 @@ macro_rules! table_rows {
     })*) => { $(
         $(#[$about])*
         #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        #[cfg_attr(test, derive(schemars::JsonSchema))]
         pub struct $row {
             $($(#[$what])* pub $field: $kind,)*
         }

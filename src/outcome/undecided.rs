@@ -6,6 +6,7 @@ use super::record::{CurveRange, Outcome, RunSummary, Verdict};
 
 /// What leaves a verdict undecided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub enum UndecidedBy {
     /// The bounds of the base's finest part give different classes, in folders without a likely reading.
     #[serde(rename = "pan fraction")]

@@ -19,6 +19,7 @@ use crate::store::Placement;
 
 /// What a run of a scene would do; sizes and times are estimates.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Check {
     /// Base particles of a run.
     pub n_base: u64,
@@ -65,6 +66,7 @@ pub struct Check {
 
 /// The packing that a scene needs.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PackingCheck {
     /// Grains.
     pub grains: u64,

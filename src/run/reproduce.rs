@@ -42,6 +42,7 @@ const MANIFEST: &str = "manifest.json";
 
 /// What became of a run that was walked again.
 #[derive(Clone, Debug, Default, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Reproduced {
     /// Whether all that was compared is the same.
     pub same: bool,
@@ -61,6 +62,7 @@ pub struct Reproduced {
 
 /// A value that is not the same.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Difference {
     /// The file.
     pub file: String,

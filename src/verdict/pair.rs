@@ -11,6 +11,7 @@ use crate::outcome::rules::{BaseSoil, DESIGN, NamedCurve, Sides, apply_to_envelo
 
 /// What is said of two sieve curves by the rules of practice alone.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PairRules {
     /// The filter.
     pub filter: FilterSizes,
@@ -36,6 +37,7 @@ pub struct PairOptions {
 /// Sizes of a filter (mm), of its coarsest curve where it is an envelope; `None` where they lie in a finest
 /// tail of unknown size.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FilterSizes {
     /// Its curves, where there are several.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -57,6 +59,7 @@ pub struct FilterSizes {
 /// A base as practice describes it (mm), its finest curve where it is an envelope; `None` where a size lies
 /// in a finest tail of unknown size.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct BaseSizes {
     /// Its curves, where there are several.
     #[serde(skip_serializing_if = "Vec::is_empty")]

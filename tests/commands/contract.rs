@@ -6,9 +6,11 @@ use std::path::{Path, PathBuf};
 use std::process::Output;
 
 use serde_json::Value;
+use voidwalk::store::format::Format;
 
 use crate::judge::{SMALL, soils};
 use crate::program::{call, done, refused, voidwalk};
+use crate::schemas::problems;
 
 fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
@@ -21,6 +23,21 @@ fn beginning(text: &str) -> (String, String) {
     assert_eq!(names, ["format", "voidwalk"], "{text:.200}");
     let [format, version] = ["format", "voidwalk"].map(|name| value[name].as_str().unwrap().to_owned());
     (format, version)
+}
+
+/// A record says all that its schema requires, and nothing that this does not know; without any one of the
+/// required fields it does not.
+fn keeps_to_its_schema(text: &str) {
+    let (form, _) = beginning(text);
+    let name = form.trim_start_matches("voidwalk-").split('/').next().unwrap();
+    let schema: Value = serde_json::from_str(Format::named(name).unwrap().schema).unwrap();
+    let record: Value = serde_json::from_str(text).unwrap();
+    assert_eq!(problems(&schema, &record), [""; 0], "{form}");
+    for field in schema["required"].as_array().unwrap() {
+        let mut less = record.clone();
+        less.as_object_mut().unwrap().remove(field.as_str().unwrap());
+        assert_eq!(problems(&schema, &less), [format!(": {field} is missing")], "{form}");
+    }
 }
 
 /// The JSON files in a folder and those below, but for the names of inputs, which are the program's own.
@@ -71,12 +88,14 @@ fn every_json_file_begins_with_its_form_and_the_version() {
         if !form.is_empty() {
             let expected = (format!("voidwalk-{form}/1"), env!("CARGO_PKG_VERSION").to_owned());
             assert_eq!(beginning(&text(&output.stdout)), expected, "{args:?}");
+            keeps_to_its_schema(&text(&output.stdout));
         }
     }
     let mut files = Vec::new();
     json_files(&at, &mut files);
-    let forms: BTreeSet<String> =
-        files.iter().map(|file| beginning(&fs::read_to_string(file).unwrap()).0).collect();
+    let texts: Vec<String> = files.iter().map(|file| fs::read_to_string(file).unwrap()).collect();
+    texts.iter().for_each(|text| keeps_to_its_schema(text));
+    let forms: BTreeSet<String> = texts.iter().map(|text| beginning(text).0).collect();
     let expected = ["campaign", "case", "comparison", "constrictions", "design", "manifest", "outcome"];
     let expected = expected.iter().chain(&["packing", "percolation"]);
     assert_eq!(forms, expected.map(|form| format!("voidwalk-{form}/1")).collect());

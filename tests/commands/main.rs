@@ -22,6 +22,7 @@ mod precision;
 mod program;
 mod rules;
 mod scene;
+mod schemas;
 mod second_command;
 #[cfg(feature = "serve")]
 mod serve;

@@ -9,11 +9,10 @@ use voidwalk::constrictions::{Constrictions, ConstrictionsError, Facets, Triangu
 use voidwalk::packing::{Compression, Packing, PackingError, ReadOptions, Settings, draw, random_start};
 use voidwalk::run::machine::threads as pool;
 use voidwalk::run::{Event, RunError};
-use voidwalk::scene::Density;
 
 use crate::arrays::{Grains, of_packing, of_rows};
 use crate::problem::{of_constrictions, refused};
-use crate::soil::Gradation;
+use crate::soil::{Gradation, density_named};
 use crate::work::at_work;
 
 /// Steps of a compression between two looks whether it is to stop.
@@ -38,9 +37,7 @@ pub fn pack<'py>(
         Ok(friction) => friction,
         Err(_) => {
             let word: String = density.extract()?;
-            let words = Density::WORDS;
-            let problem = || refused(format!("density = {word} is not allowed; {words}, or a friction"));
-            Density::named(&word).ok_or_else(problem)?.friction()
+            density_named(&word)?.friction()
         }
     };
     let grains = grains.unwrap_or_else(|| PackingPlan::usual_grains(gradation));

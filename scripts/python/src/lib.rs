@@ -13,6 +13,7 @@ mod problem;
 mod rules;
 mod scenes;
 mod soil;
+mod studies;
 mod tables;
 mod walks;
 mod work;
@@ -39,6 +40,8 @@ mod _voidwalk {
     use crate::scenes::{Scene, campaign, init_text, resume, run, run_in_memory};
     #[pymodule_export]
     use crate::soil::{Curve, Gradation};
+    #[pymodule_export]
+    use crate::studies::{compare, design, percolation, schema, soils};
     #[pymodule_export]
     use crate::walks::{replicate_seed, walk};
     #[pymodule_export]

@@ -257,6 +257,13 @@ impl Network {
         self.exit.iter().map(mm).collect::<Vec<f64>>().into_pyarray(py).into_any()
     }
 
+    /// Conductance times viscosity of each throat, in the unit that it was given in; 0 where constrictions have a
+    /// direction.
+    fn conductance<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+        let of = |&exit: &u32| if exit == NO_EXIT { 0.0 } else { self.inner.conductance(exit as usize) };
+        self.exit.iter().map(of).collect::<Vec<f64>>().into_pyarray(py).into_any()
+    }
+
     /// Pores that particles come into by ways that nothing can block.
     fn inlets<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
         let found = match self.inner.reservoir() {

@@ -15,9 +15,36 @@ create_exception!(
     "Work that failed, as the command line reports it with exit code 1: a disk that is full, a packing that does not settle."
 );
 
-/// The text of an error, without characters that control a terminal.
+/// Options of the command line that take no value.
+const SWITCHES: [&str; 7] = ["as-given", "as-sampled", "pack", "overwrite", "quick", "dispersive", "inverse"];
+
+/// The text of an error with the names of Python, without characters that control a terminal.
 fn plain(text: &str) -> String {
-    text.chars().map(|c| if c != '\n' && is_hidden(c) { '?' } else { c }).collect()
+    let text: String = text.chars().map(|c| if c != '\n' && is_hidden(c) { '?' } else { c }).collect();
+    in_python(&text)
+}
+
+/// Python's names in the place of the command line's: `settings` for `--set`, `as_given=True` for `--as-given`.
+fn in_python(text: &str) -> String {
+    let text = text.replace("the same command", "the same call").replace("`voidwalk ", "`voidwalk.");
+    let (mut said, mut rest) = (String::with_capacity(text.len()), text.as_str());
+    while let Some(at) = rest.find("--") {
+        let (before, option) = (&rest[..at], &rest[at + 2..]);
+        let is_name = |c: char| c.is_ascii_lowercase() || c == '-';
+        let name = &option[..option.find(|c| !is_name(c)).unwrap_or(option.len())];
+        let begins_word = before.chars().last().is_none_or(|c| c.is_whitespace() || "`(".contains(c));
+        said += before;
+        match name {
+            _ if !begins_word || !name.starts_with(|c: char| c.is_ascii_lowercase()) => {
+                said = said + "--" + name;
+            }
+            "set" => said += "settings",
+            _ if SWITCHES.contains(&name) => said = said + &name.replace('-', "_") + "=True",
+            _ => said += &name.replace('-', "_"),
+        }
+        rest = &option[name.len()..];
+    }
+    said + rest
 }
 
 /// What is refused before any work.

@@ -14,6 +14,7 @@ use voidwalk::schema::SceneError;
 use voidwalk::store::format;
 
 use crate::problem::{failed, of_run, refused};
+use crate::studies::Tables;
 use crate::tables::of_recorded;
 use crate::work::at_work;
 
@@ -31,7 +32,7 @@ impl Manner {
         self.2.as_ref().map(parse).transpose()
     }
 
-    fn prepare(&self, packings: PathBuf) -> PrepareOptions {
+    pub fn prepare(&self, packings: PathBuf) -> PrepareOptions {
         PrepareOptions { packings, memory: self.0, threads: self.1 }
     }
 
@@ -43,6 +44,13 @@ impl Manner {
             checkpoint_interval: self.interval()?,
             command: self.3.clone(),
         })
+    }
+
+    pub fn campaign(self, out: PathBuf, packings: Option<PathBuf>) -> PyResult<CampaignOptions> {
+        let checkpoint_interval = self.interval()?.unwrap_or_default();
+        let Self(memory, threads, _, command) = self;
+        let part = CasePart::default();
+        Ok(CampaignOptions { out, part, packings, memory, threads, checkpoint_interval, command })
     }
 }
 
@@ -74,6 +82,12 @@ impl Scene {
     #[staticmethod]
     fn built_in(settings: Vec<String>) -> PyResult<Self> {
         Self::of(voidwalk::Scene::built_in(&settings))
+    }
+
+    /// The scene of two sieve tables.
+    #[staticmethod]
+    fn of_tables(base: PathBuf, filter: PathBuf, tables: Tables) -> PyResult<Self> {
+        Self::of(voidwalk::Scene::of_tables(&base, &filter, &tables.options()?))
     }
 
     #[staticmethod]
@@ -194,10 +208,7 @@ pub fn campaign(
         Some(json) => CampaignPlan::parse(toml_of("plan", &json)?.as_bytes(), &path),
     };
     let plan = plan.map_err(|error| of_run(&error.into()))?;
-    let checkpoint_interval = manner.interval()?.unwrap_or_default();
-    let Manner(memory, threads, _, command) = manner;
-    let part = CasePart::default();
-    let options = CampaignOptions { out, part, packings, memory, threads, checkpoint_interval, command };
+    let options = manner.campaign(out, packings)?;
     at_work(py, progress, |callbacks| {
         let finished = campaigns::run(&plan, &options, callbacks)?;
         finished.problem().map_or(Ok(()), Err)

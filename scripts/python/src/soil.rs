@@ -4,9 +4,31 @@ use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
 use voidwalk::constrictions::{self, CurveUnit};
 use voidwalk::gradation::{self, curves_in_file};
+use voidwalk::scene::Density;
 
 use crate::arrays::column;
 use crate::problem::refused;
+
+/// What is wrong with points that come as columns: the library counts rows of a table from 1.
+fn of_points(error: impl std::fmt::Display) -> PyErr {
+    let text = error.to_string().replace("points, line", "line");
+    let mut said = String::new();
+    for (at, part) in text.split("line ").enumerate() {
+        let digits = part.find(|c: char| !c.is_ascii_digit()).unwrap_or(part.len());
+        match part[..digits].parse::<u64>() {
+            Ok(line) if at > 0 => said += &format!("entry {}{}", line.saturating_sub(1), &part[digits..]),
+            _ if at > 0 => said = said + "line " + part,
+            _ => said += part,
+        }
+    }
+    refused(if said == text { said } else { said + " (entries are counted from 0)" })
+}
+
+/// A density by its word.
+pub fn density_named(word: &str) -> PyResult<Density> {
+    let words = Density::WORDS;
+    Density::named(word).ok_or_else(|| refused(format!("density = {word} is not allowed; {words}")))
+}
 
 /// A sieve curve of the library.
 #[pyclass(frozen, module = "voidwalk._voidwalk", skip_from_py_object)]
@@ -50,7 +72,7 @@ impl Gradation {
             return Err(refused(format!("size_mm has {sizes} entries, but percent_finer has {percents}")));
         }
         let points: Vec<(f64, f64)> = sizes.iter().copied().zip(percent.iter().copied()).collect();
-        Ok(Self { inner: gradation::Gradation::from_points(&points, d0_mm).map_err(refused)? })
+        Ok(Self { inner: gradation::Gradation::from_points(&points, d0_mm).map_err(of_points)? })
     }
 
     /// Every soil in a file, by name.
@@ -123,7 +145,7 @@ impl Curve {
             )));
         }
         let points: Vec<(f64, f64)> = percent.iter().copied().zip(size.iter().copied()).collect();
-        let inner = constrictions::Curve::from_points(&points, CurveUnit::Mm).map_err(refused)?;
+        let inner = constrictions::Curve::from_points(&points, CurveUnit::Mm).map_err(of_points)?;
         Ok(Self { inner })
     }
 

@@ -38,6 +38,8 @@ def test_every_name_says_what_it_is() -> None:
             for member, value in vars(thing).items():
                 if not member.startswith("_") and (callable(value) or isinstance(value, (classmethod, property))):
                     assert inspect.getdoc(value), f"{name}.{member}"
+                if not member.startswith("_") and inspect.ismemberdescriptor(value):
+                    assert inspect.getdoc(value), f"{name}.{member}"
 
 
 def test_the_stubs_are_those_of_the_binary(tmp_path: Path) -> None:

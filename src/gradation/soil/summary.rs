@@ -13,6 +13,7 @@ pub const GRAVEL_MM: f64 = 4.75;
 
 /// What was understood of a soil, and what follows from its curve.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SoilSummary {
     /// What its sheet or column calls it, or the file.
     pub name: String,

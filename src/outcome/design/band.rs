@@ -7,6 +7,7 @@ use crate::outcome::record::{AppliedRule, RuleQuantity, RuleRole};
 
 /// What set the answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum SetBy {
     /// A rule of practice.
@@ -17,6 +18,7 @@ pub enum SetBy {
 
 /// Between which D15F a filter both drains and holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Band {
     /// Least D15F, of the rule of permeability.
     pub least: f64,

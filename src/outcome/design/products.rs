@@ -91,6 +91,7 @@ pub const PRODUCTS: [Product; 5] = [
 
 /// A product beside a band.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Fit {
     /// Its name.
     pub name: String,

@@ -14,6 +14,7 @@ pub const BETWEEN_STEPS: f64 = 0.005;
 
 /// The whole of `design.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Design {
     /// Version of voidwalk.
     pub version: String,
@@ -80,6 +81,7 @@ pub struct Design {
 
 /// A finding about the rows of a design.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct DesignFinding {
     /// The row that it is of, in words; `None` where it is of all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -99,6 +101,7 @@ impl DesignFinding {
 
 /// How coarse the filter may be; for the inverse, how fine the base.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct DesignAnswer {
     /// Greatest D15F (mm) that both walk and practice allow; `None` where none is known, where the base has
     /// no size, and for the inverse.
@@ -118,6 +121,7 @@ pub struct DesignAnswer {
 
 /// What is known of the base.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct BaseStated {
     /// Its name.
     pub name: String,
@@ -142,6 +146,7 @@ pub struct BaseStated {
 
 /// The boundaries of one density and thickness.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct DesignRow {
     /// How densely the filter is packed.
     pub density: String,
@@ -209,6 +214,7 @@ impl DesignRow {
 
 /// A boundary over networks: D15F/D85B, and the same in mm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Boundary {
     /// Median over networks.
     pub median: f64,
@@ -229,6 +235,7 @@ pub struct Boundary {
 
 /// Median and band of a size (mm).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Range {
     /// Median over networks.
     pub median: f64,
@@ -240,6 +247,7 @@ pub struct Range {
 
 /// What one network says; `None` where its boundary lies beyond the search.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct NetworkBoundaries {
     /// Network, counted from 1.
     pub network: u64,
@@ -251,6 +259,7 @@ pub struct NetworkBoundaries {
 
 /// A row of `design.csv`: every ratio that was walked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct WalkRow {
     /// Density, as in `design.json`.
     pub density: String,

@@ -25,6 +25,7 @@ use serde::{Deserialize, Serialize};
 
 /// The whole of `precision.json`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Precision {
     /// Version of voidwalk.
     pub version: String,
@@ -64,6 +65,7 @@ pub struct Precision {
 
 /// The tier of exact answers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ExactTier {
     /// Random networks of each line.
     pub networks: u64,
@@ -79,6 +81,7 @@ pub struct ExactTier {
 
 /// A quantity of the tier of exact answers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Quantity {
     /// Short name.
     pub name: String,
@@ -90,6 +93,7 @@ pub struct Quantity {
 
 /// One network of the tier of exact answers: a row of `exact_networks.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct NetworkRow {
     /// Name of the quantity.
     pub quantity: String,
@@ -109,6 +113,7 @@ pub struct NetworkRow {
 
 /// The tier of sampling.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SamplingTier {
     /// The lattice that it was walked on.
     pub on: String,
@@ -120,6 +125,7 @@ pub struct SamplingTier {
 
 /// Error of a mean over `group` replicates.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SamplingRow {
     /// How base particles are drawn and moved.
     pub variant: String,
@@ -141,6 +147,7 @@ pub struct SamplingRow {
 
 /// The tier of verdicts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct DecisionTier {
     /// The lattice that it was walked on.
     pub on: String,
@@ -152,6 +159,7 @@ pub struct DecisionTier {
 
 /// The tier of packings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PackingTier {
     /// One row a friction and setting.
     pub packings: Vec<PackingRow>,

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// The paper's three classes, after Foster and Fell, and a fourth for what these replicates leave open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub enum Verdict {
     /// Less than the threshold eroded in the first run.
     #[serde(rename = "no erosion")]
@@ -36,6 +37,7 @@ impl Verdict {
 
 /// What a rule that adds replicates until they are enough arrived at.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Stopping {
     /// Target half width of the 95 % interval of the eroded mass, in every run (percentage points of the
     /// base).
@@ -62,6 +64,7 @@ pub struct Stopping {
 
 /// Why replicates do not reach what was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum ShortOf {
     /// The first run alone does not separate two classes.
@@ -92,6 +95,7 @@ pub enum ShortOf {
 
 /// A mean, and with two or more replicates its standard deviation and interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Statistic {
     /// Mean over the replicates.
     pub mean: f64,

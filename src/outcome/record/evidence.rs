@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// The evidence for a pair.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Evidence {
     /// Group of soils by fines after regrading and by D85B/D50B, and of filters by Cu.
     pub group: String,
@@ -33,6 +34,7 @@ pub struct Evidence {
 
 /// A number that is known to be at least, or at most, so much.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Bound {
     /// It is at least this.

@@ -5,6 +5,7 @@ use serde_json::{Map, Value};
 
 /// A finding about a verdict: what it is about, which way it points, and its sentence.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FindingRecord {
     /// Its name for programs, as `cohesive_fines`; empty of folders of earlier versions.
     #[serde(default)]
@@ -58,6 +59,7 @@ impl FindingRecord {
 
 /// What a finding is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Topic {
     /// The soil to be retained.
@@ -86,6 +88,7 @@ pub enum Topic {
 
 /// Which way a walk errs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Direction {
     /// On the safe side: the real filter erodes at most as much.
@@ -100,6 +103,7 @@ pub enum Direction {
 
 /// What a finding can do to a verdict, the most first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Weight {
     /// Leaves the class open.

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// The whole of `manifest.json`: what made the folder.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Manifest {
     /// Version of voidwalk.
     pub version: String,
@@ -29,6 +30,7 @@ pub struct Manifest {
 
 /// A file that was read.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct InputFile {
     /// Its name as given.
     pub name: String,

@@ -45,6 +45,7 @@ pub use super::rule_note::{RuleNote, RuleText};
 
 /// The whole of `outcome.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Outcome {
     /// The class that the replicates together support.
     pub verdict: Verdict,
@@ -154,6 +155,7 @@ impl Outcome {
 
 /// A law by which particles arch in a constriction that they fit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ArchingRecord {
     /// Its name in a scene.
     pub law: String,
@@ -170,6 +172,7 @@ pub struct ArchingRecord {
 
 /// One new network, walked once or twice.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Replicate {
     /// The seed that gives this replicate alone.
     pub seed: u64,
@@ -181,6 +184,7 @@ pub struct Replicate {
 
 /// The end of one run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Run {
     /// 1 or 2.
     pub run: u64,
@@ -254,6 +258,7 @@ pub struct Run {
 
 /// What the voids of one connectivity (entrances and exits) did in a run; Table 3 of the paper.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ByConnectivity {
     /// Entrances and exits; that a void is a start node counts as an entrance.
     pub connectivity: u64,
@@ -277,6 +282,7 @@ pub struct ByConnectivity {
 
 /// Statistics of one run over the replicates.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct RunSummary {
     /// 1 or 2.
     pub run: u64,
@@ -297,6 +303,7 @@ pub struct RunSummary {
 
 /// Eq. (1) of the paper: how far single particles come in the clean filter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Infiltration {
     /// Layers of the network.
     pub layers: u64,
@@ -310,6 +317,7 @@ pub struct Infiltration {
 
 /// One size of the base in the clean filter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct InfiltrationSize {
     /// As `D85B`.
     pub name: String,

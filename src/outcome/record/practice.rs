@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// What filter practice says of a pair, for programs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Practice {
     /// The limit of design.
     pub design: LimitOfDesign,
@@ -17,6 +18,7 @@ pub struct Practice {
 /// Their boundary of excessive erosion stands in figures whose numbers no text gives, so what lies between
 /// the boundaries of no and of continuing erosion is "some erosion" here, though it may be excessive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub enum TestedClass {
     /// Within the boundary of no erosion.
     #[serde(rename = "no erosion")]
@@ -38,6 +40,7 @@ pub enum TestedClass {
 
 /// A limit of D15F, and whether the filter keeps it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct LimitOfDesign {
     /// The name of its rule for programs.
     pub rule: String,

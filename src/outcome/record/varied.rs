@@ -6,6 +6,7 @@ use super::{Statistic, Verdict};
 
 /// The replicates of a case of which one thing was changed, and their class.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Classed {
     /// How many replicates were walked.
     pub replicates: u64,
@@ -24,6 +25,7 @@ pub struct Classed {
 ///
 /// `N_base` holds grains per void and mass ratio only as a product (Eq. 2), so one factor answers for both.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Sensitivity {
     /// Multiple of the outcome's own `n_base`.
     pub factor: f64,
@@ -40,6 +42,7 @@ pub struct Sensitivity {
 
 /// The same case with a filter of this thickness.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct OfThickness {
     /// Multiple of the outcome's own thickness.
     pub factor: f64,
@@ -70,6 +73,7 @@ impl OfThickness {
 /// How much coarser the filter could be before the base begins to erode: its first replicate's first run,
 /// walked with the filter larger or smaller.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Margin {
     /// What was walked, by rising size.
     pub walks: Vec<MarginWalk>,
@@ -77,6 +81,7 @@ pub struct Margin {
 
 /// One size of the filter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct MarginWalk {
     /// Times as large as the filter itself.
     pub factor: f64,
@@ -105,6 +110,7 @@ impl Margin {
 
 /// The walks at the ends of the range of a constriction curve.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct CurveRange {
     /// The class by the curve itself.
     pub verdict: Verdict,
@@ -121,6 +127,7 @@ pub struct CurveRange {
 
 /// The replicates walked with another constriction curve, all else and all random numbers the same.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct CurveEnd {
     /// Which curve it is, in words.
     pub curve: String,

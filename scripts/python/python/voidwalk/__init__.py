@@ -12,18 +12,24 @@ Examples
 """
 
 from ._grains import Constrictions, Packing, constrictions, pack
+from ._judge import judge, soil
 from ._network import Network
+from ._read import read
 from ._result import CampaignResult, Result
 from ._rules import rules
 from ._scene import Scene, init_text, scene_text
+from ._schema import schema
 from ._soil import Curve, Gradation
+from ._studies import Comparison, Design, compare, design, percolation, study
 from ._voidwalk import Progress, VoidwalkError, __version__
-from ._walk import campaign, read, replicate_seed, resume, run, walk
+from ._walk import campaign, replicate_seed, resume, run, walk
 
 __all__ = [
     "CampaignResult",
+    "Comparison",
     "Constrictions",
     "Curve",
+    "Design",
     "Gradation",
     "Network",
     "Packing",
@@ -33,14 +39,21 @@ __all__ = [
     "VoidwalkError",
     "__version__",
     "campaign",
+    "compare",
     "constrictions",
+    "design",
     "init_text",
+    "judge",
     "pack",
+    "percolation",
     "read",
     "replicate_seed",
     "resume",
     "rules",
     "run",
     "scene_text",
+    "schema",
+    "soil",
+    "study",
     "walk",
 ]

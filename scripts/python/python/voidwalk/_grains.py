@@ -7,10 +7,11 @@ import os
 from typing import Any, Dict, Iterator, Mapping, Optional, Tuple, Union
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import _voidwalk
 from ._arrays import Floats, cell_lengths, floats, frozen, threads_or_none, whole
+from ._plots import Axes
 from ._progress import Follower, Following
 from ._soil import Curve, Gradation
 
@@ -50,13 +51,18 @@ class Packing:
     Packing(27 grains, 1 to 1 mm, cell 3 x 3 x 3 mm)
     """
 
-    __slots__ = ("coords", "diameter", "cell", "reached")
+    __slots__ = {
+        "coords": "Centres (mm), shape (n, 3), read-only.",
+        "diameter": "Diameters (mm), shape (n,), read-only.",
+        "cell": "Lengths (mm) of the periodic cell, or None.",
+        "reached": "What a compression reached: void ratio, pressure (kPa), coordination number and more.",
+    }
     coords: Floats
     diameter: Floats
     cell: Optional[Tuple[float, float, float]]
     reached: Dict[str, Any]
 
-    def __init__(self, coords: Any, diameter: Any, cell: Any = None) -> None:
+    def __init__(self, coords: ArrayLike, diameter: ArrayLike, cell: Optional[ArrayLike] = None) -> None:
         self.coords = frozen(floats("coords", coords, None, 3))
         self.diameter = frozen(floats("diameter", diameter, len(self.coords)))
         if (self.diameter <= 0).any():
@@ -71,7 +77,7 @@ class Packing:
         return self.coords, self.diameter, self.cell
 
     @classmethod
-    def from_arrays(cls, coords: Any, diameter: Any, cell: Any = None) -> Packing:
+    def from_arrays(cls, coords: ArrayLike, diameter: ArrayLike, cell: Optional[ArrayLike] = None) -> Packing:
         """The class itself, by another name."""
         return cls(coords, diameter, cell)
 
@@ -107,9 +113,11 @@ class Packing:
 
     from_lammps = from_file
 
-    def constrictions(self, **options: Any) -> Constrictions:
+    def constrictions(
+        self, *, merge_overlap: float = MERGE_OVERLAP, facets: str = "all", threads: Optional[int] = None
+    ) -> Constrictions:
         """:func:`constrictions` of this packing."""
-        return constrictions(self, **options)
+        return constrictions(self, merge_overlap=merge_overlap, facets=facets, threads=threads)
 
     def __len__(self) -> int:
         return len(self.diameter)
@@ -209,7 +217,12 @@ class Constrictions(Mapping[str, NDArray[Any]]):
         The figures that ``voidwalk constrictions`` writes as constrictions.json, without permeability.
     """
 
-    __slots__ = ("_arrays", "summary", "packing", "merge_overlap")
+    __slots__ = {
+        "_arrays": "",
+        "summary": "The figures that constrictions.json holds, without permeability.",
+        "packing": "The grains that were measured.",
+        "merge_overlap": "Overlap of two inscribed spheres from which they were one void.",
+    }
 
     def __init__(
         self, arrays: Dict[str, NDArray[Any]], summary: Dict[str, Any], packing: Packing, merge_overlap: float
@@ -238,6 +251,10 @@ class Constrictions(Mapping[str, NDArray[Any]]):
         curve.grains_per_void = self.grains_per_void
         return curve
 
+    def plot(self, ax: Optional[Axes] = None, *, label: Optional[str] = None) -> Axes:
+        """Draws the curve of constriction sizes, as :meth:`Curve.plot`."""
+        return self.curve.plot(ax, label=label)
+
     def to_openpnm(self) -> Dict[str, NDArray[Any]]:
         """The voids and constrictions as a dict that OpenPNM's ``Network`` is updated with; lengths in m."""
         si = {"pore.coords": 1e-3, "pore.diameter": 1e-3, "throat.diameter": 1e-3, "pore.volume": 1e-9}
@@ -250,9 +267,9 @@ class Constrictions(Mapping[str, NDArray[Any]]):
 
 
 def constrictions(
-    coords: Any,
-    diameter: Any = None,
-    cell: Any = None,
+    coords: Union[Packing, ArrayLike],
+    diameter: Optional[ArrayLike] = None,
+    cell: Optional[ArrayLike] = None,
     *,
     merge_overlap: float = MERGE_OVERLAP,
     facets: str = "all",

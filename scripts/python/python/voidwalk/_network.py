@@ -6,11 +6,13 @@ import os
 from typing import Any, Dict, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import _voidwalk
 from ._arrays import Floats, Ints, floats, frozen, ints, names, pores, whole
+from ._boxes import box
 from ._grains import MERGE_OVERLAP, Constrictions, Packing
+from ._plots import Axes, plot_network
 from ._soil import Curve, Gradation
 
 __all__ = ["Network"]
@@ -68,43 +70,45 @@ class Network:
     [False, False, True, False]
     """
 
-    __slots__ = (
-        "_native", "_made", "conns", "diameter", "inlets", "outlets", "coords", "conductance", "rho", "filter",
-        "grains_per_void",
-    )
+    # Their meanings, which help() shows.
+    __slots__ = {
+        "_native": "",
+        "_made": "",
+        "conns": "Voids at both ends of each constriction, shape (n, 2); -1 is the outside.",
+        "diameter": "Diameter (mm) by constriction, shape (n,).",
+        "inlets": "Voids that particles come into.",
+        "outlets": "Voids that particles leave by ways that nothing can block.",
+        "coords": "Centres of the voids, shape (count, 3), or None.",
+        "conductance": "Conductance by constriction as it was given, or None.",
+        "rho": "Part of its conductance that a blocked constriction keeps.",
+        "filter": "Gradation of the filter, where it is known: of lattices with a shipped curve; else None.",
+        "grains_per_void": "Filter grains per void, where known: of lattices with a shipped or measured curve, and "
+        "of packings; else None.",
+    }
     _native: _voidwalk.Network
     _made: Tuple[str, Dict[str, Any]]
-    #: Voids at both ends of each constriction, shape (n, 2); -1 is the outside.
     conns: Ints
-    #: Diameter (mm) by constriction, shape (n,).
     diameter: Floats
-    #: Voids that particles come into.
     inlets: Ints
-    #: Voids that particles leave by ways that nothing can block.
     outlets: Ints
-    #: Centres of the voids, shape (count, 3), or ``None``.
     coords: Optional[Floats]
-    #: Conductance by constriction as it was given, or ``None``.
     conductance: Optional[Floats]
-    #: Part of its conductance that a blocked constriction keeps.
     rho: float
-    #: Gradation of the filter that the network is of, where that is known: of lattices with a shipped curve.
     filter: Optional[Gradation]
-    #: Filter grains per void, where they are known: of lattices with a shipped or measured curve, and of packings.
     grains_per_void: Optional[float]
 
     def __init__(
         self,
-        conns: Any,
-        diameter: Any,
-        inlets: Any,
-        outlets: Any,
+        conns: ArrayLike,
+        diameter: ArrayLike,
+        inlets: ArrayLike,
+        outlets: ArrayLike,
         *,
         exit: str = "flux",
-        conductance: Any = None,
+        conductance: Optional[ArrayLike] = None,
         rho: float = 0.0,
         count: Optional[int] = None,
-        coords: Any = None,
+        coords: Optional[ArrayLike] = None,
         reference_mm: float = 1.0,
     ) -> None:
         self.conns = frozen(ints("conns", conns, None, 2))
@@ -158,7 +162,9 @@ class Network:
         return new
 
     @classmethod
-    def from_arrays(cls, conns: Any, diameter: Any, inlets: Any, outlets: Any, **options: Any) -> Network:
+    def from_arrays(
+        cls, conns: ArrayLike, diameter: ArrayLike, inlets: ArrayLike, outlets: ArrayLike, **options: Any
+    ) -> Network:
         """The class itself, by another name."""
         return cls(conns, diameter, inlets, outlets, **options)
 
@@ -279,8 +285,8 @@ class Network:
     def from_openpnm(
         cls,
         pn: Mapping[str, Any],
-        inlets: Any = None,
-        outlets: Any = None,
+        inlets: Union[None, str, ArrayLike] = None,
+        outlets: Union[None, str, ArrayLike] = None,
         *,
         diameter: str = "throat.diameter",
         conductance: Optional[str] = None,
@@ -340,8 +346,8 @@ class Network:
     def from_porespy(
         cls,
         net: Mapping[str, Any],
-        inlets: Any = None,
-        outlets: Any = None,
+        inlets: Union[None, str, ArrayLike] = None,
+        outlets: Union[None, str, ArrayLike] = None,
         *,
         diameter: str = "throat.inscribed_diameter",
         unit_mm: float = 1.0,
@@ -425,6 +431,74 @@ class Network:
         """
         return self._native.flow()
 
+    def without(self, mask: ArrayLike) -> Network:
+        """The network with some constrictions closed from the start, as blocked ones of a walk are.
+
+        Parameters
+        ----------
+        mask : array_like of bool, shape (n,)
+            Which constrictions are closed.
+
+        Returns
+        -------
+        Network
+            With the same voids, constrictions, filter and grains per void. The diameter of a closed constriction
+            is 0, and it keeps the part `rho` of its conductance.
+
+        Raises
+        ------
+        ValueError
+            A mask of another shape; or a network whose particles choose by height, which is made of a packing.
+
+        Examples
+        --------
+        >>> import voidwalk as vw
+        >>> network = vw.Network.cubic([6, 6, 9])
+        >>> blocked = vw.walk(network, 0.2, n_base=1000, replicates=1).blocked[0, 0]
+        >>> int((network.without(blocked).diameter == 0).sum()) == int(blocked.sum())
+        True
+        """
+        closed = np.asarray(mask)
+        if closed.dtype.kind != "b" or closed.shape != self.diameter.shape:
+            raise ValueError(
+                f"mask is {closed.dtype} of shape {closed.shape}; bool of shape {self.diameter.shape} is needed"
+            )
+        if self.exit not in ("flux", "area-along-flow", "area"):
+            raise ValueError(f"a network whose particles choose by {self.exit} cannot be made without constrictions")
+        new = Network(
+            self.conns,
+            np.where(closed, 0.0, self.diameter),
+            self.inlets,
+            self.outlets,
+            exit=self.exit,
+            conductance=None if self.exit == "area" else np.where(closed, self.rho, 1.0) * self._native.conductance(),
+            rho=self.rho,
+            count=self.count,
+            coords=self.coords,
+            reference_mm=self._native.unit_mm,
+        )
+        new.filter, new.grains_per_void = self.filter, self.grains_per_void
+        return new
+
+    def plot(self, ax: Optional[Axes] = None, *, blocked: Optional[ArrayLike] = None) -> Axes:
+        """Draws the sizes of the constrictions; or, where it is said which are blocked, their share by layer.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to; a new figure without it.
+        blocked : array_like of bool, shape (n,), optional
+            Which constrictions are blocked, as a run of ``Result.blocked``.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+        """
+        layer, ends = self.layer, self.conns
+        # A constriction belongs to the layer of the void that it leads from.
+        of_throat = np.where(ends[:, 0] < 0, -1, layer[ends[:, 0]])
+        return plot_network(self.diameter, of_throat, None if blocked is None else np.asarray(blocked, dtype=bool), ax)
+
     def to_openpnm(self) -> Dict[str, NDArray[Any]]:
         """The network as a dict with OpenPNM's keys, lengths in m.
 
@@ -466,6 +540,15 @@ class Network:
     def __len__(self) -> int:
         return len(self.diameter)
 
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Network):
+            return NotImplemented
+        same = (self.filter, self.grains_per_void) == (other.filter, other.grains_per_void)
+        return same and self.fingerprint == other.fingerprint
+
+    def __hash__(self) -> int:
+        return hash(self.fingerprint)
+
     def __reduce__(self) -> Tuple[Any, ...]:
         return _remade, (type(self), *self._made)
 
@@ -474,6 +557,21 @@ class Network:
         return (
             f"Network({self.count} voids, {len(self)} constrictions, {inlets} inlets, exit by {self.exit})"
         )
+
+    def _repr_html_(self) -> str:
+        sizes = self.diameter[self.diameter > 0]
+        spread = "none"
+        if len(sizes):
+            spread = f"{sizes.min():.4g} to {sizes.max():.4g} mm, median {np.median(sizes):.4g} mm"
+        facts = {
+            "Voids": f"{self.count:,}",
+            "Layers": f"{self._native.layers:,}",
+            "Constrictions": f"{len(self):,}, closed {len(self) - len(sizes):,}",
+            "Diameters": spread,
+            "Particles choose by": self.exit,
+            "Filter grains per void": "not known" if self.grains_per_void is None else f"{self.grains_per_void:.3g}",
+        }
+        return box("Network", facts)
 
 
 def _remade(kind: Any, made: str, arguments: Dict[str, Any]) -> Network:

@@ -7,17 +7,26 @@ import json
 import os
 from importlib import import_module
 from pathlib import Path
-from typing import Any, Dict, List, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _voidwalk
+from ._plots import Axes, plot_result
+from .records import Finding, Outcome, Replicate, RunSummary
+
+if TYPE_CHECKING:
+    import pandas  # type: ignore[import-untyped,import-not-found,unused-ignore]
+    import xarray  # type: ignore[import-untyped,import-not-found,unused-ignore]
 
 __all__ = ["CampaignResult", "Result"]
 
 #: Columns by their names.
 Table = Dict[str, NDArray[Any]]
+
+#: The facts of a case, by name.
+Row = Dict[str, Union[None, str, int, float]]
 
 #: Columns of the tables that are no whole numbers.
 _FRACTIONS = ("eroded_mass_fraction", "diameter_mm", "percent_finer_by_mass", "percent_finer_by_number", "k_over_k0")
@@ -40,8 +49,9 @@ class Result:
     Attributes
     ----------
     outcome : dict
-        Everything that ``outcome.json`` says of a scene; of a network the verdict with confidence, reasons and
-        warnings, the summary, every replicate, what was walked with what, and what Eq. (2) asks for.
+        Everything that ``outcome.json`` says of a scene (:class:`voidwalk.records.Outcome`); of a network the verdict
+        with confidence, reasons and findings, the summary, every replicate, what was walked with what, and what
+        Eq. (2) asks for (:class:`voidwalk.records.WalkOutcome`).
     series : dict of ndarray
         Counts of particles after each recorded increment, by replicate and run: inserted, moving, eroded,
         retained_in_constrictions, retained_in_voids, trapped, blocked (constrictions), eroded_mass_fraction.
@@ -61,7 +71,7 @@ class Result:
         Folder of the run, where it has one.
     """
 
-    outcome: Dict[str, Any]
+    outcome: Outcome
     series: Table
     layers: Table
     retained: Table
@@ -74,7 +84,7 @@ class Result:
 
     def __init__(
         self,
-        outcome: Dict[str, Any],
+        outcome: Outcome,
         tables: Dict[str, Table],
         blocked: Optional[NDArray[np.bool_]] = None,
         folder: Optional[Path] = None,
@@ -98,11 +108,10 @@ class Result:
         return str(self.outcome["confidence"])
 
     @property
-    def findings(self) -> List[Dict[str, Any]]:
+    def findings(self) -> List[Finding]:
         """What was found about the verdict, what speaks against it first: each a dict of id, about, direction, weight,
         against (whether it speaks against the verdict), numbers (with the unit in the name) and sentence."""
-        findings: List[Dict[str, Any]] = self.outcome.get("findings", [])
-        return findings
+        return self.outcome.get("findings", [])
 
     @property
     def reasons(self) -> List[str]:
@@ -116,30 +125,91 @@ class Result:
         return [str(finding["sentence"]) for finding in self.findings if not finding["against"]] + earlier
 
     @property
-    def summary(self) -> List[Dict[str, Any]]:
+    def summary(self) -> List[RunSummary]:
         """Statistics over the replicates, a dict for each run: each a dict of mean, sd and the 95 % interval low to
         high. The ``summary`` of ``outcome.json``."""
-        summary: List[Dict[str, Any]] = self.outcome["summary"]
-        return summary
+        return self.outcome["summary"]
 
     @property
-    def replicates(self) -> List[Dict[str, Any]]:
+    def replicates(self) -> List[Replicate]:
         """Every replicate: its seed, verdict and runs."""
-        replicates: List[Dict[str, Any]] = self.outcome["replicates"]
-        return replicates
+        return self.outcome["replicates"]
 
     def eroded_mass_fraction(self, run: int = 1) -> NDArray[np.float64]:
         """Mass eroded over mass inserted in a run (1 or 2), shape (replicates,)."""
         return np.array([replicate["runs"][run - 1]["eroded_mass_fraction"] for replicate in self.replicates])
 
-    def to_pandas(self, table: str = "series") -> Any:
+    def row(self) -> Row:
+        """The facts of the walk in a flat dict, for a table with a row a case.
+
+        Returns
+        -------
+        dict
+            ``verdict``, ``confidence``, ``reason`` (the weightiest), ``replicates``, ``n_base``, ``grains_per_void``,
+            ``d85b_mm``, ``d15f_mm``, ``d15f_over_d85b``, ``voids``, ``thickness_mm``, ``seed``; and for each run,
+            such as the first, ``eroded_1`` (mean of the mass eroded over the mass inserted), ``eroded_1_sd``,
+            ``eroded_1_low`` and ``eroded_1_high`` (95 % interval of the mean), ``blocked_1`` (mean of the share of
+            constrictions that are blocked). ``None`` is what is not known.
+
+        Examples
+        --------
+        >>> import voidwalk as vw
+        >>> row = vw.walk(vw.Network.cubic([6, 6, 9]), 0.2, n_base=1000, replicates=2).row()
+        >>> row["verdict"], row["n_base"], row["d85b_mm"]
+        ('continuing erosion', 1000, 0.2)
+        """
+        outcome: Dict[str, Any] = dict(self.outcome)
+        inputs = outcome.get("inputs")
+        base = outcome["base"] if inputs is None else inputs["base"]
+        network = outcome["network"] if inputs is None else inputs["network"]
+        d15f = outcome.get("d15f_mm") if inputs is None else inputs["filter"]["d15_mm"]
+        row: Row = {
+            "verdict": self.verdict,
+            "confidence": self.confidence,
+            "reason": next(iter(self.reasons), ""),
+            "replicates": len(self.replicates),
+            "n_base": outcome["n_base"],
+            "grains_per_void": outcome["grains_per_void"],
+            "d85b_mm": base["d85_mm"],
+            "d15f_mm": d15f,
+            "d15f_over_d85b": None if d15f is None else d15f / base["d85_mm"],
+            "voids": network["voids"],
+            "thickness_mm": network.get("thickness_mm"),
+            "seed": outcome["seed"],
+        }
+        for run in self.summary:
+            name, eroded = f"eroded_{run['run']}", run["eroded_mass_fraction"]
+            row[name] = eroded["mean"]
+            row[f"{name}_sd"], row[f"{name}_low"], row[f"{name}_high"] = eroded["sd"], eroded["low"], eroded["high"]
+            row[f"blocked_{run['run']}"] = run["blocked_fraction"]["mean"]
+        return row
+
+    def plot(self, what: str = "progress", ax: Optional[Axes] = None) -> Axes:
+        """Draws a figure of the walk by matplotlib.
+
+        Parameters
+        ----------
+        what : {"progress", "layers", "curves", "rules"}
+            Eroded mass against increments; blocked constrictions by layer; gradations and constrictions with what
+            was retained and eroded; how near each rule of practice is to its limit.
+        ax : matplotlib.axes.Axes, optional
+            Where to; a new figure without it.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+        """
+        tables = {name: getattr(self, name) for name in ("series", "layers", "retained", "eroded")}
+        return plot_result(self.outcome, tables, what, ax)
+
+    def to_pandas(self, table: str = "series") -> "pandas.DataFrame":
         """One of the tables (series, layers, retained, eroded, flow, ...) as a pandas.DataFrame."""
-        pandas: Any = import_module("pandas")
         if table not in _TABLES:
             raise ValueError(f"table = {table} is not allowed; one of {', '.join(_TABLES)}")
-        return pandas.DataFrame(getattr(self, table))
+        frame: pandas.DataFrame = import_module("pandas").DataFrame(getattr(self, table))
+        return frame
 
-    def to_xarray(self, table: str = "series") -> Any:
+    def to_xarray(self, table: str = "series") -> "xarray.Dataset":
         """One of the tables as an xarray.Dataset over replicate, run and increment, or layer, size, void."""
         over = {
             "layers": ["replicate", "run", "layer"],
@@ -148,7 +218,9 @@ class Result:
             "retained_by_void": ["run", "increment", "void"],
             "blockings": ["run", "increment", "constriction"],
         }
-        return self.to_pandas(table).set_index(over.get(table, ["replicate", "run", "increment"])).to_xarray()
+        frame: Any = self.to_pandas(table)
+        found: xarray.Dataset = frame.set_index(over.get(table, ["replicate", "run", "increment"])).to_xarray()
+        return found
 
     def report(self, path: Union[None, str, os.PathLike[str]] = None) -> Path:
         """Writes the page of the walk: verdict, figures, tables, what the model leaves out.
@@ -210,6 +282,13 @@ class Result:
         return brief(json.dumps(self.outcome))
 
 
+def page_of(folder: Optional[Path]) -> Path:
+    """The page of a finished folder, written again from its files."""
+    if folder is None:
+        raise ValueError("these results have no folder, and so no page: name one by out")
+    return Path(_voidwalk.report(os.fspath(folder)))
+
+
 def _written(place: Path, content: bytes) -> Path:
     """Writes a file whole or not at all: an older one stays until all of the new one is there."""
     part = place.with_name(f"{place.name}.{os.getpid()}.part")
@@ -236,12 +315,12 @@ class CampaignResult:
     cases: Table
 
     def __init__(self, folder: Path) -> None:
-        self.folder, self.cases = folder, _read_csv(folder / "cases.csv")
+        self.folder, self.cases = folder, read_csv(folder / "cases.csv")
 
-    def to_pandas(self) -> Any:
+    def to_pandas(self) -> "pandas.DataFrame":
         """The cases as a pandas.DataFrame."""
-        pandas: Any = import_module("pandas")
-        return pandas.DataFrame(self.cases)
+        frame: pandas.DataFrame = import_module("pandas").DataFrame(self.cases)
+        return frame
 
     def __len__(self) -> int:
         return len(next(iter(self.cases.values()), []))
@@ -261,7 +340,8 @@ def _column(name: str, cells: List[str]) -> NDArray[Any]:
     return np.array(cells)
 
 
-def _read_csv(path: Path) -> Table:
+def read_csv(path: Path) -> Table:
+    """The columns of a CSV file."""
     with open(path, newline="", encoding="utf-8") as file:
         rows = list(csv.reader(file))
     names = rows[0]
@@ -272,5 +352,5 @@ def _read_csv(path: Path) -> Table:
 def read_run(folder: Path) -> Result:
     """The result of a run folder."""
     outcome = json.loads((folder / "outcome.json").read_text(encoding="utf-8"))
-    tables = {name: _read_csv(folder / file) for name, file in _TABLES.items() if (folder / file).exists()}
+    tables = {name: read_csv(folder / file) for name, file in _TABLES.items() if (folder / file).exists()}
     return Result(outcome, tables, folder=folder)

@@ -3,38 +3,29 @@
 from __future__ import annotations
 
 import json
-import os
-from typing import Any, Dict, List, Optional, Tuple, Union
+from typing import Optional
 
 from . import _voidwalk
-from ._soil import Gradation
+from ._tables import Soil, curves
+from .records import PairRules
 
 __all__ = ["rules"]
 
-_Soil = Union[Gradation, str, "os.PathLike[str]"]
-
-
-def _curves(name: str, soil: _Soil) -> List[Tuple[str, _voidwalk.Gradation]]:
-    if isinstance(soil, Gradation):
-        return [(name, soil._native)]
-    return _voidwalk.Gradation.in_file(os.fspath(soil))
-
-
 def rules(
-    base: _Soil,
-    filter: _Soil,
+    base: Soil,
+    filter: Soil,
     *,
     dispersive: bool = False,
     joint_mm: Optional[float] = None,
     as_given: bool = False,
-) -> Dict[str, Any]:
+) -> PairRules:
     """Every rule of filter practice on a base and a filter, as ``voidwalk rules BASE FILTER --json`` prints it.
 
     Parameters
     ----------
-    base, filter : Gradation or path-like
-        The soil to be retained, and the soil that retains it. Several soils in a file are the curves of one
-        envelope; ``"FILE#NAME"`` takes one.
+    base, filter : Gradation, path-like, or a pair of array_like
+        The soil to be retained, and the soil that retains it, as for :func:`judge`. Several soils in a file are
+        the curves of one envelope; ``"FILE#NAME"`` takes one.
     dispersive : bool
         The base is a dispersive clay or silt.
     joint_mm : float, optional
@@ -60,6 +51,6 @@ def rules(
     >>> [rule["met"] for rule in pair["rules"] if rule["id"] == "sherard-dunnigan"]
     [True]
     """
-    bases, filters = _curves("base", base), _curves("filter", filter)
-    found: Dict[str, Any] = json.loads(_voidwalk.rules(bases, filters, dispersive, joint_mm, as_given))
+    bases, filters = curves("base", base), curves("filter", filter)
+    found: PairRules = json.loads(_voidwalk.rules(bases, filters, dispersive, joint_mm, as_given))
     return found

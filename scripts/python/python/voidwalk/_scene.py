@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -12,8 +12,14 @@ from . import _voidwalk
 
 __all__ = ["Scene", "init_text", "scene_text"]
 
+#: What a setting may be: a number, a word, a path, a list of them, or a table.
+Setting = Union[None, bool, float, str, "os.PathLike[str]", Sequence[object], Mapping[str, object]]
+
+#: Settings by their names, as ``{"base.cu": 3}``.
+Settings = Mapping[str, Setting]
+
 #: A scene's file, what it would say, or nothing for the built-in scene.
-Stated = Union[None, str, "os.PathLike[str]", Mapping[str, Any]]
+Stated = Union[None, str, "os.PathLike[str]", Settings]
 
 
 class Scene:
@@ -51,7 +57,7 @@ class Scene:
     _native: _voidwalk.Scene
 
     def __init__(
-        self, scene: Union[Scene, Stated] = None, settings: Optional[Mapping[str, Any]] = None
+        self, scene: Union[Scene, Stated] = None, settings: Optional[Settings] = None
     ) -> None:
         self._native = native_scene(scene, settings)
 
@@ -91,14 +97,17 @@ class Scene:
         return f"Scene({self._native.name}: {', '.join(parts)})"
 
 
+def assignments(settings: Optional[Settings]) -> List[str]:
+    """Settings as the library takes them: ``base.cu=3``."""
+    stated = _stated(settings or {})
+    return [f"{key}={json.dumps(of, default=_plain, allow_nan=False)}" for key, of in stated.items()]
+
+
 def native_scene(
-    scene: Union[Scene, Stated], settings: Optional[Mapping[str, Any]] = None
+    scene: Union[Scene, Stated], settings: Optional[Settings] = None
 ) -> _voidwalk.Scene:
     """The library's scene of what a user states, with the settings that change it."""
-    changes: List[str] = []
-    if settings is not None:
-        stated = _stated(settings)
-        changes = [f"{key}={json.dumps(of, default=_plain, allow_nan=False)}" for key, of in stated.items()]
+    changes = assignments(settings)
     if scene is None:
         return _voidwalk.Scene.built_in(changes)
     if isinstance(scene, Scene):
@@ -109,7 +118,7 @@ def native_scene(
     return _voidwalk.Scene.from_file(os.fspath(scene), changes)
 
 
-def as_json(table: Mapping[str, Any]) -> str:
+def as_json(table: Settings) -> str:
     """What a scene's or plan's dict says, for the library."""
     try:
         return json.dumps(_stated(table), default=_plain, allow_nan=False)
@@ -135,7 +144,7 @@ def _stated(value: Any) -> Any:
     return value
 
 
-def scene_text(scene: Union[Scene, Stated] = None, settings: Optional[Mapping[str, Any]] = None) -> str:
+def scene_text(scene: Union[Scene, Stated] = None, settings: Optional[Settings] = None) -> str:
     """A scene with every setting that it has, as TOML; the built-in scene without one.
 
     Examples

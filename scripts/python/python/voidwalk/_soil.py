@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Optional, Tuple, Union
+from typing import Any, Optional, Protocol, Tuple, Union
+
+from numpy.typing import ArrayLike
 
 from . import _voidwalk
 from ._arrays import Floats, floats, frozen
+from ._boxes import box
+from ._plots import Axes, plot_curve, plot_gradation
 
 __all__ = ["Curve", "Gradation"]
 
@@ -18,6 +22,13 @@ def _known(value: Optional[float], name: str) -> float:
             "sieve); give d0_mm or finer sieves"
         )
     return value
+
+
+class Frame(Protocol):
+    """Columns that are had by their names, as of a pandas.DataFrame."""
+
+    def __contains__(self, name: object, /) -> bool: ...
+    def __getitem__(self, name: Any, /) -> Any: ...
 
 
 class Gradation:
@@ -49,7 +60,7 @@ class Gradation:
     __slots__ = ("_native",)
     _native: _voidwalk.Gradation
 
-    def __init__(self, size_mm: Any, percent_finer: Any, d0_mm: Optional[float] = None) -> None:
+    def __init__(self, size_mm: ArrayLike, percent_finer: ArrayLike, d0_mm: Optional[float] = None) -> None:
         sizes, percents = floats("size_mm", size_mm, None), floats("percent_finer", percent_finer, None)
         self._native = _voidwalk.Gradation.from_points(sizes, percents, d0_mm)
 
@@ -128,7 +139,7 @@ class Gradation:
     @classmethod
     def from_dataframe(
         cls,
-        frame: Any,
+        frame: Frame,
         size: str = "opening_mm",
         percent: str = "percent_finer",
         d0_mm: Optional[float] = None,
@@ -187,6 +198,22 @@ class Gradation:
         """Sizes (mm, rising) and percents finer by mass, each of shape (n,), as they are plotted."""
         return self._native.points()
 
+    def plot(self, ax: Optional[Axes] = None, *, label: Optional[str] = None) -> Axes:
+        """Draws percent finer by mass against size (mm) by matplotlib.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to; a new figure without it.
+        label : str, optional
+            Its name in the legend.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+        """
+        return plot_gradation(*self.points(), label, ax)
+
     def base_particles(
         self, filter: Gradation, voids: int, grains_per_void: float, mass_ratio: float = 0.05
     ) -> int:
@@ -232,6 +259,15 @@ class Gradation:
         sizes, _ = self.points()
         return f"Gradation({len(sizes)} points, {sizes[0]:g} to {sizes[-1]:g} mm)"
 
+    def _repr_html_(self) -> str:
+        sizes, percents = self.points()
+        known = {f"D{percent}": self._native.d(percent) for percent in (15, 50, 85)}
+        cu = self._native.cu
+        facts = {name: "finer than the finest sieve" if d is None else f"{d:.4g} mm" for name, d in known.items()}
+        facts["Cu"] = "not known" if cu is None else f"{cu:.3g}"
+        rows = [(f"{size:g} mm", f"{percent:g} %") for size, percent in zip(sizes[::-1], percents[::-1])]
+        return box("Gradation", facts, ("Size", "Finer by mass"), rows)
+
 
 class Curve:
     """Constriction sizes of a filter by number: percent smaller against diameter.
@@ -251,14 +287,16 @@ class Curve:
     0.25
     """
 
-    __slots__ = ("_native", "filter", "grains_per_void")
+    __slots__ = {
+        "_native": "",
+        "filter": "Gradation of the filter of a shipped curve, a straight line, or None.",
+        "grains_per_void": "Filter grains per void where the curve was measured, or None.",
+    }
     _native: _voidwalk.Curve
-    #: Gradation of the filter of a shipped curve, a straight line, or ``None``.
     filter: Optional[Gradation]
-    #: Filter grains per void where the curve was measured, or ``None``.
     grains_per_void: Optional[float]
 
-    def __init__(self, percent_smaller: Any, diameter_mm: Any) -> None:
+    def __init__(self, percent_smaller: ArrayLike, diameter_mm: ArrayLike) -> None:
         percents = floats("percent_smaller", percent_smaller, None)
         self._native = _voidwalk.Curve.from_points(percents, floats("diameter_mm", diameter_mm, None))
         self.filter, self.grains_per_void = None, None
@@ -312,6 +350,18 @@ class Curve:
     def points(self) -> Tuple[Floats, Floats]:
         """Percents smaller and diameters (mm), each of shape (n,)."""
         return self._native.points()
+
+    def plot(self, ax: Optional[Axes] = None, *, label: Optional[str] = None) -> Axes:
+        """Draws percent smaller by number against the diameter (mm) of constrictions, as :meth:`Gradation.plot`."""
+        return plot_curve(*self.points(), label, ax)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Curve):
+            return NotImplemented
+        same = all(a.shape == b.shape and bool((a == b).all()) for a, b in zip(self.points(), other.points()))
+        return same and (self.filter, self.grains_per_void) == (other.filter, other.grains_per_void)
+
+    __hash__ = None  # type: ignore[assignment]
 
     def __reduce__(self) -> Tuple[Any, ...]:
         return _curve, (*self.points(), self.grains_per_void, self.filter)

@@ -14,6 +14,10 @@ _Grains = Tuple[_Floats, _Floats, _Cell]
 _Tables = Dict[str, Dict[str, NDArray[Any]]]
 #: Memory (bytes), threads, how often progress is saved, and what the manifest says.
 _Manner = Tuple[Optional[int], Optional[int], Optional[str], str]
+#: Density, pack, quick, as sampled, as given, and settings.
+_TableOptions = Tuple[Optional[str], bool, bool, bool, bool, List[str]]
+#: Densities, pack, thicknesses, and the range of D15F/D85B.
+_Search = Tuple[List[str], bool, List[str], Tuple[float, float]]
 #: Manifest, scene, and the record of a packing.
 _Texts = Tuple[str, str, Optional[str]]
 _Callback = Optional[Callable[[Progress], object]]
@@ -39,6 +43,11 @@ __all__ = [
     "run_in_memory",
     "Curve",
     "Gradation",
+    "compare",
+    "design",
+    "percolation",
+    "schema",
+    "soils",
     "replicate_seed",
     "walk",
     "Progress",
@@ -152,6 +161,7 @@ class Network:
     def fingerprint(self) -> str: ...
     def conns(self) -> _Ints: ...
     def diameter(self) -> _Floats: ...
+    def conductance(self) -> _Floats: ...
     def inlets(self) -> _Ints: ...
     def outlets(self) -> _Ints: ...
     def layer(self) -> _Ints: ...
@@ -207,6 +217,8 @@ class Scene:
     @staticmethod
     def built_in(settings: List[str]) -> Scene: ...
     @staticmethod
+    def of_tables(base: _Path, filter: _Path, tables: _TableOptions) -> Scene: ...
+    @staticmethod
     def from_file(path: _Path, settings: List[str]) -> Scene: ...
     @staticmethod
     def from_json(text: str, settings: List[str]) -> Scene: ...
@@ -232,6 +244,42 @@ def campaign(
     manner: _Manner,
     progress: _Callback,
 ) -> None: ...
+def schema(name: str) -> str: ...
+def soils(path: _Path, d0_mm: Optional[float]) -> str: ...
+def compare(
+    base: Optional[_Path],
+    filter: Optional[_Path],
+    others: List[str],
+    tables: _TableOptions,
+    out: _Path,
+    overwrite: bool,
+    packings: _Path,
+    manner: _Manner,
+    progress: _Callback,
+) -> str: ...
+def design(
+    base: Optional[_Path],
+    filter: Optional[str],
+    search: _Search,
+    settings: List[str],
+    as_sampled: bool,
+    as_given: bool,
+    inverse: bool,
+    out: _Path,
+    overwrite: bool,
+    packings: _Path,
+    manner: _Manner,
+    progress: _Callback,
+) -> str: ...
+def percolation(
+    shapes: List[Tuple[int, int, int]],
+    realisations: int,
+    seed: int,
+    out: _Path,
+    overwrite: bool,
+    threads: Optional[int],
+    progress: _Callback,
+) -> str: ...
 def report(folder: _Path) -> os.PathLike[str]: ...
 def run_page(outcome: str, texts: _Texts, tables: _Tables) -> str: ...
 def run_brief(outcome: str) -> str: ...

@@ -8,16 +8,17 @@ import sys
 from pathlib import Path
 from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
+import numpy as np
+
 from . import _voidwalk
 from ._arrays import threads_or_none, whole
-from ._grains import Packing
 from ._network import Network
 from ._progress import Follower, Following
 from ._result import CampaignResult, Result, read_run
-from ._scene import Scene, Stated, as_json, native_scene
+from ._scene import Scene, Settings, Stated, as_json, native_scene
 from ._soil import Gradation
 
-__all__ = ["campaign", "read", "replicate_seed", "resume", "run", "walk"]
+__all__ = ["campaign", "replicate_seed", "resume", "run", "walk"]
 
 def replicate_seed(seed: int, replicate: int) -> int:
     """Seed of the network and the walk of a replicate, counted from 1, of a scene with this seed.
@@ -132,7 +133,12 @@ def walk(
     >>> vw.walk(made, base, n_base=20_000, replicates=3).verdict
     'continuing erosion'
     """
-    soil = base if isinstance(base, Gradation) else Gradation.single(float(base))
+    if isinstance(base, Gradation):
+        soil = base
+    elif isinstance(base, (int, float, np.integer, np.floating)):
+        soil = Gradation.single(float(base))
+    else:
+        raise ValueError(f"base = {base!r} is not allowed; a Gradation, or the one size (mm) of its particles")
     seed, count = whole("seed", seed), whole("replicates", replicates, 1)
     if count > 100_000:
         raise ValueError(f"replicates = {count} is not allowed; a whole number from 1 to 100000")
@@ -178,7 +184,7 @@ def walk(
     return Result(json.loads(said), tables, blocked=blocked)
 
 
-def _manner(
+def manner(
     call: str, memory: Optional[int], threads: Optional[int], checkpoint_every: Optional[str]
 ) -> Tuple[Optional[int], Optional[int], Optional[str], str]:
     """How a long call is done, checked; the manifest says that the work was started with this one."""
@@ -195,7 +201,7 @@ def run(
     out: Union[None, str, os.PathLike[str]] = None,
     threads: Optional[int] = None,
     *,
-    settings: Optional[Mapping[str, Any]] = None,
+    settings: Optional[Settings] = None,
     overwrite: bool = False,
     packings: Union[str, os.PathLike[str]] = "voidwalk-packings",
     memory: Optional[int] = None,
@@ -251,12 +257,12 @@ def run(
     'continuing erosion'
     """
     native = native_scene(scene, settings)
-    manner = _manner("run", memory, threads, checkpoint_every)
+    how = manner("run", memory, threads, checkpoint_every)
     with Following(progress) as callback:
         if out is None:
-            said, tables, texts = _voidwalk.run_in_memory(native, os.fspath(packings), manner, callback)
+            said, tables, texts = _voidwalk.run_in_memory(native, os.fspath(packings), how, callback)
             return Result(json.loads(said), tables, texts=texts)
-        folder = _voidwalk.run(native, os.fspath(out), bool(overwrite), os.fspath(packings), manner, callback)
+        folder = _voidwalk.run(native, os.fspath(out), bool(overwrite), os.fspath(packings), how, callback)
     return read_run(Path(folder))
 
 
@@ -281,14 +287,14 @@ def resume(
     -------
     Result
     """
-    manner = _manner("resume", memory, threads, checkpoint_every)
+    how = manner("resume", memory, threads, checkpoint_every)
     with Following(progress) as callback:
-        _voidwalk.resume(os.fspath(folder), manner, callback)
+        _voidwalk.resume(os.fspath(folder), how, callback)
     return read_run(Path(folder))
 
 
 def campaign(
-    plan: Union[str, os.PathLike[str], Mapping[str, Any]],
+    plan: Union[str, os.PathLike[str], Settings],
     out: Union[str, os.PathLike[str]] = "voidwalk-campaign",
     threads: Optional[int] = None,
     *,
@@ -322,33 +328,8 @@ def campaign(
         Cases that could not be walked; the others are done.
     """
     path, text = ("plan.toml", as_json(plan)) if isinstance(plan, Mapping) else (os.fspath(plan), None)
-    manner = _manner("campaign", memory, threads, checkpoint_every)
+    how = manner("campaign", memory, threads, checkpoint_every)
     kept = None if packings is None else os.fspath(packings)
     with Following(progress) as callback:
-        _voidwalk.campaign(path, text, os.fspath(out), kept, manner, callback)
+        _voidwalk.campaign(path, text, os.fspath(out), kept, how, callback)
     return CampaignResult(Path(out))
-
-
-def read(folder: Union[str, os.PathLike[str]]) -> Union[Result, CampaignResult, Packing]:
-    """What lies in a finished folder of a run, a campaign or a packing.
-
-    Parameters
-    ----------
-    folder : path-like
-        The folder.
-
-    Returns
-    -------
-    Result, CampaignResult or Packing
-    """
-    place = Path(folder)
-    if (place / "outcome.json").is_file():
-        return read_run(place)
-    if (place / "cases.csv").is_file():
-        return CampaignResult(place)
-    if (place / "packing.json").is_file():
-        packing = Packing.from_file(place / "grains.csv")
-        recorded: Dict[str, Any] = json.loads((place / "packing.json").read_text(encoding="utf-8"))
-        packing.reached = {**recorded.get("after", {}), "seed": recorded.get("seed")}
-        return packing
-    raise ValueError(f"{place}: holds no outcome.json, cases.csv or packing.json; name a finished folder")

@@ -1,0 +1,142 @@
+"""Two sieve tables in, the whole answer out; and what is understood of a table."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import List, Optional, Union
+
+from . import _voidwalk
+from ._progress import Follower, Following
+from .records import SoilSummary
+from ._result import Result, read_run
+from ._scene import Settings
+from ._soil import Gradation
+from ._tables import Soil, changes, gradation, workplace
+from ._walk import manner
+
+__all__ = ["judge", "soil"]
+
+
+def judge(
+    base: Soil,
+    filter: Soil,
+    out: Union[None, str, "os.PathLike[str]"] = None,
+    threads: Optional[int] = None,
+    *,
+    density: Optional[str] = None,
+    pack: bool = False,
+    quick: bool = False,
+    as_sampled: bool = False,
+    as_given: bool = False,
+    dispersive: bool = False,
+    joint_mm: Optional[float] = None,
+    seed: Optional[int] = None,
+    replicates: Optional[int] = None,
+    settings: Optional[Settings] = None,
+    overwrite: bool = False,
+    packings: Union[str, "os.PathLike[str]"] = "voidwalk-packings",
+    memory: Optional[int] = None,
+    checkpoint_every: Optional[str] = None,
+    progress: Follower = None,
+) -> Result:
+    """Judges whether a filter holds a base, as ``voidwalk judge BASE FILTER`` does, to the same bits.
+
+    Parameters
+    ----------
+    base, filter : Gradation, path-like, or a pair of array_like
+        The soil to be retained, and the soil that retains it: a gradation, a file (``"FILE#NAME"`` for one of
+        several soils), or sizes (mm) and percents finer by mass.
+    out : path-like, optional
+        Folder for the results. A run that was stopped there goes on. Without it everything stays in memory.
+    threads : int, optional
+        One per core without it; they change no bit.
+    density : {"loose", "medium", "dense"}, optional
+        Density of the filter, whose constrictions come from the library of packings. Loose and dense are both
+        walked without it.
+    pack : bool
+        Pack the grains of this very filter and measure its constrictions; loose without a density.
+    quick : bool
+        A first look: five replicates, no studies of the amount of base and of the thickness.
+    as_sampled : bool
+        Walk the base as sampled, not as filter practice regrades it.
+    as_given : bool
+        Take the two as they are given, though they look exchanged.
+    dispersive : bool
+        The base is dispersive: stricter limits if it has many fines.
+    joint_mm : float, optional
+        Width (mm) of an open joint at the exit: adds the probability of continuing erosion into it.
+    seed : int, optional
+        The same seed gives the same bits.
+    replicates : int, optional
+        Walks with random numbers of their own.
+    settings : mapping, optional
+        Further settings of the scene, as ``{"network.nx": 20}``.
+    overwrite, packings, memory, checkpoint_every, progress
+        As for :func:`run`.
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    ValueError
+        The two look exchanged; a table or a setting that is refused.
+    VoidwalkError
+        Work that failed.
+
+    Examples
+    --------
+    >>> import voidwalk as vw
+    >>> base, filter = ([0.08, 0.3], [0, 100]), ([0.5, 2.0], [0, 100])
+    >>> small = {"network.nx": 10, "network.ny": 10, "network.nz": 12}
+    >>> vw.judge(base, filter, density="dense", quick=True, settings=small).verdict
+    'no erosion'
+    """
+    options = {
+        "dispersive": ("base.dispersive", True if dispersive else None),
+        "joint_mm": ("filter.joint_mm", joint_mm),
+        "seed": ("seed", seed),
+        "replicates": ("replicates", replicates),
+    }
+    tables = (density, bool(pack), bool(quick), bool(as_sampled), bool(as_given), changes(settings, options))
+    how = manner("judge", memory, threads, checkpoint_every)
+    with workplace() as place, Following(progress) as callback:
+        scene = _voidwalk.Scene.of_tables(place.table("base", base), place.table("filter", filter), tables)
+        if out is None:
+            said, columns, texts = _voidwalk.run_in_memory(scene, os.fspath(packings), how, callback)
+            return Result(json.loads(said), columns, texts=texts)
+        folder = _voidwalk.run(scene, os.fspath(out), bool(overwrite), os.fspath(packings), how, callback)
+    return read_run(Path(folder))
+
+
+def soil(soil: Soil, *, d0_mm: Optional[float] = None) -> List[SoilSummary]:
+    """What is understood of a soil, or of every soil in a file, as ``voidwalk soil FILE --json`` prints it.
+
+    Parameters
+    ----------
+    soil : Gradation, path-like, or a pair of array_like
+        A file, a gradation, or sizes (mm) and percents finer by mass.
+    d0_mm : float, optional
+        Size (mm) at which a curve whose finest sieve lets some mass through goes on to 0 %.
+
+    Returns
+    -------
+    list of dict
+        For each soil its name, points, sizes (mm, ``None`` where they are finer than the finest sieve), Cu, Cc,
+        fines and gravel (%), its class by ASTM D2487, and notes on what was assumed.
+
+    Examples
+    --------
+    >>> import voidwalk as vw
+    >>> (sand,) = vw.soil(([0.075, 0.25, 0.5, 2.0], [2, 20, 60, 100]))
+    >>> round(sand["d15_mm"], 3), sand["fines_percent"], sand["class"]
+    (0.179, 2.0, 'poorly graded sand: SP')
+    """
+    with workplace() as place:
+        if isinstance(soil, Gradation) or not isinstance(soil, (str, os.PathLike)):
+            soil = gradation("soil", soil)
+        found: List[SoilSummary] = json.loads(_voidwalk.soils(place.table("soil", soil), d0_mm))
+    return found

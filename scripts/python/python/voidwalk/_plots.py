@@ -1,0 +1,243 @@
+"""Figures by matplotlib, which is imported when one is asked for."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Tuple, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._arrays import Floats, Ints
+from .records import Comparison, Design, Outcome, WalkOutcome
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes as Axes  # type: ignore[import-not-found,unused-ignore]
+else:
+    Axes = "matplotlib.axes.Axes"
+
+#: What a result draws.
+FIGURES = ("progress", "layers", "curves", "rules")
+
+_PERCENT_BY_MASS = "Percent finer by mass"
+_SIZE = "Size (mm)"
+
+
+def axes(ax: Optional[Axes], width: float = 6.4) -> Axes:
+    """The axes that a figure is drawn in: those given, or new ones."""
+    if ax is not None:
+        return ax
+    try:
+        pyplot: Any = import_module("matplotlib.pyplot")
+    except ImportError:
+        raise ImportError("plot draws by matplotlib: install matplotlib") from None
+    _, new = pyplot.subplots(figsize=(width, 4.0), layout="constrained")
+    made: Axes = new
+    return made
+
+
+def _semi_log(ax: Axes, x: str, y: str) -> None:
+    """Sizes along a logarithmic x, percents from 0 to 100 along y."""
+    ax.set_xscale("log")
+    ax.set_ylim(0, 100)
+    ax.set_xlabel(x)
+    ax.set_ylabel(y)
+    ax.grid(True, which="both", alpha=0.25)
+
+
+def plot_gradation(sizes: Floats, percents: Floats, label: Optional[str], ax: Optional[Axes]) -> Axes:
+    """Percent finer by mass against size."""
+    drawn = axes(ax)
+    drawn.plot(sizes, percents, marker=".", label=label)
+    _semi_log(drawn, _SIZE, _PERCENT_BY_MASS)
+    if label is not None:
+        drawn.legend()
+    return drawn
+
+
+def plot_curve(percents: Floats, sizes: Floats, label: Optional[str], ax: Optional[Axes]) -> Axes:
+    """Percent smaller by number against the diameter of constrictions."""
+    drawn = axes(ax)
+    drawn.plot(sizes, percents, label=label)
+    _semi_log(drawn, "Constriction diameter (mm)", "Percent smaller by number")
+    if label is not None:
+        drawn.legend()
+    return drawn
+
+
+def plot_network(
+    diameter: Floats, layer: Ints, blocked: Optional[NDArray[np.bool_]], ax: Optional[Axes]
+) -> Axes:
+    """The sizes of constrictions; or, of those that are blocked, the share by layer."""
+    if blocked is None:
+        sizes = np.sort(diameter[diameter > 0])
+        return plot_curve(100 * np.arange(1, len(sizes) + 1) / max(len(sizes), 1), sizes, None, ax)
+    if blocked.shape != diameter.shape:
+        raise ValueError(f"blocked has shape {blocked.shape}; {diameter.shape} is needed, a bool by constriction")
+    layers = np.unique(layer[layer >= 0])
+    share = [100 * float(blocked[layer == one].mean()) for one in layers]
+    drawn = axes(ax)
+    drawn.step(layers, share, where="mid")
+    drawn.set_xlabel("Layer, along the flow")
+    drawn.set_ylabel("Blocked constrictions (%)")
+    drawn.set_ylim(bottom=0)
+    return drawn
+
+
+def plot_result(
+    outcome: Outcome, tables: Mapping[str, Mapping[str, NDArray[Any]]], what: str, ax: Optional[Axes]
+) -> Axes:
+    """One of the figures of a result."""
+    if what == "progress":
+        return _progress(tables["series"], outcome["threshold"], ax)
+    if what == "layers":
+        return _layers(tables["layers"], ax)
+    if what == "curves":
+        return _curves(outcome, tables, ax)
+    if what == "rules":
+        return _rules(outcome, ax)
+    raise ValueError(f"what = {what!r} is not allowed; one of {', '.join(FIGURES)}")
+
+
+def _mean_and_range(
+    table: Mapping[str, NDArray[Any]], run: int, along: str, value: NDArray[Any]
+) -> Tuple[NDArray[Any], List[float], List[float], List[float]]:
+    """Mean, least and greatest over the replicates of a run."""
+    of_run = table["run"] == run
+    places = np.unique(table[along][of_run])
+    groups = [value[of_run & (table[along] == place)] for place in places]
+    return (
+        places,
+        [float(group.mean()) for group in groups],
+        [float(group.min()) for group in groups],
+        [float(group.max()) for group in groups],
+    )
+
+
+def _by_run(ax: Axes, table: Mapping[str, NDArray[Any]], along: str, value: NDArray[Any]) -> None:
+    for run in np.unique(table["run"]):
+        places, mean, low, high = _mean_and_range(table, int(run), along, value)
+        (line,) = ax.plot(places, mean, label=f"Run {run}, mean and range of replicates")
+        ax.fill_between(places, low, high, alpha=0.2, color=line.get_color())
+
+
+def _progress(series: Mapping[str, NDArray[Any]], threshold: float, ax: Optional[Axes]) -> Axes:
+    drawn = axes(ax)
+    _by_run(drawn, series, "increment", 100 * series["eroded_mass_fraction"])
+    drawn.axhline(100 * threshold, color="black", linestyle="--", linewidth=1, label="Erosion begins")
+    drawn.set_xlabel("Increment")
+    drawn.set_ylabel("Eroded mass (% of the mass inserted)")
+    drawn.set_ylim(bottom=0)
+    drawn.legend()
+    return drawn
+
+
+def _layers(layers: Mapping[str, NDArray[Any]], ax: Optional[Axes]) -> Axes:
+    drawn = axes(ax)
+    _by_run(drawn, layers, "layer", 100 * layers["blocked"] / np.maximum(layers["constrictions"], 1))
+    drawn.set_xlabel("Layer, along the flow")
+    drawn.set_ylabel("Blocked constrictions (%)")
+    drawn.set_ylim(bottom=0)
+    drawn.legend()
+    return drawn
+
+
+def _curves(
+    outcome: Outcome, tables: Mapping[str, Mapping[str, NDArray[Any]]], ax: Optional[Axes]
+) -> Axes:
+    drawn = axes(ax)
+    inputs = outcome.get("inputs")
+    lines: Dict[str, Sequence[Sequence[float]]] = {}
+    if inputs is None:
+        lines["Base, as walked"] = cast(WalkOutcome, outcome)["base"]["gradation"]
+    else:
+        lines["Base, as walked"] = inputs["base"]["gradation"]
+        lines["Filter"] = inputs["filter"]["gradation"]
+        lines["Constrictions, by number"] = inputs["filter"]["constrictions"]
+    for label, points in lines.items():
+        drawn.plot([point[0] for point in points], [point[1] for point in points], label=label)
+    for name, label in (("retained", "Retained, run 1"), ("eroded", "Eroded, run 1")):
+        table = tables[name]
+        chosen = (table["run"] == 1) & (table["replicate"] == 1) if len(table.get("run", ())) else np.zeros(0, bool)
+        if chosen.any():
+            chosen &= table["increment"] == table["increment"][chosen].max()
+            sizes, percents = table["diameter_mm"][chosen], table["percent_finer_by_mass"][chosen]
+            drawn.plot(sizes, percents, linestyle="--", label=label)
+    _semi_log(drawn, _SIZE, f"{_PERCENT_BY_MASS} (constrictions: smaller by number)")
+    drawn.legend()
+    return drawn
+
+
+def _rules(outcome: Outcome, ax: Optional[Axes]) -> Axes:
+    rules = outcome.get("rules")
+    if rules is None:
+        raise ValueError("a walk on a network has no rules of practice in its outcome: voidwalk.rules gives them")
+    ratios: List[float] = []
+    names: List[str] = []
+    colours: List[str] = []
+    for rule in rules:
+        value, limit = rule["value"], rule["limit"]
+        if value and limit:
+            ratios.append(limit / value if rule["at_least"] else value / limit)
+            names.append(rule["name"])
+            colours.append({True: "tab:green", False: "tab:red", None: "tab:gray"}[rule["met"]])
+    drawn = axes(ax, 8.0)
+    places = list(range(len(names)))
+    drawn.scatter(ratios, places, c=colours)
+    drawn.axvline(1, color="black", linewidth=1)
+    drawn.set_xscale("log")
+    drawn.set_yticks(places, names)
+    drawn.invert_yaxis()
+    drawn.set_xlabel("Value over limit (for a least value, limit over value); kept up to 1")
+    drawn.grid(True, axis="x", which="both", alpha=0.25)
+    return drawn
+
+
+def plot_comparison(outcome: Comparison, ax: Optional[Axes]) -> Axes:
+    """Eroded mass of each case and run, with its 95 % interval."""
+    drawn = axes(ax)
+    cases = outcome["cases"]
+    for run in range(max((len(case["runs"]) for case in cases), default=0)):
+        walked = [(at, case["runs"][run]) for at, case in enumerate(cases) if len(case["runs"]) > run]
+        means = [100 * of["mean"] for _, of in walked]
+        # One replicate has no interval.
+        lows = [of["mean"] if of["low"] is None else of["low"] for _, of in walked]
+        highs = [of["mean"] if of["high"] is None else of["high"] for _, of in walked]
+        errors = [
+            [max(mean - 100 * low, 0.0) for mean, low in zip(means, lows)],
+            [max(100 * high - mean, 0.0) for mean, high in zip(means, highs)],
+        ]
+        places = [at + 0.15 * (run - 0.5) for at, _ in walked]
+        drawn.errorbar(places, means, yerr=errors, fmt="o", capsize=4, label=f"Run {run + 1}, mean and 95 % interval")
+    drawn.axhline(100 * outcome["threshold"], color="black", linestyle="--", linewidth=1, label="Erosion begins")
+    drawn.set_xticks(range(len(cases)), [case["name"] for case in cases])
+    drawn.set_ylabel("Eroded mass (% of the mass inserted)")
+    drawn.set_ylim(bottom=0)
+    drawn.legend()
+    return drawn
+
+
+def plot_design(outcome: Design, walks: Mapping[str, NDArray[Any]], ax: Optional[Axes]) -> Axes:
+    """Eroded mass of the first run against D15F/D85B, and the boundaries of no and of continuing erosion."""
+    drawn = axes(ax)
+    for row in outcome["boundaries"]:
+        chosen = (walks["density"] == row["density"]) & (walks["thickness"] == row["thickness"])
+        points = drawn.scatter(
+            walks["d15f_over_d85b"][chosen],
+            100 * walks["eroded_first"][chosen],
+            s=12,
+            label=f"{row['density']}, {row['thickness']}",
+        )
+        colour = points.get_facecolor()[0]
+        for boundary, style in ((row["no_erosion"], "-"), (row["continuing"], ":")):
+            if boundary is not None:
+                drawn.axvline(boundary["median"], color=colour, linestyle=style, linewidth=1)
+    drawn.axhline(100 * outcome["threshold"], color="black", linestyle="--", linewidth=1, label="Erosion begins")
+    drawn.plot([], [], color="gray", label="No erosion up to, median")
+    drawn.plot([], [], color="gray", linestyle=":", label="Continuing erosion from, median")
+    drawn.set_xscale("log")
+    drawn.set_xlabel("D15F/D85B")
+    drawn.set_ylabel("Eroded mass of the first run (%)")
+    drawn.set_ylim(bottom=0)
+    drawn.legend()
+    return drawn

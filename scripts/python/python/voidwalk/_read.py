@@ -1,0 +1,51 @@
+"""Finished folders, read back."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import Union
+
+from ._grains import Packing
+from ._result import CampaignResult, Result, read_csv, read_run
+from ._studies import Comparison, Design
+
+__all__ = ["read"]
+
+
+def read(
+    folder: Union[str, "os.PathLike[str]"],
+) -> Union[Result, CampaignResult, Comparison, Design, Packing]:
+    """What lies in a finished folder of a run, a campaign, a comparison, a design or a packing.
+
+    Parameters
+    ----------
+    folder : path-like
+        The folder.
+
+    Returns
+    -------
+    Result, CampaignResult, Comparison, Design or Packing
+    """
+    place = Path(folder)
+
+    def record(name: str) -> str:
+        return (place / name).read_text(encoding="utf-8")
+
+    if (place / "outcome.json").is_file():
+        return read_run(place)
+    if (place / "cases.csv").is_file():
+        return CampaignResult(place)
+    if (place / "compare.json").is_file():
+        return Comparison(json.loads(record("compare.json")), read_csv(place / "compare.csv"), place)
+    if (place / "design.json").is_file():
+        return Design(json.loads(record("design.json")), read_csv(place / "design.csv"), place)
+    if (place / "packing.json").is_file():
+        packing = Packing.from_file(place / "grains.csv")
+        recorded = json.loads(record("packing.json"))
+        packing.reached = {**recorded.get("after", {}), "seed": recorded.get("seed")}
+        return packing
+    raise ValueError(
+        f"{place}: holds no outcome.json, cases.csv, compare.json, design.json or packing.json; name a finished folder"
+    )

@@ -1,0 +1,526 @@
+"""Several walks: filters or bases side by side, how coarse a filter may be, and studies of parameters."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import os
+from importlib import import_module
+from pathlib import Path
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Callable,
+    Dict,
+    Iterable,
+    List,
+    Mapping,
+    Optional,
+    Sequence,
+    Tuple,
+    Union,
+)
+
+from . import _voidwalk
+from ._arrays import threads_or_none, whole
+from ._plots import Axes, plot_comparison, plot_design
+from ._progress import Follower, Following
+from .records import (
+    ComparedCase,
+    ComparedPair,
+    Comparison as ComparisonRecord,
+    Design as DesignRecord,
+    DesignRow,
+    PercolationStudy,
+)
+from ._result import Result, Row, Table, page_of, read_csv
+from ._scene import Scene, Settings, Stated
+from ._soil import Gradation
+from ._tables import Soil, changes, gradation, workplace
+from ._walk import manner, run
+
+if TYPE_CHECKING:
+    import pandas  # type: ignore[import-untyped,import-not-found,unused-ignore]
+
+__all__ = ["Comparison", "Design", "compare", "design", "percolation", "study"]
+
+_Path = Union[str, "os.PathLike[str]"]
+
+
+class Comparison:
+    """Several cases side by side, walked with the same seed.
+
+    Attributes
+    ----------
+    outcome : dict
+        Everything that ``compare.json`` says.
+    table : dict of ndarray
+        The columns of ``compare.csv``: a row a case.
+    folder : pathlib.Path or None
+        Folder of the comparison, where it has one.
+    """
+
+    outcome: ComparisonRecord
+    table: Table
+    folder: Optional[Path]
+
+    def __init__(self, outcome: ComparisonRecord, table: Table, folder: Optional[Path] = None) -> None:
+        self.outcome, self.table, self.folder = outcome, table, folder
+
+    @property
+    def cases(self) -> List[ComparedCase]:
+        """The cases, in the order in which they were named: verdict, confidence, reasons, eroded mass."""
+        return self.outcome["cases"]
+
+    @property
+    def pairs(self) -> List[ComparedPair]:
+        """Every two cases by run: the difference of their eroded masses with its intervals."""
+        return self.outcome["pairs"]
+
+    def to_pandas(self) -> "pandas.DataFrame":
+        """The cases as a pandas.DataFrame: the columns of ``compare.csv``."""
+        frame: pandas.DataFrame = import_module("pandas").DataFrame(self.table)
+        return frame
+
+    def plot(self, ax: Optional[Axes] = None) -> Axes:
+        """Draws the eroded mass of every case and run with its 95 % interval, by matplotlib.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to; a new figure without it.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+        """
+        return plot_comparison(self.outcome, ax)
+
+    def report(self) -> Path:
+        """Writes the page of a comparison that has a folder again, and gives its path."""
+        return page_of(self.folder)
+
+    def __len__(self) -> int:
+        return len(self.cases)
+
+    def __repr__(self) -> str:
+        rows = "; ".join(f"{case['name']}: {case['verdict']}, {case['confidence']}" for case in self.cases)
+        return f"Comparison({rows})"
+
+
+class Design:
+    """How coarse a filter may be for a base; or, inversely, how fine a base may be.
+
+    Attributes
+    ----------
+    outcome : dict
+        Everything that ``design.json`` says.
+    walks : dict of ndarray
+        The columns of ``design.csv``: a row a ratio D15F/D85B that was walked on a network.
+    folder : pathlib.Path or None
+        Folder of the design, where it has one.
+    """
+
+    outcome: DesignRecord
+    walks: Table
+    folder: Optional[Path]
+
+    def __init__(self, outcome: DesignRecord, walks: Table, folder: Optional[Path] = None) -> None:
+        self.outcome, self.walks, self.folder = outcome, walks, folder
+
+    @property
+    def answer(self) -> str:
+        """How coarse the filter may be, or how fine the base, in a sentence."""
+        answer = self.outcome.get("answer")
+        return "" if answer is None else answer["said"]
+
+    @property
+    def d15f_max_mm(self) -> Optional[float]:
+        """Greatest D15F (mm) that walk and practice both allow; ``None`` where none is known."""
+        answer = self.outcome.get("answer")
+        return None if answer is None else answer["d15f_max_mm"]
+
+    @property
+    def confidence(self) -> str:
+        """How far the answer can be relied on, in the words of :attr:`Result.confidence`."""
+        return self.outcome["confidence"]
+
+    @property
+    def reasons(self) -> List[str]:
+        """The sentences of the findings that speak against the answer, the weightiest first."""
+        return self.outcome["reasons"]
+
+    @property
+    def warnings(self) -> List[str]:
+        """The sentences of all other findings."""
+        return self.outcome["warnings"]
+
+    @property
+    def boundaries(self) -> List[DesignRow]:
+        """One for each density and thickness: where no erosion turns into some, and some into continuing."""
+        return self.outcome["boundaries"]
+
+    def to_pandas(self) -> "pandas.DataFrame":
+        """Every ratio that was walked, as a pandas.DataFrame: the columns of ``design.csv``."""
+        frame: pandas.DataFrame = import_module("pandas").DataFrame(self.walks)
+        return frame
+
+    def plot(self, ax: Optional[Axes] = None) -> Axes:
+        """Draws the eroded mass against D15F/D85B on every network, and both boundaries, by matplotlib.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to; a new figure without it.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+        """
+        return plot_design(self.outcome, self.walks, ax)
+
+    def report(self) -> Path:
+        """Writes the page of a design that has a folder again, and gives its path."""
+        return page_of(self.folder)
+
+    def __repr__(self) -> str:
+        return f"Design({self.answer}; {self.confidence})"
+
+
+def compare(
+    base: Union[None, Soil, Mapping[str, Soil], Sequence[Soil]] = None,
+    filter: Union[None, Soil, Mapping[str, Soil], Sequence[Soil]] = None,
+    out: Optional[_Path] = None,
+    threads: Optional[int] = None,
+    *,
+    scenes: Sequence[_Path] = (),
+    density: Optional[str] = None,
+    pack: bool = False,
+    quick: bool = False,
+    as_sampled: bool = False,
+    as_given: bool = False,
+    dispersive: bool = False,
+    joint_mm: Optional[float] = None,
+    seed: Optional[int] = None,
+    replicates: Optional[int] = None,
+    settings: Optional[Settings] = None,
+    overwrite: bool = False,
+    packings: _Path = "voidwalk-packings",
+    memory: Optional[int] = None,
+    checkpoint_every: Optional[str] = None,
+    progress: Follower = None,
+) -> Comparison:
+    """Walks filters on one base, bases on one filter, or scenes side by side, as ``voidwalk compare`` does.
+
+    Parameters
+    ----------
+    base, filter : soil, or several
+        As for :func:`judge`. One of them is a list of two to six files, or a dict of soils by name.
+    out : path-like, optional
+        Folder for the results; a comparison that was stopped there goes on. Without it everything stays in
+        memory.
+    scenes : sequence of path-like
+        Files of scenes to compare, instead of soils.
+    threads, density, pack, quick, as_sampled, as_given, dispersive, joint_mm, seed, replicates, settings
+        As for :func:`judge`, the same for all cases.
+    overwrite, packings, memory, checkpoint_every, progress
+        As for :func:`run`; progress counts cases.
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    ValueError
+        Fewer than two cases or more than six; soils that look exchanged; a table that is refused.
+    VoidwalkError
+        Work that failed.
+
+    Examples
+    --------
+    >>> import voidwalk as vw
+    >>> base = vw.Gradation([0.08, 0.3], [0, 100])
+    >>> filters = {"fine": ([0.5, 2.0], [0, 100]), "coarse": ([3.0, 9.0], [0, 100])}
+    >>> small = {"network.nx": 10, "network.ny": 10, "network.nz": 12}
+    >>> found = vw.compare(base, filters, density="dense", quick=True, settings=small)
+    >>> [case["verdict"] for case in found.cases]
+    ['no erosion', 'continuing erosion']
+    """
+    options = {
+        "dispersive": ("base.dispersive", True if dispersive else None),
+        "joint_mm": ("filter.joint_mm", joint_mm),
+        "seed": ("seed", seed),
+        "replicates": ("replicates", replicates),
+    }
+    tables = (density, bool(pack), bool(quick), bool(as_sampled), bool(as_given), changes(settings, options))
+    how = manner("compare", memory, threads, checkpoint_every)
+    with workplace() as place, Following(progress) as callback:
+
+        def files(name: str, soils: object) -> Optional[List[str]]:
+            """The files of several soils; ``None`` for a single one."""
+            if isinstance(soils, Mapping):
+                return place.tables(name, soils)
+            if isinstance(soils, list):
+                if not all(isinstance(soil, (str, os.PathLike)) for soil in soils):
+                    raise ValueError(f"{name} is a list of files, or a dict of soils by name")
+                return [os.fspath(soil) for soil in soils]
+            return None
+
+        one_base: Optional[str] = None
+        one_filter: Optional[str] = None
+        bases, filters = files("base", base), files("filter", filter)
+        if scenes:
+            if base is not None or filter is not None:
+                raise ValueError("scenes have a base and a filter of their own: give either these or scenes")
+            others = [os.fspath(scene) for scene in scenes]
+        elif filters is not None and bases is None and base is not None:
+            one_base, others = place.table("base", base), filters  # type: ignore[arg-type]
+        elif bases is not None and filters is None and filter is not None:
+            one_filter, others = place.table("filter", filter), bases  # type: ignore[arg-type]
+        else:
+            raise ValueError("compare several filters on one base, several bases on one filter, or scenes")
+        place_of_results = Path(place.out(out))
+        said = _voidwalk.compare(
+            one_base,
+            one_filter,
+            others,
+            tables,
+            place_of_results,
+            bool(overwrite),
+            os.fspath(packings),
+            how,
+            callback,
+        )
+        return Comparison(
+            json.loads(place.named(said)),
+            read_csv(place_of_results / "compare.csv"),
+            None if out is None else place_of_results,
+        )
+
+
+def _words(given: Union[None, str, float, Sequence[Union[str, float]]]) -> List[str]:
+    """One or several densities or thicknesses, as on the command line."""
+    if given is None:
+        return []
+    several = [given] if isinstance(given, (str, int, float)) else list(given)
+    return [word if isinstance(word, str) else repr(float(word)) for word in several]
+
+
+def design(
+    base: Optional[Soil] = None,
+    filter: Union[None, Soil, float] = None,
+    out: Optional[_Path] = None,
+    threads: Optional[int] = None,
+    *,
+    density: Union[None, str, Sequence[str]] = None,
+    pack: bool = False,
+    thickness: Union[None, str, float, Sequence[Union[str, float]]] = None,
+    inverse: bool = False,
+    bracket: Tuple[float, float] = (0.5, 100.0),
+    as_sampled: bool = False,
+    as_given: bool = False,
+    seed: Optional[int] = None,
+    replicates: Optional[int] = None,
+    settings: Optional[Settings] = None,
+    overwrite: bool = False,
+    packings: _Path = "voidwalk-packings",
+    memory: Optional[int] = None,
+    progress: Follower = None,
+) -> Design:
+    """Finds how coarse a filter may be for a base, as ``voidwalk design`` does, to the same bits.
+
+    Parameters
+    ----------
+    base : soil, optional
+        As for :func:`judge`; from the settings without it.
+    filter : soil, float or str, optional
+        The filter's shape, whose size is searched: a soil, its Cu, or the name of a shipped curve.
+    out : path-like, optional
+        Folder for the results; a design that was stopped there goes on. Without it everything stays in memory.
+    threads : int, optional
+        One per core without it; they change no bit.
+    density : str or sequence of str, optional
+        "dense", "medium", "loose" or "unknown" from the library of packings; "friction=F" packs with that
+        friction, "estimate=D" guesses the constrictions at that relative density.
+    pack : bool
+        Pack the grains of this very filter and measure its constrictions.
+    thickness : str, float or sequence of them, optional
+        "60layers", "75D50F", "500mm" or a number of mm; 60 layers without it.
+    inverse : bool
+        Find the finest base that the filter holds instead.
+    bracket : (float, float)
+        D15F/D85B between which boundaries are searched.
+    as_sampled, as_given, seed, replicates, settings
+        As for :func:`judge`.
+    overwrite, packings, memory, progress
+        As for :func:`run`.
+
+    Returns
+    -------
+    Design
+
+    Raises
+    ------
+    ValueError
+        What is refused before any work.
+    VoidwalkError
+        Work that failed.
+
+    Examples
+    --------
+    >>> import voidwalk as vw
+    >>> base = vw.Gradation([0.08, 0.3], [0, 100])
+    >>> found = vw.design(base, "cu1.5-loose", thickness="10layers", replicates=2, bracket=(4, 16),
+    ...                   settings={"network.nx": 8, "network.ny": 8})
+    >>> len(found.boundaries), found.boundaries[0]["thickness"]
+    (1, '10 layers')
+    """
+    options = {"seed": ("seed", seed), "replicates": ("replicates", replicates)}
+    how = manner("design", memory, threads, None)
+    stated = changes(settings, options)
+    search = (_words(density), bool(pack), _words(thickness), (float(bracket[0]), float(bracket[1])))
+    with workplace() as place, Following(progress) as callback:
+        shape: Optional[str] = None
+        if isinstance(filter, (int, float)):
+            shape = repr(float(filter))
+        elif filter is not None:
+            shape = place.table("filter", filter)
+        place_of_results = Path(place.out(out))
+        said = _voidwalk.design(
+            None if base is None else place.table("base", base),
+            shape,
+            search,
+            stated,
+            bool(as_sampled),
+            bool(as_given),
+            bool(inverse),
+            place_of_results,
+            bool(overwrite),
+            os.fspath(packings),
+            how,
+            callback,
+        )
+        return Design(
+            json.loads(place.named(said)), read_csv(place_of_results / "design.csv"), None if out is None else place_of_results
+        )
+
+
+def percolation(
+    sizes: Sequence[Union[int, Tuple[int, int, int]]] = (10, 20, 40, 80, 160),
+    realisations: int = 100,
+    *,
+    seed: int = 1,
+    out: Optional[_Path] = None,
+    threads: Optional[int] = None,
+    overwrite: bool = False,
+    progress: Follower = None,
+) -> PercolationStudy:
+    """Finds the percolation threshold of lattices, as ``voidwalk percolation`` does, to the same bits.
+
+    Parameters
+    ----------
+    sizes : sequence of int or of (int, int, int)
+        Voids along each side of the cubes, or along x, y and z.
+    realisations : int
+        Realisations of each size.
+    seed : int
+        The same seed gives the same bits.
+    out : path-like, optional
+        Folder for the results; nothing is kept without it.
+    threads, overwrite, progress
+        As for :func:`run`.
+
+    Returns
+    -------
+    dict
+        What ``percolation.json`` says: sizes with the mean threshold and its interval, and both relations of
+        finite size that were fitted.
+
+    Examples
+    --------
+    >>> import voidwalk as vw
+    >>> found = vw.percolation([8, 12], realisations=20)
+    >>> 0.3 < found["sizes"][0]["threshold"]["mean"] < 0.5
+    True
+    """
+    lengths = [size if isinstance(size, (tuple, list)) else (size, size, size) for size in sizes]
+    shapes = [tuple(whole("sizes", length, 1) for length in of) for of in lengths]
+    if any(len(shape) != 3 or max(shape) >= 2**32 for shape in shapes):
+        raise ValueError("sizes: each is a whole number, or three, below 2**32")
+    count = whole("realisations", realisations, 1)
+    if count > 1_000_000:
+        raise ValueError(f"realisations = {count} is not allowed; a whole number from 1 to 1000000")
+    with workplace() as place, Following(progress) as callback:
+        said = _voidwalk.percolation(
+            [(x, y, z) for x, y, z in shapes],
+            count,
+            whole("seed", seed),
+            place.out(out),
+            bool(overwrite),
+            threads_or_none(threads),
+            callback,
+        )
+    found: PercolationStudy = json.loads(said)
+    return found
+
+
+def study(
+    cases: Union[Mapping[str, Iterable[object]], Iterable[Mapping[str, object]]],
+    walk: Union[None, Scene, Stated, Callable[..., Result]] = None,
+    *,
+    progress: bool = False,
+) -> "pandas.DataFrame":
+    """Walks every case of a parameter study, and gives a table with a row a case.
+
+    Parameters
+    ----------
+    cases : mapping of sequences, or iterable of mappings
+        Values by parameter, every one with every other; or the cases themselves, a dict of parameters each.
+    walk : callable, Scene, path-like, mapping or None
+        What is walked: a function that is called with the parameters of a case by name and gives a
+        :class:`Result`; or a scene as for :func:`run`, in which the parameters are settings.
+    progress : bool
+        Shows a bar over the cases where tqdm is installed.
+
+    Returns
+    -------
+    pandas.DataFrame
+        The parameters of each case, then the columns of :meth:`Result.row`.
+
+    Examples
+    --------
+    >>> import voidwalk as vw
+    >>> network = vw.Network.cubic([10, 10, 20], "cu1.5-loose")
+    >>> found = vw.study(
+    ...     {"d85_mm": [0.1, 0.2, 0.3]},
+    ...     lambda d85_mm: vw.walk(network, vw.Gradation.linear(1.5, d85_mm, percent=85), n_base=5000, replicates=2),
+    ... )
+    >>> found["eroded_1"].is_monotonic_decreasing
+    True
+    """
+    try:
+        made: Any = import_module("pandas")
+    except ImportError:
+        raise ImportError("study gives a pandas.DataFrame: install pandas") from None
+    if isinstance(cases, Mapping):
+        values = [list(of) for of in cases.values()]
+        listed = [dict(zip(cases, levels)) for levels in itertools.product(*values)]
+    else:
+        listed = [dict(case) for case in cases]
+    walked: Iterable[Dict[str, object]] = listed
+    if progress:
+        try:
+            walked = import_module("tqdm.auto").tqdm(listed, unit="case", leave=False)
+        except ImportError:
+            pass
+    rows: List[Dict[str, object]] = []
+    for case in walked:
+        if callable(walk):
+            result = walk(**case)
+        else:
+            result = run(walk, settings=case)  # type: ignore[arg-type]
+        row: Row = result.row()
+        rows.append({**case, **row})
+    frame: pandas.DataFrame = made.DataFrame(rows)
+    return frame

@@ -1,0 +1,156 @@
+#!/usr/bin/env python3
+"""Writes scripts/python/python/voidwalk/records.py, the types of every JSON record, from the JSON Schemas of the crate;
+with --check it only compares."""
+
+from __future__ import annotations
+
+import json
+import keyword
+import sys
+import textwrap
+from pathlib import Path
+from typing import Any, Dict, List, Tuple
+
+ROOT = Path(__file__).resolve().parents[2]
+SCHEMAS = ROOT / "src" / "store" / "schemas"
+WRITTEN = Path(__file__).resolve().parent / "python" / "voidwalk" / "records.py"
+
+#: What a user meets, the most important first; each gives the name of its type.
+ROOTS = {
+    "outcome": "Outcome",
+    "network-walk": "WalkOutcome",
+    "design": "Design",
+    "comparison": "Comparison",
+    "percolation": "PercolationStudy",
+    "rules": "PairRules",
+    "soils": "Soils",
+    "constrictions": "ConstrictionsSummary",
+    "packing": "PackingRecord",
+    "manifest": "Manifest",
+}
+
+#: Names that are said without what they are to the program.
+SHORT = {"FindingRecord": "Finding"}
+
+HEAD = '''"""The types of what voidwalk hands out as dicts: the records of its JSON files.
+
+Made by ``scripts/python/records.py`` from the JSON Schemas, which ``voidwalk init --schema NAME`` prints.
+"""
+
+from __future__ import annotations
+
+from typing import Dict, List, Literal, Optional, TypedDict, Union
+
+'''
+
+
+class Types:
+    """The types that were met, each once, those that others need first."""
+
+    def __init__(self) -> None:
+        self.texts: Dict[str, str] = {}
+
+    def of(self, schema: Any, defs: Dict[str, Any]) -> str:
+        """The annotation of a schema."""
+        if schema is True or schema == {}:
+            return "object"
+        if "$ref" in schema:
+            name = schema["$ref"].rsplit("/", 1)[1]
+            return self.named(SHORT.get(name, name), defs[name], defs)
+        for several in ("anyOf", "oneOf"):
+            if several in schema:
+                return self.union([self.of(one, defs) for one in schema[several]])
+        if "const" in schema:
+            return f"Literal[{json.dumps(schema['const'])}]"
+        if "enum" in schema:
+            return f"Literal[{', '.join(json.dumps(word) for word in schema['enum'])}]"
+        kinds = schema["type"] if isinstance(schema["type"], list) else [schema["type"]]
+        return self.union([self.kind(kind, schema, defs) for kind in kinds])
+
+    @staticmethod
+    def union(kinds: List[str]) -> str:
+        """Literals together, and what may be missing as such."""
+        words = [kind[len("Literal[") : -1] for kind in kinds if kind.startswith("Literal[")]
+        others = [kind for kind in dict.fromkeys(kinds) if not kind.startswith("Literal[") and kind != "None"]
+        if words:
+            others.insert(0, f"Literal[{', '.join(words)}]")
+        if not others:
+            return "None"
+        text = others[0] if len(others) == 1 else f"Union[{', '.join(others)}]"
+        return f"Optional[{text}]" if "None" in kinds else text
+
+    def kind(self, kind: str, schema: Any, defs: Dict[str, Any]) -> str:
+        """The annotation of one kind of value."""
+        plain = {"string": "str", "boolean": "bool", "integer": "int", "number": "float", "null": "None"}
+        if kind in plain:
+            return plain[kind]
+        if kind == "array":
+            return f"List[{self.of(schema.get('items', True), defs)}]"
+        if "properties" in schema:
+            fields = {name: self.of(of, defs) for name, of in schema["properties"].items()}
+            return f"Dict[str, {self.union(list(fields.values()))}]"
+        return f"Dict[str, {self.of(schema.get('additionalProperties', True), defs)}]"
+
+    def named(self, name: str, schema: Any, defs: Dict[str, Any]) -> str:
+        """A type that has a name: a dict with its fields, or what stands for it."""
+        if "properties" not in schema or schema.get("type") != "object":
+            return self.of(schema, defs)
+        required = set(schema.get("required", []))
+        groups: Tuple[List[str], List[str]] = ([], [])
+        # A class cannot have a field that is called as a word of the language is.
+        if any(keyword.iskeyword(field) for field in schema["properties"]):
+            if required != set(schema["properties"]):
+                sys.exit(f"{name} has a field that may be missing, and another that is a word of Python")
+            fields = [f'        "{field}": {self.of(of, defs)},\n' for field, of in schema["properties"].items()]
+            about = comment(schema.get("description", "")).replace("    #:", "#:")
+            text = f'{about}{name} = TypedDict(\n    "{name}",\n    {{\n{"".join(fields)}    }},\n)\n'
+            self.texts.setdefault(name, text)
+            return name
+        for field, of in schema["properties"].items():
+            said = comment(of.get("description", "") if isinstance(of, dict) else "")
+            groups[field not in required].append(f"{said}    {field}: {self.of(of, defs)}\n")
+        about = sentence(schema.get("description", ""))
+        text = ""
+        if groups[1] and groups[0]:
+            text = f"class _{name}(TypedDict):\n{''.join(groups[0])}\n\n"
+            text += f'class {name}(_{name}, total=False):\n    """{about}"""\n\n{"".join(groups[1])}'
+        else:
+            total = ", total=False" if groups[1] else ""
+            text = f'class {name}(TypedDict{total}):\n    """{about}"""\n\n{"".join(groups[0] or groups[1])}'
+        if self.texts.setdefault(name, text) != text:
+            sys.exit(f"{name} is two types")
+        return name
+
+
+def sentence(said: str) -> str:
+    """A description in lines that fit, without the marks of Rust's documentation."""
+    plain = said.replace("[`", "`").replace("`]", "`").replace("\\", "\\\\")
+    return "\n    ".join(textwrap.wrap(" ".join(plain.split()), 110)) or "A record."
+
+
+def comment(said: str) -> str:
+    """A description of a field as comments above it."""
+    plain = " ".join(said.replace("[`", "`").replace("`]", "`").split())
+    return "".join(f"    #: {line}\n" for line in textwrap.wrap(plain, 106))
+
+
+def text() -> str:
+    """The module."""
+    types = Types()
+    for name, called in ROOTS.items():
+        schema = json.loads((SCHEMAS / f"{name}.json").read_text(encoding="utf-8"))
+        types.named(called, schema, schema.get("$defs", {}))
+    listed = "".join(f'    "{name}",\n' for name in sorted(types.texts))
+    return HEAD + f"__all__ = [\n{listed}]\n\n\n" + "\n\n".join(types.texts.values())
+
+
+def main() -> None:
+    if sys.argv[1:] == ["--check"]:
+        if WRITTEN.read_text(encoding="utf-8") != text():
+            sys.exit(f"{WRITTEN.name} is not what the schemas say: run scripts/python/records.py")
+        return
+    WRITTEN.write_text(text(), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,142 @@
+//! Studies of several walks: comparisons, designs, percolation; and the soils of a file.
+
+use std::path::PathBuf;
+
+use pyo3::prelude::*;
+use voidwalk::case::CaseError;
+use voidwalk::gradation::soils_in_file;
+use voidwalk::scene::TableOptions;
+use voidwalk::store::format;
+use voidwalk::study::compare::{self as comparisons, ComparePlan, Compared};
+use voidwalk::study::design::{self as designs, DesignOptions};
+use voidwalk::study::percolation::{self as percolations, PercolationOptions, PercolationPlan};
+
+use crate::problem::{failed, of_run, refused};
+use crate::scenes::Manner;
+use crate::soil::density_named;
+use crate::work::at_work;
+
+/// What a scene of two tables is given besides them: density, whether it is packed, is quick, is as sampled, is as
+/// given, and settings as `name=value`.
+#[derive(FromPyObject)]
+pub struct Tables(Option<String>, bool, bool, bool, bool, Vec<String>);
+
+impl Tables {
+    pub fn options(self) -> PyResult<TableOptions> {
+        let Self(density, pack, quick, as_sampled, as_given, changes) = self;
+        let density = density.map(|word| density_named(&word)).transpose()?;
+        Ok(TableOptions { density, pack, quick, as_sampled, as_given, changes })
+    }
+}
+
+/// The soils of a file: a JSON list.
+#[pyfunction]
+#[pyo3(signature = (path, d0_mm))]
+pub fn soils(path: PathBuf, d0_mm: Option<f64>) -> PyResult<String> {
+    let soils = soils_in_file(&path, d0_mm).map_err(|error| of_run(&CaseError::from(error).into()))?;
+    serde_json::to_string(&soils).map_err(failed)
+}
+
+/// Walks cases side by side into a folder: the JSON of `compare.json`. Without a base `others` are bases on the
+/// filter, without a filter they are filters on the base, without both they are scenes.
+#[pyfunction]
+#[pyo3(signature = (base, filter, others, tables, out, overwrite, packings, manner, progress))]
+#[allow(clippy::too_many_arguments)]
+pub fn compare(
+    py: Python<'_>,
+    base: Option<PathBuf>,
+    filter: Option<PathBuf>,
+    others: Vec<PathBuf>,
+    tables: Tables,
+    out: PathBuf,
+    overwrite: bool,
+    packings: PathBuf,
+    manner: Manner,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<String> {
+    let compared = match (base, filter) {
+        (Some(base), None) => Compared::Filters { base, filters: others },
+        (None, Some(filter)) => Compared::Bases { filter, bases: others },
+        (None, None) => Compared::Scenes(others),
+        (Some(_), Some(_)) => return Err(refused("base and filter are both given: one of them is compared")),
+    };
+    let plan = ComparePlan::new(&compared, &tables.options()?).map_err(|error| of_run(&error))?;
+    let options = manner.campaign(out, Some(packings))?;
+    let found = at_work(py, progress, |callbacks| comparisons::run(&plan, &options, overwrite, callbacks))?;
+    format::COMPARISON.json(&found).map_err(failed)
+}
+
+/// The shape of a filter, and how its boundaries are searched: densities, whether it is packed, thicknesses, and
+/// the range of D15F/D85B.
+#[derive(FromPyObject)]
+pub struct Search(Vec<String>, bool, Vec<String>, [f64; 2]);
+
+/// Finds how coarse a filter may be, into a folder: the JSON of `design.json`.
+#[pyfunction]
+#[pyo3(signature = (
+    base, filter, search, settings, as_sampled, as_given, inverse, out, overwrite, packings, manner, progress
+))]
+#[allow(clippy::too_many_arguments)]
+pub fn design(
+    py: Python<'_>,
+    base: Option<PathBuf>,
+    filter: Option<String>,
+    search: Search,
+    settings: Vec<String>,
+    as_sampled: bool,
+    as_given: bool,
+    inverse: bool,
+    out: PathBuf,
+    overwrite: bool,
+    packings: PathBuf,
+    manner: Manner,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<String> {
+    let Search(densities, pack, thicknesses, bracket) = search;
+    let thicknesses: Result<_, String> = thicknesses.iter().map(|text| text.parse()).collect();
+    let options = DesignOptions {
+        base,
+        filter,
+        densities,
+        pack,
+        thicknesses: thicknesses.map_err(refused)?,
+        settings,
+        as_sampled,
+        as_given,
+        inverse,
+        bracket,
+        out,
+        overwrite,
+        prepare: manner.prepare(packings),
+    };
+    let found = at_work(py, progress, |callbacks| designs::run(&options, &callbacks.run))?;
+    format::DESIGN.json(&found).map_err(failed)
+}
+
+/// Finds percolation thresholds, into a folder: the JSON of `percolation.json`.
+#[pyfunction]
+#[pyo3(signature = (shapes, realisations, seed, out, overwrite, threads, progress))]
+#[allow(clippy::too_many_arguments)]
+pub fn percolation(
+    py: Python<'_>,
+    shapes: Vec<[u32; 3]>,
+    realisations: u64,
+    seed: u64,
+    out: PathBuf,
+    overwrite: bool,
+    threads: Option<usize>,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<String> {
+    let plan = PercolationPlan { shapes, realisations, seed };
+    let options = PercolationOptions { plan, out, overwrite, threads };
+    let found = at_work(py, progress, |callbacks| percolations::run(&options, &callbacks.run))?;
+    format::PERCOLATION.json(&found).map_err(failed)
+}
+
+/// The JSON Schema of a form, by its name.
+#[pyfunction]
+pub fn schema(name: &str) -> PyResult<&'static str> {
+    let names: Vec<&str> = format::FORMATS.iter().map(|form| form.name()).collect();
+    let problem = || refused(format!("name = {name} is not allowed; one of {}", names.join(", ")));
+    Ok(format::Format::named(name).ok_or_else(problem)?.schema)
+}

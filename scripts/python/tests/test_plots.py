@@ -1,0 +1,94 @@
+"""Figures: what is drawn, with which words and units."""
+
+from __future__ import annotations
+
+from typing import Any, List
+
+import numpy as np
+import pytest
+
+import voidwalk as vw
+
+matplotlib: Any = pytest.importorskip("matplotlib")
+matplotlib.use("Agg")
+
+BASE, FILTER = ([0.06, 0.12, 0.3], [0.0, 50.0, 100.0]), ([0.5, 1.0, 2.0], [0.0, 50.0, 100.0])
+SMALL = {"network.nx": 8, "network.ny": 8, "network.nz": 12}
+
+
+def words(ax: Any) -> List[str]:
+    legend = ax.get_legend()
+    return [ax.get_xlabel(), ax.get_ylabel(), *(t.get_text() for t in (legend.get_texts() if legend else []))]
+
+
+def drawn(ax: Any) -> bytes:
+    """The picture itself, as it is drawn."""
+    ax.figure.canvas.draw()
+    picture = bytes(ax.figure.canvas.buffer_rgba())
+    matplotlib.pyplot.close(ax.figure)
+    return picture
+
+
+def test_soils_and_curves_are_drawn_with_units() -> None:
+    from matplotlib import pyplot
+
+    soil = vw.Gradation(*FILTER)
+    ax = soil.plot(label="Filter")
+    assert vw.Gradation(*BASE).plot(ax, label="Base") is ax
+    assert words(ax) == ["Size (mm)", "Percent finer by mass", "Filter", "Base"] and ax.get_xscale() == "log"
+    assert np.array_equal(ax.lines[0].get_xdata(), soil.points()[0])
+    curve = vw.Curve.shipped("cu1.5-loose").plot()
+    assert words(curve) == ["Constriction diameter (mm)", "Percent smaller by number"]
+    _, given = pyplot.subplots()
+    assert soil.plot(given) is given
+    assert drawn(soil.plot()) == drawn(soil.plot()) != drawn(vw.Gradation(*BASE).plot())
+
+
+def test_a_network_is_drawn_by_size_and_by_layer() -> None:
+    network = vw.Network.cubic([6, 6, 9])
+    assert words(network.plot()) == ["Constriction diameter (mm)", "Percent smaller by number"]
+    blocked = vw.walk(network, 0.3, n_base=2000, replicates=1).blocked
+    assert blocked is not None
+    ax = network.plot(blocked=blocked[0, 0])
+    assert words(ax) == ["Layer, along the flow", "Blocked constrictions (%)"]
+    assert max(ax.lines[0].get_ydata()) > 0 and len(ax.lines[0].get_xdata()) == 9
+    with pytest.raises(ValueError, match="blocked has shape"):
+        network.plot(blocked=[True])
+
+
+def test_a_result_is_drawn_in_four_ways() -> None:
+    result = vw.judge(BASE, FILTER, density="dense", quick=True, settings=SMALL)
+    progress = words(result.plot())
+    assert progress[:2] == ["Increment", "Eroded mass (% of the mass inserted)"] and "Erosion begins" in progress
+    assert words(result.plot("layers"))[1] == "Blocked constrictions (%)"
+    assert {"Base, as walked", "Filter", "Constrictions, by number"} <= set(words(result.plot("curves")))
+    rules = result.plot("rules")
+    assert len(rules.get_yticks()) > 3 and "kept up to 1" in rules.get_xlabel()
+    with pytest.raises(ValueError, match="what = 'all' is not allowed; one of progress, layers, curves, rules"):
+        result.plot("all")
+    walked = vw.walk(vw.Network.cubic([6, 6, 9]), 0.2, n_base=1000, replicates=2)
+    for what in ("progress", "layers", "curves"):
+        walked.plot(what)
+    with pytest.raises(ValueError, match="voidwalk.rules gives them"):
+        walked.plot("rules")
+    matplotlib.pyplot.close("all")
+
+
+def test_studies_are_drawn() -> None:
+    compared = vw.compare(BASE, {"a": FILTER, "b": ([3, 9], [0, 100])}, density="dense", quick=True, settings=SMALL)
+    ax = compared.plot()
+    assert [tick.get_text() for tick in ax.get_xticklabels()] == ["a", "b"]
+    small = {"network.nx": 8, "network.ny": 8}
+    design = vw.design(
+        BASE, FILTER, density="dense", thickness="10layers", bracket=(4, 16), replicates=2, settings=small
+    )
+    assert words(design.plot())[:2] == ["D15F/D85B", "Eroded mass of the first run (%)"]
+    matplotlib.pyplot.close("all")
+
+
+def test_matplotlib_is_imported_when_a_figure_is_asked_for() -> None:
+    import subprocess
+    import sys
+
+    code = "import sys, voidwalk; assert not {'matplotlib', 'pandas', 'xarray'} & set(sys.modules)"
+    subprocess.run([sys.executable, "-c", code], check=True)

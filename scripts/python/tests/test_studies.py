@@ -1,0 +1,214 @@
+"""What the command line's studies are from Python: the same numbers and words for the same tables and options."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+from pathlib import Path
+from typing import Any, Dict, List
+
+import numpy as np
+import pytest
+
+import voidwalk as vw
+
+BASE = ([0.06, 0.12, 0.2, 0.3], [0.0, 30.0, 70.0, 100.0])
+FILTER = ([0.5, 1.0, 2.0], [0.0, 50.0, 100.0])
+COARSE = ([3.0, 5.0, 9.0], [0.0, 50.0, 100.0])
+SMALL = {"network.nx": 8, "network.ny": 8, "network.nz": 12}
+
+#: What is not of the answer: times, places, and what was called.
+TIMES = ("seconds", "core_seconds", "started", "finished", "folder")
+
+
+def table(folder: Path, name: str, soil: Any) -> Path:
+    rows = "".join(f"{size},{percent}\n" for size, percent in zip(*soil))
+    path = folder / f"{name}.csv"
+    path.write_text("opening_mm,percent_finer\n" + rows)
+    return path
+
+
+def answer(record: Any) -> Any:
+    """A record without its times; of files that are named, the name alone."""
+    if isinstance(record, dict):
+        return {key: answer(of) for key, of in record.items() if key not in TIMES}
+    if isinstance(record, str):
+        return re.sub(r"(\S*/)?(\w+)\.csv", r"\2", record)
+    return [answer(of) for of in record] if isinstance(record, list) else record
+
+
+def said(program: str, folder: Path, *words: str) -> Any:
+    """What the command line prints as JSON for the same."""
+    settings = [word for key, value in SMALL.items() for word in ("--set", f"{key}={value}")]
+    settings = settings[:4] if words[0] == "design" else settings
+    small = settings if words[0] in ("judge", "compare", "design") else []
+    done = subprocess.run([program, *words, *small, "--json"], capture_output=True, text=True, cwd=folder)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def test_judge_is_that_of_the_command_line(program: str, tmp_path: Path) -> None:
+    base, filter = table(tmp_path, "base", BASE), table(tmp_path, "filter", FILTER)
+    words = ["--quick", "--density", "dense", "--dispersive", "--joint-mm", "2", "--quiet", "--out", "o"]
+    wanted = said(program, tmp_path, "judge", "base.csv", "filter.csv", *words)
+    options: Dict[str, Any] = dict(quick=True, density="dense", dispersive=True, joint_mm=2.0, settings=SMALL)
+    of_files = vw.judge(base, filter, **options)
+    of_arrays = vw.judge(BASE, vw.Gradation(*FILTER), tmp_path / "out", **options)
+    assert answer(of_files.outcome) == answer(wanted)
+    assert answer(of_arrays.outcome) == answer(wanted) and of_arrays.outcome["inputs"]["base"]["name"] == "base"
+    row, eroded = of_arrays.row(), wanted["summary"][0]["eroded_mass_fraction"]
+    assert row["verdict"] == wanted["verdict"] and row["eroded_1"] == eroded["mean"]
+    assert row["d15f_over_d85b"] == pytest.approx(wanted["ratios"]["d15f_over_d85b"])
+    # A second call finds its results there.
+    with pytest.raises(ValueError, match="overwrite=True"):
+        vw.judge(BASE, FILTER, tmp_path / "out", **options)
+    again = vw.judge(BASE, FILTER, tmp_path / "out", overwrite=True, **options)
+    assert again.folder is not None and answer(again.outcome) == answer(wanted)
+
+
+def test_compare_is_that_of_the_command_line(program: str, tmp_path: Path) -> None:
+    table(tmp_path, "base", BASE), table(tmp_path, "fine", FILTER), table(tmp_path, "coarse", COARSE)
+    words = ["--quick", "--density", "dense", "--quiet", "--out", "o"]
+    wanted = said(program, tmp_path, "compare", "fine.csv", "coarse.csv", "--base", "base.csv", *words)
+    options: Dict[str, Any] = dict(quick=True, density="dense", settings=SMALL)
+    found = vw.compare(BASE, {"fine": FILTER, "coarse": vw.Gradation(*COARSE)}, **options)
+    assert answer(found.outcome) == answer(wanted) and found.outcome["common"] == "base"
+    assert [case["name"] for case in found.cases] == ["fine", "coarse"] and len(found) == 2
+    assert found.pairs[0]["differ"] is True and list(found.table["case"]) == ["fine", "coarse"]
+    files = [tmp_path / "fine.csv", tmp_path / "coarse.csv"]
+    kept = vw.compare(tmp_path / "base.csv", files, tmp_path / "c", **options)
+    assert answer(kept.cases) == answer(wanted["cases"]) and kept.report().name == "compare.html"
+    again = vw.read(tmp_path / "c")
+    assert isinstance(again, vw.Comparison) and again.outcome == kept.outcome
+    bases = vw.compare({"a": BASE, "b": ([0.05, 0.25], [0, 100])}, FILTER, **options)
+    assert bases.outcome["of"] == "bases"
+
+
+def test_design_is_that_of_the_command_line(program: str, tmp_path: Path) -> None:
+    table(tmp_path, "base", BASE), table(tmp_path, "filter", FILTER)
+    words = ["--filter", "filter.csv", "--density", "dense", "--thickness", "10layers", "--bracket", "4,16"]
+    more = ["--set", "replicates=2", "--seed", "3", "--quiet", "--out", "o"]
+    wanted = said(program, tmp_path, "design", "base.csv", *words, *more)
+    options: Dict[str, Any] = dict(density="dense", thickness="10layers", bracket=(4, 16), replicates=2, seed=3)
+    across = {"network.nx": 8, "network.ny": 8}
+    found = vw.design(BASE, FILTER, tmp_path / "d", settings=across, **options)
+    # The settings say in their own order and form what was given.
+    assert answer({**found.outcome, "settings": []}) == answer({**wanted, "settings": []})
+    assert found.answer == wanted["answer"]["said"] and found.d15f_max_mm == wanted["answer"]["d15f_max_mm"]
+    assert len(found.walks["d15f_over_d85b"]) == len(found.walks["eroded_first"]) > 2
+    assert found.report().name == "design.html"
+    again = vw.read(tmp_path / "d")
+    assert isinstance(again, vw.Design) and again.boundaries == found.boundaries and found.answer in repr(again)
+
+
+def test_percolation_and_soil_are_those_of_the_command_line(program: str, tmp_path: Path) -> None:
+    wanted = said(program, tmp_path, "percolation", "--sizes", "6,8,6x6x10", "--realisations", "5", "--quiet")
+    found = vw.percolation([6, 8, (6, 6, 10)], realisations=5)
+    assert answer(found) == answer(wanted)
+    path = table(tmp_path, "soil", BASE)
+    assert vw.soil(path) == said(program, tmp_path, "soil", "soil.csv")["soils"]
+    assert vw.soil(BASE) == vw.soil(vw.Gradation(*BASE)) == vw.soil(path)
+
+
+def test_exchanged_tables_are_refused_everywhere(tmp_path: Path) -> None:
+    calls: List[Any] = [
+        lambda: vw.judge(FILTER, BASE),
+        lambda: vw.judge(table(tmp_path, "f", FILTER), table(tmp_path, "b", BASE)),
+        lambda: vw.compare(FILTER, {"a": BASE, "b": FILTER}),
+        lambda: vw.design(COARSE, BASE, inverse=True),
+        lambda: vw.rules(FILTER, BASE),
+    ]
+    for call in calls:
+        with pytest.raises(ValueError, match="exchanged.*as_given=True") as refused:
+            call()
+        assert "--" not in str(refused.value) and "voidwalk-" not in str(refused.value)
+
+
+def test_errors_name_what_python_calls_it() -> None:
+    wrong: List[Any] = [
+        (lambda: vw.judge(BASE, FILTER, settings={"base.uc": 3}), "there is no setting `base.uc`"),
+        (lambda: vw.judge(BASE, FILTER, density="dens"), "density = dens is not allowed"),
+        (lambda: vw.judge(BASE, FILTER, seed=1, settings={"seed": 2}), "seed and settings\\['seed'\\] say the same"),
+        (lambda: vw.judge(BASE, FILTER, as_sampled=True, settings={"base.regrade": "no"}), "as_sampled=True and"),
+        (lambda: vw.judge(BASE, vw.Gradation.single(1.0)), "filter has a single size"),
+        (lambda: vw.judge(3, FILTER), "base = int is not allowed"),  # type: ignore[arg-type]
+        (lambda: vw.design(BASE, density="thick"), "density thick: allowed"),
+        (lambda: vw.design(BASE, thickness="thick"), "thickness thick: allowed"),
+        (lambda: vw.design(BASE, thickness=50, settings={"network.nz": 10}), "thickness and settings network.nz"),
+        (lambda: vw.compare(BASE, {"a": FILTER}), "filters named: 1; compare 2 to 6"),
+        (lambda: vw.compare(BASE, {"a/b": FILTER, "c": FILTER}), "'a/b' is not allowed as the name"),
+        (lambda: vw.compare(BASE, FILTER), "compare several filters on one base"),
+        (lambda: vw.percolation([0]), "sizes = 0 is not allowed"),
+        (lambda: vw.run(settings={"base.uc": 3}), "there is no setting `base.uc`"),
+        (lambda: vw.Gradation([1, 2], [0, 90]), "percent_finer"),
+        (lambda: vw.walk(vw.Network.cubic([4, 4, 4]), "b"), "base = 'b' is not allowed"),  # type: ignore[arg-type]
+        (lambda: vw.Packing.from_file(__file__), "."),
+    ]
+    for call, words in wrong:
+        with pytest.raises(ValueError, match=words) as refused:
+            call()
+        said = str(refused.value)
+        assert "--" not in said and "line 2" not in said, said
+
+
+def test_a_study_is_a_table_with_a_row_a_case(small: Dict[str, Any]) -> None:
+    pytest.importorskip("pandas")
+    cases = {"base.cu": [1.5, 3.0], "seed": [1, 2]}
+    found = vw.study(cases, small)
+    assert list(found["base.cu"]) == [1.5, 1.5, 3.0, 3.0] and list(found["seed"]) == [1, 2, 1, 2]
+    one = vw.run(small, settings={"base.cu": 3.0, "seed": 2})
+    assert found["eroded_1"].iloc[3] == one.summary[0]["eroded_mass_fraction"]["mean"]
+    network, base = vw.Network.cubic([6, 6, 9]), vw.Gradation.linear(1.5, 0.2, percent=85)
+    listed = vw.study(
+        [{"n": 500}, {"n": 1000}], lambda n: vw.walk(network, base, n_base=n, replicates=2), progress=True
+    )
+    assert list(listed["n"]) == list(listed["n_base"]) == [500, 1000] and not listed["verdict"].isna().any()
+
+
+def test_networks_and_curves_compare_by_what_they_are() -> None:
+    one, same, other = (vw.Network.cubic([6, 6, 9], seed=seed) for seed in (1, 1, 2))
+    assert one == same and one != other and hash(one) == hash(same) and one != 3
+    curve = vw.Curve([0, 100], [0.1, 0.3])
+    assert curve == vw.Curve([0, 100], [0.1, 0.3]) and curve != vw.Curve([0, 100], [0.1, 0.4])
+    assert vw.Curve.shipped("cu1.5-loose") == vw.Curve.shipped("cu1.5-loose") != vw.Curve.shipped("cu3-loose")
+
+
+@pytest.mark.parametrize("exit", ["area", "flux", "area-along-flow"])
+def test_a_network_without_constrictions_has_them_closed(exit: str) -> None:
+    network = vw.Network.cubic([6, 6, 9], exit=exit)
+    nothing = network.without(np.zeros(len(network), dtype=bool))
+    for walked in (network, nothing):
+        assert vw.walk(walked, 0.2, n_base=2000, replicates=2).verdict == "continuing erosion"
+    probability, moves = network.first_passage(0.1)
+    assert nothing.first_passage(0.1) == pytest.approx((probability, moves))
+    closed = vw.walk(network, 0.3, n_base=2000, replicates=1).blocked
+    assert closed is not None
+    less = network.without(closed[0, 0])
+    assert int((less.diameter == 0).sum()) == int(closed[0, 0].sum()) > 0
+    assert less.grains_per_void == network.grains_per_void and less.filter == network.filter
+    for wrong in (np.zeros(3, dtype=bool), np.zeros(len(network))):
+        with pytest.raises(ValueError, match="mask is"):
+            network.without(wrong)
+
+
+def test_boxes_say_what_a_thing_is() -> None:
+    assert "<strong>Gradation</strong>" in vw.Gradation(*BASE)._repr_html_()
+    assert "finer than the finest sieve" in vw.Gradation([0.075, 1.0], [20, 100])._repr_html_()
+    assert "324" in vw.Network.cubic([6, 6, 9])._repr_html_()
+
+
+def test_a_judgement_of_arrays_that_was_stopped_goes_on(tmp_path: Path) -> None:
+    class Enough(Exception):
+        pass
+
+    def enough(progress: vw.Progress) -> None:
+        if progress.done > 1:
+            raise Enough
+
+    options: Dict[str, Any] = dict(density="dense", replicates=40, settings={**SMALL, "record.sensitivity": []})
+    with pytest.raises(Enough):
+        vw.judge(BASE, COARSE, tmp_path / "out", progress=enough, **options)
+    assert not (tmp_path / "out" / "outcome.json").exists()
+    gone_on = vw.judge(BASE, COARSE, tmp_path / "out", **options)
+    assert answer(gone_on.summary) == answer(vw.judge(BASE, COARSE, **options).summary)
