@@ -81,8 +81,9 @@ fn held(name: &str, kept: &str, schema: &Value) {
     } else {
         assert!(
             kept == text,
-            "{file} does not say what is written. A field that goes or means something else raises the number \
-             of the form (src/store/format.rs). Then: {UPDATE}=1 cargo test --lib schemas, and again without"
+            "{file} does not say what is written. A field that goes or means something else raises the \
+             number of the form (src/store/format.rs). Then: {UPDATE}=1 cargo test --lib schemas, and again \
+             without"
         );
     }
 }
