@@ -1195,6 +1195,12 @@ class ComparedCase(_ComparedCase, total=False):
 
     #: What filter practice says of the pair, in a line; records of earlier versions do not say.
     practice: str
+    #: Whether the filter holds, in a line; records of earlier versions do not say.
+    headline: str
+    #: What the walk says, in a line.
+    walk: str
+    #: What to do next.
+    next: str
     #: What else stands beside every verdict, in sentences.
     beside: List[str]
     #: D85B and which base it is of; `None` without a unit, and in records of earlier versions.
