@@ -8,6 +8,7 @@
 //! - [`verdict`] classifies, by mass eroded, one replicate or many; [`stopping`] says how many are enough,
 //!   [`early_stop`] how many of a study.
 //! - [`leaves_out`] is what the model does not contain.
+//! - [`soil_sizes`] are the sizes of a soil that a sheet shows.
 //! - [`so_far`] is a look at the replicates of a run that is under way.
 //! - [`paper`] holds what the paper states.
 //! - [`rules`] applies the rules of filter practice to the same two curves.
@@ -48,6 +49,7 @@ mod recorder;
 mod rule_note;
 pub mod rules;
 pub mod so_far;
+pub mod soil_sizes;
 mod statistic;
 pub mod stopping;
 pub(crate) mod student;

@@ -10,8 +10,8 @@ use super::names::soil_name;
 use super::numbers::{in_digits, significant, size, size_unit, whole};
 use super::shell::clean;
 use super::table::Table;
-use crate::gradation::{FINES_MM, Gradation};
 use crate::outcome::record::{AppliedRule, Confidence, Outcome, RuleRole, Verdict};
+use crate::outcome::soil_sizes::sizes_of;
 use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::practice::{Standing, standing};
 use crate::verdict::words::capital;
@@ -115,44 +115,10 @@ fn colour(outcome: &Outcome) -> &'static str {
     }
 }
 
-/// A row of the table of sizes: its name, and its value of a soil.
-type SizeRow = (&'static str, fn(&Gradation) -> Option<String>);
-
-/// A size that so many percent are finer than.
-fn finer<const PERCENT: u8>(soil: &Gradation) -> Option<String> {
-    soil.d(f64::from(PERCENT)).map(|size| in_digits(size, 3))
-}
-
-fn percent_fines(soil: &Gradation) -> Option<String> {
-    let is_known = soil.pan_fraction() == 0.0 || soil.smallest_mm() <= FINES_MM;
-    is_known.then(|| in_digits(soil.percent_finer_by_mass(FINES_MM), 3))
-}
-
-/// The sizes that engineers look for.
-const SIZES: [SizeRow; 11] = [
-    ("D5", finer::<5>),
-    ("D10", finer::<10>),
-    ("D15", finer::<15>),
-    ("D30", finer::<30>),
-    ("D50", finer::<50>),
-    ("D60", finer::<60>),
-    ("D85", finer::<85>),
-    ("D90", finer::<90>),
-    ("D95", finer::<95>),
-    ("Cu", |soil| soil.cu().map(|cu| in_digits(cu, 3))),
-    ("Cc", |soil| soil.cc().map(|cc| in_digits(cc, 3))),
-];
-
-/// The same where sizes have a unit.
-const OF_UNIT: [SizeRow; 2] = [("Fines (%)", percent_fines), ("Group", Gradation::group)];
-
 /// Sizes of both soils as a table, of the base as sampled and as regraded where it is.
 pub(super) fn sizes(outcome: &Outcome) -> Markup {
     let inputs = &outcome.inputs;
-    let soil = |rows: &[[f64; 2]]| {
-        let points: Vec<(f64, f64)> = rows.iter().map(|row| (row[0], row[1])).collect();
-        Gradation::from_points(&points, None).ok()
-    };
+    let soil = |rows: &[[f64; 2]]| sizes_of(rows, !inputs.scale_free);
     let (filter, base) = (&inputs.filter, &inputs.base);
     let mut soils = vec![("Filter", soil(&filter.gradation))];
     match &base.as_sampled {
@@ -161,12 +127,10 @@ pub(super) fn sizes(outcome: &Outcome) -> Markup {
         }
         None => soils.push(("Base", soil(&base.gradation))),
     }
-    let of_unit = if inputs.scale_free { &[][..] } else { &OF_UNIT };
-    let rows: Vec<SizeRow> = SIZES.iter().chain(of_unit).copied().collect();
-    let mut table = Table::of(&rows).name(size_unit(inputs.scale_free), |(name, _)| *name);
-    for (name, soil) in &soils {
-        let value = move |row: &SizeRow| soil.as_ref().and_then(row.1).unwrap_or_else(|| "–".into());
-        table = table.number(*name, value);
+    let rows: Vec<usize> = (0..soils[0].1.len()).collect();
+    let mut table = Table::of(&rows).name(size_unit(inputs.scale_free), |row| soils[0].1[*row].0);
+    for (name, sizes) in &soils {
+        table = table.number(*name, |row| sizes[*row].1.clone().unwrap_or_else(|| "–".into()));
     }
     html! {
         div.sizes {

@@ -1,0 +1,44 @@
+//! The sizes of a soil that engineers look for, as a table shows them.
+
+use super::numbers::in_digits;
+use crate::gradation::{FINES_MM, Gradation};
+
+/// A row of the table of sizes: its name, and its value of a soil.
+type SizeRow = (&'static str, fn(&Gradation) -> Option<String>);
+
+/// A size that so many percent are finer than.
+fn finer<const PERCENT: u8>(soil: &Gradation) -> Option<String> {
+    soil.d(f64::from(PERCENT)).map(|size| in_digits(size, 3))
+}
+
+fn percent_fines(soil: &Gradation) -> Option<String> {
+    let is_known = soil.pan_fraction() == 0.0 || soil.smallest_mm() <= FINES_MM;
+    is_known.then(|| in_digits(soil.percent_finer_by_mass(FINES_MM), 3))
+}
+
+/// The sizes that engineers look for.
+const SIZES: [SizeRow; 11] = [
+    ("D5", finer::<5>),
+    ("D10", finer::<10>),
+    ("D15", finer::<15>),
+    ("D30", finer::<30>),
+    ("D50", finer::<50>),
+    ("D60", finer::<60>),
+    ("D85", finer::<85>),
+    ("D90", finer::<90>),
+    ("D95", finer::<95>),
+    ("Cu", |soil| soil.cu().map(|cu| in_digits(cu, 3))),
+    ("Cc", |soil| soil.cc().map(|cc| in_digits(cc, 3))),
+];
+
+/// The same where sizes have a unit.
+const OF_UNIT: [SizeRow; 2] = [("Fines (%)", percent_fines), ("Group", Gradation::group)];
+
+/// Each of them of a soil, by its name: `None` where the sieves do not tell. Without a unit there are neither
+/// fines nor a group.
+pub fn sizes_of(rows: &[[f64; 2]], has_unit: bool) -> Vec<(&'static str, Option<String>)> {
+    let points: Vec<(f64, f64)> = rows.iter().map(|row| (row[0], row[1])).collect();
+    let soil = Gradation::from_points(&points, None).ok();
+    let of_unit = if has_unit { &OF_UNIT[..] } else { &[] };
+    SIZES.iter().chain(of_unit).map(|(name, value)| (*name, soil.as_ref().and_then(value))).collect()
+}
