@@ -9,8 +9,9 @@
 //! - points of VTK with a diameter or radius, as LIGGGHTS, Yade, MercuryDPM and ParaView write them
 //!   ([`vtk`](super::vtk)).
 //!
-//! Each of them may be packed by gzip. What a file is, is seen by its first line, not by its name. What a file does not say, its unit of length
-//! or whether its boundaries are periodic, is never guessed: [`ReadOptions`] says it, or the file is refused.
+//! Each of them may be packed by gzip. What a file is, is seen by its first line, not by its name. What a
+//! file does not say, its unit of length or whether its boundaries are periodic, is never guessed:
+//! [`ReadOptions`] says it, or the file is refused.
 
 use std::io::Read;
 use std::path::Path;

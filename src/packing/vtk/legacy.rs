@@ -1,7 +1,8 @@
 //! Files of VTK before XML: a heading of four lines, and then words with numbers in text or, with the high
 //! byte first, in binary.
 
-use super::{Array, Number, Points, grains};
+use super::number::Number;
+use super::points::{Array, Points, grains};
 use crate::packing::fields::{ImportError, refused};
 use crate::packing::found::FileGrains;
 

@@ -41,7 +41,8 @@ fn gzip(content: &[u8]) -> Vec<u8> {
 
 const LEGACY: &str = "# vtk DataFile Version 3.0\nLIGGGHTS\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n\
                       0.5 1 2\n1.5 2.5 3.25\nVERTICES 2 4\n1 0\n1 1\nPOINT_DATA 2\n\
-                      VECTORS v float\n0 0 0 0 0 0\nSCALARS radius float 1\nLOOKUP_TABLE default\n0.5\n0.375\n";
+                      VECTORS v float\n0 0 0 0 0 0\nSCALARS radius float 1\nLOOKUP_TABLE default\n0.5\n\
+                      0.375\n";
 
 #[test]
 fn files_before_xml() {

@@ -8,7 +8,8 @@ use base64::engine::general_purpose::STANDARD;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
-use super::{Array, Number, Points, grains};
+use super::number::Number;
+use super::points::{Array, Points, grains};
 use crate::packing::fields::{ImportError, refused};
 use crate::packing::found::FileGrains;
 

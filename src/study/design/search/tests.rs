@@ -213,7 +213,7 @@ fn small_networks_are_tried_at_more_ratios() {
         assert!(steps.len() >= 9 && *steps.last().unwrap() <= 60, "{across}");
         assert!(steps.len() >= tried_below(across + 1).len());
     }
-    // A dip of one step, 20 % below a boundary about which erosion scatters, is seen on a small network alone.
+    // A dip of one step, 20 % below a boundary about which erosion scatters: seen on a small network alone.
     let dip = (4.4f64.ln() / 0.005).round() as i64 - 45;
     let step = |s: f64| (s.ln() / 0.005).round() as i64;
     let lowest = |across, scatter: f64| {
