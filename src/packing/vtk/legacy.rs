@@ -2,7 +2,7 @@
 //! byte first, in binary.
 
 use super::number::Number;
-use super::points::{Array, Points, grains};
+use super::points::{PointArray, Points, grains};
 use crate::packing::fields::{ImportError, refused};
 use crate::packing::found::FileGrains;
 
@@ -56,7 +56,7 @@ pub fn legacy(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
                     let (line, components) = (cursor.line, cursor.count(components)?);
                     let values = cursor.numbers(tuples, components, kind)?;
                     if of_points && components == 1 {
-                        arrays.push(Array { line, name: name.clone(), values });
+                        arrays.push(PointArray { line, name: name.clone(), values });
                     }
                     cursor.metadata();
                 }
@@ -144,14 +144,14 @@ impl<'a> Cursor<'a> {
         points: Option<&(usize, Vec<f64>)>,
         components: &str,
         kind: &str,
-    ) -> Result<Array, ImportError> {
+    ) -> Result<PointArray, ImportError> {
         let line = self.line;
         let Some((_, places)) = points else { return Err(self.refused("section", name, "POINTS first")) };
         let tuples = (places.len() / 3).to_string();
         self.skip_if(|word| word == "LOOKUP_TABLE");
         let values = self.numbers(&tuples, self.count(components)?, kind)?;
         self.metadata();
-        Ok(Array { line, name: name.to_owned(), values })
+        Ok(PointArray { line, name: name.to_owned(), values })
     }
 
     /// Passes over the lists of which points make a cell: since VTK 9 as offsets and points.

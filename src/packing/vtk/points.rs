@@ -10,11 +10,11 @@ pub struct Points {
     pub line: usize,
     /// x, y and z of each in turn.
     pub places: Vec<f64>,
-    pub arrays: Vec<Array>,
+    pub arrays: Vec<PointArray>,
 }
 
 /// One array of numbers.
-pub struct Array {
+pub struct PointArray {
     pub line: usize,
     pub name: String,
     pub values: Vec<f64>,
@@ -22,7 +22,7 @@ pub struct Array {
 
 /// The points as grains.
 pub fn grains(file: &str, points: Points) -> Result<FileGrains, ImportError> {
-    let named = |called: &[&str]| -> Vec<(&Array, Named)> {
+    let named = |called: &[&str]| -> Vec<(&PointArray, Named)> {
         let all = points.arrays.iter().map(|array| (array, Named::of(&array.name)));
         all.filter(|(_, named)| called.contains(&named.name.as_str())).collect()
     };

@@ -9,7 +9,7 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
 use super::number::Number;
-use super::points::{Array, Points, grains};
+use super::points::{PointArray, Points, grains};
 use crate::packing::fields::{ImportError, refused};
 use crate::packing::found::FileGrains;
 
@@ -101,7 +101,7 @@ fn keep(points: &mut Points, room: Room, of: Declared, form: &Form<'_>) -> Resul
             let (line, name, values) = (of.line, of.name.clone(), of.values(form)?);
             match points.arrays.iter_mut().find(|array| array.name == name) {
                 Some(array) => array.values.extend(values),
-                None => points.arrays.push(Array { line, name, values }),
+                None => points.arrays.push(PointArray { line, name, values }),
             }
             Ok(())
         }
