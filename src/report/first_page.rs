@@ -164,8 +164,8 @@ fn table(rules: &[&AppliedRule]) -> Markup {
     let table = Table::of(rules)
         .name("Rule", |rule| clean(&rule.name))
         .text("here", |rule| {
-            let value = rule.value.map_or_else(|| "–".to_owned(), significant);
-            clean(&format!("{} = {value}", rule.quantity.name()))
+            let found = |value| format!("{} = {}", rule.quantity.name(), significant(value));
+            clean(&rule.value.map_or_else(|| "–".to_owned(), found))
         })
         .text("limit", |rule| {
             let sign = if rule.at_least { "≥" } else { "≤" };
