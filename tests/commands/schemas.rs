@@ -71,7 +71,7 @@ fn check(root: &Value, schema: &Value, value: &Value, at: &str, found: &mut Vec<
             "additionalProperties" => {
                 let free = value.as_object().into_iter().flatten();
                 let free =
-                    free.filter(|(name, _)| !rules.get("properties").is_some_and(|p| p.get(name).is_some()));
+                    free.filter(|(name, _)| rules.get("properties").is_none_or(|p| p.get(name).is_none()));
                 free.for_each(|(name, of)| check(root, says, of, &format!("{at}/{name}"), found));
                 true
             }
