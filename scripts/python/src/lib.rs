@@ -15,6 +15,7 @@ mod scenes;
 mod soil;
 mod studies;
 mod tables;
+mod two_tables;
 mod walks;
 mod work;
 

@@ -14,8 +14,9 @@ use voidwalk::schema::SceneError;
 use voidwalk::store::format;
 
 use crate::problem::{failed, of_run, refused};
-use crate::studies::Tables;
+
 use crate::tables::of_recorded;
+use crate::two_tables::Tables;
 use crate::work::at_work;
 
 /// What errors call settings that come from a dict.

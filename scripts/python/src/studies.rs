@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use pyo3::prelude::*;
 use voidwalk::case::CaseError;
 use voidwalk::gradation::soils_in_file;
-use voidwalk::scene::TableOptions;
 use voidwalk::store::format;
 use voidwalk::study::compare::{self as comparisons, ComparePlan, Compared};
 use voidwalk::study::design::{self as designs, DesignOptions};
@@ -13,21 +12,8 @@ use voidwalk::study::percolation::{self as percolations, PercolationOptions, Per
 
 use crate::problem::{failed, of_run, refused};
 use crate::scenes::Manner;
-use crate::soil::density_named;
+use crate::two_tables::Tables;
 use crate::work::at_work;
-
-/// What a scene of two tables is given besides them: density, whether it is packed, is quick, is as sampled, is as
-/// given, and settings as `name=value`.
-#[derive(FromPyObject)]
-pub struct Tables(Option<String>, bool, bool, bool, bool, Vec<String>);
-
-impl Tables {
-    pub fn options(self) -> PyResult<TableOptions> {
-        let Self(density, pack, quick, as_sampled, as_given, changes) = self;
-        let density = density.map(|word| density_named(&word)).transpose()?;
-        Ok(TableOptions { density, pack, quick, as_sampled, as_given, changes })
-    }
-}
 
 /// The soils of a file: a JSON list.
 #[pyfunction]
