@@ -7,7 +7,7 @@ use crate::outcome::digits::percent;
 use crate::outcome::record::{
     AppliedRule, Bound, Confidence, FindingRecord, Outcome, RuleQuantity, RuleRole, RunSummary, Verdict,
 };
-use crate::outcome::rules::DESIGN;
+use crate::outcome::rules::{DESIGN, TESTS_NO_EROSION};
 use crate::outcome::undecided::UndecidedBy;
 
 /// Findings that stand on the first page and on a terminal; the rest stand further down the page.
@@ -62,14 +62,19 @@ impl Outcome {
 
     /// What to do next, in a sentence without its end.
     pub fn next_in_words(&self) -> String {
-        let design = self.rules.iter().find(|rule| rule.id == DESIGN && rule.applies);
         let unit = if self.inputs.scale_free { "D0F" } else { "mm" };
         match standing(&self.rules) {
             Standing::Fails | Standing::NoMargin => {
-                let limit = design.filter(|rule| rule.met == Some(false)).and_then(|rule| rule.limit);
-                let finer = limit.map_or("take a finer filter".to_owned(), |limit| {
-                    format!("take a filter with a D15F of at most {} {unit}", three(limit))
-                });
+                let finer = match greatest(&self.rules) {
+                    Some((limit, false)) => {
+                        format!("take a filter with a D15F of at most {} {unit}", three(limit))
+                    }
+                    Some((limit, true)) => format!(
+                        "take a finer filter; the limit lies below a D15F of {} {unit}, and is not known",
+                        three(limit)
+                    ),
+                    None => "take a finer filter".into(),
+                };
                 format!("{finer}; for a filter that exists, have this pair tested")
             }
             Standing::Unstable => {
@@ -85,22 +90,22 @@ impl Outcome {
     }
 
     fn of_drainage(&self) -> Option<String> {
-        let least = broken(&self.rules, RuleRole::Drainage)
-            .into_iter()
-            .find(|rule| rule.quantity == RuleQuantity::D15F);
-        let of_size = least.and_then(|rule| {
-            let most = self.rules.iter().find(|of| of.id == DESIGN && of.applies).and_then(|of| of.limit);
-            let (least, unit) = (rule.limit?, &rule.unit);
-            Some(match most {
-                Some(most) if most >= least => {
-                    format!("take a coarser filter, D15F {} to {} {unit}", three(least), three(most))
-                }
-                _ => "compare the permeabilities of filter and base: no D15F both retains and drains".into(),
-            })
-        });
-        of_size.or_else(|| {
-            breaks(&self.rules, RuleRole::Drainage).then(|| "take a filter with fewer fines".into())
-        })
+        let broken = broken(&self.rules, RuleRole::Drainage);
+        let (of_size, of_fines): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
+            broken.into_iter().partition(|rule| rule.quantity == RuleQuantity::D15F);
+        let fewer = if of_fines.is_empty() { "" } else { " with fewer fines" };
+        let least = of_size.iter().find_map(|rule| Some((rule.limit?, &rule.unit)));
+        match (least, greatest(&self.rules)) {
+            // Of a base that erodes in the walk no coarser filter is asked for.
+            (Some(_), _) if self.verdict != Verdict::None => None,
+            (Some((least, unit)), Some((most, false))) if most >= least => {
+                Some(format!("take a coarser filter{fewer}, D15F {} to {} {unit}", three(least), three(most)))
+            }
+            (Some(_), _) => {
+                Some("compare the permeabilities of filter and base: no D15F both retains and drains".into())
+            }
+            (None, _) => (!of_fines.is_empty()).then(|| "take a filter with fewer fines".into()),
+        }
     }
 
     fn of_placing(&self) -> Option<String> {
@@ -119,7 +124,7 @@ impl Outcome {
             (None, Verdict::None, Confidence::Within) => {
                 "check what the model leaves out: segregation, placing, gradients".into()
             }
-            (None, Verdict::None, _) => "settle what is listed first below, or have this pair tested".into(),
+            (None, Verdict::None, _) => "have this pair tested: the findings say why".into(),
             (None, ..) => "have this pair tested: practice and walk differ".into(),
         }
     }
@@ -137,6 +142,15 @@ impl Outcome {
         let all = self.against().into_iter().chain(self.besides());
         all.filter(|finding| !is_evidence(finding)).collect()
     }
+}
+
+/// The greatest D15F that both the limit of design and tests that saw no erosion allow, and whether the limit
+/// itself is lower and not known.
+fn greatest(rules: &[AppliedRule]) -> Option<(f64, bool)> {
+    let of = |id: &str| rules.iter().find(|rule| rule.id == id && rule.applies && rule.limit.is_some());
+    let limits: Vec<&AppliedRule> = [DESIGN, TESTS_NO_EROSION].into_iter().filter_map(of).collect();
+    let least = limits.iter().filter_map(|rule| rule.limit).min_by(f64::total_cmp)?;
+    Some((least, limits.iter().any(|rule| rule.limit_at_most)))
 }
 
 /// Beyond the limit of design, and within the boundary of no erosion.
@@ -282,6 +296,22 @@ mod tests {
         assert!(
             hidden.starts_with("nobody can say yet: practice needs finer sieves of the base; "),
             "{hidden}"
+        );
+    }
+    /// With 38 % fines the limit of design lies beyond the boundary that tests saw: no advice goes beyond it.
+    #[test]
+    fn no_advice_goes_beyond_what_tests_saw() {
+        let base = [(0.01, 10.0), (0.075, 38.0), (0.425, 60.0), (2.0, 90.0), (4.75, 100.0)];
+        let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
+        let rules = PairRules::of(&soil(&base), &soil(&[(0.7, 0.0), (3.0, 100.0)])).rules;
+        let limit = |id: &str| rules.iter().find(|rule| rule.id == id).and_then(|rule| rule.limit).unwrap();
+        assert!(limit(DESIGN) > 1.0 && (limit(TESTS_NO_EROSION) - 0.7).abs() < 1e-9, "{rules:?}");
+        assert_eq!(greatest(&rules), Some((limit(TESTS_NO_EROSION), false)));
+        let practice = crate::verdict::practice::practice_in_words(&rules);
+        assert!(practice.starts_with("not met: D15F "), "{practice}");
+        assert!(
+            practice.contains("is more than the 0.700 mm up to which tests saw no erosion"),
+            "{practice}"
         );
     }
 }

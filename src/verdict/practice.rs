@@ -215,8 +215,19 @@ pub fn practice_in_words(rules: &[AppliedRule]) -> String {
     let find = |id: &str| rules.iter().find(|rule| rule.id == id && rule.applies);
     let (design, retention) = (find(DESIGN), broken(rules, RuleRole::Retention));
     let mut said = Vec::new();
+    let beyond_tests = retention.iter().find(|rule| rule.id == TESTS_NO_EROSION);
     said.push(match design {
-        Some(rule) => of_design(rule),
+        Some(rule) => match beyond_tests.filter(|_| rule.met == Some(true)) {
+            Some(tests) => {
+                let [value, limit] = against(tests, 3);
+                format!(
+                    "D15F {value} is more than the {limit} up to which tests saw no erosion (Foster and \
+                     Fell), though within the {} that Sherard and Dunnigan allow (design)",
+                    against(rule, 3)[1]
+                )
+            }
+            None => of_design(rule),
+        },
         None => "the limit of design was not applied".into(),
     });
     said.extend(of_tests(rules));

@@ -1,5 +1,6 @@
 //! Points with numbers as grains.
 
+use crate::packing::LengthUnit;
 use crate::packing::csv::{DIAMETER, Named, RADIUS};
 use crate::packing::fields::{ImportError, refused};
 use crate::packing::found::{FileCell, FileGrains, NAMES};
@@ -57,5 +58,13 @@ pub fn grains(file: &str, points: Points) -> Result<FileGrains, ImportError> {
     let column = |axis: usize| points.places.iter().skip(axis).step_by(3).copied().collect();
     let diameter = size.values.iter().map(|value| factor * value).collect();
     let columns = [column(0), column(1), column(2), diameter];
-    Ok(FileGrains { columns, unit: name.unit, cell: FileCell::Unsaid, line: points.line, notes: Vec::new() })
+    let of_unit = |unit: LengthUnit| {
+        format!(
+            "{file}: the array {} is in {}, and so are the coordinates taken to be",
+            size.name,
+            unit.words()
+        )
+    };
+    let notes = name.unit.map(of_unit).into_iter().collect();
+    Ok(FileGrains { columns, unit: name.unit, cell: FileCell::Unsaid, line: points.line, notes })
 }

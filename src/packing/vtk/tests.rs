@@ -171,8 +171,17 @@ fn what_is_refused_says_why() {
         (xml("", "0.5"), "f, line 6, diameter: \"1 numbers\" is not allowed; allowed: 2 numbers"),
         (
             in_xml("", [(array, "0.5 1 2 1.5"), (array, "1 1")], b""),
-            "f, line 8, points: \"4 numbers\" is not allowed; allowed: three numbers for each point",
+            "f, line 8, points: \"4 numbers\" is not allowed; allowed: x, y and z of 2 points, as NumberOf",
         ),
+        (
+            String::from_utf8(xml("", "1 1")).unwrap().replace("</VTKFile>", "").into_bytes(),
+            "expected </VTKFile>",
+        ),
+        (
+            String::from_utf8(xml("", "1 1")).unwrap().replace("Points=\"2\"", "Points=\"9\"").into_bytes(),
+            "x, y and z of 9 points",
+        ),
+        (xml("byte_order=\"Middle\"", "1 1"), "f, line 2, byte_order: \"Middle\""),
         (xml("", "0.5 x"), "f, line 6, number: \"x\""),
         (
             xml("compressor=\"vtkLZ4DataCompressor\"", "1 1"),

@@ -10,6 +10,7 @@ use quick_xml::events::{BytesStart, Event};
 
 use super::number::Number;
 use super::points::{PointArray, Points, grains};
+use crate::packing::PACKING_FILE_LIMIT_BYTES;
 use crate::packing::fields::{ImportError, refused};
 use crate::packing::found::FileGrains;
 
@@ -30,6 +31,8 @@ pub fn xml(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
     let mut form =
         Form { file, line: 1, is_big_endian: false, header: Number::U32, is_zlib: false, appended };
     let mut points = Points { line: 1, places: Vec::new(), arrays: Vec::new() };
+    // Points that the pieces say they have, and whether the file comes to its end.
+    let (mut said, mut is_whole) = (0usize, form.appended.is_some());
     let (mut room, mut open): (Option<Room>, Option<Declared>) = (None, None);
     // How deep within an array: what VTK notes of one stands in elements of their own.
     let mut within: i64 = 0;
@@ -37,7 +40,8 @@ pub fn xml(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
         let at = reader.buffer_position() as usize;
         let event = match reader.read_event() {
             Ok(event) => event,
-            Err(_) if form.appended.is_some() => break,
+            // Where the numbers begin that are appended, the XML is cut off.
+            Err(_) if form.appended.is_some() && reader.buffer_position() as usize >= head.len() => break,
             Err(error) => {
                 return Err(refused(file, line_at(at), "XML", &error.to_string(), "a whole file of VTK"));
             }
@@ -47,6 +51,12 @@ pub fn xml(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
                 form.line = line_at(at);
                 match e.name().as_ref() {
                     "VTKFile" => form.read(&e)?,
+                    "Piece" => {
+                        let count = attribute(&e, "NumberOfPoints").unwrap_or_default();
+                        let more = count.parse().ok().and_then(|more| said.checked_add(more));
+                        said =
+                            more.ok_or_else(|| form.refused("NumberOfPoints", &count, "a whole number"))?;
+                    }
                     "Points" => {
                         (room, points.line) = (Some(Room::Places), form.line);
                     }
@@ -67,6 +77,7 @@ pub fn xml(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
                         keep(&mut points, room, open, &form)?;
                     }
                 }
+                "VTKFile" => is_whole = true,
                 "Points" | "PointData" => room = None,
                 _ if open.is_some() => within -= 1,
                 _ => {}
@@ -74,6 +85,15 @@ pub fn xml(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
             Event::Eof => break,
             _ => {}
         }
+    }
+    if !is_whole {
+        let (file, line) = (file.into(), line_at(head.len()));
+        return Err(ImportError::Truncated { file, line, expected: "</VTKFile>".into() });
+    }
+    if said.checked_mul(3) != Some(points.places.len()) {
+        let found = format!("{} numbers", points.places.len());
+        let allowed = format!("x, y and z of {said} points, as NumberOfPoints says");
+        return Err(refused(file, points.line, "points", &found, allowed));
     }
     grains(file, points)
 }
@@ -161,7 +181,11 @@ impl Form<'_> {
             let allowed = "PolyData or UnstructuredGrid, one file of points; of a parallel file give a piece";
             return Err(self.refused("type", &kind, allowed));
         }
-        self.is_big_endian = attribute(e, "byte_order").is_some_and(|order| order == "BigEndian");
+        self.is_big_endian = match attribute(e, "byte_order").as_deref() {
+            None | Some("LittleEndian") => false,
+            Some("BigEndian") => true,
+            Some(other) => return Err(self.refused("byte_order", other, "LittleEndian or BigEndian")),
+        };
         self.header = match attribute(e, "header_type").as_deref() {
             None | Some("UInt32") => Number::U32,
             Some("UInt64") => Number::U64,
@@ -216,7 +240,12 @@ impl Declared {
             }
             other => return Err(form.refused("format", other.unwrap_or(""), "ascii, binary or appended")),
         };
-        let components = attribute(e, "NumberOfComponents").and_then(|n| n.parse().ok()).unwrap_or(1);
+        let components = match attribute(e, "NumberOfComponents") {
+            None => 1,
+            Some(text) => {
+                text.parse().map_err(|_| form.refused("NumberOfComponents", &text, "a whole number"))?
+            }
+        };
         let name = attribute(e, "Name").unwrap_or_default();
         Ok(Self { line: form.line, name, number, components, place, text: String::new() })
     }
@@ -311,7 +340,7 @@ fn block(coded: &Coded<'_>, form: &Form<'_>) -> Option<Vec<u8>> {
         let begun = bytes.len();
         let block = flate2::read::ZlibDecoder::new(packed.get(at..end)?);
         block.take(unpacked.min(LARGEST_BLOCK) as u64 + 1).read_to_end(&mut bytes).ok()?;
-        if bytes.len() - begun != unpacked {
+        if bytes.len() - begun != unpacked || bytes.len() as u64 > PACKING_FILE_LIMIT_BYTES {
             return None;
         }
         at = end;

@@ -16,7 +16,7 @@
 //! 26 % below. The tries end early where what erodes falls steadily with the ratio: five of them or more, a
 //! straight line through them that lies 15 % of the threshold below it, and by eight times what scatters
 //! about the line. Of 711 searches whose tries went all the way that rule halved the tries, and the boundary
-//! of two rose (`results/design.md`).
+//! of two rose, by 4 and 8 % (`results/design.md`).
 //!
 //! Networks of one filter and base lie close together: with the boundaries of the first of them as a hint,
 //! the search of another steps away from there, 2 % and then ever more, until it has one that holds and one
@@ -129,7 +129,8 @@ pub(super) struct Hint {
 
 impl Hint {
     pub fn of(found: &Found) -> Self {
-        let erodes_to_end = matches!(found.no_erosion_beyond, Some((_, Ended::Erodes(_))));
+        let is_beyond = |side: &Option<Beside>| matches!(side, Some((_, Ended::Erodes(_))));
+        let erodes_to_end = is_beyond(&found.no_erosion_beyond) && is_beyond(&found.continuing_beyond);
         Self { boundaries: [found.no_erosion, found.continuing], erodes_to_end }
     }
 }
