@@ -2,6 +2,9 @@
 
 use crate::gradation::{Position, shortened};
 
+/// Largest packing file that is read, in bytes; what is packed in it may unpack to no more.
+pub const PACKING_FILE_LIMIT_BYTES: u64 = 4 << 30;
+
 /// The formats that are read, in words.
 const KNOWN: &str = "CSV with columns as x_mm, y_mm, z_mm and diameter_mm (or Points:0, Points:1, Points:2 \
                      and Diameter of ParaView and MFIX; radius will do), text dumps of LAMMPS and LIGGGHTS, \

@@ -21,16 +21,13 @@ use serde::{Deserialize, Serialize};
 
 use super::csv::csv;
 use super::dump::dump;
-use super::fields::{ImportError, refused};
+use super::fields::{ImportError, PACKING_FILE_LIMIT_BYTES, refused};
 use super::found::{FileCell, FileGrains};
 use super::grains::{Cell, Packing};
 use super::rows::{is_mercury, mercury, yade};
 use super::unit::LengthUnit;
 use super::vtk::{legacy, xml};
 use crate::store::read_regular;
-
-/// Largest packing file that is read, in bytes.
-pub const PACKING_FILE_LIMIT_BYTES: u64 = 4 << 30;
 
 /// What is known of a packing file that the file does not say itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

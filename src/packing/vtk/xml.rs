@@ -10,8 +10,7 @@ use quick_xml::events::{BytesStart, Event};
 
 use super::number::Number;
 use super::points::{PointArray, Points, grains};
-use crate::packing::PACKING_FILE_LIMIT_BYTES;
-use crate::packing::fields::{ImportError, refused};
+use crate::packing::fields::{ImportError, PACKING_FILE_LIMIT_BYTES, refused};
 use crate::packing::found::FileGrains;
 
 /// Types of files that are read.
