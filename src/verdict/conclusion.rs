@@ -96,11 +96,12 @@ impl Outcome {
         let fewer = if of_fines.is_empty() { "" } else { " with fewer fines" };
         let least = of_size.iter().find_map(|rule| Some((rule.limit?, &rule.unit)));
         match (least, greatest(&self.rules)) {
-            // Of a base that erodes in the walk no coarser filter is asked for.
-            (Some(_), _) if self.verdict != Verdict::None => None,
-            (Some((least, unit)), Some((most, false))) if most >= least => {
-                Some(format!("take a coarser filter{fewer}, D15F {} to {} {unit}", three(least), three(most)))
-            }
+            // Where a base erodes in the walk no coarser filter is asked for.
+            (Some((least, unit)), Some((most, false))) if most >= least => (self.verdict == Verdict::None)
+                .then(|| {
+                    let [least, most] = [least, most].map(three);
+                    format!("take a coarser filter{fewer}, D15F {least} to {most} {unit}")
+                }),
             (Some(_), _) => {
                 Some("compare the permeabilities of filter and base: no D15F both retains and drains".into())
             }
