@@ -84,11 +84,7 @@ pub fn main_with(start: Start) -> u8 {
         Command::Reproduce(args) => reproduce::reproduce(&args),
         Command::Soil(args) => soil::soil(&args),
         Command::Check(args) => check::check(&args),
-        Command::Init { schema: Some(form), .. } => {
-            print::to_stdout(form.schema);
-            Ok(())
-        }
-        Command::Init { path, json, .. } => init::init(path.as_deref(), json),
+        Command::Init { path, json, schema } => init::init(path.as_deref(), json, schema),
         Command::Design(args) => design::design(&args),
         Command::Campaign(args) => campaign::campaign(&args),
         Command::Pack(args) => pack::pack(&args),

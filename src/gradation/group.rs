@@ -1,12 +1,75 @@
 //! The group of a soil by ASTM D2487, as far as a sieve curve tells it.
 
-use super::{FINES_MM, Gradation};
+use super::sieve::Gradation;
 
-/// No. 4, between sand and gravel (mm).
-const GRAVEL_MM: f64 = 4.75;
+/// Fines are finer than this (mm): the No. 200 sieve.
+pub const FINES_MM: f64 = 0.075;
+
+/// Gravel is coarser than this (mm): the No. 4 sieve.
+pub const GRAVEL_MM: f64 = 4.75;
 
 /// Coarser grains are cobbles, which the groups leave out (mm).
 const COBBLES_MM: f64 = 75.0;
+
+/// A group. Where more than 12 % are fines their plasticity decides, and no shape is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Group {
+    FineGrained,
+    ManyFines { is_gravel: bool },
+    FewFines { is_gravel: bool, is_well_graded: bool, has_fines: bool },
+}
+
+impl Group {
+    /// The group of a soil with so many percent of fines and of gravel, and of this Cu and Cc.
+    pub fn of(fines: f64, gravel: f64, shape: Option<(f64, f64)>) -> Option<Self> {
+        if fines >= 50.0 {
+            return Some(Self::FineGrained);
+        }
+        let is_gravel = gravel > (100.0 - fines) / 2.0;
+        if fines > 12.0 {
+            return Some(Self::ManyFines { is_gravel });
+        }
+        let (cu, cc) = shape?;
+        let least_cu = if is_gravel { 4.0 } else { 6.0 };
+        let is_well_graded = cu >= least_cu && (1.0..=3.0).contains(&cc);
+        Some(Self::FewFines { is_gravel, is_well_graded, has_fines: fines >= 5.0 })
+    }
+
+    /// Its symbol; where the plasticity of the fines decides, both that it may come to.
+    fn symbol(self) -> String {
+        let letter = |is_gravel| if is_gravel { 'G' } else { 'S' };
+        match self {
+            Self::FineGrained => "fine-grained".into(),
+            Self::ManyFines { is_gravel } => {
+                let kind = letter(is_gravel);
+                format!("{kind}M or {kind}C")
+            }
+            Self::FewFines { is_gravel, is_well_graded, has_fines } => {
+                let kind = letter(is_gravel);
+                let clean = format!("{kind}{}", if is_well_graded { 'W' } else { 'P' });
+                if has_fines { format!("{clean}-{kind}M or {clean}-{kind}C") } else { clean }
+            }
+        }
+    }
+
+    /// What it is called, and its symbol.
+    pub fn in_words(self) -> String {
+        let noun = |is_gravel| if is_gravel { "gravel" } else { "sand" };
+        match self {
+            Self::FineGrained => {
+                "fine-grained soil (half or more is finer than 0.075 mm): silt or clay".into()
+            }
+            Self::ManyFines { is_gravel } => {
+                format!("{} with more than 12 % fines: {}", noun(is_gravel), self.symbol())
+            }
+            Self::FewFines { is_gravel, is_well_graded, has_fines } => {
+                let word = if is_well_graded { "well-graded" } else { "poorly graded" };
+                let fines = if has_fines { " with silt or clay" } else { "" };
+                format!("{word} {}{fines}: {}", noun(is_gravel), self.symbol())
+            }
+        }
+    }
+}
 
 impl Gradation {
     /// The symbol of its group, sizes in mm. Where the plasticity of the fines decides, both symbols that it
@@ -19,23 +82,14 @@ impl Gradation {
     /// # Ok::<(), voidwalk::gradation::GradationError>(())
     /// ```
     pub fn group(&self) -> Option<String> {
+        // Of less than 5 % no finest tail has more.
         let fines = self.percent_finer_by_mass(FINES_MM);
-        let is_known = self.pan_fraction() == 0.0 || self.smallest_mm() <= FINES_MM || fines < 5.0;
+        let is_known = fines < 5.0 || self.percent_finer_if_known(FINES_MM).is_some();
         if !is_known || self.largest_mm() > COBBLES_MM {
             return None;
         }
-        if fines >= 50.0 {
-            return Some("fine-grained".into());
-        }
         let gravel = 100.0 - self.percent_finer_by_mass(GRAVEL_MM);
-        let (kind, least_cu) = if 2.0 * gravel > 100.0 - fines { ("G", 4.0) } else { ("S", 6.0) };
-        if fines > 12.0 {
-            return Some(format!("{kind}M or {kind}C"));
-        }
-        let (cu, cc) = (self.cu()?, self.cc()?);
-        let grading = if cu >= least_cu && (1.0..=3.0).contains(&cc) { "W" } else { "P" };
-        let clean = format!("{kind}{grading}");
-        Some(if fines < 5.0 { clean } else { format!("{clean}-{kind}M or {clean}-{kind}C") })
+        Some(Group::of(fines, gravel, self.cu().zip(self.cc()))?.symbol())
     }
 }
 

@@ -1,8 +1,8 @@
 //! Regrading: the part of a base soil that filter practice looks at.
 
 use super::Gradation;
+use super::group::{FINES_MM, GRAVEL_MM};
 use super::shape::Gap;
-use super::soil::{FINES_MM, GRAVEL_MM};
 
 /// Percent of fines below which a base has few.
 pub const FEW_FINES: f64 = 15.0;

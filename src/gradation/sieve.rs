@@ -134,6 +134,11 @@ impl Gradation {
         self.size_mm[self.size_mm.len() - 1]
     }
 
+    /// Percent by mass no coarser than `d_mm`; `None` where that lies in a pan fraction.
+    pub fn percent_finer_if_known(&self, d_mm: f64) -> Option<f64> {
+        (self.pan_fraction() == 0.0 || self.smallest_mm() <= d_mm).then(|| self.percent_finer_by_mass(d_mm))
+    }
+
     /// Percent by mass no coarser than `d_mm`. A pan fraction counts as finer than any size.
     pub fn percent_finer_by_mass(&self, d_mm: f64) -> f64 {
         let above = self.size_mm.partition_point(|&d| d <= d_mm);

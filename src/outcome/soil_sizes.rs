@@ -12,8 +12,7 @@ fn finer<const PERCENT: u8>(soil: &Gradation) -> Option<String> {
 }
 
 fn percent_fines(soil: &Gradation) -> Option<String> {
-    let is_known = soil.pan_fraction() == 0.0 || soil.smallest_mm() <= FINES_MM;
-    is_known.then(|| in_digits(soil.percent_finer_by_mass(FINES_MM), 3))
+    soil.percent_finer_if_known(FINES_MM).map(|percent| in_digits(percent, 3))
 }
 
 /// The sizes that engineers look for.

@@ -2,12 +2,13 @@
 //! do next, and the three findings that matter most.
 
 use super::beside::is_evidence;
-use super::practice::{Standing, broken, digits_of, standing};
+use super::practice::{Standing, broken, standing};
+use crate::outcome::design::band::retention;
 use crate::outcome::digits::percent;
 use crate::outcome::record::{
     AppliedRule, Bound, Confidence, FindingRecord, Outcome, RuleQuantity, RuleRole, RunSummary, Verdict,
 };
-use crate::outcome::rules::{DESIGN, TESTS_NO_EROSION};
+use crate::outcome::three;
 use crate::outcome::undecided::UndecidedBy;
 
 /// Findings that stand on the first page and on a terminal; the rest stand further down the page.
@@ -65,7 +66,7 @@ impl Outcome {
         let unit = if self.inputs.scale_free { "D0F" } else { "mm" };
         match standing(&self.rules) {
             Standing::Fails | Standing::NoMargin => {
-                let finer = match greatest(&self.rules) {
+                let finer = match greatest(&self.rules, self.inputs.filter.d15_mm) {
                     Some((limit, false)) => {
                         format!("take a filter with a D15F of at most {} {unit}", three(limit))
                     }
@@ -95,7 +96,7 @@ impl Outcome {
             broken.into_iter().partition(|rule| rule.quantity == RuleQuantity::D15F);
         let fewer = if of_fines.is_empty() { "" } else { " with fewer fines" };
         let least = of_size.iter().find_map(|rule| Some((rule.limit?, &rule.unit)));
-        match (least, greatest(&self.rules)) {
+        match (least, greatest(&self.rules, self.inputs.filter.d15_mm)) {
             // Where a base erodes in the walk no coarser filter is asked for.
             (Some((least, unit)), Some((most, false))) if most >= least => (self.verdict == Verdict::None)
                 .then(|| {
@@ -145,13 +146,12 @@ impl Outcome {
     }
 }
 
-/// The greatest D15F that both the limit of design and tests that saw no erosion allow, and whether the limit
-/// itself is lower and not known.
-fn greatest(rules: &[AppliedRule]) -> Option<(f64, bool)> {
-    let of = |id: &str| rules.iter().find(|rule| rule.id == id && rule.applies && rule.limit.is_some());
-    let limits: Vec<&AppliedRule> = [DESIGN, TESTS_NO_EROSION].into_iter().filter_map(of).collect();
-    let least = limits.iter().filter_map(|rule| rule.limit).min_by(f64::total_cmp)?;
-    Some((least, limits.iter().any(|rule| rule.limit_at_most)))
+/// The greatest D15F that every rule of retention allows, and whether the limit itself is lower and not
+/// known.
+fn greatest(rules: &[AppliedRule], d15f: f64) -> Option<(f64, bool)> {
+    let (_, limit) = retention(rules, d15f)?;
+    let is_of_role = |rule: &AppliedRule| rule.role == RuleRole::Retention && rule.applies;
+    Some((limit, rules.iter().any(|rule| is_of_role(rule) && rule.limit_at_most)))
 }
 
 /// Beyond the limit of design, and within the boundary of no erosion.
@@ -228,14 +228,11 @@ fn eroded(name: &str, what: &str, run: &RunSummary) -> String {
     format!("{} in the {name}{interval}", percent(eroded.mean))
 }
 
-fn three(value: f64) -> String {
-    digits_of(value, 3)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
+    use crate::outcome::rules::{DESIGN, TESTS_NO_EROSION};
     use crate::verdict::{PairRules, judge};
 
     fn said(filter: &[(f64, f64)], base: &[(f64, f64)], verdict: Verdict) -> String {
@@ -299,6 +296,7 @@ mod tests {
             "{hidden}"
         );
     }
+
     /// With 38 % fines the limit of design lies beyond the boundary that tests saw: no advice goes beyond it.
     #[test]
     fn no_advice_goes_beyond_what_tests_saw() {
@@ -307,7 +305,8 @@ mod tests {
         let rules = PairRules::of(&soil(&base), &soil(&[(0.7, 0.0), (3.0, 100.0)])).rules;
         let limit = |id: &str| rules.iter().find(|rule| rule.id == id).and_then(|rule| rule.limit).unwrap();
         assert!(limit(DESIGN) > 1.0 && (limit(TESTS_NO_EROSION) - 0.7).abs() < 1e-9, "{rules:?}");
-        assert_eq!(greatest(&rules), Some((limit(TESTS_NO_EROSION), false)));
+        let d15f = rules.iter().find(|rule| rule.id == DESIGN).and_then(|rule| rule.value).unwrap();
+        assert_eq!(greatest(&rules, d15f), Some((limit(TESTS_NO_EROSION), false)));
         let practice = crate::verdict::practice::practice_in_words(&rules);
         assert!(practice.starts_with("not met: D15F "), "{practice}");
         assert!(

@@ -370,7 +370,7 @@ fn short(value: f64) -> String {
     digits_of(value, 2)
 }
 
-pub(super) fn digits_of(value: f64, digits: i32) -> String {
+fn digits_of(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
     }

@@ -14,7 +14,6 @@ use voidwalk::schema::SceneError;
 use voidwalk::store::format;
 
 use crate::problem::{failed, of_run, refused};
-
 use crate::tables::of_recorded;
 use crate::two_tables::Tables;
 use crate::work::at_work;

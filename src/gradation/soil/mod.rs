@@ -38,5 +38,5 @@ mod zipped;
 
 pub(crate) use read::file_and_soil;
 pub use read::{curves_in_file, notes_in_file, soils_in_file};
-pub use summary::{FINES_MM, GRAVEL_MM, SoilSummary};
+pub use summary::SoilSummary;
 pub use table::Soil;

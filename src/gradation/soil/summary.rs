@@ -4,12 +4,7 @@ use serde::Serialize;
 
 use super::table::Soil;
 use crate::gradation::error::GradationError;
-use crate::gradation::sieve::Gradation;
-
-/// Fines are finer than this (mm): the No. 200 sieve.
-pub const FINES_MM: f64 = 0.075;
-/// Gravel is coarser than this (mm): the No. 4 sieve.
-pub const GRAVEL_MM: f64 = 4.75;
+use crate::gradation::group::{FINES_MM, GRAVEL_MM, Group};
 
 /// What was understood of a soil, and what follows from its curve.
 #[derive(Clone, Debug, Serialize)]
@@ -63,8 +58,8 @@ impl SoilSummary {
         let d = |percent| curve.d(percent);
         let cc = || Some(d(30.0)? / d(60.0)? * (d(30.0)? / d(10.0)?));
         let (cu, cc) = (curve.cu(), cc());
-        let fines_percent = finer(&curve, FINES_MM);
-        let gravel_percent = finer(&curve, GRAVEL_MM).map(|percent| 100.0 - percent);
+        let fines_percent = curve.percent_finer_if_known(FINES_MM);
+        let gravel_percent = curve.percent_finer_if_known(GRAVEL_MM).map(|percent| 100.0 - percent);
         Ok(SoilSummary {
             name: soil.name().to_owned(),
             points: curve.points().into_iter().map(|(size, percent)| [size, percent]).collect(),
@@ -88,32 +83,10 @@ impl SoilSummary {
     }
 }
 
-/// Percent finer than `size`; `None` where that lies in an open finest tail.
-fn finer(curve: &Gradation, size: f64) -> Option<f64> {
-    (curve.pan_fraction() == 0.0 || curve.smallest_mm() <= size).then(|| curve.percent_finer_by_mass(size))
-}
-
 /// The group of ASTM D2487 that follows from sizes alone: whether fines are silt or clay is not known from
 /// them.
 fn class(fines: Option<f64>, gravel: Option<f64>, shape: Option<(f64, f64)>) -> Option<String> {
-    let (fines, gravel) = (fines?, gravel?);
-    if fines >= 50.0 {
-        return Some("fine-grained soil (half or more is finer than 0.075 mm): silt or clay".into());
-    }
-    let is_gravel = gravel > (100.0 - fines) / 2.0;
-    let (noun, letter, least_cu) = if is_gravel { ("gravel", 'G', 4.0) } else { ("sand", 'S', 6.0) };
-    if fines > 12.0 {
-        return Some(format!("{noun} with more than 12 % fines: {letter}M or {letter}C"));
-    }
-    let (cu, cc) = shape?;
-    let well = cu >= least_cu && (1.0..=3.0).contains(&cc);
-    let (word, second) = if well { ("well-graded", 'W') } else { ("poorly graded", 'P') };
-    Some(match fines >= 5.0 {
-        true => format!(
-            "{word} {noun} with silt or clay: {letter}{second}-{letter}M or {letter}{second}-{letter}C"
-        ),
-        false => format!("{word} {noun}: {letter}{second}"),
-    })
+    Some(Group::of(fines?, gravel?, shape)?.in_words())
 }
 
 #[cfg(test)]

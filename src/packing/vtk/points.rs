@@ -37,10 +37,6 @@ pub fn grains(file: &str, points: Points) -> Result<FileGrains, ImportError> {
         return Err(refused(file, points.line, "arrays of the points", &names.join(", "), allowed));
     };
     let count = points.places.len() / 3;
-    if !points.places.len().is_multiple_of(3) {
-        let found = format!("{} numbers", points.places.len());
-        return Err(refused(file, points.line, "points", &found, "three numbers for each point"));
-    }
     if size.values.len() != count {
         let allowed = format!("{count} numbers, one for each point");
         return Err(refused(file, size.line, NAMES[3], &format!("{} numbers", size.values.len()), allowed));

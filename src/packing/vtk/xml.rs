@@ -22,7 +22,8 @@ const LARGEST_BLOCK: usize = 1 << 28;
 /// The grains of a file of VTK in XML.
 pub fn xml(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
     let (head, appended) = split(file, content)?;
-    let line_at = |at: usize| 1 + head.as_bytes()[..at].iter().filter(|&&byte| byte == b'\n').count();
+    let line_ends =
+        |part: std::ops::Range<usize>| head.as_bytes()[part].iter().filter(|&&byte| byte == b'\n').count();
     let mut reader = Reader::from_str(head);
     reader.config_mut().expand_empty_elements = true;
     // Of a file with appended data the end is cut off.
@@ -35,36 +36,34 @@ pub fn xml(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
     let (mut room, mut open): (Option<Room>, Option<Declared>) = (None, None);
     // How deep within an array: what VTK notes of one stands in elements of their own.
     let mut within: i64 = 0;
+    let mut at = 0;
     loop {
-        let at = reader.buffer_position() as usize;
+        let before = std::mem::replace(&mut at, reader.buffer_position() as usize);
+        form.line += line_ends(before..at);
         let event = match reader.read_event() {
             Ok(event) => event,
             // Where the numbers begin that are appended, the XML is cut off.
             Err(_) if form.appended.is_some() && reader.buffer_position() as usize >= head.len() => break,
             Err(error) => {
-                return Err(refused(file, line_at(at), "XML", &error.to_string(), "a whole file of VTK"));
+                return Err(form.refused("XML", &error.to_string(), "a whole file of VTK"));
             }
         };
         match event {
-            Event::Start(e) => {
-                form.line = line_at(at);
-                match e.name().as_ref() {
-                    "VTKFile" => form.read(&e)?,
-                    "Piece" => {
-                        let count = attribute(&e, "NumberOfPoints").unwrap_or_default();
-                        let more = count.parse().ok().and_then(|more| said.checked_add(more));
-                        said =
-                            more.ok_or_else(|| form.refused("NumberOfPoints", &count, "a whole number"))?;
-                    }
-                    "Points" => {
-                        (room, points.line) = (Some(Room::Places), form.line);
-                    }
-                    "PointData" => room = Some(Room::Numbers),
-                    "DataArray" if room.is_some() => (open, within) = (Some(Declared::of(&e, &form)?), 0),
-                    _ if open.is_some() => within += 1,
-                    _ => {}
+            Event::Start(e) => match e.name().as_ref() {
+                "VTKFile" => form.read(&e)?,
+                "Piece" => {
+                    let count = attribute(&e, "NumberOfPoints").unwrap_or_default();
+                    let more = count.parse().ok().and_then(|more| said.checked_add(more));
+                    said = more.ok_or_else(|| form.refused("NumberOfPoints", &count, "a whole number"))?;
                 }
-            }
+                "Points" => {
+                    (room, points.line) = (Some(Room::Places), form.line);
+                }
+                "PointData" => room = Some(Room::Numbers),
+                "DataArray" if room.is_some() => (open, within) = (Some(Declared::of(&e, &form)?), 0),
+                _ if open.is_some() => within += 1,
+                _ => {}
+            },
             Event::Text(text) => {
                 if let Some(open) = open.as_mut().filter(|_| within == 0) {
                     open.text.push_str(&text);
@@ -86,7 +85,7 @@ pub fn xml(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
         }
     }
     if !is_whole {
-        let (file, line) = (file.into(), line_at(head.len()));
+        let (file, line) = (file.into(), form.line);
         return Err(ImportError::Truncated { file, line, expected: "</VTKFile>".into() });
     }
     if said.checked_mul(3) != Some(points.places.len()) {
@@ -284,7 +283,8 @@ enum Coded<'a> {
 }
 
 impl Coded<'_> {
-    /// So many bytes, and where the next run begins; runs in Base64 are filled up to whole groups.
+    /// So many bytes, and where the next run begins: runs in Base64 are filled up to whole groups.
+    /// Of a longer run it gives the first bytes.
     fn run(&self, from: usize, bytes: usize) -> Option<(Vec<u8>, usize)> {
         match self {
             Self::Raw(content) => {
@@ -299,40 +299,25 @@ impl Coded<'_> {
             }
         }
     }
-
-    /// The first bytes of what begins here, whatever follows in the same groups of Base64.
-    fn start(&self, bytes: usize) -> Option<Vec<u8>> {
-        match self {
-            Self::Raw(_) => Some(self.run(0, bytes)?.0),
-            Self::Base64(content) => {
-                // Whole groups hold no filling where more follows; an array of nothing ends in one.
-                let groups = content.get(..bytes.div_ceil(3) * 4)?;
-                STANDARD.decode(groups).ok()?.get(..bytes).map(<[u8]>::to_vec)
-            }
-        }
-    }
 }
 
 /// The bytes of an array behind its header, unpacked.
 fn block(coded: &Coded<'_>, form: &Form<'_>) -> Option<Vec<u8>> {
     let word = form.header.bytes();
     let whole = |bytes: &[u8]| form.header.one(bytes, form.is_big_endian) as usize;
-    let first = whole(&coded.start(word)?);
+    let first = whole(&coded.run(0, word)?.0);
     if !form.is_zlib {
-        let (all, _) = coded.run(0, word.checked_add(first)?)?;
-        return Some(all[word..].to_vec());
+        let (mut all, _) = coded.run(0, word.checked_add(first)?)?;
+        all.drain(..word);
+        return Some(all);
     }
     // Blocks, the bytes of each unpacked, of the last if it is shorter, and of each as packed.
-    let (header, mut at) = coded.run(0, first.checked_add(3)?.checked_mul(word)?)?;
+    let (header, begin) = coded.run(0, first.checked_add(3)?.checked_mul(word)?)?;
     let sizes: Vec<usize> = header.chunks_exact(word).map(whole).collect();
     let (full, last) = (sizes[1], sizes[2]);
     let packed: usize = sizes[3..].iter().try_fold(0usize, |sum, size| sum.checked_add(*size))?;
-    let (packed, _) = match coded {
-        Coded::Raw(_) => coded.run(at, packed)?,
-        Coded::Base64(content) => Coded::Base64(&content[at..]).run(0, packed)?,
-    };
-    at = 0;
-    let mut bytes = Vec::new();
+    let (packed, _) = coded.run(begin, packed)?;
+    let (mut at, mut bytes) = (0usize, Vec::new());
     for (k, size) in sizes[3..].iter().enumerate() {
         let unpacked = if k + 1 == first && last > 0 { last } else { full };
         let end = at.checked_add(*size)?;

@@ -13,7 +13,7 @@ from .records import SoilSummary
 from ._result import Result, read_run
 from ._scene import Settings
 from ._soil import Gradation
-from ._tables import Soil, changes, gradation, workplace
+from ._tables import Soil, gradation, told, workplace
 from ._walk import manner
 
 __all__ = ["judge", "soil"]
@@ -95,13 +95,9 @@ def judge(
     >>> vw.judge(base, filter, density="dense", quick=True, settings=small).verdict
     'no erosion'
     """
-    options = {
-        "dispersive": ("base.dispersive", True if dispersive else None),
-        "joint_mm": ("filter.joint_mm", joint_mm),
-        "seed": ("seed", seed),
-        "replicates": ("replicates", replicates),
-    }
-    tables = (density, bool(pack), bool(quick), bool(as_sampled), bool(as_given), changes(settings, options))
+    tables = told(
+        settings, density, pack, quick, as_sampled, as_given, dispersive, joint_mm, seed, replicates
+    )
     how = manner("judge", memory, threads, checkpoint_every)
     with workplace() as place, Following(progress) as callback:
         scene = _voidwalk.Scene.of_tables(place.table("base", base), place.table("filter", filter), tables)

@@ -36,7 +36,7 @@ from .records import (
 from ._result import Result, Row, Table, page_of, read_csv
 from ._scene import Scene, Settings, Stated
 from ._soil import Gradation
-from ._tables import Soil, changes, gradation, workplace
+from ._tables import Soil, changes, gradation, told, workplace
 from ._walk import manner, run
 
 if TYPE_CHECKING:
@@ -247,13 +247,9 @@ def compare(
     >>> [case["verdict"] for case in found.cases]
     ['no erosion', 'continuing erosion']
     """
-    options = {
-        "dispersive": ("base.dispersive", True if dispersive else None),
-        "joint_mm": ("filter.joint_mm", joint_mm),
-        "seed": ("seed", seed),
-        "replicates": ("replicates", replicates),
-    }
-    tables = (density, bool(pack), bool(quick), bool(as_sampled), bool(as_given), changes(settings, options))
+    tables = told(
+        settings, density, pack, quick, as_sampled, as_given, dispersive, joint_mm, seed, replicates
+    )
     how = manner("compare", memory, threads, checkpoint_every)
     with workplace() as place, Following(progress) as callback:
 

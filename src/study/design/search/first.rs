@@ -13,9 +13,7 @@ impl Search<'_> {
         let below = (pair.0 - 1).div_euclid(STOP) * STOP;
         let lowest = self.stops[0];
         for stop in [below, below - STOP].into_iter().filter(|stop| *stop >= lowest) {
-            if let Trial::Eroded(eroded) = self.try_first(stop)?
-                && !eroded.below_threshold
-            {
+            if self.erodes(stop)? {
                 return Ok(None);
             }
         }
