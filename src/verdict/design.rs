@@ -352,6 +352,16 @@ mod tests {
         assert!(unknown.answer().said.ends_with("the limit of practice is not known for this base"));
     }
 
+    /// A loose filter that erodes at all that was searched is not held by what a dense one holds.
+    #[test]
+    fn a_row_that_holds_nothing_leaves_the_walk_without_an_answer() {
+        let mut two = design(&sand(), Some(3.0));
+        two.boundaries.push(design(&sand(), None).boundaries.remove(0));
+        let answer = two.answer();
+        assert_eq!((answer.d15f_max_mm, answer.set_by), (None, SetBy::Walk));
+        assert!(answer.said.contains("practice alone allows D15F up to"), "{}", answer.said);
+    }
+
     #[test]
     fn the_inverse_stops_at_the_base_that_practice_allows() {
         let mut inverse = design(&sand(), Some(7.0));

@@ -186,6 +186,10 @@ pub struct DesignRow {
     /// Why there is no band, where networks erode at every ratio that was searched.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub band_note: Option<String>,
+    /// The end of its range whose boundaries these are: the one that holds least. A filter of unknown density
+    /// is searched at its ends only, loose and dense.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub as_end: Option<String>,
     /// The density of which this is an end of the range in which its constriction curve is known: its band is
     /// that of the whole range, and this row has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -193,12 +197,18 @@ pub struct DesignRow {
 }
 
 impl DesignRow {
-    /// The density, in words, and what it is an end of.
+    /// The density, in words, and what it is an end of, or which end it is as.
     pub fn name(&self) -> String {
-        match &self.end_of {
-            Some(of) => format!("{} (an end of the range of {of})", self.density),
-            None => self.density.clone(),
+        match (&self.end_of, &self.as_end) {
+            (Some(of), _) => format!("{} (an end of the range of {of})", self.density),
+            (None, Some(end)) => format!("{} (its worse end: {end})", self.density),
+            (None, None) => self.density.clone(),
         }
+    }
+
+    /// The density whose networks were searched.
+    pub fn searched(&self) -> &str {
+        self.as_end.as_ref().unwrap_or(&self.density)
     }
 
     /// The ratio that nearly all networks hold; `None` where none is known.
@@ -300,11 +310,12 @@ impl Design {
         self.boundaries.iter().find(asked)?.band.as_ref()
     }
 
-    /// The row that holds least, of those that are known to hold anything, and the ratio that nearly all of
-    /// its networks hold.
+    /// The row that holds least, and the ratio that nearly all of its networks hold; `None` where no ratio is
+    /// known that some row holds.
     pub fn least_held(&self) -> Option<(&DesignRow, f64)> {
-        let known = self.boundaries.iter().filter_map(|row| Some((row, row.held()?)));
-        known.min_by(|a, b| a.1.total_cmp(&b.1))
+        let held = |row| Some((row, DesignRow::held(row)?));
+        let all: Vec<_> = self.boundaries.iter().map(held).collect::<Option<_>>()?;
+        all.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Whether nothing stands against saying that a product fits.

@@ -30,7 +30,7 @@ const NAMES: [(&str, &str); 8] = [
 /// first that has a boundary or was walked at all.
 pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
     let is_of =
-        |row: &DesignRow, walk: &&WalkRow| walk.density == row.density && walk.thickness == row.thickness;
+        |row: &DesignRow, walk: &&WalkRow| walk.density == row.searched() && walk.thickness == row.thickness;
     let has_walks = |row: &&DesignRow| walks.iter().any(|walk| is_of(row, &walk));
     let with_boundary = |row: &&DesignRow| row.no_erosion.is_some();
     let rows = || design.boundaries.iter().filter(has_walks);

@@ -393,6 +393,7 @@ mod tests {
                 networks: Vec::new(),
                 band: None,
                 band_note: None,
+                as_end: None,
                 end_of: None,
             }],
             inverse: false,

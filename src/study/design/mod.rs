@@ -218,17 +218,14 @@ fn searched(
     kept: &Kept,
     callbacks: &Callbacks,
 ) -> Result<Vec<Done>, RunError> {
-    let networks = |row: &Row| row.case.scene.walk.replicates;
-    let all = rows.iter().enumerate().flat_map(|(row, of)| (1..=networks(of)).map(move |n| (row, n)));
-    let all: Vec<(usize, u64)> = all.collect();
-    let is_done = |job: &(usize, u64)| done.iter().any(|done| (done.row, done.network) == *job);
-    let open: Vec<(usize, u64)> = all.iter().copied().filter(|job| !is_done(job)).collect();
+    let total: u64 = rows.iter().map(Row::networks).sum();
     if !done.is_empty() {
-        let text = format!("{} of {} networks are done already", done.len(), all.len());
+        let text = format!("{} of {total} networks are done already", done.len());
         (callbacks.on_event)(Event::Studying(&text));
     }
-    let text = format!("searching {} networks", open.len());
+    let text = format!("searching {} networks", total - done.len() as u64);
     (callbacks.on_event)(Event::Studying(&text));
+    let was_done: Vec<(usize, u64)> = done.iter().map(|done| (done.row, done.network)).collect();
     let done = Mutex::new(done);
     let one = |(row, network): (usize, u64), hint: Hint| {
         let of = &rows[row];
@@ -240,7 +237,7 @@ fn searched(
              walked)",
             of.wanted.density,
             of.wanted.thickness,
-            networks(of),
+            of.networks(),
             words(found.no_erosion),
             words(found.continuing),
             found.walks.len()
@@ -250,29 +247,26 @@ fn searched(
         done.push(Done { row, network, found });
         kept.keep(done.len(), &*done)
     };
+    let hint_of = |row: usize| {
+        let done = done.lock().expect("no search panics while it keeps");
+        done.iter().find(|done| (done.row, done.network) == (row, 1)).map(|first| Hint::of(&first.found))
+    };
     // The first network of each row says where to look on the others.
-    let (first, others): (Vec<_>, Vec<_>) = open.into_iter().partition(|(_, network)| *network == 1);
-    let mut ended = first.into_par_iter().map(|job| one(job, Hint::default())).find_any(Result::is_err);
-    if ended.is_none() {
-        let hints = hints(rows.len(), &done.lock().expect("no search panics while it keeps"));
-        ended = others.into_par_iter().map(|job| one(job, hints[job.0])).find_any(Result::is_err);
-    }
+    let whole_row = |row: usize| -> Result<(), RunError> {
+        let (first, others): (Vec<u64>, Vec<u64>) =
+            (1..=rows[row].networks()).filter(|n| !was_done.contains(&(row, *n))).partition(|n| *n == 1);
+        first.into_iter().try_for_each(|network| one((row, network), Hint::default()))?;
+        let hint = hint_of(row).unwrap_or_default();
+        others.into_par_iter().try_for_each(|network| one((row, network), hint))
+    };
+    let ended = (0..rows.len()).into_par_iter().try_for_each(whole_row);
     let mut done = done.into_inner().expect("no search panics while it keeps");
-    if let Some(Err(error)) = ended {
+    if let Err(error) = ended {
         return Err(match error.exit() {
-            Exit::Stopped => kept.stopped(done.len(), all.len()),
+            Exit::Stopped => kept.stopped(done.len(), total as usize),
             _ => error,
         });
     }
     done.sort_by_key(|done| (done.row, done.network));
     Ok(done)
-}
-
-/// What the first network of every row was found to be.
-fn hints(rows: usize, done: &[Done]) -> Vec<Hint> {
-    let mut hints = vec![Hint::default(); rows];
-    for done in done.iter().filter(|done| done.network == 1) {
-        hints[done.row] = Hint::of(&done.found);
-    }
-    hints
 }

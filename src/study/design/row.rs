@@ -16,7 +16,7 @@ use crate::outcome::verdict::THRESHOLD;
 use crate::run::callbacks::Callbacks;
 use crate::run::erosion::eroded;
 use crate::run::error::RunError;
-use crate::scene::Amount;
+use crate::scene::{Amount, LibraryDensity};
 use crate::verdict::{Finding, finding};
 
 /// Ratio at which a first guess takes the layers of a thickness in mm.
@@ -72,6 +72,13 @@ impl Row {
     /// D15F in the case's own unit.
     pub fn d15f(&self) -> f64 {
         self.case.filter.d(15.0).unwrap_or(f64::NAN)
+    }
+
+    /// Networks that are searched: none with a density that nobody knows, whose ends are searched instead.
+    pub fn networks(&self) -> u64 {
+        let is_unknown = self.case.scene.filter.library == Some(LibraryDensity::Unknown);
+        let is_between_ends = is_unknown && self.end_of.is_none() && !self.ends.is_empty();
+        if is_between_ends { 0 } else { self.case.scene.walk.replicates }
     }
 
     /// How much larger the filter is than the case has it at a ratio, where the base has a size.

@@ -1,5 +1,7 @@
 //! Puts what the networks say together: the record and the table of a design.
 
+use std::cmp::Ordering;
+
 use super::judged::Judged;
 use super::options::{DesignOptions, Thickness};
 use super::practice::{allowed, finest_base};
@@ -32,11 +34,20 @@ pub(super) fn design(
     options: &DesignOptions,
     seconds: f64,
 ) -> Result<Design, RunError> {
-    let mut found = Vec::new();
-    for (index, row) in rows.iter().enumerate() {
-        let of_row: Vec<&Done> = done.iter().filter(|done| done.row == index).collect();
-        found.push(of(row, &of_row));
-    }
+    let searched: Vec<Option<FoundRow>> = (0..rows.len())
+        .map(|at| {
+            let of_row: Vec<&Done> = done.iter().filter(|done| done.row == at).collect();
+            (!of_row.is_empty()).then(|| of(&rows[at], &of_row))
+        })
+        .collect();
+    // A row without networks is as the worst of its ends.
+    let as_end = |row: &Row| {
+        let ends = rows.iter().zip(&searched).filter(|(end, _)| is_in_range(row, end));
+        let worst = ends.filter_map(|(_, found)| found.as_ref()).min_by(|a, b| holds_less(a, b));
+        worst.expect("a row without networks has ends").named(row)
+    };
+    let found = rows.iter().zip(&searched).map(|(row, found)| found.clone().unwrap_or_else(|| as_end(row)));
+    let mut found: Vec<FoundRow> = found.collect();
     let held: Vec<Option<f64>> = rows.iter().map(|row| held_over_range(row, rows, &found)).collect();
     // An end of a range is no filter that anybody offers: it is judged with the row that it is an end of.
     let asked = || (0..rows.len()).filter(|&at| rows[at].end_of.is_none());
@@ -50,6 +61,12 @@ pub(super) fn design(
         judgements.push((name, judged(row, (&found[at], rows, &found), held[at], no_band)?));
     }
     let boundaries: Vec<DesignRow> = found.into_iter().map(|found| found.of).collect();
+    // The worst end of a row without networks is that row.
+    let is_shown = |of: &DesignRow, as_end: &DesignRow| {
+        as_end.as_end.as_ref() != Some(&of.density) || as_end.thickness != of.thickness
+    };
+    let shown = boundaries.iter().filter(|of| boundaries.iter().all(|row| is_shown(of, row)));
+    let boundaries: Vec<DesignRow> = shown.cloned().collect();
     let (confidence, findings) = all_judged(judgements, &boundaries);
     let known = asked().filter_map(|at| Some((at, held[at]?)));
     // Rules are shown of the coarsest filter that is said to hold: there they fail first.
@@ -101,6 +118,7 @@ pub(super) fn design(
 }
 
 /// A row as its networks have it, and what they say against it.
+#[derive(Clone)]
 struct FoundRow {
     of: DesignRow,
     /// How many of how many networks that erode put its boundary in doubt.
@@ -120,16 +138,32 @@ impl FoundRow {
             eroding => finding::erodes_everywhere(eroding, networks, at),
         })
     }
+
+    /// The same of a row of which this is the end that holds least.
+    fn named(&self, row: &Row) -> Self {
+        let as_end = Some(self.of.density.clone());
+        let of = DesignRow { density: row.wanted.density.clone(), as_end, end_of: None, ..self.of.clone() };
+        Self { of, ..self.clone() }
+    }
 }
 
-/// The row itself, and those of the ends of its range.
+/// Which of two curves of a range holds less; one without a ratio that holds is the least.
+fn holds_less(a: &FoundRow, b: &FoundRow) -> Ordering {
+    let [a, b] = [a, b].map(|found| found.of.held().unwrap_or(0.0));
+    a.total_cmp(&b)
+}
+
+/// Whether another row is this one, where it was searched, or an end of its range.
+fn is_in_range(row: &Row, other: &Row) -> bool {
+    let density = &other.wanted.density;
+    other.networks() > 0
+        && other.wanted.thickness == row.wanted.thickness
+        && (*density == row.wanted.density || row.ends.contains(density))
+}
+
+/// What was found of the row itself, where it was searched, and of the ends of its range.
 fn range<'a>(row: &'a Row, rows: &'a [Row], found: &'a [FoundRow]) -> impl Iterator<Item = &'a FoundRow> {
-    let is_of_it = move |other: &Row| {
-        let density = &other.wanted.density;
-        other.wanted.thickness == row.wanted.thickness
-            && (*density == row.wanted.density || row.ends.contains(density))
-    };
-    rows.iter().zip(found).filter(move |(other, _)| is_of_it(other)).map(|(_, found)| found)
+    rows.iter().zip(found).filter(move |(other, _)| is_in_range(row, other)).map(|(_, found)| found)
 }
 
 /// The ratio that nearly all networks hold, of every curve of the range; `None` where that of one is not
@@ -212,9 +246,7 @@ fn judged(
     };
     let ratio = allowed(row, held, finest_base(row)?.as_ref())?;
     let judged = Judged::new(row, ratio)?;
-    // What the walks of the curve say that holds least.
-    let held_by = |found: &FoundRow| found.of.held().unwrap_or(0.0);
-    let least = range(row, rows, found).min_by(|a, b| held_by(a).total_cmp(&held_by(b)));
+    let least = range(row, rows, found).min_by(|a, b| holds_less(a, b));
     let unsteady = least.and_then(|of| Some((of.unsteady?, curve(row, of))));
     let unsteady = unsteady.map(|([held, eroding], at)| finding::unsteady(held, eroding, &at));
     let of_boundary = match &of.no_erosion {
@@ -354,6 +386,7 @@ fn of(row: &Row, done: &[&Done]) -> FoundRow {
             .collect(),
         band: None,
         band_note: None,
+        as_end: None,
         end_of: row.end_of.clone(),
     };
     let eroding = first.iter().filter(|of| **of == Err(Beyond::Below)).count() as u64;

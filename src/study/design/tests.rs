@@ -476,3 +476,26 @@ fn a_guess_at_the_constrictions_is_found_at_both_ends_of_its_range() {
     assert_eq!(asked.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ["estimate 0", "estimate 1"]);
     assert_eq!((asked[0].1.to_bits(), asked[1].1.to_bits()), (found[2].1.to_bits(), found[1].1.to_bits()));
 }
+
+/// A filter of unknown density is loose, dense or between: its ends are searched, and the worse one counts.
+#[test]
+fn a_filter_of_unknown_density_is_as_the_worse_of_its_ends() {
+    let folder = tempfile::tempdir().unwrap();
+    let options = DesignOptions {
+        filter: Some("1.5".into()),
+        ..tiny(&folder.path().join("out"), &["network.nz=6", "replicates=2"])
+    };
+    let design = found(&options);
+    let [unknown, dense] = &design.boundaries[..] else { panic!("{:?}", design.boundaries) };
+    assert_eq!((unknown.density.as_str(), unknown.end_of.as_deref()), ("unknown", None));
+    assert_eq!(dense.end_of.as_deref(), Some("unknown"));
+    assert!(unknown.searched().starts_with("loose, constrictions "), "{}", unknown.searched());
+    assert!(unknown.held().unwrap() < dense.held().unwrap());
+    assert_eq!(unknown.networks.len(), 2);
+    assert!(unknown.band.is_some() && dense.band.is_none());
+    assert_eq!(design.least_held().unwrap().0, unknown);
+    let table = std::fs::read_to_string(folder.path().join("out/design.csv")).unwrap();
+    let density = |line: &str| line.trim_start_matches('"').starts_with("loose") as u8;
+    assert!(table.lines().skip(1).all(|line| density(line) == 1 || line.contains("dense, constrictions")));
+    assert!(table.lines().skip(1).any(|line| density(line) == 1), "{table}");
+}

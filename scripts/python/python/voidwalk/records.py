@@ -1004,6 +1004,9 @@ class DesignRow(_DesignRow, total=False):
     unsteady: Optional[str]
     #: Why there is no band, where networks erode at every ratio that was searched.
     band_note: Optional[str]
+    #: The end of its range whose boundaries these are: the one that holds least. A filter of unknown density is
+    #: searched at its ends only, loose and dense.
+    as_end: Optional[str]
     #: The density of which this is an end of the range in which its constriction curve is known: its band is
     #: that of the whole range, and this row has none.
     end_of: Optional[str]
