@@ -93,7 +93,8 @@ def commands(body, where):
 
 def run(command, where, folder, binary, exit_code):
     """The lines that a command prints."""
-    environment = {"PATH": f"{binary.parent}:{os.environ['PATH']}", "HOME": str(folder), "LC_ALL": "C.UTF-8", "COLUMNS": "100"}
+    environment = {"PATH": f"{binary.parent}:{os.environ['PATH']}", "HOME": str(folder), "LC_ALL": "C.UTF-8", "COLUMNS": "100",
+                   "REPOSITORY": str(ROOT)}
     try:
         done = subprocess.run(["bash", "-c", command], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
                               capture_output=True, text=True, timeout=LONGEST)
