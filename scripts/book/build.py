@@ -1,6 +1,6 @@
 """Builds the book: build.py VOIDWALK FOLDER [--update]
 
-    sources, src/docs, results, the program's own help and schema -> one folder of Markdown -> mdBook -> links and names are checked
+    src, tutorials, src/docs, results, the program's own help and schema -> one folder of Markdown -> mdBook -> links and names are checked
 
 FOLDER/html is the book. The commands of the tutorials run in FOLDER/work. With --update what they print is written into the tutorials where
 it differs; read the text around it again. Exit codes: 0 done, 1 where a page says what is not so or a link is dead.
@@ -24,8 +24,8 @@ import reference
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 
-# Their commands are run; side by side.
-TUTORIALS = ["engineer.md", "researcher.md"]
+# Pages of tutorials/, in the order of the book; their commands are run, side by side.
+TUTORIALS = ["engineer", "researcher", "granular", "cluster", "developer", "gallery"]
 
 # In the order of the book; a page of src/docs that is missing here is an error.
 DOCS = ["soils", "rules", "compare", "design", "uncertainty", "graph", "arches", "campaigns", "long_runs", "files", "stability", "serve", "python"]
@@ -42,12 +42,12 @@ def main():
         shutil.rmtree(folder, ignore_errors=True)
     source.mkdir(parents=True)
     results = copy_results(source)
-    run_tutorials(source, work, binary, update)
+    tutorials = run_tutorials(source, work, binary, update)
     commands = write_commands(source, binary)
     docs = write_docs(source)
     (source / "scene.md").write_text(reference.scene_page(binary))
     write_front(source, results, commands)
-    write_summary(source, docs, commands, results)
+    write_summary(source, tutorials, docs, commands, results)
     subprocess.run([os.environ.get("MDBOOK", "mdbook"), "build", HERE, "--dest-dir", out / "html"],
                    check=True, env={**os.environ, "MDBOOK_BOOK__SRC": str(source), "MDBOOK_LOG": "warn"})
     dead, outside = links.dead(out / "html")
@@ -61,19 +61,30 @@ def main():
 
 
 def run_tutorials(source, work, binary, update):
-    """The tutorials with what their commands print, each in a folder of its own."""
+    """The tutorials with what their commands print, each in a folder of its own; their titles."""
+    held_to("tutorials", HERE / "tutorials", TUTORIALS)
+
     def one(name):
-        folder = work / pathlib.Path(name).stem
+        folder = work / name
         folder.mkdir(parents=True)
-        path = HERE / "src" / name
-        shown, written = console.page(path.read_text(), name, folder, binary, source / "runs", update)
-        (source / name).write_text(shown)
+        path = HERE / "tutorials" / f"{name}.md"
+        shown, written = console.page(path.read_text(), path.name, folder, binary, source / "runs", update)
+        (source / path.name).write_text(shown)
         if written != path.read_text():
             path.write_text(written)
             print(f"{path}: written again; read the text around it")
+        return pages.title_of(shown)
 
-    with concurrent.futures.ThreadPoolExecutor(len(TUTORIALS)) as pool:
-        list(pool.map(one, TUTORIALS))
+    # No more at a time than there are processors, mostly: some wait for moments of their own walks.
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        return dict(zip(TUTORIALS, pool.map(one, TUTORIALS)))
+
+
+def held_to(what, folder, listed):
+    """A page that is there and not listed, or the other way round, is an error."""
+    there = {path.stem for path in folder.glob("*.md")}
+    if there != set(listed):
+        raise SystemExit(f"{what}: {folder} and the list in {pathlib.Path(__file__).name} differ: {', '.join(sorted(there ^ set(listed)))}")
 
 
 def wrong_names(source, binary, commands):
@@ -94,12 +105,10 @@ def write_commands(source, binary):
 
 def write_docs(source):
     """The pages of src/docs, with their titles."""
-    there = {path.stem for path in (ROOT / "src" / "docs").glob("*.md")}
-    if there != set(DOCS):
-        raise SystemExit(f"src/docs and the list in {pathlib.Path(__file__).name} differ: {', '.join(sorted(there ^ set(DOCS)))}")
+    held_to("guide", ROOT / "src" / "docs", DOCS)
     titles = {}
     for name in DOCS:
-        text = pages.docs_page((ROOT / "src" / "docs" / f"{name}.md").read_text(), there)
+        text = pages.docs_page((ROOT / "src" / "docs" / f"{name}.md").read_text(), set(DOCS))
         (source / f"{name}.md").write_text(text)
         titles[name] = pages.title_of(text)
     return titles
@@ -122,18 +131,19 @@ def write_front(source, results, commands):
         "commands": "\n".join(f"| [`voidwalk {name}`](commands/{name}.md) | {about} |" for name, about in commands.items()),
         "words": pages.section_of(contributing, "Words").split("\n\n", 1)[1],
         "results": "\n".join(f"- [{title}]({path})" for path, title in results.items()),
-        "gallery": pages.gallery(figures, source / "results"),
+        "paper_figures": pages.paper_figures(figures, source / "results"),
     }
     for path in (HERE / "src").glob("*.md"):
-        if path.name in TUTORIALS or path.name == "SUMMARY.md":
+        if path.name == "SUMMARY.md":
             continue
         text = pages.with_equations(path.read_text())
         (source / path.name).write_text(re.sub(r"\{\{(\w+)\}\}", lambda match: made[match[1]], text))
 
 
-def write_summary(source, docs, commands, results):
+def write_summary(source, tutorials, docs, commands, results):
     """The table of contents, with the pages that were made."""
     made = {
+        "tutorials": [f"- [{title}]({name}.md)" for name, title in tutorials.items()],
         "docs": [f"- [{title}]({name}.md)" for name, title in docs.items()],
         "commands": [f"  - [voidwalk {name}](commands/{name}.md)" for name in commands],
         "results": [f"  - [{title}]({path})" for path, title in results.items()],

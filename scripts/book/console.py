@@ -2,9 +2,9 @@
 
 A page is Markdown. In a fence ```console a line that begins with `$ ` is a command, and what follows is what it prints: errors and
 warnings first, then the rest, without progress. `...` by itself stands for any lines, `[..]` for anything within a line, and times are not
-compared; the page shows what was printed, or what it says itself where that has `...`. ```console exit=2 says how the commands end. A
-fence with `file=NAME` is written to that file first, one with `append=NAME` is added to it. An image or link to `run:PATH` is a file
-that the commands left.
+compared; the page shows what was printed, or what it says itself where that has `...`. ```console exit=2 says how the commands end,
+```console in=checkout that they run at the top of the repository, where they change nothing. A fence with `file=NAME` is written to that file
+first, one with `append=NAME` is added to it. An image or link to `run:PATH` is a file that the commands left.
 """
 
 import difflib
@@ -16,10 +16,11 @@ import subprocess
 
 FENCE = re.compile(r"^```([\w-]*)(.*)$")
 # Lines that are there or not, by how fast the machine is.
-PROGRESS = re.compile(r" gone,|^after .* not yet final: |^ *\d+\.\d s  |^packing .* steps$")
+PROGRESS = re.compile(r" gone,|^after .* not yet final: |^ *\d+\.\d s  |^packing .* steps$| \d+ of \d+ runs$")
 TIME = re.compile(r"\b\d+(?:\.\d+)? (?:s|min|h)\b")
 # Of the machine, too.
 MEMORY = re.compile(r"\b\d+(?:\.\d+)? [kMGT]B\b")
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 # A command that hangs must not hang the build.
 LONGEST = 600
 
@@ -47,7 +48,8 @@ def page(text, name, folder, binary, assets, update=False):
             raise Stale(f"{name}, line {at + 1}: a fence that does not end")
         body, options = lines[at + 1:end], dict(re.findall(r"(\w+)=(\S+)", fence[2]))
         if fence[1] == "console":
-            body, kept = session(body, f"{name}, line {at + 1}", folder, binary, int(options.get("exit", 0)), update)
+            place = ROOT if options.get("in") == "checkout" else folder
+            body, kept = session(body, f"{name}, line {at + 1}", place, binary, int(options.get("exit", 0)), update)
         else:
             kept = body
         if "file" in options:
@@ -91,7 +93,8 @@ def commands(body, where):
 
 def run(command, where, folder, binary, exit_code):
     """The lines that a command prints."""
-    environment = {"PATH": f"{binary.parent}:{os.environ['PATH']}", "HOME": str(folder), "LC_ALL": "C.UTF-8", "COLUMNS": "100"}
+    environment = {"PATH": f"{binary.parent}:{os.environ['PATH']}", "HOME": str(folder), "LC_ALL": "C.UTF-8", "COLUMNS": "100",
+                   "REPOSITORY": str(ROOT)}
     try:
         done = subprocess.run(["bash", "-c", command], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
                               capture_output=True, text=True, timeout=LONGEST)

@@ -56,7 +56,7 @@ def with_equations(text):
     return re.sub(r"\$\$(.+?)\$\$|\$([^$\n]+)\$", drawn, text, flags=re.S)
 
 
-def gallery(figures, results):
+def paper_figures(figures, results):
     """Every figure with its own title and description."""
     page = []
     for path in sorted(figures, key=lambda path: [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", path.stem)]):
