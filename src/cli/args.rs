@@ -7,8 +7,8 @@ use clap::{Args, Parser, Subcommand};
 
 use super::exit::FailOn;
 use super::values::{
-    assignment, bracket, decide, density, facets, form, lattice_size, millimetres, seed, target_error,
-    threads, time,
+    assignment, bracket, decide, density, facets, form, lattice_size, length, seed, target_error, threads,
+    time,
 };
 use crate::campaign::CasePart;
 use crate::constrictions::{DEFAULT_MERGE_OVERLAP, Facets};
@@ -107,8 +107,9 @@ pub struct RulesArgs {
     /// The base is dispersive: stricter limits if it has many fines
     #[arg(long)]
     pub dispersive: bool,
-    /// Width of an open joint at the exit: adds the probability of continuing erosion into it
-    #[arg(long, value_name = "MM", value_parser = millimetres, allow_hyphen_values = true)]
+    /// Width of an open joint at the exit, in mm or with its unit, as 2 or 1/8in: adds the probability of
+    /// continuing erosion into it
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub joint_mm: Option<f64>,
     /// Accept base and filter as named, even if they look exchanged
     #[arg(long)]
@@ -204,8 +205,8 @@ pub struct SettingArgs {
 pub struct SoilArgs {
     /// Sieve tables: CSV, .xlsx, .ods or AGS4; FILE#NAME for one of several soils
     pub file: PathBuf,
-    /// Finest size (mm) of a table whose finest percent is not 0
-    #[arg(long, value_name = "MM")]
+    /// Finest size of a table whose finest percent is not 0
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub d0_mm: Option<f64>,
     /// Draw the curves into this new file
     #[arg(long, value_name = "FILE.svg")]
@@ -251,9 +252,10 @@ pub struct TableArgs {
     /// The base is dispersive: stricter limits if it has many fines (base.dispersive)
     #[arg(long)]
     pub dispersive: bool,
-    /// Width of an open joint at the exit: adds the probability of continuing erosion into it
+    /// Width of an open joint at the exit, in mm or with its unit, as 2 or 1/8in: adds the probability of
+    /// continuing erosion into it
     /// (filter.joint_mm)
-    #[arg(long, value_name = "MM", value_parser = millimetres, allow_hyphen_values = true)]
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub joint_mm: Option<f64>,
     /// What is set in it besides, and how it is prepared.
     #[command(flatten)]
@@ -387,7 +389,7 @@ pub struct DesignArgs {
     /// Pack the grains of this very filter and measure its constrictions [density: loose]
     #[arg(long)]
     pub pack: bool,
-    /// Thickness of the filter: 60layers, 500mm or 75D50F; can be repeated [default: 60layers]
+    /// Thickness of the filter: 60layers, 500mm, 24in, 2ft or 75D50F; can be repeated [default: 60layers]
     #[arg(long = "thickness", value_name = "THICKNESS", value_delimiter = ',', allow_hyphen_values = true)]
     pub thicknesses: Vec<Thickness>,
     /// Walk the base as sampled, not as filter practice regrades it (base.regrade); always so with --inverse

@@ -6,6 +6,7 @@ use std::time::Duration;
 use crate::constrictions::Facets;
 use crate::run::RunError;
 use crate::scene::Density;
+use crate::schema::length::{LENGTHS, millimetres};
 use crate::store::format::{FORMATS, Format};
 
 /// Two ratios.
@@ -77,13 +78,8 @@ pub(super) fn time(text: &str) -> Result<Duration, String> {
 }
 
 /// A length above 0 (mm).
-pub(super) fn millimetres(text: &str) -> Result<f64, String> {
-    let size: f64 = text.trim().parse().map_err(|_| "write a number of millimetres above 0".to_owned())?;
-    if size > 0.0 && size.is_finite() {
-        Ok(size)
-    } else {
-        Err("write a number of millimetres above 0".into())
-    }
+pub(super) fn length(text: &str) -> Result<f64, String> {
+    millimetres(text).ok_or_else(|| format!("write {LENGTHS}"))
 }
 
 /// How far the interval may reach, in percentage points.

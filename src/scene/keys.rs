@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use crate::constrictions::DEFAULT_MERGE_OVERLAP;
 use crate::network::{Connectivity, ExitRule};
 use crate::packing::{CellOption, LengthUnit};
-use crate::schema::{Allowed, Leaf, above_zero, any, only, section, whole, within, words};
+use crate::schema::{Allowed, Leaf, above_zero, any, length, only, section, whole, within, words};
 use crate::text::is_hidden;
 use crate::walk::{Engine, LawName, Sampling};
 
@@ -71,17 +71,17 @@ section! {
          to 1 (dense)");
         /// Finest size (mm) of a gradation that is linear on semi-log paper; 1 means lengths in units of D0F.
         /// With a sieve table: its finest size, if its finest percent is not 0.
-        pub d0_mm: Option<f64> = None, set "1.0", above_zero();
+        pub d0_mm: Option<f64> = None, set "1.0", length();
         /// Cu of a linear gradation (a shipped curve has its own).
         pub cu: Option<f64> = None, off "1.5", within(1.0..=1000.0, "a number from 1 to 1000");
         /// Instead of a linear gradation: a sieve table (CSV, .xlsx, .ods or AGS4: openings and percent finer
         /// by mass; FILE#NAME for one of several soils; see `voidwalk soil`).
         pub sieve: Option<PathBuf> = None, off "\"filter.csv\"", any("a file name in quotes");
         /// Thickness of the real filter layer (mm). A warning appears if the modelled one is thicker.
-        pub thickness_mm: Option<f64> = None, off "500.0", above_zero();
+        pub thickness_mm: Option<f64> = None, off "500.0", length();
         /// Width of an open joint at the exit (mm). The rules of practice give the probability of continuing
         /// erosion into it. The walk ignores joints, so the verdict is in doubt.
-        pub joint_mm: Option<f64> = None, off "5.0", above_zero();
+        pub joint_mm: Option<f64> = None, off "5.0", length();
         /// Filter grains per void, N_p / N_voids of Eq. (2) (a shipped curve or a packing has its own).
         pub grains_per_void: Option<f64> = None, off "0.61", above_zero();
     }
@@ -116,14 +116,14 @@ section! {
         pub dc_curve: Option<CurveSource> = None, off "\"cu3-loose\"", any("a shipped curve or a file name, \
          in quotes");
         /// D85B (mm).
-        pub d85_mm: Option<f64> = None, off "0.2", above_zero();
+        pub d85_mm: Option<f64> = None, off "0.2", length();
         /// D15F over D85B.
         pub d15f_over_d85b: Option<f64> = None, off "6.5", above_zero();
         /// Instead of a linear gradation: a sieve table (CSV, .xlsx, .ods or AGS4: openings and percent finer
         /// by mass; FILE#NAME for one of several soils; see `voidwalk soil`).
         pub sieve: Option<PathBuf> = None, off "\"base.csv\"", any("a file name in quotes");
         /// With a sieve table: its finest size (mm), if its finest percent is not 0.
-        pub d0_mm: Option<f64> = None, off "0.01", above_zero();
+        pub d0_mm: Option<f64> = None, off "0.01", length();
         /// "practice": walk the base as filter practice regrades it (to 100 % finer than 4.75 mm or a gap);
         /// needs sizes in mm. "no": walk it as sampled. Default: "no" in a scene, "practice" for tables
         /// (`voidwalk judge`, `compare`, `design`, `serve`) without --as-sampled.
@@ -132,7 +132,7 @@ section! {
         /// walk ignores dispersion, so the verdict is in doubt.
         pub dispersive: Option<bool> = None, off "true", any("true or false");
         /// Instead of a gradation: one size (mm).
-        pub single_mm: Option<f64> = None, off "0.18", above_zero();
+        pub single_mm: Option<f64> = None, off "0.18", length();
         /// Amount of base: mass of base over mass of filter, Eq. (2).
         pub mass_ratio: Option<f64> = None, set "0.05", above_zero();
         /// Cap on the number of base particles by Eq. (2). Default: none (the paper's is 2e8). The report
@@ -186,7 +186,7 @@ section! {
         pub copies: Option<u64> = None, off "3", whole(1..=1_000_000);
         /// Thickness of the filter (mm): layers of a lattice, each D50F by number thick, or copies of a
         /// packing, rounded up.
-        pub thickness_mm: Option<f64> = None, off "500.0", above_zero();
+        pub thickness_mm: Option<f64> = None, off "500.0", length();
         /// Thickness of the filter in multiples of D50F by mass.
         pub thickness_d50f: Option<f64> = None, off "75.0", above_zero();
         /// Voids across.
@@ -265,6 +265,9 @@ section! {
         pub date: Option<String> = None, off "\"2026-11-25\"", line();
         /// Coarse sizes on the left of the figure of the gradations, as in the United States.
         pub coarse_left: Option<bool> = None, off "true", any("true or false");
+        /// "us": sizes on the first sheet in inches too, and the names of US sieves in the appendix. Files
+        /// stay in mm.
+        pub units: Option<SheetUnits> = None, off "\"us\"", words(&SheetUnits::ALL.map(SheetUnits::name));
     }
 }
 
@@ -444,6 +447,30 @@ impl NetworkMadeOf {
     }
 }
 
+/// Units that a sheet shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SheetUnits {
+    /// mm alone.
+    Metric,
+    /// Inches beside mm.
+    Us,
+}
+
+impl SheetUnits {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Metric, Self::Us];
+
+    /// The word that a scene says.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Metric => "metric",
+            Self::Us => "us",
+        }
+    }
+}
+
+impl Leaf for SheetUnits {}
 impl Leaf for CellOption {}
 impl Leaf for LengthUnit {}
 impl Leaf for NetworkMadeOf {}

@@ -9,13 +9,14 @@
 
 mod allowed;
 pub mod hints;
+pub mod length;
 mod nearest;
 mod settings;
 mod value;
 
 use serde::Serialize;
 
-pub use allowed::{Allowed, Leaf, above_zero, any, only, whole, within, words};
+pub use allowed::{Allowed, Leaf, above_zero, any, length, only, whole, within, words};
 pub use settings::{Alternative, GivenSettings, Group, Names, Origin, SceneError};
 pub use value::Value;
 
@@ -177,7 +178,11 @@ macro_rules! section {
                     section: $section,
                     name: stringify!($name),
                     doc: [$($doc),*].concat().trim().to_owned(),
-                    toml_type: <<$Type as crate::schema::Setting>::Value as crate::schema::Leaf>::TOML_TYPE,
+                    toml_type: {
+                        type Checked = crate::schema::Allowed<<$Type as crate::schema::Setting>::Value>;
+                        let allowed: Checked = $allowed;
+                        allowed.toml_type()
+                    },
                     default: {
                         let default: $Type = $default;
                         crate::schema::Setting::value(&default).map(crate::schema::in_toml)

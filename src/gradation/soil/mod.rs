@@ -38,5 +38,6 @@ mod zipped;
 
 pub(crate) use read::file_and_soil;
 pub use read::{curves_in_file, notes_in_file, soils_in_file};
+pub use size::us_sieve;
 pub use summary::SoilSummary;
 pub use table::Soil;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use crate::run::prepare::PrepareOptions;
+use crate::schema::length::{LENGTHS, millimetres};
 
 /// D15F/D85B between which boundaries are searched where the user does not say.
 pub(super) const BRACKET: [f64; 2] = [0.5, 100.0];
@@ -77,8 +78,8 @@ impl std::str::FromStr for Thickness {
         let lower = text.trim().to_lowercase();
         let refused = || {
             format!(
-                "--thickness {text}: allowed: a length above 0 as 500mm, layers of voids as 60layers, or a \
-                 multiple of D50F as 75D50F"
+                "--thickness {text}: allowed: layers of voids as 60layers, a multiple of D50F as 75D50F, or \
+                 {LENGTHS}"
             )
         };
         let number = |rest: &str| rest.trim().parse::<f64>().ok().filter(|v| v.is_finite() && *v > 0.0);
@@ -89,7 +90,7 @@ impl std::str::FromStr for Thickness {
             let layers = rest.trim().parse().ok().filter(|n| (1..=1_000_000).contains(n));
             return layers.map(Self::Layers).ok_or_else(refused);
         }
-        number(lower.strip_suffix("mm").unwrap_or(&lower)).map(Self::Mm).ok_or_else(refused)
+        millimetres(&lower).map(Self::Mm).ok_or_else(refused)
     }
 }
 
@@ -112,9 +113,10 @@ mod tests {
         let of = |text: &str| text.parse::<Thickness>();
         assert_eq!(of("60layers"), Ok(Thickness::Layers(60)));
         assert_eq!((of("500mm"), of("500")), (Ok(Thickness::Mm(500.0)), Ok(Thickness::Mm(500.0))));
+        assert_eq!((of("2ft"), of("24in")), (Ok(Thickness::Mm(609.6)), Ok(Thickness::Mm(609.6))));
         assert_eq!(of("75 D50F"), Ok(Thickness::D50F(75.0)));
         for wrong in ["0", "0mm", "-3mm", "0layers", "2.5layers", "nanmm", "inf", "thick", ""] {
-            assert!(of(wrong).unwrap_err().contains("allowed: a length above 0"), "{wrong}");
+            assert!(of(wrong).unwrap_err().contains("or a length above 0"), "{wrong}");
         }
     }
 }
