@@ -62,6 +62,11 @@ pub enum Command {
         #[arg(long, value_name = "NAME", conflicts_with_all = ["path", "json"], value_parser = form)]
         schema: Option<Format>,
     },
+    /// Write example files to try the program with: sheets, a scene, a plan and a notebook
+    Examples {
+        /// Folder for the files: a new one, or one that has none of them
+        folder: PathBuf,
+    },
     /// Find how coarse a filter may be for a base: both boundaries of erosion, and the specification band
     Design(DesignArgs),
     /// Walk the cases of a plan that are not finished, and compare them all
@@ -80,7 +85,7 @@ pub enum Command {
         /// The folder
         folder: PathBuf,
     },
-    /// Write the tables of a finished folder as arrays for NumPy (.npz) and grids for ParaView (.vtu)
+    /// Write a finished folder's tables as arrays (NumPy, .npz) and grids (ParaView, .vtu)
     Export {
         /// The folder
         folder: PathBuf,

@@ -12,6 +12,7 @@ mod design;
 mod examples;
 mod exit;
 mod export;
+mod groups;
 mod init;
 mod judge;
 mod mistakes;
@@ -32,6 +33,7 @@ mod shell;
 mod soil;
 mod start;
 mod values;
+mod write_examples;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -85,6 +87,7 @@ pub fn main_with(start: Start) -> u8 {
         Command::Soil(args) => soil::soil(&args),
         Command::Check(args) => check::check(&args),
         Command::Init { path, json, schema } => init::init(path.as_deref(), json, schema),
+        Command::Examples { folder } => write_examples::examples(&folder),
         Command::Design(args) => design::design(&args),
         Command::Campaign(args) => campaign::campaign(&args),
         Command::Pack(args) => pack::pack(&args),

@@ -35,13 +35,13 @@ pub(super) fn density(text: &str) -> Result<Density, String> {
     })
 }
 
+/// The words for the facets between voids that are counted.
+pub(super) const FACETS: [(&str, Facets); 2] = [("all", Facets::All), ("on-both-hulls", Facets::OnBothHulls)];
+
 /// Which facets between voids are counted.
 pub(super) fn facets(text: &str) -> Result<Facets, String> {
-    match text {
-        "all" => Ok(Facets::All),
-        "on-both-hulls" => Ok(Facets::OnBothHulls),
-        _ => Err("all or on-both-hulls".into()),
-    }
+    let named = FACETS.iter().find(|(word, _)| *word == text);
+    named.map(|(_, facets)| *facets).ok_or_else(|| FACETS.map(|(word, _)| word).join(" or "))
 }
 
 /// The size of a lattice: voids along each side, or along x, y and z.

@@ -16,6 +16,8 @@ pub struct Allowed<T> {
     test: Box<dyn Fn(&T) -> bool>,
     /// What reads it where it is written as text, if that may be.
     of_text: Option<fn(&str) -> Option<T>>,
+    /// Values that it often has, for a shell to complete.
+    offered: Vec<String>,
 }
 
 impl<T> Allowed<T> {
@@ -35,6 +37,16 @@ impl<T: Leaf> Allowed<T> {
         read.filter(|value| self.admits(value))
     }
 
+    /// The same, with values that it often has, for a shell to complete.
+    pub fn offering(self, words: &[&str]) -> Self {
+        Self { offered: words.iter().map(|word| (*word).to_owned()).collect(), ..self }
+    }
+
+    /// Values that it often has.
+    pub fn offered(&self) -> &[String] {
+        &self.offered
+    }
+
     /// How it is written in TOML.
     pub fn toml_type(&self) -> &'static str {
         if self.of_text.is_some() { "float or string" } else { T::TOML_TYPE }
@@ -43,7 +55,7 @@ impl<T: Leaf> Allowed<T> {
 
 /// Values that pass a test; `words` says which they are.
 pub fn only<T>(words: impl Into<String>, test: impl Fn(&T) -> bool + 'static) -> Allowed<T> {
-    Allowed { words: words.into(), test: Box::new(test), of_text: None }
+    Allowed { words: words.into(), test: Box::new(test), of_text: None, offered: Vec::new() }
 }
 
 /// Every value of the type; `words` says which they are.
@@ -72,13 +84,14 @@ pub fn length() -> Allowed<f64> {
 }
 
 /// The words of a type that has few.
-pub fn words<T>(all: &[&str]) -> Allowed<T> {
+pub fn words<T: Leaf>(all: &[&str]) -> Allowed<T> {
     let quoted: Vec<String> = all.iter().map(|word| format!("\"{word}\"")).collect();
-    any(match quoted.split_last() {
+    let said = any(match quoted.split_last() {
         Some((last, [])) => last.clone(),
         Some((last, others)) => format!("{} or {last}", others.join(", ")),
         None => String::new(),
-    })
+    });
+    said.offering(all)
 }
 
 /// The type of a setting's value.
