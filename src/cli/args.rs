@@ -7,11 +7,12 @@ use clap::{Args, Parser, Subcommand};
 
 use super::exit::FailOn;
 use super::values::{
-    assignment, bracket, decide, density, facets, form, lattice_size, length, seed, target_error, threads,
-    time,
+    assignment, authority, bracket, decide, density, facets, form, lattice_size, length, seed, target_error,
+    threads, time,
 };
 use crate::campaign::CasePart;
 use crate::constrictions::{DEFAULT_MERGE_OVERLAP, Facets};
+use crate::outcome::rules::Authority;
 use crate::packing::{CellOption, LengthUnit};
 use crate::run::CheckpointInterval;
 use crate::run::machine::bytes_from_words;
@@ -116,6 +117,10 @@ pub struct RulesArgs {
     /// continuing erosion into it
     #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub joint_mm: Option<f64>,
+    /// Whose rules are listed: nrcs, usbr, usace, foster-fell or all; what is left out is said. JSON has
+    /// all rules [default: all]
+    #[arg(long, value_name = "NAME", value_parser = authority)]
+    pub authority: Option<Authority>,
     /// Accept base and filter as named, even if they look exchanged
     #[arg(long)]
     pub as_given: bool,
@@ -262,6 +267,10 @@ pub struct TableArgs {
     /// (filter.joint_mm)
     #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub joint_mm: Option<f64>,
+    /// Whose rules are listed: nrcs, usbr, usace, foster-fell or all; what is left out is said, and the verdict
+    /// rests on all of them [default: all]
+    #[arg(long, value_name = "NAME", value_parser = authority)]
+    pub authority: Option<Authority>,
     /// What is set in it besides, and how it is prepared.
     #[command(flatten)]
     pub set: SettingArgs,
@@ -403,6 +412,10 @@ pub struct DesignArgs {
     /// Accept base and filter as named, even if they look exchanged
     #[arg(long)]
     pub as_given: bool,
+    /// Whose rules are listed: nrcs, usbr, usace, foster-fell or all; what is left out is said, and the answer
+    /// rests on all of them [default: all]
+    #[arg(long, value_name = "NAME", value_parser = authority)]
+    pub authority: Option<Authority>,
     /// Find the finest base that the filter holds instead: the filter keeps its size, the base is scaled
     #[arg(long)]
     pub inverse: bool,

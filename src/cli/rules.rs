@@ -4,8 +4,10 @@ use super::args::RulesArgs;
 use super::print::{json, plain, shown, to_stdout};
 use crate::gradation::{curves_in_file, notes_in_file};
 use crate::outcome::record::{AppliedRule, RuleRole};
+use crate::outcome::rules::Authority;
 use crate::run::RunError;
 use crate::store::format;
+use crate::verdict::by_authority::{of_pair, stated_by};
 use crate::verdict::{PairOptions, PairRules};
 use std::fmt::Write;
 
@@ -78,6 +80,8 @@ fn words(pair: &PairRules, args: &RulesArgs, notes: &[(&str, Vec<String>)]) -> S
     for (whose, notes) in notes {
         notes.iter().for_each(|note| line(format!("note    {whose}: {note}")));
     }
+    let by = args.authority.unwrap_or_default();
+    let listed = stated_by(&pair.rules, by);
     for (role, heading) in [
         (RuleRole::Retention, "The filter retains the base"),
         (RuleRole::Continuation, "Coarser filters: where erosion still ends"),
@@ -85,9 +89,12 @@ fn words(pair: &PairRules, args: &RulesArgs, notes: &[(&str, Vec<String>)]) -> S
         (RuleRole::Placing, "The filter can be placed"),
         (RuleRole::Stability, "The filter holds its own fines"),
     ] {
+        if by != Authority::All && listed.iter().all(|rule| rule.role != role) {
+            continue;
+        }
         line(String::new());
         line(format!("{heading} (not kept, it speaks against {})", role.speaks_against()));
-        for rule in pair.rules.iter().filter(|rule| rule.role == role) {
+        for rule in listed.iter().filter(|rule| rule.role == role) {
             line(row(rule));
             let curves = [("filter", &rule.filter_curve), ("base", &rule.base_curve)];
             let named = curves.iter().filter(|(_, curve)| !curve.is_empty());
@@ -99,6 +106,10 @@ fn words(pair: &PairRules, args: &RulesArgs, notes: &[(&str, Vec<String>)]) -> S
             }
             wrapped(&rule.source).into_iter().for_each(&mut line);
         }
+    }
+    if let Some(said) = of_pair(&pair.rules, by, filter.d15_mm) {
+        line(String::new());
+        line(said);
     }
     text
 }

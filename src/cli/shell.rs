@@ -13,6 +13,7 @@ use super::exit::EXIT_CODES;
 use super::print::{shown, to_stdout};
 use super::values::FACETS;
 use crate::constrictions::shipped;
+use crate::outcome::rules::Authority;
 use crate::packing::LengthUnit;
 use crate::run::RunError;
 use crate::scene::{Density, LibraryDensity, Scene};
@@ -66,6 +67,7 @@ fn of_argument(arg: Arg, command: &str, shell: Shell) -> Arg {
                 .concat()
         }
         "settings" => assignments(),
+        "authority" => named(&Authority::ALL.map(Authority::word)),
         "schema" => FORMATS.iter().map(|form| form.name().to_owned()).collect(),
         "unit" => named(&LengthUnit::ALL.map(LengthUnit::name)),
         "facets" => named(&FACETS.map(|(word, _)| word)),

@@ -10,8 +10,10 @@ use super::names::soil_name;
 use super::numbers::{SizeUnit, in_digits, significant, whole};
 use super::shell::clean;
 use super::table::Table;
-use crate::outcome::record::{AppliedRule, Confidence, Outcome, RuleRole, Verdict};
+use crate::outcome::record::{AppliedRule, Confidence, Outcome, Verdict};
+use crate::outcome::rules::Authority;
 use crate::outcome::soil_sizes::sizes_of;
+use crate::verdict::by_authority::{ON_ALL_RULES, of_pair, stated_by};
 use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::practice::{Standing, standing};
 use crate::verdict::words::capital;
@@ -39,6 +41,7 @@ struct About {
     date: Option<String>,
     coarse_left: bool,
     units: Option<String>,
+    authority: Option<String>,
 }
 
 /// Whether gradations are drawn with coarse sizes on the left.
@@ -50,6 +53,12 @@ pub(super) fn coarse_left(folder: &RunFolder) -> bool {
 pub(super) fn units(folder: &RunFolder) -> SizeUnit {
     let said = toml::from_str::<Said>(&folder.scene).unwrap_or_default().about.units;
     SizeUnit::of(folder.outcome.inputs.scale_free, said.as_deref() == Some("us"))
+}
+
+/// Whose rules the first sheet lists.
+pub(super) fn authority(folder: &RunFolder) -> Authority {
+    let said = toml::from_str::<Said>(&folder.scene).unwrap_or_default().about.authority;
+    said.as_deref().and_then(Authority::named).unwrap_or_default()
 }
 
 /// The two soils, and what belongs to a sheet that is handed in.
@@ -148,13 +157,15 @@ pub(super) fn sizes(outcome: &Outcome, unit: SizeUnit) -> Markup {
 }
 
 /// The rules of practice, one a line, and the thickness that was modelled.
-pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit) -> Markup {
-    let practice: Vec<&AppliedRule> =
-        outcome.rules.iter().filter(|rule| rule.role != RuleRole::Walk).collect();
+pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit, by: Authority) -> Markup {
+    let stated = stated_by(&outcome.rules, by);
+    let practice: Vec<&AppliedRule> = stated.iter().collect();
+    let of_authority = of_pair(&outcome.rules, by, Some(outcome.inputs.filter.d15_mm));
     html! {
         section.short {
             h2 { "Rules of practice, in short" }
             @if practice.is_empty() { p { "No rule was applied." } } @else { (table(&practice)) }
+            @if let Some(said) = of_authority { p { b { (clean(&said)) " " (ON_ALL_RULES) } } }
             (thickness(outcome, unit))
             p.small { (clean(&left_out_in_brief(&outcome.model_leaves_out))) " The verdict of the walk is \
                 the model’s. It does not replace a filter test or a designer’s judgement." }

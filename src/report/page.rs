@@ -115,7 +115,7 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
         section.sheet {
             (answer(outcome))
             div.pair { (shell::figure(1, gradations)) (sizes(outcome, unit)) }
-            (in_short(outcome, unit))
+            (in_short(outcome, unit, first_page::authority(folder)))
         }
         (shell::contents())
         (findings(outcome))

@@ -7,6 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::constrictions::{DEFAULT_MERGE_OVERLAP, shipped};
 use crate::network::{Connectivity, ExitRule};
+use crate::outcome::rules::Authority;
 use crate::packing::{CellOption, LengthUnit};
 use crate::schema::{Allowed, Leaf, above_zero, any, length, only, section, whole, within, words};
 use crate::text::is_hidden;
@@ -268,6 +269,9 @@ section! {
         pub date: Option<String> = None, off "\"2026-11-25\"", line();
         /// Coarse sizes on the left of the figure of the gradations, as in the United States.
         pub coarse_left: Option<bool> = None, off "true", any("true or false").offering(&["true", "false"]);
+        /// Whose rules the first sheet lists: "all", or those of one authority, with what it leaves out. The
+        /// verdict rests on all of them.
+        pub authority: Option<Authority> = None, off "\"nrcs\"", words(&Authority::ALL.map(Authority::word));
         /// "us": sizes on the first sheet in inches too, and the names of US sieves in the appendix. Files
         /// stay in mm.
         pub units: Option<SheetUnits> = None, off "\"us\"", words(&SheetUnits::ALL.map(SheetUnits::name));
@@ -482,6 +486,7 @@ impl SheetUnits {
 }
 
 impl Leaf for SheetUnits {}
+impl Leaf for Authority {}
 impl Leaf for CellOption {}
 impl Leaf for LengthUnit {}
 impl Leaf for NetworkMadeOf {}

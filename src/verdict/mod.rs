@@ -5,6 +5,7 @@
 //! - [`judge()`] takes class, rules and findings, and gives the answer with its label and ordered findings.
 //! - [`PlannedWalk`] is what is found about soils and network before their walk.
 //! - [`practice`] is what the rules of filter practice say of a pair.
+//! - [`by_authority`] is what a sheet says that lists the rules of one authority.
 //! - [`left_out`] has the words of what the model does not contain and of what a scene does not need.
 //! - `rule_notes` has the words of what those rules say beside their results.
 //! - [`walks`] is what walks say themselves, [`beside`] what their results say beside the verdict.
@@ -16,6 +17,7 @@
 mod answer;
 mod band;
 pub mod beside;
+pub mod by_authority;
 mod conclusion;
 mod design;
 mod entry;

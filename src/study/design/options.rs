@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::outcome::rules::Authority;
 use crate::run::prepare::PrepareOptions;
 use crate::schema::length::{LENGTHS, millimetres};
 
@@ -30,6 +31,8 @@ pub struct DesignOptions {
     pub as_given: bool,
     /// Whether the finest base that the filter holds is looked for, the filter being as large as it is.
     pub inverse: bool,
+    /// Whose limit is said beside the answer.
+    pub authority: Authority,
     /// D15F/D85B between which boundaries are searched.
     pub bracket: [f64; 2],
     /// Folder for the results.
@@ -52,6 +55,7 @@ impl Default for DesignOptions {
             as_sampled: false,
             as_given: false,
             inverse: false,
+            authority: Authority::All,
             bracket: BRACKET,
             out: "voidwalk-design".into(),
             overwrite: false,
