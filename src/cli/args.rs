@@ -263,12 +263,11 @@ pub struct TableArgs {
     #[arg(long)]
     pub dispersive: bool,
     /// Width of an open joint at the exit, in mm or with its unit, as 2 or 1/8in: adds the probability of
-    /// continuing erosion into it
-    /// (filter.joint_mm)
+    /// continuing erosion into it (filter.joint_mm)
     #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub joint_mm: Option<f64>,
-    /// Whose rules are listed: nrcs, usbr, usace, foster-fell or all; what is left out is said, and the verdict
-    /// rests on all of them [default: all]
+    /// Whose rules are listed: nrcs, usbr, usace, foster-fell or all; what is left out is said, and the
+    /// verdict rests on all of them [default: all]
     #[arg(long, value_name = "NAME", value_parser = authority)]
     pub authority: Option<Authority>,
     /// What is set in it besides, and how it is prepared.
@@ -412,8 +411,8 @@ pub struct DesignArgs {
     /// Accept base and filter as named, even if they look exchanged
     #[arg(long)]
     pub as_given: bool,
-    /// Whose rules are listed: nrcs, usbr, usace, foster-fell or all; what is left out is said, and the answer
-    /// rests on all of them [default: all]
+    /// Whose rules are listed: nrcs, usbr, usace, foster-fell or all; what is left out is said, and the
+    /// answer rests on all of them [default: all]
     #[arg(long, value_name = "NAME", value_parser = authority)]
     pub authority: Option<Authority>,
     /// Find the finest base that the filter holds instead: the filter keeps its size, the base is scaled

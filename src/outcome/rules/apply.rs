@@ -30,7 +30,8 @@ pub fn authority(rule: &AppliedRule) -> &str {
 /// let filter = Gradation::from_points(&[(0.5, 0.0), (2.0, 100.0)], None)?;
 /// let base = Gradation::from_points(&[(0.08, 0.0), (0.3, 100.0)], None)?;
 /// let rules = apply(&RuleInputs::of_soils(&base, &filter));
-/// let is_of_nrcs = |id: &str| is_stated_by(rules.iter().find(|rule| rule.id == id).unwrap(), Authority::Nrcs);
+/// let find = |id: &str| rules.iter().find(|rule| rule.id == id).unwrap();
+/// let is_of_nrcs = |id: &str| is_stated_by(find(id), Authority::Nrcs);
 /// assert!(is_of_nrcs("permeability") && !is_of_nrcs("foster-fell-continuing"));
 /// # Ok::<(), voidwalk::gradation::GradationError>(())
 /// ```
