@@ -106,10 +106,20 @@ pub enum Command {
 /// Which two soils.
 #[derive(Debug, Args)]
 pub struct RulesArgs {
-    /// The base: a sieve table, as base.sieve in a scene; several soils are the curves of an envelope
+    /// The base: a sieve table, as base.sieve in a scene; several soils are the curves of an envelope. With
+    /// --each also a folder of tables
     pub base: PathBuf,
-    /// The filter: a sieve table, as filter.sieve in a scene; several soils are the curves of an envelope
-    pub filter: PathBuf,
+    /// The filter: a sieve table, as filter.sieve in a scene; several soils are the curves of an envelope.
+    /// With --each one or several filters
+    #[arg(required = true, value_name = "FILTER")]
+    pub filters: Vec<PathBuf>,
+    /// Take every soil of BASE as a sample of its own, from a file, a workbook, an AGS file or a folder: one
+    /// table, and the samples that govern
+    #[arg(long, conflicts_with_all = ["json", "authority"])]
+    pub each: bool,
+    /// With --each: write the table into this new file
+    #[arg(long, value_name = "FILE.csv", requires = "each")]
+    pub csv: Option<PathBuf>,
     /// The base is dispersive: stricter limits if it has many fines
     #[arg(long)]
     pub dispersive: bool,

@@ -3,6 +3,7 @@
 //! How it ends is said in one table, `EXIT_CODES` (`exit.rs`).
 
 mod args;
+mod batch;
 mod campaign;
 mod case_progress;
 mod check;

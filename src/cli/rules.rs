@@ -1,6 +1,7 @@
 //! `voidwalk rules`: what filter practice says of two soils, without a walk.
 
 use super::args::RulesArgs;
+use super::batch::each;
 use super::print::{json, plain, shown, to_stdout};
 use crate::gradation::{curves_in_file, notes_in_file};
 use crate::outcome::record::{AppliedRule, RuleRole};
@@ -10,27 +11,45 @@ use crate::store::format;
 use crate::verdict::by_authority::{of_pair, stated_by};
 use crate::verdict::{PairOptions, PairRules};
 use std::fmt::Write;
+use std::path::Path;
 
 /// Widest line (characters).
 const WIDTH: usize = 100;
 
 /// Applies every rule to two sieve tables, or to the curves of two envelopes.
 pub fn rules(args: &RulesArgs) -> Result<(), RunError> {
-    let bases = curves_in_file(&args.base, None).map_err(RunError::refused)?;
-    let filters = curves_in_file(&args.filter, None).map_err(RunError::refused)?;
     let options =
         PairOptions { dispersive: args.dispersive, joint_mm: args.joint_mm, as_given: args.as_given };
+    let filter = match &args.filters[..] {
+        _ if args.each => return each(args, options),
+        [filter] => filter,
+        _ => {
+            let problem = "several filters go with --each, which takes every soil of the base by itself";
+            return Err(RunError::Refused(problem.into()));
+        }
+    };
+    let bases = curves_in_file(&args.base, None).map_err(RunError::refused)?;
+    let filters = curves_in_file(filter, None).map_err(RunError::refused)?;
     let pair = PairRules::guarded(&bases, &filters, options).map_err(|mistake| {
-        let files = format!("base {}, filter {}", shown(&args.base), shown(&args.filter));
+        let files = format!("base {}, filter {}", shown(&args.base), shown(filter));
         RunError::Refused(format!("{files}: {}", mistake.refusal()))
     })?;
     let assumed = |path| notes_in_file(path).map_err(RunError::refused);
-    let notes = [("base", assumed(&args.base)?), ("filter", assumed(&args.filter)?)];
-    to_stdout(&if args.json { json(format::RULES, &pair)? } else { words(&pair, args, &notes) });
+    let notes = [("base", assumed(&args.base)?), ("filter", assumed(filter)?)];
+    to_stdout(&if args.json {
+        json(format::RULES, &pair)?
+    } else {
+        words(&pair, (&args.base, filter), args.authority.unwrap_or_default(), &notes)
+    });
     Ok(())
 }
 
-fn words(pair: &PairRules, args: &RulesArgs, notes: &[(&str, Vec<String>)]) -> String {
+fn words(
+    pair: &PairRules,
+    (base_file, filter_file): (&Path, &Path),
+    by: Authority,
+    notes: &[(&str, Vec<String>)],
+) -> String {
     let (filter, base) = (&pair.filter, &pair.base);
     let mut text = String::new();
     // Writing to a string cannot fail.
@@ -51,7 +70,7 @@ fn words(pair: &PairRules, args: &RulesArgs, notes: &[(&str, Vec<String>)]) -> S
     };
     line(format!(
         "base    {}{}: D85 {}, D95 {} mm {how}; D15 {}, Cu {} as sampled",
-        args.base.display(),
+        base_file.display(),
         of_curve(&base.curves, &base.curve),
         number(base.d85_mm),
         number(base.d95_mm),
@@ -68,7 +87,7 @@ fn words(pair: &PairRules, args: &RulesArgs, notes: &[(&str, Vec<String>)]) -> S
     line(format!("        {category}{dispersive}, {fines}; {regraded}"));
     line(format!(
         "filter  {}{}: D15 {}, D85 {} mm, Cu {}",
-        args.filter.display(),
+        filter_file.display(),
         of_curve(&filter.curves, &filter.curve),
         number(filter.d15_mm),
         number(filter.d85_mm),
@@ -80,7 +99,6 @@ fn words(pair: &PairRules, args: &RulesArgs, notes: &[(&str, Vec<String>)]) -> S
     for (whose, notes) in notes {
         notes.iter().for_each(|note| line(format!("note    {whose}: {note}")));
     }
-    let by = args.authority.unwrap_or_default();
     let listed = stated_by(&pair.rules, by);
     for (role, heading) in [
         (RuleRole::Retention, "The filter retains the base"),

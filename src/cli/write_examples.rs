@@ -7,9 +7,10 @@ use super::print::{plain, shown, to_stdout};
 use crate::run::{EXAMPLE_FILES, RunError, write_examples};
 
 /// What to try with the files, from within their folder: a command line, and what it does.
-const TO_TRY: [[&str; 2]; 8] = [
+const TO_TRY: [[&str; 2]; 9] = [
     ["voidwalk soil us-sieves.csv", "what is read from a sheet"],
     ["voidwalk rules base.csv filter.csv", "every rule of practice"],
+    ["voidwalk rules borrow-area.ags filter-fine.csv filter.csv --each", "many samples, two filters"],
     ["voidwalk judge base.csv filter.csv --quick", "rules and walk, and a page"],
     ["voidwalk compare --base base.csv filter-fine.csv filter.csv --quick", "two filters side by side"],
     ["voidwalk design base.csv --filter filter.csv", "how coarse such a filter may be"],

@@ -11,11 +11,13 @@
 //! - [`walks`] is what walks say themselves, [`beside`] what their results say beside the verdict.
 //! - [`design_answer()`] is how coarse a filter may be, and [`Band`] the band of a specification.
 //! - [`PairRules`] are two soils as practice sees them, without a walk.
+//! - [`batch`] is what practice says of many samples, a row each.
 //! - `conclusion` has what every face says first: headline, line of practice, line of the walk, what to do.
 //! - [`words`] are what a class means.
 
 mod answer;
 mod band;
+pub mod batch;
 pub mod beside;
 pub mod by_authority;
 mod conclusion;
@@ -37,6 +39,7 @@ pub mod words;
 use crate::outcome::design::band::Band;
 
 pub use answer::{Judgement, judge, rank};
+pub use batch::BatchRow;
 pub use conclusion::FOREMOST;
 pub use design::{FinestBase, design_answer};
 pub use entry::{Entry, Finding};
