@@ -120,6 +120,13 @@ pub struct RulesArgs {
     /// With --each: write the table into this new file
     #[arg(long, value_name = "FILE.csv", requires = "each")]
     pub csv: Option<PathBuf>,
+    /// With --each: walk the three samples that govern each filter, as compare does, into folders in here.
+    /// The same command continues what was stopped
+    #[arg(long, value_name = "DIR", requires = "each")]
+    pub walk: Option<PathBuf>,
+    /// With --walk: replace a setting of the walks, for example --set replicates=20; can be repeated
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment, requires = "walk")]
+    pub settings: Vec<String>,
     /// The base is dispersive: stricter limits if it has many fines
     #[arg(long)]
     pub dispersive: bool,

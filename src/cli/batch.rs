@@ -1,9 +1,13 @@
 //! `voidwalk rules --each`: many samples of a base against one or several filters, in one table.
 
+use std::ffi::OsString;
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use super::args::RulesArgs;
+use clap::Parser;
+
+use super::args::{Arguments, Command, RulesArgs};
+use super::compare::compare;
 use super::print::{counted, plain, shown, to_stdout};
 use crate::gradation::{SoilSample, curves_in_file, samples_in};
 use crate::outcome::three;
@@ -25,18 +29,64 @@ pub fn each(args: &RulesArgs, options: PairOptions) -> Result<(), RunError> {
         rows.extend(samples.iter().map(of));
     }
     if let Some(path) = &args.csv {
-        write_new(path, &columns().csv(&rows))?;
+        let csv = columns().csv(&rows);
+        // A call that continues finds the table that it wrote.
+        if std::fs::read(path).ok().as_ref() != Some(&csv) {
+            write_new(path, &csv)?;
+        }
     }
     let mut text = table(&rows);
     for filter in &args.filters {
         text.push('\n');
-        text += &of_filter(&rows, filter, &samples);
+        text += &of_filter(&rows, filter, &samples, args.walk.is_some());
     }
     if let Some(path) = &args.csv {
         text += &format!("\n{}\n", shown(path));
     }
     to_stdout(&text);
+    let Some(folder) = &args.walk else { return Ok(()) };
+    for (at, filter) in args.filters.iter().enumerate() {
+        let stem = filter.file_stem().unwrap_or_default().to_string_lossy();
+        walk(args, filter, &paths(&rows, filter, &samples), &folder.join(format!("{}-{stem}", at + 1)))?;
+    }
     Ok(())
+}
+
+/// Walks the samples that govern a filter, as `voidwalk compare` does. What is walked already stays.
+fn walk(args: &RulesArgs, filter: &Path, samples: &[PathBuf], out: &Path) -> Result<(), RunError> {
+    to_stdout(&format!("\n{}\n", plain(&shown(filter))));
+    if samples.len() < 2 {
+        to_stdout("  fewer than two samples have a limit: nothing to compare\n");
+        return Ok(());
+    }
+    let mut words: Vec<OsString> =
+        ["voidwalk", "compare", "--overwrite", "--filter"].map(OsString::from).into();
+    words.extend([filter.into(), "--out".into(), out.into()]);
+    let set = args.settings.iter().flat_map(|setting| ["--set".into(), OsString::from(setting)]);
+    words.extend(set);
+    if args.dispersive {
+        words.push("--dispersive".into());
+    }
+    if let Some(mm) = args.joint_mm {
+        words.extend(["--joint-mm".into(), OsString::from(mm.to_string())]);
+    }
+    if args.as_given {
+        words.push("--as-given".into());
+    }
+    words.push("--".into());
+    words.extend(samples.iter().map(OsString::from));
+    match Arguments::try_parse_from(words).map(|read| read.command) {
+        Ok(Command::Compare(read)) => compare(&read),
+        Ok(_) => unreachable!("compare was asked for"),
+        Err(error) => Err(RunError::Refused(error.to_string())),
+    }
+}
+
+/// The samples that govern a filter, as a command line names them.
+fn paths(rows: &[BatchRow], filter: &Path, samples: &[SoilSample]) -> Vec<PathBuf> {
+    let strictest = governing(rows, &filter.display().to_string(), NAMED);
+    let path = |row: &BatchRow| samples.iter().find(|of| of.name == row.sample).map(|of| of.path.clone());
+    strictest.into_iter().filter_map(path).collect()
 }
 
 /// The rows in aligned columns.
@@ -61,7 +111,7 @@ fn table(rows: &[BatchRow]) -> String {
 }
 
 /// How many samples a filter retains, and which govern.
-fn of_filter(rows: &[BatchRow], filter: &Path, samples: &[SoilSample]) -> String {
+fn of_filter(rows: &[BatchRow], filter: &Path, samples: &[SoilSample], is_walked: bool) -> String {
     let name = filter.display().to_string();
     let count = |met: Option<bool>| rows.iter().filter(|row| row.filter == name && row.met == met).count();
     let [met, not_met, none] = [Some(true), Some(false), None].map(count);
@@ -86,8 +136,10 @@ fn of_filter(rows: &[BatchRow], filter: &Path, samples: &[SoilSample]) -> String
         let names: Vec<String> = open.iter().map(|row| plain(&row.sample)).collect();
         let _ = writeln!(text, "  may govern, as its limit is not known: {}", names.join(", "));
     }
-    let path = |row: &&BatchRow| samples.iter().find(|of| of.name == row.sample).map(|of| quoted(&of.path));
-    let paths: Vec<String> = strictest.iter().filter_map(path).collect();
+    if is_walked {
+        return text;
+    }
+    let paths: Vec<String> = paths(rows, filter, samples).iter().map(|path| quoted(path)).collect();
     let walk = match paths.len() {
         0 => return text,
         1 => format!("voidwalk judge {} {}", paths[0], quoted(filter)),

@@ -107,7 +107,7 @@ impl BatchRow {
         Self {
             limit_mm: strictest.map(|(_, limit)| limit),
             limit_at_most: strictest.is_some_and(|(rule, _)| rule.limit_at_most),
-            rule: strictest.map_or(String::new(), |(rule, _)| authority(rule).to_owned()),
+            rule: strictest.map_or(String::new(), |(rule, limit)| whose(rules, rule, limit)),
             met,
             tests: tested_words(tested(rules)),
             note,
@@ -123,6 +123,15 @@ impl BatchRow {
             None => "no result",
         }
     }
+}
+
+/// Whose limit it is: of rules that say the same, as design and Terzaghi do for a clean sand, the first.
+fn whose(rules: &[AppliedRule], strictest: &AppliedRule, limit: f64) -> String {
+    let is_same = |rule: &&AppliedRule| {
+        let is_limit = rule.limit.is_some_and(|of| (of - limit).abs() <= 1e-9 * limit);
+        rule.role == RuleRole::Retention && rule.applies && rule.quantity == RuleQuantity::D15F && is_limit
+    };
+    authority(rules.iter().find(is_same).unwrap_or(strictest)).to_owned()
 }
 
 /// The columns of a batch: its file, and under their headings what a terminal shows.

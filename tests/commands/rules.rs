@@ -298,7 +298,9 @@ fn fifty_samples_of_an_ags_file_are_one_table_and_the_strictest_govern() {
     let row = rows.lines().find(|row| row.starts_with("TP7 ") && row.contains("usual.csv")).unwrap();
     let limit = format!(",{:.4},false,", design["limit"].as_f64().unwrap());
     assert!(row.contains(&limit), "{row}: {limit}");
-    // The file is not written over, and several filters need the samples one by one.
+    // The same table may stay, and another file is not written over; several filters need the samples one by one.
+    assert!(voidwalk(&words).status.success());
+    fs::write(&csv, "mine").unwrap();
     let again = voidwalk(&words);
     assert!(
         again.status.code() == Some(2) && String::from_utf8_lossy(&again.stderr).contains("is there already")
@@ -309,6 +311,42 @@ fn fifty_samples_of_an_ags_file_are_one_table_and_the_strictest_govern() {
         envelope.status.code() == Some(2) && refused.contains("several filters go with --each"),
         "{refused}"
     );
+}
+
+#[test]
+fn samples_that_govern_are_walked_as_a_comparison_and_not_twice() {
+    let root = tempfile::tempdir().unwrap();
+    let rows = "Sieve (mm),Core,Shell,Till,Sand\n1,100,100,100,100\n0.5,100,80,60,40\n0.25,40,20,10,5\n0.1,0,0,0,0\n";
+    let samples = root.path().join("samples.csv").display().to_string();
+    fs::write(&samples, rows).unwrap();
+    let filter = table(root.path(), "filter.csv", "4,100\n2,50\n1,0\n");
+    let out = root.path().join("walks").display().to_string();
+    let csv = root.path().join("table.csv").display().to_string();
+    let sets = ["network.nx=5", "network.ny=5", "network.nz=5", "replicates=1", "record.sensitivity=[]"];
+    let sets: Vec<&str> = sets.iter().flat_map(|set| ["--set", set]).collect();
+    let words = [&["rules", &samples, &filter, "--each", "--csv", &csv, "--walk", &out], &sets[..]].concat();
+    let walk = || {
+        let output = voidwalk(&words);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let said = walk();
+    let folder = root.path().join("walks/1-filter");
+    let read = || fs::read_to_string(folder.join("compare.csv")).unwrap();
+    let first = read();
+    assert_eq!(first.lines().count(), 4, "{first}");
+    for sample in ["Core", "Shell", "Till"] {
+        assert!(
+            said.contains(&format!("samples.csv#{sample}")) || said.contains(&format!("{sample}: ")),
+            "{said}"
+        );
+    }
+    let walked = || fs::metadata(folder.join("compare.html")).is_ok();
+    assert!(walked() && !said.contains("Nothing was walked"));
+    walk();
+    assert_eq!(read(), first);
+    // --walk and --csv belong to --each.
+    assert_eq!(voidwalk(&["rules", &samples, &filter, "--walk", &out]).status.code(), Some(2));
 }
 
 #[test]
