@@ -15,8 +15,9 @@ def ask(binary, *arguments):
 def commands(binary):
     """The names of the commands, in the order of the help."""
     text = ask(binary, "--help")
-    listed = text.split("\nCommands:\n", 1)[1].split("\n\n", 1)[0]
-    return [name for name in re.findall(r"^  (\S+)", listed, re.M) if name != "help"]
+    groups = text.split("\nOptions:\n", 1)[0]
+    more = re.search(r"^More commands: (.*)$", groups, re.M)
+    return re.findall(r"^  ([a-z]+)  ", groups, re.M) + more[1].split(", ")
 
 
 def command_page(binary, name):

@@ -399,6 +399,16 @@ mod tests {
     }
 
     #[test]
+    fn a_level_may_be_a_length_with_its_unit() {
+        let factor = "[[factor]]\nname = \"thickness\"\nsetting = \"network.thickness_mm\"\n";
+        let plan = plan(&format!("{factor}values = [\"2ft\", \"0.5m\", 500]\n")).unwrap();
+        let names: Vec<&str> = plan.cases.iter().map(|case| case.name.as_str()).collect();
+        assert_eq!(names, ["thickness=2ft", "thickness=0.5m", "thickness=500"]);
+        let mm = plan.cases.iter().map(|case| case.scene.network.thickness_mm);
+        assert_eq!(mm.collect::<Vec<_>>(), [Some(609.6), Some(500.0), Some(500.0)]);
+    }
+
+    #[test]
     fn a_case_keeps_its_seed_when_others_come_and_go() {
         let all = plan(TWO_BY_TWO).unwrap();
         let fewer =

@@ -7,11 +7,12 @@ use clap::{Args, Parser, Subcommand};
 
 use super::exit::FailOn;
 use super::values::{
-    assignment, bracket, decide, density, facets, form, lattice_size, millimetres, seed, target_error,
+    assignment, authority, bracket, decide, density, facets, form, lattice_size, length, seed, target_error,
     threads, time,
 };
 use crate::campaign::CasePart;
 use crate::constrictions::{DEFAULT_MERGE_OVERLAP, Facets};
+use crate::outcome::rules::Authority;
 use crate::packing::{CellOption, LengthUnit};
 use crate::run::CheckpointInterval;
 use crate::run::machine::bytes_from_words;
@@ -62,6 +63,11 @@ pub enum Command {
         #[arg(long, value_name = "NAME", conflicts_with_all = ["path", "json"], value_parser = form)]
         schema: Option<Format>,
     },
+    /// Write example files to try the program with: sheets, a scene, a plan and a notebook
+    Examples {
+        /// Folder for the files: a new one, or one that has none of them
+        folder: PathBuf,
+    },
     /// Find how coarse a filter may be for a base: both boundaries of erosion, and the specification band
     Design(DesignArgs),
     /// Walk the cases of a plan that are not finished, and compare them all
@@ -80,7 +86,7 @@ pub enum Command {
         /// The folder
         folder: PathBuf,
     },
-    /// Write the tables of a finished folder as arrays for NumPy (.npz) and grids for ParaView (.vtu)
+    /// Write a finished folder's tables as arrays (NumPy, .npz) and grids (ParaView, .vtu)
     Export {
         /// The folder
         folder: PathBuf,
@@ -100,16 +106,38 @@ pub enum Command {
 /// Which two soils.
 #[derive(Debug, Args)]
 pub struct RulesArgs {
-    /// The base: a sieve table, as base.sieve in a scene; several soils are the curves of an envelope
+    /// The base: a sieve table, as base.sieve in a scene; several soils are the curves of an envelope. With
+    /// --each also a folder of tables
     pub base: PathBuf,
-    /// The filter: a sieve table, as filter.sieve in a scene; several soils are the curves of an envelope
-    pub filter: PathBuf,
+    /// The filter: a sieve table, as filter.sieve in a scene; several soils are the curves of an envelope.
+    /// With --each one or several filters
+    #[arg(required = true, value_name = "FILTER")]
+    pub filters: Vec<PathBuf>,
+    /// Take every soil of BASE as a sample of its own, from a file, a workbook, an AGS file or a folder: one
+    /// table, and the samples that govern
+    #[arg(long, conflicts_with_all = ["json", "authority"])]
+    pub each: bool,
+    /// With --each: write the table into this new file
+    #[arg(long, value_name = "FILE.csv", requires = "each")]
+    pub csv: Option<PathBuf>,
+    /// With --each: walk the three samples that govern each filter, as compare does, into folders in here.
+    /// The same command continues what was stopped
+    #[arg(long, value_name = "DIR", requires = "each")]
+    pub walk: Option<PathBuf>,
+    /// With --walk: replace a setting of the walks, for example --set replicates=20; can be repeated
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment, requires = "walk")]
+    pub settings: Vec<String>,
     /// The base is dispersive: stricter limits if it has many fines
     #[arg(long)]
     pub dispersive: bool,
-    /// Width of an open joint at the exit: adds the probability of continuing erosion into it
-    #[arg(long, value_name = "MM", value_parser = millimetres, allow_hyphen_values = true)]
+    /// Width of an open joint at the exit, in mm or with its unit, as 2 or 1/8in: adds the probability of
+    /// continuing erosion into it
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub joint_mm: Option<f64>,
+    /// Whose rules are listed: nrcs, usbr, usace, foster-fell or all; what is left out is said. JSON has
+    /// all rules [default: all]
+    #[arg(long, value_name = "NAME", value_parser = authority)]
+    pub authority: Option<Authority>,
     /// Accept base and filter as named, even if they look exchanged
     #[arg(long)]
     pub as_given: bool,
@@ -204,8 +232,8 @@ pub struct SettingArgs {
 pub struct SoilArgs {
     /// Sieve tables: CSV, .xlsx, .ods or AGS4; FILE#NAME for one of several soils
     pub file: PathBuf,
-    /// Finest size (mm) of a table whose finest percent is not 0
-    #[arg(long, value_name = "MM")]
+    /// Finest size of a table whose finest percent is not 0
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub d0_mm: Option<f64>,
     /// Draw the curves into this new file
     #[arg(long, value_name = "FILE.svg")]
@@ -251,10 +279,14 @@ pub struct TableArgs {
     /// The base is dispersive: stricter limits if it has many fines (base.dispersive)
     #[arg(long)]
     pub dispersive: bool,
-    /// Width of an open joint at the exit: adds the probability of continuing erosion into it
-    /// (filter.joint_mm)
-    #[arg(long, value_name = "MM", value_parser = millimetres, allow_hyphen_values = true)]
+    /// Width of an open joint at the exit, in mm or with its unit, as 2 or 1/8in: adds the probability of
+    /// continuing erosion into it (filter.joint_mm)
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub joint_mm: Option<f64>,
+    /// Whose rules are listed: nrcs, usbr, usace, foster-fell or all; what is left out is said, and the
+    /// verdict rests on all of them [default: all]
+    #[arg(long, value_name = "NAME", value_parser = authority)]
+    pub authority: Option<Authority>,
     /// What is set in it besides, and how it is prepared.
     #[command(flatten)]
     pub set: SettingArgs,
@@ -387,7 +419,7 @@ pub struct DesignArgs {
     /// Pack the grains of this very filter and measure its constrictions [density: loose]
     #[arg(long)]
     pub pack: bool,
-    /// Thickness of the filter: 60layers, 500mm or 75D50F; can be repeated [default: 60layers]
+    /// Thickness of the filter: 60layers, 500mm, 24in, 2ft or 75D50F; can be repeated [default: 60layers]
     #[arg(long = "thickness", value_name = "THICKNESS", value_delimiter = ',', allow_hyphen_values = true)]
     pub thicknesses: Vec<Thickness>,
     /// Walk the base as sampled, not as filter practice regrades it (base.regrade); always so with --inverse
@@ -396,6 +428,10 @@ pub struct DesignArgs {
     /// Accept base and filter as named, even if they look exchanged
     #[arg(long)]
     pub as_given: bool,
+    /// Whose rules are listed: nrcs, usbr, usace, foster-fell or all; what is left out is said, and the
+    /// answer rests on all of them [default: all]
+    #[arg(long, value_name = "NAME", value_parser = authority)]
+    pub authority: Option<Authority>,
     /// Find the finest base that the filter holds instead: the filter keeps its size, the base is scaled
     #[arg(long)]
     pub inverse: bool,

@@ -10,6 +10,7 @@ use crate::outcome::record::Confidence;
 use crate::run::{PrepareOptions, RunError};
 use crate::store::format;
 use crate::study::design::{self, DesignOptions};
+use crate::verdict::by_authority::of_design;
 use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::words::capital;
 
@@ -27,6 +28,7 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
         as_sampled: args.as_sampled,
         as_given: args.as_given,
         inverse: args.inverse,
+        authority: args.authority.unwrap_or_default(),
         bracket: [args.bracket.0, args.bracket.1],
         out: args.out.clone(),
         overwrite: args.overwrite,
@@ -40,7 +42,10 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
     if args.json {
         to_stdout(&json(format::DESIGN, &found)?);
     } else if !args.quiet {
-        to_stdout(&format!("{}report: {}\n", words(&found), shown(&args.out.join("design.html"))));
+        let of_authority = of_design(&found.rules, options.authority, &found.unit);
+        let of_authority = of_authority.map_or(String::new(), |said| format!("{}\n", plain(&said)));
+        let page = shown(&args.out.join("design.html"));
+        to_stdout(&format!("{}{of_authority}report: {page}\n", words(&found)));
     }
     Ok(())
 }

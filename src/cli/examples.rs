@@ -7,12 +7,13 @@ use clap::{Arg, Command, CommandFactory};
 
 use super::args::Arguments;
 use super::exit;
+use super::groups::with_groups;
 
 /// A command line, and what it does.
 type Example = [&'static str; 2];
 
 /// Every command and its examples.
-const EXAMPLES: [(&str, [Example; 2]); 20] = [
+const EXAMPLES: [(&str, [Example; 2]); 21] = [
     (
         "run",
         [
@@ -84,6 +85,13 @@ const EXAMPLES: [(&str, [Example; 2]); 20] = [
         [
             ["voidwalk init", "shows every setting with its meaning"],
             ["voidwalk init dam.toml", "writes them into a file to start from"],
+        ],
+    ),
+    (
+        "examples",
+        [
+            ["voidwalk examples try", "writes the files into the folder try, and says what to type"],
+            ["voidwalk examples .", "into this folder"],
         ],
     ),
     (
@@ -171,8 +179,9 @@ the filter:
 
 Without tables at hand:
 
-  voidwalk run      the built-in example; its page is voidwalk-run/report.html
-  voidwalk serve    a page in the browser of this machine: drop two sheets there
+  voidwalk examples try    writes sheets, a scene, a plan and a notebook into the folder try
+  voidwalk run             the built-in example; its page is voidwalk-run/report.html
+  voidwalk serve           a page in the browser of this machine: drop two sheets there
 
 All commands: voidwalk help. One of them, with examples: voidwalk judge --help
 ";
@@ -186,6 +195,7 @@ static VERSION: LazyLock<String> = LazyLock::new(|| {
 /// The program's arguments as they are read, with examples and the version.
 pub fn command() -> Command {
     let mut command = Arguments::command().version(VERSION.as_str()).after_help(exit::in_words());
+    command = with_groups(command);
     for (name, examples) in EXAMPLES {
         if command.find_subcommand(name).is_some() {
             let text = in_words(&examples);

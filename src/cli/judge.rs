@@ -7,6 +7,7 @@ use super::run::show;
 use super::values::with_options;
 use crate::run::{self, RunError};
 use crate::scene::{Record, Scene, TableOptions};
+use crate::verdict::by_authority::{ON_ALL_RULES, of_pair};
 
 impl TableArgs {
     /// What a scene of two tables is given besides them.
@@ -16,6 +17,7 @@ impl TableArgs {
     pub fn options(&self) -> Result<TableOptions, RunError> {
         let options = [
             ("--dispersive", self.dispersive.then(|| "base.dispersive=true".to_owned())),
+            ("--authority", self.authority.map(|by| format!("about.authority={}", by.word()))),
             ("--joint-mm", self.joint_mm.map(|mm| format!("filter.joint_mm={mm:?}"))),
         ];
         let changes = with_options(&self.set.settings()?, options)?;
@@ -45,6 +47,9 @@ pub fn judge(args: &JudgeArgs) -> Result<(), RunError> {
     }
     show(&run, tables.set.json, quiet)?;
     if in_words {
+        let by = tables.authority.unwrap_or_default();
+        let of_authority = of_pair(&run.outcome.rules, by, Some(run.outcome.inputs.filter.d15_mm));
+        of_authority.iter().for_each(|said| to_stdout(&format!("{} {ON_ALL_RULES}\n", plain(said))));
         let scene = shown(&run.folder.join("scene.toml"));
         let studies = match run.outcome.sensitivity.is_empty() && run.outcome.thickness.is_empty() {
             true => {

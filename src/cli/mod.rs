@@ -3,6 +3,7 @@
 //! How it ends is said in one table, `EXIT_CODES` (`exit.rs`).
 
 mod args;
+mod batch;
 mod campaign;
 mod case_progress;
 mod check;
@@ -12,6 +13,7 @@ mod design;
 mod examples;
 mod exit;
 mod export;
+mod groups;
 mod init;
 mod judge;
 mod mistakes;
@@ -32,6 +34,7 @@ mod shell;
 mod soil;
 mod start;
 mod values;
+mod write_examples;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -85,6 +88,7 @@ pub fn main_with(start: Start) -> u8 {
         Command::Soil(args) => soil::soil(&args),
         Command::Check(args) => check::check(&args),
         Command::Init { path, json, schema } => init::init(path.as_deref(), json, schema),
+        Command::Examples { folder } => write_examples::examples(&folder),
         Command::Design(args) => design::design(&args),
         Command::Campaign(args) => campaign::campaign(&args),
         Command::Pack(args) => pack::pack(&args),

@@ -1,34 +1,55 @@
 //! `voidwalk rules`: what filter practice says of two soils, without a walk.
 
 use super::args::RulesArgs;
+use super::batch::each;
 use super::print::{json, plain, shown, to_stdout};
 use crate::gradation::{curves_in_file, notes_in_file};
 use crate::outcome::record::{AppliedRule, RuleRole};
+use crate::outcome::rules::Authority;
 use crate::run::RunError;
 use crate::store::format;
+use crate::verdict::by_authority::{of_pair, stated_by};
 use crate::verdict::{PairOptions, PairRules};
 use std::fmt::Write;
+use std::path::Path;
 
 /// Widest line (characters).
 const WIDTH: usize = 100;
 
 /// Applies every rule to two sieve tables, or to the curves of two envelopes.
 pub fn rules(args: &RulesArgs) -> Result<(), RunError> {
-    let bases = curves_in_file(&args.base, None).map_err(RunError::refused)?;
-    let filters = curves_in_file(&args.filter, None).map_err(RunError::refused)?;
     let options =
         PairOptions { dispersive: args.dispersive, joint_mm: args.joint_mm, as_given: args.as_given };
+    let filter = match &args.filters[..] {
+        _ if args.each => return each(args, options),
+        [filter] => filter,
+        _ => {
+            let problem = "several filters go with --each, which takes every soil of the base by itself";
+            return Err(RunError::Refused(problem.into()));
+        }
+    };
+    let bases = curves_in_file(&args.base, None).map_err(RunError::refused)?;
+    let filters = curves_in_file(filter, None).map_err(RunError::refused)?;
     let pair = PairRules::guarded(&bases, &filters, options).map_err(|mistake| {
-        let files = format!("base {}, filter {}", shown(&args.base), shown(&args.filter));
+        let files = format!("base {}, filter {}", shown(&args.base), shown(filter));
         RunError::Refused(format!("{files}: {}", mistake.refusal()))
     })?;
     let assumed = |path| notes_in_file(path).map_err(RunError::refused);
-    let notes = [("base", assumed(&args.base)?), ("filter", assumed(&args.filter)?)];
-    to_stdout(&if args.json { json(format::RULES, &pair)? } else { words(&pair, args, &notes) });
+    let notes = [("base", assumed(&args.base)?), ("filter", assumed(filter)?)];
+    to_stdout(&if args.json {
+        json(format::RULES, &pair)?
+    } else {
+        words(&pair, (&args.base, filter), args.authority.unwrap_or_default(), &notes)
+    });
     Ok(())
 }
 
-fn words(pair: &PairRules, args: &RulesArgs, notes: &[(&str, Vec<String>)]) -> String {
+fn words(
+    pair: &PairRules,
+    (base_file, filter_file): (&Path, &Path),
+    by: Authority,
+    notes: &[(&str, Vec<String>)],
+) -> String {
     let (filter, base) = (&pair.filter, &pair.base);
     let mut text = String::new();
     // Writing to a string cannot fail.
@@ -49,7 +70,7 @@ fn words(pair: &PairRules, args: &RulesArgs, notes: &[(&str, Vec<String>)]) -> S
     };
     line(format!(
         "base    {}{}: D85 {}, D95 {} mm {how}; D15 {}, Cu {} as sampled",
-        args.base.display(),
+        base_file.display(),
         of_curve(&base.curves, &base.curve),
         number(base.d85_mm),
         number(base.d95_mm),
@@ -66,7 +87,7 @@ fn words(pair: &PairRules, args: &RulesArgs, notes: &[(&str, Vec<String>)]) -> S
     line(format!("        {category}{dispersive}, {fines}; {regraded}"));
     line(format!(
         "filter  {}{}: D15 {}, D85 {} mm, Cu {}",
-        args.filter.display(),
+        filter_file.display(),
         of_curve(&filter.curves, &filter.curve),
         number(filter.d15_mm),
         number(filter.d85_mm),
@@ -78,6 +99,7 @@ fn words(pair: &PairRules, args: &RulesArgs, notes: &[(&str, Vec<String>)]) -> S
     for (whose, notes) in notes {
         notes.iter().for_each(|note| line(format!("note    {whose}: {note}")));
     }
+    let listed = stated_by(&pair.rules, by);
     for (role, heading) in [
         (RuleRole::Retention, "The filter retains the base"),
         (RuleRole::Continuation, "Coarser filters: where erosion still ends"),
@@ -85,9 +107,12 @@ fn words(pair: &PairRules, args: &RulesArgs, notes: &[(&str, Vec<String>)]) -> S
         (RuleRole::Placing, "The filter can be placed"),
         (RuleRole::Stability, "The filter holds its own fines"),
     ] {
+        if by != Authority::All && listed.iter().all(|rule| rule.role != role) {
+            continue;
+        }
         line(String::new());
         line(format!("{heading} (not kept, it speaks against {})", role.speaks_against()));
-        for rule in pair.rules.iter().filter(|rule| rule.role == role) {
+        for rule in listed.iter().filter(|rule| rule.role == role) {
             line(row(rule));
             let curves = [("filter", &rule.filter_curve), ("base", &rule.base_curve)];
             let named = curves.iter().filter(|(_, curve)| !curve.is_empty());
@@ -99,6 +124,10 @@ fn words(pair: &PairRules, args: &RulesArgs, notes: &[(&str, Vec<String>)]) -> S
             }
             wrapped(&rule.source).into_iter().for_each(&mut line);
         }
+    }
+    if let Some(said) = of_pair(&pair.rules, by, filter.d15_mm) {
+        line(String::new());
+        line(said);
     }
     text
 }

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use clap::builder::PossibleValuesParser;
+use clap::{Arg, Command};
 use clap_complete::{Shell, generate};
 use clap_mangen::Man;
 use clap_mangen::roff::{Roff, bold, roman};
@@ -9,14 +11,85 @@ use clap_mangen::roff::{Roff, bold, roman};
 use super::examples::command;
 use super::exit::EXIT_CODES;
 use super::print::{shown, to_stdout};
+use super::values::FACETS;
+use crate::constrictions::shipped;
+use crate::outcome::rules::Authority;
+use crate::packing::LengthUnit;
 use crate::run::RunError;
+use crate::scene::{Density, LibraryDensity, Scene};
+use crate::schema::KeyInfo;
+use crate::store::format::FORMATS;
 use crate::store::{StoreError, write_whole};
+use crate::study::precision::Tier;
 
-/// Prints a script that completes commands and options.
+/// Prints a script that completes commands, options and the values of options.
 pub fn completions(shell: Shell) {
+    to_stdout(&script(shell));
+}
+
+fn script(shell: Shell) -> String {
     let mut script = Vec::new();
-    generate(shell, &mut command(), "voidwalk", &mut script);
-    to_stdout(&String::from_utf8_lossy(&script));
+    generate(shell, &mut with_values(shell), "voidwalk", &mut script);
+    let mut script = String::from_utf8_lossy(&script).into_owned();
+    if shell == Shell::Bash {
+        script.push_str(BASH_SETTINGS);
+    }
+    script
+}
+
+/// In bash nothing is put behind `base.cu=`, where its value is still to come.
+const BASH_SETTINGS: &str = "
+_voidwalk_and_values() {
+    _voidwalk \"$@\"
+    if [[ ${#COMPREPLY[@]} -eq 1 && ${COMPREPLY[0]} == *= ]]; then
+        compopt -o nospace 2>/dev/null
+    fi
+}
+complete -F _voidwalk_and_values -o nosort -o bashdefault -o default voidwalk 2>/dev/null ||
+    complete -F _voidwalk_and_values -o bashdefault -o default voidwalk
+";
+
+/// The program's arguments with the values that each may have. What may be a file as well has them in bash
+/// alone, which goes on to files where none of them fits.
+fn with_values(shell: Shell) -> Command {
+    let names = command().get_subcommands().map(|sub| sub.get_name().to_owned()).collect::<Vec<_>>();
+    names.iter().fold(command(), |whole, name| {
+        whole.mut_subcommand(name, |sub| sub.mut_args(|arg| of_argument(arg, name, shell)))
+    })
+}
+
+fn of_argument(arg: Arg, command: &str, shell: Shell) -> Arg {
+    let named = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
+    let values = match arg.get_id().as_str() {
+        "density" => named(&Density::ALL.map(Density::name)),
+        "densities" => {
+            [named(&LibraryDensity::ALL.map(LibraryDensity::name)), named(&["friction=", "estimate="])]
+                .concat()
+        }
+        "settings" => assignments(),
+        "authority" => named(&Authority::ALL.map(Authority::word)),
+        "schema" => FORMATS.iter().map(|form| form.name().to_owned()).collect(),
+        "unit" => named(&LengthUnit::ALL.map(LengthUnit::name)),
+        "facets" => named(&FACETS.map(|(word, _)| word)),
+        "tiers" => named(&Tier::ALL.map(Tier::name)),
+        "filter" if command == "design" && shell == Shell::Bash => {
+            shipped().iter().map(|filter| filter.name.clone()).collect()
+        }
+        _ => return arg,
+    };
+    arg.value_parser(PossibleValuesParser::new(values))
+}
+
+/// Every setting as `--set` takes it, with each of the words that it may have.
+fn assignments() -> Vec<String> {
+    let of_key = |key: KeyInfo| {
+        let name = key.full_name();
+        match key.offered.is_empty() {
+            true => vec![format!("{name}=")],
+            false => key.offered.iter().map(|word| format!("{name}={word}")).collect(),
+        }
+    };
+    Scene::keys().into_iter().flat_map(of_key).collect()
 }
 
 /// Writes a manual page of the program and of each of its commands.
@@ -40,7 +113,7 @@ pub fn man(folder: &Path) -> Result<(), RunError> {
     Ok(())
 }
 
-fn page(command: clap::Command) -> Result<Vec<u8>, RunError> {
+fn page(command: Command) -> Result<Vec<u8>, RunError> {
     let mut text = Vec::new();
     Man::new(command).render(&mut text).map_err(RunError::failed)?;
     let mut codes = Roff::default();
@@ -50,4 +123,50 @@ fn page(command: clap::Command) -> Result<Vec<u8>, RunError> {
     }
     codes.to_writer(&mut text).map_err(RunError::failed)?;
     Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::error::ErrorKind;
+
+    use super::*;
+
+    #[test]
+    fn values_are_completed_where_they_are_known() {
+        let bash = script(Shell::Bash);
+        for value in
+            ["loose", "base.cu=", "filter.density=dense", "walk.arching=zuriguel-2005", "on-both-hulls"]
+        {
+            assert!(bash.contains(&format!(" {value} ")) || bash.contains(&format!("{value}\"")), "{value}");
+        }
+        assert!(bash.contains("shire2016-cu1.5-loose") && bash.trim_end().ends_with("default voidwalk"));
+        let every = [Shell::Zsh, Shell::Fish].map(script);
+        assert!(
+            every.iter().all(|script| script.contains("loose") && script.contains("filter.density=dense"))
+        );
+        // What may be a file is no list of words there.
+        assert!(!every[1].contains("-l filter -d 'The shape of the filter, whose size is searched' -r -f"));
+    }
+
+    #[test]
+    fn a_value_that_is_completed_is_one_that_is_read() {
+        let parsers = with_values(Shell::Bash);
+        for sub in parsers.get_subcommands() {
+            for arg in sub.get_arguments().filter(|arg| arg.get_num_args().is_none_or(|n| n.takes_values())) {
+                let own = command();
+                let own = own.find_subcommand(sub.get_name()).unwrap().clone();
+                for value in arg.get_possible_values() {
+                    let Some(long) = arg.get_long() else { continue };
+                    let value = match value.get_name() {
+                        of if of.ends_with('=') => format!("{of}1"),
+                        of => of.to_owned(),
+                    };
+                    let words = ["voidwalk".to_owned(), format!("--{long}"), value];
+                    let read = own.clone().ignore_errors(false).try_get_matches_from(words.clone());
+                    let wrong = read.err().filter(|error| error.kind() == ErrorKind::ValueValidation);
+                    assert!(wrong.is_none(), "{words:?}: {wrong:?}");
+                }
+            }
+        }
+    }
 }

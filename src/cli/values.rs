@@ -4,8 +4,10 @@ use std::ops::RangeInclusive;
 use std::time::Duration;
 
 use crate::constrictions::Facets;
+use crate::outcome::rules::Authority;
 use crate::run::RunError;
 use crate::scene::Density;
+use crate::schema::length::{LENGTHS, millimetres};
 use crate::store::format::{FORMATS, Format};
 
 /// Two ratios.
@@ -34,13 +36,13 @@ pub(super) fn density(text: &str) -> Result<Density, String> {
     })
 }
 
+/// The words for the facets between voids that are counted.
+pub(super) const FACETS: [(&str, Facets); 2] = [("all", Facets::All), ("on-both-hulls", Facets::OnBothHulls)];
+
 /// Which facets between voids are counted.
 pub(super) fn facets(text: &str) -> Result<Facets, String> {
-    match text {
-        "all" => Ok(Facets::All),
-        "on-both-hulls" => Ok(Facets::OnBothHulls),
-        _ => Err("all or on-both-hulls".into()),
-    }
+    let named = FACETS.iter().find(|(word, _)| *word == text);
+    named.map(|(_, facets)| *facets).ok_or_else(|| FACETS.map(|(word, _)| word).join(" or "))
 }
 
 /// The size of a lattice: voids along each side, or along x, y and z.
@@ -57,6 +59,12 @@ pub(super) fn lattice_size(text: &str) -> Result<[u32; 3], String> {
 /// A seed.
 pub(super) fn seed(text: &str) -> Result<u64, String> {
     text.trim().parse().map_err(|_| format!("write a whole number from 0 to {}", u64::MAX))
+}
+
+/// Whose rules are listed.
+pub(super) fn authority(text: &str) -> Result<Authority, String> {
+    let words = Authority::ALL.map(Authority::word).join(", ");
+    Authority::named(text).ok_or_else(|| format!("one of {words}"))
 }
 
 /// The form of a file of JSON, by its name.
@@ -77,13 +85,8 @@ pub(super) fn time(text: &str) -> Result<Duration, String> {
 }
 
 /// A length above 0 (mm).
-pub(super) fn millimetres(text: &str) -> Result<f64, String> {
-    let size: f64 = text.trim().parse().map_err(|_| "write a number of millimetres above 0".to_owned())?;
-    if size > 0.0 && size.is_finite() {
-        Ok(size)
-    } else {
-        Err("write a number of millimetres above 0".into())
-    }
+pub(super) fn length(text: &str) -> Result<f64, String> {
+    millimetres(text).ok_or_else(|| format!("write {LENGTHS}"))
 }
 
 /// How far the interval may reach, in percentage points.

@@ -53,6 +53,14 @@ pub enum TableError {
         /// Folder as the user named it.
         file: String,
     },
+    /// A folder without a table.
+    #[error("{folder} has no table in it; allowed: files of .{endings}")]
+    NoTables {
+        /// Folder as the user named it.
+        folder: String,
+        /// Endings of the files that are looked for.
+        endings: String,
+    },
     /// More bytes than any such table has.
     #[error("{file} is larger than {limit} bytes; allowed: a CSV file of two columns up to that size")]
     TooLarge {

@@ -49,7 +49,9 @@ pub use sampler::{SizeRange, SizeSampler};
 pub use shape::Gap;
 pub use sieve::Gradation;
 pub(crate) use soil::file_and_soil;
-pub use soil::{Soil, SoilSummary, curves_in_file, notes_in_file, soils_in_file};
+pub use soil::{
+    Soil, SoilSample, SoilSummary, curves_in_file, notes_in_file, samples_in, soils_in_file, us_sieve,
+};
 pub use stability::{KEZDI_RANGE, ShapeIndex};
 pub use supply::{BaseSupply, base_particles};
 pub(crate) use table::{Direction, Row, Table, check_size, rising};

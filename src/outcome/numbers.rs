@@ -115,6 +115,57 @@ pub fn size_unit(scale_free: bool) -> &'static str {
     if scale_free { "D0F" } else { "mm" }
 }
 
+/// What sizes on a sheet are shown in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SizeUnit {
+    /// Multiples of D0F, where nothing has a scale.
+    D0f,
+    /// mm.
+    Mm,
+    /// mm, and inches behind them.
+    MmAndInches,
+}
+
+impl SizeUnit {
+    /// The unit of a scene without a scale, or of a sheet with or without US customary units.
+    pub fn of(scale_free: bool, us: bool) -> Self {
+        match (scale_free, us) {
+            (true, _) => Self::D0f,
+            (false, false) => Self::Mm,
+            (false, true) => Self::MmAndInches,
+        }
+    }
+
+    /// Its name at the head of a table.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::D0f | Self::Mm => size_unit(self == Self::D0f),
+            Self::MmAndInches => "mm (in)",
+        }
+    }
+
+    /// A size with at most three digits that mean something; in inches, too, where those are shown.
+    pub fn digits(self, value: f64) -> String {
+        let shown = in_digits(value, 3);
+        match self {
+            Self::D0f | Self::Mm => shown,
+            Self::MmAndInches => format!("{shown} ({})", in_digits(value / INCH_MM, 3)),
+        }
+    }
+
+    /// A size with its unit, and in inches, too, where those are shown.
+    pub fn size(self, value: f64) -> String {
+        let shown = size(value, self == Self::D0f);
+        match self {
+            Self::D0f | Self::Mm => shown,
+            Self::MmAndInches => format!("{shown} ({}{THIN}in)", significant(value / INCH_MM)),
+        }
+    }
+}
+
+/// Millimetres of an inch.
+const INCH_MM: f64 = 25.4;
+
 /// A time in seconds, in the unit that fits.
 pub fn duration(seconds: f64) -> String {
     if seconds < 100.0 {

@@ -1,17 +1,18 @@
 //! The sizes of a soil that engineers look for, as a table shows them.
 
-use super::numbers::in_digits;
+use super::numbers::{SizeUnit, in_digits};
+pub use crate::gradation::us_sieve;
 use crate::gradation::{FINES_MM, Gradation};
 
 /// A row of the table of sizes: its name, and its value of a soil.
-type SizeRow = (&'static str, fn(&Gradation) -> Option<String>);
+type SizeRow = (&'static str, fn(&Gradation, SizeUnit) -> Option<String>);
 
 /// A size that so many percent are finer than.
-fn finer<const PERCENT: u8>(soil: &Gradation) -> Option<String> {
-    soil.d(f64::from(PERCENT)).map(|size| in_digits(size, 3))
+fn finer<const PERCENT: u8>(soil: &Gradation, unit: SizeUnit) -> Option<String> {
+    soil.d(f64::from(PERCENT)).map(|size| unit.digits(size))
 }
 
-fn percent_fines(soil: &Gradation) -> Option<String> {
+fn percent_fines(soil: &Gradation, _: SizeUnit) -> Option<String> {
     soil.percent_finer_if_known(FINES_MM).map(|percent| in_digits(percent, 3))
 }
 
@@ -26,18 +27,22 @@ const SIZES: [SizeRow; 11] = [
     ("D85", finer::<85>),
     ("D90", finer::<90>),
     ("D95", finer::<95>),
-    ("Cu", |soil| soil.cu().map(|cu| in_digits(cu, 3))),
-    ("Cc", |soil| soil.cc().map(|cc| in_digits(cc, 3))),
+    ("Cu", |soil, _| soil.cu().map(|cu| in_digits(cu, 3))),
+    ("Cc", |soil, _| soil.cc().map(|cc| in_digits(cc, 3))),
 ];
 
 /// The same where sizes have a unit.
-const OF_UNIT: [SizeRow; 2] = [("Fines (%)", percent_fines), ("Group", Gradation::group)];
+const OF_UNIT: [SizeRow; 2] = [("Fines (%)", percent_fines), ("Group", |soil, _| soil.group())];
 
 /// Each of them of a soil, by its name: `None` where the sieves do not tell. Without a unit there are neither
 /// fines nor a group.
-pub fn sizes_of(rows: &[[f64; 2]], has_unit: bool) -> Vec<(&'static str, Option<String>)> {
+pub fn sizes_of(rows: &[[f64; 2]], unit: SizeUnit) -> Vec<(&'static str, Option<String>)> {
     let points: Vec<(f64, f64)> = rows.iter().map(|row| (row[0], row[1])).collect();
     let soil = Gradation::from_points(&points, None).ok();
-    let of_unit = if has_unit { &OF_UNIT[..] } else { &[] };
-    SIZES.iter().chain(of_unit).map(|(name, value)| (*name, soil.as_ref().and_then(value))).collect()
+    let of_unit = if unit == SizeUnit::D0f { &[] } else { &OF_UNIT[..] };
+    SIZES
+        .iter()
+        .chain(of_unit)
+        .map(|(name, value)| (*name, soil.as_ref().and_then(|soil| value(soil, unit))))
+        .collect()
 }

@@ -3,17 +3,18 @@
 use maud::{Markup, html};
 
 use super::names::soil_name;
-use super::numbers::{in_digits, percent, size_unit, trimmed};
+use super::numbers::{SizeUnit, in_digits, percent, trimmed};
 use super::shell::clean;
 use super::table::Table;
 use crate::outcome::record::Outcome;
+use crate::outcome::soil_sizes::us_sieve;
 
 /// Rows shown of each gradation; all are in `outcome.json`.
 const ROWS: usize = 200;
 
 /// Filter and base as the walk read them: what a reader types in to check it.
-pub(super) fn gradations(outcome: &Outcome) -> Markup {
-    let (inputs, unit) = (&outcome.inputs, size_unit(outcome.inputs.scale_free));
+pub(super) fn gradations(outcome: &Outcome, unit: SizeUnit) -> Markup {
+    let inputs = &outcome.inputs;
     let (filter, base) = (&inputs.filter, &inputs.base);
     html! {
         section.appendix {
@@ -31,12 +32,18 @@ pub(super) fn gradations(outcome: &Outcome) -> Markup {
     }
 }
 
-fn gradation(kind: &str, name: &str, rows: &[[f64; 2]], unit: &str) -> Markup {
+fn gradation(kind: &str, name: &str, rows: &[[f64; 2]], unit: SizeUnit) -> Markup {
     let finest = rows.iter().map(|row| row[1]).fold(100.0, f64::min);
     // The coarsest first, as a laboratory writes it.
     let shown: Vec<&[f64; 2]> = rows.iter().rev().take(ROWS).collect();
-    let table = Table::of(&shown)
-        .number(format!("Size ({unit})"), |row| in_digits(row[0], 4))
+    let mut table = Table::of(&shown);
+    let with_sieves = unit == SizeUnit::MmAndInches;
+    if with_sieves {
+        table = table.name("US sieve", |row| us_sieve(row[0]).unwrap_or_default());
+    }
+    let heading = SizeUnit::of(unit == SizeUnit::D0f, false).name();
+    let table = table
+        .number(format!("Size ({heading})"), |row| in_digits(row[0], 4))
         .number("Percent finer", |row| trimmed((row[1] * 100.0).round() / 100.0));
     html! {
         div {

@@ -7,11 +7,13 @@ use serde::Deserialize;
 use super::figures::shorten;
 use super::folder::RunFolder;
 use super::names::soil_name;
-use super::numbers::{in_digits, significant, size, size_unit, whole};
+use super::numbers::{SizeUnit, in_digits, significant, whole};
 use super::shell::clean;
 use super::table::Table;
-use crate::outcome::record::{AppliedRule, Confidence, Outcome, RuleRole, Verdict};
+use crate::outcome::record::{AppliedRule, Confidence, Outcome, Verdict};
+use crate::outcome::rules::Authority;
 use crate::outcome::soil_sizes::sizes_of;
+use crate::verdict::by_authority::{ON_ALL_RULES, of_pair, stated_by};
 use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::practice::{Standing, standing};
 use crate::verdict::words::capital;
@@ -38,11 +40,25 @@ struct About {
     revision: Option<String>,
     date: Option<String>,
     coarse_left: bool,
+    units: Option<String>,
+    authority: Option<String>,
 }
 
 /// Whether gradations are drawn with coarse sizes on the left.
 pub(super) fn coarse_left(folder: &RunFolder) -> bool {
     toml::from_str::<Said>(&folder.scene).unwrap_or_default().about.coarse_left
+}
+
+/// What sizes on the first sheet are shown in.
+pub(super) fn units(folder: &RunFolder) -> SizeUnit {
+    let said = toml::from_str::<Said>(&folder.scene).unwrap_or_default().about.units;
+    SizeUnit::of(folder.outcome.inputs.scale_free, said.as_deref() == Some("us"))
+}
+
+/// Whose rules the first sheet lists.
+pub(super) fn authority(folder: &RunFolder) -> Authority {
+    let said = toml::from_str::<Said>(&folder.scene).unwrap_or_default().about.authority;
+    said.as_deref().and_then(Authority::named).unwrap_or_default()
 }
 
 /// The two soils, and what belongs to a sheet that is handed in.
@@ -116,9 +132,9 @@ fn colour(outcome: &Outcome) -> &'static str {
 }
 
 /// Sizes of both soils as a table, of the base as sampled and as regraded where it is.
-pub(super) fn sizes(outcome: &Outcome) -> Markup {
+pub(super) fn sizes(outcome: &Outcome, unit: SizeUnit) -> Markup {
     let inputs = &outcome.inputs;
-    let soil = |rows: &[[f64; 2]]| sizes_of(rows, !inputs.scale_free);
+    let soil = |rows: &[[f64; 2]]| sizes_of(rows, unit);
     let (filter, base) = (&inputs.filter, &inputs.base);
     let mut soils = vec![("Filter", soil(&filter.gradation))];
     match &base.as_sampled {
@@ -128,7 +144,7 @@ pub(super) fn sizes(outcome: &Outcome) -> Markup {
         None => soils.push(("Base", soil(&base.gradation))),
     }
     let rows: Vec<usize> = (0..soils[0].1.len()).collect();
-    let mut table = Table::of(&rows).name(size_unit(inputs.scale_free), |row| soils[0].1[*row].0);
+    let mut table = Table::of(&rows).name(unit.name(), |row| soils[0].1[*row].0);
     for (name, sizes) in &soils {
         table = table.number(*name, |row| sizes[*row].1.clone().unwrap_or_else(|| "–".into()));
     }
@@ -141,14 +157,16 @@ pub(super) fn sizes(outcome: &Outcome) -> Markup {
 }
 
 /// The rules of practice, one a line, and the thickness that was modelled.
-pub(super) fn in_short(outcome: &Outcome) -> Markup {
-    let practice: Vec<&AppliedRule> =
-        outcome.rules.iter().filter(|rule| rule.role != RuleRole::Walk).collect();
+pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit, by: Authority) -> Markup {
+    let stated = stated_by(&outcome.rules, by);
+    let practice: Vec<&AppliedRule> = stated.iter().collect();
+    let of_authority = of_pair(&outcome.rules, by, Some(outcome.inputs.filter.d15_mm));
     html! {
         section.short {
             h2 { "Rules of practice, in short" }
             @if practice.is_empty() { p { "No rule was applied." } } @else { (table(&practice)) }
-            (thickness(outcome))
+            @if let Some(said) = of_authority { p { b { (clean(&said)) " " (ON_ALL_RULES) } } }
+            (thickness(outcome, unit))
             p.small { (clean(&left_out_in_brief(&outcome.model_leaves_out))) " The verdict of the walk is \
                 the model’s. It does not replace a filter test or a designer’s judgement." }
         }
@@ -183,12 +201,12 @@ fn table(rules: &[&AppliedRule]) -> Markup {
 }
 
 /// How thick the filter is that was walked.
-fn thickness(outcome: &Outcome) -> Markup {
+fn thickness(outcome: &Outcome, unit: SizeUnit) -> Markup {
     let network = &outcome.inputs.network;
     html! {
         @if let Some(thickness) = network.thickness_mm {
             p.thickness {
-                "Thickness modelled: " b { (size(thickness, outcome.inputs.scale_free)) } " along the flow, "
+                "Thickness modelled: " b { (unit.size(thickness)) } " along the flow, "
                 (whole(network.layers)) " layers of voids. "
                 @if let Some(sentence) = thickness_moves(outcome) { (clean(&sentence)) }
             }

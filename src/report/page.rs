@@ -108,13 +108,14 @@ fn drawn(run: &RunFolder) -> (String, Vec<Drawn>) {
 fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Drawn]) -> String {
     let outcome = &folder.outcome;
     let (filter, base) = (&outcome.inputs.filter, &outcome.inputs.base);
+    let unit = first_page::units(folder);
     let soil = |name: &str| clean(&shorten(soil_name(name), 60));
     let title = format!("{}: {} on {}", outcome.verdict.words(), soil(&base.name), soil(&filter.name));
     let main = html! {
         section.sheet {
             (answer(outcome))
-            div.pair { (shell::figure(1, gradations)) (sizes(outcome)) }
-            (in_short(outcome))
+            div.pair { (shell::figure(1, gradations)) (sizes(outcome, unit)) }
+            (in_short(outcome, unit, first_page::authority(folder)))
         }
         (shell::contents())
         (findings(outcome))
@@ -133,7 +134,7 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
         (sensitivity(outcome))
         (thickness(outcome))
         (inputs(outcome, folder.packing.as_ref()))
-        (appendix::gradations(outcome))
+        (appendix::gradations(outcome, unit))
         (provenance(folder))
     };
     whole_page(&title, &first_page::header(folder), &main, &citation(outcome))

@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::constrictions::DEFAULT_MERGE_OVERLAP;
+use crate::constrictions::{DEFAULT_MERGE_OVERLAP, shipped};
 use crate::network::{Connectivity, ExitRule};
+use crate::outcome::rules::Authority;
 use crate::packing::{CellOption, LengthUnit};
-use crate::schema::{Allowed, Leaf, above_zero, any, only, section, whole, within, words};
+use crate::schema::{Allowed, Leaf, above_zero, any, length, only, section, whole, within, words};
 use crate::text::is_hidden;
 use crate::walk::{Engine, LawName, Sampling};
 
@@ -51,11 +52,12 @@ section! {
         /// The constriction curve, by number: a shipped name, or a CSV file with the columns percent_smaller
         /// and diameter_mm (or diameter_over_d0f). `voidwalk check` lists the shipped names.
         pub curve: Option<CurveSource> = None, set "\"shire2016-cu1.5-loose\"",
-            any("a shipped curve or a file name, in quotes");
+            any("a shipped curve or a file name, in quotes").offering(&shipped_names());
         /// Instead of a curve: density of the filter. Its grains are packed first and the constrictions
         /// measured (seconds to minutes, once).
         pub density: Option<Density> = None, off "\"loose\"",
-            any("\"dense\" (friction 0), \"medium\" or \"intermediate\" (0.1), or \"loose\" (0.3)");
+            any("\"dense\" (friction 0), \"medium\" or \"intermediate\" (0.1), or \"loose\" (0.3)")
+                .offering(&Density::ALL.map(Density::name));
         /// Instead of a density: friction between grains during compression.
         pub friction: Option<f64> = None, off "0.3", within(0.0..=10.0, "a number from 0 to 10");
         /// Written by a run whose filter was packed: its measured constriction curve.
@@ -64,24 +66,25 @@ section! {
         /// density is unknown, the filter is taken as loose, and walked as dense besides. A gradation like
         /// none of the library has its constrictions guessed.
         pub library: Option<LibraryDensity> = None, off "\"unknown\"",
-            any("\"dense\", \"medium\" or \"intermediate\", \"loose\", or \"unknown\"");
+            any("\"dense\", \"medium\" or \"intermediate\", \"loose\", or \"unknown\"")
+                .offering(&LibraryDensity::ALL.map(LibraryDensity::name));
         /// Instead of a curve or a density: constrictions guessed from the gradation by inscribed circles, at
         /// a relative density from 0 (loose) to 1 (dense).
         pub estimate: Option<f64> = None, off "0.5", within(0.0..=1.0, "a relative density from 0 (loose) \
          to 1 (dense)");
         /// Finest size (mm) of a gradation that is linear on semi-log paper; 1 means lengths in units of D0F.
         /// With a sieve table: its finest size, if its finest percent is not 0.
-        pub d0_mm: Option<f64> = None, set "1.0", above_zero();
+        pub d0_mm: Option<f64> = None, set "1.0", length();
         /// Cu of a linear gradation (a shipped curve has its own).
         pub cu: Option<f64> = None, off "1.5", within(1.0..=1000.0, "a number from 1 to 1000");
         /// Instead of a linear gradation: a sieve table (CSV, .xlsx, .ods or AGS4: openings and percent finer
         /// by mass; FILE#NAME for one of several soils; see `voidwalk soil`).
         pub sieve: Option<PathBuf> = None, off "\"filter.csv\"", any("a file name in quotes");
         /// Thickness of the real filter layer (mm). A warning appears if the modelled one is thicker.
-        pub thickness_mm: Option<f64> = None, off "500.0", above_zero();
+        pub thickness_mm: Option<f64> = None, off "500.0", length();
         /// Width of an open joint at the exit (mm). The rules of practice give the probability of continuing
         /// erosion into it. The walk ignores joints, so the verdict is in doubt.
-        pub joint_mm: Option<f64> = None, off "5.0", above_zero();
+        pub joint_mm: Option<f64> = None, off "5.0", length();
         /// Filter grains per void, N_p / N_voids of Eq. (2) (a shipped curve or a packing has its own).
         pub grains_per_void: Option<f64> = None, off "0.61", above_zero();
     }
@@ -114,25 +117,26 @@ section! {
         pub d85_at_dc: Option<f64> = None, set "5", within(0.0..=100.0, "a percentage from 0 to 100");
         /// Constriction curve for d85_at_dc. Default: the filter's own.
         pub dc_curve: Option<CurveSource> = None, off "\"cu3-loose\"", any("a shipped curve or a file name, \
-         in quotes");
+         in quotes").offering(&shipped_names());
         /// D85B (mm).
-        pub d85_mm: Option<f64> = None, off "0.2", above_zero();
+        pub d85_mm: Option<f64> = None, off "0.2", length();
         /// D15F over D85B.
         pub d15f_over_d85b: Option<f64> = None, off "6.5", above_zero();
         /// Instead of a linear gradation: a sieve table (CSV, .xlsx, .ods or AGS4: openings and percent finer
         /// by mass; FILE#NAME for one of several soils; see `voidwalk soil`).
         pub sieve: Option<PathBuf> = None, off "\"base.csv\"", any("a file name in quotes");
         /// With a sieve table: its finest size (mm), if its finest percent is not 0.
-        pub d0_mm: Option<f64> = None, off "0.01", above_zero();
+        pub d0_mm: Option<f64> = None, off "0.01", length();
         /// "practice": walk the base as filter practice regrades it (to 100 % finer than 4.75 mm or a gap);
         /// needs sizes in mm. "no": walk it as sampled. Default: "no" in a scene, "practice" for tables
         /// (`voidwalk judge`, `compare`, `design`, `serve`) without --as-sampled.
-        pub regrade: Option<Regrade> = None, off "\"practice\"", any("\"practice\" or \"no\"");
+        pub regrade: Option<Regrade> = None, off "\"practice\"",
+            any("\"practice\" or \"no\"").offering(&["practice", "no"]);
         /// Whether the base is a dispersive clay or silt. The rules of practice take stricter limits. The
         /// walk ignores dispersion, so the verdict is in doubt.
-        pub dispersive: Option<bool> = None, off "true", any("true or false");
+        pub dispersive: Option<bool> = None, off "true", any("true or false").offering(&["true", "false"]);
         /// Instead of a gradation: one size (mm).
-        pub single_mm: Option<f64> = None, off "0.18", above_zero();
+        pub single_mm: Option<f64> = None, off "0.18", length();
         /// Amount of base: mass of base over mass of filter, Eq. (2).
         pub mass_ratio: Option<f64> = None, set "0.05", above_zero();
         /// Cap on the number of base particles by Eq. (2). Default: none (the paper's is 2e8). The report
@@ -186,7 +190,7 @@ section! {
         pub copies: Option<u64> = None, off "3", whole(1..=1_000_000);
         /// Thickness of the filter (mm): layers of a lattice, each D50F by number thick, or copies of a
         /// packing, rounded up.
-        pub thickness_mm: Option<f64> = None, off "500.0", above_zero();
+        pub thickness_mm: Option<f64> = None, off "500.0", length();
         /// Thickness of the filter in multiples of D50F by mass.
         pub thickness_d50f: Option<f64> = None, off "75.0", above_zero();
         /// Voids across.
@@ -238,7 +242,7 @@ section! {
         /// Walk how much coarser the filter could be before the base begins to erode, on the first
         /// replicate's network. Default: only where base and filter are sieve tables of `voidwalk judge` and
         /// its like.
-        pub margin: Option<bool> = None, off "true", any("true or false");
+        pub margin: Option<bool> = None, off "true", any("true or false").offering(&["true", "false"]);
         /// Most replicates of each point of both studies; a clear point stops after one or two.
         pub sensitivity_replicates: u64 = 3, set, whole(1..=1000);
     }
@@ -264,8 +268,19 @@ section! {
         /// The date on the sheet; that of the run otherwise.
         pub date: Option<String> = None, off "\"2026-11-25\"", line();
         /// Coarse sizes on the left of the figure of the gradations, as in the United States.
-        pub coarse_left: Option<bool> = None, off "true", any("true or false");
+        pub coarse_left: Option<bool> = None, off "true", any("true or false").offering(&["true", "false"]);
+        /// Whose rules the first sheet lists: "all", or those of one authority, with what it leaves out. The
+        /// verdict rests on all of them.
+        pub authority: Option<Authority> = None, off "\"nrcs\"", words(&Authority::ALL.map(Authority::word));
+        /// "us": sizes on the first sheet in inches too, and the names of US sieves in the appendix. Files
+        /// stay in mm.
+        pub units: Option<SheetUnits> = None, off "\"us\"", words(&SheetUnits::ALL.map(SheetUnits::name));
     }
+}
+
+/// The names of the shipped curves.
+fn shipped_names() -> Vec<&'static str> {
+    shipped().iter().map(|filter| filter.name.as_str()).collect()
 }
 
 /// Characters of a line.
@@ -384,6 +399,9 @@ pub enum LibraryDensity {
 }
 
 impl LibraryDensity {
+    /// From the densest, and the unknown one last.
+    pub const ALL: [Self; 4] = [Self::Dense, Self::Intermediate, Self::Loose, Self::Unknown];
+
     /// From 0, loose, to 1, dense; the middle where it is unknown.
     pub fn relative(self) -> f64 {
         match self {
@@ -444,6 +462,31 @@ impl NetworkMadeOf {
     }
 }
 
+/// Units that a sheet shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SheetUnits {
+    /// mm alone.
+    Metric,
+    /// Inches beside mm.
+    Us,
+}
+
+impl SheetUnits {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Metric, Self::Us];
+
+    /// The word that a scene says.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Metric => "metric",
+            Self::Us => "us",
+        }
+    }
+}
+
+impl Leaf for SheetUnits {}
+impl Leaf for Authority {}
 impl Leaf for CellOption {}
 impl Leaf for LengthUnit {}
 impl Leaf for NetworkMadeOf {}

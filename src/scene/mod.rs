@@ -380,6 +380,25 @@ mod tests {
     }
 
     #[test]
+    fn a_length_may_have_a_unit_and_is_kept_in_mm() {
+        for (name, text, mm) in [
+            ("filter.thickness_mm", "2ft", "609.6"),
+            ("filter.joint_mm", "\"3/8in\"", "9.525"),
+            ("network.thickness_mm", "0.5m", "500"),
+            ("base.d85_mm", "75um", "0.075"),
+        ] {
+            let [said, plain] = [text, mm].map(|value| built_in(&[&format!("{name}={value}")]).unwrap());
+            assert_eq!(said, plain, "{name}");
+            assert!(said.to_toml().contains(mm), "{}", said.to_toml());
+        }
+        let wrong = built_in(&["network.thickness_mm=24 apples"]).unwrap_err().to_string();
+        assert!(
+            wrong.contains("`24 apples` is not allowed; a length above 0, in mm or with its unit"),
+            "{wrong}"
+        );
+    }
+
+    #[test]
     fn one_alternative_replaces_the_others() {
         let base = |set: &[&str]| built_in(set).unwrap().base.gradation();
         assert_eq!(base(&["base.single_mm=0.2"]), BaseGradation::Single(0.2));

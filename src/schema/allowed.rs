@@ -6,11 +6,18 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use super::Value;
+use super::length::{LENGTHS, millimetres};
+
 /// Which values a setting may have.
 pub struct Allowed<T> {
     /// The same in words, as errors say it.
     pub words: String,
     test: Box<dyn Fn(&T) -> bool>,
+    /// What reads it where it is written as text, if that may be.
+    of_text: Option<fn(&str) -> Option<T>>,
+    /// Values that it often has, for a shell to complete.
+    offered: Vec<String>,
 }
 
 impl<T> Allowed<T> {
@@ -20,9 +27,35 @@ impl<T> Allowed<T> {
     }
 }
 
+impl<T: Leaf> Allowed<T> {
+    /// A value as it was written, where it is of this type and allowed.
+    pub fn read(&self, value: &Value) -> Option<T> {
+        let read = match (value, self.of_text) {
+            (Value::Text(text), Some(of_text)) => of_text(text),
+            _ => T::deserialize(value).ok(),
+        };
+        read.filter(|value| self.admits(value))
+    }
+
+    /// The same, with values that it often has, for a shell to complete.
+    pub fn offering(self, words: &[&str]) -> Self {
+        Self { offered: words.iter().map(|word| (*word).to_owned()).collect(), ..self }
+    }
+
+    /// Values that it often has.
+    pub fn offered(&self) -> &[String] {
+        &self.offered
+    }
+
+    /// How it is written in TOML.
+    pub fn toml_type(&self) -> &'static str {
+        if self.of_text.is_some() { "float or string" } else { T::TOML_TYPE }
+    }
+}
+
 /// Values that pass a test; `words` says which they are.
 pub fn only<T>(words: impl Into<String>, test: impl Fn(&T) -> bool + 'static) -> Allowed<T> {
-    Allowed { words: words.into(), test: Box::new(test) }
+    Allowed { words: words.into(), test: Box::new(test), of_text: None, offered: Vec::new() }
 }
 
 /// Every value of the type; `words` says which they are.
@@ -45,14 +78,20 @@ pub fn above_zero() -> Allowed<f64> {
     only("a finite number above 0", |n: &f64| *n > 0.0 && n.is_finite())
 }
 
+/// Lengths above 0: numbers of mm, or text with a unit.
+pub fn length() -> Allowed<f64> {
+    Allowed { words: LENGTHS.into(), of_text: Some(millimetres), ..above_zero() }
+}
+
 /// The words of a type that has few.
-pub fn words<T>(all: &[&str]) -> Allowed<T> {
+pub fn words<T: Leaf>(all: &[&str]) -> Allowed<T> {
     let quoted: Vec<String> = all.iter().map(|word| format!("\"{word}\"")).collect();
-    any(match quoted.split_last() {
+    let said = any(match quoted.split_last() {
         Some((last, [])) => last.clone(),
         Some((last, others)) => format!("{} or {last}", others.join(", ")),
         None => String::new(),
-    })
+    });
+    said.offering(all)
 }
 
 /// The type of a setting's value.

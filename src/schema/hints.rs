@@ -2,31 +2,23 @@
 
 use toml::de::DeTable;
 
+use super::length;
+
 /// How workbooks begin: .xlsx and .ods are zips, .xls is older.
 const WORKBOOKS: [&[u8]; 2] = [b"PK\x03\x04", b"\xd0\xcf\x11\xe0"];
 
 /// Sections and keys that only a plan of a campaign has.
 const OF_A_PLAN: [&str; 6] = ["factor", "case", "leave_out", "seeds", "title", "set"];
 
+/// A unit, and how many of another it is: a numerator and a denominator.
+type Unit = (&'static str, [f64; 2]);
+
 /// Units that the name of a setting may end in, and others by how many of them they are.
-const UNITS: [(&str, &[(&str, f64)]); 4] = [
-    (
-        "mm",
-        &[
-            ("mm", 1.0),
-            ("cm", 10.0),
-            ("m", 1000.0),
-            ("um", 1e-3),
-            ("µm", 1e-3),
-            ("μm", 1e-3),
-            ("nm", 1e-6),
-            ("in", 25.4),
-            ("inch", 25.4),
-        ],
-    ),
-    ("kPa", &[("kPa", 1.0), ("Pa", 1e-3), ("MPa", 1e3), ("GPa", 1e6)]),
-    ("GPa", &[("GPa", 1.0), ("Pa", 1e-9), ("kPa", 1e-6), ("MPa", 1e-3)]),
-    ("kg/m3", &[("kg/m3", 1.0)]),
+const UNITS: [(&str, &[Unit]); 4] = [
+    ("mm", &length::UNITS),
+    ("kPa", &[("kPa", [1.0, 1.0]), ("Pa", [1.0, 1e3]), ("MPa", [1e3, 1.0]), ("GPa", [1e6, 1.0])]),
+    ("GPa", &[("GPa", [1.0, 1.0]), ("Pa", [1.0, 1e9]), ("kPa", [1.0, 1e6]), ("MPa", [1.0, 1e3])]),
+    ("kg/m3", &[("kg/m3", [1.0, 1.0])]),
 ];
 
 /// What some write behind a number of things.
@@ -100,7 +92,8 @@ pub fn of_value(name: &str, value: &str) -> Option<String> {
     }
     let end = number.find(|c: char| !c.is_ascii_digit() && !".+-".contains(c))?;
     let (digits, unit) = (number[..end].trim(), number[end..].trim());
-    let given: f64 = digits.parse().ok()?;
+    // What is not above 0 is wrong in any unit.
+    let given = digits.parse().ok().filter(|given: &f64| *given > 0.0)?;
     // A name may be written with its section.
     let name = name.rsplit('.').next().unwrap_or(name).trim();
     let known = UNITS.iter().find(|(_, units)| units.iter().any(|(other, _)| *other == unit));
@@ -111,8 +104,10 @@ pub fn of_value(name: &str, value: &str) -> Option<String> {
     if let Some((own, units)) = UNITS.iter().find(|(own, _)| name.to_lowercase().ends_with(&ending(own))) {
         return match units.iter().find(|(other, _)| *other == unit) {
             Some((other, _)) if other == own => alone(),
-            Some((_, factor)) => Some(format!("in {own}, without the unit: {}", rounded(given * factor))),
-            None => Some(format!("in {own}, and without a unit")),
+            Some((_, [above, below])) => {
+                Some(format!("in {own}, without the unit: {}", rounded(given * above / below)))
+            }
+            None => Some(format!("in {own}, not in {unit}")),
         };
     }
     match unit {
@@ -192,7 +187,7 @@ mod tests {
             ("filter.thickness_mm", "0.3m", "in mm, without the unit: 300"),
             ("thickness_mm", "1.1 cm", "in mm, without the unit: 11"),
             ("thickness_mm", "3in", "in mm, without the unit: 76.2"),
-            ("thickness_mm", "5%", "in mm, and without a unit"),
+            ("thickness_mm", "5%", "in mm, not in %"),
             ("base.mass_ratio", "5%", "as a part of 1, without the unit: 0.05"),
             ("packing.start_fraction", "35%", "as a part of 1, without the unit: 0.35"),
             ("base.d85_at_dc", "5%", "the number alone, without its unit: 5"),

@@ -9,13 +9,14 @@
 
 mod allowed;
 pub mod hints;
+pub mod length;
 mod nearest;
 mod settings;
 mod value;
 
 use serde::Serialize;
 
-pub use allowed::{Allowed, Leaf, above_zero, any, only, whole, within, words};
+pub use allowed::{Allowed, Leaf, above_zero, any, length, only, whole, within, words};
 pub use settings::{Alternative, GivenSettings, Group, Names, Origin, SceneError};
 pub use value::Value;
 
@@ -34,6 +35,8 @@ pub struct KeyInfo {
     pub default: Option<String>,
     /// What is allowed, in the words of the errors.
     pub allowed: String,
+    /// Values that it often has, where those are words.
+    pub offered: Vec<String>,
     /// A value of it, in TOML.
     pub shown: String,
     /// Whether the built-in scene has that value; else it is an example.
@@ -173,27 +176,24 @@ macro_rules! section {
 
             /// What a user is told of each setting, in the order in which they are written.
             pub fn keys() -> Vec<crate::schema::KeyInfo> {
-                vec![$(crate::schema::KeyInfo {
-                    section: $section,
-                    name: stringify!($name),
-                    doc: [$($doc),*].concat().trim().to_owned(),
-                    toml_type: <<$Type as crate::schema::Setting>::Value as crate::schema::Leaf>::TOML_TYPE,
-                    default: {
-                        let default: $Type = $default;
-                        crate::schema::Setting::value(&default).map(crate::schema::in_toml)
-                    },
-                    allowed: {
-                        type Checked = crate::schema::Allowed<<$Type as crate::schema::Setting>::Value>;
-                        let allowed: Checked = $allowed;
-                        allowed.words
-                    },
-                    shown: {
-                        let default: $Type = $default;
-                        let written = crate::schema::Setting::value(&default).map(crate::schema::in_toml);
-                        $( let written = written.or(Some($example.to_owned())); )?
-                        written.unwrap_or_default()
-                    },
-                    is_set: stringify!($state) == "set",
+                vec![$({
+                    type Checked = crate::schema::Allowed<<$Type as crate::schema::Setting>::Value>;
+                    let allowed: Checked = $allowed;
+                    let default: $Type = $default;
+                    let default = crate::schema::Setting::value(&default).map(crate::schema::in_toml);
+                    let written = default.clone();
+                    $( let written = written.or(Some($example.to_owned())); )?
+                    crate::schema::KeyInfo {
+                        section: $section,
+                        name: stringify!($name),
+                        doc: [$($doc),*].concat().trim().to_owned(),
+                        toml_type: allowed.toml_type(),
+                        default,
+                        offered: allowed.offered().to_vec(),
+                        allowed: allowed.words,
+                        shown: written.unwrap_or_default(),
+                        is_set: stringify!($state) == "set",
+                    }
                 }),*]
             }
 

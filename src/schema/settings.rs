@@ -297,7 +297,7 @@ impl GivenSettings {
     /// It is of another type, or not allowed.
     pub fn get<T: Leaf>(&self, name: &str, allowed: &Allowed<T>) -> Result<Option<T>, SceneError> {
         let Some((value, origin)) = self.values.get(name) else { return Ok(None) };
-        let read = T::deserialize(value).ok().filter(|value| allowed.admits(value));
+        let read = allowed.read(value);
         let read = read.ok_or_else(|| self.refuse(name, allowed.words.clone()))?;
         Ok(Some(match origin {
             Origin::Line(..) => read.placed(&self.folder),

@@ -22,6 +22,7 @@ use crate::report;
 use crate::run::error::Exit;
 use crate::run::{self, PrepareOptions, RunError};
 use crate::scene::{Density, LibraryDensity, Scene, TableOptions};
+use crate::schema::length::{LENGTHS, millimetres};
 use crate::store::open_regular;
 use crate::study::compare::{ComparePlan, Compared};
 use crate::study::design;
@@ -291,11 +292,9 @@ impl Routes {
             let path = self.path(&request.parameter(name).unwrap_or_default())?;
             curves_in_file(&path, None).map_err(RunError::refused).map_err(wrong)
         };
-        let joint_mm = match request.parameter("joint_mm").map(|text| text.parse::<f64>()) {
-            None => None,
-            Some(Ok(mm)) if mm > 0.0 && mm.is_finite() => Some(mm),
-            Some(_) => return Err(wrong("the open joint: write a number of millimetres above 0")),
-        };
+        let no_length = |text: String| wrong(format!("the open joint: {text}: write {LENGTHS}"));
+        let joint_mm = request.parameter("joint_mm");
+        let joint_mm = joint_mm.map(|text| millimetres(&text).ok_or_else(|| no_length(text))).transpose()?;
         let is_ticked = |name: &str| request.parameter(name).is_some();
         let options =
             PairOptions { dispersive: is_ticked("dispersive"), joint_mm, as_given: is_ticked("as_given") };

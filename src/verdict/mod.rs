@@ -5,17 +5,21 @@
 //! - [`judge()`] takes class, rules and findings, and gives the answer with its label and ordered findings.
 //! - [`PlannedWalk`] is what is found about soils and network before their walk.
 //! - [`practice`] is what the rules of filter practice say of a pair.
+//! - [`by_authority`] is what a sheet says that lists the rules of one authority.
 //! - [`left_out`] has the words of what the model does not contain and of what a scene does not need.
 //! - `rule_notes` has the words of what those rules say beside their results.
 //! - [`walks`] is what walks say themselves, [`beside`] what their results say beside the verdict.
 //! - [`design_answer()`] is how coarse a filter may be, and [`Band`] the band of a specification.
 //! - [`PairRules`] are two soils as practice sees them, without a walk.
+//! - [`batch`] is what practice says of many samples, a row each.
 //! - `conclusion` has what every face says first: headline, line of practice, line of the walk, what to do.
 //! - [`words`] are what a class means.
 
 mod answer;
 mod band;
+pub mod batch;
 pub mod beside;
+pub mod by_authority;
 mod conclusion;
 mod design;
 mod entry;
@@ -35,6 +39,7 @@ pub mod words;
 use crate::outcome::design::band::Band;
 
 pub use answer::{Judgement, judge, rank};
+pub use batch::BatchRow;
 pub use conclusion::FOREMOST;
 pub use design::{FinestBase, design_answer};
 pub use entry::{Entry, Finding};

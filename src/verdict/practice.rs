@@ -113,13 +113,24 @@ pub fn record(rules: &[AppliedRule]) -> Option<Practice> {
 }
 
 /// The class by the boundaries of Foster and Fell.
-fn tested(rules: &[AppliedRule]) -> TestedClass {
+pub(super) fn tested(rules: &[AppliedRule]) -> TestedClass {
     let met = |id| met_of(rules, id);
     match (met(TESTS_NO_EROSION), met(TESTS_CONTINUING)) {
         (_, Some(false)) => TestedClass::Continuing,
         (Some(true), _) => TestedClass::None,
         (Some(false), Some(true)) => TestedClass::Some,
         _ => TestedClass::Unknown,
+    }
+}
+
+/// A class by tests, in words.
+pub(super) fn tested_words(class: TestedClass) -> &'static str {
+    match class {
+        TestedClass::None => "no erosion",
+        TestedClass::Some => "some or excessive erosion",
+        TestedClass::Excessive => "excessive erosion",
+        TestedClass::Continuing => "continuing erosion",
+        TestedClass::Unknown => "class not known",
     }
 }
 
@@ -290,17 +301,15 @@ fn of_tests(rules: &[AppliedRule]) -> Option<String> {
     };
     let up_to = limit(TESTS_NO_EROSION).map(|of| format!("no erosion up to {of}"));
     let beyond = limit(TESTS_CONTINUING).map(|of| format!("continuing erosion beyond {of}"));
-    let (class, between) = match tested(rules) {
-        TestedClass::None => ("no erosion", limit(TESTS_NO_EROSION).map(|of| format!("up to {of}"))),
-        TestedClass::Continuing => {
-            ("continuing erosion", limit(TESTS_CONTINUING).map(|of| format!("beyond {of}")))
-        }
-        TestedClass::Excessive => ("excessive erosion", beyond),
-        TestedClass::Some => {
-            ("some or excessive erosion", up_to.zip(beyond).map(|(a, b)| format!("{a}, {b}")))
-        }
-        TestedClass::Unknown => ("class not known", up_to.or(beyond)),
+    let class = tested(rules);
+    let between = match class {
+        TestedClass::None => limit(TESTS_NO_EROSION).map(|of| format!("up to {of}")),
+        TestedClass::Continuing => limit(TESTS_CONTINUING).map(|of| format!("beyond {of}")),
+        TestedClass::Excessive => beyond,
+        TestedClass::Some => up_to.zip(beyond).map(|(a, b)| format!("{a}, {b}")),
+        TestedClass::Unknown => up_to.or(beyond),
     };
+    let class = tested_words(class);
     Some(format!("Foster and Fell: {class} ({})", between?))
 }
 
@@ -347,7 +356,7 @@ pub(super) fn cited_rule(rule: &AppliedRule) -> String {
 }
 
 /// A value and its limit, with as many digits as tell them apart, and this many at the least.
-fn against(rule: &AppliedRule, digits: i32) -> [String; 2] {
+pub(super) fn against(rule: &AppliedRule, digits: i32) -> [String; 2] {
     let (Some(value), Some(limit)) = (rule.value, rule.limit) else {
         return [size(rule.value, &rule.unit), size(rule.limit, &rule.unit)];
     };

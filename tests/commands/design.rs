@@ -81,10 +81,22 @@ fn a_design_fills_a_folder_and_says_it_all() {
     assert_eq!(fs::read_to_string(out.join("design.html")).unwrap(), page);
     // A second one is refused, or replaces it.
     refused(&design(root.path(), &["base.csv"]), "holds a design already");
-    let output = design(root.path(), &["base.csv", "--overwrite", "--thickness", "8layers"]);
+    let again = ["base.csv", "--overwrite", "--thickness", "8layers"];
+    done(&design(root.path(), &again));
+    let of_all = json(&out);
+    let output = design(root.path(), &[&again[..], &["--authority", "foster-fell"]].concat());
     done(&output);
-    assert_eq!(json(&out)["boundaries"].as_array().unwrap().len(), 1);
+    let of_one = json(&out);
+    assert_eq!(of_one["boundaries"].as_array().unwrap().len(), 1);
     let said = String::from_utf8(output.stdout).unwrap();
+    // The limit of one authority stands beside the answer, which stays.
+    for key in ["answer", "confidence", "reasons", "rules", "boundaries"] {
+        assert_eq!(of_all[key], of_one[key], "{key}");
+    }
+    let line = said.lines().find(|line| line.starts_with("Foster and Fell: D15F up to ")).unwrap();
+    assert!(line.ends_with("The answer rests on all rules."), "{line}");
+    let first = |design: &Value| design["warnings"][0].as_str().unwrap_or_default().to_owned();
+    assert!(first(&of_one) == line && first(&of_all) != line, "{of_one}");
     for words in
         ["no erosion up to D15F", "continuing erosion from", "band: D15F from", "The model leaves out:"]
     {
@@ -132,7 +144,7 @@ fn what_is_wrong_is_refused_with_what_is_allowed() {
     let root = with_base();
     let cases: [(&[&str], &str); 8] = [
         (&["nowhere.csv"], "nowhere.csv"),
-        (&["base.csv", "--thickness", "0"], "allowed: a length above 0"),
+        (&["base.csv", "--thickness", "0"], "or a length above 0"),
         (&["base.csv", "--density", "2", "--filter", "3"], "dense, medium (or intermediate) or loose"),
         (&["base.csv", "--density", "friction=20", "--filter", "3"], "a number from 0 to 10"),
         (&["base.csv", "--density", "dense", "--filter", "cu3-loose"], "constrictions are"),

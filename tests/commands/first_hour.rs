@@ -330,3 +330,31 @@ fn shells_and_man_know_every_command() {
         "{version}"
     );
 }
+
+#[test]
+fn examples_are_written_once_and_every_short_one_runs() {
+    let root = tempfile::tempdir().unwrap();
+    let written = voidwalk(root.path(), &["examples", "try"]);
+    assert_eq!(written.status.code(), Some(0), "{}", String::from_utf8_lossy(&written.stderr));
+    assert!(String::from_utf8_lossy(&written.stdout).contains("voidwalk rules base.csv filter.csv"));
+    let again = voidwalk(root.path(), &["examples", "try"]);
+    assert_eq!(again.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&again.stderr);
+    assert!(said.contains("base.csv: is there already; nothing was written. Name another folder"), "{said}");
+    let folder = root.path().join("try");
+    let small = ["network.nx=5", "network.ny=5", "network.nz=5", "replicates=1"];
+    let small: Vec<&str> = small.iter().flat_map(|set| ["--set", set]).collect();
+    for words in [
+        vec!["soil", "us-sieves.csv"],
+        vec!["soil", "borrow-area.ags"],
+        vec!["rules", "base.csv", "filter.csv"],
+        vec!["campaign", "plan.toml", "--list"],
+        [&["judge", "base.csv", "filter-fine.csv", "--quick", "-q", "--out", "first"], &small[..]].concat(),
+        [&["run", "scene.toml", "-q", "--out", "scene"], &small[..]].concat(),
+    ] {
+        let done = voidwalk(&folder, &words);
+        assert_eq!(done.status.code(), Some(0), "{words:?}: {}", String::from_utf8_lossy(&done.stderr));
+    }
+    let page = fs::read_to_string(folder.join("scene/report.html")).unwrap();
+    assert!(page.contains("Chimney filter") && page.contains("mm (in)"));
+}

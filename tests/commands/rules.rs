@@ -120,7 +120,7 @@ fn envelopes_dispersive_soils_and_joints_by_the_command() {
     for joint in ["0", "-1", "wide"] {
         let output = voidwalk(&["rules", &base, &filter, "--joint-mm", joint]);
         let stderr = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.code() == Some(2) && stderr.contains("millimetres above 0"), "{stderr}");
+        assert!(output.status.code() == Some(2) && stderr.contains("a length above 0"), "{stderr}");
     }
 }
 
@@ -201,4 +201,175 @@ fn tables_that_cannot_be_are_refused_by_what_is_wrong_with_them() {
     let (filter, base) = (format!("filter.sieve={sand}"), format!("base.sieve={gravel}"));
     let output = voidwalk(&["check", "--set", &filter, "--set", &base]);
     assert!(String::from_utf8_lossy(&output.stdout).contains("are the two files exchanged?"));
+}
+
+#[test]
+fn one_authority_has_its_rules_and_its_limit_and_says_what_it_leaves_out() {
+    let root = tempfile::tempdir().unwrap();
+    let filter = table(root.path(), "filter.csv", "2.24,0\n3.15,28\n6.3,100\n");
+    let base = table(root.path(), "base.csv", "0.18,0\n0.3,30\n0.5,100\n");
+    let words = |more: &[&str]| {
+        let output = voidwalk(&[&["rules", &base, &filter], more].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    assert_eq!(words(&[]), words(&["--authority", "all"]));
+    let nrcs = words(&["--authority", "nrcs"]);
+    assert!(nrcs.contains("  NOT MET    Sherard and Dunnigan") && nrcs.contains("Permeability: "), "{nrcs}");
+    assert!(!nrcs.contains("  NOT MET    Terzaghi") && !nrcs.contains("Foster and Fell: "), "{nrcs}");
+    let last = nrcs.lines().last().unwrap();
+    assert!(
+        last.starts_with("NRCS: not met: D15F 2.69 mm is more than 1.79 mm")
+            && last.contains("of others, with Foster and Fell's")
+    );
+    assert!(last.contains("not met among them: Terzaghi"), "{last}");
+    let refused = voidwalk(&["rules", &base, &filter, "--authority", "iso"]);
+    assert_eq!(refused.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&refused.stderr);
+    assert!(said.contains("one of all, nrcs, usbr, usace, foster-fell"), "{said}");
+
+    // The verdict rests on all rules, and the first sheet says so.
+    let judged = |name: &str, by: &[&str]| {
+        let out = root.path().join(name).display().to_string();
+        let small =
+            ["--density", "loose", "--quick", "--set", "network.nx=5", "--set", "network.ny=5", "--set"];
+        let rest = ["network.nz=5", "--set", "replicates=2", "--out", &out];
+        let output = voidwalk(&[&["judge", &base, &filter], &small[..], &rest[..], by].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let read = |file: &str| fs::read_to_string(Path::new(&out).join(file)).unwrap();
+        (String::from_utf8(output.stdout).unwrap(), read("outcome.json"), read("report.html"))
+    };
+    let (all, one) = (judged("all", &[]), judged("one", &["--authority", "foster-fell"]));
+    let outcome = |text: &str| {
+        let mut value: serde_json::Value = serde_json::from_str(text).unwrap();
+        value.as_object_mut().unwrap().retain(|key, _| !key.contains("seconds"));
+        value
+    };
+    for key in ["verdict", "confidence", "rules", "findings", "reasons", "practice", "summary"] {
+        assert_eq!(outcome(&all.1)[key], outcome(&one.1)[key], "{key}");
+    }
+    let line = one.0.lines().find(|line| line.starts_with("Foster and Fell: ")).unwrap();
+    assert!(line.contains("not met among them: Sherard and Dunnigan"), "{line}");
+    assert!(!all.0.contains("Left out: ") && !all.2.contains("Left out: ") && one.2.contains("Left out: "));
+}
+
+#[test]
+fn fifty_samples_of_an_ags_file_are_one_table_and_the_strictest_govern() {
+    let root = tempfile::tempdir().unwrap();
+    let mut ags = String::from(
+        "\"GROUP\",\"PROJ\"\n\"HEADING\",\"PROJ_ID\"\n\"DATA\",\"P1\"\n\n\"GROUP\",\"GRAT\"\n\"HEADING\",\"LOCA_ID\",\
+         \"SAMP_TOP\",\"SPEC_DPTH\",\"GRAT_SIZE\",\"GRAT_PERP\",\"GRAT_TYPE\"\n\"UNIT\",\"\",\"m\",\"m\",\"mm\",\"%\",\"\"\n\
+         \"TYPE\",\"ID\",\"2DP\",\"2DP\",\"3SF\",\"0DP\",\"PA\"\n",
+    );
+    for sample in 1..=50 {
+        // Sands without fines; the first is the finest.
+        let largest = 0.4 + 0.01 * f64::from(sample);
+        for (part, percent) in [(1.0, 100), (0.6, 50), (0.3, 5), (0.2, 0)] {
+            let size = part * largest;
+            ags += &format!("\"DATA\",\"TP{sample}\",\"1.00\",\"1.00\",\"{size:.5}\",\"{percent}\",\"WS\"\n");
+        }
+    }
+    let site = root.path().join("site.ags").display().to_string();
+    fs::write(&site, ags).unwrap();
+    let filters = [("fine", 0.6), ("usual", 1.0), ("coarse", 4.0)].map(|(name, scale): (&str, f64)| {
+        let rows =
+            [(1.0, 0), (2.0, 60), (4.0, 100)].map(|(size, percent)| format!("{},{percent}\n", scale * size));
+        table(root.path(), &format!("{name}.csv"), &rows.concat())
+    });
+    let csv = root.path().join("table.csv").display().to_string();
+    let words =
+        [&["rules", &site], &filters.each_ref().map(String::as_str)[..], &["--each", "--csv", &csv]].concat();
+    let output = voidwalk(&words);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let said = String::from_utf8(output.stdout).unwrap();
+    let rows = fs::read_to_string(&csv).unwrap();
+    assert_eq!(rows.lines().count(), 151);
+    assert!(rows.lines().nth(1).unwrap().contains(",Sherard and Dunnigan,"), "{rows}");
+    assert!(said.contains("coarse.csv: of 50 samples 0 met, 50 not met, 0 without a result"), "{said}");
+    let of_fine = said.split("fine.csv: of 50 samples").nth(1).unwrap();
+    let of_fine: Vec<&str> = of_fine.lines().collect();
+    assert!(of_fine[1].starts_with("  governing sample TP1 1.00 1.00: D15F up to "), "{of_fine:?}");
+    assert!(of_fine[2].starts_with("  then TP2 ") && of_fine[3].starts_with("  then TP3 "), "{of_fine:?}");
+    assert!(of_fine[4].starts_with("  Nothing was walked.") && of_fine[4].contains("compare --filter"));
+    // A row says what the rules say of that pair alone.
+    let one = voidwalk(&["rules", &format!("{site}#TP7 1.00 1.00"), &filters[1], "--json"]);
+    let one: serde_json::Value = serde_json::from_slice(&one.stdout).unwrap();
+    let design = &one["rules"].as_array().unwrap()[0];
+    let row = rows.lines().find(|row| row.starts_with("TP7 ") && row.contains("usual.csv")).unwrap();
+    let limit = format!(",{:.4},false,", design["limit"].as_f64().unwrap());
+    assert!(row.contains(&limit), "{row}: {limit}");
+    // The same table may stay, and another file is not written over; several filters need the samples one by one.
+    assert!(voidwalk(&words).status.success());
+    fs::write(&csv, "mine").unwrap();
+    let again = voidwalk(&words);
+    assert!(
+        again.status.code() == Some(2) && String::from_utf8_lossy(&again.stderr).contains("is there already")
+    );
+    let envelope = voidwalk(&["rules", &site, &filters[0], &filters[1]]);
+    let refused = String::from_utf8_lossy(&envelope.stderr);
+    assert!(
+        envelope.status.code() == Some(2) && refused.contains("several filters go with --each"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn samples_that_govern_are_walked_as_a_comparison_and_not_twice() {
+    let root = tempfile::tempdir().unwrap();
+    let rows = "Sieve (mm),Core,Shell,Till,Sand\n1,100,100,100,100\n0.5,100,80,60,40\n0.25,40,20,10,5\n0.1,0,0,0,0\n";
+    let samples = root.path().join("samples.csv").display().to_string();
+    fs::write(&samples, rows).unwrap();
+    let filter = table(root.path(), "filter.csv", "4,100\n2,50\n1,0\n");
+    let out = root.path().join("walks").display().to_string();
+    let csv = root.path().join("table.csv").display().to_string();
+    let sets = ["network.nx=5", "network.ny=5", "network.nz=5", "replicates=1", "record.sensitivity=[]"];
+    let sets: Vec<&str> = sets.iter().flat_map(|set| ["--set", set]).collect();
+    let words = [&["rules", &samples, &filter, "--each", "--csv", &csv, "--walk", &out], &sets[..]].concat();
+    let walk = || {
+        let output = voidwalk(&words);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let said = walk();
+    let folder = root.path().join("walks/1-filter");
+    let read = || fs::read_to_string(folder.join("compare.csv")).unwrap();
+    let first = read();
+    assert_eq!(first.lines().count(), 4, "{first}");
+    for sample in ["Core", "Shell", "Till"] {
+        assert!(
+            said.contains(&format!("samples.csv#{sample}")) || said.contains(&format!("{sample}: ")),
+            "{said}"
+        );
+    }
+    let walked = || fs::metadata(folder.join("compare.html")).is_ok();
+    assert!(walked() && !said.contains("Nothing was walked"));
+    walk();
+    assert_eq!(read(), first);
+    // --walk and --csv belong to --each.
+    assert_eq!(voidwalk(&["rules", &samples, &filter, "--walk", &out]).status.code(), Some(2));
+}
+
+#[test]
+fn the_samples_of_a_folder_are_those_of_its_tables() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = root.path().join("lab");
+    fs::create_dir(&folder).unwrap();
+    table(&folder, "b.csv", "2,100\n0.5,40\n0.1,0\n");
+    table(&folder, "a.csv", "1,100\n0.25,40\n0.08,0\n");
+    table(&folder, "gravel.csv", "60,100\n30,40\n20,0\n");
+    let filter = table(root.path(), "filter.csv", "2,100\n1,50\n0.5,0\n");
+    let folder = folder.display().to_string();
+    let output = voidwalk(&["rules", &folder, &filter, "--each"]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    let names: Vec<&str> =
+        said.lines().skip(1).take(3).map(|l| l.split_whitespace().next().unwrap()).collect();
+    assert_eq!(names, ["a", "b", "gravel"]);
+    assert!(
+        said.contains("exchanged") && said.contains("may govern, as its limit is not known: gravel"),
+        "{said}"
+    );
+    assert_eq!(voidwalk(&["rules", &folder, &filter]).status.code(), Some(2));
+    fs::write(root.path().join("lab/c.csv"), "nothing").unwrap();
+    let refused = voidwalk(&["rules", &folder, &filter, "--each"]);
+    assert!(refused.status.code() == Some(2) && String::from_utf8_lossy(&refused.stderr).contains("c.csv"));
 }

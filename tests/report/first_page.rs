@@ -49,6 +49,22 @@ fn soils_go_by_their_names_and_not_their_files() {
 }
 
 #[test]
+fn inches_stand_beside_mm_where_a_scene_asks_for_them() {
+    let mut plan = Plan::usual();
+    (plan.outcome.inputs.scale_free, plan.outcome.inputs.network.thickness_mm) = (false, Some(609.6));
+    plan.outcome.inputs.filter.gradation = vec![[4.75, 0.0], [9.5, 50.0], [19.0, 100.0]];
+    let metric = words(&made(&plan).0);
+    assert!(metric.contains("Thickness modelled: 610 mm along") && !metric.contains("US sieveSize"));
+    plan.scene.push_str("[about]\nunits = \"us\"\n");
+    let us = words(&made(&plan).0);
+    assert!(us.contains("Thickness modelled: 610 mm (24.0 in) along"), "{us}");
+    assert!(us.contains("US sieveSize (mm)") && us.contains("mm (in)") && us.contains("9.5 (0.374)"), "{us}");
+    for row in ["No. 44.750", "3/8 in9.550", "3/4 in19100"] {
+        assert!(us.contains(row), "{row}: {us}");
+    }
+}
+
+#[test]
 fn boundaries_of_practice_stand_at_the_row_of_d15f() {
     let mut plan = Plan::usual();
     let gradations = |plan: &Plan| {

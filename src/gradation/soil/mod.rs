@@ -27,6 +27,7 @@ mod ods;
 mod points;
 mod read;
 mod retained;
+mod samples;
 mod size;
 mod summary;
 mod table;
@@ -38,5 +39,7 @@ mod zipped;
 
 pub(crate) use read::file_and_soil;
 pub use read::{curves_in_file, notes_in_file, soils_in_file};
+pub use samples::{SoilSample, samples_in};
+pub use size::us_sieve;
 pub use summary::SoilSummary;
 pub use table::Soil;

@@ -1,6 +1,7 @@
 //! A cell that says an opening: a number, a number with its unit, a US sieve, the pan.
 
 use crate::gradation::table::number;
+use crate::schema::length::fraction;
 
 /// US sieves by number, and their openings in mm (ASTM E11).
 const BY_NUMBER: [(&str, f64); 34] = [
@@ -210,11 +211,35 @@ fn us(text: &str) -> Option<(Opening, Said)> {
     let marked =
         MARKS.iter().find_map(|mark| text.strip_suffix(mark)).map(|rest| rest.trim_end_matches('-').trim());
     let inches = match marked {
-        Some(rest) => fraction(rest)?,
-        None if text.contains(['/', '½', '¼', '¾', '⅜', '⅝', '⅞', '⅛']) => fraction(text)?,
+        Some(rest) => fraction(rest, number)?,
+        None if text.contains(['/', '½', '¼', '¾', '⅜', '⅝', '⅞', '⅛']) => fraction(text, number)?,
         None => return None,
     };
     Some((Opening::Mm(of_inches(inches)), Said::Inches))
+}
+
+/// The name of the US sieve with this opening (mm), by ASTM E11: `No. 4`, `3/8 in`; `None` for any other.
+///
+/// ```
+/// use voidwalk::gradation::us_sieve;
+/// assert_eq!([4.75, 9.5, 37.5].map(|mm| us_sieve(mm).unwrap()), ["No. 4", "3/8 in", "1 1/2 in"]);
+/// assert_eq!(us_sieve(4.0001), None);
+/// ```
+pub fn us_sieve(mm: f64) -> Option<String> {
+    let is_it = |(_, opening): &&(f64, f64)| (opening - mm).abs() < 1e-9 * mm;
+    if let Some((name, _)) = BY_NUMBER.iter().find(|(_, opening)| (opening - mm).abs() < 1e-9 * mm) {
+        return Some(format!("No. {name}"));
+    }
+    let (inches, _) = BY_INCHES.iter().find(is_it)?;
+    let (whole, mut above, mut below) = (inches.floor(), inches.fract() * 16.0, 16.0);
+    while above > 0.0 && above % 2.0 == 0.0 {
+        (above, below) = (above / 2.0, below / 2.0);
+    }
+    Some(match (whole > 0.0, above > 0.0) {
+        (true, true) => format!("{whole} {above}/{below} in"),
+        (true, false) => format!("{whole} in"),
+        (false, _) => format!("{above}/{below} in"),
+    })
 }
 
 /// Opening (mm) of the US sieve of this number.
@@ -226,35 +251,6 @@ pub(super) fn us_sieve_number(text: &str) -> Option<f64> {
 fn of_inches(inches: f64) -> f64 {
     let standard = BY_INCHES.iter().find(|(named, _)| (named - inches).abs() < 1e-9);
     standard.map_or(inches * INCH_MM, |(_, mm)| *mm)
-}
-
-/// `3/8`, `1 1/2`, `1-1/2`, `1½`, `0.375`.
-fn fraction(text: &str) -> Option<f64> {
-    let mut plain = text.replace('-', " ");
-    for (sign, words) in [
-        ('½', " 1/2"),
-        ('¼', " 1/4"),
-        ('¾', " 3/4"),
-        ('⅛', " 1/8"),
-        ('⅜', " 3/8"),
-        ('⅝', " 5/8"),
-        ('⅞', " 7/8"),
-    ] {
-        plain = plain.replace(sign, words);
-    }
-    plain = plain.replace('⁄', "/");
-    let parts: Vec<&str> = plain.split_whitespace().collect();
-    let whole = |text: &str| text.parse::<u32>().ok().filter(|n| *n <= 1000).map(f64::from);
-    let broken = |text: &str| {
-        let (above, below) = text.split_once('/')?;
-        let (above, below) = (whole(above)?, whole(below)?);
-        (above > 0.0 && below > 0.0).then_some(above / below)
-    };
-    match parts[..] {
-        [one] => broken(one).or_else(|| number(one)),
-        [first, second] => Some(whole(first)? + broken(second).filter(|part| *part < 1.0)?),
-        _ => None,
-    }
 }
 
 impl Unit {
@@ -314,6 +310,14 @@ mod tests {
         {
             assert_eq!(opening(text), None, "{text}");
         }
+        for (inches, mm) in BY_INCHES {
+            let name = us_sieve(mm).unwrap();
+            assert_eq!(opening(&name), Some((Opening::Mm(mm), Said::Inches)), "{name}: {inches}");
+        }
+        for (_, mm) in BY_NUMBER {
+            assert_eq!(opening(&us_sieve(mm).unwrap()), Some((Opening::Mm(mm), Said::UsNumber)), "{mm}");
+        }
+        assert_eq!(us_sieve(7.0), None);
         assert_eq!(Unit::Phi.mm(-2.0), Some(4.0));
         assert_eq!(Unit::SieveNumber.mm(200.0), Some(0.075));
         assert_eq!(Unit::SieveNumber.mm(4.75), None);

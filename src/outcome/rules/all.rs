@@ -1,5 +1,6 @@
 //! The table of rules.
 
+use super::authority::Authority::{FosterFell, Nrcs, Usace, Usbr};
 use super::rule::{FilterRule, Pairing, RuleUnit};
 use super::{drainage, exit, retention, stability, walk};
 use crate::outcome::applied::{RuleQuantity, RuleRole};
@@ -45,6 +46,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: DESIGN,
         authority: "Sherard and Dunnigan",
+        stated_by: &[Nrcs, Usbr, Usace],
         says: "the filter retains the base (design)",
         role: RuleRole::Retention,
         applies_to: "design of filters; the limit follows from the fines A of the regraded base (NRCS, USBR, \
@@ -65,6 +67,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: TESTS_NO_EROSION,
         authority: "Foster and Fell",
+        stated_by: &[FosterFell],
         says: "no erosion rather than some",
         role: RuleRole::Retention,
         applies_to: "filters of existing dams: the boundary seen in tests, without a margin of safety",
@@ -80,6 +83,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: TESTS_EXCESSIVE,
         authority: "Foster and Fell",
+        stated_by: &[FosterFell, Usace],
         says: "some erosion rather than excessive",
         role: RuleRole::Continuation,
         applies_to: "filters of existing dams",
@@ -95,6 +99,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: TESTS_CONTINUING,
         authority: "Foster and Fell",
+        stated_by: &[FosterFell, Usace],
         says: "some erosion rather than continuing",
         role: RuleRole::Continuation,
         applies_to: "existing dams with filters coarser than modern rules allow; D95B after regrading",
@@ -111,6 +116,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: TERZAGHI,
         authority: "Terzaghi",
+        stated_by: &[],
         says: "the filter retains the base",
         role: RuleRole::Retention,
         applies_to: "bases with less than 15 % fines; D85B after regrading",
@@ -125,6 +131,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: "constricted-exit",
         authority: "",
+        stated_by: &[Usace],
         says: "Constricted exit: probability of continuing erosion into an open joint",
         role: RuleRole::Continuation,
         applies_to: "joints, defects and cracks beside the base that do not erode; steady flow",
@@ -141,6 +148,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: PERMEABILITY,
         authority: "",
+        stated_by: &[Nrcs, Usbr, Usace],
         says: "Permeability: the filter drains the base",
         role: RuleRole::Drainage,
         applies_to: "design of filters; D15B before regrading",
@@ -156,6 +164,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: "permeability-em-1901",
         authority: "",
+        stated_by: &[Usace],
         says: "Permeability, the least by EM 1110-2-1901: the filter drains the base",
         role: RuleRole::Drainage,
         applies_to: "filters of which this older manual is asked; D15B before regrading",
@@ -171,6 +180,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: "filter-fines",
         authority: "",
+        stated_by: &[],
         says: "The filter has few fines",
         role: RuleRole::Drainage,
         applies_to: "design of filters; that they are not plastic is not seen from a sieve curve",
@@ -185,6 +195,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: "filter-greatest-size",
         authority: "",
+        stated_by: &[],
         says: "The filter has no cobbles",
         role: RuleRole::Placing,
         applies_to: "design of filters: coarse grains segregate",
@@ -199,6 +210,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: "filter-segregation",
         authority: "",
+        stated_by: &[Usace],
         says: "The filter does not segregate: greatest D90F by least D10F",
         role: RuleRole::Placing,
         applies_to: "design of filters, as placed",
@@ -214,6 +226,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: "filter-uniformity",
         authority: "",
+        stated_by: &[],
         says: "The filter is uniform enough for its band",
         role: RuleRole::Placing,
         applies_to: "design of filters: both sides of the band; wider curves leave room for gap-graded ones",
@@ -228,6 +241,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: "filter-band",
         authority: "",
+        stated_by: &[],
         says: "The band of the filter is narrow",
         role: RuleRole::Placing,
         applies_to: "design of filters that are stated as a band of curves",
@@ -242,6 +256,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: "kezdi",
         authority: "Kézdi (1979)",
+        stated_by: &[Usace],
         says: "the filter holds its own fines",
         role: RuleRole::Stability,
         applies_to: "the filter alone: internal stability",
@@ -256,6 +271,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: "kenney-lau",
         authority: "Kenney and Lau (1986)",
+        stated_by: &[Usace],
         says: "the filter holds its own fines",
         role: RuleRole::Stability,
         applies_to: "the filter alone: internal stability, F up to 20 % (Cu > 3) or 30 %",
@@ -270,6 +286,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: "li-fannin",
         authority: "Li and Fannin (2008)",
+        stated_by: &[Usace],
         says: "the filter holds its own fines",
         role: RuleRole::Stability,
         applies_to: "the filter alone: internal stability; Kenney and Lau to F = 15 %, Kézdi from there",
@@ -284,6 +301,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: "burenkova",
         authority: "Burenkova (1993)",
+        stated_by: &[Usace],
         says: "the filter holds its own fines",
         role: RuleRole::Stability,
         applies_to: "the filter alone: broadly graded and gap-graded sands and gravels without cohesion, \
@@ -300,6 +318,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: "wan-fell",
         authority: "Wan and Fell (2004)",
+        stated_by: &[Usace],
         says: "probability that the filter loses its fines",
         role: RuleRole::Stability,
         applies_to: "the filter alone: broadly graded and gap-graded soils",
@@ -315,6 +334,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: "kenney-controlling",
         authority: "Kenney et al.",
+        stated_by: &[],
         says: "controlling constriction size Dc* ≤ D15F/5",
         role: RuleRole::Walk,
         applies_to: "bases without cohesion; Dc* is the largest particle eroded in the first run",
@@ -329,6 +349,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: PAPER_NO_EROSION,
         authority: "",
+        stated_by: &[],
         says: "Network model of the paper: no erosion rather than some",
         role: RuleRole::Walk,
         applies_to: "loose filters of Cu 1.5 and 3",
@@ -343,6 +364,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: PAPER_CONTINUING,
         authority: "",
+        stated_by: &[],
         says: "Network model of the paper: some erosion rather than continuing",
         role: RuleRole::Walk,
         applies_to: "filters of Cu 1.5 and 3",

@@ -1,6 +1,7 @@
 //! Every rule, applied to two soils, or to two envelopes of curves.
 
 use super::all::RULES;
+use super::authority::Authority;
 use super::base::BaseSoil;
 use super::rule::{FilterRule, Pairing, RuleInputs, RuleUnit};
 use crate::gradation::Gradation;
@@ -18,6 +19,25 @@ pub fn authority(rule: &AppliedRule) -> &str {
     let listed = || RULES.iter().find(|of| of.id == rule.id).map_or("", |of| of.authority);
     let known = [rule.authority.as_str(), listed()];
     known.into_iter().find(|of| !of.is_empty()).unwrap_or(&rule.name)
+}
+
+/// Whether an authority states a rule, by the rule's own entry in [`RULES`]. All authorities together state
+/// every rule.
+///
+/// ```
+/// use voidwalk::Gradation;
+/// use voidwalk::outcome::rules::{Authority, RuleInputs, apply, is_stated_by};
+/// let filter = Gradation::from_points(&[(0.5, 0.0), (2.0, 100.0)], None)?;
+/// let base = Gradation::from_points(&[(0.08, 0.0), (0.3, 100.0)], None)?;
+/// let rules = apply(&RuleInputs::of_soils(&base, &filter));
+/// let find = |id: &str| rules.iter().find(|rule| rule.id == id).unwrap();
+/// let is_of_nrcs = |id: &str| is_stated_by(find(id), Authority::Nrcs);
+/// assert!(is_of_nrcs("permeability") && !is_of_nrcs("foster-fell-continuing"));
+/// # Ok::<(), voidwalk::gradation::GradationError>(())
+/// ```
+pub fn is_stated_by(rule: &AppliedRule, by: Authority) -> bool {
+    let entry = || RULES.iter().find(|of| of.id == rule.id);
+    by == Authority::All || entry().is_some_and(|of| of.stated_by.contains(&by))
 }
 
 /// A curve of a soil, with its name.

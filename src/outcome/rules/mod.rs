@@ -6,6 +6,7 @@
 
 mod all;
 mod apply;
+mod authority;
 mod base;
 mod drainage;
 mod exit;
@@ -18,7 +19,8 @@ pub use all::{
     DESIGN, PAPER_CONTINUING, PAPER_NO_EROSION, PERMEABILITY, RULES, TERZAGHI, TESTS_CONTINUING,
     TESTS_EXCESSIVE, TESTS_NO_EROSION,
 };
-pub use apply::{NamedCurve, Sides, apply, apply_to_envelopes, authority};
+pub use apply::{NamedCurve, Sides, apply, apply_to_envelopes, authority, is_stated_by};
+pub use authority::Authority;
 pub use base::BaseSoil;
 pub use retention::range_of_tests;
 pub use rule::{FilterRule, Fines, Judged, Pairing, RuleInputs, RuleUnit, SizeBound};

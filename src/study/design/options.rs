@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
+use crate::outcome::rules::Authority;
 use crate::run::prepare::PrepareOptions;
+use crate::schema::length::{LENGTHS, millimetres};
 
 /// D15F/D85B between which boundaries are searched where the user does not say.
 pub(super) const BRACKET: [f64; 2] = [0.5, 100.0];
@@ -29,6 +31,8 @@ pub struct DesignOptions {
     pub as_given: bool,
     /// Whether the finest base that the filter holds is looked for, the filter being as large as it is.
     pub inverse: bool,
+    /// Whose limit is said beside the answer.
+    pub authority: Authority,
     /// D15F/D85B between which boundaries are searched.
     pub bracket: [f64; 2],
     /// Folder for the results.
@@ -51,6 +55,7 @@ impl Default for DesignOptions {
             as_sampled: false,
             as_given: false,
             inverse: false,
+            authority: Authority::All,
             bracket: BRACKET,
             out: "voidwalk-design".into(),
             overwrite: false,
@@ -77,8 +82,8 @@ impl std::str::FromStr for Thickness {
         let lower = text.trim().to_lowercase();
         let refused = || {
             format!(
-                "--thickness {text}: allowed: a length above 0 as 500mm, layers of voids as 60layers, or a \
-                 multiple of D50F as 75D50F"
+                "--thickness {text}: allowed: layers of voids as 60layers, a multiple of D50F as 75D50F, or \
+                 {LENGTHS}"
             )
         };
         let number = |rest: &str| rest.trim().parse::<f64>().ok().filter(|v| v.is_finite() && *v > 0.0);
@@ -89,7 +94,7 @@ impl std::str::FromStr for Thickness {
             let layers = rest.trim().parse().ok().filter(|n| (1..=1_000_000).contains(n));
             return layers.map(Self::Layers).ok_or_else(refused);
         }
-        number(lower.strip_suffix("mm").unwrap_or(&lower)).map(Self::Mm).ok_or_else(refused)
+        millimetres(&lower).map(Self::Mm).ok_or_else(refused)
     }
 }
 
@@ -112,9 +117,10 @@ mod tests {
         let of = |text: &str| text.parse::<Thickness>();
         assert_eq!(of("60layers"), Ok(Thickness::Layers(60)));
         assert_eq!((of("500mm"), of("500")), (Ok(Thickness::Mm(500.0)), Ok(Thickness::Mm(500.0))));
+        assert_eq!((of("2ft"), of("24in")), (Ok(Thickness::Mm(609.6)), Ok(Thickness::Mm(609.6))));
         assert_eq!(of("75 D50F"), Ok(Thickness::D50F(75.0)));
         for wrong in ["0", "0mm", "-3mm", "0layers", "2.5layers", "nanmm", "inf", "thick", ""] {
-            assert!(of(wrong).unwrap_err().contains("allowed: a length above 0"), "{wrong}");
+            assert!(of(wrong).unwrap_err().contains("or a length above 0"), "{wrong}");
         }
     }
 }

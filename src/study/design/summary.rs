@@ -19,6 +19,7 @@ use crate::outcome::record::{Confidence, FindingRecord};
 use crate::outcome::table::csv_of;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
+use crate::verdict::by_authority::of_design;
 use crate::verdict::{Finding, Judgement, design_answer, finding};
 
 /// Ratio at which the rules are read where no boundary is known.
@@ -114,7 +115,9 @@ pub(super) fn design(
         seconds,
         boundaries,
     };
-    Ok(Design { answer: Some(design_answer(&design, finest.as_ref())), ..design })
+    let of_authority = of_design(&design.rules, options.authority, &design.unit);
+    let warnings = of_authority.into_iter().chain(design.warnings.iter().cloned()).collect();
+    Ok(Design { answer: Some(design_answer(&design, finest.as_ref())), warnings, ..design })
 }
 
 /// A row as its networks have it, and what they say against it.

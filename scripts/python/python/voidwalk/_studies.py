@@ -342,7 +342,7 @@ def design(
     pack : bool
         Pack the grains of this very filter and measure its constrictions.
     thickness : str, float or sequence of them, optional
-        "60layers", "75D50F", "500mm" or a number of mm; 60 layers without it.
+        "60layers", "75D50F", "500mm", "24in" or a number of mm; 60 layers without it.
     inverse : bool
         Find the finest base that the filter holds instead.
     bracket : (float, float)

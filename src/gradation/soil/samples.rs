@@ -1,0 +1,99 @@
+//! Many samples: every soil of a file, or of every file in a folder.
+
+use std::path::{Path, PathBuf};
+
+use super::read::{curves_in_file, file_and_soil};
+use crate::gradation::error::{GradationError, TableError};
+use crate::gradation::sieve::Gradation;
+
+/// One of many samples.
+#[derive(Clone, Debug)]
+pub struct SoilSample {
+    /// What it is called: its name in the file, behind the file's own where a folder has several.
+    pub name: String,
+    /// What names it on a command line: `site.ags#BH1 1.50`, or the file alone where it holds no other.
+    pub path: PathBuf,
+    /// Its sieve curve.
+    pub curve: Gradation,
+}
+
+/// Endings of the files of a folder that are read.
+const ENDINGS: [&str; 5] = ["csv", "txt", "xlsx", "ods", "ags"];
+
+/// Every sample of a file, or the one that `path` names after a `#`; of a folder those of every table in it,
+/// file by file in the order of their names. Folders within it are not looked into.
+///
+/// # Errors
+/// A folder without a table; a file that cannot be read as one, as [`curves_in_file`] says.
+pub fn samples_in(path: &Path) -> Result<Vec<SoilSample>, GradationError> {
+    if !path.is_dir() {
+        return in_file(path);
+    }
+    let folder = || path.display().to_string();
+    let read = |source| TableError::Read { file: folder(), source };
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(path).map_err(read)? {
+        let file = entry.map_err(read)?.path();
+        let ending = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let is_hidden = file.file_name().unwrap_or_default().to_string_lossy().starts_with('.');
+        if file.is_file() && !is_hidden && ENDINGS.contains(&&*ending) {
+            files.push(file);
+        }
+    }
+    if files.is_empty() {
+        return Err(TableError::NoTables { folder: folder(), endings: ENDINGS.join(", .") }.into());
+    }
+    files.sort();
+    let mut samples = Vec::new();
+    for file in files {
+        let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let of_file = in_file(&file)?;
+        let several = of_file.len() > 1;
+        samples.extend(of_file.into_iter().map(|sample| {
+            let name = if several { format!("{stem}/{}", sample.name) } else { stem.clone() };
+            SoilSample { name, ..sample }
+        }));
+    }
+    Ok(samples)
+}
+
+fn in_file(path: &Path) -> Result<Vec<SoilSample>, GradationError> {
+    let curves = curves_in_file(path, None)?;
+    let several = curves.len() > 1;
+    let (file, _) = file_and_soil(path);
+    let of = |(name, curve): (String, Gradation)| {
+        let path =
+            if several { PathBuf::from(format!("{}#{name}", file.display())) } else { path.to_owned() };
+        SoilSample { name, path, curve }
+    };
+    Ok(curves.into_iter().map(of).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_has_the_samples_of_all_its_tables_in_order() {
+        let root = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| std::fs::write(root.path().join(name), text).unwrap();
+        write("notes.md", "no table");
+        assert!(
+            samples_in(root.path())
+                .unwrap_err()
+                .to_string()
+                .contains("no table in it; allowed: files of .csv")
+        );
+        write("b.csv", "opening_mm,percent_finer\n2,100\n0.5,0\n");
+        write("a.csv", "Sieve (mm),Core,Shell\n2,100,100\n0.5,40,10\n0.1,0,0\n");
+        let samples = samples_in(root.path()).unwrap();
+        let names: Vec<&str> = samples.iter().map(|sample| sample.name.as_str()).collect();
+        assert_eq!(names, ["a/Core", "a/Shell", "b"]);
+        for sample in &samples {
+            let again = Gradation::from_sieve_csv(&sample.path, None).unwrap();
+            assert_eq!(again.d(50.0), sample.curve.d(50.0), "{}", sample.path.display());
+        }
+        write("c.csv", "nothing");
+        assert!(samples_in(root.path()).unwrap_err().to_string().contains("c.csv"));
+    }
+}

@@ -1,0 +1,234 @@
+//! Many samples of a base against filters: what practice says of each pair, in a row, and which samples
+//! govern.
+
+use super::pair::{PairOptions, PairRules};
+use super::practice::{broken, tested, tested_words};
+use crate::gradation::Gradation;
+use crate::outcome::design::band::retention;
+use crate::outcome::record::{AppliedRule, RuleQuantity, RuleRole};
+use crate::outcome::rules::{NamedCurve, authority};
+use crate::outcome::table::Columns;
+
+/// What practice says of one sample and one filter. Sizes are in mm.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BatchRow {
+    /// The sample.
+    pub sample: String,
+    /// The filter.
+    pub filter: String,
+    /// Group by ASTM D2487 of the sample; `None` where the sieves do not tell.
+    pub group: Option<String>,
+    /// Category of NRCS, 1 to 4; `None` where the fines are not known closely enough.
+    pub category: Option<u8>,
+    /// Percent finer than 0.075 mm after regrading.
+    pub fines_percent: Option<f64>,
+    /// The size on which the sample was regraded.
+    pub regraded_at_mm: Option<f64>,
+    /// 85 % finer, after regrading.
+    pub d85b_mm: Option<f64>,
+    /// 15 % finer of the filter, of its coarsest curve.
+    pub d15f_mm: Option<f64>,
+    /// The strictest limit of D15F by which the filter retains the sample.
+    pub limit_mm: Option<f64>,
+    /// Whether the true limit is not known, and is at most that.
+    pub limit_at_most: bool,
+    /// Whose limit it is.
+    pub rule: String,
+    /// Whether the filter keeps every rule of retention; `None` where that is not known.
+    pub met: Option<bool>,
+    /// The class by the tests of Foster and Fell, in words.
+    pub tests: &'static str,
+    /// What else speaks against the filter, or why nothing was applied.
+    pub note: String,
+}
+
+impl BatchRow {
+    /// What practice says of one sample and one filter. Two that look exchanged have no result, unless
+    /// `options` say that they are as given.
+    ///
+    /// ```
+    /// use voidwalk::{Gradation, verdict::{BatchRow, PairOptions}};
+    /// let filter = Gradation::from_points(&[(0.5, 0.0), (2.0, 100.0)], None)?;
+    /// let base = Gradation::from_points(&[(0.08, 0.0), (0.3, 100.0)], None)?;
+    /// let filter = ("F", vec![("F".to_owned(), filter)]);
+    /// let row = BatchRow::of(("S", &base), (filter.0, &filter.1), PairOptions::default());
+    /// assert_eq!((row.met, row.category, row.rule.as_str()), (Some(true), Some(4), "Sherard and Dunnigan"));
+    /// # Ok::<(), voidwalk::gradation::GradationError>(())
+    /// ```
+    ///
+    /// # Panics
+    /// Where the filter has no curve.
+    pub fn of(
+        (sample, base): (&str, &Gradation),
+        (filter, curves): (&str, &[NamedCurve]),
+        options: PairOptions,
+    ) -> Self {
+        let bases = [(sample.to_owned(), base.clone())];
+        let refused = PairRules::guarded(&bases, curves, options).err();
+        let pair = PairRules::of_envelopes(&bases, curves, options);
+        let row = Self {
+            sample: sample.into(),
+            filter: filter.into(),
+            group: base.group(),
+            category: pair.base.category,
+            fines_percent: pair.base.fines_percent,
+            regraded_at_mm: pair.base.regraded_at_mm,
+            d85b_mm: pair.base.d85_mm,
+            d15f_mm: pair.filter.d15_mm,
+            limit_mm: None,
+            limit_at_most: false,
+            rule: String::new(),
+            met: None,
+            tests: "",
+            note: String::new(),
+        };
+        if let Some(mistake) = refused {
+            return Self { note: mistake.sentence, ..row };
+        }
+        let rules = &pair.rules;
+        // A D15F that lies in a finest tail has the limits in mm all the same.
+        let strictest = retention(rules, pair.filter.d15_mm.unwrap_or(1.0));
+        let of_retention = |rule: &&AppliedRule| {
+            rule.applies && rule.role == RuleRole::Retention && rule.quantity != RuleQuantity::D15FOverD85B
+        };
+        let unknown = rules.iter().filter(of_retention).any(|rule| rule.met.is_none());
+        let met = match (broken(rules, RuleRole::Retention).is_empty(), unknown || strictest.is_none()) {
+            (false, _) => Some(false),
+            (true, true) => None,
+            (true, false) => Some(true),
+        };
+        let also = [
+            (RuleRole::Stability, "may lose its own fines"),
+            (RuleRole::Drainage, "may not drain"),
+            (RuleRole::Placing, "may segregate"),
+        ];
+        let also = also.into_iter().filter(|(role, _)| !broken(rules, *role).is_empty());
+        let note = also.map(|(_, what)| what).collect::<Vec<_>>().join(", ");
+        Self {
+            limit_mm: strictest.map(|(_, limit)| limit),
+            limit_at_most: strictest.is_some_and(|(rule, _)| rule.limit_at_most),
+            rule: strictest.map_or(String::new(), |(rule, limit)| whose(rules, rule, limit)),
+            met,
+            tests: tested_words(tested(rules)),
+            note,
+            ..row
+        }
+    }
+
+    /// The result in words.
+    pub fn result(&self) -> &'static str {
+        match self.met {
+            Some(true) => "met",
+            Some(false) => "not met",
+            None => "no result",
+        }
+    }
+}
+
+/// Whose limit it is: of rules that say the same, as design and Terzaghi do for a clean sand, the first.
+fn whose(rules: &[AppliedRule], strictest: &AppliedRule, limit: f64) -> String {
+    let is_same = |rule: &&AppliedRule| {
+        let is_limit = rule.limit.is_some_and(|of| (of - limit).abs() <= 1e-9 * limit);
+        rule.role == RuleRole::Retention && rule.applies && rule.quantity == RuleQuantity::D15F && is_limit
+    };
+    authority(rules.iter().find(is_same).unwrap_or(strictest)).to_owned()
+}
+
+/// The columns of a batch: its file, and under their headings what a terminal shows.
+pub fn columns<'a>() -> Columns<'a, BatchRow> {
+    Columns::default()
+        .column("sample", |row: &BatchRow| row.sample.clone())
+        .headed("Sample")
+        .column("filter", |row: &BatchRow| row.filter.clone())
+        .headed("Filter")
+        .column("group", |row: &BatchRow| row.group.clone())
+        .headed("Group")
+        .column("category", |row: &BatchRow| row.category.map(u64::from))
+        .headed("Category")
+        .digits("fines_percent", 1, |row| row.fines_percent)
+        .headed("Fines, %")
+        .digits("regraded_at_mm", 4, |row| row.regraded_at_mm)
+        .digits("d85b_mm", 4, |row| row.d85b_mm)
+        .headed("D85B, mm")
+        .digits("d15f_mm", 4, |row| row.d15f_mm)
+        .headed("D15F, mm")
+        .digits("limit_mm", 4, |row| row.limit_mm)
+        .headed("Limit, mm")
+        .column("limit_at_most", |row: &BatchRow| row.limit_at_most.to_string())
+        .column("rule", |row: &BatchRow| row.rule.clone())
+        .headed("Whose limit")
+        .column("result", |row: &BatchRow| row.result().to_owned())
+        .headed("Result")
+        .column("tests", |row: &BatchRow| row.tests.to_owned())
+        .headed("Tests (Foster and Fell)")
+        .column("note", |row: &BatchRow| row.note.clone())
+        .headed("Note")
+}
+
+/// Samples that govern a filter: those with the least limit, the strictest first, at most `most` of them;
+/// equal limits in the order of the rows.
+pub fn governing<'r>(rows: &'r [BatchRow], filter: &str, most: usize) -> Vec<&'r BatchRow> {
+    let of_filter = rows.iter().filter(|row| row.filter == filter);
+    let mut limits: Vec<(f64, &BatchRow)> = of_filter.filter_map(|row| Some((row.limit_mm?, row))).collect();
+    limits.sort_by(|a, b| a.0.total_cmp(&b.0));
+    limits.into_iter().map(|(_, row)| row).take(most).collect()
+}
+
+/// Samples of a filter whose limit is not known, or known to be at most a number: any of them may govern.
+pub fn may_govern<'r>(rows: &'r [BatchRow], filter: &str) -> Vec<&'r BatchRow> {
+    let is_open = |row: &&BatchRow| row.filter == filter && (row.limit_mm.is_none() || row.limit_at_most);
+    rows.iter().filter(is_open).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn soil(points: &[(f64, f64)]) -> Gradation {
+        Gradation::from_points(points, None).unwrap()
+    }
+
+    fn rows() -> Vec<BatchRow> {
+        let filter = vec![("F".to_owned(), soil(&[(0.5, 0.0), (2.0, 100.0)]))];
+        let samples = [
+            ("sand", soil(&[(0.08, 0.0), (0.3, 100.0)])),
+            ("fine sand", soil(&[(0.076, 0.0), (0.15, 100.0)])),
+            ("silty", soil(&[(0.01, 0.0), (0.075, 60.0), (0.4, 100.0)])),
+            ("open", soil(&[(0.4, 30.0), (1.0, 100.0)])),
+            ("gravel", soil(&[(10.0, 0.0), (30.0, 100.0)])),
+        ];
+        let of = |(name, base): &(&str, Gradation)| {
+            BatchRow::of((name, base), ("F", &filter), PairOptions::default())
+        };
+        samples.iter().map(of).collect()
+    }
+
+    #[test]
+    fn a_row_is_what_the_rules_say_of_the_pair_alone() {
+        let filter = soil(&[(0.5, 0.0), (2.0, 100.0)]);
+        let rows = rows();
+        let pair = PairRules::of(&soil(&[(0.08, 0.0), (0.3, 100.0)]), &filter);
+        let d15f = filter.d(15.0).unwrap();
+        assert_eq!(rows[0].d15f_mm, Some(d15f));
+        assert_eq!(rows[0].limit_mm, retention(&pair.rules, d15f).map(|(_, limit)| limit));
+        assert_eq!((rows[0].met, rows[0].tests), (Some(true), "no erosion"));
+        assert_eq!((rows[1].met, rows[2].limit_mm, rows[2].category), (Some(false), Some(0.7), Some(2)));
+        // Fines that nobody sieved: a limit at most, and no result for a filter within it.
+        assert!(rows[3].limit_at_most && rows[3].met != Some(true), "{:?}", rows[3]);
+        assert!(rows[4].met.is_none() && rows[4].note.contains("exchanged"), "{:?}", rows[4]);
+        let csv = String::from_utf8(columns().csv(&rows)).unwrap();
+        assert!(
+            csv.starts_with("sample,filter,group,category,fines_percent,regraded_at_mm,d85b_mm,d15f_mm,")
+        );
+        assert_eq!(csv.lines().count(), 6);
+    }
+
+    #[test]
+    fn the_strictest_governs_and_open_limits_are_named() {
+        let rows = rows();
+        let names = |rows: Vec<&BatchRow>| rows.iter().map(|row| row.sample.clone()).collect::<Vec<_>>();
+        assert_eq!(names(governing(&rows, "F", 2)), ["fine sand", "silty"]);
+        assert_eq!(names(may_govern(&rows, "F")), ["open", "gravel"]);
+        assert!(governing(&rows, "G", 3).is_empty());
+    }
+}
