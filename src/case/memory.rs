@@ -22,8 +22,9 @@ const COUNTS_A_WORKER: (u64, u64) = (8, 32 << 10);
 /// at most 523 in all, a million throats of a file).
 const FLOW_BYTES: u64 = 2 * (2 * 28 + 12 + 32) + 24 + 300;
 
-/// Bytes for an exit where blocked constrictions leave openings: its width now, when the flow was solved last and
-/// before the next run, and the part that it conducts; one narrowing, and its columns while they are saved.
+/// Bytes for an exit where blocked constrictions leave openings: its width now, when the flow was solved last
+/// and before the next run, and the part that it conducts; one narrowing, and its columns while they are
+/// saved.
 const OPENING_BYTES: u64 = 3 * 4 + 8 + 2 * 24;
 
 /// What `record.voids` keeps, while it is written (bytes): for a void that holds particles at a moment its

@@ -168,8 +168,8 @@ impl Flow {
         self.solve_now(network, closely, rho > 0.0, is_open)
     }
 
-    /// Solves for constrictions that keep these parts of their conductance, from 0 to 1: one for each exit, the
-    /// same for both of one constriction. All that conduct let particles pass.
+    /// Solves for constrictions that keep these parts of their conductance, from 0 to 1: one for each exit,
+    /// the same for both of one constriction. All that conduct let particles pass.
     ///
     /// # Errors
     /// As [`Flow::solve`].

@@ -332,8 +332,8 @@ impl Scene {
             )?;
             if matches!(self.walk.engine, Engine::Counts | Engine::Expected) {
                 let problem = format!(
-                    "\"particles\" or \"auto\": where walk.blocked is \"open\" any particle may be stopped, and \
-                     \"{}\" counts those that cannot be",
+                    "\"particles\" or \"auto\": where walk.blocked is \"open\" any particle may be stopped, \
+                     and \"{}\" counts those that cannot be",
                     self.walk.engine.name()
                 );
                 return Err(s.refuse("engine", problem));

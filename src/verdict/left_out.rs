@@ -293,6 +293,7 @@ mod tests {
                         [
                             Shortcut::NothingOpen,
                             Shortcut::NonePassive(finest),
+                            Shortcut::Openings,
                             Shortcut::AllPassive(finest, engine),
                             Shortcut::MostPassive(number, finest, engine),
                             Shortcut::OneSize,

@@ -34,8 +34,8 @@
 //! A particle that fits may jam with others (module `arching`) where a law of that is asked for.
 //!
 //! # Residual openings
-//! Where a scene asks for it, a blocked constriction is not closed: it leaves openings (module `openings`), by
-//! which finer particles go on and which stop coarser ones. Step 3 then narrows constrictions.
+//! Where a scene asks for it, a blocked constriction is not closed: it leaves openings (module `openings`),
+//! by which finer particles go on and which stop coarser ones. Step 3 then narrows constrictions.
 //!
 //! # The end
 //! A run ends when nothing moves, or when every moving particle is *trapped*: x and y are periodic, so

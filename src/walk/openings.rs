@@ -32,7 +32,6 @@ use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
 use serde::{Deserialize, Serialize};
 
-use super::State;
 use crate::network::Network;
 
 /// Size of the constriction of three equal grains that touch each other, by that of a grain:
@@ -42,12 +41,12 @@ const OF_GRAIN: f64 = 0.154_700_538_379_251_53;
 /// Openings beside a particle that rests on three grains.
 const OPENINGS: f64 = 3.0;
 
-/// Power of its diameter that the conductance of an opening grows with (Hagen-Poiseuille), against that of the
-/// whole constriction.
+/// Power of its diameter that the conductance of an opening grows with (Hagen-Poiseuille), against that of
+/// the whole constriction.
 pub(super) const CONDUCTS: f64 = 4.0;
 
-/// Diameter of the opening that is left between a particle and each two of the three equal, touching grains of
-/// a constriction, in the unit of both sizes; at most the size of the constriction.
+/// Diameter of the opening that is left between a particle and each two of the three equal, touching grains
+/// of a constriction, in the unit of both sizes; at most the size of the constriction.
 ///
 /// `1 / x = 1 / d + 2 / G + 2 sqrt(1 / G^2 + 2 / (d G))` with `G = D / (2 / sqrt(3) - 1)`: Descartes' circle
 /// theorem for the circle inside three that touch each other.
@@ -66,8 +65,8 @@ pub fn residual_opening(constriction: f64, particle: f64) -> f64 {
     (1.0 / inside).min(constriction)
 }
 
-/// Part of its value that a constriction keeps of what grows with the power `exponent` of a diameter, where an
-/// opening `ratio` times as wide is left on each of the three sides of a particle: of its area with 2.
+/// Part of its value that a constriction keeps of what grows with the power `exponent` of a diameter, where
+/// an opening `ratio` times as wide is left on each of the three sides of a particle: of its area with 2.
 pub(super) fn part_kept(ratio: f64, exponent: f64) -> f64 {
     if ratio > 0.0 { (OPENINGS * libm::pow(ratio, exponent)).min(1.0) } else { 0.0 }
 }
@@ -142,8 +141,8 @@ pub struct Openings {
 }
 
 impl Openings {
-    /// Before the first increment of a run, on these constrictions. Of those that are blocked without an opening
-    /// of their own nothing is left.
+    /// Before the first increment of a run, on these constrictions. Of those that are blocked without an
+    /// opening of their own nothing is left.
     pub(super) fn new(network: &Network, clogged: &Clogged) -> Self {
         let of = |c: usize| match clogged.widths.get(c) {
             Some(&width) => width,
@@ -263,27 +262,6 @@ impl Weighed<'_> {
     }
 }
 
-impl State {
-    /// The widest way through the constriction of an exit.
-    #[inline]
-    pub fn width(&self, network: &Network, exit: usize) -> f32 {
-        self.openings.as_ref().map_or(network.diameters()[exit], |openings| openings.widths[exit])
-    }
-
-    /// What has been blocked or narrowed in this run, as a number that only grows.
-    pub(super) fn changes(&self) -> usize {
-        self.openings.as_ref().map_or(self.history.len(), |openings| openings.history.len())
-    }
-
-    /// What this run leaves to the next.
-    pub fn into_clogged(self) -> Clogged {
-        Clogged {
-            blocked: self.blocked,
-            widths: self.openings.map_or(Vec::new(), |openings| openings.widths),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -317,7 +295,7 @@ mod tests {
 
     #[test]
     fn an_opening_grows_with_its_particle_up_to_the_constriction() {
-        // By hand: 1 / (1 + 2 (2 / sqrt(3) - 1) + 2 / sqrt(3)), and half of three touching particles' own.
+        // By hand: 1 / (1 + 2 (2 / sqrt(3) - 1) + 2 / sqrt(3)).
         assert!((residual_opening(1.0, 1.0) - 0.405_826_9).abs() < 1e-6);
         let sizes = [0.1, 0.3, 0.5, 1.0, 1.5, 2.0, 4.0, 6.0];
         let widths = sizes.map(|d| residual_opening(1.0, d));

@@ -28,7 +28,7 @@ use crate::store::checkpoint::{Checkpoint, CheckpointError, Section};
 /// | `blocked` | u64 | bit `c % 64` of word `c / 64`: constriction `c` is blocked |
 /// | `history_increment` | u64 | increment of each blocking of this run |
 /// | `history_constriction` | u32 | constriction of each blocking of this run |
-/// | `widths` | f32 | by exit, the widest way through it; with this and the next four only where blocked constrictions leave openings |
+/// | `widths` | f32 | by exit, the widest way through it; this and the next only with openings |
 /// | `narrowed_increment` | u64 | increment of each narrowing of this run |
 /// | `narrowed_constriction` | u32 | constriction of each narrowing of this run, by the first of its exits |
 /// | `narrowed_before`, `narrowed_after` | f32 | widest way through it before and after |

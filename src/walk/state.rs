@@ -155,8 +155,8 @@ impl State {
         })
     }
 
-    /// Whether base particles cannot use constriction `c`: blocked without an opening that is left, of size 0,
-    /// or no exit by the rule that gives constrictions their direction.
+    /// Whether base particles cannot use constriction `c`: blocked without an opening that is left, of size
+    /// 0, or no exit by the rule that gives constrictions their direction.
     #[inline]
     pub fn is_closed(&self, network: &Network, c: usize) -> bool {
         let is_shut = match &self.openings {
@@ -171,6 +171,25 @@ impl State {
         match &self.openings {
             None => Ways::Unblocked(&self.blocked),
             Some(openings) => Ways::Openings(&openings.widths, weighed),
+        }
+    }
+
+    /// The widest way through the constriction of an exit.
+    #[inline]
+    pub fn width(&self, network: &Network, exit: usize) -> f32 {
+        self.openings.as_ref().map_or(network.diameters()[exit], |openings| openings.widths[exit])
+    }
+
+    /// What has been blocked or narrowed in this run, as a number that only grows.
+    pub(super) fn changes(&self) -> usize {
+        self.openings.as_ref().map_or(self.history.len(), |openings| openings.history.len())
+    }
+
+    /// What this run leaves to the next.
+    pub fn into_clogged(self) -> Clogged {
+        Clogged {
+            blocked: self.blocked,
+            widths: self.openings.map_or(Vec::new(), |openings| openings.widths),
         }
     }
 }
