@@ -108,8 +108,8 @@ impl TableOptions {
     /// Whether blocked constrictions leave openings.
     fn leaves_openings(&self) -> bool {
         let set = self.changes.iter().filter_map(|change| change.split_once('='));
-        let values = set.filter(|(name, _)| name.trim() == "walk.blocked").map(|(_, value)| value.trim());
-        values.last().is_some_and(|value| value.trim_matches('"') == BlockedAs::Open.name())
+        let mut values = set.filter(|(name, _)| name.trim() == "walk.blocked").map(|(_, value)| value.trim());
+        values.next_back().is_some_and(|value| value.trim_matches('"') == BlockedAs::Open.name())
     }
 }
 
