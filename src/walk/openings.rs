@@ -55,7 +55,7 @@ pub(super) const CONDUCTS: f64 = 4.0;
 /// use voidwalk::walk::residual_opening;
 ///
 /// // A particle that just does not pass: 1 / (1 + 2 (2 / sqrt(3) - 1) + 2 / sqrt(3)) of the constriction.
-/// assert!((residual_opening(0.2, 0.2) - 0.0811656).abs() < 1e-7);
+/// assert!((residual_opening(0.2, 0.2) - 0.081_165_5).abs() < 1e-7);
 /// // One as large as the grains leaves constrictions of three grains.
 /// assert!((residual_opening(0.2, 0.2 * 6.464_101_615) - 0.2).abs() < 1e-9);
 /// ```

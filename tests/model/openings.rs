@@ -336,3 +336,36 @@ fn a_walk_goes_on_from_every_increment() {
         assert!(narrowed[0] > 50 && narrowed[1] > 0, "{narrowed:?}");
     }
 }
+
+/// Checksums that are right do not make openings of no walk: they are refused.
+#[test]
+fn openings_of_no_walk_are_refused() {
+    let root = tempfile::tempdir().unwrap();
+    let [network, _] = networks();
+    let supply = graded(false, 2000);
+    let fresh = || {
+        let classes = SizeClasses::logarithmic(0.05, 0.4, 8);
+        State::new(&network, &supply, classes, Clogged::none(&network), 5, 1)
+    };
+    type Forge = fn(&mut State);
+    let forgeries: [(bool, Forge); 7] = [
+        (true, |_| ()),
+        (false, |s| s.openings.as_mut().unwrap().widths[0] = f32::NAN),
+        (false, |s| s.openings.as_mut().unwrap().widths[0] = 9.0),
+        (false, |s| s.openings.as_mut().unwrap().history[0].constriction = 1 << 30),
+        (false, |s| s.openings.as_mut().unwrap().history[0].increment = 99),
+        (false, |s| s.openings.as_mut().unwrap().history[0].after = f32::NAN),
+        (false, |s| s.openings = None),
+    ];
+    for (at, (is_whole, forge)) in forgeries.into_iter().enumerate() {
+        let folder = root.path().join(at.to_string());
+        std::fs::create_dir(&folder).unwrap();
+        let mut state = fresh();
+        let mut walk = Walk::new(&network, &supply, &state);
+        (0..8).for_each(|_| walk.increment(&mut state).unwrap());
+        forge(&mut state);
+        save(&folder, "x", &Label::default(), &SavedState::new(&state).sections()).unwrap();
+        let saved = newest(&folder, "x", &Identity::default()).unwrap().0.unwrap();
+        assert_eq!(fresh().restore(&network, &supply, &saved).is_ok(), is_whole, "{at}");
+    }
+}
