@@ -45,11 +45,15 @@ def cells():
 
 
 class Walks:
+    """Walks of cells, whose parts have these names, until a boundary is known so closely."""
+
+    names, close = CELL, CLOSE
+
     def __init__(self, options):
         self.binary, self.threads = options.binary, options.threads
 
-    def eroded(self, cell, ratio):
-        """Shares of the mass that erode in the first runs, and what the outcome says of arches."""
+    def settings(self, cell, ratio):
+        """What differs from the built-in scene."""
         filter_cu, density, base_cu, law, concentration, layers, across = cell
         settings = {
             "filter.library": density, "filter.cu": filter_cu, "filter.d0_mm": 1, "base.cu": base_cu,
@@ -59,6 +63,10 @@ class Walks:
         }
         if concentration != "":
             settings["walk.concentration"] = concentration
+        return settings
+
+    def outcome(self, settings):
+        """The outcome of a run of the built-in scene with these settings."""
         with tempfile.TemporaryDirectory() as folder:
             scene = Path(folder) / "s.toml"
             scene.write_text("")
@@ -67,7 +75,11 @@ class Walks:
             done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
             if done.returncode != 0:
                 raise RuntimeError(done.stderr.strip())
-            outcome = json.loads((Path(folder) / "o/outcome.json").read_text())
+            return json.loads((Path(folder) / "o/outcome.json").read_text())
+
+    def eroded(self, cell, ratio):
+        """Shares of the mass that erode in the first runs, and what the outcome says of arches."""
+        outcome = self.outcome(self.settings(cell, ratio))
         runs = [replicate["runs"][0] for replicate in outcome["replicates"]]
         arched = sum(run.get("arched_mass_fraction") or 0 for run in runs) / len(runs)
         law = outcome.get("arching") or {}
@@ -77,7 +89,7 @@ class Walks:
         began = time.monotonic()
         holds, erodes, arched, walked = None, None, 0.0, {}
         ratio = 4.0
-        while holds is None or erodes is None or erodes / holds > CLOSE:
+        while holds is None or erodes is None or erodes / holds > self.close:
             shares, of_arches, concentration = self.eroded(cell, ratio)
             walked[ratio] = shares
             if sum(shares) / len(shares) < THRESHOLD:
@@ -90,7 +102,7 @@ class Walks:
                 ratio = ratio * 1.25 if holds else ratio / 1.25
             if ratio > MOST:
                 break
-        row = dict(zip(CELL, cell)) | {"walked_concentration": concentration, "arched_percent": round(100 * arched, 2)}
+        row = dict(zip(self.names, cell)) | {"walked_concentration": concentration, "arched_percent": round(100 * arched, 2)}
         row |= {"holds_to": round(holds, 3), "seconds": round(time.monotonic() - began, 1)}
         single = [crossing({at: shares[k] for at, shares in walked.items()}) for k in range(len(shares))]
         single = [at if at else math.inf for at in single]
@@ -116,24 +128,28 @@ def crossing(shares):
     return None
 
 
+def each(out, names, columns, cells, row_of):
+    """Appends the row of each cell that the CSV does not have yet."""
+    rows = list(csv.DictReader(out.open())) if out.exists() else []
+    there = {tuple(row[name] for name in names) for row in rows}
+    with out.open("a", newline="") as file:
+        writer = csv.DictWriter(file, columns, restval="", extrasaction="ignore")
+        if not rows:
+            writer.writeheader()
+        for cell in cells:
+            if tuple(str(part) for part in cell) in there:
+                continue
+            writer.writerow(row_of(cell))
+            file.flush()
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--binary", default="target/release/voidwalk")
     parser.add_argument("--threads", default="2")
     options = parser.parse_args()
-    rows = list(csv.DictReader(options.out.open())) if options.out.exists() else []
-    there = {tuple(row[name] for name in CELL) for row in rows}
-    walks = Walks(options)
-    with options.out.open("a", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, restval="")
-        if not rows:
-            writer.writeheader()
-        for cell in cells():
-            if tuple(str(part) for part in cell) in there:
-                continue
-            writer.writerow(walks.boundary(cell))
-            file.flush()
+    each(options.out, CELL, COLUMNS, cells(), Walks(options).boundary)
 
 
 if __name__ == "__main__":

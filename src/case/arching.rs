@@ -1,4 +1,4 @@
-//! How the base of a case arches.
+//! How the base of a case arches, and what blocked constrictions are to it.
 
 use std::sync::Arc;
 
@@ -50,12 +50,18 @@ impl Case {
         })
     }
 
-    /// Refuses a law that asks how densely the base arrives where nothing says so.
+    /// Refuses a law that asks how densely the base arrives where nothing says so, and openings beside
+    /// particles of unknown size.
     ///
     /// # Errors
     /// The setting that is missing.
-    pub(super) fn check_arching(&self) -> Result<(), CaseError> {
+    pub(super) fn check_clogging(&self) -> Result<(), CaseError> {
         let scene = &self.scene;
+        if scene.leaves_openings() && self.base_as_given().pan_fraction() > 0.0 {
+            let problem = "walk.blocked = \"open\" needs the sizes of the whole base, as openings may stop a \
+                           particle of any size: add base.d0_mm, or finer sieves down to 0 %";
+            return Err(scene.clash(problem).into());
+        }
         let needs = scene.law().is_some_and(|law| law.of_concentration);
         match needs && self.concentration(self.n_base).is_none() {
             true => {

@@ -22,6 +22,11 @@ const COUNTS_A_WORKER: (u64, u64) = (8, 32 << 10);
 /// at most 523 in all, a million throats of a file).
 const FLOW_BYTES: u64 = 2 * (2 * 28 + 12 + 32) + 24 + 300;
 
+/// Bytes for an exit where blocked constrictions leave openings: its width now, when the flow was solved last
+/// and before the next run, and the part that it conducts; one narrowing, and its columns while they are
+/// saved.
+const OPENING_BYTES: u64 = 3 * 4 + 8 + 2 * 24;
+
 /// What `record.voids` keeps, while it is written (bytes): for a void that holds particles at a moment its
 /// row in two copies, in room that grows, and its line (measured: up to 184); for a void its place, row and
 /// line; for a constriction its row, its line, and when it was blocked.
@@ -74,6 +79,9 @@ impl Case {
 
     /// How many of all 2^64 words draw a particle that is passive on the open network.
     fn passive_words(&self) -> u128 {
+        if self.scene.leaves_openings() {
+            return 0;
+        }
         let finest = self.finest_of_fixed.unwrap_or_else(|| (self.finest_mm / self.unit_mm) as f32);
         self.sampler.word_limit(self.scene.law().map_or(finest, |law| law.passive_limit(finest)))
     }
@@ -95,7 +103,18 @@ impl Case {
             .saturating_mul(EVENT_BYTES)
             .saturating_add(voids * 140 + constrictions * 25)
             .saturating_add(self.flow_bytes())
+            .saturating_add(self.openings_bytes())
             .saturating_add(workers)
+    }
+
+    /// Bytes of the openings that blocked constrictions leave.
+    fn openings_bytes(&self) -> u64 {
+        let exits = match self.scene.exit_rule() {
+            ExitRule::Area => 1,
+            _ => 2,
+        };
+        let each = if self.scene.leaves_openings() { OPENING_BYTES } else { 0 };
+        self.counts[1].saturating_mul(exits * each)
     }
 
     /// Bytes that a network without directions of its own takes besides: each constriction is two exits with

@@ -335,7 +335,7 @@ impl Case {
             scene,
         };
         case.other_readings = other.into_iter().map(|walked| case.read_as(walked)).collect();
-        case.check_arching()?;
+        case.check_clogging()?;
         Ok(case)
     }
 

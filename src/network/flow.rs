@@ -161,9 +161,40 @@ impl Flow {
         blocked: &BitSlice,
         closely: bool,
     ) -> Result<Permeability, FlowError> {
-        let undirected = network.undirected.as_ref();
-        let rho = undirected.map_or(0.0, |u| u.rho);
+        let rho = network.undirected.as_ref().map_or(0.0, |u| u.rho);
         self.set_blocked(network, blocked, rho);
+        // What leaks through blocked constrictions carries no particle out.
+        let is_open = |passage: &Passage| !blocked[passage.exit as usize];
+        self.solve_now(network, closely, rho > 0.0, is_open)
+    }
+
+    /// Solves for constrictions that keep these parts of their conductance, from 0 to 1: one for each exit,
+    /// the same for both of one constriction. All that conduct let particles pass.
+    ///
+    /// # Errors
+    /// As [`Flow::solve`].
+    pub fn solve_parts(&mut self, network: &Network, parts: &[f64]) -> Result<Permeability, FlowError> {
+        let (mut changed, mut is_open_again) = (0, false);
+        for (c, (open, part)) in self.open.iter_mut().zip(parts).enumerate() {
+            let now = part * whole(network, c);
+            changed += usize::from(now != *open);
+            is_open_again |= now > *open;
+            *open = now;
+        }
+        self.blocked.fill(false);
+        self.keep_factor(network, changed, is_open_again);
+        self.solve_now(network, false, false, |_| true)
+    }
+
+    /// Solves for conductances as they are; `leaks`: some conduct that are not open to particles.
+    fn solve_now(
+        &mut self,
+        network: &Network,
+        closely: bool,
+        leaks: bool,
+        is_open: impl Fn(&Passage) -> bool,
+    ) -> Result<Permeability, FlowError> {
+        let undirected = network.undirected.as_ref();
         let Some(reservoir) = network.reservoir() else {
             return Ok(Permeability { conductance: 0.0, k_mm2: None });
         };
@@ -172,10 +203,8 @@ impl Flow {
             self.inside = meets.iter().map(|&meets| meets == THROUGH).collect();
         }
         let leads_through = meets.contains(&THROUGH);
-        // What leaks through blocked constrictions carries no particle out.
-        let is_open = |passage: &Passage| !blocked[passage.exit as usize];
         let is_passed =
-            leads_through && (rho == 0.0 || self.meets(network, reservoir, is_open).contains(&THROUGH));
+            leads_through && (!leaks || self.meets(network, reservoir, is_open).contains(&THROUGH));
         self.find_pressures(network, &meets, CONVERGED)?;
         if leads_through && (closely || !self.is_known(network) || is_passed && self.part(network) < CLEAR) {
             // Where they come no closer in time, what there is has to do.
@@ -199,16 +228,21 @@ impl Flow {
         self.blocked ^= blocked;
         let changed = self.blocked.count_ones();
         let is_open_again = self.blocked.iter_ones().any(|c| !blocked[c]);
+        self.keep_factor(network, changed, is_open_again);
+        for c in self.blocked.iter_ones() {
+            self.open[c] = if blocked[c] { rho * whole(network, c) } else { whole(network, c) };
+        }
+        self.blocked.copy_from_bitslice(blocked);
+    }
+
+    /// Keeps the factor where few exits have changed since it was made, and none has opened again.
+    fn keep_factor(&mut self, network: &Network, changed: usize, is_open_again: bool) {
         if let Some(kept) = &mut self.kept {
             kept.closed += changed;
             if is_open_again || kept.closed * KEPT_UNTIL > network.constrictions() {
                 self.kept = None;
             }
         }
-        for c in self.blocked.iter_ones() {
-            self.open[c] = if blocked[c] { rho * whole(network, c) } else { whole(network, c) };
-        }
-        self.blocked.copy_from_bitslice(blocked);
     }
 
     /// Pressures of all voids, within so much of the inflow.

@@ -1,21 +1,19 @@
 //! What one run of a case erodes on one network, and nothing else of it: for studies that walk many cases.
 
-use bitvec::vec::BitVec;
-
 use super::callbacks::Callbacks;
 use super::error::RunError;
 use super::replicates::plan;
 use crate::case::Case;
 use crate::network::Network;
 use crate::outcome::Eroded;
-use crate::walk::{SizeClasses, State, Walk, WalkControl};
+use crate::walk::{Clogged, SizeClasses, State, Walk, WalkControl};
 
 /// A run whose record is not wanted: one class of sizes, or as many as two.
 const SIZE_CLASSES: usize = 2;
 
 /// Walks run `run` (1 or 2) of a case on the network of the replicate with this seed, from constrictions
-/// that are `blocked` at its start: the same bits as [`super::walk_case`] gives. Returns what eroded and the
-/// constrictions that are blocked at the end.
+/// that are `clogged` at its start: the same bits as [`super::walk_case`] gives. Returns what eroded and what
+/// the constrictions are at the end.
 ///
 /// # Errors
 /// A walk that goes wrong, or that was stopped; particles that do not fit.
@@ -23,14 +21,14 @@ pub fn eroded(
     case: &Case,
     network: &Network,
     (seed, run): (u64, u64),
-    blocked: BitVec,
+    clogged: Clogged,
     callbacks: &Callbacks,
-) -> Result<(Eroded, BitVec), RunError> {
-    let plan = plan(case, network, &blocked, case.n_base);
+) -> Result<(Eroded, Clogged), RunError> {
+    let plan = plan(case, network, &clogged.blocked, case.n_base);
     let supply = plan.supply(case.sampler.clone(), case.n_base, case.increments(), seed, run);
     let (smallest, largest) = (case.sampler.smallest(), case.sampler.largest());
     let classes = SizeClasses::logarithmic(smallest, largest, SIZE_CLASSES);
-    let state = State::placed(&case.placement, network, &supply, classes, blocked, seed, run);
+    let state = State::placed(&case.placement, network, &supply, classes, clogged, seed, run);
     let mut state = state.map_err(|source| RunError::Room { particles: supply.total(), source })?;
     let mut walk = Walk::new(network, &supply, &state);
     walk.run(&mut state, &mut |_| match callbacks.is_stopped() {
@@ -38,7 +36,7 @@ pub fn eroded(
         false => WalkControl::Continue,
     })?;
     walk.end(&state)?;
-    Ok((Eroded::of(&state, case.pan_by_mass_only()), state.blocked))
+    Ok((Eroded::of(&state, case.pan_by_mass_only()), state.into_clogged()))
 }
 
 #[cfg(test)]
@@ -58,12 +56,12 @@ mod tests {
             let outcome = walk_case(&case, &Callbacks::default()).unwrap();
             let seed = replicate_seed(case.scene.walk.seed, 1);
             let network = case.network(seed).unwrap();
-            let mut blocked = BitVec::repeat(false, network.constrictions());
+            let mut clogged = Clogged::none(&network);
             for run in &outcome.replicates[0].runs {
-                let found = eroded(&case, &network, (seed, run.run), blocked, &Callbacks::default()).unwrap();
+                let found = eroded(&case, &network, (seed, run.run), clogged, &Callbacks::default()).unwrap();
                 assert_eq!(found.0.mass_fraction.to_bits(), run.eroded_mass_fraction.to_bits(), "{base}");
                 assert!(run.eroded_mass_fraction > 0.0);
-                blocked = found.1;
+                clogged = found.1;
             }
         }
     }

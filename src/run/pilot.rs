@@ -7,15 +7,13 @@
 use std::ops::Range;
 use std::sync::LazyLock;
 
-use bitvec::vec::BitVec;
-
 use crate::case::{Case, replicate_seed};
 use crate::gradation::Gradation;
 use crate::network::Network;
 use crate::outcome::Eroded;
 use crate::packing::{Settings, compress};
 use crate::store::platform::thread_seconds;
-use crate::walk::{Passive, SizeClasses, State, Walk, WalkControl};
+use crate::walk::{Clogged, Passive, SizeClasses, State, Walk, WalkControl};
 
 use super::machine::on_threads;
 use super::replicates::plan;
@@ -74,13 +72,13 @@ fn walked(case: &Case, n_base: u64, width: u32, depth: u32) -> Option<WorkByVoid
     let n_base = ((n_base as f64 * share).round() as u64).max(1);
     let across = width as usize * width as usize;
     let mut work = WorkByVoid::default();
-    let mut blocked = BitVec::repeat(false, network.constrictions());
+    let mut clogged = Clogged::none(&network);
     let (begun, mut counting) = (thread_seconds(), 0.0);
     for run in 1..=case.scene.walk.runs {
-        let plan = plan(case, &network, &blocked, n_base);
+        let plan = plan(case, &network, &clogged.blocked, n_base);
         let supply = plan.supply(case.sampler.clone(), n_base, case.increments(), seed, run);
         let classes = SizeClasses::logarithmic(case.sampler.smallest(), case.sampler.largest(), CLASSES);
-        let mut state = State::new(&network, &supply, classes, blocked, seed, run);
+        let mut state = State::new(&network, &supply, classes, clogged, seed, run);
         work.one_by_one += supply.total() as f64;
         Walk::new(&network, &supply, &state)
             .run(&mut state, &mut |state| {
@@ -97,7 +95,7 @@ fn walked(case: &Case, n_base: u64, width: u32, depth: u32) -> Option<WorkByVoid
             })
             .ok()?;
         work.eroded.push(Eroded::of(&state, case.pan_by_mass_only()).mass_fraction);
-        blocked = state.blocked;
+        clogged = state.into_clogged();
     }
     let each = network.voids() as f64;
     Some(WorkByVoid {

@@ -26,7 +26,9 @@ use crate::scene::NetworkSource;
 use crate::store::checkpoint::{Checkpoint, CheckpointError};
 use crate::verdict::Finding;
 use crate::verdict::walks::{self, Walked, is_clogged};
-use crate::walk::{Engine, FlowRecord, RunPlan, Shortcut, SizeClasses, State, Walk, WalkControl, from_words};
+use crate::walk::{
+    Clogged, Engine, FlowRecord, RunPlan, Shortcut, SizeClasses, State, Walk, WalkControl, from_words,
+};
 
 /// How replicates are walked: who follows them, and what saves them.
 #[derive(Clone, Copy)]
@@ -167,8 +169,8 @@ pub(super) fn walk_replicate(
     let seed = replicate_seed(case.scene.walk.seed, replicate);
     let id = WalkId { part, replicate, seed, n_base };
     let network = context.network(case, seed)?;
-    let mut blocked = BitVec::repeat(false, network.constrictions());
-    let first = plan(case, &network, &blocked, n_base);
+    let mut clogged = Clogged::none(&network);
+    let first = plan(case, &network, &clogged.blocked, n_base);
     let loaded = context.checkpoints.map(|checkpoints| checkpoints.load(id));
     let (mut done, mut saved) = match loaded.transpose().map_err(RunError::Checkpoint)? {
         Some(Some((done, saved))) => (done, Some(saved)),
@@ -187,7 +189,7 @@ pub(super) fn walk_replicate(
         };
         let begun = Instant::now();
         let walk = RunContext { case, network: &network, id, of };
-        let (state, network, flow) = walk.run(blocked, &mut done, saved.take(), context)?;
+        let (state, network, flow) = walk.run(clogged, &mut done, saved.take(), context)?;
         let seconds = begun.elapsed().as_secs_f64();
         let metrics = RunMetrics::new(&network, &state, flow.as_ref(), of, seconds);
         let recorder = std::mem::take(&mut done.recorder);
@@ -197,7 +199,7 @@ pub(super) fn walk_replicate(
         done.below.push(metrics.below_threshold);
         done.runs.push(metrics.run);
         done.complete = done.runs.len() as u64 == case.scene.walk.runs;
-        blocked = state.blocked;
+        clogged = state.into_clogged();
         context.tell(Event::RunDone);
         if let (Some(run), Some(below)) = (done.runs.last(), done.below.last()) {
             tell_walked(id, run, *below, context);
@@ -227,7 +229,8 @@ fn tell_walked(id: WalkId, run: &Run, below_threshold: bool, context: &Replicate
 /// How a run with these constrictions blocked is walked.
 pub(super) fn plan(case: &Case, network: &Network, blocked: &BitSlice, n_base: u64) -> RunPlan {
     let (engine, share) = (case.scene.walk.engine, n_base / case.increments());
-    RunPlan::with_arches(engine, network, &case.sampler, blocked, share, case.arching(n_base))
+    let clogging = (case.arching(n_base), case.scene.leaves_openings());
+    RunPlan::with_clogging(engine, network, &case.sampler, blocked, share, clogging)
         .sampled(case.scene.walk.sampling)
 }
 
@@ -271,22 +274,23 @@ impl RunContext<'_> {
     /// Walks from the start, or from where it was saved; the state, the network and the flow at the end.
     fn run(
         &self,
-        blocked: BitVec,
+        clogged: Clogged,
         done: &mut Done,
         saved: Option<Checkpoint>,
         context: &ReplicateContext,
     ) -> Result<(State, Cow<'_, Network>, Option<FlowRecord>), RunError> {
         let Self { case, network, id, of } = *self;
         let WalkId { part, seed, n_base, .. } = id;
-        let blocked = match &saved {
-            Some(saved) if of.run > 1 => blocked_at_start(network, saved)?,
-            _ => blocked,
+        let clogged = match &saved {
+            // What is left of constrictions now comes with the state.
+            Some(saved) if of.run > 1 => blocked_at_start(network, saved)?.into(),
+            _ => clogged,
         };
-        let plan = plan(case, network, &blocked, n_base);
+        let plan = plan(case, network, &clogged.blocked, n_base);
         let supply = plan.supply(case.sampler.clone(), n_base, case.increments(), seed, of.run);
         let (smallest, largest) = (case.sampler.smallest(), case.sampler.largest());
         let classes = SizeClasses::logarithmic(smallest, largest, case.scene.record.wanted().size_classes);
-        let state = State::placed(&case.placement, network, &supply, classes, blocked, seed, of.run);
+        let state = State::placed(&case.placement, network, &supply, classes, clogged, seed, of.run);
         let mut state = state.map_err(|source| RunError::Room { particles: supply.total(), source })?;
         if let Some(saved) = saved {
             if saved.label.network != network.fingerprint() {

@@ -49,6 +49,7 @@ pub fn outcome(
         found.extend(findings_of_walk(reading, verdict, walked));
     }
     found.extend(case.scene.law().map(|law| finding::arches(law.name)));
+    found.extend(case.scene.leaves_openings().then(finding::openings));
     found.extend(unsure.map(finding::decided_below_95));
     found.extend(case.findings().into_iter().chain(case.not_studied()));
     // What was to be walked in several readings has been.
@@ -103,9 +104,13 @@ pub fn outcome(
     outcome
 }
 
-/// What the model does not contain: arches are in some walks.
+/// What the model does not contain: arches and openings beside particles are in some walks.
 fn model_leaves_out(case: &Case) -> Vec<ModelLimit> {
-    let is_left_out = |limit: &ModelLimit| *limit != ModelLimit::Bridging || case.scene.law().is_none();
+    let is_left_out = |limit: &ModelLimit| match limit {
+        ModelLimit::Bridging => case.scene.law().is_none(),
+        ModelLimit::PartialClogging => !case.scene.leaves_openings(),
+        _ => true,
+    };
     leaves_out(case.scene.exit_rule()).into_iter().filter(is_left_out).collect()
 }
 

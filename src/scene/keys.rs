@@ -11,7 +11,7 @@ use crate::outcome::rules::Authority;
 use crate::packing::{CellOption, LengthUnit};
 use crate::schema::{Allowed, Leaf, above_zero, any, length, only, section, whole, within, words};
 use crate::text::is_hidden;
-use crate::walk::{Engine, LawName, Sampling};
+use crate::walk::{BlockedAs, Engine, LawName, Sampling};
 
 section! {
     /// A base-filter combination for voidwalk: `voidwalk run scene.toml`, or `voidwalk check scene.toml`
@@ -166,6 +166,10 @@ section! {
         /// How densely the base arrives, for a law that depends on it: volume of particles by volume of
         /// voids. Default: what an increment brings into the first layer of voids.
         pub concentration: Option<f64> = None, off "0.05", within(0.0..=0.64, "a part from 0 to 0.64");
+        /// What a blocked constriction is to those that follow: "closed", or "open" beside the particle that
+        /// blocks it, for finer particles and water. Default: "closed". Openings need every particle walked
+        /// one by one, so that fine bases take longer.
+        pub blocked: Option<BlockedAs> = None, off "\"open\"", words(&BlockedAs::ALL.map(BlockedAs::name));
     }
 }
 
@@ -492,6 +496,7 @@ impl Leaf for LengthUnit {}
 impl Leaf for NetworkMadeOf {}
 impl Leaf for ExitRule {}
 impl Leaf for LawName {}
+impl Leaf for BlockedAs {}
 /// Whether a base is walked regraded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

@@ -34,7 +34,7 @@ pub use tables::{TableOptions, keep_soils, quoted, refuse_exchanged};
 use crate::network::ExitRule;
 use crate::outcome::stopping::StopRule;
 use crate::schema::{GivenSettings, KeyInfo, Names};
-use crate::walk::Law;
+use crate::walk::{BlockedAs, Engine, Law};
 use packing_keys::packing_keys;
 
 /// What errors call the built-in scene.
@@ -325,10 +325,29 @@ impl Scene {
                 "says nothing where no water flows: walk.exit",
             )?;
         }
+        if self.leaves_openings() {
+            wrong(
+                &["walk.rho"],
+                "says nothing where walk.blocked is \"open\": what openings conduct follows from their size",
+            )?;
+            if matches!(self.walk.engine, Engine::Counts | Engine::Expected) {
+                let problem = format!(
+                    "\"particles\" or \"auto\": where walk.blocked is \"open\" any particle may be stopped, \
+                     and \"{}\" counts those that cannot be",
+                    self.walk.engine.name()
+                );
+                return Err(s.refuse("engine", problem));
+            }
+        }
         if !self.law().is_some_and(|law| law.of_concentration) {
             wrong(&["walk.concentration"], "says nothing without a law of arching that depends on it")?;
         }
         Ok(())
+    }
+
+    /// Whether blocked constrictions leave openings.
+    pub fn leaves_openings(&self) -> bool {
+        self.exits.blocked == Some(BlockedAs::Open)
     }
 
     /// The law by which particles arch, where they do.

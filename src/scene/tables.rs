@@ -6,6 +6,7 @@ use super::keys::{Density, LibraryDensity};
 use super::{Origin, Scene, SceneError};
 use crate::gradation::curves_in_file;
 use crate::verdict::Mistake;
+use crate::walk::BlockedAs;
 
 /// What a scene of two tables is given besides them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -103,6 +104,13 @@ impl TableOptions {
     fn is_set(&self, names: &[&str]) -> bool {
         set_among(&self.changes, names).is_some()
     }
+
+    /// Whether blocked constrictions leave openings.
+    fn leaves_openings(&self) -> bool {
+        let set = self.changes.iter().filter_map(|change| change.split_once('='));
+        let mut values = set.filter(|(name, _)| name.trim() == "walk.blocked").map(|(_, value)| value.trim());
+        values.next_back().is_some_and(|value| value.trim_matches('"') == BlockedAs::Open.name())
+    }
 }
 
 impl Scene {
@@ -126,8 +134,11 @@ impl Scene {
             settings.push(options.regrading()?);
         }
         settings.push("record.margin=true".into());
-        // Passive particles by the million scatter by less than anyone reads, and their expectation is quick.
-        settings.push("engine=\"expected\"".into());
+        // Passive particles by the million scatter by less than anyone reads, and their expectation is quick;
+        // where blocked constrictions leave openings there are none.
+        if !options.leaves_openings() {
+            settings.push("engine=\"expected\"".into());
+        }
         settings.extend(options.settings()?);
         let scene = Self::built_in(&settings)?;
         if !options.as_given {

@@ -533,6 +533,11 @@ findings! {
         "arches", "arches.md",
         "Particles that fit a constriction jam in it together by a law of clogging ({law}) that no filter \
          test has checked.";
+    /// A walk in which blocked constrictions leave openings.
+    openings(): Walk, Open, Limits;
+        "openings", "arches.md",
+        "A blocked constriction stays open beside the particle that blocks it. No filter test has checked \
+         how wide.";
     /// What soils of this kind say of the walk's boundary.
     evidence(probability: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio):
         Practice, Settled, Note;

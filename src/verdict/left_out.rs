@@ -201,6 +201,11 @@ impl Shortcut {
                 let open = finest_open(finest);
                 format!("No base particle is {fine} {open}, so none is kept as a count.")
             }
+            Self::Openings => {
+                "Blocked constrictions leave openings that may stop a particle of any size: none is \
+                               kept as a count."
+                    .into()
+            }
             Self::AllPassive(finest, engine) => format!(
                 "Every base particle passes every open constriction (finest {} {unit}){}: nothing can be \
                  blocked, and none is walked on its own; {}.",
@@ -288,6 +293,7 @@ mod tests {
                         [
                             Shortcut::NothingOpen,
                             Shortcut::NonePassive(finest),
+                            Shortcut::Openings,
                             Shortcut::AllPassive(finest, engine),
                             Shortcut::MostPassive(number, finest, engine),
                             Shortcut::OneSize,

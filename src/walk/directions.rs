@@ -10,8 +10,9 @@
 use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
 
-use super::{Blocking, State};
-use crate::network::{Flow, FlowError, Network};
+use super::State;
+use super::openings::{CONDUCTS, Weighed, part_kept};
+use crate::network::{ExitRule, Flow, FlowError, Network};
 
 /// The flow is solved again when one in so many constrictions has been blocked since the last time.
 const PART_BLOCKED: u64 = 100;
@@ -36,39 +37,121 @@ pub(super) struct Directions {
     clean: f64,
     /// Last increment before the flow was solved.
     solved_at: u64,
-    /// Constrictions blocked in this run until then.
+    /// Constrictions blocked or narrowed in this run until then.
     blocked_then: u64,
+    /// By exit, as wide as it was then, where blocked constrictions leave openings.
+    widths_then: Vec<f32>,
+    /// How particles choose.
+    rule: ExitRule,
+}
+
+/// What a state has made of its constrictions, now or before.
+#[derive(Clone, Copy)]
+enum Passable<'a> {
+    /// These are blocked.
+    Blocked(&'a BitSlice),
+    /// Openings are left, and exits are as wide as this.
+    Widths(&'a [f32]),
+}
+
+impl<'a> Passable<'a> {
+    fn of(state: &'a State) -> Self {
+        match &state.openings {
+            None => Self::Blocked(&state.blocked),
+            Some(openings) => Self::Widths(&openings.widths),
+        }
+    }
+}
+
+/// What constrictions were at an earlier time of the run of a state.
+struct Past<'a> {
+    network: &'a Network,
+    state: &'a State,
+    blocked: BitVec,
+    widths: Option<Vec<f32>>,
+}
+
+impl<'a> Past<'a> {
+    /// When the run began.
+    fn begin(network: &'a Network, state: &'a State) -> Self {
+        let widths = state.openings.as_ref().map(|openings| openings.widths.clone());
+        let mut past = Self { network, state, blocked: state.blocked.clone(), widths };
+        (0..state.changes()).rev().for_each(|at| past.set(at, false));
+        past
+    }
+
+    /// Makes a change of the run, or takes it back.
+    fn set(&mut self, at: usize, is_done: bool) {
+        match (&self.state.openings, &mut self.widths) {
+            (Some(openings), Some(widths)) => {
+                let change = &openings.history[at];
+                let (exit, width) =
+                    (change.constriction as usize, if is_done { change.after } else { change.before });
+                widths[exit] = width;
+                if let Some(twin) = self.network.twin(exit) {
+                    widths[twin] = width;
+                }
+            }
+            _ => {
+                let exit = self.state.history[at].constriction as usize;
+                self.network.set_blocked(&mut self.blocked, exit, is_done);
+            }
+        }
+    }
+
+    /// The increment of a change.
+    fn increment(&self, at: usize) -> u64 {
+        match &self.state.openings {
+            Some(openings) => openings.history[at].increment,
+            None => self.state.history[at].increment,
+        }
+    }
+
+    fn passable(&self) -> Passable<'_> {
+        self.widths.as_deref().map_or(Passable::Blocked(&self.blocked), Passable::Widths)
+    }
 }
 
 impl Directions {
     /// Those that `state` has come to, by all that has been blocked until now; the network is given them.
     pub fn new(network: &mut Network, state: &State) -> Result<Self, FlowError> {
-        let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
+        let clean_filter: BitVec = BitVec::repeat(false, network.constrictions());
         let mut flow = Flow::new(network);
-        let clean = flow.solve(network, &blocked)?;
+        let clean = flow.solve(network, &clean_filter)?;
         let record = FlowRecord { k0_mm2: clean.k_mm2, k_over_k0: vec![] };
         let clean = clean.conductance;
-        let mut directions = Self { flow, record, clean, solved_at: 0, blocked_then: 0 };
-        blocked.copy_from_bitslice(&state.blocked);
-        let set = |blocked: &mut BitVec, blocking: &Blocking, is| {
-            network.set_blocked(blocked, blocking.constriction as usize, is);
+        let mut directions = Self {
+            flow,
+            record,
+            clean,
+            solved_at: 0,
+            blocked_then: 0,
+            widths_then: Vec::new(),
+            rule: network.exit_rule(),
         };
-        state.history.iter().for_each(|blocking| set(&mut blocked, blocking, false));
-        directions.solve(network, &blocked, 0, 0)?;
+        let mut past = Past::begin(network, state);
+        directions.solve(network, past.passable(), 0, 0)?;
         // Exits blocked since the flow was solved last lead on once it is solved again.
-        let mut history = state.history.iter().peekable();
         let mut so_far = 0;
         for increment in 1..=state.increment {
-            while let Some(blocking) = history.next_if(|blocking| blocking.increment < increment) {
+            while so_far < state.changes() && past.increment(so_far) < increment {
+                past.set(so_far, true);
                 so_far += 1;
-                set(&mut blocked, blocking, true);
             }
-            if directions.is_due(network, increment, so_far) {
-                directions.solve(network, &blocked, increment - 1, so_far)?;
+            if directions.is_due(network, increment, so_far as u64) {
+                directions.solve(network, past.passable(), increment - 1, so_far as u64)?;
             }
         }
         directions.flow.direct(network);
         Ok(directions)
+    }
+
+    /// What the weights of exits are of, where blocked constrictions leave openings.
+    pub fn weighed(&self) -> Weighed<'_> {
+        match self.rule {
+            ExitRule::Flux => Weighed::Solved(&self.widths_then, CONDUCTS),
+            _ => Weighed::Whole,
+        }
     }
 
     /// Whether the flow is to be solved at the beginning of an increment, after so many blockings of this
@@ -81,20 +164,20 @@ impl Directions {
 
     /// Solves the flow where the increment that `state` begins is due for it; whether it did.
     pub fn renew(&mut self, network: &mut Network, state: &State) -> Result<bool, FlowError> {
-        let blocked = state.history.len() as u64;
+        let blocked = state.changes() as u64;
         if !self.is_due(network, state.increment, blocked) {
             return Ok(false);
         }
-        self.solve(network, &state.blocked, state.increment - 1, blocked)?;
+        self.solve(network, Passable::of(state), state.increment - 1, blocked)?;
         self.flow.direct(network);
         Ok(true)
     }
 
     /// The flow at the end of a run; the network is given its directions.
     pub fn end(mut self, network: &mut Network, state: &State) -> Result<FlowRecord, FlowError> {
-        let blocked = state.history.len() as u64;
+        let blocked = state.changes() as u64;
         if blocked > self.blocked_then {
-            self.solve(network, &state.blocked, state.increment, blocked)?;
+            self.solve(network, Passable::of(state), state.increment, blocked)?;
         }
         self.flow.direct(network);
         Ok(self.record)
@@ -104,11 +187,22 @@ impl Directions {
     fn solve(
         &mut self,
         network: &Network,
-        blocked: &BitSlice,
+        passable: Passable,
         increment: u64,
         in_run: u64,
     ) -> Result<(), FlowError> {
-        let found = self.flow.solve(network, blocked)?;
+        let found = match passable {
+            Passable::Blocked(blocked) => self.flow.solve(network, blocked)?,
+            Passable::Widths(widths) => {
+                let part = |(&width, &whole): (&f32, &f32)| {
+                    if whole > 0.0 { part_kept(f64::from(width) / f64::from(whole), CONDUCTS) } else { 0.0 }
+                };
+                let parts: Vec<f64> = widths.iter().zip(network.diameters()).map(part).collect();
+                self.widths_then.clear();
+                self.widths_then.extend_from_slice(widths);
+                self.flow.solve_parts(network, &parts)?
+            }
+        };
         let part = if self.clean > 0.0 { (found.conductance / self.clean).min(1.0) } else { 0.0 };
         self.record.k_over_k0.push((increment, part));
         (self.solved_at, self.blocked_then) = (increment, in_run);

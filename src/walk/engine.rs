@@ -86,6 +86,7 @@ pub struct RunPlan {
     sampling: Sampling,
     left_out: Vec<Shortcut>,
     arching: Option<Arc<Arching>>,
+    leaves_openings: bool,
 }
 
 impl RunPlan {
@@ -98,19 +99,24 @@ impl RunPlan {
         blocked: &BitSlice,
         share: u64,
     ) -> Self {
-        Self::with_arches(wanted, network, sampler, blocked, share, None)
+        Self::with_clogging(wanted, network, sampler, blocked, share, (None, false))
     }
 
-    /// The same with particles that arch by this law: only those too fine for that are passive.
-    pub fn with_arches(
+    /// The same with particles that arch by this law, so that only those too fine for that are passive; and
+    /// whether blocked constrictions leave openings, so that none is.
+    pub fn with_clogging(
         wanted: Engine,
         network: &Network,
         sampler: &SizeSampler,
         blocked: &BitSlice,
         share: u64,
-        arching: Option<Arc<Arching>>,
+        (arching, leaves_openings): (Option<Arc<Arching>>, bool),
     ) -> Self {
-        let passive_limit = |finest| arching.as_ref().map_or(finest, |of| of.passive_limit(finest));
+        let passive_limit = |finest| match &arching {
+            _ if leaves_openings => 0.0,
+            Some(arching) => arching.passive_limit(finest),
+            None => finest,
+        };
         let finest = network.finest_open(|c| blocked[c]);
         let passive_words = sampler.word_limit(passive_limit(finest));
         // On the open network, so that all runs of a replicate have one engine.
@@ -123,7 +129,10 @@ impl RunPlan {
             chosen => chosen,
         };
         let size_mm = f64::from(finest) * network.unit_mm();
-        let mut left_out = left_out(engine, Finest { size_mm, arches: arching.is_some() }, passive_words);
+        let mut left_out = match leaves_openings {
+            true => vec![Shortcut::Openings],
+            false => left_out(engine, Finest { size_mm, arches: arching.is_some() }, passive_words),
+        };
         if sampler.smallest() == sampler.largest() && (engine == Engine::Particles || passive_words < 1 << 64)
         {
             left_out.push(Shortcut::OneSize);
@@ -131,7 +140,7 @@ impl RunPlan {
         if wanted == Engine::Auto && engine == Engine::Particles && on_open > 0 {
             left_out.push(Shortcut::FewPassive(passive, network.entries() as u64));
         }
-        Self { engine, passive_words, sampling: Sampling::Independent, left_out, arching }
+        Self { engine, passive_words, sampling: Sampling::Independent, left_out, arching, leaves_openings }
     }
 
     /// This plan with start nodes and sizes drawn in this way.
@@ -151,7 +160,9 @@ impl RunPlan {
 
     /// `n` base particles in `increments` equal parts, for run `run` of `seed`.
     pub fn supply(&self, sampler: SizeSampler, n: u64, increments: u64, seed: u64, run: u64) -> Supply {
-        let all = Supply::new(sampler, n, increments).arching_by(self.arching.clone());
+        let all = Supply::new(sampler, n, increments)
+            .arching_by(self.arching.clone())
+            .leaving_openings(self.leaves_openings);
         let all = match self.sampling {
             Sampling::Independent => all,
             Sampling::Stratified => all.stratified(seed, run),
@@ -179,6 +190,8 @@ pub enum Shortcut {
     NothingOpen,
     /// No base particle is a count, as none is as fine as this.
     NonePassive(Finest),
+    /// No base particle is a count, as openings beside particles may stop any.
+    Openings,
     /// Every base particle is a count of this engine, as none is coarser than this.
     AllPassive(Finest, Engine),
     /// All but so many percent of the base particles are counts of this engine.

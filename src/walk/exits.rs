@@ -2,6 +2,7 @@
 
 use bitvec::slice::BitSlice;
 
+use super::openings::Ways;
 use super::{Arching, Isa};
 use crate::network::Network;
 
@@ -19,16 +20,38 @@ pub(super) struct VoidExits<'a> {
     pub waits: bool,
 }
 
-/// Looks at the exits of one void after another, with those closed that `blocked` says.
+/// Looks at the exits of one void after another, of which `ways` are open.
 pub(super) fn of_each(
     network: &Network,
-    blocked: &BitSlice,
+    ways: Ways,
     voids: impl IntoIterator<Item = u32>,
+    look: impl FnMut(VoidExits),
+) {
+    // Chosen here, once for all voids.
+    match ways {
+        Ways::Unblocked(blocked) => {
+            let find = |void, into: &mut _| thresholds(network, blocked, void, into);
+            each_by(network, voids, find, look);
+        }
+        ways => {
+            let weight = |c| ways.weight(network, c);
+            let find = |void, into: &mut _| thresholds_by(network, void, weight, into);
+            each_by(network, voids, find, look);
+        }
+    }
+}
+
+/// The same, with what finds the thresholds of a void.
+#[inline(always)]
+fn each_by(
+    network: &Network,
+    voids: impl IntoIterator<Item = u32>,
+    find: impl Fn(u32, &mut Vec<u64>) -> Option<usize>,
     mut look: impl FnMut(VoidExits),
 ) {
     let mut scratch = Vec::new();
     for void in voids {
-        let last_open = thresholds(network, blocked, void, &mut scratch);
+        let last_open = find(void, &mut scratch);
         let waits = last_open.is_none() && waits(network, void);
         look(VoidExits { void, thresholds: &scratch, last_open, waits });
     }
@@ -42,13 +65,25 @@ pub(super) fn thresholds(
     void: u32,
     thresholds: &mut Vec<u64>,
 ) -> Option<usize> {
+    let weight = |c| network.exit_weight(c) * f64::from(u8::from(!blocked[c]));
+    thresholds_by(network, void, weight, thresholds)
+}
+
+/// The same by the weights of exits.
+#[inline(always)]
+fn thresholds_by(
+    network: &Network,
+    void: u32,
+    weight: impl Fn(usize) -> f64,
+    thresholds: &mut Vec<u64>,
+) -> Option<usize> {
     // Without branches: which exits are open cannot be foreseen. Weights are finite.
     let exits = network.exits(void);
     let first = exits.start;
     let (mut total, mut last) = (0.0, usize::MAX);
     thresholds.resize(exits.len(), 0);
     for (threshold, c) in thresholds.iter_mut().zip(exits) {
-        let weight = network.exit_weight(c) * f64::from(u8::from(!blocked[c]));
+        let weight = weight(c);
         total += weight;
         last = if weight > 0.0 { c - first } else { last };
         *threshold = weight.to_bits();
@@ -117,7 +152,7 @@ pub(super) struct General {
     pub last_open: Vec<u32>,
     /// By void: the same of few open exits, in half a cache line.
     pub few: Vec<FewExits>,
-    /// By constriction: the void that it leads to and its diameter, beside each other.
+    /// By constriction: the void that it leads to and its width, beside each other.
     pub beyond: Vec<(u32, f32)>,
 }
 
@@ -196,41 +231,45 @@ pub(super) struct OpenExits<'a> {
 impl ExitTable {
     /// The table for the constrictions that `blocked` leaves open.
     pub fn new(network: &Network, blocked: &BitSlice) -> Self {
-        let Some([nx, ny, _]) = network.shape() else { return Self::general(network, blocked) };
+        let ways = Ways::Unblocked(blocked);
+        let Some([nx, ny, _]) = network.shape() else { return Self::general(network, ways) };
         let finest = network.finest_open(|c| blocked[c]).to_bits();
         let form = Form::Lattice(Lattice::new(network.voids(), nx, nx * ny, finest));
-        Self::filled(network, blocked, form)
+        Self::filled(network, ways, form)
     }
 
     /// The same in the form that any network has.
-    pub(super) fn general(network: &Network, blocked: &BitSlice) -> Self {
+    pub(super) fn general(network: &Network, ways: Ways) -> Self {
         let general = General {
             threshold: vec![0; network.constrictions()],
             last_open: vec![NONE; network.voids()],
             few: vec![FewExits::NONE; network.voids()],
             beyond: network.targets().iter().zip(network.diameters()).map(|(&to, &d)| (to, d)).collect(),
         };
-        Self::filled(network, blocked, Form::General(general))
+        Self::filled(network, ways, Form::General(general))
     }
 
-    fn filled(network: &Network, blocked: &BitSlice, form: Form) -> Self {
+    fn filled(network: &Network, ways: Ways, form: Form) -> Self {
         let mut table = Self { form, isa: Isa::chosen(), upstream: network.upstream() };
         let voids = 0..network.voids() as u32;
-        of_each(network, blocked, voids, |exits| table.set(network, blocked, exits));
+        of_each(network, ways, voids, |exits| table.set(network, ways, exits));
         table
     }
 
-    /// Renews a void of which an exit has just closed, or leads elsewhere.
-    pub(super) fn set(&mut self, network: &Network, blocked: &BitSlice, of_void: VoidExits) {
+    /// Renews a void of which an exit has just closed, is narrower, or leads elsewhere.
+    pub(super) fn set(&mut self, network: &Network, ways: Ways, of_void: VoidExits) {
         let VoidExits { void, thresholds, last_open, waits } = of_void;
         match &mut self.form {
             Form::Lattice(lattice) => {
-                let open = network.exits(void).filter(|&c| !blocked[c] && network.exit_weight(c) > 0.0);
+                let open = network.exits(void).filter(|&c| ways.weight(network, c) > 0.0);
                 let finest = open.map(|c| network.diameters()[c]).fold(f32::INFINITY, f32::min);
                 lattice.set(void, thresholds, last_open, finest);
             }
             Form::General(general) => {
                 let exits = network.exits(void);
+                if let Ways::Openings(widths, _) = ways {
+                    exits.clone().for_each(|c| general.beyond[c].1 = widths[c]);
+                }
                 general.threshold[exits.clone()].copy_from_slice(thresholds);
                 general.few[void as usize] = match last_open {
                     Some(last) => FewExits::new(exits.start as u32, thresholds, last),

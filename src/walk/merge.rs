@@ -98,14 +98,15 @@ impl Events {
     }
 }
 
-/// Adds the events of all chunks to the state; returns the constrictions that have just closed, ascending,
-/// each as the exit by which it was blocked.
+/// Adds the events of all chunks to the state; returns the constrictions that have just closed, or whose
+/// openings have just been narrowed, ascending, each as one of its exits.
 pub(super) fn merge(
     network: &Network,
     events: &mut [Events],
     upstream: &[u32],
     state: &mut State,
 ) -> Vec<u32> {
+    let narrowed_before = state.changes();
     let tally = &mut state.tally;
     let mut closed = Vec::new();
     for events in events.iter_mut() {
@@ -145,6 +146,9 @@ pub(super) fn merge(
                     closed.push(constriction);
                     network.set_blocked(&mut state.blocked, constriction as usize, true);
                 }
+                if let Some(openings) = &mut state.openings {
+                    openings.stop(network, constriction as usize, diameter);
+                }
             }
             for &(void, diameter) in &events.stranded {
                 state.retained_in_voids[void as usize] += 1;
@@ -159,5 +163,8 @@ pub(super) fn merge(
     tally.blocked += closed.len() as u64;
     let increment = state.increment;
     state.history.extend(closed.iter().map(|&constriction| Blocking { increment, constriction }));
-    closed
+    match &mut state.openings {
+        Some(openings) => openings.end_increment(increment, narrowed_before),
+        None => closed,
+    }
 }

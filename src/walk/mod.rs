@@ -33,6 +33,10 @@
 //! # Arches
 //! A particle that fits may jam with others (module `arching`) where a law of that is asked for.
 //!
+//! # Residual openings
+//! Where a scene asks for it, a blocked constriction is not closed: it leaves openings (module `openings`),
+//! by which finer particles go on and which stop coarser ones. Step 3 then narrows constrictions.
+//!
 //! # The end
 //! A run ends when nothing moves, or when every moving particle is *trapped*: x and y are periodic, so
 //! a particle can move in closed loops for good (module `trapped`).
@@ -61,6 +65,7 @@ mod insert;
 mod isa;
 mod kernel;
 mod merge;
+mod openings;
 pub mod reference;
 mod saved;
 mod saved_checks;
@@ -80,6 +85,7 @@ pub use engine::{Engine, Finest, RunPlan, Shortcut};
 pub use error::WalkError;
 pub use exits::ExitTable;
 pub use isa::Isa;
+pub use openings::{BlockedAs, Clogged, Narrowing, Openings, residual_opening};
 pub use saved::SavedState;
 pub use sizes::{SizeClasses, SizeCounts};
 pub use state::{Blocking, CHUNK, Particles, State};
@@ -93,6 +99,7 @@ use std::borrow::Cow;
 use crate::network::{FlowError, Network};
 use directions::Directions;
 use merge::Events;
+use openings::Weighed;
 
 /// Whether a run goes on after an increment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -155,9 +162,10 @@ impl<'a> Walk<'a> {
                 Err(error) => no_flow = Some(error),
             }
         }
-        let table = match supply.arching() {
-            None => ExitTable::new(&network, &state.blocked),
-            Some(_) => ExitTable::general(&network, &state.blocked),
+        let weighed = weighed(directions.as_ref());
+        let table = match (supply.arching(), &state.openings) {
+            (None, None) => ExitTable::new(&network, &state.blocked),
+            _ => ExitTable::general(&network, state.ways(weighed)),
         };
         let trap = trapped::Search::new(&network, supply.arching());
         let passive = counts::PassiveWalk::new(&network, supply, state);
@@ -244,7 +252,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// What happened is added to the state, and the constrictions that were blocked close.
+    /// What happened is added to the state, and the constrictions that were blocked close or are narrower.
     fn merge(&mut self, state: &mut State) {
         let closed = merge::merge(&self.network, &mut self.events, self.table.upstream(), state);
         let both = closed.iter().flat_map(|&c| [Some(c as usize), self.network.twin(c as usize)]);
@@ -252,11 +260,12 @@ impl<'a> Walk<'a> {
         self.set(state, voids);
     }
 
-    /// Renews voids of which exits have just closed, or lead elsewhere.
+    /// Renews voids of which exits have just closed, are narrower, or lead elsewhere.
     fn set(&mut self, state: &State, voids: impl IntoIterator<Item = u32>) {
-        let Self { network, table, passive, .. } = self;
-        exits::of_each(network, &state.blocked, voids, |of_void| {
-            table.set(network, &state.blocked, of_void);
+        let Self { network, table, passive, directions, .. } = self;
+        let ways = state.ways(weighed(directions.as_ref()));
+        exits::of_each(network, ways, voids, |of_void| {
+            table.set(network, ways, of_void);
             if let Some(passive) = passive {
                 passive.set(network, of_void);
             }
@@ -294,4 +303,9 @@ impl<'a> Walk<'a> {
         }
         Ok(())
     }
+}
+
+/// What the weights of exits are of.
+fn weighed(directions: Option<&Directions>) -> Weighed<'_> {
+    directions.map_or(Weighed::Whole, Directions::weighed)
 }

@@ -10,7 +10,7 @@ use std::collections::{BTreeSet, HashMap};
 use bitvec::vec::BitVec;
 
 use super::{CHUNK, Supply};
-use crate::network::{END, Flow, Network};
+use crate::network::{END, ExitRule, Flow, Network};
 use crate::stream::{DRAWS_PER_BLOCK, Key, LANES, Purpose, draw16};
 
 /// One base particle.
@@ -48,6 +48,12 @@ pub struct Reference<'a> {
     pub trapped: Vec<Particle>,
     /// Whether each constriction is blocked.
     pub blocked: Vec<bool>,
+    /// The widest way through each constriction, where blocked ones leave openings.
+    pub widths: Option<Vec<f32>>,
+    /// How often any was narrowed, in an increment once.
+    pub narrowings: usize,
+    /// The same when the flow was solved last.
+    widths_then: Vec<f32>,
     /// Increment and constriction of each blocking.
     pub history: Vec<(u64, usize)>,
     /// Completed moves.
@@ -70,10 +76,18 @@ impl<'a> Reference<'a> {
             arched: 0,
             stranded: vec![],
             trapped: vec![],
+            widths: supply.leaves_openings().then(|| network.diameters().to_vec()),
+            narrowings: 0,
+            widths_then: network.diameters().to_vec(),
             blocked,
             history: vec![],
             particle_moves: 0,
         }
+    }
+
+    /// Goes on from openings that an earlier run left.
+    pub fn from_widths(self, widths: Option<Vec<f32>>) -> Self {
+        Self { widths, ..self }
     }
 
     /// Whether the run has ended.
@@ -87,6 +101,7 @@ impl<'a> Reference<'a> {
         self.direct();
         self.insert();
         let mut newly_blocked = BTreeSet::new();
+        let stopped_before = self.stopped.len();
         let mut still_moving = vec![];
         let mut begun = HashMap::new();
         let mut place_in_chunk = vec![0u64; 1 + self.supply.total() as usize / CHUNK];
@@ -101,7 +116,7 @@ impl<'a> Reference<'a> {
                 }
                 continue;
             };
-            let width = self.network.diameters()[exit];
+            let width = self.width(exit);
             if particle.diameter > width {
                 newly_blocked.insert(exit);
                 self.stopped.push((particle, exit));
@@ -121,7 +136,11 @@ impl<'a> Reference<'a> {
             }
         }
         self.moving = still_moving;
+        self.narrow(stopped_before);
         for exit in newly_blocked {
+            if self.blocked[exit] {
+                continue;
+            }
             self.blocked[exit] = true;
             if let Some(twin) = self.network.twin(exit) {
                 self.blocked[twin] = true;
@@ -133,22 +152,61 @@ impl<'a> Reference<'a> {
         }
     }
 
+    /// The widest way through a constriction.
+    fn width(&self, exit: usize) -> f32 {
+        self.widths.as_ref().map_or(self.network.diameters()[exit], |widths| widths[exit])
+    }
+
+    /// Narrows what stopped particles from this one on: to the circle inside those of the finest of them and
+    /// two grains, where three grains that touch each other leave the whole constriction.
+    fn narrow(&mut self, from: usize) {
+        let Some(widths) = &mut self.widths else { return };
+        let mut narrowed = BTreeSet::new();
+        for (particle, exit) in &self.stopped[from..] {
+            let whole = f64::from(self.network.diameters()[*exit]);
+            let left = descartes(f64::from(particle.diameter), whole / (2.0 / 3f64.sqrt() - 1.0)).min(whole);
+            if (left as f32) < widths[*exit] {
+                let twin = self.network.twin(*exit).unwrap_or(*exit);
+                (widths[*exit], widths[twin]) = (left as f32, left as f32);
+                narrowed.insert(twin.min(*exit));
+            }
+        }
+        self.narrowings += narrowed.len();
+    }
+
+    /// Parts that constrictions of these widths keep of what grows with this power of a diameter: three
+    /// openings beside a particle.
+    fn part(&self, exit: usize, width: f32, power: i32) -> f64 {
+        let whole = f64::from(self.network.diameters()[exit]);
+        if whole == 0.0 { 0.0 } else { (3.0 * (f64::from(width) / whole).powi(power)).min(1.0) }
+    }
+
     /// Solves the flow before the first increment; then where one in a hundred constrictions has been blocked
     /// since, or any in the last ten increments.
     fn direct(&mut self) {
         let Some((mut flow, solved_at, blocked_then)) = self.flow.take() else { return };
-        let since = self.history.len() - blocked_then;
+        let changes = if self.widths.is_some() { self.narrowings } else { self.history.len() };
+        let since = changes - blocked_then;
         let due = 100 * since >= self.network.passages() || self.increment > solved_at + 10;
         let blocked: BitVec = self.blocked.iter().copied().collect();
+        let parts: Option<Vec<f64>> = self
+            .widths
+            .as_ref()
+            .map(|widths| (0..widths.len()).map(|exit| self.part(exit, widths[exit], 4)).collect());
         let network = self.network.to_mut();
         if self.increment == 1 {
             // The clean filter comes first: its pressures are where the next solution begins.
             flow.solve(network, &BitVec::repeat(false, blocked.len())).expect("small networks are solved");
         }
         self.flow = Some(if self.increment == 1 || (since > 0 && due) {
-            flow.solve(network, &blocked).expect("small networks are solved");
+            match &parts {
+                None => flow.solve(network, &blocked),
+                Some(parts) => flow.solve_parts(network, parts),
+            }
+            .expect("small networks are solved");
             flow.direct(network);
-            (flow, self.increment - 1, self.history.len())
+            self.widths_then = self.widths.clone().unwrap_or_default();
+            (flow, self.increment - 1, changes)
         } else {
             (flow, solved_at, blocked_then)
         });
@@ -165,7 +223,7 @@ impl<'a> Reference<'a> {
         begun: &mut HashMap<(u64, usize), u32>,
     ) -> bool {
         let Some(arching) = self.supply.arching() else { return false };
-        let ratio = f64::from(self.network.diameters()[exit]) / f64::from(diameter);
+        let ratio = f64::from(self.width(exit)) / f64::from(diameter);
         if ratio >= arching.widest() {
             return false;
         }
@@ -233,6 +291,16 @@ impl<'a> Reference<'a> {
     }
 
     fn open_area(&self, exit: usize) -> f64 {
+        if let Some(widths) = &self.widths {
+            let weight = self.network.exit_weight(exit);
+            return match self.network.exit_rule() {
+                _ if weight == 0.0 => 0.0,
+                ExitRule::Flux => {
+                    weight * self.part(exit, widths[exit], 4) / self.part(exit, self.widths_then[exit], 4)
+                }
+                _ => weight * self.part(exit, widths[exit], 2),
+            };
+        }
         if self.network.reservoir().is_some() {
             return if self.blocked[exit] { 0.0 } else { self.network.exit_weight(exit) };
         }
@@ -266,7 +334,7 @@ impl<'a> Reference<'a> {
             }
             for exit in open {
                 let stops = self.supply.arching().map_or(1.0, |arching| arching.widest());
-                let width = f64::from(self.network.diameters()[exit]);
+                let width = f64::from(self.width(exit));
                 if stops * f64::from(particle.diameter) > width || self.network.targets()[exit] == END {
                     return false;
                 }
@@ -277,4 +345,10 @@ impl<'a> Reference<'a> {
         }
         true
     }
+}
+
+/// Diameter of the circle inside one of diameter `a` and two of diameter `b` that touch each other.
+fn descartes(a: f64, b: f64) -> f64 {
+    let [one, two, three] = [a, b, b].map(|diameter| 2.0 / diameter);
+    2.0 / (one + two + three + 2.0 * (one * two + two * three + three * one).sqrt())
 }

@@ -7,7 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use super::bits::{from_words, to_words, words_for};
 use super::saved_checks::Forgery;
-use super::{Blocking, CHUNK, Expected, ExpectedSums, Passive, SizeCounts, State, Supply, Tally};
+use super::{
+    Blocking, CHUNK, Expected, ExpectedSums, Narrowing, Openings, Passive, SizeCounts, State, Supply, Tally,
+};
 use crate::network::Network;
 use crate::store::checkpoint::{Checkpoint, CheckpointError, Section};
 
@@ -26,6 +28,10 @@ use crate::store::checkpoint::{Checkpoint, CheckpointError, Section};
 /// | `blocked` | u64 | bit `c % 64` of word `c / 64`: constriction `c` is blocked |
 /// | `history_increment` | u64 | increment of each blocking of this run |
 /// | `history_constriction` | u32 | constriction of each blocking of this run |
+/// | `widths` | f32 | by exit, the widest way through it; this and the next only with openings |
+/// | `narrowed_increment` | u64 | increment of each narrowing of this run |
+/// | `narrowed_constriction` | u32 | constriction of each narrowing of this run, by the first of its exits |
+/// | `narrowed_before`, `narrowed_after` | f32 | widest way through it before and after |
 /// | `retained_in_constrictions` | u64 | by void |
 /// | `retained_in_voids` | u64 | by void |
 /// | `eroded_number`, `retained_number` | u64 | particles by size class |
@@ -44,6 +50,53 @@ pub struct SavedState<'a> {
     blocked: Vec<u64>,
     history_increment: Vec<u64>,
     history_constriction: Vec<u32>,
+    narrowed: Option<SavedNarrowings>,
+}
+
+/// What was narrowed in a run, as columns.
+struct SavedNarrowings {
+    increment: Vec<u64>,
+    constriction: Vec<u32>,
+    before: Vec<f32>,
+    after: Vec<f32>,
+}
+
+impl SavedNarrowings {
+    fn of(history: &[Narrowing]) -> Self {
+        Self {
+            increment: history.iter().map(|n| n.increment).collect(),
+            constriction: history.iter().map(|n| n.constriction).collect(),
+            before: history.iter().map(|n| n.before).collect(),
+            after: history.iter().map(|n| n.after).collect(),
+        }
+    }
+
+    fn sections(&self) -> [Section<'_>; 4] {
+        [
+            Section::new("narrowed_increment", &self.increment),
+            Section::new("narrowed_constriction", &self.constriction),
+            Section::new("narrowed_before", &self.before),
+            Section::new("narrowed_after", &self.after),
+        ]
+    }
+
+    /// The openings that a checkpoint holds.
+    fn read(saved: &Checkpoint, exits: usize) -> Result<Openings, CheckpointError> {
+        let increment: Vec<u64> = saved.read("narrowed_increment")?;
+        let constriction: Vec<u32> = saved.read_exact("narrowed_constriction", increment.len())?;
+        let [before, after]: [Vec<f32>; 2] = [
+            saved.read_exact("narrowed_before", increment.len())?,
+            saved.read_exact("narrowed_after", increment.len())?,
+        ];
+        let of = |at: usize| Narrowing {
+            increment: increment[at],
+            constriction: constriction[at],
+            before: before[at],
+            after: after[at],
+        };
+        let history = (0..increment.len()).map(of).collect();
+        Ok(Openings { widths: saved.read_exact("widths", exits)?, history })
+    }
 }
 
 /// What of a state is not a column.
@@ -105,6 +158,7 @@ impl<'a> SavedState<'a> {
             blocked: to_words(&state.blocked),
             history_increment: state.history.iter().map(|b| b.increment).collect(),
             history_constriction: state.history.iter().map(|b| b.constriction).collect(),
+            narrowed: state.openings.as_ref().map(|openings| SavedNarrowings::of(&openings.history)),
         }
     }
 
@@ -133,6 +187,10 @@ impl<'a> SavedState<'a> {
             Section::new("retained_number", &state.retained_sizes.number),
             Section::new("retained_mass", &state.retained_sizes.mass),
         ];
+        if let (Some(openings), Some(narrowed)) = (&state.openings, &self.narrowed) {
+            sections.push(Section::new("widths", &openings.widths));
+            sections.extend(narrowed.sections());
+        }
         if !state.retained_cubes.is_empty() {
             sections.push(Section::new("retained_cubes", &state.retained_cubes));
         }
@@ -220,6 +278,13 @@ impl State {
         }
         let pair = |(&increment, &constriction)| Blocking { increment, constriction };
         self.history = increments.iter().zip(&constrictions).map(pair).collect();
+        if self.openings.is_some() {
+            let openings = SavedNarrowings::read(saved, self.blocked.len())?;
+            if !openings.can_be(network, &self.blocked, record.increment) {
+                return Err(wrong("openings"));
+            }
+            self.openings = Some(openings);
+        }
         self.retained_in_constrictions = saved.read_exact("retained_in_constrictions", network.voids())?;
         self.retained_in_voids = saved.read_exact("retained_in_voids", network.voids())?;
         if !self.retained_cubes.is_empty() {

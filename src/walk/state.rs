@@ -4,7 +4,8 @@ use std::io;
 
 use bitvec::vec::BitVec;
 
-use super::{Passive, SizeClasses, SizeCounts, Supply, Tally};
+use super::openings::{Ways, Weighed};
+use super::{Clogged, Openings, Passive, SizeClasses, SizeCounts, Supply, Tally};
 use crate::network::Network;
 use crate::store::{Column, Placement};
 
@@ -67,6 +68,8 @@ pub struct State {
     pub passive: Passive,
     /// Bit `c`: a base particle has blocked constriction `c` (in this run or an earlier one).
     pub blocked: BitVec,
+    /// The openings that blocked constrictions leave; `None` where they are closed.
+    pub openings: Option<Openings>,
     /// Constrictions blocked in this run, by increment, then by constriction.
     pub history: Vec<Blocking>,
     /// Base particles retained in the exits of each void.
@@ -87,16 +90,16 @@ pub struct State {
 }
 
 impl State {
-    /// The state before the first increment of run `run`, on the constrictions that `blocked` leaves open.
+    /// The state before the first increment of run `run`, on the constrictions that `clogged` leaves open.
     pub fn new(
         network: &Network,
         supply: &Supply,
         classes: SizeClasses,
-        blocked: BitVec,
+        clogged: impl Into<Clogged>,
         seed: u64,
         run: u64,
     ) -> Self {
-        let state = Self::placed(&Placement::Memory, network, supply, classes, blocked, seed, run);
+        let state = Self::placed(&Placement::Memory, network, supply, classes, clogged, seed, run);
         state.expect("columns in memory need no file")
     }
 
@@ -109,10 +112,13 @@ impl State {
         network: &Network,
         supply: &Supply,
         classes: SizeClasses,
-        blocked: BitVec,
+        clogged: impl Into<Clogged>,
         seed: u64,
         run: u64,
     ) -> io::Result<Self> {
+        let clogged = clogged.into();
+        let openings = supply.leaves_openings().then(|| Openings::new(network, &clogged));
+        let blocked = clogged.blocked;
         assert_eq!(blocked.len(), network.constrictions(), "one bit a constriction");
         let chunks = (supply.total() as usize).div_ceil(CHUNK);
         let tally = Tally { blocked: network.blocked_count(&blocked), ..Tally::default() };
@@ -137,6 +143,7 @@ impl State {
             },
             passive: supply.no_passive_yet(network.voids()),
             blocked,
+            openings,
             history: Vec::new(),
             retained_in_constrictions: vec![0; network.voids()],
             retained_in_voids: vec![0; network.voids()],
@@ -148,10 +155,41 @@ impl State {
         })
     }
 
-    /// Whether base particles cannot use constriction `c`: blocked, of size 0, or no exit by the rule that
-    /// gives constrictions their direction.
+    /// Whether base particles cannot use constriction `c`: blocked without an opening that is left, of size
+    /// 0, or no exit by the rule that gives constrictions their direction.
     #[inline]
     pub fn is_closed(&self, network: &Network, c: usize) -> bool {
-        self.blocked[c] || network.diameters()[c] == 0.0 || network.exit_weight(c) == 0.0
+        let is_shut = match &self.openings {
+            None => self.blocked[c],
+            Some(openings) => openings.widths[c] == 0.0,
+        };
+        is_shut || network.diameters()[c] == 0.0 || network.exit_weight(c) == 0.0
+    }
+
+    /// What of the exits is open.
+    pub(super) fn ways<'a>(&'a self, weighed: Weighed<'a>) -> Ways<'a> {
+        match &self.openings {
+            None => Ways::Unblocked(&self.blocked),
+            Some(openings) => Ways::Openings(&openings.widths, weighed),
+        }
+    }
+
+    /// The widest way through the constriction of an exit.
+    #[inline]
+    pub fn width(&self, network: &Network, exit: usize) -> f32 {
+        self.openings.as_ref().map_or(network.diameters()[exit], |openings| openings.widths[exit])
+    }
+
+    /// What has been blocked or narrowed in this run, as a number that only grows.
+    pub(super) fn changes(&self) -> usize {
+        self.openings.as_ref().map_or(self.history.len(), |openings| openings.history.len())
+    }
+
+    /// What this run leaves to the next.
+    pub fn into_clogged(self) -> Clogged {
+        Clogged {
+            blocked: self.blocked,
+            widths: self.openings.map_or(Vec::new(), |openings| openings.widths),
+        }
     }
 }

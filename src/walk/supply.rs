@@ -25,6 +25,8 @@ pub struct Supply {
     strata: Option<Strata>,
     /// How its particles arch, where they do.
     arching: Option<Arc<Arching>>,
+    /// Whether constrictions that its particles block leave openings.
+    leaves_openings: bool,
 }
 
 /// The passive particles of a run that are not walked one by one.
@@ -50,12 +52,23 @@ impl Supply {
             passive: PassiveSupply::default(),
             strata: None,
             arching: None,
+            leaves_openings: false,
         }
     }
 
     /// This supply with particles that arch by this law.
     pub fn arching_by(self, arching: Option<Arc<Arching>>) -> Self {
         Self { arching, ..self }
+    }
+
+    /// This supply, where blocked constrictions leave openings (module `openings`) or are closed.
+    pub fn leaving_openings(self, leaves_openings: bool) -> Self {
+        Self { leaves_openings, ..self }
+    }
+
+    /// Whether constrictions that its particles block leave openings.
+    pub fn leaves_openings(&self) -> bool {
+        self.leaves_openings
     }
 
     /// How its particles arch; `None` where they do not.
@@ -65,6 +78,9 @@ impl Supply {
 
     /// Size up to which its particles are passive where this is the finest open constriction.
     pub(super) fn passive_limit(&self, finest: f32) -> f32 {
+        if self.leaves_openings {
+            return 0.0;
+        }
         self.arching().map_or(finest, |arching| arching.passive_limit(finest))
     }
 
@@ -94,7 +110,7 @@ impl Supply {
         let parts = Self::coarse_part(self.sampler.clone(), passive_words as u64, &coarse);
         let inserted = self.inserted.iter().zip(&parts.inserted).map(|(all, coarse)| all - coarse).collect();
         let passive = PassiveSupply { inserted, words: passive_words, expected };
-        let parts = Self { passive, arching: self.arching, ..parts };
+        let parts = Self { passive, arching: self.arching, leaves_openings: self.leaves_openings, ..parts };
         match self.strata {
             None => parts,
             Some(_) => parts.stratified(seed, run),
@@ -109,7 +125,7 @@ impl Supply {
             Some(*sum)
         });
         let inserted = running.collect();
-        Self { sampler, first_word, inserted, passive: PassiveSupply::default(), strata: None, arching: None }
+        Self { sampler: sampler.clone(), first_word, inserted, ..Self::new(sampler, 0, 1) }
     }
 
     /// Number of increments after which everything is inserted.

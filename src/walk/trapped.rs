@@ -23,7 +23,7 @@ pub(super) struct Search {
     stack: Vec<u32>,
     /// Voids on ways out that hold for `known`.
     way_out: Vec<bool>,
-    /// Number of blocked constrictions and particle size that `way_out` holds for.
+    /// Number of blocked or narrowed constrictions and particle size that `way_out` holds for.
     known: Option<(usize, u32)>,
     /// Chunk in which the last particle that is not trapped was found.
     hint: usize,
@@ -70,7 +70,7 @@ impl Search {
 
     /// Depth first, downstream exits before sideways ones.
     fn is_trapped(&mut self, network: &Network, state: &State, start: u32, diameter: f32) -> bool {
-        let key = Some((state.history.len(), diameter.to_bits()));
+        let key = Some((state.changes(), diameter.to_bits()));
         if self.known != key {
             self.way_out.fill(false);
             self.known = key;
@@ -88,7 +88,7 @@ impl Search {
             for exit in network.exits(void).filter(|&c| !state.is_closed(network, c)) {
                 closed = false;
                 let target = network.targets()[exit];
-                let stops = f64::from(network.diameters()[exit]) < self.stops_from * f64::from(diameter);
+                let stops = f64::from(state.width(network, exit)) < self.stops_from * f64::from(diameter);
                 if stops || target == END {
                     leads_out = true;
                     break;

@@ -15,6 +15,7 @@ mod graph;
 mod hostile_names;
 mod judge;
 mod mistakes;
+mod openings;
 mod order;
 mod pack;
 mod pan;

@@ -8,6 +8,7 @@ mod exact_answers;
 mod exact_flow;
 mod flow;
 mod gradation;
+mod openings;
 mod packing;
 mod sampling;
 mod tiny_networks;

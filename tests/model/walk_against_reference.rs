@@ -2,12 +2,11 @@
 
 use std::sync::Arc;
 
-use bitvec::vec::BitVec;
 use proptest::prelude::*;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::{ExitRule, Link, LinkEnd, LinkedVoids, Network};
 use voidwalk::walk::reference::Reference;
-use voidwalk::walk::{Arching, CHUNK, LAWS, SizeClasses, State, Supply, Walk};
+use voidwalk::walk::{Arching, CHUNK, Clogged, LAWS, SizeClasses, State, Supply, Walk};
 
 /// Diameters from a small set, so that ties, closed constrictions and blocking are frequent.
 fn diameters(count: usize, palette: &[f32], mut seed: u64) -> Vec<f32> {
@@ -30,13 +29,16 @@ fn as_general(network: &Network) -> Network {
 /// waits: such walks are compared for this long.
 const LONG_ENOUGH: u64 = 300;
 
-/// Walks both and compares everything after every increment; returns the blocked set.
-fn compare(network: &Network, supply: &Supply, blocked: &[bool], seed: u64, run: u64) -> Vec<bool> {
-    let bits: BitVec = blocked.iter().copied().collect();
+/// Walks both and compares everything after every increment; returns what is left of the constrictions.
+fn compare(network: &Network, supply: &Supply, clogged: Clogged, seed: u64, run: u64) -> Clogged {
     let classes = SizeClasses::logarithmic(0.5, 4.0, 8);
-    let mut state = State::new(network, supply, classes, bits, seed, run);
+    let mut reference =
+        Reference::new(network, supply, clogged.blocked.iter().by_vals().collect(), seed, run);
+    if !clogged.widths.is_empty() {
+        reference = reference.from_widths(Some(clogged.widths.clone()));
+    }
+    let mut state = State::new(network, supply, classes, clogged, seed, run);
     let mut walk = Walk::new(network, supply, &state);
-    let mut reference = Reference::new(network, supply, blocked.to_vec(), seed, run);
     let blocked_before = state.tally.blocked;
     while !reference.finished() && state.increment < LONG_ENOUGH {
         assert!(!state.finished, "the kernel ended early");
@@ -66,6 +68,9 @@ fn compare(network: &Network, supply: &Supply, blocked: &[bool], seed: u64, run:
         let history: Vec<_> = state.history.iter().map(|b| (b.increment, b.constriction as usize)).collect();
         assert_eq!(history, reference.history);
         assert!(state.blocked.iter().by_vals().eq(reference.blocked.iter().copied()));
+        let openings = state.openings.as_ref();
+        assert_eq!(openings.map(|openings| &openings.widths), reference.widths.as_ref());
+        assert_eq!(openings.map_or(0, |openings| openings.history.len()), reference.narrowings);
     }
     assert_eq!(state.finished, reference.finished());
     let cube = |d: f32| f64::from(d).powi(3);
@@ -85,7 +90,7 @@ fn compare(network: &Network, supply: &Supply, blocked: &[bool], seed: u64, run:
     }
     assert_eq!(state.retained_in_voids, retained);
     assert_eq!(state.eroded_sizes.number.iter().sum::<u64>(), state.tally.eroded);
-    reference.blocked
+    state.into_clogged()
 }
 
 /// No arches in half of the cases, else one of the laws.
@@ -112,6 +117,7 @@ proptest! {
         increments in 1u64..40,
         evenly: bool,
         law in law(),
+        open: bool,
         seed: u64,
     ) {
         let count = 3 * shape.iter().product::<u32>() as usize;
@@ -119,12 +125,12 @@ proptest! {
         let base = if cu == 1.0 { Gradation::single(1.0) } else { Gradation::linear_from_d0(0.7, cu) };
         let sampler = SizeSampler::new(&base.unwrap(), 1.0).unwrap();
         let supply = |run| {
-            let independent = Supply::new(sampler.clone(), n, increments).arching_by(law.clone());
+            let independent = Supply::new(sampler.clone(), n, increments).arching_by(law.clone()).leaving_openings(open);
             if evenly { independent.stratified(seed, run) } else { independent }
         };
         for network in [&network, &as_general(&network)] {
-            let blocked = compare(network, &supply(1), &vec![false; count], seed, 1);
-            compare(network, &supply(2), &blocked, seed, 2);
+            let blocked = compare(network, &supply(1), Clogged::none(network), seed, 1);
+            compare(network, &supply(2), blocked, seed, 2);
         }
     }
 
@@ -134,6 +140,7 @@ proptest! {
         edges in prop::collection::vec((0u32..8, 0u32..9, 0usize..4), 1..30),
         n in 1u64..400,
         law in law(),
+        open: bool,
         seed: u64,
     ) {
         let mut text = String::from("from,to,diameter_mm\nstart,0,\n");
@@ -147,8 +154,8 @@ proptest! {
         }
         let network = Network::from_csv(text.as_bytes(), "graph.csv", 1.0).unwrap();
         let base = Gradation::linear_from_d0(0.7, 1.6).unwrap();
-        let supply = Supply::new(SizeSampler::new(&base, 1.0).unwrap(), n, 10).arching_by(law);
-        compare(&network, &supply, &vec![false; network.constrictions()], seed, 1);
+        let supply = Supply::new(SizeSampler::new(&base, 1.0).unwrap(), n, 10).arching_by(law).leaving_openings(open);
+        compare(&network, &supply, Clogged::none(&network), seed, 1);
     }
 }
 
@@ -184,14 +191,15 @@ proptest! {
         n in 1u64..600,
         increments in 1u64..20,
         law in law(),
+        open: bool,
         seed: u64,
     ) {
         let Some(network) = linked(rule, rho, 10, &links) else { return Ok(()) };
         let base = Gradation::linear_from_d0(0.4, 2.6).unwrap();
         let sampler = SizeSampler::new(&base, 1.0).unwrap();
-        let supply = Supply::new(sampler, n, increments).arching_by(law);
-        let blocked = compare(&network, &supply, &vec![false; network.constrictions()], seed, 1);
-        compare(&network, &supply, &blocked, seed, 2);
+        let supply = Supply::new(sampler, n, increments).arching_by(law).leaving_openings(open);
+        let blocked = compare(&network, &supply, Clogged::none(&network), seed, 1);
+        compare(&network, &supply, blocked, seed, 2);
     }
 }
 
@@ -217,5 +225,5 @@ fn chunks_are_filled_and_drained_as_the_reference_says() {
     let network = Network::cubic_from_diameters([4, 4, 3], diameters(count, &[1.0, 2.0], 5), 1.0).unwrap();
     let base = Gradation::linear_from_d0(0.7, 1.3).unwrap();
     let supply = Supply::new(SizeSampler::new(&base, 1.0).unwrap(), 2 * CHUNK as u64 + 77, 3);
-    compare(&network, &supply, &vec![false; count], 11, 1);
+    compare(&network, &supply, Clogged::none(&network), 11, 1);
 }

@@ -2,8 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use bitvec::vec::BitVec;
-
 use super::options::Thickness;
 use super::plan::Wanted;
 use super::search::{Found, Start, Trial, USUAL_ACROSS, Walker, search};
@@ -18,6 +16,7 @@ use crate::run::erosion::eroded;
 use crate::run::error::RunError;
 use crate::scene::{Amount, LibraryDensity};
 use crate::verdict::{Finding, finding};
+use crate::walk::Clogged;
 
 /// Ratio at which a first guess takes the layers of a thickness in mm.
 const USUAL_RATIO: f64 = 5.0;
@@ -175,7 +174,7 @@ impl Row {
         callbacks: &Callbacks,
     ) -> Result<Found, RunError> {
         let seed = replicate_seed(self.case.scene.walk.seed, number);
-        let mut walker = OneNetwork { row: self, seed, network: None, blocked: BTreeMap::new(), callbacks };
+        let mut walker = OneNetwork { row: self, seed, network: None, clogged: BTreeMap::new(), callbacks };
         search(&mut walker, bracket, start)
     }
 }
@@ -192,8 +191,8 @@ struct OneNetwork<'a> {
     seed: u64,
     /// The network that was walked last.
     network: Option<Network>,
-    /// What the first run left blocked, by step, of each reading of the base.
-    blocked: BTreeMap<i64, Vec<BitVec>>,
+    /// What the first run left of the constrictions, by step, of each reading of the base.
+    clogged: BTreeMap<i64, Vec<Clogged>>,
     callbacks: &'a Callbacks<'a>,
 }
 
@@ -215,16 +214,16 @@ impl OneNetwork<'_> {
             }
         };
         let network = case.network_unless(self.network.take(), self.seed)?;
-        let before = self.blocked.remove(&step);
-        let (mut all, mut left): (Option<Eroded>, Vec<BitVec>) = (None, Vec::new());
+        let before = self.clogged.remove(&step);
+        let (mut all, mut left): (Option<Eroded>, Vec<Clogged>) = (None, Vec::new());
         for (reading, case) in case.bounds().enumerate() {
-            let open = || BitVec::repeat(false, network.constrictions());
-            let blocked = match run {
+            let open = || Clogged::none(&network);
+            let clogged = match run {
                 1 => open(),
                 _ => before.as_ref().and_then(|before| before.get(reading)).cloned().unwrap_or_else(open),
             };
-            let (found, blocked) = eroded(case, &network, (self.seed, run), blocked, self.callbacks)?;
-            left.push(blocked);
+            let (found, clogged) = eroded(case, &network, (self.seed, run), clogged, self.callbacks)?;
+            left.push(clogged);
             let worse = |all: Eroded| Eroded {
                 mass_fraction: all.mass_fraction.max(found.mass_fraction),
                 below_threshold: all.below_threshold && found.below_threshold,
@@ -234,7 +233,7 @@ impl OneNetwork<'_> {
         self.network = Some(network);
         let all = all.expect("a case has a reading");
         if run == 1 && !all.below_threshold {
-            self.blocked.insert(step, left);
+            self.clogged.insert(step, left);
         }
         Ok(Trial::Eroded(all))
     }

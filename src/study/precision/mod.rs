@@ -93,6 +93,11 @@ pub fn run(scene: Scene, options: &PrecisionOptions, callbacks: &Callbacks) -> R
     if !BUDGET_S.contains(&options.budget.as_secs_f64()) {
         return Err(RunError::refused("budget: allowed: from 100ms to 7days"));
     }
+    if scene.leaves_openings() {
+        let problem = "walk.blocked: allowed: \"closed\"; engines and exact answers are compared where \
+                       blocked constrictions are closed";
+        return Err(RunError::refused(problem));
+    }
     let here = Path::new(".");
     let pool = threads(options.prepare.threads)?;
     let claim = || claim(&options.out, FolderKind::Precision, options.overwrite);

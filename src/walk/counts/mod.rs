@@ -31,6 +31,7 @@ pub use passive::Passive;
 pub(super) use sizes::coarse_share;
 
 use super::exits::VoidExits;
+use super::openings::Ways;
 use super::{Isa, State, Supply};
 use crate::network::{END, Network};
 use crate::stream::{Key, Purpose};
@@ -65,7 +66,7 @@ struct Trap {
 impl<'a> PassiveWalk<'a> {
     /// Prepares to move the passive particles of `state`; `None` where there are none but one by one.
     pub fn new(network: &Network, supply: &'a Supply, state: &State) -> Option<Self> {
-        let shares = || Shares::new(network, &state.blocked);
+        let shares = || Shares::new(network, Ways::Unblocked(&state.blocked));
         let (shares, mover) = match &state.passive {
             Passive::OneByOne => return None,
             Passive::Counts(moving) => (shares(), Mover::Counts(Flow::new(network, moving))),

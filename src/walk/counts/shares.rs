@@ -1,10 +1,9 @@
 //! How the passive particles of a void are split over its exits.
 
-use bitvec::slice::BitSlice;
-
 use super::binomial::CERTAIN;
 use crate::network::Network;
 use crate::walk::exits::{self, VoidExits};
+use crate::walk::openings::Ways;
 
 /// Which way the passive particles of a void go.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,8 +40,8 @@ pub(super) struct Shares {
 }
 
 impl Shares {
-    /// The shares of the constrictions that `blocked` leaves open.
-    pub fn new(network: &Network, blocked: &BitSlice) -> Self {
+    /// The shares of the constrictions that are open.
+    pub fn new(network: &Network, ways: Ways) -> Self {
         let mut shares = Self {
             probability: vec![0; network.constrictions()],
             on: vec![1; network.constrictions()],
@@ -51,7 +50,7 @@ impl Shares {
             of_three: vec![0; network.voids().div_ceil(64)],
             tops: vec![[0; 2]; network.voids()],
         };
-        exits::of_each(network, blocked, 0..network.voids() as u32, |exits| shares.set(network, exits));
+        exits::of_each(network, ways, 0..network.voids() as u32, |exits| shares.set(network, exits));
         shares
     }
 
@@ -171,7 +170,7 @@ mod tests {
     fn of(diameters: [f32; 3], closed: [bool; 3]) -> (Vec<u64>, bool) {
         let network = Network::cubic_from_diameters([1, 1, 1], diameters.to_vec(), 1.0).unwrap();
         let blocked: BitVec = closed.into_iter().collect();
-        let shares = Shares::new(&network, &blocked);
+        let shares = Shares::new(&network, Ways::Unblocked(&blocked));
         (shares.probability.clone(), shares.leads_on(0))
     }
 
@@ -197,7 +196,7 @@ mod tests {
         for d in all().flat_map(|x| all().flat_map(move |y| all().map(move |z| [x, y, z]))) {
             let network = Network::cubic_from_diameters([1, 1, 1], d.to_vec(), 1.0).unwrap();
             let blocked: BitVec = BitVec::repeat(false, 3);
-            let shares = Shares::new(&network, &blocked);
+            let shares = Shares::new(&network, Ways::Unblocked(&blocked));
             let [to_first, to_second] = shares.thresholds_of_three(0);
             assert_eq!(to_first, shares.probability[0]);
             assert_eq!(shares.tops(0), [to_first, to_second].map(|t| (t >> 48) as u16));
@@ -239,7 +238,7 @@ mod tests {
             let network = Network::linked(voids, &links).unwrap();
             let is_open = |c: usize| open.contains(&c) || c >= 1200;
             let blocked: BitVec = (0..network.constrictions()).map(|c| !is_open(c)).collect();
-            let shares = Shares::new(&network, &blocked);
+            let shares = Shares::new(&network, Ways::Unblocked(&blocked));
             let mut exit = shares.open_from(0);
             for (i, &is) in open.iter().enumerate() {
                 assert_eq!(exit, is);
@@ -255,10 +254,10 @@ mod tests {
         let diameters = (0..3 * 70).map(|c| 1.0 + 0.01 * c as f32).collect();
         let network = Network::cubic_from_diameters([7, 5, 2], diameters, 1.0).unwrap();
         let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
-        let open = Shares::new(&network, &blocked);
+        let open = Shares::new(&network, Ways::Unblocked(&blocked));
         assert_eq!(open.shut_and_of_three(0), [0, u64::MAX]);
         assert_eq!(open.shut_and_of_three(1), [0, 0b11_1111]);
-        let mut shares = Shares::new(&network, &blocked);
+        let mut shares = Shares::new(&network, Ways::Unblocked(&blocked));
         for (close, way, shut) in
             [([2], Way::Second, 0), ([1], Way::First, 0), ([0], Way::None, 0b1_0000), ([0], Way::First, 0)]
         {
@@ -266,14 +265,14 @@ mod tests {
                 let is_closed = blocked[3 * 68 + exit];
                 blocked.set(3 * 68 + exit, !is_closed);
             }
-            exits::of_each(&network, &blocked, [68], |exits| shares.set(&network, exits));
+            exits::of_each(&network, Ways::Unblocked(&blocked), [68], |exits| shares.set(&network, exits));
             assert_eq!((shares.way(68), shares.shut_and_of_three(1)), (way, [shut, 0b11_1111]));
             let tops = shares.thresholds_of_three(3 * 68).map(|t| (t >> 48) as u16);
             assert_eq!((shares.tops(68), shares.tops(67)), (tops, open.tops(67)));
         }
         blocked.set(3 * 68 + 1, false);
         blocked.set(3 * 68 + 2, false);
-        exits::of_each(&network, &blocked, [68], |exits| shares.set(&network, exits));
+        exits::of_each(&network, Ways::Unblocked(&blocked), [68], |exits| shares.set(&network, exits));
         assert_eq!((shares.way(68), shares.tops(68)), (Way::Three, open.tops(68)));
     }
 

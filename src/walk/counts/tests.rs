@@ -147,7 +147,9 @@ fn both_engines_follow_one_history() {
         let closing = walked.history.iter().filter(|b| b.increment == t).map(|b| b.constriction);
         closing.clone().for_each(|c| state.blocked.set(c as usize, true));
         let voids = closing.map(|c| upstream[c as usize]);
-        exits::of_each(&network, &state.blocked, voids, |exits| passive.set(&network, exits));
+        exits::of_each(&network, Ways::Unblocked(&state.blocked), voids, |exits| {
+            passive.set(&network, exits)
+        });
     }
     let flowed = expectation(&network, &walked.history, &differences(&inserted), increments);
     judge(&differences(&eroded), &moving, &flowed);
@@ -157,7 +159,8 @@ fn both_engines_follow_one_history() {
 
     // The expectation of the engine itself is the slow one, to rounding.
     let mut expected = Expected::new(network.voids());
-    let mut shares = Shares::new(&network, &BitVec::<usize>::repeat(false, network.constrictions()));
+    let open = BitVec::<usize>::repeat(false, network.constrictions());
+    let mut shares = Shares::new(&network, Ways::Unblocked(&open));
     let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
     let mut flow = ExpectedFlow::new(&network, &shares, &expected);
     for (t, n) in differences(&inserted).into_iter().enumerate() {
@@ -166,7 +169,7 @@ fn both_engines_follow_one_history() {
         for b in walked.history.iter().filter(|b| b.increment == t as u64 + 1) {
             blocked.set(b.constriction as usize, true);
             let void = upstream[b.constriction as usize];
-            exits::of_each(&network, &blocked, [void], |exits| shares.set(&network, exits));
+            exits::of_each(&network, Ways::Unblocked(&blocked), [void], |exits| shares.set(&network, exits));
             flow.set(&network, &shares, void);
         }
     }

@@ -2,6 +2,7 @@ use bitvec::vec::BitVec;
 
 use super::*;
 use crate::walk::exits;
+use crate::walk::openings::Ways;
 
 /// A lattice whose constrictions all differ.
 fn lattice(shape: [u32; 3]) -> Network {
@@ -14,7 +15,7 @@ fn lattice(shape: [u32; 3]) -> Network {
 /// increment, and the voids that retain something.
 fn walked(network: &Network, is_general: bool, isa: Isa) -> Vec<(Expected, Vec<u32>)> {
     let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
-    let mut shares = Shares::new(network, &blocked);
+    let mut shares = Shares::new(network, Ways::Unblocked(&blocked));
     let mut expected = Expected::new(network.voids());
     let mut flow = ExpectedFlow::new(network, &shares, &expected);
     assert!(matches!(flow.by_network, ByNetwork::Lattice(_)));
@@ -36,7 +37,7 @@ fn walked(network: &Network, is_general: bool, isa: Isa) -> Vec<(Expected, Vec<u
         for c in (increment as usize..network.constrictions()).step_by(29) {
             blocked.set(c, true);
             let void = (c / 3) as u32;
-            exits::of_each(network, &blocked, [void], |exits| shares.set(network, exits));
+            exits::of_each(network, Ways::Unblocked(&blocked), [void], |exits| shares.set(network, exits));
             flow.set(network, &shares, void);
         }
     }
