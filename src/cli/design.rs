@@ -3,6 +3,7 @@
 use super::args::DesignArgs;
 use super::print::{counted, json, plain, shown, to_stdout};
 use super::progress::followed;
+use super::specification::specification;
 use super::values::with_options;
 use crate::outcome::design::band::SetBy;
 use crate::outcome::design::{Boundary, Design, DesignRow, Range};
@@ -13,10 +14,15 @@ use crate::study::design::{self, DesignOptions};
 use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::words::capital;
 
-/// Finds the boundaries and writes them into a folder.
+/// Finds the boundaries and writes them into a folder; or the specification by practice alone.
 pub fn design(args: &DesignArgs) -> Result<(), RunError> {
+    if let (true, Some(base)) = (args.steps, &args.base) {
+        return specification(args, base);
+    }
     let seed = args.seed.map(|seed| format!("seed={seed}"));
-    let settings = with_options(&args.settings, [("--seed", seed)])?;
+    let dispersive = args.dispersive.then(|| "base.dispersive=true".to_owned());
+    let settings = with_options(&args.settings, [("--seed", seed), ("--dispersive", dispersive)])?;
+    let out = args.out.clone().unwrap_or_else(|| DesignOptions::default().out);
     let options = DesignOptions {
         base: args.base.clone(),
         filter: args.filter.clone(),
@@ -28,7 +34,8 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
         as_given: args.as_given,
         inverse: args.inverse,
         bracket: [args.bracket.0, args.bracket.1],
-        out: args.out.clone(),
+        sieves: args.sieves,
+        out: out.clone(),
         overwrite: args.overwrite,
         prepare: PrepareOptions {
             packings: args.packings.clone(),
@@ -40,7 +47,7 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
     if args.json {
         to_stdout(&json(format::DESIGN, &found)?);
     } else if !args.quiet {
-        to_stdout(&format!("{}report: {}\n", words(&found), shown(&args.out.join("design.html"))));
+        to_stdout(&format!("{}report: {}\n", words(&found), shown(&out.join("design.html"))));
     }
     Ok(())
 }

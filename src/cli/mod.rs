@@ -30,6 +30,7 @@ mod schemas;
 mod serve;
 mod shell;
 mod soil;
+mod specification;
 mod start;
 mod values;
 

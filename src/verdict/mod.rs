@@ -9,6 +9,7 @@
 //! - `rule_notes` has the words of what those rules say beside their results.
 //! - [`walks`] is what walks say themselves, [`beside`] what their results say beside the verdict.
 //! - [`design_answer()`] is how coarse a filter may be, and [`Band`] the band of a specification.
+//! - [`SpecificationOptions`] are what a specification is asked for, whose steps are made and worded here.
 //! - [`PairRules`] are two soils as practice sees them, without a walk.
 //! - `conclusion` has what every face says first: headline, line of practice, line of the walk, what to do.
 //! - [`words`] are what a class means.
@@ -27,6 +28,7 @@ mod planned_walk;
 pub mod practice;
 mod quantity;
 mod rule_notes;
+mod specification;
 mod thickness;
 pub mod walks;
 pub mod words;
@@ -41,3 +43,4 @@ pub use entry::{Entry, Finding};
 pub use pair::{BaseSizes, FilterSizes, Mistake, MistakeKind, PairOptions, PairRules};
 pub use planned_walk::PlannedWalk;
 pub use quantity::FindingValue;
+pub use specification::SpecificationOptions;

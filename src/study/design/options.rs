@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::outcome::design::SieveSeries;
 use crate::run::prepare::PrepareOptions;
 
 /// D15F/D85B between which boundaries are searched where the user does not say.
@@ -31,6 +32,8 @@ pub struct DesignOptions {
     pub inverse: bool,
     /// D15F/D85B between which boundaries are searched.
     pub bracket: [f64; 2],
+    /// The sieves at which the limits of the specification are stated.
+    pub sieves: SieveSeries,
     /// Folder for the results.
     pub out: PathBuf,
     /// Whether earlier results there are replaced.
@@ -52,6 +55,7 @@ impl Default for DesignOptions {
             as_given: false,
             inverse: false,
             bracket: BRACKET,
+            sieves: SieveSeries::default(),
             out: "voidwalk-design".into(),
             overwrite: false,
             prepare: PrepareOptions::default(),
