@@ -81,7 +81,8 @@ pub enum Command {
         /// The folder
         folder: PathBuf,
     },
-    /// Write the tables of a finished folder as arrays for NumPy (.npz) and grids for ParaView (.vtu)
+    /// Write the tables of a finished folder as arrays for NumPy (.npz) and grids for ParaView (.vtu), and those
+    /// of a run as a workbook (.xlsx)
     Export {
         /// The folder
         folder: PathBuf,
@@ -154,6 +155,10 @@ pub struct ResultArgs {
     /// Replace the results of an earlier run in --out
     #[arg(long)]
     pub overwrite: bool,
+    /// Write verdict.xlsx, too: verdict, inputs, rules, runs, gradations, provenance
+    #[cfg(feature = "xlsx")]
+    #[arg(long)]
+    pub xlsx: bool,
     /// Which verdicts are not accepted.
     #[command(flatten)]
     pub accept: AcceptArgs,
@@ -204,7 +209,13 @@ pub struct SettingArgs {
 #[derive(Debug, Args)]
 pub struct SoilArgs {
     /// Sieve tables: CSV, .xlsx, .ods or AGS4; FILE#NAME for one of several soils
-    pub file: PathBuf,
+    #[cfg_attr(feature = "xlsx", arg(required_unless_present = "template"))]
+    #[cfg_attr(not(feature = "xlsx"), arg(required = true))]
+    pub file: Option<PathBuf>,
+    /// Write a workbook to fill in into this new file, and read nothing: a base and a filter as examples
+    #[cfg(feature = "xlsx")]
+    #[arg(long, value_name = "FILE.xlsx", conflicts_with_all = ["file", "d0_mm", "figure", "json"])]
+    pub template: Option<PathBuf>,
     /// Finest size (mm) of a table whose finest percent is not 0
     #[arg(long, value_name = "MM")]
     pub d0_mm: Option<f64>,

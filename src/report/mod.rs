@@ -63,6 +63,8 @@ mod varied;
 mod verdict_box;
 mod vtu;
 mod walks;
+#[cfg(feature = "xlsx")]
+mod workbook;
 mod written;
 
 pub use crate::outcome::numbers;
@@ -79,4 +81,6 @@ pub use percolation::{percolation_spread, write_percolation};
 pub use precision::{precision_judgements, write_precision};
 pub use soils::soils_figure;
 pub use specification::write_specification;
+#[cfg(feature = "xlsx")]
+pub use workbook::{soil_template, write_verdict_workbook};
 pub use written::{Written, write_page};

@@ -19,7 +19,7 @@ use crate::outcome::design::{Specification, SpecificationStep};
 /// Most curves of a base that the figure draws.
 const DRAWN_CURVES: usize = 12;
 
-/// Writes `specification.html` and its figure into the folder of a specification, from `specification.json`
+/// Writes `specification.html`, its figure and `specification.xlsx` into the folder of a specification, from `specification.json`
 /// there.
 ///
 /// # Errors
@@ -35,6 +35,8 @@ pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
              judgement." }
         p.small { "voidwalk " (of.version) "." }
     };
+    #[cfg(feature = "xlsx")]
+    super::workbook::write_specification_workbook(folder, &of)?;
     let stated = Stated::of(&of);
     let title = "Specification of a filter";
     Sections::new(title, title, &names)

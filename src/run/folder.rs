@@ -27,7 +27,8 @@ const SPECIFIED: [&str; 4] =
     ["specification.csv", "specification_steps.csv", "specification_products.csv", "specification.xlsx"];
 
 /// What `voidwalk export` writes into a folder of that name ...
-const EXPORTED: [&str; 5] = ["arrays.npz", "layers.vtu", "grains.vtu", "voids.pvd", "constrictions.pvd"];
+const EXPORTED: [&str; 6] =
+    ["arrays.npz", "layers.vtu", "grains.vtu", "voids.pvd", "constrictions.pvd", "verdict.xlsx"];
 
 /// ... and how the names of the moments of a walk begin, before their numbers.
 const EXPORTED_MOMENTS: [&str; 2] = ["voids_", "constrictions_"];
@@ -139,6 +140,7 @@ impl FolderKind {
                 "manifest.json",
                 "outcome.json",
                 "report.html",
+                "verdict.xlsx",
                 "series.csv",
                 "layers.csv",
                 "flow.csv",

@@ -52,6 +52,10 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
         p { "The classes: Foster and Fell, as that paper uses them." }
         p.small { "voidwalk " (design.version) ", " (duration(design.seconds)) "." }
     };
+    #[cfg(feature = "xlsx")]
+    if let Some(specification) = &design.specification {
+        super::workbook::write_specification_workbook(folder, specification)?;
+    }
     let stated = design.specification.as_ref().map(Stated::of).unwrap_or_default();
     Sections::new(title, title, &names)
         .words(&sheet)

@@ -54,8 +54,8 @@ impl Found<'_> {
     /// A number of every curve, which of several says whose it is.
     fn each(&self, name: &str, unit: &str, value: impl Fn(&ReadCurve) -> Option<f64>) -> Vec<StepValue> {
         let of = |curve: &ReadCurve| {
-            let whose = if self.read.len() > 1 { format!("{}: ", curve.of.curve) } else { String::new() };
-            named(&format!("{whose}{name}"), value(curve), unit)
+            let whose = if self.read.len() > 1 { format!(" of {}", curve.of.curve) } else { String::new() };
+            named(&format!("{name}{whose}"), value(curve), unit)
         };
         self.read.iter().map(of).collect()
     }
@@ -76,13 +76,13 @@ impl Found<'_> {
 
     fn gravel(&self) -> SpecificationStep {
         let why = |curve: &ReadCurve| match self.read.len() {
-            1 => curve.soil.why.words(),
-            _ => format!("{}: {}", curve.of.curve, curve.soil.why.words()),
+            1 => sentence(&curve.soil.why.words()),
+            _ => format!("{}: {}.", curve.of.curve, curve.soil.why.words()),
         };
         let said: Vec<String> = self.read.iter().map(why).collect();
         SpecificationStep {
             values: self.each("finer than No. 4 (4.75 mm)", "%", |curve| Some(curve.percent_no_4)),
-            note: sentence(&said.join("; ")),
+            note: said.join(" "),
             source: REGRADING.into(),
             ..step("Find out whether the base has gravel or a gap")
         }

@@ -79,7 +79,7 @@ fn of_several_curves_the_strictest_limit_of_each_counts() {
     let limits: Vec<_> = both.curves.iter().map(|curve| curve.d15f_max_mm.unwrap()).collect();
     assert!((limits[1] / limits[0] - 2.0).abs() < 1e-9, "{limits:?}");
     assert!(both.steps[4].note.ends_with("for fine.") && both.steps[5].note.starts_with("Set by coarse."));
-    assert!(value(&both, "coarse: D15B").is_some());
+    assert!(value(&both, "D15B of coarse").is_some());
 }
 
 #[test]
