@@ -81,8 +81,8 @@ pub enum Command {
         /// The folder
         folder: PathBuf,
     },
-    /// Write the tables of a finished folder as arrays for NumPy (.npz) and grids for ParaView (.vtu), and those
-    /// of a run as a workbook (.xlsx)
+    /// Write the tables of a finished folder as arrays for NumPy (.npz) and grids for ParaView (.vtu), and
+    /// those of a run as a workbook (.xlsx)
     Export {
         /// The folder
         folder: PathBuf,

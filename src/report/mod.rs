@@ -4,9 +4,9 @@
 //! `layers.csv`, `retained.csv`, `eroded.csv`; see [`crate::outcome::record`]) and runs nothing;
 //! [`write_packing()`] reads the folder of a packing, [`write_campaign()`] that of a campaign,
 //! [`write_percolation()`] that of a percolation study, and [`write_precision()`] that of a study of error
-//! against run time; [`write_comparison()`] that of several cases side by side, [`write_design()`] that of a design and
-//! [`write_specification()`] that of a specification by practice alone. They write `figures/*.svg`,
-//! each a file of its own, and `report.html`.
+//! against run time; [`write_comparison()`] that of several cases side by side, [`write_design()`] that of a
+//! design and [`write_specification()`] that of a specification by practice alone. They write
+//! `figures/*.svg`, each a file of its own, and `report.html`.
 //!
 //! # Pages without a folder
 //! What was walked in memory has the same page, as text: [`run_page()`] from what its files would say, and

@@ -19,8 +19,8 @@ use crate::outcome::design::{Specification, SpecificationStep};
 /// Most curves of a base that the figure draws.
 const DRAWN_CURVES: usize = 12;
 
-/// Writes `specification.html`, its figure and `specification.xlsx` into the folder of a specification, from `specification.json`
-/// there.
+/// Writes `specification.html`, its figure and `specification.xlsx` into the folder of a specification, from
+/// `specification.json` there.
 ///
 /// # Errors
 /// The file is missing or malformed, or something cannot be written.
@@ -99,8 +99,8 @@ fn steps(of: &Specification) -> Markup {
     html! {
         p.small {
             "The steps follow the order in which NRCS designs a filter (National Engineering Handbook, Part \
-             633, Chapter 26). Each step names the text in which its numbers were read, or says that they are \
-             checks of this program."
+             633, Chapter 26). Each step names the text in which its numbers were read, or says that they \
+             are checks of this program."
         }
         (Table::of(&of.steps).class("study")
             .text("Step", |step: &SpecificationStep| step.step)
@@ -142,8 +142,8 @@ fn limits(of: &Specification) -> Markup {
             .number("Greatest finer (%)", |limit| percent(limit.max_percent_finer))
             .render())
         p.small {
-            "Percent finer by mass, in whole percents within the band. At most 5 % may be finer than 0.075 mm, \
-             and these fines must not be plastic. Segregation is not checked: see its step."
+            "Percent finer by mass, in whole percents within the band. At most 5 % may be finer than \
+             0.075 mm, and these fines must not be plastic. Segregation is not checked: see its step."
         }
         (Table::of(&band.sizes)
             .name("Size of the band", |size| format!("D{}", size.percent))
@@ -182,8 +182,8 @@ fn products(of: &Specification) -> Markup {
                 })
                 .render())
             p.small {
-                "A margin of 1 and more is kept. A product that fits by its D15 may still leave the band: its \
-                 supplier’s gradation decides."
+                "A margin of 1 and more is kept. A product that fits by its D15 may still leave the band: \
+                 its supplier’s gradation decides."
             }
         }
     }

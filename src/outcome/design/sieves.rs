@@ -69,7 +69,7 @@ impl FromStr for SieveSeries {
         match text.trim().to_lowercase().as_str() {
             "us" => Ok(Self::Us),
             "iso" => Ok(Self::Iso),
-            _ => Err(format!("sieves {text}: allowed: us (ASTM E11, by inches and numbers) or iso (mm)")),
+            _ => Err("allowed: us (ASTM E11, by inches and numbers) or iso (mm)".into()),
         }
     }
 }

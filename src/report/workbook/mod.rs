@@ -21,8 +21,8 @@ pub(super) const VERDICT: &str = "verdict.xlsx";
 /// The workbook of a specification.
 const SPECIFICATION: &str = "specification.xlsx";
 
-/// Writes `verdict.xlsx` into `into`, from the files of a finished run folder: the answer, what went in, every
-/// rule with its formula and source, every run, both gradations, and what made it.
+/// Writes `verdict.xlsx` into `into`, from the files of a finished run folder: the answer, what went in,
+/// every rule with its formula and source, every run, both gradations, and what made it.
 ///
 /// # Errors
 /// As [`super::write()`].

@@ -88,8 +88,8 @@ fn no_band(
     match (min, max) {
         _ if has_band => None,
         (Some(min), Some(max)) if min > max => Some(format!(
-            "No filter both drains and retains this base: D15F must be at least {} mm to drain it and at most \
-             {} mm to retain it. A filter in two stages, or a base that is less broad, is needed.",
+            "No filter both drains and retains this base: D15F must be at least {} mm to drain it and at \
+             most {} mm to retain it. A filter in two stages, or a base that is less broad, is needed.",
             size(min),
             size(max)
         )),

@@ -209,8 +209,8 @@ impl Found<'_> {
                 named("least D60F", d60(0), "mm"),
             ],
             note: format!(
-                "Cu of each side is at most {MOST_CU}. {D15_OVER_D10} is D15/D10 of a side that is straight on \
-                 the form and has this Cu."
+                "Cu of each side is at most {MOST_CU}. {D15_OVER_D10} is D15/D10 of a side that is straight \
+                 on the form and has this Cu."
             ),
             source: source_of("filter-uniformity"),
             ..step("Keep both sides uniform, without gaps")
