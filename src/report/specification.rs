@@ -43,7 +43,7 @@ pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
         .words(&answer(&of))
         .figures(stated.figure)
         .section("Limits sieve by sieve", &stated.limits)
-        .section("Standard products", &products(&of))
+        .section("Standard products", &products(&of, true))
         .section("Step by step", &stated.words)
         .write(folder, "specification.html", &footer)
 }
@@ -57,6 +57,8 @@ pub(super) struct Stated {
     pub figure: Option<Drawn>,
     /// What a delivery may have finer than each sieve.
     pub limits: Markup,
+    /// Margins of standard products.
+    pub products: Markup,
 }
 
 impl Stated {
@@ -65,6 +67,7 @@ impl Stated {
             words: steps(specification),
             figure: specification.band.as_ref().map(|band| figure(specification, band)),
             limits: limits(specification),
+            products: products(specification, false),
         }
     }
 }
@@ -103,9 +106,8 @@ fn steps(of: &Specification) -> Markup {
              are checks of this program."
         }
         (Table::of(&of.steps).class("study")
-            .text("Step", |step: &SpecificationStep| step.step)
-            .name("What is done, formula, source", |step| html! {
-                (clean(&step.does))
+            .name("What is done, formula, source", |step: &SpecificationStep| html! {
+                (step.step) ". " (clean(&step.does))
                 @for text in [&step.formula, &step.note] {
                     @if !text.is_empty() { br; span.small { (clean(text)) } }
                 }
@@ -157,33 +159,39 @@ fn percent(value: f64) -> String {
     if value.fract() == 0.0 { format!("{value:.0}") } else { format!("{value:.1}") }
 }
 
-fn products(of: &Specification) -> Markup {
+/// Margins of standard products; who judges them elsewhere says there whether they fit.
+fn products(of: &Specification, says_fit: bool) -> Markup {
     let margin = |value: Option<f64>| known(value, significant);
+    let beyond = |of: &ProductMargin| match (of.leaves_band_by, of.worst_sieve_mm) {
+        (Some(points), Some(sieve)) => {
+            format!("{points:.0} percentage points, at {} mm", significant(sieve))
+        }
+        (Some(_), None) => "nowhere".into(),
+        _ => "–".into(),
+    };
+    let mut table = Table::of(&of.products)
+        .class("study")
+        .name("Product", |of: &ProductMargin| clean(&of.product))
+        .number("D15, fine to coarse side (mm)", |of| {
+            format!("{} to {}", significant(of.d15_fine_mm), significant(of.d15_coarse_mm))
+        })
+        .number("Drains: finest D15 / least D15F", |of| margin(of.drains_by))
+        .number("Retains: greatest D15F / coarsest D15", |of| margin(of.holds_by))
+        .text("Leaves the band by most", beyond);
+    if says_fit {
+        table = table.text("", |of| match of.fits() {
+            true => html! { span.keeps { "✓ D15 fits" } },
+            false => html! { span.breaks { "✗ does not fit" } },
+        });
+    }
+    let mut sources: Vec<&str> = of.products.iter().map(|product| product.source.as_str()).collect();
+    sources.dedup();
     html! {
         @if !of.products.is_empty() {
-            (Table::of(&of.products)
-                .name("Product, source of its limits", |of: &ProductMargin| html! {
-                    (clean(&of.product)) br; span.small { (clean(&of.source)) }
-                })
-                .number("D15, fine to coarse side (mm)", |of| {
-                    format!("{} to {}", significant(of.d15_fine_mm), significant(of.d15_coarse_mm))
-                })
-                .number("Drains: finest D15 / least D15F", |of| margin(of.drains_by))
-                .number("Retains: greatest D15F / coarsest D15", |of| margin(of.holds_by))
-                .text("Leaves the band by most", |of| match (of.leaves_band_by, of.worst_sieve_mm) {
-                    (Some(points), Some(sieve)) => {
-                        format!("{points:.0} percentage points, at {} mm", significant(sieve))
-                    }
-                    (Some(_), None) => "nowhere".into(),
-                    _ => "–".into(),
-                })
-                .text("", |of| if of.fits() { html! { span.keeps { "✓ D15 fits" } } } else {
-                    html! { span.breaks { "✗ does not fit" } }
-                })
-                .render())
+            (table.render())
             p.small {
                 "A margin of 1 and more is kept. A product that fits by its D15 may still leave the band: \
-                 its supplier’s gradation decides."
+                 its supplier’s gradation decides. Limits of the products: " (clean(&sources.join("; "))) "."
             }
         }
     }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::products::{PRODUCTS, Product};
 use super::sieves::SieveSeries;
 use crate::gradation::FINES_MM;
-use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_FINES_PERCENT};
+use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_FINES_PERCENT, WIDEST_BAND};
 
 /// The whole of `specification.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -230,8 +230,9 @@ impl SizeBand {
     /// From the control points of its sides: least and greatest D15 and D60 (mm).
     ///
     /// Both sides are straight in percent over log size between their points, and go on so up to 100 %, but
-    /// to no more than 75 mm. The fine side begins at 5 % finer than 0.075 mm; the coarse side goes on
-    /// straight down to 0 %. `None` where a D60 is not below 75 mm.
+    /// to no more than 75 mm. The coarse side goes on straight down to 0 %. The fine side begins at its D5, a
+    /// fifth of that of the coarse side but not less than 0.075 mm; at most 5 % are finer. `None` where a D60
+    /// is not below 75 mm.
     pub fn of(d15: [f64; 2], d60: [f64; 2]) -> Option<Self> {
         let on =
             |side: usize, percent: f64| d15[side] * libm::pow(d60[side] / d15[side], (percent - 15.0) / 45.0);
@@ -239,7 +240,8 @@ impl SizeBand {
             return None;
         }
         let top = |side: usize| [on(side, 100.0).min(GREATEST_SIZE_MM), 100.0];
-        let fine_side = vec![[FINES_MM, MOST_FINES_PERCENT], [d15[0], 15.0], [d60[0], 60.0], top(0)];
+        let d5 = (on(1, MOST_FINES_PERCENT) / WIDEST_BAND).max(FINES_MM);
+        let fine_side = vec![[d5, MOST_FINES_PERCENT], [d15[0], 15.0], [d60[0], 60.0], top(0)];
         let coarse_side = vec![[on(1, 0.0), 0.0], [d15[1], 15.0], [d60[1], 60.0], top(1)];
         let size = |percent: f64| BandSize {
             percent,
@@ -362,7 +364,9 @@ mod tests {
         assert_eq!((size(15.0), size(60.0)), ((0.14, 0.7), (0.7, 3.5)));
         // Both sides rise by a factor of 5 in 45 %.
         let (d5, d90, d100) = (size(5.0), size(90.0), size(100.0));
-        assert!(d5.0 == 0.075 && near(d5.1, 0.7 * 5f64.powf(-10.0 / 45.0)), "{d5:?}");
+        assert!(near(d5.0, d5.1 / 5.0) && near(d5.1, 0.7 * 5f64.powf(-10.0 / 45.0)), "{d5:?}");
+        let fine = SizeBand::of([0.1, 0.3], [0.3, 1.5]).unwrap();
+        assert_eq!(fine.sizes[0].min_mm, 0.075);
         assert!(near(d90.0, 0.7 * 5f64.powf(30.0 / 45.0)) && near(d90.1, 3.5 * 5f64.powf(30.0 / 45.0)));
         assert!(near(d100.0, 0.7 * 5f64.powf(40.0 / 45.0)) && near(d100.1, 3.5 * 5f64.powf(40.0 / 45.0)));
     }

@@ -67,6 +67,7 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
         .section("The specification, step by step", &stated.words)
         .figures(stated.figure)
         .section("Limits sieve by sieve", &stated.limits)
+        .section("Margins of standard products", &stated.products)
         .section("Rules of practice", &practice(&design))
         .section("Network by network", &networks(&design))
         .section("How this was made", &made(&design, &walks))

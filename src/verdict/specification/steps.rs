@@ -219,10 +219,13 @@ impl Found<'_> {
 
     fn ends(&self) -> SpecificationStep {
         SpecificationStep {
-            formula: format!("least D5F {FINES_MM} mm; greatest D100F {GREATEST_SIZE_MM} mm"),
+            formula: format!(
+                "least D5F = greatest D5F / {WIDEST_BAND}, not less than {FINES_MM} mm; greatest D100F \
+                 {GREATEST_SIZE_MM} mm"
+            ),
             values: vec![
-                named("least D5F", Some(FINES_MM), "mm"),
-                named("greatest D100F", Some(GREATEST_SIZE_MM), "mm"),
+                named("least D5F allowed", Some(FINES_MM), "mm"),
+                named("greatest D100F allowed", Some(GREATEST_SIZE_MM), "mm"),
             ],
             note: format!(
                 "At most {MOST_FINES_PERCENT} % is finer than {FINES_MM} mm. These fines must not be plastic."

@@ -2,6 +2,8 @@
 
 use super::*;
 use crate::gradation::Gradation;
+use crate::outcome::record::RuleRole;
+use crate::verdict::{PairOptions, PairRules};
 
 fn soil(points: &[(f64, f64)]) -> Gradation {
     Gradation::from_points(points, None).unwrap()
@@ -107,4 +109,36 @@ fn the_walk_narrows_the_band_where_it_is_the_stricter() {
         Specification::of("sand", &sand, options).d15f_max_mm
     };
     assert!(near(with(1.5), 1.5) && near(with(3.0), 2.0));
+}
+
+/// What is specified keeps every rule of the table: both sides of the band, against every curve of the base.
+#[test]
+fn both_sides_of_a_band_keep_every_rule_of_retention_drainage_and_placing() {
+    let bases: [&[(f64, f64)]; 5] = [
+        &[(0.001, 0.0), (0.02, 60.0), (0.05, 85.0), (0.075, 90.0), (0.3, 100.0)],
+        &[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)],
+        &[(0.002, 6.0), (0.02, 20.0), (0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)],
+        &[(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)],
+        &[(0.1, 0.0), (0.3, 15.0), (1.2, 85.0), (3.0, 100.0)],
+    ];
+    for points in bases {
+        let band = of(points).band.unwrap();
+        let side = |rows: &[[f64; 2]]| soil(&rows.iter().map(|row| (row[0], row[1])).collect::<Vec<_>>());
+        let sides =
+            [("fine".to_owned(), side(&band.fine_side)), ("coarse".to_owned(), side(&band.coarse_side))];
+        // A hair finer, so that no rounding breaks the limit itself.
+        let sides = sides.map(|(name, curve)| {
+            let hair = if name == "coarse" { 1.0 - 1e-9 } else { 1.0 + 1e-9 };
+            (name, curve.scaled(hair).unwrap())
+        });
+        let base = [("base".to_owned(), soil(points))];
+        let rules = PairRules::of_envelopes(&base, &sides, PairOptions::default()).rules;
+        let of_roles = [RuleRole::Retention, RuleRole::Drainage, RuleRole::Placing];
+        let broken = rules.iter().filter(|rule| of_roles.contains(&rule.role) && rule.is_broken());
+        assert_eq!(broken.map(|rule| &rule.id).collect::<Vec<_>>(), Vec::<&String>::new(), "{points:?}");
+        let met = |id: &str| rules.iter().find(|rule| rule.id == id).unwrap().met;
+        for id in ["sherard-dunnigan", "permeability", "filter-uniformity", "filter-band", "filter-fines"] {
+            assert_eq!(met(id), Some(true), "{id}: {points:?}");
+        }
+    }
 }
