@@ -1,40 +1,135 @@
-//! Answers as workbooks, read back by another library: every number is that of the JSON file.
+//! Answers as workbooks, read back part by part: every number is that of the JSON file.
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::Read;
 use std::path::Path;
 
-use calamine::{Data, DataType, Range, Reader, Xlsx, open_workbook};
+use quick_xml::Reader;
+use quick_xml::events::{BytesStart, Event};
 use serde_json::Value;
 
 use crate::judge::{SMALL, soils};
 use crate::program::{call, done, refused};
 
-fn sheets(path: &Path) -> BTreeMap<String, Range<Data>> {
-    let mut book: Xlsx<_> = open_workbook(path).unwrap();
-    book.worksheets().into_iter().collect()
+/// What a cell holds.
+#[derive(Clone, Debug, PartialEq)]
+enum Cell {
+    Empty,
+    Number(f64),
+    Truth(bool),
+    Words(String),
+}
+
+impl Cell {
+    fn words(&self) -> &str {
+        match self {
+            Self::Words(words) => words,
+            Self::Empty => "",
+            other => panic!("{other:?} are no words"),
+        }
+    }
+
+    fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number(number) => Some(*number),
+            Self::Empty => None,
+            other => panic!("{other:?} is no number"),
+        }
+    }
+}
+
+/// The rows of a sheet, headings first.
+type Rows = Vec<Vec<Cell>>;
+
+fn attribute(element: &BytesStart, name: &str) -> Option<String> {
+    let found = element.attributes().flatten().find(|of| of.key.as_ref() == name)?;
+    Some(quick_xml::escape::unescape(&found.value).unwrap().into_owned())
+}
+
+/// Calls `at` for each element, by its name, with the text within it; of nested ones the inner first.
+fn elements(text: &str, mut at: impl FnMut(&str, &BytesStart, &str)) {
+    let mut reader = Reader::from_str(text);
+    reader.config_mut().expand_empty_elements = true;
+    let mut open: Vec<(BytesStart, String)> = Vec::new();
+    loop {
+        match reader.read_event().unwrap() {
+            Event::Start(element) => open.push((element.into_owned(), String::new())),
+            Event::End(_) => {
+                let (element, text) = open.pop().unwrap();
+                at(element.name().as_ref(), &element, &text);
+                if let Some(outer) = open.last_mut() {
+                    outer.1.push_str(&text);
+                }
+            }
+            Event::Text(text) => open.last_mut().into_iter().for_each(|of| of.1.push_str(&text)),
+            Event::GeneralRef(name) => {
+                let written = format!("&{};", &*name);
+                let character = quick_xml::escape::unescape(&written).unwrap();
+                open.last_mut().into_iter().for_each(|of| of.1.push_str(&character));
+            }
+            Event::Eof => return,
+            _ => {}
+        }
+    }
+}
+
+fn sheets(path: &Path) -> BTreeMap<String, Rows> {
+    let mut zipped = zip::ZipArchive::new(fs::File::open(path).unwrap()).unwrap();
+    let mut part = |name: &str| {
+        let mut text = String::new();
+        zipped.by_name(name).unwrap().read_to_string(&mut text).unwrap();
+        text
+    };
+    let mut strings = Vec::new();
+    elements(&part("xl/sharedStrings.xml"), |name, _, text| {
+        if name == "si" {
+            strings.push(text.to_owned());
+        }
+    });
+    let mut names = Vec::new();
+    elements(&part("xl/workbook.xml"), |name, element, _| {
+        names.extend(Some(element).filter(|_| name == "sheet").and_then(|of| attribute(of, "name")));
+    });
+    let mut found = BTreeMap::new();
+    for (number, sheet) in (1..).zip(names) {
+        let (mut rows, mut row): (Rows, Vec<Cell>) = (Vec::new(), Vec::new());
+        elements(&part(&format!("xl/worksheets/sheet{number}.xml")), |name, element, text| match name {
+            "c" => {
+                let place = attribute(element, "r").unwrap();
+                let letters = place.bytes().take_while(u8::is_ascii_alphabetic);
+                let column = letters.fold(0, |at, letter| 26 * at + usize::from(letter - b'A') + 1) - 1;
+                row.resize(column, Cell::Empty);
+                row.push(match attribute(element, "t").as_deref() {
+                    Some("s") => Cell::Words(strings[text.parse::<usize>().unwrap()].clone()),
+                    Some("b") => Cell::Truth(text == "1"),
+                    Some(other) => panic!("a cell of type {other}"),
+                    None if text.is_empty() => Cell::Empty,
+                    None => Cell::Number(text.parse().unwrap()),
+                });
+            }
+            "row" => rows.push(std::mem::take(&mut row)),
+            _ => {}
+        });
+        found.insert(sheet, rows);
+    }
+    found
 }
 
 /// The rows of a sheet below its headings, by heading.
-fn rows(sheet: &Range<Data>) -> Vec<BTreeMap<String, Data>> {
-    let mut rows = sheet.rows();
-    let headings: Vec<String> = rows.next().unwrap().iter().map(ToString::to_string).collect();
-    rows.map(|row| headings.iter().cloned().zip(row.iter().cloned()).collect()).collect()
+fn rows(sheet: &Rows) -> Vec<BTreeMap<String, Cell>> {
+    let headings: Vec<String> = sheet[0].iter().map(|cell| cell.words().to_owned()).collect();
+    let filled = |row: &Vec<Cell>| {
+        let cells = row.iter().cloned().chain(std::iter::repeat(Cell::Empty));
+        headings.iter().cloned().zip(cells).collect()
+    };
+    sheet[1..].iter().map(filled).collect()
 }
 
 /// The value of an item of a sheet of items.
-fn item(sheet: &Range<Data>, name: &str) -> Data {
-    let row = rows(sheet).into_iter().find(|row| row["Item"] == name).unwrap_or_else(|| panic!("{name}"));
-    row["Value"].clone()
-}
-
-fn number(data: &Data) -> Option<f64> {
-    match data {
-        Data::Float(number) => Some(*number),
-        Data::Int(number) => Some(*number as f64),
-        Data::Empty => None,
-        other => panic!("{other} is no number"),
-    }
+fn item(sheet: &Rows, name: &str) -> Cell {
+    let row = rows(sheet).into_iter().find(|row| row["Item"].words() == name);
+    row.unwrap_or_else(|| panic!("{name}"))["Value"].clone()
 }
 
 /// Every number of a JSON value.
@@ -59,19 +154,19 @@ fn the_workbook_of_a_verdict_has_the_numbers_of_its_outcome() {
     assert_eq!(all.keys().collect::<Vec<_>>(), names);
     // Item by item.
     let verdict = &all["Verdict"];
-    assert_eq!(item(verdict, "Class of the walk").to_string(), outcome["verdict"].as_str().unwrap());
+    assert_eq!(item(verdict, "Class of the walk").words(), outcome["verdict"].as_str().unwrap());
     for (run, summary) in (1..).zip(outcome["summary"].as_array().unwrap()) {
         let eroded = &summary["eroded_mass_fraction"];
         for (what, key) in
             [("mean", "mean"), ("standard deviation", "sd"), ("lower end of the 95 % interval", "low")]
         {
-            let found = number(&item(verdict, &format!("Mass eroded, run {run}, {what}")));
+            let found = item(verdict, &format!("Mass eroded, run {run}, {what}")).number();
             assert_eq!(found, eroded[key].as_f64(), "{run} {what}");
         }
     }
-    assert_eq!(number(&item(verdict, "D15F/D85B")), outcome["ratios"]["d15f_over_d85b"].as_f64());
-    assert_eq!(number(&item(&all["Inputs"], "D15F")), outcome["inputs"]["filter"]["d15_mm"].as_f64());
-    assert_eq!(number(&item(&all["Inputs"], "Base particles in each run")), outcome["n_base"].as_f64());
+    assert_eq!(item(verdict, "D15F/D85B").number(), outcome["ratios"]["d15f_over_d85b"].as_f64());
+    assert_eq!(item(&all["Inputs"], "D15F").number(), outcome["inputs"]["filter"]["d15_mm"].as_f64());
+    assert_eq!(item(&all["Inputs"], "Base particles in each run").number(), outcome["n_base"].as_f64());
     // Rule by rule, with formula and source.
     let of_json: Vec<&Value> =
         outcome["rules"].as_array().unwrap().iter().filter(|rule| rule["role"] != "walk").collect();
@@ -79,12 +174,12 @@ fn the_workbook_of_a_verdict_has_the_numbers_of_its_outcome() {
     assert_eq!(of_json.len(), of_book.len());
     for (json, book) in of_json.iter().zip(&of_book) {
         let id = &json["id"];
-        assert_eq!(number(&book["Value"]), json["value"].as_f64(), "{id}");
-        assert_eq!(number(&book["Limit"]), json["limit"].as_f64(), "{id}");
+        assert_eq!(book["Value"].number(), json["value"].as_f64(), "{id}");
+        assert_eq!(book["Limit"].number(), json["limit"].as_f64(), "{id}");
         for (heading, key) in [("Formula", "formula"), ("Source", "source"), ("Id", "id"), ("Rule", "name")] {
-            assert_eq!(book[heading].to_string(), json[key].as_str().unwrap(), "{id}");
+            assert_eq!(book[heading].words(), json[key].as_str().unwrap(), "{id}");
         }
-        let met = json["met"].as_bool().map_or(Data::Empty, Data::Bool);
+        let met = json["met"].as_bool().map_or(Cell::Empty, Cell::Truth);
         assert_eq!(book["Met"], met, "{id}");
     }
     // Run by run.
@@ -98,13 +193,13 @@ fn the_workbook_of_a_verdict_has_the_numbers_of_its_outcome() {
     assert_eq!(runs.len(), of_book.len());
     for (json, book) in runs.iter().zip(&of_book) {
         let eroded = &book["Mass eroded (fraction of the mass inserted)"];
-        assert_eq!(number(eroded), json["eroded_mass_fraction"].as_f64());
-        assert_eq!(number(&book["Particle moves"]), json["particle_moves"].as_f64());
+        assert_eq!(eroded.number(), json["eroded_mass_fraction"].as_f64());
+        assert_eq!(book["Particle moves"].number(), json["particle_moves"].as_f64());
     }
     // Point by point.
     let curve = |name: &str| -> Vec<[Option<f64>; 2]> {
-        let all = rows(&all["Gradations"]).into_iter().filter(|row| row["Curve"] == name);
-        all.map(|row| [number(&row["Size (mm, or D0F without a unit)"]), number(&row["Finer (%)"])]).collect()
+        let all = rows(&all["Gradations"]).into_iter().filter(|row| row["Curve"].words() == name);
+        all.map(|row| [row["Size (mm, or D0F without a unit)"].number(), row["Finer (%)"].number()]).collect()
     };
     let of = |value: &Value| -> Vec<[Option<f64>; 2]> {
         value.as_array().unwrap().iter().map(|row| [row[0].as_f64(), row[1].as_f64()]).collect()
@@ -117,8 +212,10 @@ fn the_workbook_of_a_verdict_has_the_numbers_of_its_outcome() {
     numbers_of(&outcome, &mut known);
     known.extend((0..=outcome["replicates"].as_array().unwrap().len()).map(|count| count as f64));
     for (name, sheet) in &all {
-        for cell in sheet.cells().filter_map(|(_, _, cell)| cell.as_f64().filter(|_| cell.is_float())) {
-            assert!(known.contains(&cell), "{name}: {cell}");
+        for cell in sheet.iter().flatten() {
+            if let Cell::Number(number) = cell {
+                assert!(known.contains(number), "{name}: {number}");
+            }
         }
     }
     // The same bytes again, by the command for finished folders, and gone with the results.
@@ -144,20 +241,20 @@ fn the_workbook_of_a_specification_has_its_limits_and_steps() {
     let limits = rows(&all["Limits"]);
     assert_eq!(limits.len(), json["limits"].as_array().unwrap().len());
     for (book, json) in limits.iter().zip(json["limits"].as_array().unwrap()) {
-        assert_eq!(book["Sieve"].to_string(), json["sieve"].as_str().unwrap());
+        assert_eq!(book["Sieve"].words(), json["sieve"].as_str().unwrap());
         for (heading, key) in [
             ("Opening (mm)", "opening_mm"),
             ("Least finer by mass (%)", "min_percent_finer"),
             ("Greatest finer by mass (%)", "max_percent_finer"),
         ] {
-            assert_eq!(number(&book[heading]), json[key].as_f64());
+            assert_eq!(book[heading].number(), json[key].as_f64());
         }
     }
     let values = json["steps"].as_array().unwrap().iter().flat_map(|step| step["values"].as_array().unwrap());
-    let of_book = rows(&all["Steps"]).into_iter().filter(|row| row["Quantity"] != Data::Empty);
-    let of_book: Vec<Option<f64>> = of_book.map(|row| number(&row["Value"])).collect();
+    let of_book = rows(&all["Steps"]).into_iter().filter(|row| row["Quantity"] != Cell::Empty);
+    let of_book: Vec<Option<f64>> = of_book.map(|row| row["Value"].number()).collect();
     assert_eq!(of_book, values.map(|value| value["value"].as_f64()).collect::<Vec<_>>());
-    assert_eq!(number(&item(&all["Specification"], "Greatest D15F, which retains the base")), Some(0.7));
+    assert_eq!(item(&all["Specification"], "Greatest D15F, which retains the base").number(), Some(0.7));
     done(&call(root.path(), &["report", "s"]));
     assert_eq!(fs::read(&file).unwrap(), first);
 }

@@ -94,6 +94,7 @@ pub fn design(
         out,
         overwrite,
         prepare: manner.prepare(packings),
+        ..DesignOptions::default()
     };
     let found = at_work(py, progress, |callbacks| designs::run(&options, &callbacks.run))?;
     format::DESIGN.json(&found).map_err(failed)
