@@ -73,11 +73,20 @@ impl Stated {
 }
 
 fn answer(of: &Specification) -> Markup {
-    let range = of.d15f_min_mm.zip(of.d15f_max_mm).filter(|_| of.band.is_some());
+    let d15 = of.band.iter().flat_map(|band| &band.sizes).find(|size| size.percent == 15.0);
+    let raised = d15.zip(of.d15f_min_mm).filter(|(size, least)| size.min_mm > *least);
     html! {
         section.verdict {
-            @if let Some((min, max)) = range {
-                p.word.long { "D15F from " (significant(min)) " to " (significant(max)) " mm, by practice." }
+            @if let Some(size) = d15 {
+                p.word.long {
+                    "D15F from " (significant(size.min_mm)) " to " (significant(size.max_mm)) " mm, by practice."
+                }
+            }
+            @if let Some((_, least)) = raised {
+                p {
+                    "A D15F of " (significant(least)) " mm already drains the base. The least is raised to \
+                     keep the band narrow."
+                }
             }
             @if let Some(why) = &of.no_band { p.word.long { "No band." } p { (clean(why)) } }
             p { (clean(&products_in_short(of))) }
@@ -90,9 +99,12 @@ fn products_in_short(of: &Specification) -> String {
     let fitting: Vec<&str> =
         of.products.iter().filter(|of| of.fits()).map(|of| of.product.as_str()).collect();
     match (fitting.is_empty(), of.nearest_product()) {
-        (false, _) => format!("D15 within these limits: {}.", fitting.join(", ")),
+        (false, _) => format!("D15 of both sides drains and retains: {}.", fitting.join(", ")),
         (true, Some(nearest)) => {
-            format!("No standard product has its D15 within these limits. {} comes closest.", nearest.product)
+            format!(
+                "Of no standard product does D15 of both sides drain and retain. {} comes closest.",
+                nearest.product
+            )
         }
         (true, None) => "Standard products are not compared: no limit of D15F is known.".into(),
     }
