@@ -79,7 +79,8 @@ fn answer(of: &Specification) -> Markup {
         section.verdict {
             @if let Some(size) = d15 {
                 p.word.long {
-                    "D15F from " (significant(size.min_mm)) " to " (significant(size.max_mm)) " mm, by practice."
+                    "D15F from " (significant(size.min_mm)) " to " (significant(size.max_mm))
+                    " mm, by practice."
                 }
             }
             @if let Some((_, least)) = raised {
