@@ -81,7 +81,11 @@ fn words(of: &Specification) -> String {
             significant(product.d15_coarse_mm),
             margin(product.drains_by),
             margin(product.holds_by),
-            if product.fits() { "D15 fits" } else { "does not fit" }
+            match product.fits() {
+                Some(true) => "D15 fits",
+                Some(false) => "does not fit",
+                None => "no result",
+            }
         ));
     }
     if let Some(nearest) = of.nearest_product() {

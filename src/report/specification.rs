@@ -98,7 +98,7 @@ fn answer(of: &Specification) -> Markup {
 /// Which standard products fit, or which comes closest.
 fn products_in_short(of: &Specification) -> String {
     let fitting: Vec<&str> =
-        of.products.iter().filter(|of| of.fits()).map(|of| of.product.as_str()).collect();
+        of.products.iter().filter(|of| of.fits() == Some(true)).map(|of| of.product.as_str()).collect();
     match (fitting.is_empty(), of.nearest_product()) {
         (false, _) => format!("D15 of both sides drains and retains: {}.", fitting.join(", ")),
         (true, Some(nearest)) => {
@@ -107,7 +107,9 @@ fn products_in_short(of: &Specification) -> String {
                 nearest.product
             )
         }
-        (true, None) => "Standard products are not compared: no limit of D15F is known.".into(),
+        (true, None) => {
+            "Of no standard product is known whether it fits: a limit of D15F is not known.".into()
+        }
     }
 }
 
@@ -193,8 +195,9 @@ fn products(of: &Specification, says_fit: bool) -> Markup {
         .text("Leaves the band by most", beyond);
     if says_fit {
         table = table.text("", |of| match of.fits() {
-            true => html! { span.keeps { "✓ D15 fits" } },
-            false => html! { span.breaks { "✗ does not fit" } },
+            Some(true) => html! { span.keeps { "✓ D15 fits" } },
+            Some(false) => html! { span.breaks { "✗ does not fit" } },
+            None => html! { "no result" },
         });
     }
     let mut sources: Vec<&str> = of.products.iter().map(|product| product.source.as_str()).collect();

@@ -36,7 +36,7 @@ fn a_core_with_60_percent_of_fines_by_hand() {
     assert_eq!(sizes.iter().map(|size| size.percent).collect::<Vec<_>>(), [5.0, 15.0, 60.0, 90.0, 100.0]);
     assert_eq!(core.steps.iter().map(|step| step.step).collect::<Vec<_>>(), (1..=11).collect::<Vec<_>>());
     assert!(core.no_band.is_none() && core.nearest_product().is_none());
-    assert!(core.products[0].fits() && !core.products[1].fits());
+    assert!(core.products[0].fits() == Some(true) && core.products[1].fits() == Some(false));
 }
 
 /// Categories 1, 3 and 4, and a dispersive clay.
@@ -89,6 +89,7 @@ fn without_a_known_limit_or_room_between_both_there_is_no_band_and_it_is_said_wh
     // 20 % finer than 0.2 mm: fines, and so the category, are not known.
     let open = of(&[(0.2, 20.0), (0.5, 85.0), (1.0, 100.0)]);
     let why = open.no_band.as_ref().unwrap();
+    assert!(open.nearest_product().is_none());
     assert!(open.band.is_none() && open.d15f_max_mm.is_none() && open.limits.is_empty());
     assert!(why.contains("not known for base") && why.contains("finer sieves"), "{why}");
     // A sand of one size: 5 D15B is more than 4 D85B.
