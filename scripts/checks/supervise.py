@@ -93,6 +93,7 @@ WORKS = {
     "percolation": (PERCOLATION, None, ["r"]),
     "percolation-overwrite": ([*PERCOLATION, "--overwrite"], [*PERCOLATION[:3], "--sizes", "5", "--realisations", "2"], ["r"]),
     "design": ([*DESIGN, "--thickness", "6layers"], None, ["r"]),
+    "specification": (["design", "base.csv", "--steps", "--out", "r", "-q"], None, ["r"]),
     "design-overwrite": ([*DESIGN, "--thickness", "6layers", "--overwrite"], [*DESIGN, "--thickness", "5layers"], ["r"]),
     "precision": (["precision", "--out", "r", "--budget", "100ms", "--tier", "sampling", "bias", "scaling", *STUDY], None, ["r"]),
     "precision-overwrite": (
@@ -129,8 +130,8 @@ HARMS = ["kill", "kill", "kill", "kill", "kill", "stop", "full", "cut", "flip", 
 TIMES = {"seconds", "made", "threads", "host", "machine", "started", "finished", "command", "core_seconds", "wall_seconds",
          "triangulate_seconds", "measure_seconds", "merit", "merit_low", "merit_high", "spent"}
 LOCK, MARK, PART = ".voidwalk.lock", ".voidwalk.unfinished", ".voidwalk-part-"
-RECORDS = ("outcome.json", "packing.json", "percolation.json", "precision.json", "design.json", "constrictions.json", "compare.json", "case.json")
-PAGES = ("report.html", "precision.html", "design.html", "compare.html")
+RECORDS = ("outcome.json", "packing.json", "percolation.json", "precision.json", "design.json", "specification.json", "constrictions.json", "compare.json", "case.json")
+PAGES = ("report.html", "precision.html", "design.html", "specification.html", "compare.html")
 
 
 class Find(Exception):

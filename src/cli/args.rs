@@ -12,6 +12,7 @@ use super::values::{
 };
 use crate::campaign::CasePart;
 use crate::constrictions::{DEFAULT_MERGE_OVERLAP, Facets};
+use crate::outcome::design::SieveSeries;
 use crate::outcome::rules::Authority;
 use crate::packing::{CellOption, LengthUnit};
 use crate::run::CheckpointInterval;
@@ -86,7 +87,8 @@ pub enum Command {
         /// The folder
         folder: PathBuf,
     },
-    /// Write a finished folder's tables as arrays (NumPy, .npz) and grids (ParaView, .vtu)
+    /// Write the tables of a finished folder as arrays for NumPy (.npz) and grids for ParaView (.vtu), and
+    /// those of a run as a workbook (.xlsx)
     Export {
         /// The folder
         folder: PathBuf,
@@ -181,6 +183,10 @@ pub struct ResultArgs {
     /// Replace the results of an earlier run in --out
     #[arg(long)]
     pub overwrite: bool,
+    /// Write verdict.xlsx, too: verdict, inputs, rules, runs, gradations, provenance
+    #[cfg(feature = "xlsx")]
+    #[arg(long)]
+    pub xlsx: bool,
     /// Which verdicts are not accepted.
     #[command(flatten)]
     pub accept: AcceptArgs,
@@ -231,7 +237,13 @@ pub struct SettingArgs {
 #[derive(Debug, Args)]
 pub struct SoilArgs {
     /// Sieve tables: CSV, .xlsx, .ods or AGS4; FILE#NAME for one of several soils
-    pub file: PathBuf,
+    #[cfg_attr(feature = "xlsx", arg(required_unless_present = "template"))]
+    #[cfg_attr(not(feature = "xlsx"), arg(required = true))]
+    pub file: Option<PathBuf>,
+    /// Write a workbook to fill in into this new file, and read nothing: a base and a filter as examples
+    #[cfg(feature = "xlsx")]
+    #[arg(long, value_name = "FILE.xlsx", conflicts_with_all = ["file", "d0_mm", "figure", "json"])]
+    pub template: Option<PathBuf>,
     /// Finest size of a table whose finest percent is not 0
     #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub d0_mm: Option<f64>,
@@ -404,8 +416,20 @@ pub struct ReproduceArgs {
 #[derive(Debug, Args)]
 pub struct DesignArgs {
     /// The base: a sieve table, as base.sieve in a scene (FILE#NAME for one of several soils) [default: from
-    /// the settings, for example --set base.cu=3]
+    /// the settings, for example --set base.cu=3]; with --steps several soils are the curves of an envelope
     pub base: Option<PathBuf>,
+    /// Without a walk: the specification by the rules of practice alone, step by step, with limits sieve by
+    /// sieve and standard products
+    #[arg(long, requires = "base", conflicts_with_all = ["filter", "densities", "pack", "thicknesses",
+          "as_sampled", "as_given", "inverse", "settings", "seed", "bracket", "packings", "memory",
+          "threads"])]
+    pub steps: bool,
+    /// Sieves at which the specification states its limits: us (ASTM E11) or iso (mm)
+    #[arg(long, value_name = "SERIES", default_value = "us")]
+    pub sieves: SieveSeries,
+    /// The base is dispersive: stricter limits if it has many fines (base.dispersive)
+    #[arg(long)]
+    pub dispersive: bool,
     /// The shape of the filter, whose size is searched: a sieve table, a Cu, or a shipped curve [default:
     /// shire2016-cu1.5-loose, or from --set]
     #[arg(long, value_name = "SHAPE", allow_hyphen_values = true)]
@@ -447,9 +471,9 @@ pub struct DesignArgs {
     #[arg(long, value_name = "LOW,HIGH", default_value = "0.5,100", value_parser = bracket,
           allow_hyphen_values = true)]
     pub bracket: (f64, f64),
-    /// Folder for the results
-    #[arg(long, value_name = "DIR", default_value = "voidwalk-design")]
-    pub out: PathBuf,
+    /// Folder for the results [default: voidwalk-design; with --steps voidwalk-specification]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
     /// Replace the results of an earlier call in --out
     #[arg(long)]
     pub overwrite: bool,
@@ -462,7 +486,7 @@ pub struct DesignArgs {
     /// Worker threads; the result is the same for any number [default: one per core]
     #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,
-    /// Print design.json
+    /// Print design.json; with --steps specification.json
     #[arg(long)]
     pub json: bool,
     /// Print no progress and no summary

@@ -3,6 +3,7 @@
 use super::args::DesignArgs;
 use super::print::{counted, json, plain, shown, to_stdout};
 use super::progress::followed;
+use super::specification::specification;
 use super::values::with_options;
 use crate::outcome::design::band::SetBy;
 use crate::outcome::design::{Boundary, Design, DesignRow, Range};
@@ -14,10 +15,15 @@ use crate::verdict::by_authority::of_design;
 use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::words::capital;
 
-/// Finds the boundaries and writes them into a folder.
+/// Finds the boundaries and writes them into a folder; or the specification by practice alone.
 pub fn design(args: &DesignArgs) -> Result<(), RunError> {
+    if let (true, Some(base)) = (args.steps, &args.base) {
+        return specification(args, base);
+    }
     let seed = args.seed.map(|seed| format!("seed={seed}"));
-    let settings = with_options(&args.settings, [("--seed", seed)])?;
+    let dispersive = args.dispersive.then(|| "base.dispersive=true".to_owned());
+    let settings = with_options(&args.settings, [("--seed", seed), ("--dispersive", dispersive)])?;
+    let out = args.out.clone().unwrap_or_else(|| DesignOptions::default().out);
     let options = DesignOptions {
         base: args.base.clone(),
         filter: args.filter.clone(),
@@ -30,7 +36,8 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
         inverse: args.inverse,
         authority: args.authority.unwrap_or_default(),
         bracket: [args.bracket.0, args.bracket.1],
-        out: args.out.clone(),
+        sieves: args.sieves,
+        out: out.clone(),
         overwrite: args.overwrite,
         prepare: PrepareOptions {
             packings: args.packings.clone(),
@@ -44,7 +51,7 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
     } else if !args.quiet {
         let of_authority = of_design(&found.rules, options.authority, &found.unit);
         let of_authority = of_authority.map_or(String::new(), |said| format!("{}\n", plain(&said)));
-        let page = shown(&args.out.join("design.html"));
+        let page = shown(&out.join("design.html"));
         to_stdout(&format!("{}{of_authority}report: {page}\n", words(&found)));
     }
     Ok(())

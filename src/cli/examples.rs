@@ -77,7 +77,7 @@ const EXAMPLES: [(&str, [Example; 2]); 21] = [
         "soil",
         [
             ["voidwalk soil site.xlsx", "every soil of a workbook, with its sizes and class"],
-            ["voidwalk soil \"site.xlsx#Core\" --figure core.svg", "one of them, and its curve"],
+            ["voidwalk soil --template site.xlsx", "a workbook to fill in"],
         ],
     ),
     (
@@ -98,7 +98,7 @@ const EXAMPLES: [(&str, [Example; 2]); 21] = [
         "design",
         [
             ["voidwalk design base.csv --filter 1.5", "how coarse a loose filter with Cu 1.5 may be"],
-            ["voidwalk design --inverse base.csv --filter filter.csv", "the finest base that a filter holds"],
+            ["voidwalk design base.csv --steps", "the specification by practice, step by step, at once"],
         ],
     ),
     (

@@ -60,5 +60,6 @@ pub fn judge(args: &JudgeArgs) -> Result<(), RunError> {
         };
         to_stdout(&format!("to go on from: voidwalk run {scene} --set replicates=30{studies}\n"));
     }
+    args.results.workbook(&run)?;
     args.results.accept.judged(&run)
 }

@@ -32,6 +32,7 @@ mod schemas;
 mod serve;
 mod shell;
 mod soil;
+mod specification;
 mod start;
 mod values;
 mod write_examples;

@@ -55,12 +55,34 @@ pub fn grains_per_void(grains: Option<f64>) -> String {
     }
 }
 
+/// Widest line (characters).
+const WIDTH: usize = 100;
+
+/// A text in lines that begin with so many spaces.
+pub fn wrapped(text: &str, indent: usize) -> Vec<String> {
+    let indent = " ".repeat(indent);
+    let mut lines = vec![indent.clone()];
+    for word in text.split_whitespace() {
+        let last = lines.last().expect("there is a line");
+        if last.chars().count() + word.chars().count() >= WIDTH && last.len() > indent.len() {
+            lines.push(indent.clone());
+        }
+        let last = lines.last_mut().expect("there is a line");
+        if last.len() > indent.len() {
+            last.push(' ');
+        }
+        last.push_str(word);
+    }
+    lines
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn counts_and_names_read_well() {
+        assert!(wrapped(&"word ".repeat(60), 13).iter().all(|line| line.len() < WIDTH));
         assert_eq!(counted(1, "replicate", "replicates"), "1 replicate");
         assert_eq!(counted(1200, "replicate", "replicates"), "1 200 replicates");
         assert_eq!(plain("a\u{1b}[31mb"), "a?[31mb");

@@ -2,7 +2,7 @@
 
 use super::args::RulesArgs;
 use super::batch::each;
-use super::print::{json, plain, shown, to_stdout};
+use super::print::{json, plain, shown, to_stdout, wrapped};
 use crate::gradation::{curves_in_file, notes_in_file};
 use crate::outcome::record::{AppliedRule, RuleRole};
 use crate::outcome::rules::Authority;
@@ -13,8 +13,8 @@ use crate::verdict::{PairOptions, PairRules};
 use std::fmt::Write;
 use std::path::Path;
 
-/// Widest line (characters).
-const WIDTH: usize = 100;
+/// Spaces before what is said below a row.
+const INDENT: usize = 13;
 
 /// Applies every rule to two sieve tables, or to the curves of two envelopes.
 pub fn rules(args: &RulesArgs) -> Result<(), RunError> {
@@ -120,9 +120,9 @@ fn words(
             let curves = curves.join(", ");
             let more = [curves, rule.note.to_string(), rule.needs.to_string()];
             for text in more.iter().filter(|text| !text.is_empty()) {
-                wrapped(text).into_iter().for_each(&mut line);
+                wrapped(text, INDENT).into_iter().for_each(&mut line);
             }
-            wrapped(&rule.source).into_iter().for_each(&mut line);
+            wrapped(&rule.source, INDENT).into_iter().for_each(&mut line);
         }
     }
     if let Some(said) = of_pair(&pair.rules, by, filter.d15_mm) {
@@ -156,35 +156,16 @@ fn number(value: Option<f64>) -> String {
     format!("{value:.*}", decimals as usize)
 }
 
-/// A text in lines below a row.
-fn wrapped(text: &str) -> Vec<String> {
-    let indent = " ".repeat(13);
-    let mut lines = vec![indent.clone()];
-    for word in text.split_whitespace() {
-        let last = lines.last().expect("there is a line");
-        if last.chars().count() + word.chars().count() >= WIDTH && last.len() > indent.len() {
-            lines.push(indent.clone());
-        }
-        let last = lines.last_mut().expect("there is a line");
-        if last.len() > indent.len() {
-            last.push(' ');
-        }
-        last.push_str(word);
-    }
-    lines
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn numbers_have_three_digits_and_lines_end() {
+    fn numbers_have_three_digits() {
         assert_eq!(
             [1.1202, 0.012_34, 62.51, 340.0].map(|v| number(Some(v))),
             ["1.12", "0.0123", "62.5", "340"]
         );
         assert_eq!(number(None), "not known");
-        assert!(wrapped(&"word ".repeat(60)).iter().all(|line| line.len() < WIDTH));
     }
 }

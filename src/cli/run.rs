@@ -7,6 +7,12 @@ use super::exit::accept;
 use super::print::{count, counted, grains_per_void, json, of_base, plain, shown, to_stdout};
 use super::progress::followed;
 use super::start::START;
+#[cfg(feature = "xlsx")]
+use crate::report::write_verdict_workbook;
+#[cfg(feature = "xlsx")]
+use crate::run::FolderKind;
+#[cfg(feature = "xlsx")]
+use crate::run::folder::claim;
 use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
 use crate::store::format;
 use crate::verdict::left_out::left_out_in_brief;
@@ -17,6 +23,7 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
     let options = args.results.options(set);
     let run = followed(quiet, |callbacks| run::walk_scene(scene, &options, callbacks))?;
     show(&run, set.json, quiet)?;
+    args.results.workbook(&run)?;
     args.results.accept.judged(&run)
 }
 
@@ -37,6 +44,18 @@ impl ResultArgs {
             checkpoint_interval: self.walk.checkpoint_every,
             command: command_line(),
         }
+    }
+
+    /// Writes the workbook of a finished run, where it is asked for.
+    pub fn workbook(&self, run: &FinishedRun) -> Result<(), RunError> {
+        #[cfg(feature = "xlsx")]
+        if self.xlsx {
+            let claimed = claim(&run.folder, FolderKind::Run, true)?;
+            write_verdict_workbook(claimed.path(), claimed.path()).map_err(RunError::failed)?;
+        }
+        #[cfg(not(feature = "xlsx"))]
+        let _ = run;
+        Ok(())
     }
 }
 

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::soil::Soils;
 use crate::constrictions::Summary;
 use crate::outcome::comparison::Comparison;
-use crate::outcome::design::Design;
+use crate::outcome::design::{Design, Specification};
 use crate::outcome::ledger::{Campaign, LedgerLine};
 use crate::outcome::network_walk::NetworkWalkRecord;
 use crate::outcome::packing::PackingRecord;
@@ -28,6 +28,7 @@ fn contents() -> Vec<(Format, Schema)> {
         (format::OUTCOME, of::<Outcome>()),
         (format::MANIFEST, of::<Manifest>()),
         (format::DESIGN, of::<Design>()),
+        (format::SPECIFICATION, of::<Specification>()),
         (format::COMPARISON, of::<Comparison>()),
         (format::CAMPAIGN, of::<Campaign>()),
         (format::CASE, of::<LedgerLine>()),

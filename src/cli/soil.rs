@@ -1,6 +1,8 @@
 //! `voidwalk soil`: what is understood of a file of soils.
 
 use std::fmt::Write;
+#[cfg(feature = "xlsx")]
+use std::path::Path;
 
 use serde::Serialize;
 
@@ -8,6 +10,8 @@ use super::args::SoilArgs;
 use super::print::{json, plain, shown, to_stdout};
 use crate::case::CaseError;
 use crate::gradation::{SoilSummary, soils_in_file};
+#[cfg(feature = "xlsx")]
+use crate::report::soil_template;
 use crate::report::soils_figure;
 use crate::run::{RunError, write_new};
 use crate::store::format;
@@ -21,7 +25,12 @@ pub(super) struct Soils {
 
 /// Shows the soils of a file.
 pub fn soil(args: &SoilArgs) -> Result<(), RunError> {
-    let soils = soils_in_file(&args.file, args.d0_mm).map_err(CaseError::from)?;
+    #[cfg(feature = "xlsx")]
+    if let Some(path) = &args.template {
+        return template(path);
+    }
+    let Some(file) = &args.file else { return Err(RunError::refused("name a file of soils")) };
+    let soils = soils_in_file(file, args.d0_mm).map_err(CaseError::from)?;
     if let Some(path) = &args.figure {
         let curves = soils.iter().map(|soil| (soil.name.as_str(), soil.points.as_slice()));
         write_new(path, soils_figure(curves, args.coarse_left).as_bytes())?;
@@ -29,6 +38,18 @@ pub fn soil(args: &SoilArgs) -> Result<(), RunError> {
     let soils = Soils { soils };
     let drawn = args.figure.as_deref().map_or(String::new(), |path| format!("\n{}\n", shown(path)));
     to_stdout(&if args.json { json(format::SOILS, &soils)? } else { words(&soils.soils) + &drawn });
+    Ok(())
+}
+
+/// Writes a workbook to fill in.
+#[cfg(feature = "xlsx")]
+fn template(path: &Path) -> Result<(), RunError> {
+    if path.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("xlsx")) {
+        let problem = "a workbook to fill in ends in .xlsx";
+        return Err(RunError::Refused(format!("--template {}: {problem}", shown(path))));
+    }
+    write_new(path, &soil_template())?;
+    to_stdout(&format!("{}\n", shown(path)));
     Ok(())
 }
 

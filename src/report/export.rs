@@ -21,8 +21,8 @@ pub struct Exported {
 
 /// Writes `export/arrays.npz`, with an array `TABLE.COLUMN` of every column of numbers of every CSV table in
 /// the folder; `export/layers.vtu` of a run: a block for each layer, with the means over the replicates;
-/// `export/grains.vtu` of a packing: a point for each grain, with its diameter; and of a run that kept its
-/// voids `voids.pvd` and `constrictions.pvd`, with a grid for each moment.
+/// `export/grains.vtu` of a packing: a point for each grain, with its diameter; of a run that kept its
+/// voids `voids.pvd` and `constrictions.pvd`, with a grid for each moment; and `verdict.xlsx` of a run.
 ///
 /// # Errors
 /// [`ReportError`] names the file that cannot be read, is no table, or cannot be written.
@@ -47,6 +47,10 @@ pub fn export(folder: &Path) -> Result<Exported, ReportError> {
     let of_voids =
         tables.contains_key("retained_by_void").then(|| by_void::Tables::read(folder)).transpose()?;
     grids.extend(tables.get("grains").and_then(grains).map(|bytes| ("grains.vtu", bytes)));
+    #[cfg(feature = "xlsx")]
+    if folder.join("outcome.json").is_file() {
+        grids.push((super::workbook::VERDICT, super::workbook::verdict_workbook(folder)?));
+    }
     let mut files = Vec::new();
     make_folder(&out)?;
     let mut write = |name: &str, bytes: &[u8]| -> Result<(), ReportError> {

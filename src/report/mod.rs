@@ -4,8 +4,9 @@
 //! `layers.csv`, `retained.csv`, `eroded.csv`; see [`crate::outcome::record`]) and runs nothing;
 //! [`write_packing()`] reads the folder of a packing, [`write_campaign()`] that of a campaign,
 //! [`write_percolation()`] that of a percolation study, and [`write_precision()`] that of a study of error
-//! against run time; [`write_comparison()`] that of several cases side by side. They write `figures/*.svg`,
-//! each a file of its own, and `report.html`.
+//! against run time; [`write_comparison()`] that of several cases side by side, [`write_design()`] that of a
+//! design and [`write_specification()`] that of a specification by practice alone. They write
+//! `figures/*.svg`, each a file of its own, and `report.html`.
 //!
 //! # Pages without a folder
 //! What was walked in memory has the same page, as text: [`run_page()`] from what its files would say, and
@@ -56,11 +57,14 @@ mod run_figures;
 mod section;
 pub mod shell;
 mod soils;
+mod specification;
 mod table;
 mod varied;
 mod verdict_box;
 mod vtu;
 mod walks;
+#[cfg(feature = "xlsx")]
+mod workbook;
 mod written;
 
 pub use crate::outcome::numbers;
@@ -76,4 +80,7 @@ pub use page::{run_brief, run_page, write};
 pub use percolation::{percolation_spread, write_percolation};
 pub use precision::{precision_judgements, write_precision};
 pub use soils::soils_figure;
+pub use specification::write_specification;
+#[cfg(feature = "xlsx")]
+pub use workbook::{soil_template, write_verdict_workbook};
 pub use written::{Written, write_page};

@@ -22,8 +22,13 @@ pub(crate) const DESIGN: [&str; 2] = ["networks.0", "networks.1"];
 /// The files of the checkpoint of a percolation study that is not finished.
 pub(crate) const LATTICES: [&str; 2] = ["lattices.0", "lattices.1"];
 
+/// The tables of a specification, and its workbook.
+const SPECIFIED: [&str; 4] =
+    ["specification.csv", "specification_steps.csv", "specification_products.csv", "specification.xlsx"];
+
 /// What `voidwalk export` writes into a folder of that name ...
-const EXPORTED: [&str; 5] = ["arrays.npz", "layers.vtu", "grains.vtu", "voids.pvd", "constrictions.pvd"];
+const EXPORTED: [&str; 6] =
+    ["arrays.npz", "layers.vtu", "grains.vtu", "voids.pvd", "constrictions.pvd", "verdict.xlsx"];
 
 /// ... and how the names of the moments of a walk begin, before their numbers.
 const EXPORTED_MOMENTS: [&str; 2] = ["voids_", "constrictions_"];
@@ -45,6 +50,8 @@ pub enum FolderKind {
     Comparison,
     /// How coarse a filter may be.
     Design,
+    /// The specification of a filter by practice alone.
+    Specification,
     /// Sheets and jobs of a page on this machine.
     Serve,
     /// Constrictions of a packing from elsewhere.
@@ -53,7 +60,7 @@ pub enum FolderKind {
 
 impl FolderKind {
     /// Every kind; a packing holds constrictions of its own and so comes before them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Run,
         Self::Packing,
         Self::Campaign,
@@ -61,6 +68,7 @@ impl FolderKind {
         Self::Precision,
         Self::Comparison,
         Self::Design,
+        Self::Specification,
         Self::Serve,
         Self::Constrictions,
     ];
@@ -75,6 +83,7 @@ impl FolderKind {
             Self::Precision => "precision study",
             Self::Comparison => "comparison",
             Self::Design => "design",
+            Self::Specification => "specification",
             Self::Serve => "page's sheets and jobs",
             Self::Constrictions => "set of constrictions",
         }
@@ -90,6 +99,7 @@ impl FolderKind {
             Self::Precision => format::PRECISION,
             Self::Comparison => format::COMPARISON,
             Self::Design => format::DESIGN,
+            Self::Specification => format::SPECIFICATION,
             Self::Serve => format::SERVE,
             Self::Constrictions => format::CONSTRICTIONS,
         }
@@ -130,6 +140,7 @@ impl FolderKind {
                 "manifest.json",
                 "outcome.json",
                 "report.html",
+                "verdict.xlsx",
                 "series.csv",
                 "layers.csv",
                 "flow.csv",
@@ -175,7 +186,25 @@ impl FolderKind {
             ],
             // Its cases stay, as all that a campaign holds.
             Self::Comparison => &["compare.json", "compare.html", "compare.csv", "compare_pairs.csv"],
-            Self::Design => &["design.json", "design.html", "design.csv", DESIGN[0], DESIGN[1]],
+            Self::Design => &[
+                "design.json",
+                "design.html",
+                "design.csv",
+                SPECIFIED[0],
+                SPECIFIED[1],
+                SPECIFIED[2],
+                SPECIFIED[3],
+                DESIGN[0],
+                DESIGN[1],
+            ],
+            Self::Specification => &[
+                "specification.json",
+                "specification.html",
+                SPECIFIED[0],
+                SPECIFIED[1],
+                SPECIFIED[2],
+                SPECIFIED[3],
+            ],
             Self::Constrictions => {
                 &["constrictions.json", "constrictions.csv", "constrictions.vtp", "graph.csv", "grains.vtp"]
             }
@@ -211,7 +240,8 @@ impl FolderKind {
                 "triangulation",
             ],
             Self::Comparison => &["compared-runs", "compared-differences"],
-            Self::Design => &["design"],
+            Self::Design => &["design", "specification"],
+            Self::Specification => &["specification"],
             Self::Campaign | Self::Serve | Self::Constrictions => &[],
         }
     }

@@ -46,6 +46,8 @@ formats! {
     MANIFEST = "manifest" / 1, "manifest.json";
     /// How coarse a filter may be.
     DESIGN = "design" / 1, "design.json";
+    /// The specification of a filter by practice alone.
+    SPECIFICATION = "specification" / 1, "specification.json";
     /// Several cases side by side.
     COMPARISON = "comparison" / 1, "compare.json";
     /// A campaign, with its `ledger.jsonl` and `cases.csv`.

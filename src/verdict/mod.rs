@@ -10,6 +10,7 @@
 //! - `rule_notes` has the words of what those rules say beside their results.
 //! - [`walks`] is what walks say themselves, [`beside`] what their results say beside the verdict.
 //! - [`design_answer()`] is how coarse a filter may be, and [`Band`] the band of a specification.
+//! - [`SpecificationOptions`] are what a specification is asked for, whose steps are made and worded here.
 //! - [`PairRules`] are two soils as practice sees them, without a walk.
 //! - [`batch`] is what practice says of many samples, a row each.
 //! - `conclusion` has what every face says first: headline, line of practice, line of the walk, what to do.
@@ -31,6 +32,7 @@ mod planned_walk;
 pub mod practice;
 mod quantity;
 mod rule_notes;
+mod specification;
 mod thickness;
 pub mod walks;
 pub mod words;
@@ -46,3 +48,4 @@ pub use entry::{Entry, Finding};
 pub use pair::{BaseSizes, FilterSizes, Mistake, MistakeKind, PairOptions, PairRules};
 pub use planned_walk::PlannedWalk;
 pub use quantity::FindingValue;
+pub use specification::SpecificationOptions;

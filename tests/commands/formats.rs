@@ -247,7 +247,8 @@ fn tables_leave_as_arrays_and_grids() {
     done(&call(root.path(), &["run", "s.toml", "--out", "run", "-q"]));
     let export = call(root.path(), &["export", "run"]);
     done(&export);
-    assert_eq!(String::from_utf8(export.stdout).unwrap(), "run/export/arrays.npz\nrun/export/layers.vtu\n");
+    let files = "run/export/arrays.npz\nrun/export/layers.vtu\nrun/export/verdict.xlsx\n";
+    assert_eq!(String::from_utf8(export.stdout).unwrap(), files);
     let bytes = fs::read(root.path().join("run/export/arrays.npz")).unwrap();
     let mut arrays = Npz::open(&bytes).unwrap();
     let mut array = |name: &str| arrays.first(&[name]).unwrap().expect(name).1;

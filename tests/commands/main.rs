@@ -29,6 +29,9 @@ mod second_command;
 mod serve;
 mod slurm_scripts;
 mod soils;
+mod specification;
 mod studies;
 mod thickness;
 mod trial;
+#[cfg(feature = "xlsx")]
+mod workbooks;

@@ -7,10 +7,14 @@
 pub mod band;
 pub mod products;
 mod record;
+mod sieves;
+pub mod specification;
 mod spread;
 
 pub use record::{
     BETWEEN_STEPS, BaseStated, Boundary, Design, DesignAnswer, DesignFinding, DesignRow, NetworkBoundaries,
     Range, WalkRow,
 };
+pub use sieves::SieveSeries;
+pub use specification::{Specification, SpecificationStep};
 pub use spread::{Beyond, spread};

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::band::{Band, SetBy};
 use super::products::Fit;
+use super::specification::Specification;
 use super::spread::{Beyond, spread};
 use crate::outcome::BaseSize;
 use crate::outcome::record::{AppliedRule, Confidence, FindingRecord, ModelLimit};
@@ -71,6 +72,10 @@ pub struct Design {
     pub products_confidence: Option<Confidence>,
     /// The sentences of all others.
     pub warnings: Vec<String>,
+    /// The specification of a filter that walk and practice allow, step by step; `None` without an answer in
+    /// mm, and in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub specification: Option<Specification>,
     /// What the model does not contain.
     pub model_leaves_out: Vec<ModelLimit>,
     /// Settings that were given, as on the command line.

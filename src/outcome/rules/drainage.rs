@@ -15,6 +15,18 @@ const LEAST_TIMES: f64 = 3.0;
 /// The least D15F whatever the base (mm).
 const LEAST_MM: f64 = 0.1;
 
+/// Most fines of a filter (%).
+pub const MOST_FINES_PERCENT: f64 = 5.0;
+
+/// Greatest size of a filter (mm).
+pub const GREATEST_SIZE_MM: f64 = 75.0;
+
+/// Greatest Cu of a side of a filter's band.
+pub const MOST_CU: f64 = 6.0;
+
+/// Greatest size of the coarse side of a band over that of its fine side.
+pub const WIDEST_BAND: f64 = 5.0;
+
 /// The filter is coarse enough to drain the base, as it is before regrading.
 pub fn permeability(inputs: &RuleInputs) -> Judged {
     coarse_enough(inputs, TIMES)
@@ -51,12 +63,12 @@ fn coarse_enough(inputs: &RuleInputs, times: f64) -> Judged {
 
 /// The filter has few fines.
 pub fn fines(inputs: &RuleInputs) -> Judged {
-    const MOST: Option<f64> = Some(5.0);
+    const MOST: Option<f64> = Some(MOST_FINES_PERCENT);
     if inputs.scale_free || !inputs.filter_is_measured {
         return Judged { limit: MOST, ..Judged::default() }.lacking(RuleNote::NeedsCurveOfFilterInMm);
     }
     let (filter, finer) = (inputs.filter, inputs.filter.percent_finer_by_mass(FINES_MM));
-    match filter.pan_fraction() == 0.0 || filter.smallest_mm() <= FINES_MM || finer <= 5.0 {
+    match filter.pan_fraction() == 0.0 || filter.smallest_mm() <= FINES_MM || finer <= MOST_FINES_PERCENT {
         true => Judged::of(Some(finer), MOST),
         false => Judged::of(None, MOST).lacking(RuleNote::NeedsFinesOfFilter),
     }
@@ -64,7 +76,7 @@ pub fn fines(inputs: &RuleInputs) -> Judged {
 
 /// The filter has no cobbles.
 pub fn greatest_size(inputs: &RuleInputs) -> Judged {
-    const MOST: Option<f64> = Some(75.0);
+    const MOST: Option<f64> = Some(GREATEST_SIZE_MM);
     match inputs.scale_free || !inputs.filter_is_measured {
         true => Judged { limit: MOST, ..Judged::default() }.lacking(RuleNote::NeedsCurveOfFilterInMm),
         false => Judged::of(Some(inputs.filter.largest_mm()), MOST),
@@ -79,7 +91,7 @@ pub fn segregation(inputs: &RuleInputs) -> Judged {
 
 /// The filter is uniform enough: a band of wider curves leaves room for gap-graded ones.
 pub fn uniformity(inputs: &RuleInputs) -> Judged {
-    const MOST: Option<f64> = Some(6.0);
+    const MOST: Option<f64> = Some(MOST_CU);
     match (inputs.filter_is_measured, inputs.filter.cu()) {
         (false, _) => Judged { limit: MOST, ..Judged::default() }.lacking(RuleNote::NeedsCurveOfFilter),
         (true, None) => {
@@ -115,7 +127,7 @@ pub fn band(inputs: &RuleInputs) -> Judged {
     let percents = inputs.filter_curves.iter().flat_map(of_curve).chain(BAND);
     let within = percents.filter(|percent| (BAND[0]..=BAND[1]).contains(percent));
     let Some((percent, ratio)) = within.filter_map(widest).max_by(|a, b| a.1.total_cmp(&b.1)) else {
-        return Judged::of(None, Some(5.0)).lacking(RuleNote::NeedsSievesOfFilter);
+        return Judged::of(None, Some(WIDEST_BAND)).lacking(RuleNote::NeedsSievesOfFilter);
     };
-    Judged::of(Some(ratio), Some(5.0)).noted(RuleNote::AtPercentFiner(percent))
+    Judged::of(Some(ratio), Some(WIDEST_BAND)).noted(RuleNote::AtPercentFiner(percent))
 }

@@ -12,6 +12,7 @@ use super::numbers::{duration, significant, threshold, trimmed, whole};
 use super::rules;
 use super::section::Sections;
 use super::shell::{citation, clean, fact, leaves_out};
+use super::specification::Stated;
 use super::table::Table;
 use super::written::Written;
 use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow};
@@ -51,6 +52,11 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
         p { "The classes: Foster and Fell, as that paper uses them." }
         p.small { "voidwalk " (design.version) ", " (duration(design.seconds)) "." }
     };
+    #[cfg(feature = "xlsx")]
+    if let Some(specification) = &design.specification {
+        super::workbook::write_specification_workbook(folder, specification)?;
+    }
+    let stated = design.specification.as_ref().map(Stated::of).unwrap_or_default();
     Sections::new(title, title, &names)
         .words(&sheet)
         .contents()
@@ -58,6 +64,10 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
         .section("Boundaries of the model", &boundaries(&design))
         .section("The band of a specification", &bands(&design))
         .section("Standard products", &products(&design))
+        .section("The specification, step by step", &stated.words)
+        .figures(stated.figure)
+        .section("Limits sieve by sieve", &stated.limits)
+        .section("Margins of standard products", &stated.products)
         .section("Rules of practice", &practice(&design))
         .section("Network by network", &networks(&design))
         .section("How this was made", &made(&design, &walks))
@@ -375,6 +385,7 @@ mod tests {
 
     fn design(no_erosion: Option<Boundary>, confidence: Confidence) -> Design {
         Design {
+            specification: None,
             version: "1".into(),
             answer: None,
             boundaries: vec![DesignRow {

@@ -20,6 +20,7 @@ mod plan;
 mod practice;
 mod row;
 mod search;
+mod specified;
 mod steadiness;
 mod summary;
 #[cfg(test)]
@@ -31,6 +32,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 pub use options::{DesignOptions, Thickness};
+pub use specified::{SpecifyOptions, specify};
 
 use super::kept::{self, Kept};
 use crate::outcome::design::Design;
@@ -45,9 +47,7 @@ use crate::scene::{BaseGradation, D85};
 use plan::{Wanted, wanted};
 use row::Row;
 use search::{BRACKETS, Done, Hint, METHOD, NARROWEST, Start};
-
-/// A base coarser than this (D85, mm) is none: its sizes are in another unit.
-const NO_BASE_MM: f64 = 100.0;
+use specified::{NO_BASE_MM, no_base, write_tables};
 
 /// Finds the boundaries and writes `design.csv` and, last, `design.json`.
 ///
@@ -78,7 +78,9 @@ fn run_here(options: &DesignOptions, callbacks: &Callbacks) -> Result<Design, Ru
     kept::study((&folder, kind, options.overwrite), work, callbacks, |kept, done| {
         let done = searched(&rows, options.bracket, done.unwrap_or_default(), kept, callbacks)?;
         folder.write("design.csv", &summary::csv(&rows, &done))?;
-        summary::design(&rows, &done, options, begun.elapsed().as_secs_f64())
+        let design = summary::design(&rows, &done, options, begun.elapsed().as_secs_f64())?;
+        design.specification.iter().try_for_each(|of| write_tables(&folder, of))?;
+        Ok(design)
     })
 }
 
@@ -123,10 +125,7 @@ impl DraftedRow {
             BaseGradation::Linear { d85, .. } => matches!(d85, D85::Mm(_)),
         };
         if has_size && d85 > NO_BASE_MM {
-            return refuse(format!(
-                "the base's D85 is {d85:.0} mm, and no filter holds such stones: are its sizes micrometres \
-                 under a header in mm?"
-            ));
+            return refuse(no_base(d85));
         }
         if matches!(wanted.thickness, Thickness::Mm(_)) && !has_size && !options.inverse {
             return refuse(

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::outcome::design::SieveSeries;
 use crate::outcome::rules::Authority;
 use crate::run::prepare::PrepareOptions;
 use crate::schema::length::{LENGTHS, millimetres};
@@ -35,6 +36,8 @@ pub struct DesignOptions {
     pub authority: Authority,
     /// D15F/D85B between which boundaries are searched.
     pub bracket: [f64; 2],
+    /// The sieves at which the limits of the specification are stated.
+    pub sieves: SieveSeries,
     /// Folder for the results.
     pub out: PathBuf,
     /// Whether earlier results there are replaced.
@@ -57,6 +60,7 @@ impl Default for DesignOptions {
             inverse: false,
             authority: Authority::All,
             bracket: BRACKET,
+            sieves: SieveSeries::default(),
             out: "voidwalk-design".into(),
             overwrite: false,
             prepare: PrepareOptions::default(),

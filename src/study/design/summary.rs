@@ -8,11 +8,11 @@ use super::practice::{allowed, finest_base};
 use super::row::Row;
 use super::search::{Beside, Done, Ended};
 use super::steadiness;
-use crate::outcome::design::band::Band;
+use crate::outcome::design::band::{Band, SetBy};
 use crate::outcome::design::products::fits;
 use crate::outcome::design::{
-    BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignFinding, DesignRow, NetworkBoundaries,
-    WalkRow, spread,
+    BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignAnswer, DesignFinding, DesignRow,
+    NetworkBoundaries, Specification, WalkRow, spread,
 };
 use crate::outcome::leaves_out;
 use crate::outcome::record::{Confidence, FindingRecord};
@@ -20,7 +20,7 @@ use crate::outcome::table::csv_of;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
 use crate::verdict::by_authority::of_design;
-use crate::verdict::{Finding, Judgement, design_answer, finding};
+use crate::verdict::{Finding, Judgement, SpecificationOptions, design_answer, finding};
 
 /// Ratio at which the rules are read where no boundary is known.
 const USUAL_RATIO: f64 = 4.0;
@@ -89,6 +89,7 @@ pub(super) fn design(
     };
     let design = Design {
         answer: None,
+        specification: None,
         version: env!("CARGO_PKG_VERSION").into(),
         inverse: options.inverse,
         base: base(first, &judged.base_name),
@@ -115,9 +116,28 @@ pub(super) fn design(
         seconds,
         boundaries,
     };
+    let answer = design_answer(&design, finest.as_ref());
+    let specification = specification(first, &design.base.name, &answer, options);
     let of_authority = of_design(&design.rules, options.authority, &design.unit);
     let warnings = of_authority.into_iter().chain(design.warnings.iter().cloned()).collect();
-    Ok(Design { answer: Some(design_answer(&design, finest.as_ref())), warnings, ..design })
+    Ok(Design { answer: Some(answer), warnings, specification, ..design })
+}
+
+/// The specification of a filter that practice and the answer allow; `None` without an answer in mm.
+fn specification(
+    row: &Row,
+    name: &str,
+    answer: &DesignAnswer,
+    options: &DesignOptions,
+) -> Option<Specification> {
+    let greatest = answer.d15f_max_mm?;
+    let given = row.stated.regraded_from.as_ref().map_or(&row.stated.gradation, |(given, _)| given);
+    let specified = SpecificationOptions {
+        dispersive: row.stated.scene.base.dispersive == Some(true),
+        sieves: options.sieves,
+        walked_mm: (answer.set_by == SetBy::Walk).then_some(greatest),
+    };
+    Some(Specification::of(name, &[(name.to_owned(), given.clone())], specified))
 }
 
 /// A row as its networks have it, and what they say against it.

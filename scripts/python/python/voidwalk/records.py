@@ -11,6 +11,7 @@ __all__ = [
     "AppliedRule",
     "ArchingRecord",
     "Band",
+    "BandSize",
     "BaseRecord",
     "BaseSize",
     "BaseSizes",
@@ -58,6 +59,7 @@ __all__ = [
     "PanReading",
     "PercolationStudy",
     "Practice",
+    "ProductMargin",
     "Range",
     "Ratios",
     "Replicate",
@@ -66,10 +68,16 @@ __all__ = [
     "SameShape",
     "SampledBase",
     "Sensitivity",
+    "SieveLimit",
+    "SizeBand",
     "SizeThreshold",
     "SoilSummary",
     "Soils",
+    "Specification",
+    "SpecificationStep",
+    "SpecifiedCurve",
     "Statistic",
+    "StepValue",
     "Stopping",
     "WalkOutcome",
 ]
@@ -1081,6 +1089,153 @@ class Fit(TypedDict):
     source: str
 
 
+class _SpecifiedCurve(TypedDict):
+    #: Its name.
+    curve: str
+    #: Size (mm) and percent finer by mass, as sampled.
+    gradation: List[List[float]]
+    #: D15 (mm) before regrading; `None` where it is finer than the finest sieve.
+    d15_mm: Optional[float]
+    #: The size on which it was regraded (mm).
+    regraded_at_mm: Optional[float]
+    #: D85 (mm) after regrading.
+    d85_mm: Optional[float]
+    #: Percent finer than 0.075 mm after regrading.
+    fines_percent: Optional[float]
+    #: Category of NRCS, 1 to 4.
+    category: Optional[int]
+    #: Greatest D15F (mm) that retains it; `None` where it is not known.
+    d15f_max_mm: Optional[float]
+    #: The rule that sets it.
+    d15f_max_rule: str
+    #: Least D15F (mm) that drains it.
+    d15f_min_mm: Optional[float]
+
+
+class SpecifiedCurve(_SpecifiedCurve, total=False):
+    """A curve of the base, and the limits of D15F that follow from it."""
+
+    #: The same after regrading; empty where it is not regraded.
+    regraded: List[List[float]]
+
+
+class StepValue(TypedDict):
+    """A number of a step."""
+
+    #: What it is, as `greatest D15F`.
+    name: str
+    #: The number; `None` where it is not known.
+    value: Optional[float]
+    #: Its unit: `mm`, `%`; empty for a ratio or a count.
+    unit: str
+
+
+class SpecificationStep(TypedDict):
+    """A step of the procedure."""
+
+    #: Its number, from 1.
+    step: int
+    #: What is done.
+    does: str
+    #: The formula, in words; empty where nothing is worked out.
+    formula: str
+    #: Its numbers.
+    values: List[StepValue]
+    #: What else a reader must know; may be empty.
+    note: str
+    #: Where formula and numbers were read; empty where nothing is worked out.
+    source: str
+
+
+class BandSize(TypedDict):
+    """A size of both sides of a band."""
+
+    #: Percent finer.
+    percent: float
+    #: Least size (mm), of the fine side.
+    min_mm: float
+    #: Greatest size (mm), of the coarse side.
+    max_mm: float
+
+
+class SizeBand(TypedDict):
+    """The two sides of a band as sizes."""
+
+    #: D5, D15, D60, D90 and D100 of both sides.
+    sizes: List[BandSize]
+    #: The fine side: size (mm) and percent finer, rising.
+    fine_side: List[List[float]]
+    #: The coarse side.
+    coarse_side: List[List[float]]
+
+
+class SieveLimit(TypedDict):
+    """What a delivery may have finer than a sieve. A row of `specification.csv`."""
+
+    #: Name of the sieve.
+    sieve: str
+    #: Its opening (mm).
+    opening_mm: float
+    #: Least percent finer, of the coarse side: a whole percent within the band.
+    min_percent_finer: float
+    #: Greatest percent finer, of the fine side: a whole percent within the band.
+    max_percent_finer: float
+
+
+class ProductMargin(TypedDict):
+    """A standard product beside a specification. A row of `specification_products.csv`."""
+
+    #: Its name.
+    product: str
+    #: D15 (mm) of its fine side.
+    d15_fine_mm: float
+    #: D15 (mm) of its coarse side.
+    d15_coarse_mm: float
+    #: D15 of its fine side over the least that drains: at least 1 where it drains.
+    drains_by: Optional[float]
+    #: The greatest D15F over D15 of its coarse side: at least 1 where it holds.
+    holds_by: Optional[float]
+    #: The sieve (mm) at which its limits leave the band by most; `None` without a band, and where they stay
+    #: within it.
+    worst_sieve_mm: Optional[float]
+    #: By how much they leave it there (percentage points finer); 0 where they stay within.
+    leaves_band_by: Optional[float]
+    #: Where its limits were read.
+    source: str
+
+
+class _Specification(TypedDict):
+    #: Version of voidwalk.
+    version: str
+    #: Name of the base.
+    base: str
+    #: Whether it was said to be dispersive.
+    dispersive: bool
+    #: The sieves at which the limits are stated.
+    sieves: Literal["us", "iso"]
+    #: The curves of the base, in the order of the file.
+    curves: List[SpecifiedCurve]
+    #: Every step, with its numbers.
+    steps: List[SpecificationStep]
+    #: Least D15F (mm) that drains the base; `None` where it is not known.
+    d15f_min_mm: Optional[float]
+    #: Greatest D15F (mm) that is allowed; `None` where it is not known.
+    d15f_max_mm: Optional[float]
+    #: The band; `None` where there is none.
+    band: Optional[SizeBand]
+    #: Percent finer at each sieve, the coarsest first; empty without a band.
+    limits: List[SieveLimit]
+    #: Standard products beside it; empty where neither limit of D15F is known.
+    products: List[ProductMargin]
+
+
+class Specification(_Specification, total=False):
+    """The whole of `specification.json`."""
+
+    #: Why there is no band.
+    no_band: Optional[str]
+
+
 class _Design(TypedDict):
     #: The form of this file.
     format: Literal["voidwalk-design/1"]
@@ -1148,6 +1303,9 @@ class Design(_Design, total=False):
     #: How far it can be relied on that a product fits: as `confidence`, but at the greatest D15F that walk and
     #: practice both allow; `None` without products.
     products_confidence: Optional[Literal["within checked range", "may segregate", "outside checked range", "may not drain", "may lose its own fines", "contradicted by practice"]]
+    #: The specification of a filter that walk and practice allow, step by step; `None` without an answer in mm,
+    #: and in files of earlier versions.
+    specification: Optional[Specification]
 
 
 class _BaseSize(TypedDict):

@@ -1,0 +1,104 @@
+//! `voidwalk design --steps`: the specification of a filter by practice alone.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use super::args::DesignArgs;
+use super::print::{json, plain, shown, to_stdout, wrapped};
+use super::progress::followed;
+use crate::outcome::design::specification::{Specification, StepValue};
+use crate::outcome::numbers::significant;
+use crate::run::RunError;
+use crate::store::format;
+use crate::study::design::{SpecifyOptions, specify};
+
+/// The folder of the results, where nobody names one.
+const FOLDER: &str = "voidwalk-specification";
+
+/// Makes the specification for a base and writes it into a folder.
+pub(super) fn specification(args: &DesignArgs, base: &Path) -> Result<(), RunError> {
+    let out = args.out.clone().unwrap_or_else(|| FOLDER.into());
+    let options = SpecifyOptions {
+        base: base.to_owned(),
+        dispersive: args.dispersive,
+        sieves: args.sieves,
+        out: out.clone(),
+        overwrite: args.overwrite,
+    };
+    let found = followed(args.quiet, |callbacks| specify(&options, callbacks))?;
+    if args.json {
+        to_stdout(&json(format::SPECIFICATION, &found)?);
+    } else if !args.quiet {
+        to_stdout(&format!("{}report: {}\n", words(&found), shown(&out.join("specification.html"))));
+    }
+    Ok(())
+}
+
+/// Steps, limits and products.
+fn words(of: &Specification) -> String {
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let mut line = |said: &str| {
+        let _ = writeln!(text, "{}", plain(said).trim_end());
+    };
+    line(&format!("Specification of a filter for {}, by the rules of practice alone", of.base));
+    let mut source = "";
+    for step in &of.steps {
+        line(&format!("{:>2}  {}", step.step, step.does));
+        step.values.iter().for_each(|value| line(&format!("      {}", number(value))));
+        // What several steps in a row rest on is said once.
+        let again = std::mem::replace(&mut source, step.source.as_str()) == step.source;
+        let source = if again { "" } else { step.source.as_str() };
+        let more = [step.formula.as_str(), step.note.as_str(), source];
+        more.into_iter()
+            .filter(|text| !text.is_empty())
+            .flat_map(|text| wrapped(text, 6))
+            .for_each(|s| line(&s));
+    }
+    line("");
+    if let Some(why) = &of.no_band {
+        line(&format!("No band. {why}"));
+    }
+    if !of.limits.is_empty() {
+        line("sieve        opening, mm   percent finer");
+        for limit in &of.limits {
+            line(&format!(
+                "{:<12} {:>11}   {} to {}",
+                limit.sieve,
+                significant(limit.opening_mm),
+                limit.min_percent_finer,
+                limit.max_percent_finer
+            ));
+        }
+        line("");
+    }
+    for product in &of.products {
+        let margin = |value: Option<f64>| value.map_or_else(|| "not known".into(), significant);
+        line(&format!(
+            "{:<28} D15 {} to {} mm; drains {}, retains {} times the limit: {}",
+            product.product,
+            significant(product.d15_fine_mm),
+            significant(product.d15_coarse_mm),
+            margin(product.drains_by),
+            margin(product.holds_by),
+            match product.fits() {
+                Some(true) => "D15 fits",
+                Some(false) => "does not fit",
+                None => "no result",
+            }
+        ));
+    }
+    if let Some(nearest) = of.nearest_product() {
+        line(&format!("no standard product fits; {} comes closest", nearest.product));
+    }
+    text
+}
+
+/// A number of a step with its name and unit.
+fn number(of: &StepValue) -> String {
+    match of.value {
+        None => format!("{}: not known", of.name),
+        Some(value) if of.unit.is_empty() && value.fract() == 0.0 => format!("{}: {value}", of.name),
+        Some(value) => format!("{}: {} {}", of.name, significant(value), of.unit),
+    }
+}

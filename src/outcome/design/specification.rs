@@ -1,0 +1,431 @@
+//! The specification of a filter for a base: the steps that lead to it, its two sides, its limits sieve by
+//! sieve, and standard products beside it.
+//!
+//! `verdict` makes it from the rules of practice, with its words.
+
+use serde::{Deserialize, Serialize};
+
+use super::products::{PRODUCTS, Product};
+use super::sieves::SieveSeries;
+use crate::gradation::FINES_MM;
+use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_FINES_PERCENT, WIDEST_BAND};
+
+/// The whole of `specification.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Specification {
+    /// Version of voidwalk.
+    pub version: String,
+    /// Name of the base.
+    pub base: String,
+    /// Whether it was said to be dispersive.
+    pub dispersive: bool,
+    /// The sieves at which the limits are stated.
+    pub sieves: SieveSeries,
+    /// The curves of the base, in the order of the file.
+    pub curves: Vec<SpecifiedCurve>,
+    /// Every step, with its numbers.
+    pub steps: Vec<SpecificationStep>,
+    /// Least D15F (mm) that drains the base; `None` where it is not known.
+    pub d15f_min_mm: Option<f64>,
+    /// Greatest D15F (mm) that is allowed; `None` where it is not known.
+    pub d15f_max_mm: Option<f64>,
+    /// The band; `None` where there is none.
+    pub band: Option<SizeBand>,
+    /// Why there is no band.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub no_band: Option<String>,
+    /// Percent finer at each sieve, the coarsest first; empty without a band.
+    pub limits: Vec<SieveLimit>,
+    /// Standard products beside it; empty where neither limit of D15F is known.
+    pub products: Vec<ProductMargin>,
+}
+
+/// A curve of the base, and the limits of D15F that follow from it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct SpecifiedCurve {
+    /// Its name.
+    pub curve: String,
+    /// Size (mm) and percent finer by mass, as sampled.
+    pub gradation: Vec<[f64; 2]>,
+    /// The same after regrading; empty where it is not regraded.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub regraded: Vec<[f64; 2]>,
+    /// D15 (mm) before regrading; `None` where it is finer than the finest sieve.
+    pub d15_mm: Option<f64>,
+    /// The size on which it was regraded (mm).
+    pub regraded_at_mm: Option<f64>,
+    /// D85 (mm) after regrading.
+    pub d85_mm: Option<f64>,
+    /// Percent finer than 0.075 mm after regrading.
+    pub fines_percent: Option<f64>,
+    /// Category of NRCS, 1 to 4.
+    pub category: Option<u8>,
+    /// Greatest D15F (mm) that retains it; `None` where it is not known.
+    pub d15f_max_mm: Option<f64>,
+    /// The rule that sets it.
+    pub d15f_max_rule: String,
+    /// Least D15F (mm) that drains it.
+    pub d15f_min_mm: Option<f64>,
+}
+
+/// A step of the procedure.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct SpecificationStep {
+    /// Its number, from 1.
+    pub step: u64,
+    /// What is done.
+    pub does: String,
+    /// The formula, in words; empty where nothing is worked out.
+    pub formula: String,
+    /// Its numbers.
+    pub values: Vec<StepValue>,
+    /// What else a reader must know; may be empty.
+    pub note: String,
+    /// Where formula and numbers were read; empty where nothing is worked out.
+    pub source: String,
+}
+
+/// A number of a step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct StepValue {
+    /// What it is, as `greatest D15F`.
+    pub name: String,
+    /// The number; `None` where it is not known.
+    pub value: Option<f64>,
+    /// Its unit: `mm`, `%`; empty for a ratio or a count.
+    pub unit: String,
+}
+
+/// The two sides of a band as sizes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct SizeBand {
+    /// D5, D15, D60, D90 and D100 of both sides.
+    pub sizes: Vec<BandSize>,
+    /// The fine side: size (mm) and percent finer, rising.
+    pub fine_side: Vec<[f64; 2]>,
+    /// The coarse side.
+    pub coarse_side: Vec<[f64; 2]>,
+}
+
+/// A size of both sides of a band.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct BandSize {
+    /// Percent finer.
+    pub percent: f64,
+    /// Least size (mm), of the fine side.
+    pub min_mm: f64,
+    /// Greatest size (mm), of the coarse side.
+    pub max_mm: f64,
+}
+
+/// What a delivery may have finer than a sieve. A row of `specification.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct SieveLimit {
+    /// Name of the sieve.
+    pub sieve: String,
+    /// Its opening (mm).
+    pub opening_mm: f64,
+    /// Least percent finer, of the coarse side: a whole percent within the band.
+    pub min_percent_finer: f64,
+    /// Greatest percent finer, of the fine side: a whole percent within the band.
+    pub max_percent_finer: f64,
+}
+
+/// A standard product beside a specification. A row of `specification_products.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct ProductMargin {
+    /// Its name.
+    pub product: String,
+    /// D15 (mm) of its fine side.
+    pub d15_fine_mm: f64,
+    /// D15 (mm) of its coarse side.
+    pub d15_coarse_mm: f64,
+    /// D15 of its fine side over the least that drains: at least 1 where it drains.
+    pub drains_by: Option<f64>,
+    /// The greatest D15F over D15 of its coarse side: at least 1 where it holds.
+    pub holds_by: Option<f64>,
+    /// The sieve (mm) at which its limits leave the band by most; `None` without a band, and where they stay
+    /// within it.
+    pub worst_sieve_mm: Option<f64>,
+    /// By how much they leave it there (percentage points finer); 0 where they stay within.
+    pub leaves_band_by: Option<f64>,
+    /// Where its limits were read.
+    pub source: String,
+}
+
+impl ProductMargin {
+    /// Whether D15 of both its sides lies between the least and the greatest; `None` where a limit that is
+    /// not known decides.
+    pub fn fits(&self) -> Option<bool> {
+        let kept = [self.drains_by, self.holds_by].map(|margin| margin.map(|margin| margin >= 1.0));
+        if kept.contains(&Some(false)) {
+            Some(false)
+        } else {
+            kept.into_iter().collect::<Option<Vec<_>>>().map(|_| true)
+        }
+    }
+
+    /// The smaller of its two margins.
+    fn margin(&self) -> f64 {
+        self.drains_by.unwrap_or(f64::INFINITY).min(self.holds_by.unwrap_or(f64::INFINITY))
+    }
+}
+
+impl Specification {
+    /// The product whose D15 comes closest to both limits, where none fits.
+    pub fn nearest_product(&self) -> Option<&ProductMargin> {
+        let none_fits = self.products.iter().all(|of| of.fits() == Some(false));
+        let all = self.products.iter().filter(|_| none_fits && self.d15f_max_mm.is_some());
+        all.max_by(|a, b| a.margin().total_cmp(&b.margin()))
+    }
+}
+
+/// A number of `specification_steps.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StepRow {
+    /// Number of the step.
+    pub step: u64,
+    /// What is done.
+    pub does: String,
+    /// What the number is; empty where the step has none.
+    pub quantity: String,
+    /// The number.
+    pub value: Option<f64>,
+    /// Its unit.
+    pub unit: String,
+    /// The formula.
+    pub formula: String,
+    /// What else a reader must know.
+    pub note: String,
+    /// Where formula and numbers were read.
+    pub source: String,
+}
+
+impl SpecificationStep {
+    /// Its numbers as rows; one without a number where it has none.
+    pub fn rows(&self) -> Vec<StepRow> {
+        let row = |value: Option<&StepValue>| StepRow {
+            step: self.step,
+            does: self.does.clone(),
+            quantity: value.map_or_else(String::new, |value| value.name.clone()),
+            value: value.and_then(|value| value.value),
+            unit: value.map_or_else(String::new, |value| value.unit.clone()),
+            formula: self.formula.clone(),
+            note: self.note.clone(),
+            source: self.source.clone(),
+        };
+        match self.values.is_empty() {
+            true => vec![row(None)],
+            false => self.values.iter().map(|value| row(Some(value))).collect(),
+        }
+    }
+}
+
+/// Percents at which the sizes of a band are shown.
+const SIZES: [f64; 5] = [5.0, 15.0, 60.0, 90.0, 100.0];
+
+impl SizeBand {
+    /// From the control points of its sides: least and greatest D15 and D60 (mm).
+    ///
+    /// Both sides are straight in percent over log size between their points, and go on so up to 100 %, but
+    /// to no more than 75 mm. The coarse side goes on straight down to 0 %. The fine side begins at its D5, a
+    /// fifth of that of the coarse side but not less than 0.075 mm; at most 5 % are finer. `None` where a D60
+    /// is not below 75 mm.
+    pub fn of(d15: [f64; 2], d60: [f64; 2]) -> Option<Self> {
+        let on =
+            |side: usize, percent: f64| d15[side] * libm::pow(d60[side] / d15[side], (percent - 15.0) / 45.0);
+        if d60.iter().any(|size| *size >= GREATEST_SIZE_MM) {
+            return None;
+        }
+        let top = |side: usize| [on(side, 100.0).min(GREATEST_SIZE_MM), 100.0];
+        let d5 = (on(1, MOST_FINES_PERCENT) / WIDEST_BAND).max(FINES_MM);
+        let fine_side = vec![[d5, MOST_FINES_PERCENT], [d15[0], 15.0], [d60[0], 60.0], top(0)];
+        let coarse_side = vec![[on(1, 0.0), 0.0], [d15[1], 15.0], [d60[1], 60.0], top(1)];
+        let size = |percent: f64| BandSize {
+            percent,
+            min_mm: size_at(&fine_side, percent),
+            max_mm: size_at(&coarse_side, percent),
+        };
+        Some(Self { sizes: SIZES.map(size).to_vec(), fine_side, coarse_side })
+    }
+
+    /// Least and greatest percent finer than an opening (mm).
+    pub fn percent_finer(&self, opening_mm: f64) -> [f64; 2] {
+        [percent_at(&self.coarse_side, opening_mm), percent_at(&self.fine_side, opening_mm)]
+    }
+
+    /// The limits at the sieves of a series, from the finest sieve that all must pass down to the finest of
+    /// all.
+    pub fn limits(&self, series: SieveSeries) -> Vec<SieveLimit> {
+        let limit = |(name, opening): &(&str, f64)| {
+            let [min, max] = whole(self.percent_finer(*opening));
+            SieveLimit {
+                sieve: (*name).into(),
+                opening_mm: *opening,
+                min_percent_finer: min,
+                max_percent_finer: max,
+            }
+        };
+        let all: Vec<SieveLimit> = series.sieves().iter().map(limit).collect();
+        let open = all.iter().take_while(|limit| limit.min_percent_finer == 100.0).count();
+        all.into_iter().skip(open.saturating_sub(1)).collect()
+    }
+
+    /// The sieve at which the limits of a product leave the band by most, and by how many percentage points;
+    /// `None` where they stay within.
+    fn left_by(&self, product: &Product) -> Option<(f64, f64)> {
+        let beyond = |&(opening, least, greatest): &(f64, f64, f64)| {
+            let [min, max] = self.percent_finer(opening);
+            (opening, (min - least).max(greatest - max))
+        };
+        let worst = product.limits.iter().map(beyond).max_by(|a, b| a.1.total_cmp(&b.1))?;
+        (worst.1 > 0.0).then_some(worst)
+    }
+}
+
+/// Whole percents within two limits; tenths where no whole percent lies between them.
+fn whole([min, max]: [f64; 2]) -> [f64; 2] {
+    // Logarithms leave a hair, which is no percent.
+    let hair = 1e-9;
+    // Rounding up from below 0 gives -0, to which 0 is added.
+    let inward = [(min - hair).ceil() + 0.0, (max + hair).floor()];
+    match inward[0] <= inward[1] {
+        true => inward,
+        false => [min, max].map(|percent| (10.0 * percent).round() / 10.0),
+    }
+}
+
+/// The size at which a side has this percent finer (mm); its end where it does not reach it.
+fn size_at(side: &[[f64; 2]], percent: f64) -> f64 {
+    let above = side.iter().position(|point| point[1] >= percent).unwrap_or(side.len() - 1);
+    let [high, b] = side[above];
+    let Some(below) = above.checked_sub(1) else { return high };
+    let [low, a] = side[below];
+    if percent >= b { high } else { low * libm::pow(high / low, (percent - a) / (b - a)) }
+}
+
+/// The percent finer than a size (mm); below its first point a side has what it has there.
+fn percent_at(side: &[[f64; 2]], size: f64) -> f64 {
+    let below = side.partition_point(|point| point[0] <= size);
+    match below.checked_sub(1) {
+        None => side[0][1],
+        Some(last) if below == side.len() => side[last][1],
+        Some(last) => {
+            let ([low, a], [high, b]) = (side[last], side[below]);
+            a + (b - a) * libm::log(size / low) / libm::log(high / low)
+        }
+    }
+}
+
+/// Every standard product beside the least and the greatest D15F (mm), and beside a band.
+pub fn margins(d15f_min: Option<f64>, d15f_max: Option<f64>, band: Option<&SizeBand>) -> Vec<ProductMargin> {
+    if d15f_min.is_none() && d15f_max.is_none() {
+        return Vec::new();
+    }
+    let one = |product: &Product| {
+        let [fine, coarse] = product.d15_mm();
+        let left = band.map(|band| band.left_by(product));
+        ProductMargin {
+            product: product.name.into(),
+            d15_fine_mm: fine,
+            d15_coarse_mm: coarse,
+            drains_by: d15f_min.map(|least| fine / least),
+            holds_by: d15f_max.map(|greatest| greatest / coarse),
+            worst_sieve_mm: left.flatten().map(|(opening, _)| opening),
+            leaves_band_by: left.map(|left| left.map_or(0.0, |(_, points)| points)),
+            source: product.source.into(),
+        }
+    };
+    PRODUCTS.iter().map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn near(found: f64, wanted: f64) -> bool {
+        (found / wanted - 1.0).abs() < 1e-9
+    }
+
+    /// D15 0.14 to 0.7 mm, as for a base of category 2: D60 to 5 x 0.7 = 3.5 mm, and a fifth of it.
+    fn band() -> SizeBand {
+        SizeBand::of([0.14, 0.7], [0.7, 3.5]).unwrap()
+    }
+
+    #[test]
+    fn the_sides_of_a_band_by_hand() {
+        let band = band();
+        let size = |percent: f64| {
+            let of = band.sizes.iter().find(|of| of.percent == percent).unwrap();
+            (of.min_mm, of.max_mm)
+        };
+        assert_eq!((size(15.0), size(60.0)), ((0.14, 0.7), (0.7, 3.5)));
+        // Both sides rise by a factor of 5 in 45 %.
+        let (d5, d90, d100) = (size(5.0), size(90.0), size(100.0));
+        assert!(near(d5.0, d5.1 / 5.0) && near(d5.1, 0.7 * 5f64.powf(-10.0 / 45.0)), "{d5:?}");
+        let fine = SizeBand::of([0.1, 0.3], [0.3, 1.5]).unwrap();
+        assert_eq!(fine.sizes[0].min_mm, 0.075);
+        assert!(near(d90.0, 0.7 * 5f64.powf(30.0 / 45.0)) && near(d90.1, 3.5 * 5f64.powf(30.0 / 45.0)));
+        assert!(near(d100.0, 0.7 * 5f64.powf(40.0 / 45.0)) && near(d100.1, 3.5 * 5f64.powf(40.0 / 45.0)));
+    }
+
+    #[test]
+    fn limits_by_hand_are_whole_percents_within_the_band() {
+        let limits = band().limits(SieveSeries::Us);
+        let of = |name: &str| {
+            let limit = limits.iter().find(|limit| limit.sieve == name).unwrap();
+            (limit.min_percent_finer, limit.max_percent_finer)
+        };
+        // ln(0.6/0.14)/ln 5 x 45 + 15 = 55.7 and ln(0.6/0.7)/ln 5 x 45 + 15 = 10.7.
+        assert_eq!(of("No. 30"), (11.0, 55.0));
+        // ln(4.75/3.5)/ln 5 x 45 + 60 = 68.5; the fine side ends at 2.93 mm.
+        assert_eq!(of("No. 4"), (69.0, 100.0));
+        assert_eq!(of("No. 200"), (0.0, 5.0));
+        assert!(limits.iter().all(|limit| limit.min_percent_finer.is_sign_positive()));
+        // The coarse side ends at 14.6 mm.
+        assert_eq!(limits[0].sieve, "3/4 in");
+        assert_eq!((of("3/4 in"), of("1/2 in").0), ((100.0, 100.0), 96.0));
+        let iso = band().limits(SieveSeries::Iso);
+        assert_eq!((iso[0].sieve.as_str(), iso.last().unwrap().max_percent_finer), ("16 mm", 5.0));
+    }
+
+    #[test]
+    fn a_side_that_stands_upright_and_one_beyond_the_greatest_size() {
+        // D15 and D60 of the fine side are one size.
+        let band = SizeBand::of([0.7, 0.7], [0.7, 3.5]).unwrap();
+        assert_eq!(band.percent_finer(0.7)[1], 100.0);
+        assert!(band.percent_finer(0.69)[1] < 15.0);
+        assert!(SizeBand::of([4.0, 20.0], [20.0, 100.0]).is_none());
+        // It is cut off at the greatest size.
+        let coarse = SizeBand::of([2.0, 10.0], [10.0, 50.0]).unwrap();
+        assert_eq!(coarse.sizes[4].max_mm, 75.0);
+        assert_eq!(whole([4.2, 4.8]), [4.2, 4.8]);
+    }
+
+    #[test]
+    fn products_have_their_margins_also_where_none_fits() {
+        let sand = &margins(Some(0.1), Some(0.7), Some(&band()))[0];
+        // D15 0.178 to 0.424 mm (see `products`).
+        assert!(
+            near(sand.drains_by.unwrap(), 1.5 * 2f64.powf(0.25)) && sand.fits() == Some(true),
+            "{sand:?}"
+        );
+        assert!(near(sand.holds_by.unwrap(), 0.7 / (0.3 * 2f64.sqrt())));
+        // At 1.18 mm it has 50 to 85 %, and the band 29.6 % to 74.6 %; at 0.6 mm 25 to 60 %, and 55.7 %.
+        assert!(sand.worst_sieve_mm.is_some() && sand.leaves_band_by.unwrap() > 0.0, "{sand:?}");
+        let none = margins(Some(0.5), Some(0.6), None);
+        assert!(none.iter().all(|of| of.fits() == Some(false) && of.leaves_band_by.is_none()));
+        // What drains may or may not hold where the greatest D15F is not known.
+        let open = margins(Some(0.2), None, None);
+        assert_eq!((open[0].fits(), open[1].fits()), (Some(false), None));
+        assert!(margins(None, None, None).is_empty());
+    }
+}

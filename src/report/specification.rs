@@ -1,0 +1,255 @@
+//! The page of a specification: the steps with their numbers, both sides of the band on the form of
+//! gradations, limits sieve by sieve, and standard products. The page of a design has the same.
+
+use std::path::Path;
+
+use maud::{Markup, Render, html};
+
+use super::error::ReportError;
+use super::figures::{Area, Axis, BLUE, Dash, Figure, GREEN, Line, VERMILLION, positive_range, shorten};
+use super::files::json;
+use super::numbers::{known, significant};
+use super::section::Sections;
+use super::shell::{Drawn, clean};
+use super::table::Table;
+use super::written::Written;
+use crate::outcome::design::specification::{ProductMargin, SizeBand};
+use crate::outcome::design::{Specification, SpecificationStep};
+
+/// Most curves of a base that the figure draws.
+const DRAWN_CURVES: usize = 12;
+
+/// Writes `specification.html`, its figure and `specification.xlsx` into the folder of a specification, from
+/// `specification.json` there.
+///
+/// # Errors
+/// The file is missing or malformed, or something cannot be written.
+pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
+    let of: Specification = json(&folder.join("specification.json"))?;
+    let names = html! {
+        "Base " b { bdi { (clean(&of.base)) } } @if of.dispersive { ", dispersive" }
+        ", by the rules of practice alone"
+    };
+    let footer = html! {
+        p { "By the rules of practice, without a walk. It does not replace a filter test or a designer’s \
+             judgement." }
+        p.small { "voidwalk " (of.version) "." }
+    };
+    #[cfg(feature = "xlsx")]
+    super::workbook::write_specification_workbook(folder, &of)?;
+    let stated = Stated::of(&of);
+    let title = "Specification of a filter";
+    Sections::new(title, title, &names)
+        .words(&answer(&of))
+        .figures(stated.figure)
+        .section("Limits sieve by sieve", &stated.limits)
+        .section("Standard products", &products(&of, true))
+        .section("Step by step", &stated.words)
+        .write(folder, "specification.html", &footer)
+}
+
+/// The parts of a specification that its own page and that of a design show.
+#[derive(Default)]
+pub(super) struct Stated {
+    /// Every step.
+    pub words: Markup,
+    /// Both sides of the band, with the base.
+    pub figure: Option<Drawn>,
+    /// What a delivery may have finer than each sieve.
+    pub limits: Markup,
+    /// Margins of standard products.
+    pub products: Markup,
+}
+
+impl Stated {
+    pub(super) fn of(specification: &Specification) -> Self {
+        Self {
+            words: steps(specification),
+            figure: specification.band.as_ref().map(|band| figure(specification, band)),
+            limits: limits(specification),
+            products: products(specification, false),
+        }
+    }
+}
+
+fn answer(of: &Specification) -> Markup {
+    let d15 = of.band.iter().flat_map(|band| &band.sizes).find(|size| size.percent == 15.0);
+    let raised = d15.zip(of.d15f_min_mm).filter(|(size, least)| size.min_mm > *least);
+    html! {
+        section.verdict {
+            @if let Some(size) = d15 {
+                p.word.long {
+                    "D15F from " (significant(size.min_mm)) " to " (significant(size.max_mm))
+                    " mm, by practice."
+                }
+            }
+            @if let Some((_, least)) = raised {
+                p {
+                    "A D15F of " (significant(least)) " mm already drains the base. The least is raised to \
+                     keep the band narrow."
+                }
+            }
+            @if let Some(why) = &of.no_band { p.word.long { "No band." } p { (clean(why)) } }
+            p { (clean(&products_in_short(of))) }
+        }
+    }
+}
+
+/// Which standard products fit, or which comes closest.
+fn products_in_short(of: &Specification) -> String {
+    let fitting: Vec<&str> =
+        of.products.iter().filter(|of| of.fits() == Some(true)).map(|of| of.product.as_str()).collect();
+    match (fitting.is_empty(), of.nearest_product()) {
+        (false, _) => format!("D15 of both sides drains and retains: {}.", fitting.join(", ")),
+        (true, Some(nearest)) => {
+            format!(
+                "Of no standard product does D15 of both sides drain and retain. {} comes closest.",
+                nearest.product
+            )
+        }
+        (true, None) => {
+            "Of no standard product is known whether it fits: a limit of D15F is not known.".into()
+        }
+    }
+}
+
+fn steps(of: &Specification) -> Markup {
+    html! {
+        p.small {
+            "The steps follow the order in which NRCS designs a filter (National Engineering Handbook, Part \
+             633, Chapter 26). Each step names the text in which its numbers were read, or says that they \
+             are checks of this program."
+        }
+        (Table::of(&of.steps).class("study")
+            .name("What is done, formula, source", |step: &SpecificationStep| html! {
+                (step.step) ". " (clean(&step.does))
+                @for text in [&step.formula, &step.note] {
+                    @if !text.is_empty() { br; span.small { (clean(text)) } }
+                }
+                @if !step.source.is_empty() { br; span.small { "Source: " (clean(&step.source)) } }
+            })
+            .text("Numbers", |step| html! {
+                @for value in &step.values {
+                    (clean(&value.name)) " = " b { (number(value.value, &value.unit)) } br;
+                }
+            })
+            .render())
+    }
+}
+
+/// A number with its unit.
+fn number(value: Option<f64>, unit: &str) -> String {
+    let found = known(value, |value| match (unit, value.fract() == 0.0 && value < 100.0) {
+        ("", true) => format!("{value:.0}"),
+        _ => significant(value),
+    });
+    let unit = if value.is_some() { unit } else { "" };
+    format!("{found} {unit}").trim_end().to_owned()
+}
+
+fn limits(of: &Specification) -> Markup {
+    let Some(band) = &of.band else {
+        return html! { @if let Some(why) = &of.no_band { p { (clean(why)) } } };
+    };
+    html! {
+        (Table::of(&of.limits)
+            .name("Sieve", |limit| clean(&limit.sieve))
+            .number("Opening (mm)", |limit| significant(limit.opening_mm))
+            .number("Least finer (%)", |limit| percent(limit.min_percent_finer))
+            .number("Greatest finer (%)", |limit| percent(limit.max_percent_finer))
+            .render())
+        p.small {
+            "Percent finer by mass, in whole percents within the band. At most 5 % may be finer than \
+             0.075 mm, and these fines must not be plastic. Segregation is not checked: see its step."
+        }
+        (Table::of(&band.sizes)
+            .name("Size of the band", |size| format!("D{}", size.percent))
+            .number("Least (mm)", |size| significant(size.min_mm))
+            .number("Greatest (mm)", |size| significant(size.max_mm))
+            .render())
+    }
+}
+
+fn percent(value: f64) -> String {
+    if value.fract() == 0.0 { format!("{value:.0}") } else { format!("{value:.1}") }
+}
+
+/// Margins of standard products; who judges them elsewhere says there whether they fit.
+fn products(of: &Specification, says_fit: bool) -> Markup {
+    let margin = |value: Option<f64>| known(value, significant);
+    let beyond = |of: &ProductMargin| match (of.leaves_band_by, of.worst_sieve_mm) {
+        (Some(points), Some(sieve)) => {
+            format!("{points:.0} percentage points, at {} mm", significant(sieve))
+        }
+        (Some(_), None) => "nowhere".into(),
+        _ => "–".into(),
+    };
+    let mut table = Table::of(&of.products)
+        .class("study")
+        .name("Product", |of: &ProductMargin| clean(&of.product))
+        .number("D15, fine to coarse side (mm)", |of| {
+            format!("{} to {}", significant(of.d15_fine_mm), significant(of.d15_coarse_mm))
+        })
+        .number("Drains: finest D15 / least D15F", |of| margin(of.drains_by))
+        .number("Retains: greatest D15F / coarsest D15", |of| margin(of.holds_by))
+        .text("Leaves the band by most", beyond);
+    if says_fit {
+        table = table.text("", |of| match of.fits() {
+            Some(true) => html! { span.keeps { "✓ D15 fits" } },
+            Some(false) => html! { span.breaks { "✗ does not fit" } },
+            None => html! { "no result" },
+        });
+    }
+    let mut sources: Vec<&str> = of.products.iter().map(|product| product.source.as_str()).collect();
+    sources.dedup();
+    html! {
+        @if !of.products.is_empty() {
+            (table.render())
+            p.small {
+                "A margin of 1 and more is kept. A product that fits by its D15 may still leave the band: \
+                 its supplier’s gradation decides. Limits of the products: " (clean(&sources.join("; "))) "."
+            }
+        }
+    }
+}
+
+/// Both sides of the band on the form of gradations, with the base.
+fn figure(of: &Specification, band: &SizeBand) -> Drawn {
+    let points = |rows: &[[f64; 2]]| rows.iter().map(|row| (row[0], row[1])).collect::<Vec<_>>();
+    let drawn = &of.curves[..of.curves.len().min(DRAWN_CURVES)];
+    let bases = drawn.iter().flat_map(|curve| &curve.gradation);
+    let sizes = bases.chain(&band.fine_side).chain(&band.coarse_side).map(|row| row[0]);
+    let (low, high) = positive_range(sizes);
+    let what = "Percent finer against size for the base and for both sides of the band of the filter";
+    let (x, y) = (Axis::log("Size (mm)", low, high), Axis::percent("Percent finer by mass (%)"));
+    let mut figure =
+        Figure::new("Band of the filter", what, "", x, y).sizes((720.0, 460.0), (358.0, 400.0)).sieves();
+    let (fine, coarse) = (points(&band.fine_side), points(&band.coarse_side));
+    let outline = fine.iter().chain(coarse.iter().rev()).copied().collect();
+    figure.add(Area::new(outline, GREEN, 0.15).label("band"));
+    figure.add(Line::new(fine, GREEN).width(2.6).label("fine side"));
+    figure.add(Line::new(coarse, BLUE).width(2.6).label("coarse side"));
+    for curve in drawn {
+        let name = if of.curves.len() == 1 { "base".into() } else { shorten(&curve.curve, 24) };
+        match curve.regraded.is_empty() {
+            true => figure.add(Line::new(points(&curve.gradation), VERMILLION).label(&name)),
+            false => {
+                let sampled = Line::new(points(&curve.gradation), VERMILLION).width(1.4).dash(Dash::Dashed);
+                figure.add(sampled.label(&format!("{name},\nas sampled")));
+                figure
+                    .add(Line::new(points(&curve.regraded), VERMILLION).label(&format!("{name},\nregraded")));
+            }
+        }
+    }
+    let left_out = of.curves.len() - drawn.len();
+    let more = if left_out > 0 {
+        format!(" {left_out} more curves of the base are not drawn.")
+    } else {
+        String::new()
+    };
+    let caption = format!(
+        "The band of the filter for this base. Its control points are joined by straight lines; above 60 % \
+         finer both sides go on straight.{more}"
+    );
+    Drawn::new("specification", figure, caption)
+}

@@ -1,0 +1,102 @@
+//! The workbook of a specification.
+
+use super::sheet::{Entry, Sheet};
+use crate::outcome::design::Specification;
+
+/// Its sheets.
+pub(super) fn sheets(of: &Specification) -> Vec<Sheet> {
+    vec![summary(of), limits(of), band(of), products(of), steps(of), base(of)]
+}
+
+fn summary(of: &Specification) -> Sheet {
+    let mut sheet = Sheet::new("Specification", &["Item", "Value", "Unit"]);
+    sheet.item("Base", &of.base, "");
+    sheet.item("Dispersive", of.dispersive, "");
+    sheet.item("Least D15F, which drains the base", of.d15f_min_mm, "mm");
+    sheet.item("Greatest D15F, which retains the base", of.d15f_max_mm, "mm");
+    sheet.item("No band, because", of.no_band.as_deref(), "");
+    sheet.item("voidwalk", &of.version, "");
+    sheet
+}
+
+fn limits(of: &Specification) -> Sheet {
+    let headings = ["Sieve", "Opening (mm)", "Least finer by mass (%)", "Greatest finer by mass (%)"];
+    let mut sheet = Sheet::new("Limits", &headings);
+    for limit in &of.limits {
+        sheet.row([
+            (&limit.sieve).into(),
+            limit.opening_mm.into(),
+            limit.min_percent_finer.into(),
+            limit.max_percent_finer.into(),
+        ]);
+    }
+    sheet
+}
+
+fn band(of: &Specification) -> Sheet {
+    let mut sheet = Sheet::new("Band", &["Finer by mass (%)", "Least size (mm)", "Greatest size (mm)"]);
+    for size in of.band.iter().flat_map(|band| &band.sizes) {
+        sheet.row([size.percent.into(), size.min_mm.into(), size.max_mm.into()]);
+    }
+    sheet
+}
+
+fn products(of: &Specification) -> Sheet {
+    let headings = [
+        "Product",
+        "D15 of the fine side (mm)",
+        "D15 of the coarse side (mm)",
+        "D15 of the fine side / least D15F (-)",
+        "Greatest D15F / D15 of the coarse side (-)",
+        "D15 fits",
+        "Leaves the band by most at sieve (mm)",
+        "Leaves the band by (percentage points)",
+        "Source of its limits",
+    ];
+    let mut sheet = Sheet::new("Products", &headings);
+    for product in &of.products {
+        sheet.row([
+            (&product.product).into(),
+            product.d15_fine_mm.into(),
+            product.d15_coarse_mm.into(),
+            product.drains_by.into(),
+            product.holds_by.into(),
+            product.fits().into(),
+            product.worst_sieve_mm.into(),
+            product.leaves_band_by.into(),
+            (&product.source).into(),
+        ]);
+    }
+    sheet
+}
+
+fn steps(of: &Specification) -> Sheet {
+    let headings = ["Step", "What is done", "Quantity", "Value", "Unit", "Formula", "Note", "Source"];
+    let mut sheet = Sheet::new("Steps", &headings);
+    for row in of.steps.iter().flat_map(|step| step.rows()) {
+        sheet.row([
+            row.step.into(),
+            row.does.into(),
+            row.quantity.into(),
+            row.value.into(),
+            row.unit.into(),
+            row.formula.into(),
+            row.note.into(),
+            row.source.into(),
+        ]);
+    }
+    sheet
+}
+
+fn base(of: &Specification) -> Sheet {
+    let mut sheet = Sheet::new("Base", &["Curve", "Grading", "Size (mm)", "Finer by mass (%)"]);
+    for curve in &of.curves {
+        for (grading, rows) in [("as sampled", &curve.gradation), ("regraded", &curve.regraded)] {
+            let row = |row: &[f64; 2]| -> [Entry; 4] {
+                [(&curve.curve).into(), grading.into(), row[0].into(), row[1].into()]
+            };
+            rows.iter().for_each(|of| sheet.row(row(of)));
+        }
+    }
+    sheet
+}

@@ -1,0 +1,242 @@
+//! The workbook of a run: every number as `outcome.json` has it.
+
+use super::sheet::{Entry, Sheet};
+use crate::outcome::record::{AppliedRule, Outcome, RuleRole, Run, Statistic};
+use crate::report::folder::RunFolder;
+use crate::report::names::soil_name;
+
+/// Its sheets.
+pub(super) fn sheets(of: &RunFolder) -> Vec<Sheet> {
+    let outcome = &of.outcome;
+    vec![
+        verdict(outcome),
+        inputs(outcome),
+        rules(outcome),
+        runs(outcome),
+        gradations(outcome),
+        provenance(of),
+    ]
+}
+
+/// The unit of sizes.
+fn unit(outcome: &Outcome) -> &'static str {
+    if outcome.inputs.scale_free { "D0F" } else { "mm" }
+}
+
+fn verdict(outcome: &Outcome) -> Sheet {
+    let mut sheet = Sheet::new("Verdict", &["Item", "Value", "Unit"]);
+    for (name, said) in outcome.first_lines() {
+        sheet.item(name, said, "");
+    }
+    sheet.item("Class of the walk", outcome.verdict.words(), "");
+    sheet.item("Confidence", outcome.confidence.words(), "");
+    let practice = outcome.practice.as_ref().map(|practice| &practice.design);
+    sheet.item("Limit of design of D15F", practice.and_then(|design| design.limit_mm), unit(outcome));
+    sheet.item("D15F", practice.and_then(|design| design.value_mm), unit(outcome));
+    sheet.item("Limit of design met", practice.and_then(|design| design.met), "");
+    sheet.item("D15F/D85B", outcome.ratios.d15f_over_d85b, "-");
+    sheet.item("D15F/D95B", outcome.ratios.d15f_over_d95b, "-");
+    sheet.item("Mass eroded from which a run erodes", outcome.threshold, "fraction of the base");
+    for run in &outcome.summary {
+        let of = |what: &str| format!("Mass eroded, run {}, {what}", run.run);
+        statistic(&mut sheet, &of, &run.eroded_mass_fraction);
+    }
+    if let Some(evidence) = &outcome.evidence {
+        sheet.item("Probability that a test shows no erosion", evidence.probability_no_erosion, "-");
+        sheet.item("The same by the range of tests alone", evidence.probability_by_tests, "-");
+    }
+    for (index, finding) in outcome.findings.iter().enumerate() {
+        sheet.item(&format!("Finding {}", index + 1), &finding.sentence, "");
+    }
+    sheet
+}
+
+fn statistic(sheet: &mut Sheet, name: &dyn Fn(&str) -> String, of: &Statistic) {
+    let unit = "fraction of the base";
+    sheet.item(&name("mean"), of.mean, unit);
+    sheet.item(&name("standard deviation"), of.sd, unit);
+    sheet.item(&name("lower end of the 95 % interval"), of.low, unit);
+    sheet.item(&name("upper end of the 95 % interval"), of.high, unit);
+}
+
+fn inputs(outcome: &Outcome) -> Sheet {
+    let mut sheet = Sheet::new("Inputs", &["Item", "Value", "Unit"]);
+    let (inputs, unit) = (&outcome.inputs, unit(outcome));
+    let (filter, base, network) = (&inputs.filter, &inputs.base, &inputs.network);
+    sheet.item("Filter", soil_name(&filter.name), "");
+    for (name, size) in [
+        ("D0F", filter.d0_mm),
+        ("D15F", filter.d15_mm),
+        ("D50F", filter.d50_mm),
+        ("D50F by number", filter.d50_by_number_mm),
+        ("D85F", filter.d85_mm),
+    ] {
+        sheet.item(name, size, unit);
+    }
+    sheet.item("Cu of the filter", filter.cu, "-");
+    sheet.item("Void ratio of the filter", filter.void_ratio, "-");
+    sheet.item("Constriction curve", &filter.curve_name, "");
+    sheet.item("Cu of the constrictions", filter.cu_csd, "-");
+    sheet.item("Base", soil_name(&base.name), "");
+    for (name, size) in [
+        ("D0B", Some(base.d0_mm)),
+        ("D15B", base.d15_mm),
+        ("D50B", base.d50_mm),
+        ("D85B", Some(base.d85_mm)),
+        ("D95B", Some(base.d95_mm)),
+        ("D100B", Some(base.d100_mm)),
+        ("Base regraded on", base.regraded_at_mm),
+    ] {
+        sheet.item(name, size, unit);
+    }
+    sheet.item("Cu of the base", base.cu, "-");
+    sheet.item("Pan fraction of the base", base.tail_mass_fraction, "fraction of the mass");
+    sheet.item("Network", &network.name, "");
+    sheet.item("Voids", network.voids, "");
+    sheet.item("Constrictions", network.constrictions, "");
+    sheet.item("Layers of voids", network.layers, "");
+    sheet.item("Thickness modelled", network.thickness_mm, unit);
+    sheet.item("Filter grains per void", outcome.grains_per_void, "-");
+    sheet.item("Mass of base / mass of filter", inputs.mass_ratio, "-");
+    sheet.item("Base particles in each run", outcome.n_base, "");
+    sheet.item("Share inserted in each increment", inputs.inject_share, "fraction of the base");
+    sheet
+}
+
+fn rules(outcome: &Outcome) -> Sheet {
+    let headings = [
+        "Rule",
+        "Authority",
+        "Quantity",
+        "Value",
+        "Limit",
+        "Unit of value and limit",
+        "The limit is",
+        "Applies",
+        "Met",
+        "Formula",
+        "Applies to",
+        "Note",
+        "Source",
+        "Id",
+    ];
+    let mut sheet = Sheet::new("Rules", &headings);
+    for rule in outcome.rules.iter().filter(|rule| rule.role != RuleRole::Walk) {
+        sheet.row(of_rule(rule));
+    }
+    sheet
+}
+
+fn of_rule(rule: &AppliedRule) -> [Entry; 14] {
+    let notes: Vec<String> = [&rule.note, &rule.needs].iter().map(ToString::to_string).collect();
+    let notes = notes.into_iter().filter(|note| !note.is_empty()).collect::<Vec<_>>().join("; ");
+    let limit_is = match (rule.limit, rule.at_least, rule.limit_at_most) {
+        (None, ..) => "",
+        (_, true, _) => "the least",
+        (_, false, false) => "the most",
+        (_, false, true) => "the most that it can be",
+    };
+    [
+        (&rule.name).into(),
+        (&rule.authority).into(),
+        rule.quantity.name().into(),
+        rule.value.into(),
+        rule.limit.into(),
+        (&rule.unit).into(),
+        limit_is.into(),
+        rule.applies.into(),
+        rule.met.into(),
+        (&rule.formula).into(),
+        (&rule.applies_to).into(),
+        notes.into(),
+        (&rule.source).into(),
+        (&rule.id).into(),
+    ]
+}
+
+fn runs(outcome: &Outcome) -> Sheet {
+    let headings = [
+        "Replicate",
+        "Seed",
+        "Class of the replicate",
+        "Run",
+        "Mass eroded (fraction of the mass inserted)",
+        "Particles eroded (fraction of those inserted)",
+        "Largest particle eroded (mm, or D0F without a unit)",
+        "Largest particle eroded / D15F (-)",
+        "Particles inserted",
+        "Particles eroded",
+        "Particles retained in constrictions",
+        "Particles retained in voids",
+        "Constrictions blocked",
+        "Constrictions blocked (fraction of all)",
+        "Increments",
+        "Particle moves",
+    ];
+    let mut sheet = Sheet::new("Runs", &headings);
+    for (number, replicate) in (1u64..).zip(&outcome.replicates) {
+        for run in &replicate.runs {
+            let of_replicate: [Entry; 3] =
+                [number.into(), replicate.seed.into(), replicate.verdict.words().into()];
+            sheet.row(of_replicate.into_iter().chain(of_run(run)));
+        }
+    }
+    sheet
+}
+
+fn of_run(run: &Run) -> [Entry; 13] {
+    [
+        run.run.into(),
+        run.eroded_mass_fraction.into(),
+        run.eroded_number_fraction.into(),
+        run.largest_eroded_mm.into(),
+        run.largest_eroded_over_d15f.into(),
+        run.inserted.into(),
+        run.eroded.into(),
+        run.retained_in_constrictions.into(),
+        run.retained_in_voids.into(),
+        run.blocked.into(),
+        run.blocked_fraction.into(),
+        run.increments.into(),
+        run.particle_moves.into(),
+    ]
+}
+
+fn gradations(outcome: &Outcome) -> Sheet {
+    let headings = ["Curve", "Size (mm, or D0F without a unit)", "Finer (%)", "Percent finer by"];
+    let mut sheet = Sheet::new("Gradations", &headings);
+    let (filter, base) = (&outcome.inputs.filter, &outcome.inputs.base);
+    let sampled = base.as_sampled.as_ref().map_or(&[][..], |before| &before.gradation);
+    for (curve, rows, by) in [
+        ("filter", &filter.gradation[..], "mass"),
+        ("constrictions of the filter", &filter.constrictions, "number"),
+        ("base as walked", &base.gradation, "mass"),
+        ("base as sampled", sampled, "mass"),
+    ] {
+        rows.iter().for_each(|row| sheet.row([curve.into(), row[0].into(), row[1].into(), by.into()]));
+    }
+    sheet
+}
+
+fn provenance(of: &RunFolder) -> Sheet {
+    let mut sheet = Sheet::new("Provenance", &["Item", "Value", "Unit"]);
+    let manifest = &of.manifest;
+    for (name, value) in [
+        ("voidwalk", Some(&manifest.version)),
+        ("Commit", manifest.commit.as_ref()),
+        ("Command", Some(&manifest.command)),
+        ("Engine", Some(&of.outcome.engine)),
+        ("Machine", Some(&manifest.machine)),
+        ("Host", Some(&manifest.host)),
+        ("Started", Some(&manifest.started)),
+        ("Finished", Some(&manifest.finished)),
+    ] {
+        sheet.item(name, value, "");
+    }
+    sheet.item("Seed", of.outcome.seed, "");
+    sheet.item("Replicates", of.outcome.replicates.len() as u64, "");
+    for input in &manifest.inputs {
+        sheet.item(&format!("XXH3 of {}", input.name), &input.xxh3, "");
+    }
+    sheet
+}

@@ -1,0 +1,79 @@
+//! The specification of a filter by the rules of practice alone, in a folder of its own.
+
+use std::path::{Path, PathBuf};
+
+use crate::gradation::{Gradation, curves_in_file};
+use crate::outcome::design::{SieveSeries, Specification, SpecificationStep};
+use crate::outcome::table::csv_of;
+use crate::run::callbacks::Callbacks;
+use crate::run::error::RunError;
+use crate::run::folder::{FolderKind, claim, shown};
+use crate::store::{Folder, StoreError};
+use crate::study::kept;
+use crate::verdict::SpecificationOptions;
+
+/// A base coarser than this (D85, mm) is none: its sizes are in another unit.
+pub(super) const NO_BASE_MM: f64 = 100.0;
+
+/// What a specification without a walk is asked for, and where it goes.
+#[derive(Clone, Debug)]
+pub struct SpecifyOptions {
+    /// Sieve table of the base; several soils in it are the curves of an envelope.
+    pub base: PathBuf,
+    /// Whether the base is dispersive.
+    pub dispersive: bool,
+    /// The sieves at which the limits are stated.
+    pub sieves: SieveSeries,
+    /// Folder for the results.
+    pub out: PathBuf,
+    /// Whether earlier results there are replaced.
+    pub overwrite: bool,
+}
+
+/// Makes the specification of a filter for a base, step by step, and writes its tables and, last,
+/// `specification.json`.
+///
+/// # Errors
+/// A base that cannot be read or is none, and a folder that cannot be claimed, are refused before anything
+/// is written.
+pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specification, RunError> {
+    let bases = curves_in_file(&options.base, None).map_err(RunError::refused)?;
+    bases.iter().try_for_each(|(name, base)| is_a_base(&options.base, name, base))?;
+    let (dispersive, sieves) = (options.dispersive, options.sieves);
+    let specified = SpecificationOptions { dispersive, sieves, walked_mm: None };
+    let specification = Specification::of(&options.base.display().to_string(), &bases, specified);
+    let kind = FolderKind::Specification;
+    let folder = claim(&options.out, kind, options.overwrite)?;
+    let work = format!("{dispersive} {sieves} {bases:?}");
+    kept::study((&folder, kind, options.overwrite), work, callbacks, |_, _: Option<()>| {
+        write_tables(&folder, &specification)?;
+        Ok(specification)
+    })
+}
+
+/// Refuses stones: a size in micrometres under a header in mm, most likely.
+fn is_a_base(file: &Path, name: &str, base: &Gradation) -> Result<(), RunError> {
+    match base.d(85.0).filter(|d85| *d85 > NO_BASE_MM) {
+        Some(d85) => Err(RunError::Refused(format!("{}: {name}: {}", shown(file), no_base(d85)))),
+        None => Ok(()),
+    }
+}
+
+/// What is wrong with so coarse a base.
+pub(super) fn no_base(d85: f64) -> String {
+    format!(
+        "the base's D85 is {d85:.0} mm, and no filter holds such stones: are its sizes micrometres under a \
+         header in mm?"
+    )
+}
+
+/// Writes limits, steps and products as CSV.
+///
+/// # Errors
+/// What the system says.
+pub(super) fn write_tables(folder: &Folder, specification: &Specification) -> Result<(), StoreError> {
+    let steps: Vec<_> = specification.steps.iter().flat_map(SpecificationStep::rows).collect();
+    folder.write("specification.csv", &csv_of(&specification.limits))?;
+    folder.write("specification_steps.csv", &csv_of(&steps))?;
+    folder.write("specification_products.csv", &csv_of(&specification.products))
+}

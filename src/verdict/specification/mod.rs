@@ -1,0 +1,105 @@
+//! The specification of a filter for a base, step by step, with its words.
+
+mod curve;
+mod steps;
+#[cfg(test)]
+mod tests;
+
+use crate::outcome::design::SieveSeries;
+use crate::outcome::design::specification::{SizeBand, Specification, margins};
+use crate::outcome::numbers::significant;
+use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_CU, NamedCurve, WIDEST_BAND};
+use curve::ReadCurve;
+use steps::{Control, D15_OVER_D10, Found};
+
+/// What a specification is asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SpecificationOptions {
+    /// Whether the base is dispersive.
+    pub dispersive: bool,
+    /// The sieves at which the limits are stated.
+    pub sieves: SieveSeries,
+    /// Greatest D15F (mm) that the walk holds, where a base was walked.
+    pub walked_mm: Option<f64>,
+}
+
+impl Specification {
+    /// For a base of one curve or of several, in mm. Every curve is to be retained and drained: the strictest
+    /// limit of each counts.
+    ///
+    /// ```
+    /// use voidwalk::Gradation;
+    /// use voidwalk::outcome::design::Specification;
+    /// use voidwalk::verdict::SpecificationOptions;
+    /// let clay = Gradation::from_points(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)], None)?;
+    /// let of = Specification::of("core", &[("core".into(), clay)], SpecificationOptions::default());
+    /// assert_eq!((of.d15f_min_mm, of.d15f_max_mm), (Some(0.1), Some(0.7)));
+    /// # Ok::<(), voidwalk::gradation::GradationError>(())
+    /// ```
+    pub fn of(name: &str, bases: &[NamedCurve], options: SpecificationOptions) -> Self {
+        let read: Vec<ReadCurve> = bases.iter().map(|base| ReadCurve::of(base, options.dispersive)).collect();
+        let strictest = read.iter().min_by(|a, b| a.greatest().total_cmp(&b.greatest()));
+        let unknown = read.iter().find(|curve| curve.unknown.is_some());
+        let by_practice = strictest.filter(|_| unknown.is_none()).and_then(|curve| curve.of.d15f_max_mm);
+        let d15f_max = by_practice.map(|limit| options.walked_mm.map_or(limit, |walked| limit.min(walked)));
+        let coarsest = read.iter().max_by(|a, b| a.least().total_cmp(&b.least()));
+        let d15f_min = coarsest.and_then(|curve| curve.of.d15f_min_mm);
+        let control = d15f_min.zip(d15f_max).filter(|(min, max)| min <= max).map(|(min, max)| {
+            let d60_max = MOST_CU * max / D15_OVER_D10;
+            Control { d15: [min.max(max / WIDEST_BAND), max], d60: [d60_max / WIDEST_BAND, d60_max] }
+        });
+        let band = control.as_ref().and_then(|of| SizeBand::of(of.d15, of.d60));
+        let no_band = no_band(d15f_min, d15f_max, unknown, band.is_some());
+        let found = Found {
+            walked_mm: options.walked_mm,
+            read: &read,
+            strictest,
+            unknown,
+            coarsest,
+            by_practice,
+            d15f_max,
+            control,
+        };
+        Self {
+            version: env!("CARGO_PKG_VERSION").into(),
+            base: name.into(),
+            dispersive: options.dispersive,
+            sieves: options.sieves,
+            steps: found.steps(band.as_ref()),
+            curves: read.iter().map(|curve| curve.of.clone()).collect(),
+            d15f_min_mm: d15f_min,
+            d15f_max_mm: d15f_max,
+            limits: band.as_ref().map(|band| band.limits(options.sieves)).unwrap_or_default(),
+            products: margins(d15f_min, d15f_max, band.as_ref()),
+            no_band,
+            band,
+        }
+    }
+}
+
+/// Why there is no band.
+fn no_band(
+    min: Option<f64>,
+    max: Option<f64>,
+    unknown: Option<&ReadCurve>,
+    has_band: bool,
+) -> Option<String> {
+    let size = significant;
+    match (min, max) {
+        _ if has_band => None,
+        (Some(min), Some(max)) if min > max => Some(format!(
+            "No filter both drains and retains this base: D15F must be at least {} mm to drain it and at \
+             most {} mm to retain it. A filter in two stages, or a base that is less broad, is needed.",
+            size(min),
+            size(max)
+        )),
+        (Some(_), Some(max)) => Some(format!(
+            "The greatest D60F is {} mm and lies beyond the greatest size of {GREATEST_SIZE_MM} mm.",
+            size(MOST_CU * max / D15_OVER_D10)
+        )),
+        _ => Some(match unknown.and_then(|curve| curve.unknown.as_ref().map(|why| (&curve.of.curve, why))) {
+            Some((curve, why)) => format!("The greatest D15F is not known for {curve}: {why}."),
+            None => "No rule of retention covers this base.".into(),
+        }),
+    }
+}

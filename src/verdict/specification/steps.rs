@@ -1,0 +1,296 @@
+//! The steps of a specification, with their numbers, words and sources.
+
+use super::curve::ReadCurve;
+use crate::gradation::FINES_MM;
+use crate::outcome::design::specification::{BandSize, SizeBand, SpecificationStep, StepValue};
+use crate::outcome::rules::{DESIGN, GREATEST_SIZE_MM, MOST_CU, MOST_FINES_PERCENT, RULES, WIDEST_BAND};
+use crate::verdict::words::capital;
+
+/// D15/D10 of a side that is straight on the form and has a Cu of 6: 6^(5/50) = 1.196.
+pub(super) const D15_OVER_D10: f64 = 1.2;
+
+/// The control points of a band: D15 and D60 (mm) of its fine and of its coarse side.
+pub(super) struct Control {
+    pub d15: [f64; 2],
+    pub d60: [f64; 2],
+}
+
+/// What the steps say.
+pub(super) struct Found<'a> {
+    /// Greatest D15F (mm) that the walk holds.
+    pub walked_mm: Option<f64>,
+    pub read: &'a [ReadCurve],
+    /// The curve that allows the least D15F.
+    pub strictest: Option<&'a ReadCurve>,
+    pub unknown: Option<&'a ReadCurve>,
+    /// The curve that asks for the greatest D15F.
+    pub coarsest: Option<&'a ReadCurve>,
+    pub by_practice: Option<f64>,
+    pub d15f_max: Option<f64>,
+    pub control: Option<Control>,
+}
+
+impl Found<'_> {
+    /// Every step, in order.
+    pub fn steps(&self, band: Option<&SizeBand>) -> Vec<SpecificationStep> {
+        let steps = [
+            self.gradation(),
+            self.gravel(),
+            self.regrading(),
+            self.category(),
+            self.retention(),
+            self.drainage(),
+            self.width(),
+            self.uniformity(),
+            self.ends(),
+            self.segregation(),
+            self.sides(band),
+        ];
+        let number =
+            |(index, step): (usize, SpecificationStep)| SpecificationStep { step: index as u64 + 1, ..step };
+        steps.into_iter().enumerate().map(number).collect()
+    }
+
+    /// A number of every curve, which of several says whose it is.
+    fn each(&self, name: &str, unit: &str, value: impl Fn(&ReadCurve) -> Option<f64>) -> Vec<StepValue> {
+        let of = |curve: &ReadCurve| {
+            let whose = if self.read.len() > 1 { format!(" of {}", curve.of.curve) } else { String::new() };
+            named(&format!("{name}{whose}"), value(curve), unit)
+        };
+        self.read.iter().map(of).collect()
+    }
+
+    fn gradation(&self) -> SpecificationStep {
+        let curves = self.read.len();
+        SpecificationStep {
+            values: self.each("D15B", "mm", |curve| curve.of.d15_mm),
+            note: match curves {
+                1 => "One curve.".into(),
+                _ => format!(
+                    "{curves} curves. Each is to be retained and drained, and the strictest limit counts."
+                ),
+            },
+            ..step("Plot the gradation of the base")
+        }
+    }
+
+    fn gravel(&self) -> SpecificationStep {
+        let why = |curve: &ReadCurve| match self.read.len() {
+            1 => sentence(&curve.soil.why.words()),
+            _ => format!("{}: {}.", curve.of.curve, curve.soil.why.words()),
+        };
+        let said: Vec<String> = self.read.iter().map(why).collect();
+        SpecificationStep {
+            values: self.each("finer than No. 4 (4.75 mm)", "%", |curve| Some(curve.percent_no_4)),
+            note: said.join(" "),
+            source: REGRADING.into(),
+            ..step("Find out whether the base has gravel or a gap")
+        }
+    }
+
+    fn regrading(&self) -> SpecificationStep {
+        let any = self.read.iter().any(|curve| curve.of.regraded_at_mm.is_some());
+        let mut values = Vec::new();
+        if any {
+            values.extend(self.each("regraded on", "mm", |curve| curve.of.regraded_at_mm));
+        }
+        values.extend(self.each("D85B", "mm", |curve| curve.of.d85_mm));
+        SpecificationStep {
+            formula: "percent finer / percent finer than the size on which it is regraded".into(),
+            values,
+            note: if any { String::new() } else { "Not regraded.".into() },
+            source: REGRADING.into(),
+            ..step("Regrade the base")
+        }
+    }
+
+    fn category(&self) -> SpecificationStep {
+        let mut values = self.each("fines A, finer than 0.075 mm", "%", |curve| curve.of.fines_percent);
+        values.extend(self.each("category", "", |curve| curve.of.category.map(f64::from)));
+        SpecificationStep {
+            formula: "1: A > 85 %; 2: A 40 to 85 %; 3: A 15 to 40 %; 4: A < 15 %".into(),
+            values,
+            source: source_of(DESIGN),
+            ..step("Place the base in a category by its fines after regrading")
+        }
+    }
+
+    fn retention(&self) -> SpecificationStep {
+        let what = "Find the greatest D15F that retains the base";
+        let rule = self.strictest.and_then(|curve| curve.retention.as_ref());
+        let mut notes: Vec<String> = Vec::new();
+        if let (Some(curve), Some(_)) = (self.strictest, self.by_practice) {
+            let whose = if self.read.len() > 1 { format!(", for {}", curve.of.curve) } else { String::new() };
+            notes.push(format!("Set by {}{whose}.", curve.of.d15f_max_rule));
+        }
+        if let Some(why) = self.unknown.and_then(|curve| curve.unknown.as_ref()) {
+            notes.push(sentence(why));
+        }
+        let mut values = vec![named("greatest D15F by practice", self.by_practice, "mm")];
+        if let Some(limit) = self.limit_of_design() {
+            values.insert(
+                0,
+                named("greatest D15F by Sherard and Dunnigan's limit of design", Some(limit), "mm"),
+            );
+        }
+        if let Some(walked) = self.walked_mm {
+            values.push(named("greatest D15F that the walk holds", Some(walked), "mm"));
+            values.push(named("greatest D15F", self.d15f_max, "mm"));
+            notes.push("The smaller of practice and walk counts.".into());
+        }
+        SpecificationStep {
+            formula: rule.map_or_else(String::new, |rule| rule.formula.clone()),
+            values,
+            note: notes.join(" "),
+            source: rule.map_or_else(String::new, |rule| rule.source.clone()),
+            ..step(what)
+        }
+    }
+
+    /// The limit of design, where another rule is stricter.
+    fn limit_of_design(&self) -> Option<f64> {
+        let curve = self.strictest.filter(|_| self.by_practice.is_some())?;
+        let design = curve.design.as_ref()?;
+        let is_other = curve.retention.as_ref().is_some_and(|rule| rule.id != design.id);
+        design.limit.filter(|limit| is_other && *limit > curve.greatest() * (1.0 + 1e-9))
+    }
+
+    fn drainage(&self) -> SpecificationStep {
+        let rule = self.coarsest.and_then(|curve| curve.drainage.as_ref());
+        let mut notes = Vec::new();
+        if let Some(curve) = self.coarsest.filter(|_| self.read.len() > 1) {
+            notes.push(format!("Set by {}.", curve.of.curve));
+        }
+        notes.extend(
+            rule.map(|rule| rule.note.to_string()).filter(|note| !note.is_empty()).map(|n| sentence(&n)),
+        );
+        SpecificationStep {
+            formula: rule.map_or_else(String::new, |rule| rule.formula.clone()),
+            values: vec![named("least D15F", self.coarsest.and_then(|curve| curve.of.d15f_min_mm), "mm")],
+            note: notes.join(" "),
+            source: rule.map_or_else(String::new, |rule| rule.source.clone()),
+            ..step("Find the least D15F that drains the base")
+        }
+    }
+
+    fn width(&self) -> SpecificationStep {
+        let least = self.coarsest.and_then(|curve| curve.of.d15f_min_mm);
+        let raised = self.control.as_ref().zip(least).is_some_and(|(of, least)| of.d15[0] > least);
+        let narrow = self.control.as_ref().map(|of| of.d15[0]);
+        SpecificationStep {
+            formula: format!(
+                "greatest D15F / least D15F <= {WIDEST_BAND}; the least is raised where the ratio is larger"
+            ),
+            values: vec![
+                named(
+                    "greatest D15F / least D15F, as found",
+                    self.d15f_max.zip(least).map(|(a, b)| a / b),
+                    "",
+                ),
+                named("least D15F of the band", narrow, "mm"),
+                named("greatest D15F of the band", self.control.as_ref().map(|of| of.d15[1]), "mm"),
+            ],
+            note: if raised { "The least D15F is raised.".into() } else { String::new() },
+            source: source_of("filter-band"),
+            ..step("Keep the band narrow at 15 % finer")
+        }
+    }
+
+    fn uniformity(&self) -> SpecificationStep {
+        let d60 = |side: usize| self.control.as_ref().map(|of| of.d60[side]);
+        SpecificationStep {
+            formula: format!(
+                "greatest D10F = greatest D15F / {D15_OVER_D10}; greatest D60F = {MOST_CU} x greatest D10F; \
+                 least D60F = greatest D60F / {WIDEST_BAND}"
+            ),
+            values: vec![
+                named("greatest D10F", self.control.as_ref().map(|of| of.d15[1] / D15_OVER_D10), "mm"),
+                named("greatest D60F", d60(1), "mm"),
+                named("least D60F", d60(0), "mm"),
+            ],
+            note: format!(
+                "Cu of each side is at most {MOST_CU}. {D15_OVER_D10} is D15/D10 of a side that is straight \
+                 on the form and has this Cu."
+            ),
+            source: source_of("filter-uniformity"),
+            ..step("Keep both sides uniform, without gaps")
+        }
+    }
+
+    fn ends(&self) -> SpecificationStep {
+        SpecificationStep {
+            formula: format!(
+                "least D5F = greatest D5F / {WIDEST_BAND}, not less than {FINES_MM} mm; greatest D100F \
+                 {GREATEST_SIZE_MM} mm"
+            ),
+            values: vec![
+                named("least D5F allowed", Some(FINES_MM), "mm"),
+                named("greatest D100F allowed", Some(GREATEST_SIZE_MM), "mm"),
+            ],
+            note: format!(
+                "At most {MOST_FINES_PERCENT} % is finer than {FINES_MM} mm. These fines must not be plastic."
+            ),
+            source: source_of("filter-fines"),
+            ..step("Limit the fines and the greatest size")
+        }
+    }
+
+    fn segregation(&self) -> SpecificationStep {
+        let d10 = self.control.as_ref().map(|of| of.d15[0] / D15_OVER_D10);
+        SpecificationStep {
+            formula: format!("least D10F = least D15F / {D15_OVER_D10}"),
+            values: vec![named("least D10F", d10, "mm"), named("greatest D90F", None, "mm")],
+            note:
+                "Not checked here. The greatest D90F follows from the least D10F by a table of FEMA and NRCS \
+                   whose numbers were not read. Take it from there."
+                    .into(),
+            source: source_of("filter-segregation"),
+            ..step("Keep the filter from segregating")
+        }
+    }
+
+    fn sides(&self, band: Option<&SizeBand>) -> SpecificationStep {
+        let sizes = band.map(|band| &band.sizes[..]).unwrap_or_default();
+        let both = |size: &BandSize| {
+            let one = |which: &str, value| named(&format!("{which} D{}F", size.percent), Some(value), "mm");
+            [one("least", size.min_mm), one("greatest", size.max_mm)]
+        };
+        SpecificationStep {
+            values: sizes.iter().flat_map(both).collect(),
+            note:
+                "The control points are joined by straight lines on the form. Above 60 % finer both sides go \
+                   on straight."
+                    .into(),
+            ..step("Draw both sides of the band")
+        }
+    }
+}
+
+/// Where regrading and its sizes were read.
+const REGRADING: &str = "U.S. Army Corps of Engineers, Filter Evaluation manual (RMC-CPD-2023-04), chapter \
+                         Base Gradation, after Sherard and Dunnigan (1989)";
+
+fn step(does: &str) -> SpecificationStep {
+    SpecificationStep {
+        step: 0,
+        does: does.into(),
+        formula: String::new(),
+        values: Vec::new(),
+        note: String::new(),
+        source: String::new(),
+    }
+}
+
+fn named(name: &str, value: Option<f64>, unit: &str) -> StepValue {
+    StepValue { name: name.into(), value, unit: unit.into() }
+}
+
+/// A part of a sentence as one of its own.
+fn sentence(words: &str) -> String {
+    format!("{}.", capital(words.trim_end_matches('.')))
+}
+
+/// Where the numbers of a rule were read.
+fn source_of(id: &str) -> String {
+    RULES.iter().find(|rule| rule.id == id).map_or_else(String::new, |rule| rule.source.into())
+}

@@ -1,0 +1,145 @@
+//! Specifications against calculations by hand.
+
+use super::*;
+use crate::gradation::Gradation;
+use crate::outcome::record::RuleRole;
+use crate::verdict::{PairOptions, PairRules};
+
+fn soil(points: &[(f64, f64)]) -> Gradation {
+    Gradation::from_points(points, None).unwrap()
+}
+
+fn of(points: &[(f64, f64)]) -> Specification {
+    Specification::of("base", &[("base".into(), soil(points))], SpecificationOptions::default())
+}
+
+fn near(found: Option<f64>, wanted: f64) -> bool {
+    found.is_some_and(|found| (found / wanted - 1.0).abs() < 1e-9)
+}
+
+fn value(of: &Specification, name: &str) -> Option<f64> {
+    let all = of.steps.iter().flat_map(|step| &step.values);
+    all.filter(|value| value.name == name).find_map(|value| value.value)
+}
+
+/// A core of category 2: 0.7 mm and the least of 0.1 mm, whose ratio of 7 is narrowed to 5.
+#[test]
+fn a_core_with_60_percent_of_fines_by_hand() {
+    let core = of(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
+    assert_eq!(core.curves[0].category, Some(2));
+    assert!(near(core.d15f_max_mm, 0.7) && near(core.d15f_min_mm, 0.1));
+    assert!(near(value(&core, "least D15F of the band"), 0.14));
+    assert!(near(value(&core, "greatest D10F"), 0.7 / 1.2));
+    assert!(near(value(&core, "greatest D60F"), 3.5) && near(value(&core, "least D60F"), 0.7));
+    assert!(near(value(&core, "least D10F"), 0.14 / 1.2));
+    let sizes = &core.band.as_ref().unwrap().sizes;
+    assert_eq!(sizes.iter().map(|size| size.percent).collect::<Vec<_>>(), [5.0, 15.0, 60.0, 90.0, 100.0]);
+    assert_eq!(core.steps.iter().map(|step| step.step).collect::<Vec<_>>(), (1..=11).collect::<Vec<_>>());
+    assert!(core.no_band.is_none() && core.nearest_product().is_none());
+    assert!(core.products[0].fits() == Some(true) && core.products[1].fits() == Some(false));
+}
+
+/// Categories 1, 3 and 4, and a dispersive clay.
+#[test]
+fn the_limits_of_the_other_categories_by_hand() {
+    let clay = [(0.001, 0.0), (0.02, 60.0), (0.05, 85.0), (0.075, 90.0), (0.3, 100.0)];
+    assert!(near(of(&clay).d15f_max_mm, 9.0 * 0.05));
+    let options = SpecificationOptions { dispersive: true, ..Default::default() };
+    let dispersive = Specification::of("clay", &[("clay".into(), soil(&clay))], options);
+    assert!(near(dispersive.d15f_max_mm, 6.4 * 0.05) && dispersive.dispersive);
+    let silty = of(&[(0.01, 0.0), (0.075, 25.0), (1.0, 85.0), (4.0, 100.0)]);
+    assert!(near(silty.d15f_max_mm, (40.0 - 25.0) / 25.0 * (4.0 - 0.7) + 0.7));
+    let sand = of(&[(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)]);
+    assert!(near(sand.d15f_max_mm, 2.0) && near(sand.d15f_min_mm, 1.0));
+    // The ratio of 2 needs no narrowing.
+    assert!(near(value(&sand, "least D15F of the band"), 1.0));
+}
+
+/// The till of the first trial: D85B 1.53 mm on No. 4, 38 % of fines.
+#[test]
+fn a_till_is_regraded_and_both_limits_of_its_fines_are_shown() {
+    let till = of(&[(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)]);
+    let fines: f64 = 35.0 / 0.92;
+    assert!(near(value(&till, "fines A, finer than 0.075 mm"), fines));
+    assert_eq!(value(&till, "regraded on"), Some(4.75));
+    let d85b = till.curves[0].d85_mm.unwrap();
+    let design = (40.0 - fines) / 25.0 * (4.0 * d85b - 0.7) + 0.7;
+    assert!(near(value(&till, "greatest D15F by Sherard and Dunnigan's limit of design"), design));
+    assert!(near(till.d15f_max_mm, 0.7));
+    // D15B is finer than the finest sieve: the limit is at most five times that.
+    assert!(near(till.d15f_min_mm, 5.0 * 0.075));
+}
+
+#[test]
+fn of_several_curves_the_strictest_limit_of_each_counts() {
+    let curves: Vec<NamedCurve> = vec![
+        ("fine".into(), soil(&[(0.1, 0.0), (0.15, 15.0), (0.4, 85.0), (1.0, 100.0)])),
+        ("coarse".into(), soil(&[(0.1, 0.0), (0.2, 15.0), (0.8, 85.0), (2.0, 100.0)])),
+    ];
+    let both = Specification::of("site", &curves, SpecificationOptions::default());
+    assert!(near(both.d15f_max_mm, 1.6) && near(both.d15f_min_mm, 1.0));
+    let limits: Vec<_> = both.curves.iter().map(|curve| curve.d15f_max_mm.unwrap()).collect();
+    assert!((limits[1] / limits[0] - 2.0).abs() < 1e-9, "{limits:?}");
+    assert!(both.steps[4].note.ends_with("for fine.") && both.steps[5].note.starts_with("Set by coarse."));
+    assert!(value(&both, "D15B of coarse").is_some());
+}
+
+#[test]
+fn without_a_known_limit_or_room_between_both_there_is_no_band_and_it_is_said_why() {
+    // 20 % finer than 0.2 mm: fines, and so the category, are not known.
+    let open = of(&[(0.2, 20.0), (0.5, 85.0), (1.0, 100.0)]);
+    let why = open.no_band.as_ref().unwrap();
+    assert!(open.nearest_product().is_none());
+    assert!(open.band.is_none() && open.d15f_max_mm.is_none() && open.limits.is_empty());
+    assert!(why.contains("not known for base") && why.contains("finer sieves"), "{why}");
+    // A sand of one size: 5 D15B is more than 4 D85B.
+    let uniform = of(&[(0.4, 0.0), (0.5, 100.0)]);
+    let why = uniform.no_band.as_ref().unwrap();
+    assert!(uniform.band.is_none() && why.starts_with("No filter both drains and retains"), "{why}");
+    assert!(uniform.products.iter().all(|product| product.leaves_band_by.is_none()));
+    // A gravel whose filter would be of stones.
+    let gravel = of(&[(5.0, 0.0), (6.0, 15.0), (9.0, 85.0), (12.0, 100.0)]);
+    assert!(gravel.no_band.unwrap().contains("beyond the greatest size of 75 mm"));
+}
+
+#[test]
+fn the_walk_narrows_the_band_where_it_is_the_stricter() {
+    let sand = [("sand".to_owned(), soil(&[(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)]))];
+    let with = |walked| {
+        let options = SpecificationOptions { walked_mm: Some(walked), ..Default::default() };
+        Specification::of("sand", &sand, options).d15f_max_mm
+    };
+    assert!(near(with(1.5), 1.5) && near(with(3.0), 2.0));
+}
+
+/// What is specified keeps every rule of the table: both sides of the band, against every curve of the base.
+#[test]
+fn both_sides_of_a_band_keep_every_rule_of_retention_drainage_and_placing() {
+    let bases: [&[(f64, f64)]; 5] = [
+        &[(0.001, 0.0), (0.02, 60.0), (0.05, 85.0), (0.075, 90.0), (0.3, 100.0)],
+        &[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)],
+        &[(0.002, 6.0), (0.02, 20.0), (0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)],
+        &[(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)],
+        &[(0.1, 0.0), (0.3, 15.0), (1.2, 85.0), (3.0, 100.0)],
+    ];
+    for points in bases {
+        let band = of(points).band.unwrap();
+        let side = |rows: &[[f64; 2]]| soil(&rows.iter().map(|row| (row[0], row[1])).collect::<Vec<_>>());
+        let sides =
+            [("fine".to_owned(), side(&band.fine_side)), ("coarse".to_owned(), side(&band.coarse_side))];
+        // A hair finer, so that no rounding breaks the limit itself.
+        let sides = sides.map(|(name, curve)| {
+            let hair = if name == "coarse" { 1.0 - 1e-9 } else { 1.0 + 1e-9 };
+            (name, curve.scaled(hair).unwrap())
+        });
+        let base = [("base".to_owned(), soil(points))];
+        let rules = PairRules::of_envelopes(&base, &sides, PairOptions::default()).rules;
+        let of_roles = [RuleRole::Retention, RuleRole::Drainage, RuleRole::Placing];
+        let broken = rules.iter().filter(|rule| of_roles.contains(&rule.role) && rule.is_broken());
+        assert_eq!(broken.map(|rule| &rule.id).collect::<Vec<_>>(), Vec::<&String>::new(), "{points:?}");
+        let met = |id: &str| rules.iter().find(|rule| rule.id == id).unwrap().met;
+        for id in ["sherard-dunnigan", "permeability", "filter-uniformity", "filter-band", "filter-fines"] {
+            assert_eq!(met(id), Some(true), "{id}: {points:?}");
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! `voidwalk design --steps`: the specification of a filter without a walk, its tables and its workbook.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+use voidwalk::run::FolderKind;
+
+use crate::program::{call, done, figures_are_listed, refused};
+
+/// Two samples of a sand, as an envelope.
+const SANDS: &str = "opening_mm,north,south\n0.075,2,1\n0.15,12,6\n0.3,45,30\n0.6,85,70\n1.18,100,100\n";
+
+fn root() -> tempfile::TempDir {
+    let root = tempfile::tempdir().unwrap();
+    fs::write(root.path().join("sands.csv"), SANDS).unwrap();
+    root
+}
+
+fn json(folder: &Path) -> Value {
+    serde_json::from_slice(&fs::read(folder.join("specification.json")).unwrap()).unwrap()
+}
+
+#[test]
+fn steps_limits_and_products_fill_a_folder() {
+    let root = root();
+    let output = call(root.path(), &["design", "sands.csv", "--steps"]);
+    done(&output);
+    let said = String::from_utf8(output.stdout).unwrap();
+    for words in [
+        "Plot the gradation of the base",
+        "limit of design, for north.",
+        "No. 200",
+        "ASTM C33 fine aggregate",
+        "report: ",
+    ] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    let out = root.path().join("voidwalk-specification");
+    let found = json(&out);
+    assert_eq!(found["format"], "voidwalk-specification/1");
+    // The finer sand sets the greatest D15F: 4 times its D85B, which is a sieve of its table.
+    assert!((found["d15f_max_mm"].as_f64().unwrap() - 4.0 * 0.6).abs() < 1e-9, "{found}");
+    // The coarser one sets the least: 5 times its D15B, between 0.15 and 0.3 mm.
+    let d15b = 0.15 * 2f64.powf(9.0 / 24.0);
+    assert!((found["d15f_min_mm"].as_f64().unwrap() - 5.0 * d15b).abs() < 1e-9, "{found}");
+    assert_eq!(found["steps"].as_array().unwrap().len(), 11);
+    let limits = fs::read_to_string(out.join("specification.csv")).unwrap();
+    assert!(limits.starts_with("sieve,opening_mm,min_percent_finer,max_percent_finer\n"), "{limits}");
+    assert_eq!(limits.lines().count() - 1, found["limits"].as_array().unwrap().len());
+    let page = fs::read_to_string(out.join("specification.html")).unwrap();
+    for words in ["Limits sieve by sieve", "Standard products", "Step by step", "Content-Security-Policy"] {
+        assert!(page.contains(words), "{words}");
+    }
+    figures_are_listed(FolderKind::Specification, &out);
+    // The page comes of the files alone, and finished work is not replaced unasked.
+    fs::remove_file(out.join("specification.html")).unwrap();
+    done(&call(root.path(), &["report", "voidwalk-specification"]));
+    assert_eq!(fs::read_to_string(out.join("specification.html")).unwrap(), page);
+    refused(&call(root.path(), &["design", "sands.csv", "--steps"]), "holds a specification already");
+    let iso = ["design", "sands.csv", "--steps", "--sieves", "iso", "--overwrite", "--json"];
+    let output = call(root.path(), &iso);
+    done(&output);
+    let printed: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((&printed["sieves"], &printed), (&"iso".into(), &json(&out)));
+    assert!(printed["limits"].as_array().unwrap().iter().any(|limit| limit["sieve"] == "0.5 mm"));
+}
+
+#[test]
+fn what_needs_a_walk_or_a_base_is_refused_beside_steps() {
+    let root = root();
+    for args in [&["design", "--steps"][..], &["design", "sands.csv", "--steps", "--filter", "3"]] {
+        assert_eq!(call(root.path(), args).status.code(), Some(2), "{args:?}");
+    }
+    refused(&call(root.path(), &["design", "nowhere.csv", "--steps"]), "nowhere.csv");
+    refused(&call(root.path(), &["design", "sands.csv", "--sieves", "bs", "--steps"]), "allowed: us");
+    fs::write(
+        root.path().join("um.csv"),
+        "opening_mm,percent_finer\n75,2\n150,12\n300,45\n600,85\n1180,100\n",
+    )
+    .unwrap();
+    refused(&call(root.path(), &["design", "um.csv", "--steps"]), "are its sizes micrometres");
+    assert!(!root.path().join("voidwalk-specification").exists());
+}
+
+/// The answer of a walk has the same steps, its greatest D15F no larger.
+#[test]
+fn a_design_has_the_specification_of_its_answer() {
+    let root = root();
+    let set = ["network.nx=8", "network.ny=8", "replicates=2", "filter.grains_per_void=0.6"];
+    let sets: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
+    let args = [
+        &["design", "sands.csv#north", "--filter", "cu1.5-loose", "--thickness", "8layers", "-q"],
+        &sets[..],
+    ];
+    done(&call(root.path(), &args.concat()));
+    let out = root.path().join("voidwalk-design");
+    let design: Value = serde_json::from_slice(&fs::read(out.join("design.json")).unwrap()).unwrap();
+    let specification = &design["specification"];
+    let most = specification["d15f_max_mm"].as_f64().unwrap();
+    let answer = design["answer"]["d15f_max_mm"].as_f64().unwrap();
+    assert!((most / answer - 1.0).abs() < 1e-6, "{most} {answer}");
+    let page = fs::read_to_string(out.join("design.html")).unwrap();
+    assert!(page.contains("The specification, step by step") && out.join("specification.csv").is_file());
+    figures_are_listed(FolderKind::Design, &out);
+}
