@@ -92,10 +92,11 @@ impl<'a> Case<'a> {
             false => design.strictest(sizes).map(|(rule, limit)| Limit { ratio: limit / sizes.d85, rule }),
         };
         let (tail, least) = (design.base.tail_mass_fraction, design.bracket[0]);
+        let nothing_holds = design.boundaries.iter().all(|row| row.held().is_none());
         match (design.least_held(), limit) {
             (None, None) => Self::Unknown,
             // The walk says nothing against a base of which it does not know enough.
-            (None, Some(limit)) if tail >= design.threshold => Self::TailOpen(limit, tail),
+            (None, Some(limit)) if tail >= design.threshold && nothing_holds => Self::TailOpen(limit, tail),
             (None, Some(limit)) if limit.ratio < least => Self::BelowSearch(limit, least),
             (None, Some(limit)) => Self::NotHeld(limit),
             (Some((_, held)), Some(limit)) if limit.ratio <= held => Self::Practice(limit),
@@ -360,6 +361,9 @@ mod tests {
         let answer = two.answer();
         assert_eq!((answer.d15f_max_mm, answer.set_by), (None, SetBy::Walk));
         assert!(answer.said.contains("practice alone allows D15F up to"), "{}", answer.said);
+        // Nor does an open tail leave the answer to practice, where another row says less than it allows.
+        two.base.tail_mass_fraction = 0.08;
+        assert_eq!(two.answer().d15f_max_mm, None);
     }
 
     #[test]

@@ -137,7 +137,7 @@ fn answer(design: &Design) -> Markup {
                     }
                 }
             }
-            @if design.boundaries.len() > 1 {
+            @if design.boundaries.len() > 1 && design.least_held().is_some() {
                 p.small {
                     "Of several densities and thicknesses, the one that holds least"
                     @if others > 0 {

@@ -61,13 +61,21 @@ pub(super) fn design(
         let name = format!("{}, {}", row.wanted.density, row.wanted.thickness);
         judgements.push((name, judged(row, (&found[at], rows, &found), held[at], no_band)?));
     }
-    let boundaries: Vec<DesignRow> = found.into_iter().map(|found| found.of).collect();
-    // The worst end of a row without networks is that row.
-    let is_shown = |of: &DesignRow, as_end: &DesignRow| {
-        as_end.as_end.as_ref() != Some(&of.density) || as_end.thickness != of.thickness
+    // The worst end of a row without networks is that row, unless another row has it as an end, too.
+    let is_shown = |at: usize| {
+        let (own, row) = (&found[at].of, &rows[at]);
+        let is_end_of = |other: &Row| other.ends.contains(&own.density);
+        let as_it = |(other, of): (&Row, &FoundRow)| {
+            let is_it = of.of.as_end.as_ref() == Some(&own.density);
+            is_it && other.wanted.thickness == row.wanted.thickness
+        };
+        let others = rows.iter().filter(|other| other.wanted.thickness == row.wanted.thickness);
+        row.end_of.is_none()
+            || others.filter(|of| is_end_of(of)).count() > 1
+            || !rows.iter().zip(&found).any(as_it)
     };
-    let shown = boundaries.iter().filter(|of| boundaries.iter().all(|row| is_shown(of, row)));
-    let boundaries: Vec<DesignRow> = shown.cloned().collect();
+    let shown = (0..rows.len()).filter(|at| is_shown(*at));
+    let boundaries: Vec<DesignRow> = shown.map(|at| found[at].of.clone()).collect();
     let (confidence, findings) = all_judged(judgements, &boundaries);
     let known = asked().filter_map(|at| Some((at, held[at]?)));
     // Rules are shown of the coarsest filter that is said to hold: there they fail first.

@@ -499,3 +499,40 @@ fn a_filter_of_unknown_density_is_as_the_worse_of_its_ends() {
     assert!(table.lines().skip(1).all(|line| density(line) == 1 || line.contains("dense, constrictions")));
     assert!(table.lines().skip(1).any(|line| density(line) == 1), "{table}");
 }
+
+/// An end that another row has, too, stays a row of its own, and is searched once.
+#[test]
+fn the_worse_end_of_an_unknown_density_stays_where_another_row_needs_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let options = DesignOptions {
+        filter: Some("1.5".into()),
+        densities: vec!["unknown".into(), "loose".into()],
+        thicknesses: vec!["4layers".parse().unwrap(), "6layers".parse().unwrap()],
+        ..tiny(&folder.path().join("out"), &["replicates=2", "base.cu=1.2"])
+    };
+    let design = found(&options);
+    let of = |thickness: &str| -> Vec<(String, Option<String>)> {
+        let rows = design.boundaries.iter().filter(|row| row.thickness == thickness);
+        let word =
+            |text: &str| text.split(" %").next().unwrap().trim_end_matches(char::is_numeric).to_owned();
+        rows.map(|row| (word(&row.density), row.end_of.clone())).collect()
+    };
+    let unknown = Some("unknown".to_owned());
+    let expected = [
+        ("unknown", None),
+        ("loose, constrictions ", unknown.clone()),
+        ("dense, constrictions ", unknown),
+        ("loose", None),
+        ("loose, constrictions ", Some("loose".to_owned())),
+    ];
+    let expected = expected.map(|(density, end_of)| (density.to_owned(), end_of));
+    for thickness in ["4 layers", "6 layers"] {
+        let mut found = of(thickness);
+        found.sort_by_key(|row| expected.iter().position(|of| of == row));
+        assert_eq!(found, expected, "{thickness}");
+    }
+    // A dense filter has fewer grains per void than the loose one.
+    let grains = |row: usize| design.boundaries[row].grains_per_void.unwrap();
+    let dense = design.boundaries.iter().position(|row| row.density.starts_with("dense")).unwrap();
+    assert!(grains(dense) < 0.95 * grains(0), "{} {}", grains(dense), grains(0));
+}
