@@ -11,14 +11,16 @@ use crate::verdict::evidence::{LAYERS, MASS_RATIO};
 
 /// The base of a case as practice describes it, where the case is walked as those of the study were: sizes
 /// with a unit, the base regraded as practice does, constrictions of its own filter that are no guess, on the
-/// usual lattice, with as much base. Tests of dispersive soils and of joints had other boundaries.
+/// usual lattice, with as much base, without arches and openings. Tests of dispersive soils and of joints had
+/// other boundaries.
 fn studied(case: &Case) -> Option<BaseSoil> {
     let scene = &case.scene;
     let has_tests = scene.base.dispersive != Some(true) && scene.filter.joint_mm.is_none();
-    let is_lattice = scene.is_lattice_by_area() && case.counts[3] == LAYERS && scene.law().is_none();
+    let is_lattice = scene.is_lattice_by_area() && case.counts[3] == LAYERS;
+    let is_sieving = scene.law().is_none() && !scene.leaves_openings();
     let has_curve = case.library.is_some() || case.packed.is_some();
     let has_amount = case.mass_ratio.is_some_and(|ratio| (ratio / MASS_RATIO - 1.0).abs() < 0.01);
-    if case.is_scale_free() || !has_tests || !is_lattice || !has_curve || !has_amount {
+    if case.is_scale_free() || !has_tests || !is_lattice || !is_sieving || !has_curve || !has_amount {
         return None;
     }
     let soil = BaseSoil::of(case.base_as_given(), false);
