@@ -29,8 +29,8 @@ const OPENING_BYTES: u64 = 3 * 4 + 8;
 /// Bytes of a narrowing, and of its columns while they are saved.
 const NARROWING_BYTES: u64 = 2 * 24;
 
-/// How often an exit may be narrowed in a run: more often than records of the finest so far fall, one after
-/// another.
+/// How many narrowings of an exit in a run there is room for, on average: the finest particle so far is a
+/// rarer event each time.
 const NARROWINGS: u64 = 8;
 
 /// What `record.voids` keeps, while it is written (bytes): for a void that holds particles at a moment its

@@ -53,3 +53,25 @@ pub fn evidence(case: &Case, margin: Option<&Margin>) -> Option<Evidence> {
     let studied = studied(case).filter(|_| case.scene.record.margin == Some(true));
     Evidence::of(&studied?, case.filter.d(15.0)?, case.filter.cu(), margin)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    fn is_studied(set: &[&str]) -> bool {
+        let of_study = ["filter.library=loose", "filter.cu=1.5", "filter.d0_mm=1", "base.d85_mm=0.3"];
+        let small = ["network.nx=6", "network.ny=6"];
+        let all: Vec<String> = of_study.iter().chain(&small).chain(set).map(ToString::to_string).collect();
+        studied(&Case::new(Scene::built_in(&all).unwrap()).unwrap()).is_some()
+    }
+
+    /// The study walked neither arches nor openings.
+    #[test]
+    fn evidence_is_of_sieving_alone() {
+        assert!(is_studied(&[]) && is_studied(&["walk.blocked=closed", "walk.arching=none"]));
+        assert!(!is_studied(&["walk.arching=zuriguel-2005"]));
+        assert!(!is_studied(&["walk.blocked=open"]));
+        assert!(!is_studied(&["network.nz=30"]));
+    }
+}

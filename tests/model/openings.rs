@@ -365,13 +365,12 @@ fn openings_of_no_walk_are_refused() {
         (false, |s| s.openings.as_mut().unwrap().history[0].increment = 99),
         (false, |s| s.openings.as_mut().unwrap().history[0].after = f32::NAN),
         (false, |s| s.openings = None),
-        // Narrower than beside the finest particle of the base.
+        // Beside the finest particle of the base, 0.05, the finest constriction, 0.1, leaves 0.026.
         (false, |s| {
             let c = s.openings.as_ref().unwrap().history.last().unwrap().constriction as usize;
             let openings = s.openings.as_mut().unwrap();
-            let least = residual_opening(1.0, 0.04) as f32 * 0.1;
-            openings.history.last_mut().unwrap().after = least;
-            openings.widths[c] = least;
+            openings.history.last_mut().unwrap().after = 0.02;
+            openings.widths[c] = 0.02;
         }),
         // Not what the last narrowing left, of another before, at another time.
         (false, |s| {
