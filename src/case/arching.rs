@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use super::{Case, CaseError};
+use crate::outcome::Modelled;
 use crate::outcome::record::ArchingRecord;
+use crate::verdict::{Finding, finding};
 use crate::walk::Arching;
 
 /// Concentration of grains that lie densely: none arrive more densely.
@@ -48,6 +50,21 @@ impl Case {
             range_of_ratio: [1.0, law.widest],
             concentration: self.concentration(self.n_base).filter(|_| law.of_concentration),
         })
+    }
+
+    /// What its walks contain that others leave out.
+    pub fn modelled(&self) -> Modelled {
+        Modelled {
+            flow: self.scene.exit_rule().needs_flow(),
+            arches: self.scene.law().is_some(),
+            openings: self.scene.leaves_openings(),
+        }
+    }
+
+    /// What arches and openings, which no test has checked, say against a verdict.
+    pub fn unchecked_clogging(&self) -> impl Iterator<Item = Finding> {
+        let arches = self.scene.law().map(|law| finding::arches(law.name));
+        arches.into_iter().chain(self.scene.leaves_openings().then(finding::openings))
     }
 
     /// Refuses a law that asks how densely the base arrives where nothing says so, and openings beside

@@ -23,9 +23,15 @@ const COUNTS_A_WORKER: (u64, u64) = (8, 32 << 10);
 const FLOW_BYTES: u64 = 2 * (2 * 28 + 12 + 32) + 24 + 300;
 
 /// Bytes for an exit where blocked constrictions leave openings: its width now, when the flow was solved last
-/// and before the next run, and the part that it conducts; one narrowing, and its columns while they are
-/// saved.
-const OPENING_BYTES: u64 = 3 * 4 + 8 + 2 * 24;
+/// and before the next run, and the part that it conducts.
+const OPENING_BYTES: u64 = 3 * 4 + 8;
+
+/// Bytes of a narrowing, and of its columns while they are saved.
+const NARROWING_BYTES: u64 = 2 * 24;
+
+/// How many narrowings of an exit in a run there is room for, on average: the finest particle so far is a
+/// rarer event each time.
+const NARROWINGS: u64 = 8;
 
 /// What `record.voids` keeps, while it is written (bytes): for a void that holds particles at a moment its
 /// row in two copies, in room that grows, and its line (measured: up to 184); for a void its place, row and
@@ -103,18 +109,22 @@ impl Case {
             .saturating_mul(EVENT_BYTES)
             .saturating_add(voids * 140 + constrictions * 25)
             .saturating_add(self.flow_bytes())
-            .saturating_add(self.openings_bytes())
+            .saturating_add(self.openings_bytes(n_base))
             .saturating_add(workers)
     }
 
-    /// Bytes of the openings that blocked constrictions leave.
-    fn openings_bytes(&self) -> u64 {
-        let exits = match self.scene.exit_rule() {
+    /// Bytes of the openings that blocked constrictions leave. A particle narrows one at most.
+    fn openings_bytes(&self, n_base: u64) -> u64 {
+        if !self.scene.leaves_openings() {
+            return 0;
+        }
+        let of_each = match self.scene.exit_rule() {
             ExitRule::Area => 1,
             _ => 2,
         };
-        let each = if self.scene.leaves_openings() { OPENING_BYTES } else { 0 };
-        self.counts[1].saturating_mul(exits * each)
+        let exits = self.counts[1].saturating_mul(of_each);
+        let narrowings = exits.saturating_mul(NARROWINGS).min(n_base);
+        exits.saturating_mul(OPENING_BYTES).saturating_add(narrowings.saturating_mul(NARROWING_BYTES))
     }
 
     /// Bytes that a network without directions of its own takes besides: each constriction is two exits with
@@ -351,6 +361,23 @@ mod tests {
         let small =
             case(&["network.nx=40", "network.ny=40", "network.nz=60", "base.single_mm=0.1", "engine=counts"]);
         assert!(small.side_by_side(small.n_base, 4) == 4 && small.side_by_side(small.n_base, 64) == 1);
+    }
+
+    #[test]
+    fn openings_take_memory_for_several_narrowings_of_each_exit() {
+        let of = |n_base: &str, set: &[&str]| {
+            let case = case(&[&["engine=particles", n_base], set].concat());
+            (case.other_bytes(case.n_base, 1), case.counts[1])
+        };
+        for (n_base, flux, of_each) in [("1e9", "exit=area", 1), ("1e9", "exit=flux", 2)] {
+            let set = [format!("base.n_base={n_base}"), format!("walk.{flux}")];
+            let [(closed, exits), (open, _)] =
+                [vec![&set[1][..]], vec![&set[1][..], "walk.blocked=open"]].map(|more| of(&set[0], &more));
+            assert_eq!(open - closed, exits * of_each * (20 + 8 * 48), "{flux}");
+        }
+        let [(closed, exits), (open, _)] =
+            [&[][..], &["walk.blocked=open"]].map(|more| of("base.n_base=1000", more));
+        assert_eq!(open - closed, exits * 20 + 1000 * 48);
     }
 
     #[test]

@@ -56,6 +56,8 @@ pub struct Flow {
     open: Vec<f64>,
     /// Exits that were blocked when the flow was solved last.
     blocked: BitVec,
+    /// Whether it was solved for parts of conductances then.
+    is_of_parts: bool,
     /// Residual that the last solution may have, over the inflow.
     accuracy: f64,
     /// Flow that no flux of the last solution is wrong by more than.
@@ -113,6 +115,7 @@ impl Flow {
             pressure,
             open,
             blocked,
+            is_of_parts: false,
             accuracy: CONVERGED,
             missing: 0.0,
             most: 0.0,
@@ -174,6 +177,7 @@ impl Flow {
     /// # Errors
     /// As [`Flow::solve`].
     pub fn solve_parts(&mut self, network: &Network, parts: &[f64]) -> Result<Permeability, FlowError> {
+        assert_eq!(parts.len(), self.open.len(), "one part for each exit");
         let (mut changed, mut is_open_again) = (0, false);
         for (c, (open, part)) in self.open.iter_mut().zip(parts).enumerate() {
             let now = part * whole(network, c);
@@ -182,6 +186,7 @@ impl Flow {
             *open = now;
         }
         self.blocked.fill(false);
+        self.is_of_parts = true;
         self.keep_factor(network, changed, is_open_again);
         self.solve_now(network, false, false, |_| true)
     }
@@ -225,6 +230,12 @@ impl Flow {
 
     /// Conducts as these blocked constrictions let it.
     fn set_blocked(&mut self, network: &Network, blocked: &BitSlice, rho: f64) {
+        assert_eq!(blocked.len(), self.open.len(), "one bit for each exit");
+        if std::mem::take(&mut self.is_of_parts) {
+            // Nothing is blocked, and what was narrowed is whole again.
+            self.kept = None;
+            self.open.iter_mut().enumerate().for_each(|(c, open)| *open = whole(network, c));
+        }
         self.blocked ^= blocked;
         let changed = self.blocked.count_ones();
         let is_open_again = self.blocked.iter_ones().any(|c| !blocked[c]);
@@ -453,6 +464,53 @@ mod tests {
                 like_afresh(&flow, &blocked);
             }
             assert_eq!(like_afresh(&flow, &blocked) == 0.0, rho == 0.0);
+        }
+    }
+
+    /// Parts that shrink a few at a time, solved with a factor that is kept: pressures are those that are
+    /// found without it. What is blocked afterwards is solved without those parts.
+    #[test]
+    fn parts_are_solved_as_afresh_and_forgotten() {
+        let diameters = (0..3 * 10 * 10 * 10).map(|c| 1.0 + (c * 7919 % 100) as f32 / 100.0);
+        let lattice = Network::cubic_from_diameters([10, 10, 10], diameters.collect(), 1.0).unwrap();
+        let network = lattice.undirected_lattice(ExitRule::Flux, 0.1, 4.0).unwrap();
+        let is_like = |flow: &mut Flow, found: Permeability, solve: &dyn Fn(&mut Flow) -> Permeability| {
+            let mut afresh = Flow::new(&network);
+            let anew = solve(&mut afresh);
+            assert!((found.conductance / anew.conductance - 1.0).abs() < 1e-7, "{found:?} {anew:?}");
+            for (v, (kept, anew)) in flow.pressure.iter().zip(&afresh.pressure).enumerate() {
+                assert!((kept - anew).abs() < 1e-7, "void {v}: {kept} for {anew}");
+            }
+        };
+        let mut parts = vec![1.0; network.constrictions()];
+        let mut flow = Flow::new(&network);
+        flow.solve_parts(&network, &parts).unwrap();
+        let mut served = 0;
+        for step in 1..12 {
+            for c in (37 * step..network.constrictions()).step_by(997) {
+                let part = if step % 4 == 0 { 0.0 } else { 0.3 / step as f64 };
+                parts[c] = part;
+                if let Some(twin) = network.twin(c) {
+                    parts[twin] = part;
+                }
+            }
+            let found = flow.solve_parts(&network, &parts).unwrap();
+            served += usize::from(flow.kept.as_ref().is_some_and(|kept| kept.closed > 0));
+            is_like(&mut flow, found, &|flow| flow.solve_parts(&network, &parts).unwrap());
+        }
+        assert!(served > 3, "{served}");
+        let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
+        for every in [network.constrictions(), 50] {
+            (0..network.constrictions()).step_by(every).for_each(|c| {
+                network.set_blocked(&mut blocked, c, every == 50);
+            });
+            flow.solve_parts(&network, &parts).unwrap();
+            let found = flow.solve(&network, &blocked).unwrap();
+            is_like(&mut flow, found, &|flow| flow.solve(&network, &blocked).unwrap());
+            for c in 0..network.constrictions() {
+                let rho = if blocked[c] { 0.1 } else { 1.0 };
+                assert_eq!(flow.open[c], rho * whole(&network, c), "{every} {c}");
+            }
         }
     }
 

@@ -32,7 +32,7 @@ pub struct Comparison {
     pub pairs: Vec<ComparedPair>,
     /// Eroded mass fraction that divides the classes: 0.075.
     pub threshold: f64,
-    /// What the model does not contain; records of earlier versions do not say.
+    /// What no case contains; records of earlier versions do not say.
     #[serde(default)]
     pub model_leaves_out: Vec<ModelLimit>,
 }
@@ -138,7 +138,7 @@ impl Comparison {
             cases: cases.collect(),
             pairs: compared,
             threshold: super::verdict::THRESHOLD,
-            model_leaves_out: leaves_out_of_all(outcomes.iter().map(|(.., outcome)| outcome.is_with_flow())),
+            model_leaves_out: leaves_out_of_all(outcomes.iter().map(|(.., outcome)| outcome.modelled())),
         }
     }
 

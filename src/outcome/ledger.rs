@@ -7,7 +7,7 @@ use super::numbers::whole;
 use super::record::{Confidence, ModelLimit, Outcome, Ratios, RunSummary, Verdict};
 use super::table::{Columns, TableCell};
 use super::undecided::UndecidedBy;
-use super::{BaseSize, leaves_out_of_all};
+use super::{BaseSize, Modelled, leaves_out_of_all};
 use crate::text::shorten;
 
 /// A finished case.
@@ -45,6 +45,12 @@ pub struct LedgerLine {
     /// Whether water gave particles their way; lines of earlier versions do not say.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub with_flow: Option<bool>,
+    /// Whether particles arched; lines of earlier versions do not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub with_arches: Option<bool>,
+    /// Whether blocked constrictions left openings; lines of earlier versions do not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub with_openings: Option<bool>,
     /// The rules of practice that were made for these soils and are not kept, by their names for programs;
     /// lines of earlier versions do not say.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -202,6 +208,7 @@ impl LedgerLine {
         made: Made,
     ) -> Self {
         let of = |verdict| outcome.replicates.iter().filter(|r| r.verdict == verdict).count() as u64;
+        let modelled = outcome.modelled();
         Self {
             case: case.into(),
             levels: levels.iter().map(|(factor, level)| (factor.clone(), level.clone().into())).collect(),
@@ -215,7 +222,9 @@ impl LedgerLine {
             reason: outcome.reasons.first().cloned(),
             undecided_by: outcome.undecided_by(),
             thickness: Some(ModelledThickness::of(outcome)),
-            with_flow: Some(outcome.is_with_flow()),
+            with_flow: Some(modelled.flow),
+            with_arches: Some(modelled.arches),
+            with_openings: Some(modelled.openings),
             rules_not_met: Some(
                 outcome.rules.iter().filter(|rule| rule.is_broken()).map(|rule| rule.id.clone()).collect(),
             ),
@@ -234,9 +243,16 @@ impl LedgerLine {
     }
 }
 
-/// What the model does not contain in the cases of a ledger.
+/// What the model does not contain in any case of a ledger.
 pub fn leaves_out(lines: &[LedgerLine]) -> Vec<ModelLimit> {
-    leaves_out_of_all(lines.iter().filter_map(|line| line.with_flow))
+    leaves_out_of_all(lines.iter().filter_map(|line| {
+        let is = |said: Option<bool>| said == Some(true);
+        Some(Modelled {
+            flow: line.with_flow?,
+            arches: is(line.with_arches),
+            openings: is(line.with_openings),
+        })
+    }))
 }
 
 /// How many cases of a class there are by their confidence, in words: `2 contradicted by practice, 1 within

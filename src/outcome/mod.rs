@@ -63,7 +63,7 @@ pub use infiltration::infiltration;
 pub(crate) use least_squares::{Straight, log_log_slope};
 pub(crate) use metrics::eroded_mass_fraction;
 pub use metrics::{Eroded, Recorded, RunId, RunMetrics};
-pub use model_limit::{leaves_out, leaves_out_of_all};
+pub use model_limit::{Modelled, leaves_out, leaves_out_of_all};
 pub use recorder::{Recorder, Wanted};
 
 use crate::network::ExitRule;
@@ -74,5 +74,14 @@ impl record::Outcome {
         let with_flow =
             |exit: &str| ExitRule::ALL.iter().any(|rule| rule.name() == exit && rule.needs_flow());
         self.network.as_ref().is_some_and(|network| with_flow(&network.exit))
+    }
+
+    /// What its walk contained; without openings in folders of versions that knew none.
+    pub fn modelled(&self) -> Modelled {
+        Modelled {
+            flow: self.is_with_flow(),
+            arches: self.arching.is_some(),
+            openings: self.findings.iter().any(|finding| finding.id == "openings"),
+        }
     }
 }

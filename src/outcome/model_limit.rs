@@ -1,7 +1,5 @@
 //! What the model does not contain, as values. Their words are in `verdict`.
 
-use crate::network::ExitRule;
-
 /// Something that the model does not contain.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(test, derive(schemars::JsonSchema), schemars(with = "String"))]
@@ -46,19 +44,66 @@ impl ModelLimit {
     const ALWAYS: &[Self] = Self::ALL.split_at(4).1;
 }
 
-/// What the model does not contain where particles choose by this rule; shown next to every verdict.
-pub fn leaves_out(rule: ExitRule) -> Vec<ModelLimit> {
-    leaves_out_of_all([rule.needs_flow()])
+/// What a walk contains that others leave out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Modelled {
+    /// Water gives particles their way.
+    pub flow: bool,
+    /// Particles arch.
+    pub arches: bool,
+    /// Blocked constrictions leave openings.
+    pub openings: bool,
 }
 
-/// What the model does not contain in any of several cases, each with water that gives particles their way or
-/// without.
-pub fn leaves_out_of_all(with_flow: impl IntoIterator<Item = bool>) -> Vec<ModelLimit> {
-    let (with, without): (Vec<bool>, Vec<bool>) = with_flow.into_iter().partition(|with| *with);
+impl Modelled {
+    /// Whether it is what this limit says to be left out.
+    fn contains(self, limit: &ModelLimit) -> bool {
+        match limit {
+            ModelLimit::Bridging => self.arches,
+            ModelLimit::PartialClogging => self.openings,
+            _ => false,
+        }
+    }
+}
+
+/// What the model of such a walk does not contain; shown next to every verdict.
+pub fn leaves_out(modelled: Modelled) -> Vec<ModelLimit> {
+    leaves_out_of_all([modelled])
+}
+
+/// What the models of several cases all leave out.
+pub fn leaves_out_of_all(cases: impl IntoIterator<Item = Modelled>) -> Vec<ModelLimit> {
+    let cases: Vec<Modelled> = cases.into_iter().collect();
+    let (with, without): (Vec<Modelled>, Vec<Modelled>) = cases.iter().partition(|case| case.flow);
     let hydraulics: &[ModelLimit] = match (with.is_empty(), without.is_empty()) {
         (true, _) => &[ModelLimit::Hydraulics],
         (false, true) => &[ModelLimit::Gradient],
         (false, false) => &[ModelLimit::GradientThere, ModelLimit::HydraulicsElsewhere],
     };
-    [hydraulics, ModelLimit::ALWAYS].concat()
+    let is_in_some = |limit: &&ModelLimit| cases.iter().any(|case| case.contains(limit));
+    let others = ModelLimit::ALWAYS.iter().filter(|limit| !is_in_some(limit));
+    hydraulics.iter().chain(others).cloned().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_one_of_several_cases_contains_is_not_left_out_of_all() {
+        let sieving = Modelled::default();
+        let [arches, openings] =
+            [Modelled { arches: true, ..sieving }, Modelled { openings: true, flow: true, ..sieving }];
+        let has = |cases: &[Modelled]| {
+            let left_out = leaves_out_of_all(cases.iter().copied());
+            [ModelLimit::Bridging, ModelLimit::PartialClogging].map(|limit| left_out.contains(&limit))
+        };
+        assert_eq!([has(&[]), has(&[sieving, sieving])], [[true, true]; 2]);
+        assert_eq!([has(&[arches]), has(&[sieving, arches])], [[false, true]; 2]);
+        assert_eq!([has(&[openings, sieving]), has(&[openings, arches])], [[true, false], [false, false]]);
+        let both = leaves_out_of_all([openings, sieving]);
+        assert_eq!(both[..2], [ModelLimit::GradientThere, ModelLimit::HydraulicsElsewhere]);
+        assert_eq!(leaves_out(arches)[0], ModelLimit::Hydraulics);
+        assert_eq!(leaves_out(sieving).len(), ModelLimit::ALWAYS.len() + 1);
+    }
 }

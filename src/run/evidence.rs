@@ -11,14 +11,16 @@ use crate::verdict::evidence::{LAYERS, MASS_RATIO};
 
 /// The base of a case as practice describes it, where the case is walked as those of the study were: sizes
 /// with a unit, the base regraded as practice does, constrictions of its own filter that are no guess, on the
-/// usual lattice, with as much base. Tests of dispersive soils and of joints had other boundaries.
+/// usual lattice, with as much base, without arches and openings. Tests of dispersive soils and of joints had
+/// other boundaries.
 fn studied(case: &Case) -> Option<BaseSoil> {
     let scene = &case.scene;
     let has_tests = scene.base.dispersive != Some(true) && scene.filter.joint_mm.is_none();
-    let is_lattice = scene.is_lattice_by_area() && case.counts[3] == LAYERS && scene.law().is_none();
+    let is_lattice = scene.is_lattice_by_area() && case.counts[3] == LAYERS;
+    let is_sieving = scene.law().is_none() && !scene.leaves_openings();
     let has_curve = case.library.is_some() || case.packed.is_some();
     let has_amount = case.mass_ratio.is_some_and(|ratio| (ratio / MASS_RATIO - 1.0).abs() < 0.01);
-    if case.is_scale_free() || !has_tests || !is_lattice || !has_curve || !has_amount {
+    if case.is_scale_free() || !has_tests || !is_lattice || !is_sieving || !has_curve || !has_amount {
         return None;
     }
     let soil = BaseSoil::of(case.base_as_given(), false);
@@ -50,4 +52,26 @@ pub fn walks_margin(case: &Case) -> bool {
 pub fn evidence(case: &Case, margin: Option<&Margin>) -> Option<Evidence> {
     let studied = studied(case).filter(|_| case.scene.record.margin == Some(true));
     Evidence::of(&studied?, case.filter.d(15.0)?, case.filter.cu(), margin)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    fn is_studied(set: &[&str]) -> bool {
+        let of_study = ["filter.library=loose", "filter.cu=1.5", "filter.d0_mm=1", "base.d85_mm=0.3"];
+        let small = ["network.nx=6", "network.ny=6"];
+        let all: Vec<String> = of_study.iter().chain(&small).chain(set).map(ToString::to_string).collect();
+        studied(&Case::new(Scene::built_in(&all).unwrap()).unwrap()).is_some()
+    }
+
+    /// The study walked neither arches nor openings.
+    #[test]
+    fn evidence_is_of_sieving_alone() {
+        assert!(is_studied(&[]) && is_studied(&["walk.blocked=closed", "walk.arching=none"]));
+        assert!(!is_studied(&["walk.arching=zuriguel-2005"]));
+        assert!(!is_studied(&["walk.blocked=open"]));
+        assert!(!is_studied(&["network.nz=30"]));
+    }
 }

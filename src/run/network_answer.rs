@@ -15,7 +15,7 @@ impl NetworkOutcome {
     pub fn answer(&self, plan: &NetworkWalk, network: &Network, networks: usize) -> Judgement {
         let walked = || self.replicates.iter().map(|walked| &walked.result);
         let layers = network.layers() as u64;
-        let mut found = said_by_walks(self.verdict, walked(), &plan.base, plan.increments, layers);
+        let mut found = said_by_walks(self.verdict, walked(), &plan.base, plan.increments, (layers, false));
         found.extend(plan.findings(network, self.replicates.len() as u64));
         if networks == 1 && self.replicates.len() > 1 {
             found.push(finding::one_network());

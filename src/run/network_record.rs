@@ -7,7 +7,7 @@ use crate::case::base_record;
 use crate::gradation::Gradation;
 use crate::network::Network;
 use crate::outcome::network_walk::{GivenNetwork, NetworkWalkRecord};
-use crate::outcome::{leaves_out, verdict};
+use crate::outcome::{Modelled, leaves_out, verdict};
 
 /// Steps of the curve of a network's diameters (percent).
 const STEP: usize = 2;
@@ -36,7 +36,10 @@ impl NetworkOutcome {
             left_out: first.map_or(Vec::new(), |first| {
                 first.left_out.iter().map(|shortcut| shortcut.sentence("mm")).collect()
             }),
-            model_leaves_out: leaves_out(network.exit_rule()),
+            model_leaves_out: leaves_out(Modelled {
+                flow: network.exit_rule().needs_flow(),
+                ..Modelled::default()
+            }),
             base: base_record(in_words(&plan.base), &plan.base),
             d15f_mm: plan.d15f_mm(),
             network: given(network, networks),

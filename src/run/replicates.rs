@@ -351,17 +351,19 @@ fn blocked_at_start(network: &Network, saved: &Checkpoint) -> Result<BitVec, Run
     Ok(blocked)
 }
 
-/// What walks say themselves against their verdict: of a base, in so many increments, through so many layers.
+/// What walks say themselves against their verdict: of a base, in so many increments, through so many layers,
+/// with openings or without.
 pub fn said_by_walks<'a>(
     verdict: Verdict,
     walked: impl IntoIterator<Item = &'a ReplicateResult, IntoIter: Clone>,
     base: &Gradation,
     increments: u64,
-    layers: u64,
+    (layers, openings): (u64, bool),
 ) -> Vec<Finding> {
     let walked = walked.into_iter();
     let mut clogged: Vec<[u64; 3]> = Vec::new();
-    for row in walked.clone().flat_map(|w| &w.recorded.flow).filter(|row| is_clogged(row.k_over_k0)) {
+    let is_none = |k_over_k0| is_clogged(k_over_k0, openings);
+    for row in walked.clone().flat_map(|w| &w.recorded.flow).filter(|row| is_none(row.k_over_k0)) {
         // The first row of its run.
         if clogged.last().is_none_or(|last| last[..2] != [row.replicate, row.run]) {
             clogged.push([row.replicate, row.run, row.increment]);
@@ -369,7 +371,7 @@ pub fn said_by_walks<'a>(
     }
     let replicates = walked.map(|w| &w.replicate).collect();
     let share = 1.0 / increments as f64;
-    walks::findings(verdict, &Walked { replicates, clogged, base, share, layers })
+    walks::findings(verdict, &Walked { replicates, clogged, base, share, layers, openings })
 }
 
 /// The verdict that the replicates support together, and their statistics by run.

@@ -12,8 +12,8 @@ use super::replicates::{ReplicateResult, classed, concluded, said_by_walks, summ
 use super::studies::Studies;
 use crate::case::{Case, INPUT_NAMES, replicate_seed};
 use crate::outcome::record::{
-    Classed, Confidence, ConstrictionsRecord, Manifest, ModelLimit, Outcome, PanBounds, PanReading,
-    Statistic, Verdict, VoidRow,
+    Classed, Confidence, ConstrictionsRecord, Manifest, Outcome, PanBounds, PanReading, Statistic, Verdict,
+    VoidRow,
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
 use crate::outcome::table::csv_of;
@@ -48,8 +48,7 @@ pub fn outcome(
     for (reading, walked) in case.other_readings.iter().zip(&other.readings) {
         found.extend(findings_of_walk(reading, verdict, walked));
     }
-    found.extend(case.scene.law().map(|law| finding::arches(law.name)));
-    found.extend(case.scene.leaves_openings().then(finding::openings));
+    found.extend(case.unchecked_clogging());
     found.extend(unsure.map(finding::decided_below_95));
     found.extend(case.findings().into_iter().chain(case.not_studied()));
     // What was to be walked in several readings has been.
@@ -76,7 +75,7 @@ pub fn outcome(
         threshold: verdict::THRESHOLD,
         warnings: Vec::new(),
         left_out: left_out(case, walked.first().map_or(&[], |walked| &walked.left_out)),
-        model_leaves_out: model_leaves_out(case),
+        model_leaves_out: leaves_out(case.modelled()),
         inputs: case.record(),
         network: case.network_summary(walked.first().and_then(|w| w.replicate.runs.first()?.k0_mm2)),
         ratios: case.ratios(),
@@ -104,19 +103,10 @@ pub fn outcome(
     outcome
 }
 
-/// What the model does not contain: arches and openings beside particles are in some walks.
-fn model_leaves_out(case: &Case) -> Vec<ModelLimit> {
-    let is_left_out = |limit: &ModelLimit| match limit {
-        ModelLimit::Bridging => case.scene.law().is_none(),
-        ModelLimit::PartialClogging => !case.scene.leaves_openings(),
-        _ => true,
-    };
-    leaves_out(case.scene.exit_rule()).into_iter().filter(is_left_out).collect()
-}
-
 /// What these walks say themselves against the verdict.
 fn findings_of_walk(case: &Case, verdict: Verdict, walked: &[ReplicateResult]) -> Vec<Finding> {
-    said_by_walks(verdict, walked, &case.base, case.increments(), case.counts[3])
+    let of_network = (case.counts[3], case.scene.leaves_openings());
+    said_by_walks(verdict, walked, &case.base, case.increments(), of_network)
 }
 
 /// What came of the readings of the base's pan fraction; `None` where there is only one.

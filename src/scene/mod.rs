@@ -327,8 +327,9 @@ impl Scene {
         }
         if self.leaves_openings() {
             wrong(
-                &["walk.rho"],
-                "says nothing where walk.blocked is \"open\": what openings conduct follows from their size",
+                &["walk.rho", "walk.conductance_exponent"],
+                "says nothing where walk.blocked is \"open\": what openings conduct follows from the fourth \
+                 power of their size",
             )?;
             if matches!(self.walk.engine, Engine::Counts | Engine::Expected) {
                 let problem = format!(

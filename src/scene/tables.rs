@@ -6,7 +6,6 @@ use super::keys::{Density, LibraryDensity};
 use super::{Origin, Scene, SceneError};
 use crate::gradation::curves_in_file;
 use crate::verdict::Mistake;
-use crate::walk::BlockedAs;
 
 /// What a scene of two tables is given besides them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -104,13 +103,6 @@ impl TableOptions {
     fn is_set(&self, names: &[&str]) -> bool {
         set_among(&self.changes, names).is_some()
     }
-
-    /// Whether blocked constrictions leave openings.
-    fn leaves_openings(&self) -> bool {
-        let set = self.changes.iter().filter_map(|change| change.split_once('='));
-        let mut values = set.filter(|(name, _)| name.trim() == "walk.blocked").map(|(_, value)| value.trim());
-        values.next_back().is_some_and(|value| value.trim_matches('"') == BlockedAs::Open.name())
-    }
 }
 
 impl Scene {
@@ -134,13 +126,14 @@ impl Scene {
             settings.push(options.regrading()?);
         }
         settings.push("record.margin=true".into());
+        let changes = options.settings()?;
+        let mut scene = Self::built_in(&[&settings[..], &changes].concat())?;
         // Passive particles by the million scatter by less than anyone reads, and their expectation is quick;
         // where blocked constrictions leave openings there are none.
-        if !options.leaves_openings() {
+        if !scene.leaves_openings() {
             settings.push("engine=\"expected\"".into());
+            scene = Self::built_in(&[settings, changes].concat())?;
         }
-        settings.extend(options.settings()?);
-        let scene = Self::built_in(&settings)?;
         if !options.as_given {
             refuse_exchanged(base, filter)?;
         }
@@ -236,6 +229,7 @@ pub fn quoted(path: &Path) -> Result<String, SceneError> {
 mod tests {
     use super::*;
     use crate::scene::Regrade;
+    use crate::walk::Engine;
 
     fn scene(options: &TableOptions) -> Result<Scene, SceneError> {
         Scene::of_tables(Path::new("1e5"), Path::new("a \"b\".xlsx#Filter A"), options)
@@ -254,6 +248,18 @@ mod tests {
         assert_eq!((&filter.curve, filter.estimate, filter.cu), (&None, None, None));
         assert_eq!(filter.library, Some(LibraryDensity::Unknown));
         assert_eq!((scene.base.cu, scene.walk.replicates), (None, 10));
+    }
+
+    /// However it is written; and what was asked for goes before.
+    #[test]
+    fn the_engine_follows_from_what_blocked_constrictions_are() {
+        let of = |changes: &[&str]| scene(&with(changes)).unwrap().walk.engine;
+        assert_eq!([of(&[]), of(&["walk.blocked=closed"])], [Engine::Expected; 2]);
+        for open in ["walk.blocked=open", "walk.blocked='open'", " walk.blocked = \"open\" "] {
+            assert_eq!(of(&[open]), Engine::Auto, "{open}");
+        }
+        assert_eq!(of(&["engine=auto"]), Engine::Auto);
+        assert!(scene(&with(&["walk.blocked='open'", "engine=expected"])).is_err());
     }
 
     #[test]

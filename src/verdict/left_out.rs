@@ -242,8 +242,7 @@ fn digits(percent: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::network::ExitRule;
-    use crate::outcome::leaves_out;
+    use crate::outcome::{Modelled, leaves_out};
 
     const NUMBERS: [f64; 8] = [0.0, 1e-300, -1.0, 12.345, 1e300, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
@@ -323,7 +322,7 @@ mod tests {
         let read: ModelLimit = serde_json::from_str(old).unwrap();
         assert!(matches!(read, ModelLimit::Said(_)));
         assert_eq!(serde_json::to_string(&read).unwrap(), old);
-        let brief = left_out_in_brief(&leaves_out(ExitRule::Area));
+        let brief = left_out_in_brief(&leaves_out(Modelled::default()));
         assert!(
             brief.starts_with("The model leaves out: hydraulics; bridging; partial clogging; "),
             "{brief}"

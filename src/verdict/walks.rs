@@ -23,11 +23,14 @@ pub struct Walked<'a> {
     pub share: f64,
     /// Layers of the network.
     pub layers: u64,
+    /// Whether blocked constrictions leave openings.
+    pub openings: bool,
 }
 
-/// Whether so small a part of the clean filter's permeability is none at all.
-pub fn is_clogged(k_over_k0: f64) -> bool {
-    k_over_k0 <= CLOGGED
+/// Whether so small a part of the clean filter's permeability is none at all. What openings let pass is
+/// little, but water flows.
+pub fn is_clogged(k_over_k0: f64, openings: bool) -> bool {
+    k_over_k0 <= if openings { 0.0 } else { CLOGGED }
 }
 
 /// Why a class that does not erode for ever cannot be relied on, for what happened in its walk.
@@ -57,7 +60,8 @@ impl Walked<'_> {
     /// many as there are layers, counts as retained.
     fn clogging(&self, run: u64) -> Option<Finding> {
         let all = self.of_run(run).count();
-        let clogged = self.of_run(run).filter(|run| run.k_over_k0.is_some_and(is_clogged)).count();
+        let is_none = |k_over_k0| is_clogged(k_over_k0, self.openings);
+        let clogged = self.of_run(run).filter(|run| run.k_over_k0.is_some_and(is_none)).count();
         if clogged == 0 {
             return None;
         }
@@ -130,9 +134,18 @@ mod tests {
     }
 
     fn of(verdict: Verdict, runs: &[(f64, u64, Option<f64>)], clogged: &[[u64; 3]]) -> Vec<String> {
+        with_openings(verdict, runs, clogged, false)
+    }
+
+    fn with_openings(
+        verdict: Verdict,
+        runs: &[(f64, u64, Option<f64>)],
+        clogged: &[[u64; 3]],
+        openings: bool,
+    ) -> Vec<String> {
         let (base, replicate) = (Gradation::linear_from_d0(0.1, 3.0).unwrap(), replicate(runs));
         let (replicates, clogged) = (vec![&replicate], clogged.to_vec());
-        let walked = Walked { replicates, clogged, base: &base, share: 0.01, layers: 30 };
+        let walked = Walked { replicates, clogged, base: &base, share: 0.01, layers: 30, openings };
         findings(verdict, &walked).iter().map(Finding::with_to_do).collect()
     }
 
@@ -159,6 +172,16 @@ mod tests {
         for open in [Some(0.01), None] {
             assert_eq!(of(Verdict::None, &[(0.02, 0, open), (0.0, 0, open)], &[]), Vec::<String>::new());
         }
+    }
+
+    /// Where openings are left a little water always flows.
+    #[test]
+    fn what_openings_still_let_pass_is_not_clogged() {
+        let clogs = |k: f64, openings: bool| {
+            let runs = [(0.02, 0, Some(k)), (0.0, 0, Some(k))];
+            !with_openings(Verdict::None, &runs, &[], openings).is_empty()
+        };
+        assert_eq!([clogs(1e-4, false), clogs(1e-4, true), clogs(0.0, true)], [true, false, true]);
     }
 
     #[test]

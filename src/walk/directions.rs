@@ -1,11 +1,12 @@
 //! Which way constrictions lead, where water decides: when the flow is solved again, and what it came to.
 //!
-//! The flow is solved before the first increment, and at the beginning of an increment when the constrictions
-//! blocked since the last time are one in a hundred of all, or when there are any and ten increments have
-//! gone by; and once more at the end. In between directions stay as they are, and a particle in a void whose
-//! exits have all been blocked since waits where it is. When to solve follows from the history of blocking
-//! alone, so a walk that continues from a checkpoint solves again what was solved before, in the same order,
-//! to the same bits.
+//! The flow is solved before the first increment, and at the beginning of an increment when the changes since
+//! the last time are one in a hundred of all constrictions, or when there are any and ten increments have
+//! gone by; and once more at the end. A change is a constriction that was blocked or, where blocked ones
+//! leave openings, narrowed. In between directions stay as they are, and a particle in a void whose exits
+//! have all been blocked since waits where it is. When to solve follows from the history of changes alone, so
+//! a walk that continues from a checkpoint solves again what was solved before, in the same order, to the
+//! same bits.
 
 use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
@@ -14,10 +15,10 @@ use super::State;
 use super::openings::{CONDUCTS, Weighed, part_kept};
 use crate::network::{ExitRule, Flow, FlowError, Network};
 
-/// The flow is solved again when one in so many constrictions has been blocked since the last time.
+/// The flow is solved again when one in so many constrictions has changed since the last time.
 const PART_BLOCKED: u64 = 100;
 
-/// The flow is solved again after so many increments in which anything was blocked.
+/// The flow is solved again after so many increments in which anything changed.
 const INCREMENTS: u64 = 10;
 
 /// How the permeability fell in a run.

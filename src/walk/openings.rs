@@ -186,26 +186,43 @@ impl Openings {
         self.history[from..].iter().map(|narrowing| narrowing.constriction).collect()
     }
 
-    /// Whether a walk of so many increments may have left these openings: those of blocked constrictions are
-    /// narrower than they were, both ways alike, and others are whole.
-    pub(super) fn can_be(&self, network: &Network, blocked: &BitSlice, increments: u64) -> bool {
-        let is_width = |c: usize, width: f32| (0.0..=network.diameters()[c]).contains(&width);
+    /// Whether a walk of so many increments may have left these openings, where no run had finer particles
+    /// than `smallest`: those of blocked constrictions are no narrower than beside such a one, both ways
+    /// alike, and others are whole; and each was narrowed step by step, at most once an increment.
+    pub(super) fn can_be(
+        &self,
+        network: &Network,
+        blocked: &BitSlice,
+        increments: u64,
+        smallest: f32,
+    ) -> bool {
+        let is_width = |c: usize, width: f32| {
+            let whole = network.diameters()[c];
+            let least = residual_opening(f64::from(whole), f64::from(smallest)) as f32;
+            (least..=whole).contains(&width)
+        };
         let of_exit = |(c, &width): (usize, &f32)| {
             let is_whole = width == network.diameters()[c];
             is_width(c, width)
                 && (blocked[c] || is_whole)
                 && network.twin(c).is_none_or(|twin| self.widths[twin] == width)
         };
-        let of_history = |n: &Narrowing| {
+        // Back from what they are now.
+        let mut then = self.widths.clone();
+        let mut of_history = |n: &Narrowing| {
             let c = n.constriction as usize;
             (1..=increments).contains(&n.increment)
                 && c < blocked.len()
                 && blocked[c]
+                && network.twin(c).is_none_or(|twin| c < twin)
                 && is_width(c, n.before)
                 && n.after < n.before
-                && n.after >= self.widths[c]
+                && std::mem::replace(&mut then[c], n.before) == n.after
         };
-        self.widths.iter().enumerate().all(of_exit) && self.history.iter().all(of_history)
+        let order = |n: &Narrowing| (n.increment, n.constriction);
+        self.widths.iter().enumerate().all(of_exit)
+            && self.history.iter().rev().all(&mut of_history)
+            && self.history.windows(2).all(|pair| order(&pair[0]) < order(&pair[1]))
     }
 
     /// Sets the widest way through the constriction of an exit, both ways.
@@ -329,10 +346,23 @@ mod tests {
         assert_eq!(openings.end_increment(9, 2), [1]);
         assert_eq!((openings.history[2].before, openings.history[2].after), (left(2.0), left(1.25)));
         let blocked: BitVec = [false, true, false, false, true, false].into_iter().collect();
-        assert!(openings.can_be(&network, &blocked, 9));
-        assert!(!openings.can_be(&network, &blocked, 8));
-        assert!(!openings.can_be(&network, &BitVec::repeat(false, 6), 9));
-        openings.widths[0] = 1.5;
-        assert!(!openings.can_be(&network, &blocked, 9));
+        let can_be = |openings: &Openings| openings.can_be(&network, &blocked, 9, 1.25);
+        assert!(can_be(&openings));
+        assert!(!openings.can_be(&network, &blocked, 8, 1.25));
+        assert!(!openings.can_be(&network, &BitVec::repeat(false, 6), 9, 1.25));
+        // No particle was so fine.
+        assert!(!openings.can_be(&network, &blocked, 9, 1.3));
+        let forgeries: [fn(&mut Openings); 5] = [
+            |o| o.widths[0] = 1.5,
+            |o| o.widths[1] = o.history[0].after,
+            |o| o.history[2].before = 1.0,
+            |o| o.history[2].increment = 7,
+            |o| o.history.swap(0, 1),
+        ];
+        for (at, forge) in forgeries.into_iter().enumerate() {
+            let mut forged = openings.clone();
+            forge(&mut forged);
+            assert!(!can_be(&forged), "{at}");
+        }
     }
 }

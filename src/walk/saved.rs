@@ -280,7 +280,8 @@ impl State {
         self.history = increments.iter().zip(&constrictions).map(pair).collect();
         if self.openings.is_some() {
             let openings = SavedNarrowings::read(saved, self.blocked.len())?;
-            if !openings.can_be(network, &self.blocked, record.increment) {
+            let smallest = supply.sampler().smallest();
+            if !openings.can_be(network, &self.blocked, record.increment, smallest) {
                 return Err(wrong("openings"));
             }
             self.openings = Some(openings);

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
+use crate::judge::{SMALL, soils};
 use crate::program::{call, done, refused};
 
 const SCENE: &str = "replicates = 2\nseed = 5\n[filter]\ncurve = \"cu1.5-loose\"\n[base]\ncu = 3\n\
@@ -54,6 +55,47 @@ fn openings_are_walked_and_said() {
     assert!(run(&arches, 0, "arches") > 0.0);
 }
 
+fn json(path: &Path) -> Value {
+    serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
+}
+
+/// However the value is quoted; and no evidence of other walks stands beside it.
+#[test]
+fn tables_are_compared_with_openings() {
+    let (_root, at) = soils();
+    let compare = |blocked: &str| {
+        let files = ["--base", "base.csv", "fine.csv", "coarse.csv", "--set", blocked];
+        let words = ["compare", "--quick", "--overwrite", "--out", "c"];
+        let said = call(&at, &[&words[..], &SMALL, &files].concat());
+        done(&said);
+        (String::from_utf8(said.stdout).unwrap(), json(&at.join("c/compare.json")))
+    };
+    let (closed, _) = compare("walk.blocked='closed'");
+    assert!(closed.contains("bridging; partial clogging;"), "{closed}");
+    let (open, record) = compare("walk.blocked='open'");
+    assert!(open.contains("bridging; a limit to what enters;"), "{open}");
+    assert!(!record["model_leaves_out"].to_string().contains("partial clogging"));
+    for case in record["cases"].as_array().unwrap() {
+        assert!(case["reasons"].to_string().contains("stays open beside the particle"), "{case}");
+    }
+}
+
+#[test]
+fn a_design_with_openings_says_so() {
+    let (_root, at) = soils();
+    let words = ["design", "base.csv", "--filter", "cu1.5-loose", "--thickness", "8layers", "--out", "d"];
+    let few = ["--set", "replicates=2", "--set", "filter.grains_per_void=0.6"];
+    let open = ["--set", "walk.blocked='open'", "--set", "base.n_base=20000"];
+    done(&call(&at, &[&words[..], &SMALL[..4], &few, &open].concat()));
+    let design = json(&at.join("d/design.json"));
+    assert_eq!(design["engine"], "auto");
+    assert!(!design["model_leaves_out"].to_string().contains("partial clogging"));
+    assert!(design["model_leaves_out"].to_string().contains("bridging"));
+    let reasons = design["reasons"].to_string();
+    assert!(reasons.contains("stays open beside the particle"), "{reasons}");
+    assert_ne!(design["confidence"], "within checked range");
+}
+
 #[test]
 fn what_openings_cannot_be_with_is_refused() {
     let root = tempfile::tempdir().unwrap();
@@ -71,6 +113,8 @@ fn what_openings_cannot_be_with_is_refused() {
     refusal("run", &with("engine=counts"), "\"particles\" or \"auto\"");
     refusal("run", &with("engine=expected"), "\"particles\" or \"auto\"");
     refusal("run", &[&with("walk.rho=0.1")[..], &["--set", "walk.exit=flux"]].concat(), "walk.rho");
+    let exponent = [&with("walk.conductance_exponent=3")[..], &["--set", "walk.exit=flux"]].concat();
+    refusal("run", &exponent, "walk.conductance_exponent says nothing where walk.blocked is");
     refusal("run", &with("base.sieve=b.csv"), "needs the sizes of the whole base");
     refusal("precision", &open, "walk.blocked");
 }

@@ -8,7 +8,8 @@ use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::{ExitRule, Link, LinkEnd, LinkedVoids, Network};
 use voidwalk::store::checkpoint::{Identity, Label, newest, save};
 use voidwalk::walk::{
-    Arching, Clogged, Isa, Law, SavedState, SizeClasses, State, Supply, Walk, WalkControl, residual_opening,
+    Arching, Clogged, Isa, Law, Narrowing, SavedState, SizeClasses, State, Supply, Walk, WalkControl,
+    residual_opening,
 };
 
 fn of(csv: &str) -> Network {
@@ -337,6 +338,14 @@ fn a_walk_goes_on_from_every_increment() {
     }
 }
 
+/// Two narrowings of one constriction.
+fn again(history: &[Narrowing]) -> (usize, usize) {
+    let earlier = |after: usize| {
+        history[..after].iter().position(|before| before.constriction == history[after].constriction)
+    };
+    (0..history.len()).find_map(|after| Some((earlier(after)?, after))).unwrap()
+}
+
 /// Checksums that are right do not make openings of no walk: they are refused.
 #[test]
 fn openings_of_no_walk_are_refused() {
@@ -348,7 +357,7 @@ fn openings_of_no_walk_are_refused() {
         State::new(&network, &supply, classes, Clogged::none(&network), 5, 1)
     };
     type Forge = fn(&mut State);
-    let forgeries: [(bool, Forge); 7] = [
+    let forgeries: [(bool, Forge); 12] = [
         (true, |_| ()),
         (false, |s| s.openings.as_mut().unwrap().widths[0] = f32::NAN),
         (false, |s| s.openings.as_mut().unwrap().widths[0] = 9.0),
@@ -356,6 +365,26 @@ fn openings_of_no_walk_are_refused() {
         (false, |s| s.openings.as_mut().unwrap().history[0].increment = 99),
         (false, |s| s.openings.as_mut().unwrap().history[0].after = f32::NAN),
         (false, |s| s.openings = None),
+        // Beside the finest particle of the base, 0.05, the finest constriction, 0.1, leaves 0.026.
+        (false, |s| {
+            let c = s.openings.as_ref().unwrap().history.last().unwrap().constriction as usize;
+            let openings = s.openings.as_mut().unwrap();
+            openings.history.last_mut().unwrap().after = 0.02;
+            openings.widths[c] = 0.02;
+        }),
+        // Not what the last narrowing left, of another before, at another time.
+        (false, |s| {
+            let openings = s.openings.as_mut().unwrap();
+            let last = *openings.history.last().unwrap();
+            openings.widths[last.constriction as usize] = last.before;
+        }),
+        (false, |s| {
+            let history = &mut s.openings.as_mut().unwrap().history;
+            let (before, after) = again(history);
+            history[after].before = history[before].before;
+        }),
+        (false, |s| s.openings.as_mut().unwrap().history.last_mut().unwrap().increment = 1),
+        (false, |s| s.openings.as_mut().unwrap().history.reverse()),
     ];
     for (at, (is_whole, forge)) in forgeries.into_iter().enumerate() {
         let folder = root.path().join(at.to_string());

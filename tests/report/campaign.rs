@@ -4,9 +4,9 @@ use std::fs;
 use std::path::Path;
 
 use tempfile::TempDir;
-use voidwalk::outcome::ledger::{Campaign, LedgerLine, Made};
+use voidwalk::outcome::ledger::{Campaign, LedgerLine, Made, leaves_out};
 use voidwalk::outcome::record::{
-    Classed, Confidence, CurveEnd, CurveRange, FindingRecord, Outcome, Stopping, Verdict, Weight,
+    Classed, Confidence, CurveEnd, CurveRange, FindingRecord, ModelLimit, Outcome, Stopping, Verdict, Weight,
 };
 use voidwalk::outcome::undecided::UndecidedBy;
 use voidwalk::report;
@@ -126,6 +126,20 @@ fn why_cases_are_undecided_is_said_of_each() {
     let text = words(&page(&[by_replicates, old], root.path()));
     assert!(text.contains("Undecided, 1 case: the page of the case says why."), "{text}");
     assert!(text.contains("1 of these cases was walked by an earlier version"), "{text}");
+}
+
+/// What some case of a ledger contains is not said to be left out; lines of earlier versions do not say.
+#[test]
+fn openings_of_a_case_are_in_its_line() {
+    let outcome = folder::outcome(3);
+    let closed = line("closed", "cases/closed", &outcome);
+    let mut with = outcome.clone();
+    with.findings.push(FindingRecord { id: "openings".into(), ..FindingRecord::of_earlier("open") });
+    let open = line("open", "cases/open", &with);
+    assert_eq!((closed.with_openings, open.with_openings), (Some(false), Some(true)));
+    let says = |lines: &[LedgerLine]| leaves_out(lines).contains(&ModelLimit::PartialClogging);
+    let old = LedgerLine { with_openings: None, with_arches: None, ..open.clone() };
+    assert!(says(&[closed.clone()]) && says(&[old]) && !says(&[closed, open]));
 }
 
 /// A rule that added replicates until the error was small says nothing of the verdict.

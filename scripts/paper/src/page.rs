@@ -4,8 +4,8 @@ use std::path::Path;
 
 use maud::{Markup, html};
 use voidwalk::network::ExitRule;
-use voidwalk::outcome::leaves_out;
 use voidwalk::outcome::record::Verdict;
+use voidwalk::outcome::{Modelled, leaves_out};
 use voidwalk::report::numbers::{duration, significant, whole};
 use voidwalk::report::shell::{Drawn, clean, drawing, whole_page};
 use voidwalk::report::{ReportError, Written, write_page};
@@ -97,7 +97,7 @@ fn page(study: &Study, judged: &[Judged], sections: &[(&Section, Vec<Drawn>)]) -
             }
             aside.leaves {
                 h2 { "What the model leaves out" }
-                ul { @for limit in leaves_out(ExitRule::Area) { li { (limit.to_string()) } } }
+                ul { @for limit in leaves_out(Modelled::default()) { li { (limit.to_string()) } } }
             }
         }
         (what_differs(judged))

@@ -119,7 +119,12 @@ impl Judged {
         let coarse = self.d85_mm.filter(|d85| *d85 > COARSE_BASE_MM).map(finding::coarse_base);
         let not_compared = self.real_thickness.map(|real| finding::thickness_without_unit(real, self.unit()));
         let found = of_case.filter(|finding| Some(finding) != of_one.as_ref());
-        let found = found.chain(coarse).chain(not_compared).chain(of_search(row)).chain(others);
+        let found = found
+            .chain(self.case.unchecked_clogging())
+            .chain(coarse)
+            .chain(not_compared)
+            .chain(of_search(row))
+            .chain(others);
         judge(Verdict::None, rules, found.collect())
     }
 }

@@ -119,7 +119,7 @@ pub(super) fn design(
         products_confidence,
         warnings: words(false),
         findings,
-        model_leaves_out: leaves_out(first.case.scene.exit_rule()),
+        model_leaves_out: leaves_out(first.case.modelled()),
         settings: settings(options),
         seconds,
         boundaries,

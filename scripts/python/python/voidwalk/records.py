@@ -1412,7 +1412,7 @@ class Comparison(TypedDict):
     pairs: List[ComparedPair]
     #: Eroded mass fraction that divides the classes: 0.075.
     threshold: float
-    #: What the model does not contain; records of earlier versions do not say.
+    #: What no case contains; records of earlier versions do not say.
     model_leaves_out: List[str]
 
 
