@@ -19,5 +19,5 @@ pub use cases::{CasePart, FailedCase};
 pub use cluster::jobs::{JobOptions, WrittenJobs, write_job_scripts};
 pub use plan::CampaignPlan;
 pub use run::{CampaignOptions, FinishedCampaign, check, collect, make_packing, names, run};
-pub(crate) use run::{ReadyCases, Walk, run_around};
+pub(crate) use run::{ReadyCases, Walk, look, run_around};
 pub use run_cases::{CampaignCallbacks, CaseEvent};

@@ -163,6 +163,23 @@ pub fn check(plan: &CampaignPlan, options: &CampaignOptions) -> Result<(), RunEr
     if failed.is_empty() { Ok(()) } else { Err(RunError::Refused(named(&failed))) }
 }
 
+/// Looks at the cases of a plan as far as they can be worked out without packing a filter: `None` where one is
+/// still to be packed. Claims and writes nothing.
+///
+/// # Errors
+/// A case that is wrong.
+pub(crate) fn look<R>(
+    plan: &CampaignPlan,
+    options: &CampaignOptions,
+    at: impl FnOnce(Option<&[PreparedCase]>) -> R,
+) -> Result<R, RunError> {
+    let drafts = Drafts::new(wanted(plan, &options.part)?)?;
+    let there =
+        |packing: &PackingPlan| options.packed(packing)?.ok_or_else(|| RunError::failed("not packed"));
+    let (cases, failed) = drafts.finish(there, |_| Ok(()))?;
+    Ok(at(failed.is_empty().then_some(&cases[..])))
+}
+
 /// The cases of a campaign when their filters are packed and before the first is walked: all, or why not.
 pub(crate) type ReadyCases<'a, 'b> = Result<&'b [PreparedCase<'a>], RunError>;
 

@@ -19,7 +19,7 @@ use crate::run::CheckpointInterval;
 use crate::run::machine::bytes_from_words;
 use crate::scene::Density;
 use crate::store::format::Format;
-use crate::study::design::Thickness;
+use crate::study::design::ThicknessList;
 use crate::study::precision::Tier;
 
 /// Will this filter hold this soil? A random-walk network model of base-filter combinations.
@@ -444,8 +444,8 @@ pub struct DesignArgs {
     #[arg(long)]
     pub pack: bool,
     /// Thickness of the filter: 60layers, 500mm, 24in, 2ft or 75D50F; can be repeated [default: 60layers]
-    #[arg(long = "thickness", value_name = "THICKNESS", value_delimiter = ',', allow_hyphen_values = true)]
-    pub thicknesses: Vec<Thickness>,
+    #[arg(long = "thickness", value_name = "THICKNESS", allow_hyphen_values = true)]
+    pub thicknesses: Vec<ThicknessList>,
     /// Walk the base as sampled, not as filter practice regrades it (base.regrade); always so with --inverse
     #[arg(long)]
     pub as_sampled: bool,

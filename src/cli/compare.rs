@@ -29,20 +29,44 @@ impl CompareArgs {
 
 /// Walks the cases, and compares them.
 pub fn compare(args: &CompareArgs) -> Result<(), RunError> {
-    let (tables, quiet) = (&args.tables, args.walk.quiet);
-    let plan = ComparePlan::new(&args.compared(), &tables.options()?)?;
-    if plan.seeds_differed && !quiet {
-        to_stderr(&format!("the scenes' seeds differ; all are walked with seed {}\n", plan.seed));
-    }
-    let options = CampaignOptions {
+    walked(args, &planned(args)?)
+}
+
+/// What is compared.
+///
+/// # Errors
+/// A case that is wrong.
+pub(super) fn planned(args: &CompareArgs) -> Result<ComparePlan, RunError> {
+    ComparePlan::new(&args.compared(), &args.tables.options()?)
+}
+
+/// The comparison that the folder holds already, as [`compare::found`] says.
+///
+/// # Errors
+/// The same.
+pub(super) fn found(args: &CompareArgs, plan: &ComparePlan) -> Result<Option<Comparison>, RunError> {
+    compare::found(plan, &options(args))
+}
+
+fn options(args: &CompareArgs) -> CampaignOptions {
+    CampaignOptions {
         out: args.out.clone(),
         part: CasePart::All,
-        packings: Some(tables.set.packings.clone()),
-        memory: tables.set.memory,
+        packings: Some(args.tables.set.packings.clone()),
+        memory: args.tables.set.memory,
         threads: args.walk.threads,
         checkpoint_interval: args.walk.checkpoint_every.unwrap_or_default(),
         command: command_line(),
-    };
+    }
+}
+
+/// Walks the cases of a plan, and compares them.
+pub(super) fn walked(args: &CompareArgs, plan: &ComparePlan) -> Result<(), RunError> {
+    let quiet = args.walk.quiet;
+    if plan.seeds_differed && !quiet {
+        to_stderr(&format!("the scenes' seeds differ; all are walked with seed {}\n", plan.seed));
+    }
+    let options = options(args);
     let progress = CaseProgress::new(quiet, false);
     let comparison = followed(quiet, |run| {
         let callbacks = CampaignCallbacks {
@@ -50,16 +74,21 @@ pub fn compare(args: &CompareArgs) -> Result<(), RunError> {
             on_cases: &|total, done| progress.begin(total, done),
             on_case: &|case, event| progress.tell(case, event),
         };
-        let done = compare::run(&plan, &options, args.overwrite, &callbacks);
+        let done = compare::run(plan, &options, args.overwrite, &callbacks);
         progress.end();
         done
     })?;
-    if tables.set.json {
-        to_stdout(&json(format::COMPARISON, &comparison)?);
-    } else if !quiet {
+    show(args, plan, &comparison)
+}
+
+/// Prints a comparison, and says whether it is accepted.
+pub(super) fn show(args: &CompareArgs, plan: &ComparePlan, comparison: &Comparison) -> Result<(), RunError> {
+    if args.tables.set.json {
+        to_stdout(&json(format::COMPARISON, comparison)?);
+    } else if !args.walk.quiet {
         let constrictions = plan.constrictions_in_words().into_iter().map(|said| plain(&said) + "\n");
         to_stdout(&constrictions.collect::<String>());
-        to_stdout(&words(&comparison));
+        to_stdout(&words(comparison));
         to_stdout(&format!("report: {}\n", shown(&args.out.join("compare.html"))));
     }
     let cases = comparison.cases.iter().map(|case| (case.name.as_str(), case.verdict, case.confidence));

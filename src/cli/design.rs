@@ -29,7 +29,7 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
         filter: args.filter.clone(),
         densities: args.densities.clone(),
         pack: args.pack,
-        thicknesses: args.thicknesses.clone(),
+        thicknesses: args.thicknesses.iter().flat_map(|list| list.0.clone()).collect(),
         settings,
         as_sampled: args.as_sampled,
         as_given: args.as_given,

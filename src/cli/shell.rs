@@ -127,6 +127,8 @@ fn page(command: Command) -> Result<Vec<u8>, RunError> {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use clap::error::ErrorKind;
 
     use super::*;
@@ -145,18 +147,29 @@ mod tests {
             every.iter().all(|script| script.contains("loose") && script.contains("filter.density=dense"))
         );
         // What may be a file is no list of words there.
-        assert!(!every[1].contains("-l filter -d 'The shape of the filter, whose size is searched' -r -f"));
+        let of_filter =
+            |line: &&str| line.contains("using_subcommand design") && line.contains(" -l filter ");
+        let lines: Vec<&str> = every[1].lines().filter(of_filter).collect();
+        assert_eq!(lines.len(), 1, "{lines:?}");
+        assert!(lines[0].ends_with(" -r") && !lines[0].contains("shire2016"), "{lines:?}");
+        let with_words =
+            |line: &&str| line.contains("using_subcommand design") && line.contains(" -l authority ");
+        assert!(every[1].lines().find(with_words).unwrap().contains(" -r -f -a "));
     }
 
     #[test]
     fn a_value_that_is_completed_is_one_that_is_read() {
         let parsers = with_values(Shell::Bash);
+        let mut settings = BTreeSet::new();
         for sub in parsers.get_subcommands() {
             for arg in sub.get_arguments().filter(|arg| arg.get_num_args().is_none_or(|n| n.takes_values())) {
                 let own = command();
                 let own = own.find_subcommand(sub.get_name()).unwrap().clone();
                 for value in arg.get_possible_values() {
                     let Some(long) = arg.get_long() else { continue };
+                    if arg.get_id() == "settings" && !value.get_name().ends_with('=') {
+                        settings.insert(value.get_name().to_owned());
+                    }
                     let value = match value.get_name() {
                         of if of.ends_with('=') => format!("{of}1"),
                         of => of.to_owned(),
@@ -167,6 +180,22 @@ mod tests {
                     assert!(wrong.is_none(), "{words:?}: {wrong:?}");
                 }
             }
+        }
+        // A word that is offered for a setting is read, in a scene that has what it goes with.
+        assert!(settings.len() > 30, "{settings:?}");
+        let packed = ["filter.cu=1.5", "filter.density=loose"];
+        let file = ["network.kind=graph", "network.packing=\"grains.csv\""];
+        for setting in settings {
+            let with = match setting.split_once('=').unwrap() {
+                ("filter.density", _) => &packed[..1],
+                ("network.kind", _) => &packed[..],
+                ("network.unit", _) => &file[..],
+                ("walk.exit", "height") => &["filter.cu=1.5", "filter.density=loose", "network.kind=graph"],
+                _ => &[],
+            };
+            let all: Vec<String> = with.iter().map(ToString::to_string).chain([setting.clone()]).collect();
+            let read = Scene::built_in(&all);
+            assert!(read.is_ok(), "{setting}: {}", read.unwrap_err());
         }
     }
 }

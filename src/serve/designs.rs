@@ -9,7 +9,7 @@ use super::sheets::Sheets;
 use crate::constrictions;
 use crate::outcome::design::Design;
 use crate::run::{PrepareOptions, RunError};
-use crate::study::design::{DesignOptions, Thickness};
+use crate::study::design::{DesignOptions, ThicknessList};
 
 /// What the page asks for.
 #[derive(Debug, Deserialize)]
@@ -118,7 +118,11 @@ impl KeptDesign {
         out: &Path,
         prepare: &PrepareOptions,
     ) -> Result<DesignOptions, RunError> {
-        let thicknesses = self.thicknesses.iter().map(|text| text.parse::<Thickness>());
+        // As a whole: a decimal comma makes no two of one.
+        let ThicknessList(thicknesses) = match &self.thicknesses[..] {
+            [] => ThicknessList(Vec::new()),
+            all => all.join(",").parse().map_err(RunError::Refused)?,
+        };
         let filter = match &self.filter {
             FilterShape::Sheet(path) => Some(root.join(path).display().to_string()),
             FilterShape::Named(shape) => Some(shape.clone()),
@@ -129,7 +133,7 @@ impl KeptDesign {
             filter,
             densities: self.densities.clone(),
             pack: self.pack,
-            thicknesses: thicknesses.collect::<Result<_, _>>().map_err(RunError::Refused)?,
+            thicknesses,
             settings: self.settings.clone(),
             inverse: self.inverse,
             as_sampled: self.as_sampled,

@@ -1,19 +1,22 @@
 //! Many samples of a base against filters: what practice says of each pair, in a row, and which samples
 //! govern.
 
-use super::pair::{PairOptions, PairRules};
-use super::practice::{broken, tested, tested_words};
-use crate::gradation::Gradation;
+use super::pair::{Mistake, PairOptions, PairRules};
+use super::practice::{against, broken, tested, tested_words};
+use crate::gradation::SoilSample;
 use crate::outcome::design::band::retention;
 use crate::outcome::record::{AppliedRule, RuleQuantity, RuleRole};
-use crate::outcome::rules::{NamedCurve, authority};
+use crate::outcome::rules::{CONSTRICTED_EXIT, NamedCurve, authority};
 use crate::outcome::table::Columns;
+use std::path::PathBuf;
 
 /// What practice says of one sample and one filter. Sizes are in mm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BatchRow {
     /// The sample.
     pub sample: String,
+    /// What names the sample on a command line.
+    pub path: PathBuf,
     /// The filter.
     pub filter: String,
     /// Group by ASTM D2487 of the sample; `None` where the sieves do not tell.
@@ -47,27 +50,27 @@ impl BatchRow {
     /// `options` say that they are as given.
     ///
     /// ```
-    /// use voidwalk::{Gradation, verdict::{BatchRow, PairOptions}};
+    /// use voidwalk::gradation::{Gradation, SoilSample};
+    /// use voidwalk::verdict::{BatchRow, PairOptions};
     /// let filter = Gradation::from_points(&[(0.5, 0.0), (2.0, 100.0)], None)?;
-    /// let base = Gradation::from_points(&[(0.08, 0.0), (0.3, 100.0)], None)?;
-    /// let filter = ("F", vec![("F".to_owned(), filter)]);
-    /// let row = BatchRow::of(("S", &base), (filter.0, &filter.1), PairOptions::default());
+    /// let curve = Gradation::from_points(&[(0.08, 0.0), (0.3, 100.0)], None)?;
+    /// let sample = SoilSample { name: "S".into(), path: "site.csv#S".into(), curve };
+    /// let filter = vec![("F".to_owned(), filter)];
+    /// let row = BatchRow::of(&sample, ("F", &filter), PairOptions::default());
     /// assert_eq!((row.met, row.category, row.rule.as_str()), (Some(true), Some(4), "Sherard and Dunnigan"));
     /// # Ok::<(), voidwalk::gradation::GradationError>(())
     /// ```
     ///
     /// # Panics
     /// Where the filter has no curve.
-    pub fn of(
-        (sample, base): (&str, &Gradation),
-        (filter, curves): (&str, &[NamedCurve]),
-        options: PairOptions,
-    ) -> Self {
-        let bases = [(sample.to_owned(), base.clone())];
-        let refused = PairRules::guarded(&bases, curves, options).err();
+    pub fn of(sample: &SoilSample, (filter, curves): (&str, &[NamedCurve]), options: PairOptions) -> Self {
+        let base = &sample.curve;
+        let bases = [(sample.name.clone(), base.clone())];
+        let mistake = Mistake::of_envelopes(&bases, curves);
         let pair = PairRules::of_envelopes(&bases, curves, options);
         let row = Self {
-            sample: sample.into(),
+            sample: sample.name.clone(),
+            path: sample.path.clone(),
             filter: filter.into(),
             group: base.group(),
             category: pair.base.category,
@@ -82,8 +85,10 @@ impl BatchRow {
             tests: "",
             note: String::new(),
         };
-        if let Some(mistake) = refused {
-            return Self { note: mistake.sentence, ..row };
+        let is_refused = mistake.as_ref().is_some_and(|of| of.is_refused() && !options.as_given);
+        let doubt = mistake.map(|of| of.sentence);
+        if is_refused {
+            return Self { note: doubt.unwrap_or_default(), ..row };
         }
         let rules = &pair.rules;
         // A D15F that lies in a finest tail has the limits in mm all the same.
@@ -103,7 +108,9 @@ impl BatchRow {
             (RuleRole::Placing, "may segregate"),
         ];
         let also = also.into_iter().filter(|(role, _)| !broken(rules, *role).is_empty());
-        let note = also.map(|(_, what)| what).collect::<Vec<_>>().join(", ");
+        let also = also.map(|(_, what)| what.to_owned()).collect::<Vec<_>>().join(", ");
+        let notes = [doubt, Some(also).filter(|said| !said.is_empty()), joint(rules)];
+        let note = notes.into_iter().flatten().collect::<Vec<_>>().join("; ");
         Self {
             limit_mm: strictest.map(|(_, limit)| limit),
             limit_at_most: strictest.is_some_and(|(rule, _)| rule.limit_at_most),
@@ -123,6 +130,16 @@ impl BatchRow {
             None => "no result",
         }
     }
+}
+
+/// The probability of continuing erosion into a joint, where one is asked about.
+fn joint(rules: &[AppliedRule]) -> Option<String> {
+    let rule = rules.iter().find(|rule| rule.id == CONSTRICTED_EXIT && rule.applies)?;
+    Some(match (rule.value, rule.needs.is_empty()) {
+        (Some(_), _) => format!("joint: {} continuing", against(rule, 2)[0]),
+        (None, true) => "joint: less than 0.01 % continuing".into(),
+        (None, false) => "joint: no result".into(),
+    })
 }
 
 /// Whose limit it is: of rules that say the same, as design and Terzaghi do for a clean sand, the first.
@@ -165,13 +182,24 @@ pub fn columns<'a>() -> Columns<'a, BatchRow> {
         .headed("Note")
 }
 
-/// Samples that govern a filter: those with the least limit, the strictest first, at most `most` of them;
-/// equal limits in the order of the rows.
+/// Samples that govern a filter: those with the least limit, the strictest first, at most `most` of them; of
+/// equal limits that with the smaller D85B first, which is the finer base.
 pub fn governing<'r>(rows: &'r [BatchRow], filter: &str, most: usize) -> Vec<&'r BatchRow> {
     let of_filter = rows.iter().filter(|row| row.filter == filter);
     let mut limits: Vec<(f64, &BatchRow)> = of_filter.filter_map(|row| Some((row.limit_mm?, row))).collect();
-    limits.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let d85b = |row: &BatchRow| row.d85b_mm.unwrap_or(f64::INFINITY);
+    limits.sort_by(|a, b| a.0.total_cmp(&b.0).then(d85b(a.1).total_cmp(&d85b(b.1))));
     limits.into_iter().map(|(_, row)| row).take(most).collect()
+}
+
+/// How many more samples have the limit of the last of those that govern.
+pub fn more_with_that_limit(rows: &[BatchRow], filter: &str, named: &[&BatchRow]) -> usize {
+    let Some(limit) = named.last().and_then(|row| row.limit_mm) else { return 0 };
+    let is_same = |row: &&BatchRow| {
+        row.filter == filter && row.limit_mm.is_some_and(|of| (of - limit).abs() <= 1e-9 * limit)
+    };
+    let of_named = named.iter().copied().filter(is_same).count();
+    rows.iter().filter(is_same).count() - of_named
 }
 
 /// Samples of a filter whose limit is not known, or known to be at most a number: any of them may govern.
@@ -183,9 +211,15 @@ pub fn may_govern<'r>(rows: &'r [BatchRow], filter: &str) -> Vec<&'r BatchRow> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gradation::Gradation;
 
     fn soil(points: &[(f64, f64)]) -> Gradation {
         Gradation::from_points(points, None).unwrap()
+    }
+
+    fn row(name: &str, curve: &Gradation, filter: &[NamedCurve], options: PairOptions) -> BatchRow {
+        let sample = SoilSample { name: name.into(), path: name.into(), curve: curve.clone() };
+        BatchRow::of(&sample, ("F", filter), options)
     }
 
     fn rows() -> Vec<BatchRow> {
@@ -197,9 +231,7 @@ mod tests {
             ("open", soil(&[(0.4, 30.0), (1.0, 100.0)])),
             ("gravel", soil(&[(10.0, 0.0), (30.0, 100.0)])),
         ];
-        let of = |(name, base): &(&str, Gradation)| {
-            BatchRow::of((name, base), ("F", &filter), PairOptions::default())
-        };
+        let of = |(name, base): &(&str, Gradation)| row(name, base, &filter, PairOptions::default());
         samples.iter().map(of).collect()
     }
 
@@ -230,5 +262,43 @@ mod tests {
         assert_eq!(names(governing(&rows, "F", 2)), ["fine sand", "silty"]);
         assert_eq!(names(may_govern(&rows, "F")), ["open", "gravel"]);
         assert!(governing(&rows, "G", 3).is_empty());
+    }
+
+    #[test]
+    fn doubtful_tables_and_joints_stand_in_the_note() {
+        let filter = vec![("F".to_owned(), soil(&[(0.5, 0.0), (2.0, 100.0)]))];
+        let gravel = soil(&[(10.0, 0.0), (30.0, 100.0)]);
+        let given = row("gravel", &gravel, &filter, PairOptions { as_given: true, ..PairOptions::default() });
+        assert!(given.limit_mm.is_some() && given.note.contains("are the two files exchanged?"), "{given:?}");
+        let sand = soil(&[(0.08, 0.0), (0.3, 100.0)]);
+        let joint =
+            |mm| row("sand", &sand, &filter, PairOptions { joint_mm: Some(mm), ..Default::default() });
+        assert_eq!(joint(2.0).note, "joint: 90 % continuing");
+        // D95B = 0.3 (0.08/0.3)^(1/20): 0.45 of it lies below the table of the source.
+        let d95b = sand.d(95.0).unwrap();
+        assert_eq!(joint(0.45 * d95b).note, "joint: less than 0.01 % continuing");
+    }
+
+    /// Limits of fines are the same for many samples: 0.7 mm. The finer one comes first.
+    #[test]
+    fn of_equal_limits_the_finer_base_governs_and_the_others_are_counted() {
+        let filter = vec![("F".to_owned(), soil(&[(0.5, 0.0), (2.0, 100.0)]))];
+        let coarsest = |at: usize| soil(&[(0.01, 0.0), (0.075, 60.0), (0.8 - 0.1 * at as f64, 100.0)]);
+        let of = |at| row(&format!("S{at}"), &coarsest(at), &filter, PairOptions::default());
+        let rows: Vec<BatchRow> = (0..5).map(of).collect();
+        let named = governing(&rows, "F", 3);
+        assert!(named.iter().all(|row| row.limit_mm == Some(0.7)), "{named:?}");
+        assert_eq!(named.iter().map(|row| row.sample.as_str()).collect::<Vec<_>>(), ["S4", "S3", "S2"]);
+        assert_eq!(more_with_that_limit(&rows, "F", &named), 2);
+        assert_eq!(more_with_that_limit(&rows, "G", &[]), 0);
+    }
+
+    /// The limit of a base whose fines nobody sieved is one at most, whether D15F is known or not.
+    #[test]
+    fn a_d15f_in_the_pan_hides_no_limit_that_is_one_at_most() {
+        let filter = vec![("F".to_owned(), soil(&[(0.5, 30.0), (2.0, 100.0)]))];
+        let open = row("open", &soil(&[(0.3, 25.0), (1.0, 100.0)]), &filter, PairOptions::default());
+        assert!(open.d15f_mm.is_none() && open.limit_mm.is_some() && open.limit_at_most, "{open:?}");
+        assert_eq!(open.met, None);
     }
 }

@@ -1,7 +1,8 @@
 //! What a sheet says where it lists the rules of one authority alone: its limit, and what is left out.
 
 use super::practice::{against, tested, tested_words};
-use crate::outcome::design::band::retention;
+use super::words::capital;
+use crate::outcome::design::band::{limits, retention};
 use crate::outcome::record::{AppliedRule, RuleQuantity, RuleRole};
 use crate::outcome::rules::{Authority, TESTS_CONTINUING, authority, is_stated_by};
 
@@ -19,34 +20,72 @@ pub fn of_pair(rules: &[AppliedRule], by: Authority, d15f: Option<f64>) -> Optio
     if by == Authority::All {
         return None;
     }
-    let governing = match governing(&stated_by(rules, by), d15f) {
+    // A D15F that lies in a finest tail has the limits in mm all the same.
+    let governing = match governing(&stated_by(rules, by), d15f.unwrap_or(1.0)) {
         Some((rule, value)) => format!("{value} ({})", authority(&rule)),
         None => "no limit of D15F for this base".into(),
     };
-    Some(format!("{}: {governing}. {}", by.name(), left_out(rules, by)))
+    let left = left_by(rules, by);
+    let broken: Vec<&str> = left.iter().filter(|of| of.is_broken()).map(|of| of.name.as_str()).collect();
+    let said = match broken[..] {
+        [] if left.iter().all(|rule| rule.met == Some(true)) => vec!["none of them is broken".into()],
+        [] if left.iter().all(|rule| !rule.applies || rule.met == Some(true)) => {
+            [vec!["all that have a limit for these soils are met".into()], without_result(&left)].concat()
+        }
+        [] => without_result(&left),
+        _ => [vec![format!("not met among them: {}", broken.join("; "))], without_result(&left)].concat(),
+    };
+    Some(format!("{}: {governing}. {}", by.name(), left_out(rules, &left, &said)))
 }
 
-/// The strictest limit of D15F that one authority has for a base, in the unit of a design whose rules were
-/// read at one D15F; and that the answer rests on all rules.
+/// The strictest limit of D15F that one authority has for a base, which others are stricter, and that the
+/// answer rests on all rules. Sizes of a design are in mm, or have no unit.
+///
+/// The rules were read at a D15F that keeps all of them: it is their limits that tell them apart.
 pub fn of_design(rules: &[AppliedRule], by: Authority, unit: &str) -> Option<String> {
     if by == Authority::All {
         return None;
     }
-    let stated = stated_by(rules, by);
+    let (stated, left) = (stated_by(rules, by), left_by(rules, by));
     let d15f = rules.iter().find(|rule| rule.quantity == RuleQuantity::D15F).and_then(|rule| rule.value);
-    let governing = match d15f.and_then(|d15f| retention(&stated, d15f)) {
-        Some((rule, limit)) => {
-            let at_most = if rule.limit_at_most { " at most" } else { "" };
-            format!("D15F up to {limit:.3} {unit}{at_most} ({})", authority(rule))
-        }
+    let d15f = d15f.unwrap_or(1.0);
+    let has_unit = unit == "mm";
+    let own = retention(&stated, d15f).filter(|_| has_unit);
+    let governing = match own {
+        _ if !has_unit => "the limit is not known, as sizes have no unit".into(),
+        Some((rule, limit)) => format!("D15F up to {} ({})", in_mm(rule, limit), authority(rule)),
         None => "no limit of D15F for this base".into(),
     };
-    Some(format!("{}: {governing}. {} The answer rests on all rules.", by.name(), left_out(rules, by)))
+    let is_less = |limit: f64| own.is_none_or(|(_, own)| limit < own * (1.0 - 1e-9));
+    let stricter = left.iter().filter(|_| has_unit).filter_map(|rule| {
+        let is_retained = matches!(rule.role, RuleRole::Retention | RuleRole::Continuation);
+        let (_, limit) = *limits(std::slice::from_ref(*rule), d15f).first()?;
+        let whose = if rule.role == RuleRole::Retention { authority(rule) } else { &rule.name };
+        (is_retained && !rule.at_least && is_less(limit)).then(|| format!("{whose}, {}", in_mm(rule, limit)))
+    });
+    let stricter: Vec<String> = stricter.collect();
+    let mut said = Vec::new();
+    match (has_unit, &stricter[..]) {
+        (false, _) => {}
+        (true, []) => said.push("no limit among them is known to be stricter".into()),
+        (true, _) => said.push(format!("stricter among them: {}", stricter.join("; "))),
+    }
+    let broken: Vec<&str> = left.iter().filter(|of| of.is_broken()).map(|of| of.name.as_str()).collect();
+    if !broken.is_empty() {
+        said.push(format!("not met among them: {}", broken.join("; ")));
+    }
+    said.extend(without_result(&left));
+    let left = left_out(rules, &left, &said);
+    Some(format!("{}: {governing}. {left} The answer rests on all rules.", by.name()))
+}
+
+fn in_mm(rule: &AppliedRule, limit: f64) -> String {
+    format!("{limit:.3} mm{}", if rule.limit_at_most { " at most" } else { "" })
 }
 
 /// The rule with the strictest limit, and value and limit in words.
-fn governing(stated: &[AppliedRule], d15f: Option<f64>) -> Option<(AppliedRule, String)> {
-    let (rule, _) = retention(stated, d15f?)?;
+fn governing(stated: &[AppliedRule], d15f: f64) -> Option<(AppliedRule, String)> {
+    let (rule, _) = retention(stated, d15f)?;
     let [value, limit] = against(rule, 3);
     let quantity = &rule.quantity;
     let at_most = if rule.limit_at_most { " at most" } else { "" };
@@ -58,21 +97,38 @@ fn governing(stated: &[AppliedRule], d15f: Option<f64>) -> Option<(AppliedRule, 
     Some((rule.clone(), said))
 }
 
-/// How many rules are left out, the class of tests where that is one of them, and which are not met.
-fn left_out(rules: &[AppliedRule], by: Authority) -> String {
-    let left: Vec<&AppliedRule> =
-        rules.iter().filter(|rule| rule.role != RuleRole::Walk && !is_stated_by(rule, by)).collect();
+/// The rules of practice that an authority does not state.
+fn left_by(rules: &[AppliedRule], by: Authority) -> Vec<&AppliedRule> {
+    rules.iter().filter(|rule| rule.role != RuleRole::Walk && !is_stated_by(rule, by)).collect()
+}
+
+/// Rules that were made for these soils and neither are met nor broken: their probability, where they have
+/// one, or that they have no result; and how many have no limit for these soils.
+fn without_result(left: &[&AppliedRule]) -> Vec<String> {
+    let open = || left.iter().filter(|rule| rule.applies && rule.met.is_none());
+    let share = |rule: &&&AppliedRule| rule.unit == "%" && rule.limit.is_none() && rule.value.is_some();
+    let of_share = |rule: &&AppliedRule| {
+        let name = rule.name.split(':').next().unwrap_or_default();
+        format!("{name}: {}", against(rule, 2)[0])
+    };
+    let shares = open().filter(share).map(of_share);
+    let none: Vec<&str> = open().filter(|rule| !share(rule)).map(|rule| rule.name.as_str()).collect();
+    let none = (!none.is_empty()).then(|| format!("no result: {}", none.join("; ")));
+    let not_for = left.iter().filter(|rule| !rule.applies).count();
+    let not_for = (not_for > 0).then(|| format!("no limit for these soils: {not_for}"));
+    none.into_iter().chain(shares).chain(not_for).collect()
+}
+
+/// How many rules are left out, the class of tests where that is one of them, and what is said of them.
+fn left_out(rules: &[AppliedRule], left: &[&AppliedRule], said: &[String]) -> String {
     let classes = match left.iter().any(|rule| rule.id == TESTS_CONTINUING) {
         true => format!(", with Foster and Fell's classes ({})", tested_words(tested(rules))),
         false => String::new(),
     };
-    let broken: Vec<&str> =
-        left.iter().filter(|rule| rule.is_broken()).map(|rule| rule.name.as_str()).collect();
-    let broken = match broken[..] {
-        [] => "none of them is broken".to_owned(),
-        _ => format!("not met among them: {}", broken.join("; ")),
-    };
-    format!("Left out: {} rules of others{classes}; {broken}.", left.len())
+    let begin = format!("Left out: {} rules of others{classes}", left.len());
+    let Some((first, more)) = said.split_first() else { return format!("{begin}.") };
+    let more: String = more.iter().map(|said| format!(" {}.", capital(said))).collect();
+    format!("{begin}; {first}.{more}")
 }
 
 #[cfg(test)]
@@ -115,5 +171,83 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// A design reads its rules at a D15F that keeps them all: its sentence goes by limits.
+    #[test]
+    fn every_stricter_limit_is_named_beside_a_design() {
+        let base = Gradation::from_points(&[(0.08, 0.0), (0.3, 100.0)], None).unwrap();
+        let fine = Gradation::from_points(&[(0.01, 0.0), (0.06, 90.0), (0.2, 100.0)], None).unwrap();
+        let till =
+            Gradation::from_points(&[(0.01, 0.0), (0.075, 37.0), (0.6, 80.0), (4.0, 100.0)], None).unwrap();
+        let mut named = 0;
+        for base in [base, fine, till] {
+            let least = PairRules::of(&base, &Gradation::linear_from_dx(15.0, 0.15, 1.5).unwrap()).rules;
+            for by in Authority::ALL.into_iter().filter(|by| *by != Authority::All) {
+                let said = of_design(&least, by, "mm").unwrap();
+                let (_, own) = retention(&stated_by(&least, by), 0.15).unwrap();
+                assert!(said.contains(&format!("D15F up to {own:.3} mm")), "{said}");
+                assert!(!said.contains("none of them is broken"), "{said}");
+                let all = limits(&least, 0.15).into_iter();
+                let retains = |rule: &AppliedRule| rule.role == RuleRole::Retention;
+                for (rule, limit) in all.filter(|(rule, limit)| retains(rule) && *limit < own * (1.0 - 1e-9))
+                {
+                    let stricter = said.split("stricter among them: ").nth(1).unwrap_or_default();
+                    let one = format!("{}, {limit:.3} mm", authority(rule));
+                    assert!(stricter.contains(&one), "{one}: {said}");
+                    named += 1;
+                }
+            }
+        }
+        assert!(named >= 3, "{named}");
+    }
+
+    #[test]
+    fn without_a_unit_no_limit_is_stated() {
+        let said = of_design(&pair(1.0).rules, Authority::Nrcs, "D85B").unwrap();
+        assert!(
+            said.starts_with("NRCS: the limit is not known, as sizes have no unit. Left out: "),
+            "{said}"
+        );
+        assert!(!said.contains("stricter") && !said.contains(" mm"), "{said}");
+    }
+
+    /// What has no result, or a probability alone, is no rule that is met.
+    #[test]
+    fn what_has_no_result_is_named_and_none_is_broken_only_where_all_are_met() {
+        use crate::verdict::PairOptions;
+        let soil =
+            |points: &[(f64, f64)]| vec![("s".to_owned(), Gradation::from_points(points, None).unwrap())];
+        let filter = soil(&[(0.5, 0.0), (2.0, 100.0)]);
+        let options = PairOptions { joint_mm: Some(2.0), ..PairOptions::default() };
+        let base = soil(&[(0.08, 0.0), (0.3, 100.0)]);
+        let joint = PairRules::of_envelopes(&base, &filter, options);
+        let said = of_pair(&joint.rules, Authority::Nrcs, joint.filter.d15_mm).unwrap();
+        assert!(said.contains(" Constricted exit: 90 %."), "{said}");
+        assert!(!said.contains("none of them is broken") && !said.contains("are met"), "{said}");
+        let without = PairRules::of_envelopes(&base, &filter, PairOptions::default());
+        let said = of_pair(&without.rules, Authority::Nrcs, without.filter.d15_mm).unwrap();
+        assert!(
+            said.ends_with("; all that have a limit for these soils are met. No limit for these soils: 4.")
+        );
+        // Fines that nobody sieved.
+        let open =
+            PairRules::of_envelopes(&soil(&[(0.3, 25.0), (1.0, 100.0)]), &filter, PairOptions::default());
+        let said = of_pair(&open.rules, Authority::FosterFell, open.filter.d15_mm).unwrap();
+        let none = said.split("; no result: ").nth(1).unwrap_or_default();
+        assert!(none.contains("Sherard and Dunnigan"), "{said}");
+        let kept: Vec<AppliedRule> = joint.rules.iter().filter(|of| of.met == Some(true)).cloned().collect();
+        let said = of_pair(&kept, Authority::Nrcs, joint.filter.d15_mm).unwrap();
+        assert!(said.ends_with("none of them is broken."), "{said}");
+    }
+
+    #[test]
+    fn a_filter_with_its_d15_in_the_pan_has_the_limit_all_the_same() {
+        let base = Gradation::from_points(&[(0.08, 0.0), (0.3, 100.0)], None).unwrap();
+        let filter = Gradation::from_points(&[(0.5, 30.0), (2.0, 100.0)], None).unwrap();
+        let pair = PairRules::of(&base, &filter);
+        assert_eq!(pair.filter.d15_mm, None);
+        let said = of_pair(&pair.rules, Authority::Nrcs, None).unwrap();
+        assert!(said.starts_with("NRCS: no result: D15F unknown, limit 0.98"), "{said}");
     }
 }

@@ -367,7 +367,7 @@ pub(super) fn against(rule: &AppliedRule, digits: i32) -> [String; 2] {
 
 /// A value with its unit.
 fn size(value: Option<f64>, unit: &str) -> String {
-    with_unit(value.map_or("unknown".into(), short), unit)
+    value.map_or("unknown".into(), |value| with_unit(short(value), unit))
 }
 
 fn with_unit(number: String, unit: &str) -> String {

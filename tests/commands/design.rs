@@ -142,7 +142,7 @@ fn a_base_that_was_not_checked_never_looks_reassuring() {
 #[test]
 fn what_is_wrong_is_refused_with_what_is_allowed() {
     let root = with_base();
-    let cases: [(&[&str], &str); 8] = [
+    let cases: [(&[&str], &str); 10] = [
         (&["nowhere.csv"], "nowhere.csv"),
         (&["base.csv", "--thickness", "0"], "or a length above 0"),
         (&["base.csv", "--density", "2", "--filter", "3"], "dense, medium (or intermediate) or loose"),
@@ -151,6 +151,8 @@ fn what_is_wrong_is_refused_with_what_is_allowed() {
         (&["base.csv", "--filter", "0.5"], "from 1 to 1000"),
         (&["base.csv", "--bracket", "9,3"], "two D15F/D85B that rise"),
         (&["--thickness", "500mm"], "needs a base in mm"),
+        (&["base.csv", "--inverse", "--authority", "nrcs"], "--authority nrcs: goes without --inverse"),
+        (&["base.csv", "--thickness", "1,5m"], "a decimal point, not a comma: 1.5m"),
     ];
     for (args, words) in cases {
         refused(&design(root.path(), args), words);

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
+use std::time::SystemTime;
 
 fn voidwalk(args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_voidwalk")).args(args).output().unwrap()
@@ -341,10 +342,52 @@ fn samples_that_govern_are_walked_as_a_comparison_and_not_twice() {
             "{said}"
         );
     }
-    let walked = || fs::metadata(folder.join("compare.html")).is_ok();
-    assert!(walked() && !said.contains("Nothing was walked"));
+    assert!(folder.join("compare.html").is_file() && !said.contains("Nothing was walked"));
+    let moments = || -> Vec<SystemTime> {
+        let cases = fs::read_dir(folder.join("walks/cases")).unwrap();
+        let outcomes = cases.map(|case| case.unwrap().path().join("outcome.json"));
+        let mut all: Vec<SystemTime> =
+            outcomes.map(|file| fs::metadata(file).unwrap().modified().unwrap()).collect();
+        all.sort();
+        all
+    };
+    let of_first = moments();
+    assert_eq!(of_first.len(), 3);
+    assert_eq!((walk(), read(), moments()), (said, first.clone(), of_first.clone()));
+    // What was begun and not finished goes on, with the cases that are done.
+    fs::write(folder.join(".voidwalk.unfinished"), "{\"kind\": \"comparison\", \"work\": \"other\"}")
+        .unwrap();
+    let refused = |words: &[&str], says: &str| {
+        let output = voidwalk(words);
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.code() == Some(2) && stderr.contains(says), "{stderr}");
+        assert!(output.stdout.is_empty());
+    };
+    refused(&words, "holds another comparison");
+    fs::remove_file(folder.join(".voidwalk.unfinished")).unwrap();
+    fs::remove_file(folder.join("compare.json")).unwrap();
     walk();
-    assert_eq!(read(), first);
+    assert_eq!((read(), moments()), (first.clone(), of_first.clone()));
+    // The comparison of another site is not cleared, nor one of other settings, and no table is written.
+    let other = root.path().join("other.csv").display().to_string();
+    fs::write(&other, rows.replace("60,40", "70,40")).unwrap();
+    let csv = root.path().join("other-table.csv").display().to_string();
+    let of_other = [&["rules", &other, &filter, "--each", "--csv", &csv, "--walk", &out], &sets[..]].concat();
+    refused(&of_other, "holds another comparison");
+    let of_seed = [&words[..], &["--set", "seed=7"]].concat();
+    refused(&of_seed, "holds another comparison");
+    assert_eq!((read(), moments()), (first, of_first));
+    // A setting that is wrong, of the second filter's folder too, is found before the table is written.
+    let new = root.path().join("new").display().to_string();
+    let wrong =
+        ["rules", &samples, &filter, "--each", "--csv", &csv, "--walk", &new, "--set", "network.nx=0"];
+    refused(&wrong, "network.nx");
+    assert!(!Path::new(&csv).exists() && !Path::new(&new).exists());
+    // One sample is nothing to compare.
+    let one = ["rules", &format!("{samples}#Core"), &filter, "--each", "--walk", &new];
+    let said = String::from_utf8(voidwalk(&one).stdout).unwrap();
+    assert!(said.contains("Nothing was walked. To walk the one that governs: voidwalk judge "), "{said}");
+    assert!(!Path::new(&new).exists());
     // --walk and --csv belong to --each.
     assert_eq!(voidwalk(&["rules", &samples, &filter, "--walk", &out]).status.code(), Some(2));
 }
@@ -369,6 +412,16 @@ fn the_samples_of_a_folder_are_those_of_its_tables() {
         "{said}"
     );
     assert_eq!(voidwalk(&["rules", &folder, &filter]).status.code(), Some(2));
+    // What was assumed of a file stands below the table once; joint and envelope are named.
+    let sheet = root.path().join("lab/k.csv");
+    fs::write(&sheet, "opening_mm;percent_finer\n1,5;100\n0,25;40\n0,08;0\n").unwrap();
+    let band = root.path().join("band.csv").display().to_string();
+    fs::write(&band, "opening_mm,fine side,coarse side\n0.5,15,0\n1,60,15\n2,100,60\n5,100,100\n").unwrap();
+    let output = voidwalk(&["rules", &folder, &band, "--each", "--joint-mm", "9"]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains("an envelope of 2 curves (fine side, coarse side)"), "{said}");
+    assert!(said.matches("joint: 90 % continuing").count() == 3, "{said}");
+    assert_eq!(said.lines().filter(|line| line.starts_with("note  ")).count(), 99, "{said}");
     fs::write(root.path().join("lab/c.csv"), "nothing").unwrap();
     let refused = voidwalk(&["rules", &folder, &filter, "--each"]);
     assert!(refused.status.code() == Some(2) && String::from_utf8_lossy(&refused.stderr).contains("c.csv"));

@@ -52,14 +52,17 @@ impl Soil {
     }
 }
 
-/// The file that a scene's `path` names, and which of its soils: `site.xlsx#Filter A`.
+/// The file that a scene's `path` names, and which of its soils: `site.xlsx#Filter A`. Files and soils may
+/// have a `#` in their names: the first before which there is a file counts, without such a file the last.
 pub(crate) fn file_and_soil(path: &Path) -> (PathBuf, Option<String>) {
     let Some(text) = path.to_str().filter(|_| !path.exists()) else { return (path.to_owned(), None) };
-    match text.rsplit_once('#') {
-        Some((file, soil)) if !file.is_empty() && !soil.trim().is_empty() => {
-            (PathBuf::from(file), Some(soil.trim().to_owned()))
-        }
-        _ => (path.to_owned(), None),
+    let is_named = |(file, soil): &(&str, &str)| !file.is_empty() && !soil.trim().is_empty();
+    let at = |at: usize| (&text[..at], &text[at + 1..]);
+    let mut places = text.match_indices('#').map(|(place, _)| at(place)).filter(is_named);
+    let of_file = places.find(|(file, _)| Path::new(file).is_file());
+    match of_file.or_else(|| text.rsplit_once('#').filter(is_named)) {
+        Some((file, soil)) => (PathBuf::from(file), Some(soil.trim().to_owned())),
+        None => (path.to_owned(), None),
     }
 }
 

@@ -9,7 +9,8 @@ use crate::gradation::sieve::Gradation;
 /// One of many samples.
 #[derive(Clone, Debug)]
 pub struct SoilSample {
-    /// What it is called: its name in the file, behind the file's own where a folder has several.
+    /// What it is called: its name in the file, behind the file's own where a folder has several; the file's
+    /// with its ending, where two files of a folder differ in that alone.
     pub name: String,
     /// What names it on a command line: `site.ags#BH1 1.50`, or the file alone where it holds no other.
     pub path: PathBuf,
@@ -44,10 +45,15 @@ pub fn samples_in(path: &Path) -> Result<Vec<SoilSample>, GradationError> {
         return Err(TableError::NoTables { folder: folder(), endings: ENDINGS.join(", .") }.into());
     }
     files.sort();
+    // What some disks and some readers take for the same counts as the same.
+    let stem = |file: &PathBuf| file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let stems: Vec<String> = files.iter().map(|file| stem(file).to_lowercase()).collect();
     let mut samples = Vec::new();
-    for file in files {
-        let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let of_file = in_file(&file)?;
+    for file in &files {
+        let is_alone = stems.iter().filter(|other| **other == stem(file).to_lowercase()).count() == 1;
+        let whole = || file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let stem = if is_alone { stem(file) } else { whole() };
+        let of_file = in_file(file)?;
         let several = of_file.len() > 1;
         samples.extend(of_file.into_iter().map(|sample| {
             let name = if several { format!("{stem}/{}", sample.name) } else { stem.clone() };
@@ -95,5 +101,26 @@ mod tests {
         }
         write("c.csv", "nothing");
         assert!(samples_in(root.path()).unwrap_err().to_string().contains("c.csv"));
+    }
+
+    /// Two files of one stem, and a `#` in the names of files and soils: every sample is read again by its
+    /// path.
+    #[test]
+    fn names_that_look_alike_are_told_apart() {
+        let root = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| std::fs::write(root.path().join(name), text).unwrap();
+        write("a.csv", "opening_mm,percent_finer\n2,100\n0.5,0\n");
+        write("A.txt", "opening_mm,percent_finer\n4,100\n0.5,0\n");
+        write("b#1.csv", "Sieve (mm),BH#1,BH#2\n2,100,100\n0.5,40,10\n0.1,0,0\n");
+        write("c#2.csv", "opening_mm,percent_finer\n8,100\n0.5,0\n");
+        let samples = samples_in(root.path()).unwrap();
+        let names: Vec<&str> = samples.iter().map(|sample| sample.name.as_str()).collect();
+        assert_eq!(names, ["A.txt", "a.csv", "b#1/BH#1", "b#1/BH#2", "c#2"]);
+        for sample in &samples {
+            let again = Gradation::from_sieve_csv(&sample.path, None).unwrap();
+            assert_eq!(again.d(50.0), sample.curve.d(50.0), "{}", sample.path.display());
+        }
+        let none = file_and_soil(&root.path().join("none.xlsx#Filter A"));
+        assert_eq!(none, (root.path().join("none.xlsx"), Some("Filter A".into())));
     }
 }

@@ -14,6 +14,9 @@ pub const TESTS_NO_EROSION: &str = "foster-fell-no-erosion";
 /// From where tests saw continuing erosion.
 pub const TESTS_CONTINUING: &str = "foster-fell-continuing";
 
+/// The probability of continuing erosion into an open joint.
+pub const CONSTRICTED_EXIT: &str = "constricted-exit";
+
 /// The rule by which a filter drains its base.
 pub const PERMEABILITY: &str = "permeability";
 
@@ -129,7 +132,7 @@ pub const RULES: &[FilterRule] = &[
         judge: retention::terzaghi,
     },
     FilterRule {
-        id: "constricted-exit",
+        id: CONSTRICTED_EXIT,
         authority: "",
         stated_by: &[Usace],
         says: "Constricted exit: probability of continuing erosion into an open joint",

@@ -16,8 +16,8 @@ mod stability;
 mod walk;
 
 pub use all::{
-    DESIGN, PAPER_CONTINUING, PAPER_NO_EROSION, PERMEABILITY, RULES, TERZAGHI, TESTS_CONTINUING,
-    TESTS_EXCESSIVE, TESTS_NO_EROSION,
+    CONSTRICTED_EXIT, DESIGN, PAPER_CONTINUING, PAPER_NO_EROSION, PERMEABILITY, RULES, TERZAGHI,
+    TESTS_CONTINUING, TESTS_EXCESSIVE, TESTS_NO_EROSION,
 };
 pub use apply::{NamedCurve, Sides, apply, apply_to_envelopes, authority, is_stated_by};
 pub use authority::Authority;

@@ -95,7 +95,7 @@ fn by_fines(inputs: &RuleInputs, limit: impl Fn(f64, f64) -> Limit, says_categor
         is_beyond.then_some(RuleNote::BeyondAnyLimit),
     ];
     Judged {
-        limit_at_most: d15f.is_some() && matches!(limit, Limit::AtMost(_)),
+        limit_at_most: matches!(limit, Limit::AtMost(_)),
         needs: match d15f {
             None => Some(RuleNote::NeedsD15F),
             Some(_) => needs.filter(|_| !is_beyond),

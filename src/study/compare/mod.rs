@@ -17,6 +17,7 @@ use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
 use crate::outcome::record::Outcome;
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, claim, shown};
+use crate::run::unfinished::Unfinished;
 use crate::store::{Folder, read_whole};
 
 /// Folder of the campaign, inside the comparison's.
@@ -67,6 +68,45 @@ pub fn run(
     };
     let of_campaign = CampaignOptions { out: folder.path().join(WALKS), ..of_campaign };
     campaign::run_around(&plan.campaign, &of_campaign, callbacks, study).map_err(stopped)
+}
+
+/// The comparison that the folder holds already, where it is this very one; `None` where [`run`] without
+/// `overwrite` begins there or goes on. Writes no result.
+///
+/// # Errors
+/// A case that is wrong, and a folder that holds anything else, another comparison too.
+pub fn found(plan: &ComparePlan, options: &CampaignOptions) -> Result<Option<Comparison>, RunError> {
+    let kind = FolderKind::Comparison;
+    let of_campaign = CampaignOptions { out: options.out.join(WALKS), ..options.clone() };
+    campaign::check(&plan.campaign, &of_campaign)?;
+    if options.out.symlink_metadata().is_err() {
+        return Ok(None);
+    }
+    let folder = claim(&options.out, kind, true)?;
+    let other = || {
+        let problem = "holds another comparison; name another folder, or remove that one";
+        Err(RunError::Refused(format!("{}: {problem}", shown(&options.out))))
+    };
+    if kind.is_finished(folder.path())? {
+        let is_walked = |cases: Option<&[PreparedCase]>| {
+            cases.is_some_and(|all| all.iter().all(|case| case.line(&of_campaign.out).is_some()))
+        };
+        let is_walked = campaign::look(&plan.campaign, &of_campaign, is_walked)?;
+        let bytes = folder.read(kind.record())?;
+        let there = bytes.and_then(|bytes| serde_json::from_slice::<Comparison>(&bytes).ok());
+        let there = there.filter(|there| there.of == plan.of && is_walked);
+        let there = there.filter(|there| there.cases.iter().map(|case| case.name.as_str()).eq(plan.names()));
+        return there.map_or_else(other, |there| Ok(Some(there)));
+    }
+    match Unfinished::read(&folder)? {
+        Some(begun) => {
+            let is_this =
+                |cases: Option<&[PreparedCase]>| cases.is_some_and(|all| plan.work(all) == begun.work);
+            let is_this = campaign::look(&plan.campaign, &of_campaign, is_this)?;
+            if is_this { Ok(None) } else { other() }
+        }
+        None => Ok(None),
+    }
 }
 
 impl ComparePlan {

@@ -148,12 +148,11 @@ fn shared(names: &[String]) -> Vec<usize> {
 }
 
 fn short_name(file: &Path) -> String {
-    let text = shown(file);
-    let (path, soil) = text.split_once('#').map_or((text.as_str(), ""), |(path, soil)| (path, soil));
-    let stem = Path::new(path).file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned());
-    match (soil, stem.as_str()) {
-        ("", stem) => stem.to_owned(),
-        (soil, stem) => format!("{stem}: {soil}"),
+    let (path, soil) = file_and_soil(file);
+    let stem = path.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned());
+    match soil {
+        None => stem,
+        Some(soil) => format!("{stem}: {soil}"),
     }
 }
 

@@ -102,6 +102,35 @@ impl std::str::FromStr for Thickness {
     }
 }
 
+/// Thicknesses with commas between them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ThicknessList(pub Vec<Thickness>);
+
+impl std::str::FromStr for ThicknessList {
+    type Err = String;
+
+    /// `1,5m` may be one thickness with a decimal comma: a number without a unit stands in no list in which
+    /// another has one.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let items: Vec<&str> = text.split(',').collect();
+        let is_bare = |item: &&str| item.trim().parse::<f64>().is_ok();
+        if let Some(at) = items.iter().position(|item| is_bare(item))
+            && !items.iter().all(|item| is_bare(item))
+        {
+            let bare = items[at].trim();
+            let follows = items.get(at + 1).map(|next| next.trim());
+            let follows = follows.filter(|next| next.starts_with(|c: char| c.is_ascii_digit()));
+            let point = follows
+                .map_or(String::new(), |next| format!("; or a decimal point, not a comma: {bare}.{next}"));
+            return Err(format!(
+                "--thickness {text}: {bare} has no unit, though another of the list has one; allowed: {bare}mm or \
+                 {bare}layers{point}"
+            ));
+        }
+        items.into_iter().map(str::parse).collect::<Result<_, _>>().map(Self)
+    }
+}
+
 impl std::fmt::Display for Thickness {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -126,5 +155,17 @@ mod tests {
         for wrong in ["0", "0mm", "-3mm", "0layers", "2.5layers", "nanmm", "inf", "thick", ""] {
             assert!(of(wrong).unwrap_err().contains("or a length above 0"), "{wrong}");
         }
+    }
+
+    #[test]
+    fn a_decimal_comma_is_no_list_of_two_thicknesses() {
+        let of = |text: &str| text.parse::<ThicknessList>();
+        let two = ThicknessList(vec![Thickness::Layers(12), Thickness::Mm(15.0)]);
+        assert_eq!(of("12layers,15mm"), Ok(two.clone()));
+        assert_eq!(of("12layers, 1.5cm"), Ok(two));
+        assert_eq!(of("100,200"), Ok(ThicknessList(vec![Thickness::Mm(100.0), Thickness::Mm(200.0)])));
+        assert!(of("1,5m").unwrap_err().contains("; or a decimal point, not a comma: 1.5m"));
+        assert!(of("60layers,500").unwrap_err().ends_with("allowed: 500mm or 500layers"));
+        assert!(of("12layers,thick").unwrap_err().contains("--thickness thick: allowed: "));
     }
 }
