@@ -163,8 +163,8 @@ pub fn check(plan: &CampaignPlan, options: &CampaignOptions) -> Result<(), RunEr
     if failed.is_empty() { Ok(()) } else { Err(RunError::Refused(named(&failed))) }
 }
 
-/// Looks at the cases of a plan as far as they can be worked out without packing a filter: `None` where one is
-/// still to be packed. Claims and writes nothing.
+/// Looks at the cases of a plan as far as they can be worked out without packing a filter: `None` where one
+/// is still to be packed. Claims and writes nothing.
 ///
 /// # Errors
 /// A case that is wrong.

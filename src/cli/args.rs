@@ -123,7 +123,7 @@ pub struct RulesArgs {
     #[arg(long, value_name = "FILE.csv", requires = "each")]
     pub csv: Option<PathBuf>,
     /// With --each: walk the three samples that govern each filter, as compare does, into folders in here.
-    /// The same command continues what was stopped
+    /// The same command continues what was stopped; a folder with other walks is refused
     #[arg(long, value_name = "DIR", requires = "each")]
     pub walk: Option<PathBuf>,
     /// With --walk: replace a setting of the walks, for example --set replicates=20; can be repeated
@@ -443,7 +443,8 @@ pub struct DesignArgs {
     /// Pack the grains of this very filter and measure its constrictions [density: loose]
     #[arg(long)]
     pub pack: bool,
-    /// Thickness of the filter: 60layers, 500mm, 24in, 2ft or 75D50F; can be repeated [default: 60layers]
+    /// Thickness of the filter: 60layers, 500mm, 24in, 2ft or 75D50F; can be repeated, or listed with commas
+    /// [default: 60layers]
     #[arg(long = "thickness", value_name = "THICKNESS", allow_hyphen_values = true)]
     pub thicknesses: Vec<ThicknessList>,
     /// Walk the base as sampled, not as filter practice regrades it (base.regrade); always so with --inverse

@@ -100,8 +100,9 @@ pub fn found(plan: &ComparePlan, options: &CampaignOptions) -> Result<Option<Com
     }
     match Unfinished::read(&folder)? {
         Some(begun) => {
+            // Where a packing was taken away it is made again, and other work is refused then.
             let is_this =
-                |cases: Option<&[PreparedCase]>| cases.is_some_and(|all| plan.work(all) == begun.work);
+                |cases: Option<&[PreparedCase]>| cases.is_none_or(|all| plan.work(all) == begun.work);
             let is_this = campaign::look(&plan.campaign, &of_campaign, is_this)?;
             if is_this { Ok(None) } else { other() }
         }

@@ -105,8 +105,8 @@ fn drafts(options: &DesignOptions) -> Result<Vec<DraftedRow>, RunError> {
     }
     if options.inverse && options.authority != Authority::All {
         return Err(RunError::Refused(format!(
-            "--authority {}: goes without --inverse, as it states a limit of D15F, and --inverse asks for the \
-             finest base; leave it out",
+            "--authority {}: goes without --inverse, as it states a limit of D15F, and --inverse asks for \
+             the finest base; leave it out",
             options.authority.word()
         )));
     }

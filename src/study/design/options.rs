@@ -114,8 +114,8 @@ impl std::str::FromStr for ThicknessList {
     fn from_str(text: &str) -> Result<Self, String> {
         let items: Vec<&str> = text.split(',').collect();
         let is_bare = |item: &&str| item.trim().parse::<f64>().is_ok();
-        if let Some(at) = items.iter().position(|item| is_bare(item))
-            && !items.iter().all(|item| is_bare(item))
+        if let Some(at) = items.iter().position(&is_bare)
+            && !items.iter().all(is_bare)
         {
             let bare = items[at].trim();
             let follows = items.get(at + 1).map(|next| next.trim());
@@ -123,8 +123,8 @@ impl std::str::FromStr for ThicknessList {
             let point = follows
                 .map_or(String::new(), |next| format!("; or a decimal point, not a comma: {bare}.{next}"));
             return Err(format!(
-                "--thickness {text}: {bare} has no unit, though another of the list has one; allowed: {bare}mm or \
-                 {bare}layers{point}"
+                "--thickness {text}: {bare} has no unit, though another of the list has one; allowed: \
+                 {bare}mm or {bare}layers{point}"
             ));
         }
         items.into_iter().map(str::parse).collect::<Result<_, _>>().map(Self)
