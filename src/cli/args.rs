@@ -87,8 +87,7 @@ pub enum Command {
         /// The folder
         folder: PathBuf,
     },
-    /// Write the tables of a finished folder as arrays for NumPy (.npz) and grids for ParaView (.vtu), and
-    /// those of a run as a workbook (.xlsx)
+    /// Write a finished folder's tables as arrays (.npz), grids (.vtu) and a workbook (.xlsx)
     Export {
         /// The folder
         folder: PathBuf,
