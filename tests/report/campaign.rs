@@ -139,7 +139,7 @@ fn openings_of_a_case_are_in_its_line() {
     assert_eq!((closed.with_openings, open.with_openings), (Some(false), Some(true)));
     let says = |lines: &[LedgerLine]| leaves_out(lines).contains(&ModelLimit::PartialClogging);
     let old = LedgerLine { with_openings: None, with_arches: None, ..open.clone() };
-    assert!(says(&[closed.clone()]) && says(&[old]) && !says(&[closed, open]));
+    assert!(says(std::slice::from_ref(&closed)) && says(&[old]) && !says(&[closed, open]));
 }
 
 /// A rule that added replicates until the error was small says nothing of the verdict.
