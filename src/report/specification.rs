@@ -36,7 +36,7 @@ pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
         p.small { "voidwalk " (of.version) "." }
     };
     #[cfg(feature = "xlsx")]
-    super::workbook::write_specification_workbook(folder, &of)?;
+    super::workbook::write_specification_workbook(folder, &of, None)?;
     let stated = Stated::of(&of);
     let title = "Specification of a filter";
     Sections::new(title, title, &names)

@@ -54,7 +54,7 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
     };
     #[cfg(feature = "xlsx")]
     if let Some(specification) = &design.specification {
-        super::workbook::write_specification_workbook(folder, specification)?;
+        super::workbook::write_specification_workbook(folder, specification, Some(&design))?;
     }
     let stated = design.specification.as_ref().map(Stated::of).unwrap_or_default();
     Sections::new(title, title, &names)
@@ -66,7 +66,7 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
         .section("Standard products", &products(&design))
         .section("The specification, step by step", &stated.words)
         .figures(stated.figure)
-        .section("Limits sieve by sieve", &stated.limits)
+        .section("Limits sieve by sieve", &html! { (in_doubt(&design)) (stated.limits) })
         .section("Margins of standard products", &stated.products)
         .section("Rules of practice", &practice(&design))
         .section("Network by network", &networks(&design))
@@ -149,6 +149,12 @@ fn answer(design: &Design) -> Markup {
             }
         }
     }
+}
+
+/// How far limits can be relied on that follow from the answer, where they are in doubt.
+fn in_doubt(design: &Design) -> Markup {
+    let is_shown = design.specification.is_some() && design.confidence != Confidence::Within;
+    html! { @if is_shown { p { b { (clean(&design.confidence_said())) } } } }
 }
 
 /// A note as a sentence; in files of earlier versions it is a part of one.
