@@ -120,9 +120,9 @@ fn products_in_short(of: &Specification) -> String {
 fn steps(of: &Specification) -> Markup {
     html! {
         p.small {
-            "The order of the steps is ours, as procedures commonly have it. The text of the handbook of NRCS \
-             (National Engineering Handbook, Part 633, Chapter 26) could not be read. Each step names the \
-             text in which its numbers were read, or says that they are this program’s own."
+            "The order of the steps is ours, as procedures commonly have it. The text of the handbook of \
+             NRCS (National Engineering Handbook, Part 633, Chapter 26) could not be read. Each step names \
+             the text in which its numbers were read, or says that they are this program’s own."
         }
         (Table::of(&of.steps).class("study")
             .name("What is done, formula, source", |step: &SpecificationStep| html! {

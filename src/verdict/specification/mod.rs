@@ -79,13 +79,13 @@ impl Specification {
 }
 
 impl Specification {
-    /// What a delivery must keep beside the limits at the sieves: between two sieves it may leave the band, or
-    /// have a gap. `None` without a band.
+    /// What a delivery must keep beside the limits at the sieves: between two sieves it may leave the band
+    /// or have a gap. `None` without a band.
     pub fn beside_limits(&self) -> Option<String> {
         let [least, greatest] = self.band.as_ref()?.d15_mm();
         Some(format!(
-            "The limits alone are not enough: D15F of each delivery must lie between {} and {} mm, its Cu must \
-             be at most {MOST_CU}, and it must have no gap. Judge each with the command voidwalk rules.",
+            "The limits alone are not enough: D15F of each delivery must lie between {} and {} mm, its Cu \
+             must be at most {MOST_CU}, and it must have no gap. Judge each with the command voidwalk rules.",
             rounded_up(least),
             rounded_down(greatest)
         ))
