@@ -303,12 +303,12 @@ fn the_template_is_read_back_as_soils() {
 #[test]
 fn the_workbook_of_a_design_in_doubt_says_so() {
     let root = tempfile::tempdir().unwrap();
-    let clay = "opening_mm,percent_finer\n0.002,0\n0.075,60\n2,100\n";
-    fs::write(root.path().join("core.csv"), clay).unwrap();
+    let sand = "opening_mm,percent_finer\n0.075,2\n0.15,12\n0.3,45\n0.6,85\n1.18,100\n";
+    fs::write(root.path().join("sand.csv"), sand).unwrap();
     let set = ["network.nx=8", "network.ny=8", "replicates=2", "filter.grains_per_void=0.6"];
     let sets: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
     let args =
-        [&["design", "core.csv", "--filter", "cu1.5-loose", "--thickness", "8layers", "-q"], &sets[..]];
+        [&["design", "sand.csv", "--filter", "cu1.5-loose", "--thickness", "8layers", "-q"], &sets[..]];
     done(&call(root.path(), &args.concat()));
     let out = root.path().join("voidwalk-design");
     let design: Value = serde_json::from_slice(&fs::read(out.join("design.json")).unwrap()).unwrap();

@@ -377,6 +377,7 @@ mod tests {
     use super::*;
     use crate::gradation::Gradation;
     use crate::outcome::design::BaseStated;
+    use crate::outcome::design::products::Fit;
     use crate::outcome::record::ModelLimit;
     use crate::verdict::PairRules;
 
@@ -387,6 +388,23 @@ mod tests {
         let written = write_design(folder.path()).unwrap();
         assert!(written.page.ends_with("design.html"));
         std::fs::read_to_string(written.page).unwrap()
+    }
+
+    #[test]
+    fn a_product_is_said_to_fit_only_where_nothing_is_in_doubt() {
+        let fit = |drains| Fit {
+            name: if drains { "sand" } else { "clay" }.into(),
+            d15_mm: [0.2, 0.4],
+            drains,
+            holds: true,
+            practice: None,
+            source: String::new(),
+        };
+        let doubted = Design { products: vec![fit(true), fit(false)], ..design(None, Confidence::Outside) };
+        let said = |of: &Design| ["sand", "clay", "other"].map(|name| of.says_fit(name));
+        assert_eq!(said(&doubted), [None, Some(false), None]);
+        let sure = Design { products_confidence: Some(Confidence::Within), ..doubted };
+        assert_eq!(said(&sure), [Some(true), Some(false), None]);
     }
 
     fn design(no_erosion: Option<Boundary>, confidence: Confidence) -> Design {
