@@ -420,8 +420,8 @@ pub struct DesignArgs {
     /// Without a walk: the specification by the rules of practice alone, step by step, with limits sieve by
     /// sieve and standard products
     #[arg(long, requires = "base", conflicts_with_all = ["filter", "densities", "pack", "thicknesses",
-          "as_sampled", "as_given", "inverse", "settings", "seed", "bracket", "packings", "memory",
-          "threads"])]
+          "as_sampled", "as_given", "inverse", "authority", "settings", "seed", "bracket", "packings",
+          "memory", "threads"])]
     pub steps: bool,
     /// Sieves at which the specification states its limits: us (ASTM E11) or iso (mm)
     #[arg(long, value_name = "SERIES", default_value = "us")]

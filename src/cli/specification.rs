@@ -6,8 +6,8 @@ use std::path::Path;
 use super::args::DesignArgs;
 use super::print::{json, plain, shown, to_stdout, wrapped};
 use super::progress::followed;
-use crate::outcome::design::specification::{Specification, StepValue};
-use crate::outcome::numbers::significant;
+use crate::outcome::design::specification::{ProductMargin, Specification};
+use crate::outcome::numbers::{significant, trimmed};
 use crate::run::RunError;
 use crate::store::format;
 use crate::study::design::{SpecifyOptions, specify};
@@ -45,7 +45,10 @@ fn words(of: &Specification) -> String {
     let mut source = "";
     for step in &of.steps {
         line(&format!("{:>2}  {}", step.step, step.does));
-        step.values.iter().for_each(|value| line(&format!("      {}", number(value))));
+        for value in &step.values {
+            let number = value.words().unwrap_or_else(|| "not known".into());
+            line(&format!("      {}: {number}", value.name));
+        }
         // What several steps in a row rest on is said once.
         let again = std::mem::replace(&mut source, step.source.as_str()) == step.source;
         let source = if again { "" } else { step.source.as_str() };
@@ -66,27 +69,27 @@ fn words(of: &Specification) -> String {
                 "{:<12} {:>11}   {} to {}",
                 limit.sieve,
                 significant(limit.opening_mm),
-                limit.min_percent_finer,
-                limit.max_percent_finer
+                trimmed(limit.min_percent_finer),
+                trimmed(limit.max_percent_finer)
             ));
         }
+        of.beside_limits().iter().flat_map(|text| wrapped(text, 0)).for_each(|text| line(&text));
         line("");
     }
     for product in &of.products {
-        let margin = |value: Option<f64>| value.map_or_else(|| "not known".into(), significant);
         line(&format!(
-            "{:<28} D15 {} to {} mm; drains {}, retains {} times the limit: {}",
+            "{}, D15 {} to {} mm: {}",
             product.product,
             significant(product.d15_fine_mm),
             significant(product.d15_coarse_mm),
-            margin(product.drains_by),
-            margin(product.holds_by),
             match product.fits() {
-                Some(true) => "D15 fits",
+                Some(true) if product.worst_sieve_mm.is_some() => "fits by D15, but lies outside this band",
+                Some(true) => "fits by D15",
                 Some(false) => "does not fit",
                 None => "no result",
             }
         ));
+        line(&format!("    {}", margins(product)));
     }
     if let Some(nearest) = of.nearest_product() {
         line(&format!("no standard product fits; {} comes closest", nearest.product));
@@ -94,11 +97,15 @@ fn words(of: &Specification) -> String {
     text
 }
 
-/// A number of a step with its name and unit.
-fn number(of: &StepValue) -> String {
-    match of.value {
-        None => format!("{}: not known", of.name),
-        Some(value) if of.unit.is_empty() && value.fract() == 0.0 => format!("{}: {value}", of.name),
-        Some(value) => format!("{}: {} {}", of.name, significant(value), of.unit),
-    }
+/// How a product compares with both limits of D15F.
+fn margins(of: &ProductMargin) -> String {
+    let finest = match of.drains_by {
+        Some(margin) => format!("its finest D15 is {} times the least D15F", significant(margin)),
+        None => "the least D15F is not known".into(),
+    };
+    let coarsest = match of.holds_by {
+        Some(margin) => format!("the greatest D15F is {} times its coarsest D15", significant(margin)),
+        None => "the greatest D15F is not known".into(),
+    };
+    format!("{finest}; {coarsest}")
 }

@@ -33,6 +33,29 @@ pub fn significant(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
+/// A greatest value: three significant digits, rounded down.
+pub fn rounded_down(value: f64) -> String {
+    in_steps(value, |steps| (steps * (1.0 + HAIR)).floor())
+}
+
+/// A least value: three significant digits, rounded up.
+pub fn rounded_up(value: f64) -> String {
+    in_steps(value, |steps| (steps * (1.0 - HAIR)).ceil())
+}
+
+/// What arithmetic leaves of a number that has three digits.
+const HAIR: f64 = 1e-9;
+
+/// A number rounded in steps of its third digit.
+fn in_steps(value: f64, round: impl Fn(f64) -> f64) -> String {
+    let magnitude = libm::floor(libm::log10(value.abs()));
+    if !magnitude.is_finite() {
+        return significant(value);
+    }
+    let steps = libm::pow(10.0, 2.0 - magnitude);
+    significant(round(value * steps) / steps)
+}
+
 /// A whole number with its thousands apart.
 pub fn whole(value: u64) -> String {
     let digits = value.to_string();
@@ -186,6 +209,13 @@ mod tests {
         let texts: Vec<String> = [1.0, 0.16044, 12.345, 1234.5, 0.000_012, 2e9, 0.0].map(significant).into();
         assert_eq!(texts, ["1.00", "0.160", "12.3", "1234", "1.20e-5", "2.00e9", "0"]);
         assert_eq!(significant(f64::INFINITY), "unlimited");
+    }
+
+    #[test]
+    fn limits_are_rounded_inward() {
+        let down = [0.7, 0.2859, 12.39, 0.07, 0.0].map(rounded_down);
+        assert_eq!(down, ["0.700", "0.285", "12.3", "0.0700", "0"]);
+        assert_eq!([0.14, 0.2851, 0.9999, 12.31].map(rounded_up), ["0.140", "0.286", "1.00", "12.4"]);
     }
 
     #[test]

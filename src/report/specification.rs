@@ -8,7 +8,7 @@ use maud::{Markup, Render, html};
 use super::error::ReportError;
 use super::figures::{Area, Axis, BLUE, Dash, Figure, GREEN, Line, VERMILLION, positive_range, shorten};
 use super::files::json;
-use super::numbers::{known, significant};
+use super::numbers::{known, rounded_down, rounded_up, significant, trimmed};
 use super::section::Sections;
 use super::shell::{Drawn, clean};
 use super::table::Table;
@@ -36,7 +36,7 @@ pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
         p.small { "voidwalk " (of.version) "." }
     };
     #[cfg(feature = "xlsx")]
-    super::workbook::write_specification_workbook(folder, &of)?;
+    super::workbook::write_specification_workbook(folder, &of, None)?;
     let stated = Stated::of(&of);
     let title = "Specification of a filter";
     Sections::new(title, title, &names)
@@ -79,13 +79,13 @@ fn answer(of: &Specification) -> Markup {
         section.verdict {
             @if let Some(size) = d15 {
                 p.word.long {
-                    "D15F from " (significant(size.min_mm)) " to " (significant(size.max_mm))
+                    "D15F from " (rounded_up(size.min_mm)) " to " (rounded_down(size.max_mm))
                     " mm, by practice."
                 }
             }
             @if let Some((_, least)) = raised {
                 p {
-                    "A D15F of " (significant(least)) " mm already drains the base. The least is raised to \
+                    "A D15F of " (rounded_up(least)) " mm already drains the base. The least is raised to \
                      keep the band narrow."
                 }
             }
@@ -97,8 +97,12 @@ fn answer(of: &Specification) -> Markup {
 
 /// Which standard products fit, or which comes closest.
 fn products_in_short(of: &Specification) -> String {
-    let fitting: Vec<&str> =
-        of.products.iter().filter(|of| of.fits() == Some(true)).map(|of| of.product.as_str()).collect();
+    let named = |of: &ProductMargin| match of.worst_sieve_mm {
+        Some(_) => format!("{} (but lies outside this band)", of.product),
+        None => of.product.clone(),
+    };
+    let fitting: Vec<String> = of.products.iter().filter(|of| of.fits() == Some(true)).map(named).collect();
+    let other = if of.products.iter().any(|of| of.fits() == Some(false)) { "other" } else { "standard" };
     match (fitting.is_empty(), of.nearest_product()) {
         (false, _) => format!("D15 of both sides drains and retains: {}.", fitting.join(", ")),
         (true, Some(nearest)) => {
@@ -108,7 +112,7 @@ fn products_in_short(of: &Specification) -> String {
             )
         }
         (true, None) => {
-            "Of no standard product is known whether it fits: a limit of D15F is not known.".into()
+            format!("No {other} product is known to fit: a limit of D15F is not known.")
         }
     }
 }
@@ -116,9 +120,9 @@ fn products_in_short(of: &Specification) -> String {
 fn steps(of: &Specification) -> Markup {
     html! {
         p.small {
-            "The steps follow the order in which NRCS designs a filter (National Engineering Handbook, Part \
-             633, Chapter 26). Each step names the text in which its numbers were read, or says that they \
-             are checks of this program."
+            "The order of the steps is ours, as procedures commonly have it. The text of the handbook of \
+             NRCS (National Engineering Handbook, Part 633, Chapter 26) could not be read. Each step names \
+             the text in which its numbers were read, or says that they are this program’s own."
         }
         (Table::of(&of.steps).class("study")
             .name("What is done, formula, source", |step: &SpecificationStep| html! {
@@ -130,21 +134,11 @@ fn steps(of: &Specification) -> Markup {
             })
             .text("Numbers", |step| html! {
                 @for value in &step.values {
-                    (clean(&value.name)) " = " b { (number(value.value, &value.unit)) } br;
+                    (clean(&value.name)) " = " b { (known(value.words(), |words| words)) } br;
                 }
             })
             .render())
     }
-}
-
-/// A number with its unit.
-fn number(value: Option<f64>, unit: &str) -> String {
-    let found = known(value, |value| match (unit, value.fract() == 0.0 && value < 100.0) {
-        ("", true) => format!("{value:.0}"),
-        _ => significant(value),
-    });
-    let unit = if value.is_some() { unit } else { "" };
-    format!("{found} {unit}").trim_end().to_owned()
 }
 
 fn limits(of: &Specification) -> Markup {
@@ -155,23 +149,29 @@ fn limits(of: &Specification) -> Markup {
         (Table::of(&of.limits)
             .name("Sieve", |limit| clean(&limit.sieve))
             .number("Opening (mm)", |limit| significant(limit.opening_mm))
-            .number("Least finer (%)", |limit| percent(limit.min_percent_finer))
-            .number("Greatest finer (%)", |limit| percent(limit.max_percent_finer))
+            .number("Least finer (%)", |limit| trimmed(limit.min_percent_finer))
+            .number("Greatest finer (%)", |limit| trimmed(limit.max_percent_finer))
             .render())
+        @if let Some(beside) = of.beside_limits() { p { (clean(&beside)) } }
         p.small {
-            "Percent finer by mass, in whole percents within the band. At most 5 % may be finer than \
+            "Percent finer by mass, rounded into the band. At most 5 % may be finer than \
              0.075 mm, and these fines must not be plastic. Segregation is not checked: see its step."
         }
         (Table::of(&band.sizes)
             .name("Size of the band", |size| format!("D{}", size.percent))
-            .number("Least (mm)", |size| significant(size.min_mm))
-            .number("Greatest (mm)", |size| significant(size.max_mm))
+            .number("Least (mm)", |size| rounded_up(size.min_mm))
+            .number("Greatest (mm)", |size| rounded_down(size.max_mm))
             .render())
     }
 }
 
-fn percent(value: f64) -> String {
-    if value.fract() == 0.0 { format!("{value:.0}") } else { format!("{value:.1}") }
+/// Percentage points, which are more than 0.
+fn points_beyond(points: f64) -> String {
+    match points {
+        1.0.. => format!("{points:.0}"),
+        0.05.. => format!("{points:.1}"),
+        _ => "less than 0.1".into(),
+    }
 }
 
 /// Margins of standard products; who judges them elsewhere says there whether they fit.
@@ -179,7 +179,7 @@ fn products(of: &Specification, says_fit: bool) -> Markup {
     let margin = |value: Option<f64>| known(value, significant);
     let beyond = |of: &ProductMargin| match (of.leaves_band_by, of.worst_sieve_mm) {
         (Some(points), Some(sieve)) => {
-            format!("{points:.0} percentage points, at {} mm", significant(sieve))
+            format!("{} percentage points, at {} mm", points_beyond(points), significant(sieve))
         }
         (Some(_), None) => "nowhere".into(),
         _ => "–".into(),
@@ -252,4 +252,29 @@ fn figure(of: &Specification, band: &SizeBand) -> Drawn {
          finer both sides go on straight.{more}"
     );
     Drawn::new("specification", figure, caption)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gradation::Gradation;
+    use crate::outcome::design::specification::margins;
+    use crate::verdict::SpecificationOptions;
+
+    #[test]
+    fn products_are_said_to_fit_as_far_as_is_known() {
+        let base = Gradation::from_points(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)], None).unwrap();
+        let core = Specification::of("core", &[("core".into(), base)], SpecificationOptions::default());
+        let said = products_in_short(&core);
+        assert!(said.contains("ASTM C33 fine aggregate (but lies outside this band)."), "{said}");
+        assert!(limits(&core).into_string().contains("D15F of each delivery must lie between 0.140 and"));
+        // The greatest is not known, and the least alone refuses the finest product.
+        let unknown =
+            Specification { d15f_max_mm: None, products: margins(Some(0.2), None, None), ..core.clone() };
+        assert!(products_in_short(&unknown).starts_with("No other product is known to fit"));
+        let unknown = Specification { products: margins(Some(0.1), None, None), ..unknown };
+        assert!(products_in_short(&unknown).starts_with("No standard product is known to fit"));
+        let points = [12.4, 1.0, 0.96, 0.31, 0.01].map(points_beyond);
+        assert_eq!(points, ["12", "1", "1.0", "0.3", "less than 0.1"]);
+    }
 }

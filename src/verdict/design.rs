@@ -5,6 +5,7 @@
 //! 40 % fines. No specification allows a filter with which tests saw erosion.
 
 use super::practice::cited_rule;
+use super::words::capital;
 use crate::outcome::design::band::{SetBy, limits, retention};
 use crate::outcome::design::{Design, DesignAnswer, DesignRow};
 use crate::outcome::digits::percent;
@@ -70,6 +71,15 @@ impl Design {
     /// The answer, of files of earlier versions too.
     pub fn answer(&self) -> DesignAnswer {
         self.answer.clone().unwrap_or_else(|| design_answer(self, None))
+    }
+
+    /// How far the answer can be relied on, in a sentence, with the weightiest reason.
+    pub fn confidence_said(&self) -> String {
+        let label = capital(self.confidence.words());
+        match self.reasons.first() {
+            Some(reason) => format!("{label}: {}.", reason.trim_end_matches('.')),
+            None => format!("{label}."),
+        }
     }
 
     fn strictest(&self, sizes: &Sizes) -> Option<(&AppliedRule, f64)> {

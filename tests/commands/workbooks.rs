@@ -255,6 +255,20 @@ fn the_workbook_of_a_specification_has_its_limits_and_steps() {
     let of_book: Vec<Option<f64>> = of_book.map(|row| row["Value"].number()).collect();
     assert_eq!(of_book, values.map(|value| value["value"].as_f64()).collect::<Vec<_>>());
     assert_eq!(item(&all["Specification"], "Greatest D15F, which retains the base").number(), Some(0.7));
+    let first_sheet = &all["Specification"];
+    let d15 =
+        ["D15F of the band, fine side", "D15F of the band, coarse side"].map(|of| item(first_sheet, of));
+    assert_eq!(d15.map(|cell| cell.number()), [Some(0.7 / 5.0), Some(0.7)]);
+    assert_eq!(
+        item(first_sheet, "Greatest D15F set by").words(),
+        json["curves"][0]["d15f_max_rule"].as_str().unwrap()
+    );
+    assert_eq!(item(first_sheet, "Basis").words(), "By the rules of practice alone, without a walk.");
+    assert!(item(first_sheet, "Segregation").words().contains("not checked"));
+    assert_eq!(item(first_sheet, "Confidence"), Cell::Empty);
+    assert!(limits[0]["Note"].words().contains("between 0.140 and 0.700 mm"));
+    assert!(limits[1..].iter().all(|row| row["Note"] == Cell::Empty));
+    assert_eq!(rows(&all["Products"])[0]["D15 fits"], Cell::Truth(true));
     done(&call(root.path(), &["report", "s"]));
     assert_eq!(fs::read(&file).unwrap(), first);
 }
@@ -274,8 +288,40 @@ fn the_template_is_read_back_as_soils() {
     assert_eq!(soils[0]["fines_percent"].as_f64(), Some(38.0));
     // And as the two sides of a pair.
     done(&call(root.path(), &["rules", "site.xlsx#Base", "site.xlsx#Filter"]));
+    // But not as an envelope of the base.
+    let steps = ["design", "site.xlsx", "--steps"];
+    refused(&call(root.path(), &steps), "name one: site.xlsx#Base");
+    assert!(!root.path().join("voidwalk-specification").exists());
+    done(&call(root.path(), &["design", "site.xlsx#Base", "--steps", "-q"]));
     refused(&call(root.path(), &["soil", "--template", "site.xlsx"]), "is there already");
     refused(&call(root.path(), &["soil", "--template", "site.csv"]), "ends in .xlsx");
     assert_eq!(call(root.path(), &["soil"]).status.code(), Some(2));
     assert_eq!(call(root.path(), &["soil", "site.xlsx", "--template", "b.xlsx"]).status.code(), Some(2));
+}
+
+/// No product fits in the workbook of a design whose page says that none is said to.
+#[test]
+fn the_workbook_of_a_design_in_doubt_says_so() {
+    let root = tempfile::tempdir().unwrap();
+    let sand = "opening_mm,percent_finer\n0.075,2\n0.15,12\n0.3,45\n0.6,85\n1.18,100\n";
+    fs::write(root.path().join("sand.csv"), sand).unwrap();
+    let set = ["network.nx=8", "network.ny=8", "replicates=2", "filter.grains_per_void=0.6"];
+    let sets: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
+    let args =
+        [&["design", "sand.csv", "--filter", "cu1.5-loose", "--thickness", "8layers", "-q"], &sets[..]];
+    done(&call(root.path(), &args.concat()));
+    let out = root.path().join("voidwalk-design");
+    let design: Value = serde_json::from_slice(&fs::read(out.join("design.json")).unwrap()).unwrap();
+    // Two networks are too few for anything but doubt.
+    assert_ne!(design["products_confidence"], "within checked range");
+    let all = sheets(&out.join("specification.xlsx"));
+    let products = rows(&all["Products"]);
+    assert!(!products.is_empty() && products.iter().all(|row| row["D15 fits"] != Cell::Truth(true)));
+    let said = item(&all["Specification"], "Confidence").words().to_owned();
+    assert!(said.to_lowercase().starts_with(design["confidence"].as_str().unwrap()), "{said}");
+    assert_eq!(item(&all["Specification"], "Basis").words(), "By the rules of practice and a walk.");
+    let page = fs::read_to_string(out.join("design.html")).unwrap();
+    let (_, limits) = page.rsplit_once(">Limits sieve by sieve<").unwrap();
+    let label = said.split(':').next().unwrap();
+    assert!(limits[..limits.find("<table").unwrap()].contains(label), "{label}");
 }

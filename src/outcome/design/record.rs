@@ -329,6 +329,12 @@ impl Design {
         self.products_confidence.unwrap_or(self.confidence) == Confidence::Within
     }
 
+    /// Whether a standard product is said to fit; `None` where that is in doubt or not known.
+    pub fn says_fit(&self, product: &str) -> Option<bool> {
+        let fit = self.products.iter().find(|of| of.name == product)?.fits();
+        (!fit || self.may_fit()).then_some(fit)
+    }
+
     /// Names of the standard products that are said to fit: none where that is in doubt.
     pub fn products_that_fit(&self) -> Vec<&str> {
         let fit = self.products.iter().filter(|of| self.may_fit() && of.fits());

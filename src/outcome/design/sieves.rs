@@ -13,7 +13,8 @@ pub enum SieveSeries {
     /// Sieves of the United States (ASTM E11), by inches and numbers.
     #[default]
     Us,
-    /// Sieves in millimetres, each half of the one before, and 0.075 mm, at which fines are limited.
+    /// Sieves in millimetres, each half of the one before; above them 75 mm, beyond which no side goes, and
+    /// below them 0.075 mm, at which fines are limited.
     Iso,
 }
 
@@ -38,7 +39,7 @@ const US: [NamedSieve; 14] = [
 ];
 
 const ISO: [NamedSieve; 12] = [
-    ("125 mm", 125.0),
+    ("75 mm", 75.0),
     ("63 mm", 63.0),
     ("31.5 mm", 31.5),
     ("16 mm", 16.0),

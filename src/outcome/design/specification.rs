@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::products::{PRODUCTS, Product};
 use super::sieves::SieveSeries;
 use crate::gradation::FINES_MM;
+use crate::outcome::numbers::{rounded_down, rounded_up, significant};
 use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_FINES_PERCENT, WIDEST_BAND};
 
 /// The whole of `specification.json`.
@@ -100,6 +101,21 @@ pub struct StepValue {
     pub unit: String,
 }
 
+impl StepValue {
+    /// The number with its unit, a least size rounded up and a greatest rounded down; `None` where it is not
+    /// known.
+    pub fn words(&self) -> Option<String> {
+        let value = self.value?;
+        let number = match (self.unit.as_str(), self.name.split(' ').next()) {
+            ("mm", Some("least")) => rounded_up(value),
+            ("mm", Some("greatest")) => rounded_down(value),
+            ("", _) if value.fract() == 0.0 && value < 100.0 => format!("{value:.0}"),
+            _ => significant(value),
+        };
+        Some(format!("{number} {}", self.unit).trim_end().to_owned())
+    }
+}
+
 /// The two sides of a band as sizes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -132,9 +148,10 @@ pub struct SieveLimit {
     pub sieve: String,
     /// Its opening (mm).
     pub opening_mm: f64,
-    /// Least percent finer, of the coarse side: a whole percent within the band.
+    /// Least percent finer, of the coarse side: a whole percent within the band; tenths or hundredths where
+    /// no whole percent lies within.
     pub min_percent_finer: f64,
-    /// Greatest percent finer, of the fine side: a whole percent within the band.
+    /// Greatest percent finer, of the fine side, likewise.
     pub max_percent_finer: f64,
 }
 
@@ -185,6 +202,14 @@ impl Specification {
         let none_fits = self.products.iter().all(|of| of.fits() == Some(false));
         let all = self.products.iter().filter(|_| none_fits && self.d15f_max_mm.is_some());
         all.max_by(|a, b| a.margin().total_cmp(&b.margin()))
+    }
+
+    /// What set the greatest D15F: the name of a rule, or the walk; `None` where it is not known.
+    pub fn set_by(&self) -> Option<&str> {
+        let greatest = self.d15f_max_mm?;
+        let limits = self.curves.iter().filter_map(|curve| Some((curve, curve.d15f_max_mm?)));
+        let (curve, limit) = limits.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some(if greatest < limit { "the walk" } else { &curve.d15f_max_rule })
     }
 }
 
@@ -238,7 +263,7 @@ impl SizeBand {
     /// Both sides are straight in percent over log size between their points, and go on so up to 100 %, but
     /// to no more than 75 mm. The coarse side goes on straight down to 0 %. The fine side begins at its D5, a
     /// fifth of that of the coarse side but not less than 0.075 mm; at most 5 % are finer. `None` where a D60
-    /// is not below 75 mm.
+    /// is not below 75 mm, and where the coarse side has more than 5 % finer than 0.075 mm.
     pub fn of(d15: [f64; 2], d60: [f64; 2]) -> Option<Self> {
         let on =
             |side: usize, percent: f64| d15[side] * libm::pow(d60[side] / d15[side], (percent - 15.0) / 45.0);
@@ -246,7 +271,12 @@ impl SizeBand {
             return None;
         }
         let top = |side: usize| [on(side, 100.0).min(GREATEST_SIZE_MM), 100.0];
-        let d5 = (on(1, MOST_FINES_PERCENT) / WIDEST_BAND).max(FINES_MM);
+        let coarse_d5 = on(1, MOST_FINES_PERCENT);
+        let d5 = (coarse_d5 / WIDEST_BAND).max(FINES_MM);
+        // The band would be inside out.
+        if coarse_d5 < d5 {
+            return None;
+        }
         let fine_side = vec![[d5, MOST_FINES_PERCENT], [d15[0], 15.0], [d60[0], 60.0], top(0)];
         let coarse_side = vec![[on(1, 0.0), 0.0], [d15[1], 15.0], [d60[1], 60.0], top(1)];
         let size = |percent: f64| BandSize {
@@ -255,6 +285,16 @@ impl SizeBand {
             max_mm: size_at(&coarse_side, percent),
         };
         Some(Self { sizes: SIZES.map(size).to_vec(), fine_side, coarse_side })
+    }
+
+    /// The size (mm) at which the fine side has this percent finer; its end where it does not reach it.
+    pub fn least_size(&self, percent: f64) -> f64 {
+        size_at(&self.fine_side, percent)
+    }
+
+    /// D15 (mm) of the fine and of the coarse side.
+    pub fn d15_mm(&self) -> [f64; 2] {
+        [&self.fine_side, &self.coarse_side].map(|side| size_at(side, 15.0))
     }
 
     /// Least and greatest percent finer than an opening (mm).
@@ -291,16 +331,16 @@ impl SizeBand {
     }
 }
 
-/// Whole percents within two limits; tenths where no whole percent lies between them.
+/// Whole percents within two limits; tenths where no whole percent lies between them, hundredths where no
+/// tenth does, and the limits themselves where none does.
 fn whole([min, max]: [f64; 2]) -> [f64; 2] {
     // Logarithms leave a hair, which is no percent.
     let hair = 1e-9;
     // Rounding up from below 0 gives -0, to which 0 is added.
-    let inward = [(min - hair).ceil() + 0.0, (max + hair).floor()];
-    match inward[0] <= inward[1] {
-        true => inward,
-        false => [min, max].map(|percent| (10.0 * percent).round() / 10.0),
-    }
+    let inward =
+        |parts: f64| [((min - hair) * parts).ceil() / parts + 0.0, ((max + hair) * parts).floor() / parts];
+    let found = [1.0, 10.0, 100.0].map(inward).into_iter().find(|[min, max]| min <= max);
+    found.unwrap_or([min, max])
 }
 
 /// The size at which a side has this percent finer (mm); its end where it does not reach it.
@@ -407,7 +447,46 @@ mod tests {
         // It is cut off at the greatest size.
         let coarse = SizeBand::of([2.0, 10.0], [10.0, 50.0]).unwrap();
         assert_eq!(coarse.sizes[4].max_mm, 75.0);
+        assert_eq!(coarse.limits(SieveSeries::Iso)[0].sieve, "75 mm");
+    }
+
+    #[test]
+    fn percents_are_rounded_into_the_band() {
         assert_eq!(whole([4.2, 4.8]), [4.2, 4.8]);
+        assert_eq!(whole([4.24, 4.86]), [4.3, 4.8]);
+        assert_eq!(whole([4.241, 4.289]), [4.25, 4.28]);
+        assert_eq!(whole([4.2411, 4.2419]), [4.2411, 4.2419]);
+        assert_eq!(whole([3.2, 9.9]), [4.0, 9.0]);
+    }
+
+    /// No sieve has a least above its greatest, down to the greatest D15F at which the coarse side has 5 %
+    /// finer than 0.075 mm: 0.075 x 5^(10/45) = 0.1072 mm.
+    #[test]
+    fn no_band_is_inside_out() {
+        let of = |least: f64, most: f64| SizeBand::of([least, most], [most, 5.0 * most]);
+        assert!(of(0.1, 0.1).is_none() && of(0.1, 0.107).is_none() && of(0.1, 0.1073).is_some());
+        for (least, most) in [(0.1, 0.1073), (0.1, 0.12), (0.1, 0.5), (0.7, 0.7), (2.0, 10.0), (2.9, 14.9)] {
+            let band = of(least, most).unwrap();
+            for series in [SieveSeries::Us, SieveSeries::Iso] {
+                for limit in band.limits(series) {
+                    assert!(limit.min_percent_finer <= limit.max_percent_finer, "{most}: {limit:?}");
+                    let [min, max] = band.percent_finer(limit.opening_mm);
+                    assert!(limit.min_percent_finer > min - 1e-6 && limit.max_percent_finer < max + 1e-6);
+                }
+            }
+            assert!(band.sizes.iter().all(|size| size.min_mm <= size.max_mm), "{:?}", band.sizes);
+        }
+    }
+
+    #[test]
+    fn a_least_size_is_rounded_up_and_a_greatest_down() {
+        let of =
+            |name: &str, value, unit: &str| StepValue { name: name.into(), value, unit: unit.into() }.words();
+        assert_eq!(of("least D10F", Some(0.11661), "mm").unwrap(), "0.117 mm");
+        assert_eq!(of("greatest D10F", Some(0.58389), "mm").unwrap(), "0.583 mm");
+        assert_eq!(of("greatest D15F / least D15F, as found", Some(6.999), "").unwrap(), "7.00");
+        assert_eq!(of("category", Some(2.0), "").unwrap(), "2");
+        assert_eq!(of("least D15F", None, "mm"), None);
     }
 
     #[test]

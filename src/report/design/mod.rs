@@ -54,7 +54,7 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
     };
     #[cfg(feature = "xlsx")]
     if let Some(specification) = &design.specification {
-        super::workbook::write_specification_workbook(folder, specification)?;
+        super::workbook::write_specification_workbook(folder, specification, Some(&design))?;
     }
     let stated = design.specification.as_ref().map(Stated::of).unwrap_or_default();
     Sections::new(title, title, &names)
@@ -66,7 +66,7 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
         .section("Standard products", &products(&design))
         .section("The specification, step by step", &stated.words)
         .figures(stated.figure)
-        .section("Limits sieve by sieve", &stated.limits)
+        .section("Limits sieve by sieve", &html! { (in_doubt(&design)) (stated.limits) })
         .section("Margins of standard products", &stated.products)
         .section("Rules of practice", &practice(&design))
         .section("Network by network", &networks(&design))
@@ -149,6 +149,12 @@ fn answer(design: &Design) -> Markup {
             }
         }
     }
+}
+
+/// How far limits can be relied on that follow from the answer, where they are in doubt.
+fn in_doubt(design: &Design) -> Markup {
+    let is_shown = design.specification.is_some() && design.confidence != Confidence::Within;
+    html! { @if is_shown { p { b { (clean(&design.confidence_said())) } } } }
 }
 
 /// A note as a sentence; in files of earlier versions it is a part of one.
@@ -371,6 +377,7 @@ mod tests {
     use super::*;
     use crate::gradation::Gradation;
     use crate::outcome::design::BaseStated;
+    use crate::outcome::design::products::Fit;
     use crate::outcome::record::ModelLimit;
     use crate::verdict::PairRules;
 
@@ -381,6 +388,23 @@ mod tests {
         let written = write_design(folder.path()).unwrap();
         assert!(written.page.ends_with("design.html"));
         std::fs::read_to_string(written.page).unwrap()
+    }
+
+    #[test]
+    fn a_product_is_said_to_fit_only_where_nothing_is_in_doubt() {
+        let fit = |drains| Fit {
+            name: if drains { "sand" } else { "clay" }.into(),
+            d15_mm: [0.2, 0.4],
+            drains,
+            holds: true,
+            practice: None,
+            source: String::new(),
+        };
+        let doubted = Design { products: vec![fit(true), fit(false)], ..design(None, Confidence::Outside) };
+        let said = |of: &Design| ["sand", "clay", "other"].map(|name| of.says_fit(name));
+        assert_eq!(said(&doubted), [None, Some(false), None]);
+        let sure = Design { products_confidence: Some(Confidence::Within), ..doubted };
+        assert_eq!(said(&sure), [Some(true), Some(false), None]);
     }
 
     fn design(no_erosion: Option<Boundary>, confidence: Confidence) -> Design {

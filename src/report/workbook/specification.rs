@@ -1,26 +1,47 @@
 //! The workbook of a specification.
 
 use super::sheet::{Entry, Sheet};
-use crate::outcome::design::Specification;
+use crate::outcome::design::specification::ProductMargin;
+use crate::outcome::design::{Design, Specification};
 
-/// Its sheets.
-pub(super) fn sheets(of: &Specification) -> Vec<Sheet> {
-    vec![summary(of), limits(of), band(of), products(of), steps(of), base(of)]
+/// What the page says too.
+const CAUTIONS: [(&str, &str); 3] = [
+    ("Fines", "At most 5 % may be finer than 0.075 mm, and these fines must not be plastic."),
+    ("Segregation", "Segregation is not checked: see its step."),
+    ("Use", "It does not replace a filter test or a designer’s judgement."),
+];
+
+/// Its sheets; `design` is the walk whose answer it rests on.
+pub(super) fn sheets(of: &Specification, design: Option<&Design>) -> Vec<Sheet> {
+    vec![summary(of, design), limits(of), band(of), products(of, design), steps(of), base(of)]
 }
 
-fn summary(of: &Specification) -> Sheet {
+fn summary(of: &Specification, design: Option<&Design>) -> Sheet {
+    let d15 = of.band.as_ref().map(|band| band.d15_mm());
     let mut sheet = Sheet::new("Specification", &["Item", "Value", "Unit"]);
     sheet.item("Base", &of.base, "");
     sheet.item("Dispersive", of.dispersive, "");
     sheet.item("Least D15F, which drains the base", of.d15f_min_mm, "mm");
     sheet.item("Greatest D15F, which retains the base", of.d15f_max_mm, "mm");
+    sheet.item("Greatest D15F set by", of.set_by(), "");
+    sheet.item("D15F of the band, fine side", d15.map(|d15| d15[0]), "mm");
+    sheet.item("D15F of the band, coarse side", d15.map(|d15| d15[1]), "mm");
     sheet.item("No band, because", of.no_band.as_deref(), "");
+    sheet.item("Confidence", design.map(Design::confidence_said), "");
+    let basis = match design {
+        Some(_) => "By the rules of practice and a walk.",
+        None => "By the rules of practice alone, without a walk.",
+    };
+    sheet.item("Basis", basis, "");
+    CAUTIONS.iter().for_each(|(item, caution)| sheet.item(item, *caution, ""));
     sheet.item("voidwalk", &of.version, "");
     sheet
 }
 
 fn limits(of: &Specification) -> Sheet {
-    let headings = ["Sieve", "Opening (mm)", "Least finer by mass (%)", "Greatest finer by mass (%)"];
+    let headings = ["Sieve", "Opening (mm)", "Least finer by mass (%)", "Greatest finer by mass (%)", "Note"];
+    // Said once, beside the first sieve.
+    let mut note = of.beside_limits();
     let mut sheet = Sheet::new("Limits", &headings);
     for limit in &of.limits {
         sheet.row([
@@ -28,6 +49,7 @@ fn limits(of: &Specification) -> Sheet {
             limit.opening_mm.into(),
             limit.min_percent_finer.into(),
             limit.max_percent_finer.into(),
+            note.take().into(),
         ]);
     }
     sheet
@@ -41,7 +63,8 @@ fn band(of: &Specification) -> Sheet {
     sheet
 }
 
-fn products(of: &Specification) -> Sheet {
+fn products(of: &Specification, design: Option<&Design>) -> Sheet {
+    let fits = |of: &ProductMargin| design.map_or_else(|| of.fits(), |design| design.says_fit(&of.product));
     let headings = [
         "Product",
         "D15 of the fine side (mm)",
@@ -61,7 +84,7 @@ fn products(of: &Specification) -> Sheet {
             product.d15_coarse_mm.into(),
             product.drains_by.into(),
             product.holds_by.into(),
-            product.fits().into(),
+            fits(product).into(),
             product.worst_sieve_mm.into(),
             product.leaves_band_by.into(),
             (&product.source).into(),

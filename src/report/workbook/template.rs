@@ -33,6 +33,7 @@ fn how() -> Sheet {
         "Add or remove rows as you need. A further sample is a further column, headed as Sample 2 (% finer).",
         "The coarsest row must have 100 % finer. Leave no row empty between two others.",
         "Add hydrometer sizes below the finest sieve if you have them: retention depends on fines and D85.",
+        "Where a command reads one soil, name its sheet: site.xlsx#Base. Else both sheets would be one soil.",
         "Delete a sheet that you do not need. voidwalk soil FILE.xlsx shows what is read.",
     ] {
         sheet.row([Entry::from(line)]);

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::gradation::{Gradation, curves_in_file};
 use crate::outcome::design::{SieveSeries, Specification, SpecificationStep};
+use crate::outcome::rules::NamedCurve;
 use crate::outcome::table::csv_of;
 use crate::run::callbacks::Callbacks;
 use crate::run::error::RunError;
@@ -38,6 +39,7 @@ pub struct SpecifyOptions {
 /// is written.
 pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specification, RunError> {
     let bases = curves_in_file(&options.base, None).map_err(RunError::refused)?;
+    no_filter_within(&options.base, &bases)?;
     bases.iter().try_for_each(|(name, base)| is_a_base(&options.base, name, base))?;
     let (dispersive, sieves) = (options.dispersive, options.sieves);
     let specified = SpecificationOptions { dispersive, sieves, walked_mm: None };
@@ -49,6 +51,23 @@ pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specif
         write_tables(&folder, &specification)?;
         Ok(specification)
     })
+}
+
+/// Refuses a file with both a base and a filter: the filter is no curve of the base.
+fn no_filter_within(file: &Path, curves: &[NamedCurve]) -> Result<(), RunError> {
+    let of = |wanted: &str| {
+        // Of several samples on a sheet each is named `Base/Sample 1`.
+        let sheet = |name: &str| name.split('/').next().unwrap_or_default().trim().to_lowercase();
+        curves.iter().map(|(name, _)| name).find(|name| sheet(name) == wanted)
+    };
+    match (of("base"), of("filter")) {
+        (Some(base), Some(filter)) => Err(RunError::Refused(format!(
+            "{file}: {filter}: it holds a base and a filter, and all curves are taken as of the base; name \
+             one: {file}#{base}",
+            file = shown(file)
+        ))),
+        _ => Ok(()),
+    }
 }
 
 /// Refuses stones: a size in micrometres under a header in mm, most likely.

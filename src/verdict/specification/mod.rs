@@ -5,10 +5,11 @@ mod steps;
 #[cfg(test)]
 mod tests;
 
+use crate::gradation::FINES_MM;
 use crate::outcome::design::SieveSeries;
 use crate::outcome::design::specification::{SizeBand, Specification, margins};
-use crate::outcome::numbers::significant;
-use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_CU, NamedCurve, WIDEST_BAND};
+use crate::outcome::numbers::{rounded_down, rounded_up};
+use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_CU, MOST_FINES_PERCENT, NamedCurve, WIDEST_BAND};
 use curve::ReadCurve;
 use steps::{Control, D15_OVER_D10, Found};
 
@@ -77,6 +78,20 @@ impl Specification {
     }
 }
 
+impl Specification {
+    /// What a delivery must keep beside the limits at the sieves: between two sieves it may leave the band
+    /// or have a gap. `None` without a band.
+    pub fn beside_limits(&self) -> Option<String> {
+        let [least, greatest] = self.band.as_ref()?.d15_mm();
+        Some(format!(
+            "The limits alone are not enough: D15F of each delivery must lie between {} and {} mm, its Cu \
+             must be at most {MOST_CU}, and it must have no gap. Judge each with the command voidwalk rules.",
+            rounded_up(least),
+            rounded_down(greatest)
+        ))
+    }
+}
+
 /// Why there is no band.
 fn no_band(
     min: Option<f64>,
@@ -84,18 +99,20 @@ fn no_band(
     unknown: Option<&ReadCurve>,
     has_band: bool,
 ) -> Option<String> {
-    let size = significant;
     match (min, max) {
         _ if has_band => None,
         (Some(min), Some(max)) if min > max => Some(format!(
             "No filter both drains and retains this base: D15F must be at least {} mm to drain it and at \
              most {} mm to retain it. A filter in two stages, or a base that is less broad, is needed.",
-            size(min),
-            size(max)
+            rounded_up(min),
+            rounded_down(max)
+        )),
+        (Some(_), Some(max)) if MOST_CU * max / D15_OVER_D10 < GREATEST_SIZE_MM => Some(format!(
+            "The coarse side would have more than {MOST_FINES_PERCENT} % finer than {FINES_MM} mm."
         )),
         (Some(_), Some(max)) => Some(format!(
             "The greatest D60F is {} mm and lies beyond the greatest size of {GREATEST_SIZE_MM} mm.",
-            size(MOST_CU * max / D15_OVER_D10)
+            rounded_down(MOST_CU * max / D15_OVER_D10)
         )),
         _ => Some(match unknown.and_then(|curve| curve.unknown.as_ref().map(|why| (&curve.of.curve, why))) {
             Some((curve, why)) => format!("The greatest D15F is not known for {curve}: {why}."),

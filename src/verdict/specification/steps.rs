@@ -43,7 +43,7 @@ impl Found<'_> {
             self.width(),
             self.uniformity(),
             self.ends(),
-            self.segregation(),
+            self.segregation(band),
             self.sides(band),
         ];
         let number =
@@ -212,7 +212,7 @@ impl Found<'_> {
                 "Cu of each side is at most {MOST_CU}. {D15_OVER_D10} is D15/D10 of a side that is straight \
                  on the form and has this Cu."
             ),
-            source: source_of("filter-uniformity"),
+            source: with_own_factor(&source_of("filter-uniformity")),
             ..step("Keep both sides uniform, without gaps")
         }
     }
@@ -235,16 +235,18 @@ impl Found<'_> {
         }
     }
 
-    fn segregation(&self) -> SpecificationStep {
-        let d10 = self.control.as_ref().map(|of| of.d15[0] / D15_OVER_D10);
+    fn segregation(&self, band: Option<&SizeBand>) -> SpecificationStep {
+        let d10 = band.map(|band| (band.d15_mm()[0] / D15_OVER_D10).min(band.least_size(10.0)));
         SpecificationStep {
-            formula: format!("least D10F = least D15F / {D15_OVER_D10}"),
+            formula: format!(
+                "least D10F = the smaller of least D15F / {D15_OVER_D10} and D10F of the fine side"
+            ),
             values: vec![named("least D10F", d10, "mm"), named("greatest D90F", None, "mm")],
             note:
                 "Not checked here. The greatest D90F follows from the least D10F by a table of FEMA and NRCS \
                    whose numbers were not read. Take it from there."
                     .into(),
-            source: source_of("filter-segregation"),
+            source: with_own_factor(&source_of("filter-segregation")),
             ..step("Keep the filter from segregating")
         }
     }
@@ -261,6 +263,7 @@ impl Found<'_> {
                 "The control points are joined by straight lines on the form. Above 60 % finer both sides go \
                    on straight."
                     .into(),
+            source: "a drawing of this program; no text was read for the sides above 60 % finer".into(),
             ..step("Draw both sides of the band")
         }
     }
@@ -288,6 +291,11 @@ fn named(name: &str, value: Option<f64>, unit: &str) -> StepValue {
 /// A part of a sentence as one of its own.
 fn sentence(words: &str) -> String {
     format!("{}.", capital(words.trim_end_matches('.')))
+}
+
+/// The source of a rule, and that the factor between D15F and D10F is from elsewhere.
+fn with_own_factor(source: &str) -> String {
+    format!("{source}. The factor {D15_OVER_D10} is worked out by this program")
 }
 
 /// Where the numbers of a rule were read.

@@ -70,6 +70,25 @@ fn a_till_is_regraded_and_both_limits_of_its_fines_are_shown() {
     assert!(near(till.d15f_min_mm, 5.0 * 0.075));
 }
 
+/// Where the fine side is flatter than the factor says, its own D10 counts.
+#[test]
+fn the_least_d10f_is_that_of_the_fine_side_where_that_is_finer() {
+    // D15F of 1 to 2 mm: D5 of the fine side is a fifth of 2 x 5^(-10/45).
+    let sand = of(&[(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)]);
+    let d10 = (2.0 * 5f64.powf(-10.0 / 45.0) / 5.0).sqrt();
+    assert!(d10 < 1.0 / 1.2 && near(value(&sand, "least D10F"), d10), "{d10}");
+    let sources = [7, 9, 10].map(|at| sand.steps[at].source.as_str());
+    assert!(sources.iter().all(|source| source.contains("this program")), "{sources:?}");
+}
+
+#[test]
+fn what_set_the_answer_and_what_a_delivery_must_keep_is_said() {
+    let core = of(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
+    assert_eq!(core.set_by(), Some(core.curves[0].d15f_max_rule.as_str()));
+    let beside = core.beside_limits().unwrap();
+    assert!(beside.contains("between 0.140 and 0.700 mm") && beside.contains("at most 6"), "{beside}");
+}
+
 #[test]
 fn of_several_curves_the_strictest_limit_of_each_counts() {
     let curves: Vec<NamedCurve> = vec![
@@ -97,6 +116,7 @@ fn without_a_known_limit_or_room_between_both_there_is_no_band_and_it_is_said_wh
     let why = uniform.no_band.as_ref().unwrap();
     assert!(uniform.band.is_none() && why.starts_with("No filter both drains and retains"), "{why}");
     assert!(uniform.products.iter().all(|product| product.leaves_band_by.is_none()));
+    assert!(uniform.beside_limits().is_none());
     // A gravel whose filter would be of stones.
     let gravel = of(&[(5.0, 0.0), (6.0, 15.0), (9.0, 85.0), (12.0, 100.0)]);
     assert!(gravel.no_band.unwrap().contains("beyond the greatest size of 75 mm"));
@@ -107,9 +127,20 @@ fn the_walk_narrows_the_band_where_it_is_the_stricter() {
     let sand = [("sand".to_owned(), soil(&[(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)]))];
     let with = |walked| {
         let options = SpecificationOptions { walked_mm: Some(walked), ..Default::default() };
-        Specification::of("sand", &sand, options).d15f_max_mm
+        let of = Specification::of("sand", &sand, options);
+        (of.d15f_max_mm, of.set_by().map(str::to_owned))
     };
-    assert!(near(with(1.5), 1.5) && near(with(3.0), 2.0));
+    assert!(near(with(1.5).0, 1.5) && near(with(3.0).0, 2.0));
+    assert!(with(1.5).1.unwrap() == "the walk" && with(3.0).1.unwrap().contains("limit of design"));
+    // The walk may allow so little that the coarse side has too many fines.
+    let core = [("core".to_owned(), soil(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]))];
+    let options = SpecificationOptions { walked_mm: Some(0.103), ..Default::default() };
+    let narrow = Specification::of("core", &core, options);
+    assert!(narrow.band.is_none() && narrow.limits.is_empty());
+    assert_eq!(
+        narrow.no_band.as_deref(),
+        Some("The coarse side would have more than 5 % finer than 0.075 mm.")
+    );
 }
 
 /// What is specified keeps every rule of the table: both sides of the band, against every curve of the base.

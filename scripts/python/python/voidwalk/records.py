@@ -1176,9 +1176,10 @@ class SieveLimit(TypedDict):
     sieve: str
     #: Its opening (mm).
     opening_mm: float
-    #: Least percent finer, of the coarse side: a whole percent within the band.
+    #: Least percent finer, of the coarse side: a whole percent within the band; tenths or hundredths where no
+    #: whole percent lies within.
     min_percent_finer: float
-    #: Greatest percent finer, of the fine side: a whole percent within the band.
+    #: Greatest percent finer, of the fine side, likewise.
     max_percent_finer: float
 
 
