@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use maud::{Markup, html};
-use voidwalk::network::ExitRule;
 use voidwalk::outcome::record::Verdict;
 use voidwalk::outcome::{Modelled, leaves_out};
 use voidwalk::report::numbers::{duration, significant, whole};
