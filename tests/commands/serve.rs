@@ -555,7 +555,7 @@ fn what_waited_or_was_compared_when_the_server_ended_is_done_by_the_next() {
         assert_eq!(served.sheet(name, COARSE).0, 200);
     }
     let request = json!({ "base": "1", "filter": "2", "filters": ["3", "4"], "quick": true,
-        "changes": ["network.nx=6", "network.ny=6", "network.nz=8", "replicates=8"] });
+        "changes": ["network.nx=10", "network.ny=10", "network.nz=20", "replicates=40"] });
     let (_, said) = served.post("api/compare", request.to_string().as_bytes());
     let compared = said["id"].as_u64().unwrap();
     let waits = served.judge(&["replicates=4"]).1["id"].as_u64().unwrap();
