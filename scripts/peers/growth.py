@@ -47,7 +47,7 @@ def cases(number):
 SWEEPS = {
     "base particles, one by one (40 x 40 x 60 voids)": [(n, particles("particles", n)) for n in (10**5, 10**6, 10**7, 10**8)],
     "base particles, by counts": [(n, particles("counts", n)) for n in (10**6, 10**7, 10**8, 10**9)],
-    "base particles, as their expectation": [(n, particles("expected", n)) for n in (10**6, 10**7, 10**8, 10**9, 10**12)],
+    "base particles, as their expectation": [(n, particles("expected", n)) for n in (10**6, 10**7, 10**8, 10**9)],
     "voids: cubes with 100 particles a void, expected": [
         (x**3, run([*lattice(x, x), f"base.n_base={100 * x**3}", "engine=expected"])) for x in (10, 22, 46, 100)],
     "layers of 20 x 20 voids, as much base, expected": [

@@ -15,16 +15,16 @@ from statistics import median
 
 #: Kernel: what an item is; bytes of an item and where they lie; random reads; operations; what holds it up next.
 KERNELS = {
-    "step": ("attempted move", 16, "third cache", 1, 0, "words of the table: a gather of 16 takes as long as 16 loads"),
-    "insert and step": ("attempted move", 24, "third cache", 1, 0, "the draw of a diameter: a table and two roots a particle"),
-    "insert, step and block": ("attempted move", 24, "third cache", 2, 0, "blocking events, one by one and in order"),
-    "counts": ("void and increment", 36, "third cache", 0, 0, "two binomial draws a void, of some 40 operations and 2 random numbers each"),
-    "expected": ("void and increment", 32, "third cache", 0, 9, "bytes: three columns are read and one written"),
-    "lattice": ("constriction", 4, "second cache", 1, 0, "one random number and one look into the curve each"),
-    "flow, from nothing": ("constriction", None, None, None, None, "some 20 rounds, each with two passes through the factor that wait for one another"),
-    "contacts of grains": ("grain and step", 320, "second cache", 0, 460, "a square root and three divisions a contact; contacts in blocks with gathers"),
-    "triangulation": ("grain", None, None, None, None, "exact predicates, and a search whose every step waits for the last"),
-    "constrictions": ("grain", None, None, None, None, "circles that touch three grains, by iteration"),
+    "step": ("attempted move", 16, "third cache", 1, 0, "random reads of the table; in portable code the arithmetic, too"),
+    "insert and step": ("attempted move", 24, "third cache", 1, 0, "drawing a diameter and a void to begin in; not taken apart"),
+    "insert, step and block": ("attempted move", 24, "third cache", 2, 0, "insertion, as above; blocking events one by one and in order"),
+    "counts": ("void and increment", 36, "third cache", 0, 0, "two binomial draws a void; not taken apart"),
+    "expected": ("void and increment", 32, "third cache", 0, 9, "neither bytes nor operations alone; not taken apart"),
+    "lattice": ("constriction", 4, "second cache", 1, 0, "a random number and a look into the curve each; not taken apart"),
+    "flow, from nothing": ("constriction", None, None, None, None, "rounds of conjugate gradients, which were not counted"),
+    "contacts of grains": ("grain and step", 320, "second cache", 0, 460, "up to four square roots and six divisions a contact, counted as one operation each; gathers"),
+    "triangulation": ("grain", None, None, None, None, "not taken apart"),
+    "constrictions": ("grain", None, None, None, None, "not taken apart"),
 }
 
 
