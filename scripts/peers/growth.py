@@ -91,7 +91,7 @@ def main():
     sweeps = dict(SWEEPS)
     if options.bench:
         sweeps["grains of Cu 3, 600 steps of a compression"] = [
-            (n, lambda _, __, n=n: [options.bench, "cu=3", f"grains={n}", "threads=1", "max_steps=600"]) for n in (100, 1000, 10**4, 10**5)]
+            (n, lambda _, __, n=n: [options.bench, "cu=3", f"grains={n}", "threads=1", "max_steps=600"]) for n in (300, 3000, 30_000, 300_000)]
     for name, sizes in sweeps.items():
         if options.only and not any(word in name for word in options.only):
             continue
