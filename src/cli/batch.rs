@@ -10,6 +10,7 @@ use clap::Parser;
 use super::args::{Arguments, Command, CompareArgs, RulesArgs};
 use super::compare::{found, planned, show, walked};
 use super::print::{counted, plain, shown, to_stdout};
+use crate::campaign::cluster::scripts::quoted_if_needed;
 use crate::gradation::{curves_in_file, file_and_soil, notes_in_file, samples_in};
 use crate::outcome::comparison::Comparison;
 use crate::outcome::three;
@@ -198,6 +199,7 @@ fn of_filter(rows: &[BatchRow], filter: &Path, curves: &[String], is_walked: boo
         let names: Vec<String> = open.iter().map(|row| plain(&row.sample)).collect();
         let _ = writeln!(text, "  may govern, as its limit is not known: {}", names.join(", "));
     }
+    let quoted = |path: &Path| plain(&quoted_if_needed(path));
     let paths: Vec<String> = paths(rows, filter).iter().map(|path| quoted(path)).collect();
     let walk = match paths.len() {
         0 if is_walked => return text + "  Nothing was walked, as no sample has a limit.\n",
@@ -210,14 +212,4 @@ fn of_filter(rows: &[BatchRow], filter: &Path, curves: &[String], is_walked: boo
     let which = if paths.len() == 1 { "the one that governs" } else { "those that govern" };
     let _ = writeln!(text, "  Nothing was walked. To walk {which}: {walk}");
     text
-}
-
-/// A path as a shell takes it.
-fn quoted(path: &Path) -> String {
-    let text = plain(&shown(path));
-    if text.chars().all(|c| c.is_ascii_alphanumeric() || "./_-".contains(c)) {
-        text
-    } else {
-        format!("\"{text}\"")
-    }
 }

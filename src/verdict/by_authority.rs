@@ -26,14 +26,12 @@ pub fn of_pair(rules: &[AppliedRule], by: Authority, d15f: Option<f64>) -> Optio
         None => "no limit of D15F for this base".into(),
     };
     let left = left_by(rules, by);
-    let broken: Vec<&str> = left.iter().filter(|of| of.is_broken()).map(|of| of.name.as_str()).collect();
-    let said = match broken[..] {
-        [] if left.iter().all(|rule| rule.met == Some(true)) => vec!["none of them is broken".into()],
-        [] if left.iter().all(|rule| !rule.applies || rule.met == Some(true)) => {
+    let said = match broken(&left) {
+        None if left.iter().all(|rule| rule.met == Some(true)) => vec!["none of them is broken".into()],
+        None if left.iter().all(|rule| !rule.applies || rule.met == Some(true)) => {
             [vec!["all that have a limit for these soils are met".into()], without_result(&left)].concat()
         }
-        [] => without_result(&left),
-        _ => [vec![format!("not met among them: {}", broken.join("; "))], without_result(&left)].concat(),
+        broken => broken.into_iter().chain(without_result(&left)).collect(),
     };
     Some(format!("{}: {governing}. {}", by.name(), left_out(rules, &left, &said)))
 }
@@ -70,10 +68,7 @@ pub fn of_design(rules: &[AppliedRule], by: Authority, unit: &str) -> Option<Str
         (true, []) => said.push("no limit among them is known to be stricter".into()),
         (true, _) => said.push(format!("stricter among them: {}", stricter.join("; "))),
     }
-    let broken: Vec<&str> = left.iter().filter(|of| of.is_broken()).map(|of| of.name.as_str()).collect();
-    if !broken.is_empty() {
-        said.push(format!("not met among them: {}", broken.join("; ")));
-    }
+    said.extend(broken(&left));
     said.extend(without_result(&left));
     let left = left_out(rules, &left, &said);
     Some(format!("{}: {governing}. {left} The answer rests on all rules.", by.name()))
@@ -100,6 +95,12 @@ fn governing(stated: &[AppliedRule], d15f: f64) -> Option<(AppliedRule, String)>
 /// The rules of practice that an authority does not state.
 fn left_by(rules: &[AppliedRule], by: Authority) -> Vec<&AppliedRule> {
     rules.iter().filter(|rule| rule.role != RuleRole::Walk && !is_stated_by(rule, by)).collect()
+}
+
+/// The rules that are not met; `None` where there are none.
+fn broken(left: &[&AppliedRule]) -> Option<String> {
+    let names: Vec<&str> = left.iter().filter(|of| of.is_broken()).map(|of| of.name.as_str()).collect();
+    (!names.is_empty()).then(|| format!("not met among them: {}", names.join("; ")))
 }
 
 /// Rules that were made for these soils and neither are met nor broken: their probability, where they have

@@ -46,13 +46,14 @@ pub fn samples_in(path: &Path) -> Result<Vec<SoilSample>, GradationError> {
     }
     files.sort();
     // What some disks and some readers take for the same counts as the same.
+    let lower = |stem: &str| stem.to_lowercase();
     let stem = |file: &PathBuf| file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let stems: Vec<String> = files.iter().map(|file| stem(file).to_lowercase()).collect();
+    let stems: Vec<String> = files.iter().map(stem).collect();
     let mut samples = Vec::new();
-    for file in &files {
-        let is_alone = stems.iter().filter(|other| **other == stem(file).to_lowercase()).count() == 1;
+    for (file, stem) in files.iter().zip(&stems) {
+        let is_alone = stems.iter().filter(|other| lower(other) == lower(stem)).count() == 1;
         let whole = || file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let stem = if is_alone { stem(file) } else { whole() };
+        let stem = if is_alone { stem.clone() } else { whole() };
         let of_file = in_file(file)?;
         let several = of_file.len() > 1;
         samples.extend(of_file.into_iter().map(|sample| {

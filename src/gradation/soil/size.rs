@@ -226,11 +226,11 @@ fn us(text: &str) -> Option<(Opening, Said)> {
 /// assert_eq!(us_sieve(4.0001), None);
 /// ```
 pub fn us_sieve(mm: f64) -> Option<String> {
-    let is_it = |(_, opening): &&(f64, f64)| (opening - mm).abs() < 1e-9 * mm;
-    if let Some((name, _)) = BY_NUMBER.iter().find(|(_, opening)| (opening - mm).abs() < 1e-9 * mm) {
+    let is_it = |opening: f64| (opening - mm).abs() < 1e-9 * mm;
+    if let Some((name, _)) = BY_NUMBER.iter().find(|(_, opening)| is_it(*opening)) {
         return Some(format!("No. {name}"));
     }
-    let (inches, _) = BY_INCHES.iter().find(is_it)?;
+    let (inches, _) = BY_INCHES.iter().find(|(_, opening)| is_it(*opening))?;
     let (whole, mut above, mut below) = (inches.floor(), inches.fract() * 16.0, 16.0);
     while above > 0.0 && above % 2.0 == 0.0 {
         (above, below) = (above / 2.0, below / 2.0);

@@ -115,19 +115,24 @@ impl Fit {
     }
 }
 
-/// D15 (mm) of a side, straight in percent over log size; the finest sieve where even that passes more.
-fn d15(limits: &[(f64, f64, f64)], side: fn(&(f64, f64, f64)) -> f64) -> f64 {
-    let above = limits.iter().position(|row| side(row) >= 15.0).unwrap_or(limits.len() - 1);
-    let (high, b) = (limits[above].0, side(&limits[above]));
+/// The size (mm) at which a side has this percent finer, straight in percent over log size; its end where it
+/// does not reach it. Points are size (mm) and percent finer, rising.
+pub(super) fn size_at(side: &[[f64; 2]], percent: f64) -> f64 {
+    let above = side.iter().position(|point| point[1] >= percent).unwrap_or(side.len() - 1);
+    let [high, b] = side[above];
     let Some(below) = above.checked_sub(1) else { return high };
-    let (low, a) = (limits[below].0, side(&limits[below]));
-    low * libm::exp((15.0 - a) / (b - a) * libm::log(high / low))
+    let [low, a] = side[below];
+    if percent >= b { high } else { low * libm::exp((percent - a) / (b - a) * libm::log(high / low)) }
 }
 
 impl Product {
     /// D15 (mm) of its fine and of its coarse side.
     pub fn d15_mm(&self) -> [f64; 2] {
-        [d15(self.limits, |row| row.2), d15(self.limits, |row| row.1)]
+        let side = |percent: fn(&(f64, f64, f64)) -> f64| {
+            let points: Vec<[f64; 2]> = self.limits.iter().map(|row| [row.0, percent(row)]).collect();
+            size_at(&points, 15.0)
+        };
+        [side(|row| row.2), side(|row| row.1)]
     }
 }
 

@@ -5,6 +5,8 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use crate::gradation::{FINES_MM, us_sieve};
+
 /// A series of sieves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -18,47 +20,25 @@ pub enum SieveSeries {
     Iso,
 }
 
-/// Name and opening (mm), the coarsest first.
-type NamedSieve = (&'static str, f64);
+const US: [f64; 14] = [75.0, 50.0, 37.5, 25.0, 19.0, 12.5, 9.5, 4.75, 2.36, 1.18, 0.6, 0.3, 0.15, FINES_MM];
 
-const US: [NamedSieve; 14] = [
-    ("3 in", 75.0),
-    ("2 in", 50.0),
-    ("1 1/2 in", 37.5),
-    ("1 in", 25.0),
-    ("3/4 in", 19.0),
-    ("1/2 in", 12.5),
-    ("3/8 in", 9.5),
-    ("No. 4", 4.75),
-    ("No. 8", 2.36),
-    ("No. 16", 1.18),
-    ("No. 30", 0.6),
-    ("No. 50", 0.3),
-    ("No. 100", 0.15),
-    ("No. 200", 0.075),
-];
-
-const ISO: [NamedSieve; 12] = [
-    ("75 mm", 75.0),
-    ("63 mm", 63.0),
-    ("31.5 mm", 31.5),
-    ("16 mm", 16.0),
-    ("8 mm", 8.0),
-    ("4 mm", 4.0),
-    ("2 mm", 2.0),
-    ("1 mm", 1.0),
-    ("0.5 mm", 0.5),
-    ("0.25 mm", 0.25),
-    ("0.125 mm", 0.125),
-    ("0.075 mm", 0.075),
-];
+const ISO: [f64; 12] = [75.0, 63.0, 31.5, 16.0, 8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.125, FINES_MM];
 
 impl SieveSeries {
-    /// Its sieves, name and opening (mm), the coarsest first.
-    pub fn sieves(self) -> &'static [NamedSieve] {
+    /// The openings of its sieves (mm), the coarsest first.
+    pub fn openings(self) -> &'static [f64] {
         match self {
             Self::Us => &US,
             Self::Iso => &ISO,
+        }
+    }
+
+    /// The name of its sieve with this opening (mm).
+    pub fn name(self, opening_mm: f64) -> String {
+        let in_mm = || format!("{opening_mm} mm");
+        match self {
+            Self::Us => us_sieve(opening_mm).unwrap_or_else(in_mm),
+            Self::Iso => in_mm(),
         }
     }
 }
@@ -91,11 +71,16 @@ mod tests {
     #[test]
     fn sieves_fall_and_end_where_fines_are_limited() {
         for series in [SieveSeries::Us, SieveSeries::Iso] {
-            let sieves = series.sieves();
-            assert!(sieves.windows(2).all(|pair| pair[0].1 > pair[1].1), "{series}");
-            assert_eq!(sieves.last().unwrap().1, crate::gradation::FINES_MM);
+            let openings = series.openings();
+            assert!(openings.windows(2).all(|pair| pair[0] > pair[1]), "{series}");
+            assert_eq!(*openings.last().unwrap(), crate::gradation::FINES_MM);
             assert_eq!(series.to_string().parse::<SieveSeries>(), Ok(series));
         }
+        let names =
+            |series: SieveSeries| series.openings().iter().map(|mm| series.name(*mm)).collect::<Vec<_>>();
+        assert_eq!(names(SieveSeries::Us)[..3], ["3 in", "2 in", "1 1/2 in"]);
+        assert!(names(SieveSeries::Us).iter().all(|name| !name.ends_with("mm")));
+        assert_eq!(names(SieveSeries::Iso)[10..], ["0.125 mm", "0.075 mm"]);
         assert!("bs".parse::<SieveSeries>().unwrap_err().contains("allowed: us"));
     }
 }

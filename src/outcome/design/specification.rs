@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::products::{PRODUCTS, Product};
+use super::products::{PRODUCTS, Product, size_at};
 use super::sieves::SieveSeries;
 use crate::gradation::FINES_MM;
 use crate::outcome::numbers::{rounded_down, rounded_up, significant};
@@ -305,16 +305,11 @@ impl SizeBand {
     /// The limits at the sieves of a series, from the finest sieve that all must pass down to the finest of
     /// all.
     pub fn limits(&self, series: SieveSeries) -> Vec<SieveLimit> {
-        let limit = |(name, opening): &(&str, f64)| {
-            let [min, max] = whole(self.percent_finer(*opening));
-            SieveLimit {
-                sieve: (*name).into(),
-                opening_mm: *opening,
-                min_percent_finer: min,
-                max_percent_finer: max,
-            }
+        let limit = |&opening_mm: &f64| {
+            let [min_percent_finer, max_percent_finer] = whole(self.percent_finer(opening_mm));
+            SieveLimit { sieve: series.name(opening_mm), opening_mm, min_percent_finer, max_percent_finer }
         };
-        let all: Vec<SieveLimit> = series.sieves().iter().map(limit).collect();
+        let all: Vec<SieveLimit> = series.openings().iter().map(limit).collect();
         let open = all.iter().take_while(|limit| limit.min_percent_finer == 100.0).count();
         all.into_iter().skip(open.saturating_sub(1)).collect()
     }
@@ -341,15 +336,6 @@ fn whole([min, max]: [f64; 2]) -> [f64; 2] {
         |parts: f64| [((min - hair) * parts).ceil() / parts + 0.0, ((max + hair) * parts).floor() / parts];
     let found = [1.0, 10.0, 100.0].map(inward).into_iter().find(|[min, max]| min <= max);
     found.unwrap_or([min, max])
-}
-
-/// The size at which a side has this percent finer (mm); its end where it does not reach it.
-fn size_at(side: &[[f64; 2]], percent: f64) -> f64 {
-    let above = side.iter().position(|point| point[1] >= percent).unwrap_or(side.len() - 1);
-    let [high, b] = side[above];
-    let Some(below) = above.checked_sub(1) else { return high };
-    let [low, a] = side[below];
-    if percent >= b { high } else { low * libm::pow(high / low, (percent - a) / (b - a)) }
 }
 
 /// The percent finer than a size (mm); below its first point a side has what it has there.

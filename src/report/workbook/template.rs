@@ -19,7 +19,7 @@ const FILTER: Example =
 
 fn soil(name: &'static str, example: &Example) -> Sheet {
     let mut sheet = Sheet::new(name, &["Opening (mm)", "Sample 1 (% finer)"]);
-    for ((_, opening), percent) in SieveSeries::Us.sieves().iter().zip(example) {
+    for (opening, percent) in SieveSeries::Us.openings().iter().zip(example) {
         sheet.row([(*opening).into(), (*percent).into()]);
     }
     sheet
@@ -51,7 +51,7 @@ mod tests {
     #[test]
     fn a_template_with_a_further_sample_is_read_as_it_says() {
         let mut filled = Sheet::new("Base", &["Opening (mm)", "Sample 1 (% finer)", "Sample 2 (% finer)"]);
-        for ((_, opening), percent) in SieveSeries::Us.sieves().iter().zip(BASE) {
+        for (opening, percent) in SieveSeries::Us.openings().iter().zip(BASE) {
             filled.row([(*opening).into(), percent.into(), percent.into()]);
         }
         let root = tempfile::tempdir().unwrap();

@@ -62,20 +62,16 @@ pub(super) fn design(
         judgements.push((name, judged(row, (&found[at], rows, &found), held[at], no_band)?));
     }
     // The worst end of a row without networks is that row, unless another row has it as an end, too.
-    let is_shown = |at: usize| {
-        let (own, row) = (&found[at].of, &rows[at]);
-        let is_end_of = |other: &Row| other.ends.contains(&own.density);
-        let as_it = |(other, of): (&Row, &FoundRow)| {
-            let is_it = of.of.as_end.as_ref() == Some(&own.density);
-            is_it && other.wanted.thickness == row.wanted.thickness
-        };
-        let others = rows.iter().filter(|other| other.wanted.thickness == row.wanted.thickness);
-        row.end_of.is_none()
-            || others.filter(|of| is_end_of(of)).count() > 1
-            || !rows.iter().zip(&found).any(as_it)
+    let is_shown = |(of, row): &(&FoundRow, &Row)| {
+        let density = &row.wanted.density;
+        let has_it =
+            |other: &Row| other.wanted.thickness == row.wanted.thickness && other.ends.contains(density);
+        let all: Vec<_> = found.iter().zip(rows).filter(|(_, other)| has_it(other)).collect();
+        let only = if let [(only, _)] = all[..] { only.of.as_end.as_ref() } else { None };
+        of.of.end_of.is_none() || only != Some(density)
     };
-    let shown = (0..rows.len()).filter(|at| is_shown(*at));
-    let boundaries: Vec<DesignRow> = shown.map(|at| found[at].of.clone()).collect();
+    let shown = found.iter().zip(rows).filter(is_shown);
+    let boundaries: Vec<DesignRow> = shown.map(|(found, _)| found.of.clone()).collect();
     let (confidence, findings) = all_judged(judgements, &boundaries);
     let known = asked().filter_map(|at| Some((at, held[at]?)));
     // Rules are shown of the coarsest filter that is said to hold: there they fail first.
